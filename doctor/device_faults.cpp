@@ -48,13 +48,20 @@ Fault forbidden(const UsbDevice& device, const KnownUsb& kind, const Node& node,
             by_group.empty() ? by_rule(device) : by_group};
 }
 
+/// The vendor's library is there, but not what it was built for.
+bool lacks_terminal_libraries(const devices::DeviceFinding& finding) {
+    return finding.missing.find("libncurses.so.5") != std::string::npos ||
+           finding.missing.find("libtinfo.so.5") != std::string::npos;
+}
+
 Fault without_backend(const UsbDevice& device, const KnownUsb& kind,
                       const devices::DeviceFinding& finding) {
     const bool by_service = kind.through == Through::service;
     return {by_service ? "device-service" : "device-library", true,
             fmt::format("{} is plugged in, but its {} does not answer: {}", called(device, kind),
                         by_service ? "service" : "library", finding.missing),
-            by_service
+            lacks_terminal_libraries(finding) ? "sudo apt install libncurses5 libtinfo5"
+            : by_service
                 ? "sudo apt install spacenavd; sudo systemctl enable --now spacenavd"
                 : fmt::format("install the vendor's library (docs/devices/{}.md){}{}", kind.backend,
                               kind.firmware ? "; " : "", kind.firmware ? kind.firmware : "")};

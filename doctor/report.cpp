@@ -125,11 +125,8 @@ std::string devices_table(const Facts& facts) {
         text += fmt::format("| {} | {} | {} |\n", d.name, d.found ? "yes" : "no",
                             d.found ? d.what : d.missing);
     }
-    for (const UsbDevice& usb : facts.machine.usb) {
-        if (const KnownUsb* const kind = known(usb)) {
-            text += fmt::format("| USB {}:{} | plugged in | {} |\n", usb.vendor, usb.product,
-                                kind->name);
-        }
+    for (const PluggedIn& device : plugged_in(facts.machine.usb)) {
+        text += fmt::format("| {} | plugged in | {} |\n", device.backend, device.name);
     }
     return text;
 }

@@ -25,11 +25,18 @@ constexpr const char* falcon_firmware =
 constexpr const char* touch_firmware =
     "run the vendor's Touch Diagnostic once: it pairs and calibrates the device";
 
-constexpr std::array<KnownUsb, 16> table{{
-    {"1451", nullptr, "forcedimension", "Force Dimension device", Through::usb,
-     "run the SDK's own example (HapticInit) first: a device that it cannot initialise needs the "
-     "vendor's firmware update"},
+constexpr const char* dimension_firmware =
+    "run the SDK's own example (HapticInit) first: a device that it cannot initialise needs the "
+    "vendor's firmware update";
+
+// Of two rows for a vendor, the one with a product comes first.
+constexpr std::array<KnownUsb, 20> table{{
+    {"1451", "0402", "forcedimension", "Force Dimension omega", Through::usb, dimension_firmware},
+    {"1451", "0403", "forcedimension", "Force Dimension sigma", Through::usb, dimension_firmware},
+    {"1451", "040c", "forcedimension", "Force Dimension lambda", Through::usb, dimension_firmware},
+    {"1451", nullptr, "forcedimension", "Force Dimension device", Through::usb, dimension_firmware},
     {"0403", "cb48", "forcedimension", "Novint Falcon", Through::usb, falcon_firmware},
+    {"2988", "0304", "openhaptics", "3D Systems Touch (USB)", Through::usb, touch_firmware},
     {"2988", nullptr, "openhaptics", "3D Systems Touch", Through::serial, touch_firmware},
     {"0301", "2988", "openhaptics", "3D Systems Touch", Through::serial, touch_firmware},
     {"256f", nullptr, "spacenav", "3Dconnexion mouse", Through::service, nullptr},
@@ -95,6 +102,18 @@ const KnownUsb* known(const UsbDevice& device) {
                (one.product == nullptr || device.product == one.product);
     });
     return found == table.end() ? nullptr : found;
+}
+
+std::vector<PluggedIn> plugged_in(const std::vector<UsbDevice>& devices) {
+    std::vector<PluggedIn> found;
+    for (const UsbDevice& device : devices) {
+        const KnownUsb* const kind = known(device);
+        if (!kind) continue;
+        std::string name = std::string(kind->name) + ", " + device.vendor + ":" + device.product;
+        if (!device.name.empty()) name += ", calls itself " + device.name;
+        found.push_back({kind->backend, name});
+    }
+    return found;
 }
 
 Node node_at(const fs::path& root, const std::string& path) {

@@ -27,6 +27,13 @@ struct KnownUsb {
 /// Null for a device that is not ours.
 const KnownUsb* known(const UsbDevice& device);
 
+/// One that is ours, in words.
+struct PluggedIn {
+    std::string backend;  ///< its name for --device
+    std::string name;     ///< for people, with its numbers and what it calls itself
+};
+std::vector<PluggedIn> plugged_in(const std::vector<UsbDevice>& devices);
+
 /// The devices below root/sys/bus/usb/devices, hubs too.
 std::vector<UsbDevice> read_usb(const std::filesystem::path& root);
 

@@ -8,6 +8,7 @@
 
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
+#include "apps/palpate/plugged_in.hpp"
 
 namespace palpate::app {
 namespace {
@@ -15,16 +16,19 @@ namespace {
 void list_devices(bool json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const devices::DeviceFinding& device : devices::find_devices()) {
+        const std::vector<std::string> plugged = plugged_in(device.name);
         if (json) {
             list.push_back({{"name", device.name},
                             {"found", device.found},
                             {"what", device.what},
                             {"missing", device.missing},
-                            {"options", device.options}});
+                            {"options", device.options},
+                            {"plugged_in", plugged}});
             continue;
         }
         fmt::print("{:<15} {} {}\n", device.name, device.found ? "yes" : "no ",
                    device.found ? device.what : device.missing);
+        for (const std::string& one : plugged) fmt::print("{:<15}     plugged in: {}\n", "", one);
         if (!device.options.empty()) fmt::print("{:<15}     options: {}\n", "", device.options);
     }
     if (json) print_json(list);

@@ -1,4 +1,4 @@
-// Finds the functions of Force Dimension's library; the table of models.
+// Finds the functions of Force Dimension's library; what its devices can do.
 #include "devices/forcedimension/dhd.hpp"
 
 #include <algorithm>
@@ -9,33 +9,58 @@
 namespace palpate::devices::forcedimension {
 namespace {
 
-// clang-format off
-constexpr Model models[] = {
-    // type            N  N/mm   mm         N mm
-    {33,  "omega.3",  12, 5,     55, false, 0},
-    {34,  "omega.6",  12, 5,     55, true,  0},
-    {36,  "omega.6",  12, 5,     55, true,  0},
-    {35,  "omega.7",  12, 5,     55, true,  0},
-    {37,  "omega.7",  12, 5,     55, true,  0},
-    {60,  "Falcon",    8, 3,     40, false, 0},
-    {63,  "delta.3",  20, 5,    100, false, 0},
-    {64,  "delta.6",  20, 5,    100, true,  150},
-    {104, "sigma.7",  12, 4,     55, true,  400},
-    {105, "sigma.7",  12, 4,     55, true,  400},
-    {108, "lambda.7", 12, 4,     55, true,  150},
-    {109, "lambda.7", 12, 4,     55, true,  150},
-    {203, "lambda.3", 12, 4,     55, false, 0},
-    {206, "sigma.3",  12, 4,     55, false, 0},
+struct Type {
+    int number;
+    const char* model;
+    double centre_right = 0, centre_near = 0;  ///< [mm] of the workspace
 };
-// clang-format on
-/// For unknown models: the least that any of them can do.
-constexpr Model any_model{0, "Force Dimension device", 8, 3, 40, false, 0};
+
+/// Numbers of dhdGetSystemType(). Those that the vendor no longer sells are in CHAI3D's driver, as
+/// are the centres.
+constexpr Type types[] = {
+    {31, "delta.3"},
+    {32, "omega.3"},
+    {33, "omega.3"},
+    {34, "omega.6"},
+    {36, "omega.6"},
+    {35, "omega.7"},
+    {37, "omega.7"},
+    {60, "Falcon"},
+    {61, "delta.6"},
+    {62, "delta.6"},
+    {63, "delta.3"},
+    {64, "delta.6"},
+    {104, "sigma.7", 20, -10},
+    {105, "sigma.7", -20, -10},
+    {106, "sigma.6+", 20, -10},
+    {107, "sigma.6+", -20, -10},
+    {108, "lambda.7"},
+    {109, "lambda.7"},
+    {131, "lambda.6"},
+    {132, "lambda.6"},
+    {203, "lambda.3"},
+    {206, "sigma.3"},
+};
+constexpr int falcon = 60;
 
 }  // namespace
 
-const Model& model_of(int system_type) {
-    const auto found = std::ranges::find(models, system_type, &Model::type);
-    return found == std::end(models) ? any_model : *found;
+Arm arm_of(const Dhd& dhd, char id) {
+    const int number = dhd.get_system_type(id);
+    const auto* const type = std::ranges::find(types, number, &Type::number);
+    const bool is_known = type != std::end(types);
+    Arm arm{model_named(is_known ? type->model : "Force Dimension device")};
+    if (is_known) arm.centre = Vec3(type->centre_right, 0, type->centre_near);
+    arm.has_button_row = number == falcon;
+
+    Model& model = arm.model;
+    if (dhd.has_wrist) model.has_wrist = dhd.has_wrist(id);
+    if (dhd.has_gripper) model.has_gripper = dhd.has_gripper(id);
+    const bool is_active = dhd.has_active_wrist ? dhd.has_active_wrist(id) : is_known;
+    if (!model.has_wrist || !is_active || !dhd.has_torque()) model.torque = 0;
+    const double limit = dhd.get_max_force ? dhd.get_max_force(id) : -1;
+    if (limit > 0) model.force = is_known ? std::min(model.force, limit) : std::min(limit, 20.);
+    return arm;
 }
 
 Dhd::Dhd(const std::string& path)
@@ -55,11 +80,18 @@ Dhd::Dhd(const std::string& path)
     library.need(set_gravity_compensation, "dhdSetGravityCompensation");
     library.need(error_get_last, "dhdErrorGetLast");
     library.need(error_get_last_text, "dhdErrorGetLastStr");
+    library.take(enable_simulator, "dhdEnableSimulator");
     library.take(get_system_name, "dhdGetSystemName");
     library.take(get_serial_number, "dhdGetSerialNumber");
     library.take(get_version, "dhdGetSDKVersion");
     library.take(set_max_force, "dhdSetMaxForce");
+    library.take(has_wrist, "dhdHasWrist");
     library.take(has_active_wrist, "dhdHasActiveWrist");
+    library.take(has_gripper, "dhdHasGripper");
+    library.take(get_max_force, "dhdGetMaxForce");
+    library.take(emulate_button, "dhdEmulateButton");
+    library.take(enable_expert_mode, "dhdEnableExpertMode");
+    library.take(disable_expert_mode, "dhdDisableExpertMode");
     library.take(set_all, "dhdSetForceAndTorqueAndGripperForce");
     library.take(set_force_and_torque, "dhdSetForceAndTorque");
     library.take(set_max_torque, "dhdSetMaxTorque");

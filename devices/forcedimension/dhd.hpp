@@ -4,34 +4,39 @@
 
 #include <string>
 
+#include "devices/models.hpp"
 #include "devices/vendor_library.hpp"
 
 namespace palpate::devices::forcedimension {
 
+// Each constant has its name in the vendor's header beside it: docs/devices/interfaces.md lists
+// them, and a test compares.
+
 namespace error {
-constexpr int communication = 2, no_driver = 4, no_device = 5, timeout = 7, not_ready = 12;
-}
+constexpr int communication = 2;  // DHD_ERROR_COM
+constexpr int no_driver = 4;      // DHD_ERROR_NO_DRIVER_FOUND
+constexpr int no_device = 5;      // DHD_ERROR_NO_DEVICE_FOUND
+constexpr int timeout = 7;        // DHD_ERROR_TIMEOUT
+constexpr int not_ready = 12;     // DHD_ERROR_DEVICE_NOT_READY
+}  // namespace error
 /// Places in what get_status() fills.
 namespace status {
-constexpr int initialised = 3, force = 5, wrist_initialised = 12, force_off_cause = 14;
-constexpr int count = 32;  // more than any version has
+constexpr int reset = 3;               // DHD_STATUS_RESET: 1 while it waits for its calibration
+constexpr int force = 5;               // DHD_STATUS_FORCE
+constexpr int wrist_initialised = 12;  // DHD_STATUS_WRIST_INIT
+constexpr int force_off_cause = 14;    // DHD_STATUS_FORCE_OFF_CAUSE
+constexpr int count = 17;              // DHD_MAX_STATUS
 }  // namespace status
 /// Why the device itself has switched its force off.
-enum class ForceOff : int { none, button, velocity, watchdog, software, usb, deadman };
-
-/// A model of device; figures from public drivers.
-struct Model {
-    int type;
-    const char* name;
-    double force;      ///< [N]
-    double stiffness;  ///< [N/mm]
-    double reach;      ///< [mm] half an edge of the usable cube round the origin
-    bool has_wrist;
-    double torque;  ///< [N mm] of the wrist's motors; 0: none
+enum class ForceOff : int {
+    none = 0,      // DHD_FORCE_OFF_NONE
+    button = 1,    // DHD_FORCE_OFF_BUTTON
+    velocity = 2,  // DHD_FORCE_OFF_VELOCITY
+    watchdog = 3,  // DHD_FORCE_OFF_WATCHDOG
+    deadman = 6,   // DHD_FORCE_OFF_DEADMAN
 };
-const Model& model_of(int system_type);
 
-/// The functions. Grippers are not used. Negative results are errors. Positive
+/// The functions. A gripper serves as a button only. Negative results are errors. Positive
 /// ones are not: they report the time guard (1) or a motor at its limit (2).
 struct Dhd {
     /// Opens `path`; if that is empty, libdrd.so.3, which contains or loads all of libdhd.so.3, or
@@ -58,17 +63,26 @@ struct Dhd {
     const char* (*error_get_last_text)();
 
     // Null where the library has none.
+    void (*enable_simulator)(bool on);  // before devices are counted
     const char* (*get_system_name)(char id);
     int (*get_serial_number)(unsigned short*, char id);
     void (*get_version)(int*, int*, int*, int*);
     int (*set_max_force)(double, char id);
+    bool (*has_wrist)(char id);
     bool (*has_active_wrist)(char id);
+    bool (*has_gripper)(char id);
+    double (*get_max_force)(char id);                  // [N] negative: no limit is set
+    int (*emulate_button)(unsigned char on, char id);  // closing the gripper is button 0
+    int (*enable_expert_mode)();
+    int (*disable_expert_mode)();
     // [N], [N m], and of the gripper [N]
     int (*set_all)(double, double, double, double, double, double, double gripper, char id);
     int (*set_force_and_torque)(double, double, double, double, double, double, char id);
     int (*set_max_torque)(double, char id);  // [N m]
+    // In expert mode only.
     int (*set_watchdog)(unsigned char eighths_of_ms, char id);
     int (*get_watchdog)(unsigned char*, char id);
+
     int (*drd_open)(char index);
     int (*drd_close)(char id);
     bool (*drd_is_initialised)(char id);
@@ -80,16 +94,28 @@ struct Dhd {
     int (*drd_regulate_gripper)(bool on, char id);
     int (*drd_turn_to)(double, double, double, bool wait, char id);  // [rad] of the wrist
 
-    bool has_drd() const { return drd_open && drd_close && drd_is_initialised && drd_initialise; }
+    bool has_drd() const {
+        return drd_open && drd_close && drd_is_initialised && drd_initialise && drd_stop;
+    }
     bool has_torque() const { return set_all || set_force_and_torque; }
     bool can_centre() const {
-        return has_drd() && drd_start && drd_stop && drd_regulate_position &&
-               drd_regulate_rotation && drd_regulate_gripper && drd_turn_to;
+        return has_drd() && drd_start && drd_regulate_position && drd_regulate_rotation &&
+               drd_regulate_gripper && drd_turn_to;
     }
     int open(char index) const { return has_drd() ? drd_open(index) : dhd_open(index); }
     void close(char id) const { has_drd() ? drd_close(id) : dhd_close(id); }
     /// Text of the calling thread's last error.
     std::string error_words() const;
 };
+
+/// What an open device can do.
+struct Arm {
+    Model model;                  ///< `torque` is 0 without motors at its wrist
+    Vec3 centre = Vec3::Zero();   ///< of its workspace [device mm]
+    bool has_button_row = false;  ///< a Falcon's four buttons
+};
+/// What the library tells; figures that it does not know are those of the model's data sheet. For a
+/// model that is not in the table they are the smallest of all.
+Arm arm_of(const Dhd& dhd, char id);
 
 }  // namespace palpate::devices::forcedimension

@@ -20,6 +20,22 @@ Mat3 axes() {
     return m;
 }
 
+/// Allows calls that are refused otherwise.
+class ExpertMode {
+  public:
+    explicit ExpertMode(const Dhd& dhd) : dhd_(dhd) {
+        if (dhd.enable_expert_mode) dhd.enable_expert_mode();
+    }
+    ~ExpertMode() {
+        if (dhd_.disable_expert_mode) dhd_.disable_expert_mode();
+    }
+    ExpertMode(const ExpertMode&) = delete;
+    ExpertMode& operator=(const ExpertMode&) = delete;
+
+  private:
+    const Dhd& dhd_;
+};
+
 std::array<char, 128> clipped(std::string_view text) noexcept {
     std::array<char, 128> characters{};
     std::ranges::copy(text.substr(0, characters.size() - 1), characters.begin());
@@ -61,7 +77,13 @@ DeviceStatus status_of(Trouble::Kind kind) {
     }
 }
 
-Opened::Opened(const Dhd& dhd, int index) : dhd_(dhd) {
+Opened::Opened(const Dhd& dhd, const Settings& settings) : dhd_(dhd) {
+    if (settings.simulator && !dhd.enable_simulator) {
+        throw DeviceError("simulator=yes: " + dhd.library.path() +
+                          " knows no simulator: install the SDK's current version");
+    }
+    if (dhd.enable_simulator) dhd.enable_simulator(settings.simulator);
+    const int index = settings.index;
     const int count = dhd.get_device_count();
     if (count <= index) {
         throw DeviceError(
@@ -87,10 +109,12 @@ Opened::~Opened() {
 DhdDevice::DhdDevice(const std::string& library, const Settings& settings, const Timing& timing)
     : timing_(timing),
       dhd_(library),
-      opened_(dhd_, settings.index),
+      opened_(dhd_, settings),
       id_(opened_.id()),
-      model_(model_of(dhd_.get_system_type(id_))),
-      renders_torque_(renders_torque()),
+      arm_(arm_of(dhd_, id_)),
+      renders_torque_(arm_.model.torque > 0),
+      emulates_button_(arm_.model.has_gripper && dhd_.emulate_button &&
+                       dhd_.emulate_button(1, id_) >= 0),
       info_(ask(settings)),
       is_to_initialise_(settings.initialise),
       is_to_centre_(settings.centre) {
@@ -113,36 +137,36 @@ DhdDevice::~DhdDevice() {
     quit_.store(true);
     if (thread_.joinable()) thread_.join();
     send({});
-    if (old_watchdog_) dhd_.set_watchdog(*old_watchdog_, id_);
+    if (emulates_button_) dhd_.emulate_button(0, id_);
+    if (!old_watchdog_) return;
+    const ExpertMode expert(dhd_);
+    dhd_.set_watchdog(*old_watchdog_, id_);
 }
 
 void DhdDevice::start() {
     thread_ = std::thread([this] { run(); });
 }
 
-bool DhdDevice::renders_torque() const {
-    if (!model_.has_wrist || !(model_.torque > 0) || !dhd_.has_torque()) return false;
-    return !dhd_.has_active_wrist || dhd_.has_active_wrist(id_);
-}
-
 DeviceInfo DhdDevice::ask(const Settings& settings) const {
     DeviceInfo info;
     info.name = "forcedimension";
     const char* name = dhd_.get_system_name ? dhd_.get_system_name(id_) : nullptr;
-    info.model = name && *name ? name : model_.name;
+    info.model = name && *name ? name : arm_.model.name;
     unsigned short serial = 0;
     if (dhd_.get_serial_number && dhd_.get_serial_number(&serial, id_) >= 0) {
         info.model += ", serial number " + std::to_string(serial);
     }
-    info.limits.maximum_force = model_.force;
+    const Model& model = arm_.model;
+    info.limits.maximum_force = model.force;
+    info.limits.maximum_torque = model.torque;
     info.limits.rate = std::min(settings.rate, 1e9 / period);
-    info.stiffness = model_.stiffness;
-    info.workspace_low = Vec3::Constant(-model_.reach);
-    info.workspace_high = Vec3::Constant(model_.reach);
-    info.has_orientation = model_.has_wrist;
+    info.stiffness = model.stiffness;
+    const Vec3 corner = 0.5 * Vec3(model.width, model.height, model.depth);
+    info.workspace_low = arm_.centre - corner;
+    info.workspace_high = arm_.centre + corner;
+    info.has_orientation = model.has_wrist;
     info.renders_torque = renders_torque_;
-    info.limits.maximum_torque = renders_torque_ ? model_.torque : 0;
-    info.buttons = model_.type == 60 ? 4 : 1;
+    info.buttons = arm_.has_button_row ? 4 : (!model.has_gripper || emulates_button_ ? 1 : 0);
     return info;
 }
 
@@ -164,6 +188,7 @@ void DhdDevice::initialise() noexcept {
     if (wrist && dhd_.drd_is_initialised(id_)) return;
     moves_by_itself();
     if (dhd_.drd_initialise(id_) < 0) init_words_ = clipped(dhd_.error_words());
+    dhd_.drd_stop(true, id_);  // it regulates the device until told not to; forces stay on
 }
 
 void DhdDevice::moves_by_itself() noexcept {
@@ -211,7 +236,7 @@ void DhdDevice::step() noexcept {
     const std::int64_t now = timing_.now();
     gate_.note(trouble.kind == Trouble::Kind::none, now);
     const Wrench wanted = link_.wrench(now);
-    const Wrench passed{gate_.pass(wanted.force, model_.force, now),
+    const Wrench passed{gate_.pass(wanted.force, arm_.model.force, now),
                         gate_.pass(wanted.torque, info_.limits.maximum_torque, now)};
     if (send(passed) < 0 && trouble.kind == Trouble::Kind::none) {
         trouble = failure();
@@ -229,9 +254,7 @@ void DhdDevice::look_after_device() noexcept {
         state_ = failure();
         return;
     }
-    const bool initialised =
-        dhd_.has_drd() ? dhd_.drd_is_initialised(id_) : told[status::initialised] != 0;
-    if (!initialised) {
+    if (told[status::reset] != 0 || (dhd_.has_drd() && !dhd_.drd_is_initialised(id_))) {
         is_on_ = false;
         state_.kind = Trouble::Kind::uninitialised;
         state_.words = init_words_;
@@ -260,17 +283,23 @@ void DhdDevice::look_after_device() noexcept {
 
 bool DhdDevice::switch_on() noexcept {
     // A model refuses calls for features it lacks; only the force itself is needed.
-    if (dhd_.set_max_force) dhd_.set_max_force(model_.force, id_);
-    if (renders_torque_ && dhd_.set_max_torque) dhd_.set_max_torque(1e-3 * model_.torque, id_);
+    if (dhd_.set_max_force) dhd_.set_max_force(arm_.model.force, id_);
+    if (renders_torque_ && dhd_.set_max_torque) dhd_.set_max_torque(1e-3 * arm_.model.torque, id_);
     dhd_.set_brakes(0, id_);
     if (dhd_.enable_force(1, id_) < 0) return false;
     dhd_.set_gravity_compensation(1, id_);
-    if (!dhd_.set_watchdog) return true;
+    has_watchdog_.store(set_watchdog());
+    return true;
+}
+
+/// Whether the device has taken it. Notes what it was before.
+bool DhdDevice::set_watchdog() noexcept {
+    if (!dhd_.set_watchdog) return false;
+    const ExpertMode expert(dhd_);
     unsigned char old = 0;
-    if (!old_watchdog_ && dhd_.get_watchdog && dhd_.get_watchdog(&old, id_) >= 0) {
-        old_watchdog_ = old;
-    }
-    dhd_.set_watchdog(watchdog, id_);
+    const bool is_known = dhd_.get_watchdog && dhd_.get_watchdog(&old, id_) >= 0;
+    if (dhd_.set_watchdog(watchdog, id_) < 0) return false;
+    if (is_known && !old_watchdog_) old_watchdog_ = old;
     return true;
 }
 
@@ -280,7 +309,7 @@ Trouble DhdDevice::read_device(DeviceReading& reading) noexcept {
     if (dhd_.get_position(&x, &y, &z, id_) < 0) return failure();
     Trouble trouble;
     reading.position = 1000 * (axes() * Vec3(x, y, z));
-    if (model_.has_wrist) {
+    if (arm_.model.has_wrist) {
         double rows[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         if (dhd_.get_orientation(rows, id_) < 0) return failure();
         Mat3 frame;
@@ -355,9 +384,9 @@ std::string DhdDevice::problem() const {
             return std::string(
                        "the library takes too long: its last position is more than 20 ms "
                        "old; ") +
-                   (dhd_.set_watchdog ? "the device drops the last force by itself"
-                                      : "it may still hold the last force: if that lasts, switch "
-                                        "the device off");
+                   (has_watchdog_ ? "the device drops the last force by itself"
+                                  : "it may still hold the last force: if that lasts, switch "
+                                    "the device off");
         default:
             return {};
     }

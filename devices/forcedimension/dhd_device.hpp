@@ -17,6 +17,7 @@ struct Settings {
     int index = 0;            ///< of the device, as the library counts them
     bool initialise = false;  ///< let it find its reference by itself; it moves to do so
     bool centre = false;      ///< let it turn its wrist straight by itself
+    bool simulator = false;   ///< the vendor's, in place of hardware
     double rate = 1000;       ///< [Hz] of the servo
 };
 
@@ -44,7 +45,7 @@ DeviceStatus status_of(Trouble::Kind kind);
 /// Opens a device of the library and closes it when destroyed. Throws DeviceError.
 class Opened {
   public:
-    Opened(const Dhd& dhd, int index);
+    Opened(const Dhd& dhd, const Settings& settings);
     ~Opened();
     Opened(const Opened&) = delete;
     Opened& operator=(const Opened&) = delete;
@@ -79,7 +80,6 @@ class DhdDevice final : public Device {
 
   private:
     DeviceInfo ask(const Settings& settings) const;
-    bool renders_torque() const;
 
     // Called by the thread only.
     void run() noexcept;
@@ -88,6 +88,7 @@ class DhdDevice final : public Device {
     void moves_by_itself() noexcept;
     void look_after_device() noexcept;
     bool switch_on() noexcept;
+    bool set_watchdog() noexcept;
     int send(const Wrench& wrench) noexcept;
     Trouble read_device(DeviceReading& reading) noexcept;
     Trouble failure() const noexcept;
@@ -96,12 +97,14 @@ class DhdDevice final : public Device {
     const Dhd dhd_;
     const Opened opened_;
     const char id_;
-    const Model model_;
+    const Arm arm_;
     const bool renders_torque_;
+    const bool emulates_button_;
     const DeviceInfo info_;
     Link link_;
     LatestTrouble<Trouble> trouble_;
     std::atomic<bool> quit_{false};
+    std::atomic<bool> has_watchdog_{false};  // the device drops a force that is not renewed
 
     // Used by the thread only.
     ForceGate gate_;

@@ -22,8 +22,8 @@ std::string version_of(const forcedimension::Dhd& dhd) {
 DeviceFinding forcedimension::find(const std::string& library) {
     DeviceFinding finding;
     finding.name = "forcedimension";
-    finding.options =
-        std::string("index=0,autoinit=no,centre=no,library=") + forcedimension::names_in_words;
+    finding.options = std::string("index=0,autoinit=no,centre=no,simulator=no,library=") +
+                      forcedimension::names_in_words;
     try {
         const Dhd dhd(library);
         const std::string sdk = "Force Dimension SDK" + version_of(dhd) + ", " + dhd.library.path();
@@ -63,6 +63,7 @@ std::unique_ptr<forcedimension::DhdDevice> forcedimension::open(const DeviceChoi
     settings.index = static_cast<int>(index);
     settings.initialise = options.flag("autoinit", false);
     settings.centre = options.flag("centre", false);
+    settings.simulator = options.flag("simulator", false);
     settings.rate = scene.rate;
     const std::string library = options.text("library", "");
     options.finish();

@@ -45,8 +45,8 @@ DeviceFinding haply::find(Talk talk, const Timing& timing) {
     DeviceFinding finding;
     finding.name = "haply";
     finding.options =
-        "host=127.0.0.1,port=10001,device=ID (the first),force_key=values "
-        "(values|vector),axes=xz-y,"
+        "host=127.0.0.1,port=10001,device=ID (the first),force_key=auto (auto|values|vector),"
+        "preset=defaults,axes=xz-y,"
         "calibrated=ask (ask|assume),timeout=2";
     try {
         const Address address = address_from(usual_host(), usual_port());
@@ -79,9 +79,14 @@ std::unique_ptr<haply::Inverse3> haply::open(const DeviceChoice& choice, const D
     const double port = options.number("port", usual_port(), 1, 65535);
     Settings settings;
     settings.device = options.text("device", "");
-    settings.force_key = options.one_of("force_key", "values", {"values", "vector"}) == "values"
-                             ? ForceKey::values
-                             : ForceKey::vector;
+    const std::string key = options.one_of("force_key", "auto", {"auto", "values", "vector"});
+    if (key != "auto") settings.force_key = key == "values" ? ForceKey::values : ForceKey::vector;
+    settings.preset = options.text("preset", settings.preset);
+    if (!is_device_id(settings.preset)) {
+        throw std::invalid_argument("device haply: preset=" + settings.preset +
+                                    ": a name of the service's, such as defaults or led_front, "
+                                    "or keep");
+    }
     settings.axes = axes_from(options.text("axes", "xz-y"));
     settings.assume_calibrated = options.one_of("calibrated", "ask", {"ask", "assume"}) == "assume";
     settings.timeout = options.number("timeout", settings.timeout, 0.1, 5);

@@ -23,8 +23,12 @@ constexpr auto longest_sleep = 10ms;
 constexpr auto longest_age = std::chrono::duration_cast<Clock::duration>(
     std::chrono::duration<double>(Device::longest_force));
 
-constexpr double maximum_force = 10;   // [N] Inverse3
-constexpr double stiffness = 1;        // [N/mm]
+// A change of the mapping shows within `between_full`; one this soon after the first state is our
+// own.
+constexpr auto between_full = 8ms;
+constexpr auto settling = longest_age;
+constexpr auto longest_unechoed = 100ms;
+constexpr double felt = 0.1;           // [N] a force that a service cannot round to zero
 const Vec3 box_low(-300, -299, -118);  // [mm, service axes] reachable, after public drivers
 const Vec3 box_high(286, 163, 378);
 
@@ -96,9 +100,17 @@ Inverse3::Inverse3(Settings settings, Address address, Talk talk, const Timing& 
       settings_(std::move(settings)),
       address_(std::move(address)),
       service_(service_at(address_)),
+      is_minverse_(talk.state.list == "minverse"),
       talk_(std::move(talk)),
       wait_(first_wait) {
     tell_identity(talk_.state);
+    // The release whose documentation says "vector" tells preset and mount, too.
+    const bool is_new = !talk_.state.mapping.preset.empty();
+    force_key_ = settings_.force_key.value_or(is_new ? ForceKey::vector : ForceKey::values);
+}
+
+const Model& Inverse3::model() const {
+    return is_minverse_ ? model_named("Minverse") : model_named("Inverse3");
 }
 
 Inverse3::~Inverse3() {
@@ -118,9 +130,9 @@ void Inverse3::start() {
 DeviceInfo Inverse3::info() const {
     DeviceInfo info;
     info.name = "haply";
-    info.limits.maximum_force = maximum_force;
+    info.limits.maximum_force = model().force;
     info.limits.rate = settings_.rate;
-    info.stiffness = stiffness;
+    info.stiffness = model().stiffness;
     const Vec3 one = settings_.axes * box_low, other = settings_.axes * box_high;
     info.workspace_low = one.cwiseMin(other);
     info.workspace_high = one.cwiseMax(other);
@@ -185,6 +197,9 @@ void Inverse3::reconnect() {
     }
     next_attempt_ = now() + wait_;
     questions_ = {};
+    has_pinned_ = false;
+    mapping_.reset();
+    changed_ = {};
     if (connected_ && !talk_.state.device_id.empty()) tell_identity(talk_.state);
 }
 
@@ -222,15 +237,22 @@ bool Inverse3::ask(Clock::time_point now) {
     questions_.asked(now);
     const std::string& id = talk_.state.device_id;
     if (id.empty()) return talk_.channel->send(snapshot_command(), now + send_limit);
-    ForceCommand command(id, settings_.force_key);
+    const bool pins = !std::exchange(has_pinned_, true) && settings_.preset != "keep";
+    const bool wants_all = now >= next_full_;
+    if (wants_all) next_full_ = now + between_full;
+    ForceCommand command(id, force_key_,
+                         {.list = talk_.state.list,
+                          .wants_all = wants_all,
+                          .preset = pins ? std::string_view(settings_.preset) : ""});
     const Vec3 newtons = settings_.axes.transpose() * force(now);
+    asked_force_ = newtons.norm();
     return talk_.channel->send(command.with(newtons), now + send_limit);
 }
 
 /// The link's, if the gate lets it through and the newest position is not stale.
 Vec3 Inverse3::force(Clock::time_point now) {
     if (now - measured_at_ > longest_age) gate_.note(false, ns_of(now));
-    return gate_.pass(link_.wrench(ns_of(now)).force, maximum_force, ns_of(now));
+    return gate_.pass(link_.wrench(ns_of(now)).force, model().force, ns_of(now));
 }
 
 void Inverse3::take(const Received& received, Clock::time_point asked, Clock::time_point now) {
@@ -263,9 +285,56 @@ void Inverse3::take(const Received& received, Clock::time_point asked, Clock::ti
         case News::state:
             wait_ = first_wait;
             report_state(asked, now);
-            tell(now - asked > longest_age ? service_ + " answers too late" : problem_of(state));
+            tell(now - asked > longest_age ? service_ + " answers too late" : what_is_wrong());
             break;
     }
+}
+
+/// Another program may set a mount, a preset or a basis while we press, and that turns the force,
+/// too. What changes in the first moment is what we have asked for ourselves.
+bool Inverse3::mapping_holds(Clock::time_point now) {
+    const Mapping& told = talk_.state.mapping;
+    if (!changed_.empty()) return false;
+    const std::string_view difference = mapping_ ? told.difference(*mapping_) : "all";
+    if (difference.empty()) return true;
+    if (mapping_ && now - mapping_since_ >= settling) {
+        changed_ = difference;
+        return false;
+    }
+    mapping_ = told;
+    mapping_since_ = now;
+    gate_.note(false, ns_of(now));
+    return true;
+}
+
+/// A service that expects the force under the other key ignores it, or complains. Each key is
+/// tried once.
+void Inverse3::check_echo(Clock::time_point now) {
+    const ServiceState& state = talk_.state;
+    if (is_echoed_ || settings_.force_key) return;
+    const bool complains = !state.error.empty();
+    if (asked_force_ < felt || (!state.rendered && !complains)) {
+        unechoed_since_ = now;
+        return;
+    }
+    is_echoed_ = state.rendered && !state.rendered->isZero(0);
+    if (is_echoed_ || keys_tried_ > 2) return;
+    if (!complains && now - unechoed_since_ < longest_unechoed) return;
+    force_key_ = force_key_ == ForceKey::values ? ForceKey::vector : ForceKey::values;
+    ++keys_tried_;
+    unechoed_since_ = now;
+}
+
+std::string Inverse3::what_is_wrong() const {
+    const ServiceState& state = talk_.state;
+    if (!changed_.empty()) {
+        return "another program has changed the " + std::string(changed_) + " of " + state.model +
+               ", which maps the force, too: end that program, then start again";
+    }
+    if (keys_tried_ > 2 && !is_echoed_ && state.error.empty()) {
+        return service_ + " renders no force of ours: see the option force_key";
+    }
+    return problem_of(state);
 }
 
 void Inverse3::report_state(Clock::time_point asked, Clock::time_point now) {
@@ -277,17 +346,18 @@ void Inverse3::report_state(Clock::time_point asked, Clock::time_point now) {
     reading.buttons = state.grip.buttons;
     const auto age = now - asked;
     reading.age = std::chrono::duration<double>(age).count();
-    reading.status = status_of(state);
+    reading.status = mapping_holds(now) ? status_of(state) : DeviceStatus::fault;
     link_.report(reading, ns_of(now));
 
     measured_at_ = asked;
     gate_.note(reading.status == DeviceStatus::ready && age <= longest_age, ns_of(now));
+    check_echo(now);
     if (told_grip_ != !state.grip.list.empty()) tell_identity(state);
 }
 
 void Inverse3::say_goodbye() {
     if (!connected_ || talk_.state.device_id.empty()) return;
-    ForceCommand command(talk_.state.device_id, settings_.force_key);
+    ForceCommand command(talk_.state.device_id, force_key_, {.list = talk_.state.list});
     if (talk_.channel->send(command.with(Vec3::Zero()), now() + send_limit)) {
         talk_.channel->close(now() + close_limit);
     }

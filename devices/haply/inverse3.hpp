@@ -12,13 +12,15 @@
 #include "devices/haply/protocol.hpp"
 #include "devices/haply/socket.hpp"
 #include "devices/link.hpp"
+#include "devices/models.hpp"
 #include "devices/vendor_library.hpp"
 
 namespace palpate::devices::haply {
 
 struct Settings {
-    std::string device;  ///< device_id; empty: the first
-    ForceKey force_key = ForceKey::values;
+    std::string device;                 ///< device_id; empty: the first
+    std::optional<ForceKey> force_key;  ///< nothing: what the service seems to take
+    std::string preset = "defaults";    ///< of the service, pinned; "keep": as it is
     Mat3 axes = axes_from("xz-y");
     bool assume_calibrated = false;  ///< whatever the service reports
     double timeout = 2;  ///< [s] by which answers may be late before the connection is dropped
@@ -92,9 +94,13 @@ class Inverse3 final : public Device {
     std::optional<std::string> converse();
     bool ask(Clock::time_point now);
     void take(const Received& received, Clock::time_point asked, Clock::time_point now);
+    bool mapping_holds(Clock::time_point now);
+    void check_echo(Clock::time_point now);
     void report_state(Clock::time_point asked, Clock::time_point now);
     void lose(const std::string& why);
     void say_goodbye();
+    std::string what_is_wrong() const;
+    const Model& model() const;
     Vec3 force(Clock::time_point now);
     Clock::time_point now() const { return time_of(timing_); }
     void tell(std::string_view problem);
@@ -112,6 +118,7 @@ class Inverse3 final : public Device {
     const Settings settings_;
     const Address address_;
     const std::string service_;  // in words
+    const bool is_minverse_;
     Link link_;
     Newest<Problem> problem_;
     Newest<Identity> identity_;
@@ -123,6 +130,16 @@ class Inverse3 final : public Device {
     Questions questions_;
     std::string told_;
     bool told_grip_ = false;
+    bool has_pinned_ = false;         // on this connection
+    std::optional<Mapping> mapping_;  // that holds on this connection
+    Clock::time_point mapping_since_;
+    std::string_view changed_;     // the part of it that another program has changed
+    Clock::time_point next_full_;  // question for all, not before
+    ForceKey force_key_ = ForceKey::values;
+    double asked_force_ = 0;  // [N] in the newest question
+    bool is_echoed_ = false;  // the service has rendered a force of ours
+    int keys_tried_ = 1;
+    Clock::time_point unechoed_since_;
     Clock::time_point measured_at_;  // the newest position, at the earliest
     ForceGate gate_;
     Clock::duration wait_;            // before the next attempt to connect

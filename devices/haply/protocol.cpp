@@ -4,8 +4,11 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -158,19 +161,21 @@ std::string complaint_in(const Json* object) {
     return {};
 }
 
-/// Our entry among the Inverse3, chosen now if there was none. Null if it is not there.
-const Json* choose(ServiceState& state, const Json& list) {
-    if (!state.device_id.empty()) {
-        const Json* entry = entry_of(list, state.device_id, state.place);
-        if (entry) state.place = static_cast<std::size_t>(entry - &list.front());
-        return entry;
-    }
-    state.attached.clear();
+/// Our entry in its list. Null if it is not there.
+const Json* find_ours(ServiceState& state, const Json& list) {
+    const Json* entry = entry_of(list, state.device_id, state.place);
+    if (entry) state.place = static_cast<std::size_t>(entry - &list.front());
+    return entry;
+}
+
+/// The device that was asked for, if it is in this list. Notes which others are.
+const Json* choose(ServiceState& state, const std::string& key, const Json& list) {
     for (std::size_t place = 0; place < list.size(); ++place) {
         const std::string id = id_of(list[place]);
         if (id.empty()) continue;
         if (state.wanted.empty() || state.wanted == id) {
             state.device_id = id;
+            state.list = key;
             state.place = place;
             return &list[place];
         }
@@ -180,9 +185,40 @@ const Json* choose(ServiceState& state, const Json& list) {
     return nullptr;
 }
 
+/// What a transform leaves out is as in the identity.
+void take_transform(Mapping::Transform& known, const Json* given) {
+    if (!given || !given->is_object()) return;
+    known = Mapping::identity;
+    std::size_t i = 0;
+    const auto take = [&](const char* part, std::initializer_list<const char*> components) {
+        for (const char* component : components) {
+            const Json* value = member(member(given, part), component);
+            // A number that is none is never what was pinned.
+            if (value) known[i] = number(value).value_or(std::numeric_limits<double>::infinity());
+            ++i;
+        }
+    };
+    take("position", {"x", "y", "z"});
+    take("rotation", {"w", "x", "y", "z"});
+    take("scale", {"x", "y", "z"});
+}
+
+void take_mapping(Mapping& mapping, const Json* config) {
+    const auto take = [](std::string& known, const Json* value) {
+        if (value) known = printable(value);
+    };
+    take(mapping.preset, member(config, "preset"));
+    take(mapping.basis, member(member(config, "basis"), "permutation"));
+    take(mapping.handedness, member(config, "handedness"));
+    take_transform(mapping.mount, member(config, "mount"));
+}
+
 void take_config(ServiceState& state, const Json* config) {
+    take_mapping(state.mapping, config);
     if (!config && !state.model.empty()) return;
-    state.model = "Inverse3 " + state.device_id;
+    std::string kind = state.list;
+    kind.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(kind.front())));
+    state.model = kind + " " + state.device_id;
     const Json* info = member(config, "device_info");
     const auto major = number(member(info, "major_version"));
     const auto minor = number(member(info, "minor_version"));
@@ -190,7 +226,6 @@ void take_config(ServiceState& state, const Json* config) {
         state.model += ", firmware " + std::to_string(static_cast<int>(*major)) + "." +
                        std::to_string(static_cast<int>(*minor));
     }
-    state.basis = printable(member(member(config, "basis"), "permutation"));
 }
 
 void take_status(ServiceState& state, const Json* status) {
@@ -201,6 +236,12 @@ void take_status(ServiceState& state, const Json* status) {
     take(state.ready, "ready");
     take(state.started, "started");
     take(state.powered, "power_supply");
+}
+
+/// Inverse3, Inverse3x, Minverse: the service's own name for all of them is *inverse. The keys of
+/// the latter two are not documented.
+bool is_list_of_devices(const std::string& key) {
+    return key.find("inverse") != std::string::npos && is_device_id(key);
 }
 
 News refuse(ServiceState& state, std::string reason) {
@@ -216,18 +257,35 @@ News take_message(ServiceState& state, std::string_view message) {
     if (too_deep(message)) return refuse(state, "a message too deep in itself");
     const Json json = Json::parse(message.begin(), message.end(), nullptr, false);
     if (json.is_discarded() || !json.is_object()) return refuse(state, "a message that is no JSON");
-    const Json* list = member(&json, "inverse3");
-    if (list && !list->is_array()) return refuse(state, "inverse3 that is no list");
-    const Json* device = list ? choose(state, *list) : nullptr;
+    const Json* device = nullptr;
+    bool lists_devices = false;
+    if (state.device_id.empty()) state.attached.clear();
+    for (const auto& [key, list] : json.items()) {
+        if (!is_list_of_devices(key)) continue;
+        if (!list.is_array()) return refuse(state, key + " that is no list");
+        if (state.device_id.empty()) {
+            device = choose(state, key, list);
+        } else if (key == state.list) {
+            device = find_ours(state, list);
+        } else {
+            continue;
+        }
+        lists_devices = true;
+        if (device) break;
+    }
     const Json* told = member(device, "state");
     if (const Json* given = member(told, "cursor_position")) {
         const auto position = position_from(*given, state.position);
         if (!position) return refuse(state, "a cursor_position that is none");
         state.position = position;
     }
+    if (const Json* given = member(told, "current_cursor_force")) {
+        state.rendered = position_from(*given, state.rendered);
+    }
+    take_transform(state.mapping.transform, member(told, "transform"));
     state.error = complaint_in(&json);
     take_grip(state.grip, json);
-    if (!list) return News::none;
+    if (!lists_devices) return News::none;
     if (!device) return News::gone;
     if (state.error.empty()) state.error = complaint_in(member(device, "status"));
     take_config(state, member(device, "config"));
@@ -257,19 +315,49 @@ std::string problem_of(const ServiceState& state) {
     if (!state.powered.value_or(true)) {
         return state.model + " has no power for forces: plug its supply in";
     }
-    if (!state.basis.empty() && state.basis != "XYZ") {
-        return "the service's basis is " + state.basis + ", not XYZ: see the option axes";
+    const std::string& basis = state.mapping.basis;
+    if (!basis.empty() && basis != "XYZ") {
+        return "the service's basis is " + basis + ", not XYZ: see the option axes";
     }
     return {};
 }
 
-ForceCommand::ForceCommand(std::string_view device_id, ForceKey key) {
+std::string_view Mapping::difference(const Mapping& other) const {
+    constexpr double rounding = 1e-6;
+    const auto same = [&](const Transform& a, const Transform& b) {
+        return std::ranges::equal(
+            a, b, [&](double x, double y) { return x == y || std::abs(x - y) <= rounding; });
+    };
+    if (preset != other.preset) return "preset";
+    if (basis != other.basis) return "basis";
+    if (handedness != other.handedness) return "handedness";
+    if (!same(mount, other.mount)) return "mount";
+    return same(transform, other.transform) ? "" : "transform";
+}
+
+ForceCommand::ForceCommand(std::string_view device_id, ForceKey key, const Extras& extras) {
     if (!is_device_id(device_id)) throw std::invalid_argument("haply: no device_id");
+    const bool pins = !extras.preset.empty();
+    if (!is_device_id(extras.list) || (pins && !is_device_id(extras.preset))) {
+        throw std::invalid_argument("haply: no name");
+    }
     char* end = text_.data();
     const auto append = [&](std::string_view text) { end = std::ranges::copy(text, end).out; };
-    append(R"({"inverse3":[{"device_id":")");
+    append("{");
+    if (pins) append(R"("session":{"configure":{"profile":{"name":"palpate"}},)");
+    if (!pins && extras.wants_all) append(R"("session":{)");
+    if (pins || extras.wants_all) append(R"("force_render_full_state":{}},)");
+    append("\"");
+    append(extras.list);
+    append(R"(":[{"device_id":")");
     append(device_id);
-    append(R"(","commands":{"set_cursor_force":{")");
+    append(R"(",)");
+    if (pins) {
+        append(R"("configure":{"preset":{"preset":")");
+        append(extras.preset);
+        append(R"("},"basis":{"permutation":"XYZ"}},)");
+    }
+    append(R"("commands":{"set_cursor_force":{")");
     append(key == ForceKey::values ? "values" : "vector");
     append("\":{");
     head_ = static_cast<std::size_t>(end - text_.data());

@@ -25,15 +25,31 @@ struct Grip {
     std::uint32_t buttons = 0;
 };
 
+/// How the service maps positions and forces between the device and us. Any other program can
+/// change it while we press, over HTTP.
+struct Mapping {
+    /// Position [m], rotation (w, x, y, z), scale.
+    using Transform = std::array<double, 10>;
+    static constexpr Transform identity{0, 0, 0, 1, 0, 0, 0, 1, 1, 1};
+
+    std::string preset, basis, handedness;  ///< as the service tells them; empty: it has not
+    Transform mount = identity, transform = identity;
+
+    /// The first part that is not as in `other`, in a word; empty: all is.
+    std::string_view difference(const Mapping& other) const;
+};
+
 /// What is known of the device. Messages after the first may leave out what has not changed.
 struct ServiceState {
-    std::string wanted;            ///< device_id that was asked for; empty: the first Inverse3
-    std::string device_id;         ///< ours; empty: none yet
-    std::size_t place = 0;         ///< as in Grip
-    std::string attached;          ///< ids of the Inverse3 that were there when ours was not
-    std::string model;             ///< as the service tells it
-    std::string basis;             ///< the service's permutation of axes; XYZ if it has none
+    std::string wanted;     ///< device_id that was asked for; empty: the first device
+    std::string list;       ///< key of the list that ours is in: inverse3, minverse, ...
+    std::string device_id;  ///< ours; empty: none yet
+    std::size_t place = 0;  ///< as in Grip
+    std::string attached;   ///< ids of the devices that were there when ours was not
+    std::string model;      ///< as the service tells it
+    Mapping mapping;
     std::optional<Vec3> position;  ///< [m]
+    std::optional<Vec3> rendered;  ///< [N] the force that the service says it renders
     std::optional<bool> calibrated, ready, started, powered;
     Grip grip;
     std::string error;  ///< what was wrong with the last message, or what it complained of
@@ -62,13 +78,19 @@ enum class ForceKey : std::uint8_t { values, vector };
 /// The command that sets the force, and so asks for the next state. Allocates nothing.
 class ForceCommand {
   public:
-    /// Throws std::invalid_argument for what is_device_id() refuses.
-    ForceCommand(std::string_view device_id, ForceKey key);
+    struct Extras {
+        std::string_view list = "inverse3";  ///< ServiceState::list
+        bool wants_all = false;        ///< the answer is to tell all, also what has not changed
+        std::string_view preset = {};  ///< not empty: sets this preset, and the basis XYZ
+    };
+    /// Throws std::invalid_argument for names that is_device_id() refuses.
+    ForceCommand(std::string_view device_id, ForceKey key, const Extras& extras);
+    ForceCommand(std::string_view device_id, ForceKey key) : ForceCommand(device_id, key, {}) {}
     /// [N]; what is not finite is zero. Valid until the next call.
     std::string_view with(const Vec3& force) noexcept;
 
   private:
-    std::array<char, 320> text_{};
+    std::array<char, 640> text_{};
     std::size_t head_ = 0;
 };
 

@@ -1,12 +1,17 @@
 // One frame of OpenHaptics' servo loop, and what its errors mean.
 #include "devices/openhaptics/frames.hpp"
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 namespace palpate::devices::openhaptics {
 namespace {
 
-constexpr std::int64_t error_lasts = 1'000'000'000;      // [ns] after it was last reported
+constexpr std::int64_t error_lasts = 1'000'000'000;     // [ns] after it was last reported
+constexpr std::int64_t between_readings = 100'000'000;  // [ns] at the motors
+constexpr double heating_time = 60;                     // [s] assumed; real motors take longer
+constexpr int most_motors = 16;
 constexpr std::int64_t between_updates = 1'000'000'000;  // [ns] of the calibration
 
 Trouble trouble_of(unsigned int code) {
@@ -14,6 +19,10 @@ Trouble trouble_of(unsigned int code) {
     if (code == error::communication || code == error::communication_setup) {
         return {Kind::lost, code};
     }
+    if (code == error::timer || code == error::invalid_priority || code == error::scheduler_full) {
+        return {Kind::loop_ended, code};
+    }
+    if (code == error::invalid_license) return {Kind::unlicensed, code};
     return {code == error::device_fault ? Kind::broken : Kind::passing, code};
 }
 
@@ -36,11 +45,13 @@ DeviceStatus status_of(Trouble::Kind kind) {
         case Trouble::Kind::needs_person:
             return DeviceStatus::uncalibrated;
         case Trouble::Kind::lost:
+        case Trouble::Kind::loop_ended:
             return DeviceStatus::lost;
         case Trouble::Kind::not_a_position:
         case Trouble::Kind::not_a_rotation:
         case Trouble::Kind::passing:
         case Trouble::Kind::broken:
+        case Trouble::Kind::unlicensed:
             break;
     }
     return DeviceStatus::fault;
@@ -69,7 +80,7 @@ unsigned int Frames::frame() noexcept {
     if (error_.kind != Trouble::Kind::none) trouble = error_;
     gate_.note(trouble.kind == Trouble::Kind::none && !last, now);
     const Wrench wanted = link_.wrench(now);
-    const Vec3 force = gate_.pass(wanted.force, setup_.most_force, now);
+    const Vec3 force = gate_.pass(wanted.force, motors_.limit(), now);
     hd_.set_double(parameter::force, force.data());
     if (setup_.most_torque > 0) {
         const Vec3 torque = gate_.pass(wanted.torque, setup_.most_torque, now);  // N mm are mN m
@@ -78,6 +89,7 @@ unsigned int Frames::frame() noexcept {
     hd_.end_frame(setup_.device);
 
     take_errors();
+    guard_motors(force.norm(), now);
     if (error_.kind != Trouble::Kind::none) trouble = error_;
     now = setup_.now();
     reading.age = 1e-9 * static_cast<double>(now - begun);
@@ -120,7 +132,15 @@ Trouble Frames::read_device(DeviceReading& reading) noexcept {
 }
 
 bool Frames::for_good() const noexcept {
-    return error_.kind == Trouble::Kind::lost || error_.kind == Trouble::Kind::broken;
+    switch (error_.kind) {
+        case Trouble::Kind::lost:
+        case Trouble::Kind::broken:
+        case Trouble::Kind::loop_ended:
+        case Trouble::Kind::unlicensed:
+            return true;
+        default:
+            return false;
+    }
 }
 
 void Frames::take_errors() noexcept {
@@ -132,6 +152,35 @@ void Frames::take_errors() noexcept {
         if (!for_good()) error_ = found;
         force_output(false);
     }
+}
+
+void Frames::guard_motors(double force, std::int64_t now) noexcept {
+    if (!tells_temperature_) motors_.rendered(force, 1e-9 * static_cast<double>(now - guarded_));
+    if (tells_temperature_ && now >= guarded_ + between_readings) {
+        std::array<double, most_motors> motors{};
+        hd_.get_double(parameter::motor_temperature, motors.data());
+        tells_temperature_ = hd_.take_error() == 0;
+        if (tells_temperature_) motors_.measured(std::ranges::max(motors));
+        guarded_ = now;
+    }
+    if (!tells_temperature_) guarded_ = now;
+    const double limit = motors_.limit();
+    warm_limit_.store(limit < setup_.most_force ? limit : 0);
+}
+
+void MotorGuard::measured(double temperature) noexcept {
+    warm_ = temperature > 0.5 ? std::min((temperature - 0.5) / 0.2, 1.) : 0;
+}
+
+void MotorGuard::rendered(double force, double seconds) noexcept {
+    // Motors heat with the square of their current.
+    const double power = force * force / (continuous_ * continuous_);
+    heat_ += (power - heat_) * std::min(seconds / heating_time, 1.);
+    warm_ = std::clamp((heat_ - 0.7) / 0.3, 0., 1.);
+}
+
+double MotorGuard::limit() const noexcept {
+    return most_ + warm_ * (continuous_ - most_);
 }
 
 void Frames::force_output(bool on) noexcept {

@@ -20,6 +20,8 @@ struct Trouble {
         not_a_position,  ///< the driver returns an impossible position
         not_a_rotation,  ///< the same of the orientation
         passing,         ///< an error; over when it has not recurred for a while
+        loop_ended,      ///< the driver's servo loop; permanent
+        unlicensed,      ///< permanent
         lost,            ///< communication has ended; permanent
         broken,          ///< the device reports a fault; permanent
     };
@@ -30,18 +32,43 @@ struct Trouble {
 };
 DeviceStatus status_of(Trouble::Kind kind);
 
+/// Keeps the motors from overheating. The vendor's sample PreventWarmMotors does the same: the
+/// force falls to what the device can render for hours.
+class MotorGuard {
+  public:
+    /// [N]
+    MotorGuard(double most, double continuous) : most_(most), continuous_(continuous) {}
+
+    /// As the driver tells it: 0 is the room's temperature, 1 too hot.
+    void measured(double temperature) noexcept;
+    /// Where the driver tells none: this force [N] has been rendered for this time [s]. A minute of
+    /// the continuous force counts as nearly hot.
+    void rendered(double force, double seconds) noexcept;
+    /// [N] that may be rendered now.
+    double limit() const noexcept;
+
+  private:
+    double most_, continuous_;
+    double heat_ = 0;  // of `rendered`: 1 is what the continuous force comes to
+    double warm_ = 0;  // 0: all of the force, 1: the continuous one
+};
+
 class Frames {
   public:
     struct Setup {
         Handle device = no_handle;
-        double most_force = 0;   ///< [N]
-        double most_torque = 0;  ///< [N mm] 0: it has none, and is never sent one
+        double most_force = 0;        ///< [N]
+        double continuous_force = 0;  ///< [N] for hours
+        double most_torque = 0;       ///< [N mm] 0: it has none, and is never sent one
         bool has_orientation = false;
         unsigned int styles = 0;  ///< of calibration, bits
         Clock now = &monotonic_ns;
     };
     Frames(std::shared_ptr<const Hd> hd, const Setup& setup)
-        : library_(std::move(hd)), hd_(*library_), setup_(setup) {}
+        : library_(std::move(hd)),
+          hd_(*library_),
+          setup_(setup),
+          motors_(setup.most_force, setup.continuous_force) {}
 
     /// For the driver's scheduler; `frames` points to one of these.
     static unsigned int callback(void* frames);
@@ -50,6 +77,8 @@ class Frames {
     const Link& link() const { return link_; }
     /// Any thread.
     Trouble trouble() const;
+    /// [N] The force is limited to it because the motors are warm; any thread. 0: it is not.
+    double warm_limit() const noexcept { return warm_limit_.load(); }
 
     /// Any thread: the next frame sends zero force and is the last.
     void end() noexcept { end_.store(true); }
@@ -62,6 +91,7 @@ class Frames {
     Trouble read_device(DeviceReading& reading) noexcept;
     bool for_good() const noexcept;
     void take_errors() noexcept;
+    void guard_motors(double force, std::int64_t now) noexcept;
     void force_output(bool on) noexcept;
 
     const std::shared_ptr<const Hd> library_;
@@ -70,12 +100,16 @@ class Frames {
     Link link_;
     LatestTrouble<Trouble> trouble_;
     std::atomic<bool> end_{false}, ended_{false};
+    std::atomic<double> warm_limit_{0};
 
     // Used by the driver's thread only.
     ForceGate gate_;
     Trouble error_;                 // the worst recent one
     std::int64_t error_until_ = 0;  // [ns] when a passing one is over
     bool force_output_ = true;
+    MotorGuard motors_;
+    bool tells_temperature_ = true;
+    std::int64_t guarded_ = 0;      // [ns] last, or 0
     std::int64_t next_update_ = 0;  // [ns] of the calibration, not before
 };
 

@@ -8,7 +8,8 @@
 
 namespace palpate::devices::openhaptics {
 
-Hd::Hd(const std::string& path) : library({path.empty() ? library_name : path}, how_to_install) {
+Hd::Hd(const std::string& path)
+    : library(path.empty() ? library_names() : std::vector<std::string>{path}, how_to_install) {
     library.need(init_device, "hdInitDevice");
     library.need(disable_device, "hdDisableDevice");
     library.need(make_current, "hdMakeCurrentDevice");

@@ -3,11 +3,13 @@
 #include "devices/openhaptics/phantom.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <vector>
 
+#include "devices/models.hpp"
 #include "devices/openhaptics/words.hpp"
 
 namespace palpate::devices::openhaptics {
@@ -40,6 +42,12 @@ std::string text(const Hd& hd, unsigned int parameter) {
     return words ? words : "";
 }
 
+/// [N] Devices on the market can render a sixth of their greatest force for hours, or more.
+double continuous_force(const Hd& hd, const DeviceInfo& info) {
+    const double most = info.limits.maximum_force;
+    return number(hd, parameter::continuous_force, 0.01 * most, most, most / 6);
+}
+
 void set_workspace(const Hd& hd, DeviceInfo& info) {
     double box[6];
     std::fill(std::begin(box), std::end(box), std::numeric_limits<double>::quiet_NaN());
@@ -49,19 +57,22 @@ void set_workspace(const Hd& hd, DeviceInfo& info) {
     const Vec3 size = high - low;
     const bool sensible =
         is_position(low) && is_position(high) && size.minCoeff() >= 10 && size.maxCoeff() <= 2000;
-    info.workspace_low = sensible ? low : Vec3(-80, -60, -35);
-    info.workspace_high = sensible ? high : Vec3(80, 60, 35);
+    const Model& touch = model_named("Touch");
+    const Vec3 corner = 0.5 * Vec3(touch.width, touch.height, touch.depth);
+    info.workspace_low = sensible ? low : Vec3(-corner);
+    info.workspace_high = sensible ? high : corner;
 }
 
 DeviceInfo ask(const Hd& hd, double servo_rate) {
     DeviceInfo info;
+    const Model& least = model_named("Touch");
     info.name = "openhaptics";
     info.model = text(hd, parameter::model);
     const std::string serial = text(hd, parameter::serial_number);
     if (info.model.empty()) info.model = "OpenHaptics device";
     if (!serial.empty()) info.model += ", serial number " + serial;
-    info.limits.maximum_force = number(hd, parameter::nominal_max_force, 0.1, 50, 3.3);
-    info.stiffness = number(hd, parameter::nominal_max_stiffness, 0.05, 10, 0.4);
+    info.limits.maximum_force = number(hd, parameter::nominal_max_force, 0.1, 50, least.force);
+    info.stiffness = number(hd, parameter::nominal_max_stiffness, 0.05, 10, least.stiffness);
     // The slower of the two loops is the one that samples.
     const int rate = whole_number(hd, parameter::update_rate, 100, 10000, 1000);
     info.limits.rate = std::min<double>(servo_rate, rate);
@@ -87,6 +98,9 @@ const char* advice(unsigned int code) {
         case error::force_error:
             return "force is off for a second; if this happens again, lower the stiffness or move "
                    "more slowly";
+        case error::invalid_license:
+            return "OpenHaptics has no valid licence here: install one with the vendor's License "
+                   "Manager, then start again";
         default:
             return "force is off until a second after it was last reported";
     }
@@ -100,7 +114,7 @@ Attachment::Attachment(const std::string& library, const std::string& name)
         throw DeviceError("there is one open already, and the driver has no second one a process");
     }
     std::vector<const char*> names{name.c_str()};
-    if (name.empty()) names = {nullptr, "Default PHANToM"};
+    if (name.empty()) names = {nullptr, "Default Device", "Default PHANToM"};
     std::string tried;
     for (const char* one : names) {
         hd_->take_error();
@@ -111,6 +125,7 @@ Attachment::Attachment(const std::string& library, const std::string& name)
         tried += (tried.empty() ? "" : "; ") + std::string("device ") +
                  (one ? "'" + std::string(one) + "'" : "NULL") + ": " +
                  (code ? hd_->error_words(code) : "no error told");
+        if (code == error::invalid_license) tried += std::string(": ") + advice(code);
     }
     attached.store(false);
     throw DeviceError("the driver gives no device (" + tried + "): " + how_to_attach);
@@ -142,7 +157,8 @@ Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& setting
     frames_ = std::make_shared<Frames>(
         attachment_->shared_hd(),
         Frames::Setup{attachment_->device(), info_.limits.maximum_force,
-                      info_.limits.maximum_torque, info_.has_orientation, styles_, timing_.now});
+                      continuous_force(hd, info_), info_.limits.maximum_torque,
+                      info_.has_orientation, styles_, timing_.now});
     try {
         start();
     } catch (...) {
@@ -224,6 +240,10 @@ std::string Phantom::problem() const {
                    "switch it off and on";
         case Trouble::Kind::passing:
             return driver_says(advice(trouble.code));
+        case Trouble::Kind::loop_ended:
+            return driver_says("the driver's servo loop has ended: start again");
+        case Trouble::Kind::unlicensed:
+            return driver_says(advice(trouble.code));
         case Trouble::Kind::lost:
             return driver_says("no force any more; check cable and power, then start again");
         case Trouble::Kind::broken:
@@ -239,8 +259,15 @@ std::string Phantom::problem() const {
                    "than 20 ms old; it may still hold the last force, which nobody else can take "
                    "away: if that lasts, switch the device off";
         default:
-            return {};
+            break;
     }
+    const double limit = frames_->warm_limit();
+    if (limit == 0) return {};
+    std::array<char, 120> words{};
+    std::snprintf(words.data(), words.size(),
+                  "the motors are warm: its force is limited to %.1f N until they have cooled",
+                  limit);
+    return words.data();
 }
 
 }  // namespace palpate::devices::openhaptics

@@ -5,6 +5,10 @@ namespace palpate::devices::openhaptics {
 
 const char* const library_name = "HD.dll";
 
+std::vector<std::string> library_names() {
+    return {library_name};
+}
+
 const char* const how_to_install =
     "install 3D Systems' OpenHaptics and the Touch (or PHANToM) device driver for Windows (64 "
     "bit), "

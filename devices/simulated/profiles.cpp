@@ -8,68 +8,69 @@
 #include <stdexcept>
 #include <utility>
 
+#include "devices/models.hpp"
+
 namespace palpate::devices {
 namespace {
 
+/// Of a model, what data sheets rarely say: the mechanics and the electronics.
 struct Row {
     const char* name;
     const char* model;
-    double mass, damping, friction;                  // kg, N s/mm, N
-    double encoder_step, maximum_force, force_step;  // mm, N, N
-    double delay, stiffness;                         // s, N/mm
-    double width, height, depth;                     // mm, round the origin
+    double mass, damping, friction;   // kg, N s/mm, N
+    double encoder_step, force_step;  // mm, N
+    double delay;                     // s
 };
 
 /// Of those that measure the orientation.
 struct TurningRow {
     const char* name;
-    double inertia, damping, friction;            // kg mm^2, N mm s/rad, N mm
-    double degrees, maximum_torque, torque_step;  // of a step of angle, N mm, N mm
+    double inertia, damping, friction;  // kg mm^2, N mm s/rad, N mm
+    double degrees, torque_step;        // of a step of angle, N mm
 };
 
 // clang-format off
 constexpr Row rows[] = {
-    // name      model           mass   damping friction encoder force step  delay    stiffness  box
-    {"omni",     "PHANToM Omni", 0.045, 0.5e-3, 0.26, 0.055,  3.3,  0.002, 0.5e-3,  0.7,  160, 120,  70},
-    {"touch",    "Touch",        0.045, 0.5e-3, 0.26, 0.055,  3.3,  0.002, 1e-3,    0.4,  160, 120,  70},
-    {"touchx",   "Touch X",      0.045, 0.5e-3, 0.06, 0.023,  7.9,  0.004, 1e-3,    1.48, 160, 120, 120},
-    {"omega3",   "omega.3",      0.2,   2e-3,   0.1,  0.01,   12,   0.006, 0.25e-3, 5,    110, 110, 110},
-    {"omega6",   "omega.6",      0.3,   2e-3,   0.1,  0.01,   12,   0.006, 0.25e-3, 5,    110, 110, 110},
-    {"omega7",   "omega.7",      0.35,  2e-3,   0.1,  0.01,   12,   0.006, 0.25e-3, 5,    110, 110, 110},
-    {"sigma7",   "sigma.7",      0.4,   2e-3,   0.1,  0.0015, 20,   0.01,  0.25e-3, 4,    130, 130, 130},
-    {"premium6dof", "Premium 1.5/6DOF", 0.136, 0.5e-3, 0.2, 0.03, 8.5, 0.004, 0.5e-3, 3.5, 381, 267, 191},
-    {"falcon",   "Falcon",       0.15,  2e-3,   0.4,  0.0635, 8,    0.01,  1e-3,    3,     80,  80,  80},
-    {"inverse3", "Inverse3",     0.15,  0.5e-3, 0.15, 0.01,   10,   0.005, 1e-3,    1,    170, 170, 170},
+    // name         model              mass   damping friction encoder force step delay
+    {"omni",        "PHANToM Omni",     0.045, 0.5e-3, 0.26,    0.055,  0.002,     0.5e-3},
+    {"touch",       "Touch",            0.045, 0.5e-3, 0.26,    0.055,  0.002,     1e-3},
+    {"touchx",      "Touch X",          0.045, 0.5e-3, 0.06,    0.023,  0.004,     1e-3},
+    {"omega3",      "omega.3",          0.2,   2e-3,   0.1,     0.01,   0.006,     0.25e-3},
+    {"omega6",      "omega.6",          0.3,   2e-3,   0.1,     0.01,   0.006,     0.25e-3},
+    {"omega7",      "omega.7",          0.35,  2e-3,   0.1,     0.01,   0.006,     0.25e-3},
+    {"sigma7",      "sigma.7",          0.4,   2e-3,   0.1,     0.0015, 0.01,      0.25e-3},
+    {"premium6dof", "Premium 1.5/6DOF", 0.136, 0.5e-3, 0.2,     0.03,   0.004,     0.5e-3},
+    {"falcon",      "Falcon",           0.15,  2e-3,   0.4,     0.0635, 0.01,      1e-3},
+    {"inverse3",    "Inverse3",         0.15,  0.5e-3, 0.15,    0.01,   0.005,     1e-3},
     {"inverse3_versegrip", "Inverse3 with VerseGrip",
-                                 0.2,   0.5e-3, 0.15, 0.01,   10,   0.005, 1e-3,    1,    170, 170, 170},
+                                        0.2,   0.5e-3, 0.15,    0.01,   0.005,     1e-3},
 };
 constexpr TurningRow turning_rows[] = {
     // name                inertia damping friction step   torque step
-    {"omni",                2,     0.05,   1,       0.1,     0,   0},
-    {"touch",               2,     0.05,   1,       0.1,     0,   0},
-    {"touchx",              2,     0.05,   0.5,     0.02,    0,   0},
-    {"omega6",             20,     0.2,    2,       0.09,    0,   0},
-    {"omega7",             25,     0.2,    2,       0.09,    0,   0},
-    {"sigma7",             40,     0.2,    2,       0.013, 400,   0.2},
-    {"premium6dof",        20,     0.2,    2,       0.008, 170,   0.1},
-    {"inverse3_versegrip", 20,     0.05,   0,       0.1,     0,   0},
+    {"omni",                2,     0.05,   1,       0.1,   0},
+    {"touch",               2,     0.05,   1,       0.1,   0},
+    {"touchx",              2,     0.05,   0.5,     0.02,  0},
+    {"omega6",             20,     0.2,    2,       0.09,  0},
+    {"omega7",             25,     0.2,    2,       0.09,  0},
+    {"sigma7",             40,     0.2,    2,       0.013, 0.2},
+    {"premium6dof",        20,     0.2,    2,       0.008, 0.1},
+    {"inverse3_versegrip", 20,     0.05,   0,       0.1,   0},
 };
 // clang-format on
 
 void add_rotation(DeviceProfile& profile) {
     const auto row = std::ranges::find(turning_rows, profile.name, &TurningRow::name);
     if (row == std::end(turning_rows)) return;
-    profile.has_orientation = true;
     profile.inertia = row->inertia;
     profile.rotational_damping = row->damping;
     profile.rotational_friction = row->friction;
     profile.angle_step = row->degrees * std::numbers::pi / 180;
-    profile.maximum_torque = row->maximum_torque;
     profile.torque_step = row->torque_step;
 }
 
 DeviceProfile profile_of(const Row& row) {
-    const Vec3 corner = 0.5 * Vec3(row.width, row.height, row.depth);
+    const Model& model = model_named(row.model);
+    const Vec3 corner = 0.5 * Vec3(model.width, model.height, model.depth);
     DeviceProfile profile;
     profile.name = row.name;
     profile.model = row.model;
@@ -77,10 +78,12 @@ DeviceProfile profile_of(const Row& row) {
     profile.damping = row.damping;
     profile.friction = row.friction;
     profile.encoder_step = row.encoder_step;
-    profile.maximum_force = row.maximum_force;
+    profile.maximum_force = model.force;
     profile.force_step = row.force_step;
     profile.delay = row.delay;
-    profile.stiffness = row.stiffness;
+    profile.stiffness = model.stiffness;
+    profile.has_orientation = model.has_wrist;
+    profile.maximum_torque = model.torque;
     profile.workspace_low = -corner;
     profile.workspace_high = corner;
     add_rotation(profile);

@@ -3,6 +3,7 @@
 #include "devices/spacenav/mouse.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "palpate/devices/error.hpp"
@@ -46,6 +47,7 @@ Mouse::Mouse(Socket socket, const std::string& path, std::vector<std::string> pa
     info_.renders_force = false;
     info_.has_orientation = true;
     info_.buttons = 32;  // the protocol does not say how many there are
+    ask_for_protocol_1();
     report(stepped_);
 }
 
@@ -59,6 +61,7 @@ void Mouse::start() {
 }
 
 std::string Mouse::problem() const {
+    if (connected_ && unplugged_) return "the 3D mouse was unplugged: plug it in again";
     if (connected_) return {};
     return "spacenavd has closed the connection; trying to connect again: is it running (systemctl "
            "status spacenavd)?";
@@ -81,6 +84,7 @@ void Mouse::step() {
     }
     if (connected_) {
         let_go(hand_);
+        hand_.is_unplugged = false;
         events_ = {};
         connected_.store(false);
     }
@@ -100,12 +104,22 @@ void Mouse::take_events() {
 
 bool Mouse::reconnect() {
     for (const std::string& path : paths_) {
-        if (socket_.connect(path).empty()) return true;
+        if (!socket_.connect(path).empty()) continue;
+        ask_for_protocol_1();
+        return true;
     }
     return false;
 }
 
+void Mouse::ask_for_protocol_1() {
+    std::array<unsigned char, sizeof protocol_1> bytes;
+    std::memcpy(bytes.data(), &protocol_1, sizeof protocol_1);
+    socket_.write(bytes);
+}
+
 void Mouse::report(std::int64_t now) noexcept {
+    unplugged_.store(hand_.is_unplugged);
+    if (hand_.is_unplugged) return link_.report(DeviceStatus::lost, now);
     DeviceReading reading;
     reading.position = hand_.position;
     reading.orientation = hand_.orientation;

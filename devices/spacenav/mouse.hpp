@@ -38,6 +38,7 @@ class Mouse final : public Device {
     void run();
     void take_events();
     bool reconnect();
+    void ask_for_protocol_1();
     void report(std::int64_t now) noexcept;
 
     const Timing timing_;
@@ -45,7 +46,7 @@ class Mouse final : public Device {
     const Feel feel_;
     DeviceInfo info_;
     Link link_;
-    std::atomic<bool> connected_{true}, quit_{false};
+    std::atomic<bool> connected_{true}, unplugged_{false}, quit_{false};
 
     // Used by the thread only.
     Socket socket_;

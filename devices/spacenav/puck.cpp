@@ -27,6 +27,12 @@ void EventReader::take(std::span<const unsigned char> bytes) {
 }
 
 std::optional<Event> EventReader::next() {
+    std::uint32_t answer = 0;
+    if (is_first_ && bytes_.size() >= sizeof answer) {
+        std::memcpy(&answer, bytes_.data(), sizeof answer);
+        if (answer >> 8 == protocol_1 >> 8) used_ = sizeof answer;
+        is_first_ = false;
+    }
     Event event;
     if (bytes_.size() - used_ < sizeof event) return std::nullopt;
     std::memcpy(event.data(), bytes_.data() + used_, sizeof event);
@@ -35,7 +41,13 @@ std::optional<Event> EventReader::next() {
 }
 
 void apply(Hand& hand, const Event& event, const Feel& feel) {
+    if (event[0] == device) {
+        let_go(hand);
+        hand.is_unplugged = event[1] != 0;
+        return;
+    }
     if (event[0] == press || event[0] == release) {
+        hand.is_unplugged = false;
         const auto button = static_cast<std::uint32_t>(event[1]);
         if (button >= 32) return;
         const std::uint32_t bit = std::uint32_t{1} << button;
@@ -50,6 +62,7 @@ void apply(Hand& hand, const Event& event, const Feel& feel) {
     };
     hand.slide = Vec3(part(1), part(2), -part(3));
     hand.twist = Vec3(part(4), part(5), -part(6));
+    if (!hand.slide.isZero(0) || !hand.twist.isZero(0)) hand.is_unplugged = false;
 }
 
 void advance(Hand& hand, double time, const Feel& feel) {

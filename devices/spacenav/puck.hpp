@@ -14,15 +14,21 @@
 
 namespace palpate::devices::spacenav {
 
-/// Eight numbers in the machine's byte order, protocol 0. The first tells what it is:
+/// Asks for protocol 1, which tells when a mouse is unplugged. A daemon that knows it answers with
+/// the same number; an older one takes it for a factor that is no number, and ignores it.
+constexpr std::uint32_t protocol_1 = 0x7faa5501;  // REQ_CHANGE_PROTO, with REQ_TAG and 1
+
+/// Eight numbers in the machine's byte order. The first tells what it is:
 enum EventType : std::int32_t {
-    motion = 0,   ///< x y z rx ry rz, counts of deflection, and the ms since the last one
-    press = 1,    ///< button
-    release = 2,  ///< button
+    motion = 0,   // UEV_MOTION: x y z rx ry rz, counts of deflection, and the ms since the last one
+    press = 1,    // UEV_PRESS: button
+    release = 2,  // UEV_RELEASE: button
+    device = 3,   // UEV_DEV: 0: one was plugged in, 1: one was unplugged; protocol 1 only
 };
 using Event = std::array<std::int32_t, 8>;
 
-/// Assembles events from pieces of any size.
+/// Assembles events from pieces of any size. Passes over the answer about the protocol, which comes
+/// first if it comes.
 class EventReader {
   public:
     /// Adds bytes; next() returns the events they complete.
@@ -32,6 +38,7 @@ class EventReader {
   private:
     std::vector<unsigned char> bytes_;
     std::size_t used_ = 0;
+    bool is_first_ = true;
 };
 
 struct Feel {
@@ -49,6 +56,7 @@ struct Hand {
     Vec3 slide = Vec3::Zero();  ///< deflection, 1: full; our axes
     Vec3 twist = Vec3::Zero();  ///< the same about them
     std::uint32_t buttons = 0;
+    bool is_unplugged = false;  ///< until one is plugged in or another one moves
 };
 
 /// Applies an event. Unknown types are ignored.

@@ -55,6 +55,11 @@ bool Socket::wait_until(std::int64_t time) const noexcept {
     return ::ppoll(&file, 1, &wait, nullptr) > 0;
 }
 
+void Socket::write(std::span<const unsigned char> bytes) noexcept {
+    // Whether it is gone shows when it is read.
+    static_cast<void>(::send(file_, bytes.data(), bytes.size(), MSG_NOSIGNAL));
+}
+
 std::optional<std::size_t> Socket::read(std::span<unsigned char> bytes) noexcept {
     const ssize_t got = ::read(file_, bytes.data(), bytes.size());
     if (got > 0) return static_cast<std::size_t>(got);

@@ -23,6 +23,8 @@ class Socket {
     /// Whether there is something to read, or the other side has gone, by this time [ns,
     /// monotonic].
     bool wait_until(std::int64_t time) const noexcept;
+    /// Sends these few bytes, if there is room for them.
+    void write(std::span<const unsigned char> bytes) noexcept;
     /// How many bytes were read; nothing if the other side has closed (then this is closed, too).
     std::optional<std::size_t> read(std::span<unsigned char> bytes) noexcept;
 

@@ -22,6 +22,8 @@ bool Socket::wait_until(std::int64_t) const noexcept {
     return false;
 }
 
+void Socket::write(std::span<const unsigned char>) noexcept {}
+
 std::optional<std::size_t> Socket::read(std::span<unsigned char>) noexcept {
     return std::nullopt;
 }

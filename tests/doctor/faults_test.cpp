@@ -8,6 +8,7 @@
 #include <cerrno>
 
 #include "doctor/made_up_machine.hpp"
+#include "doctor/usb.hpp"
 
 namespace palpate::doctor::test {
 namespace {
@@ -112,6 +113,11 @@ void falcon_without_library(M& m) {
     m.plug("0403", "cb48", "FALCON HAPTIC");
     m.not_found("forcedimension", "cannot open its library (libdhd.so.3)");
 }
+void touch_without_terminal_libraries(M& m) {
+    m.plug("2988", "0304", "Touch");
+    m.not_found("openhaptics",
+                "cannot open its library (libtinfo.so.5: cannot open shared object file)");
+}
 void mouse_without_service(M& m) {
     m.plug("256f", "c635", "SpaceMouse Compact", 0600);
     m.not_found("spacenav", "no spacenavd listens");
@@ -188,6 +194,10 @@ const Injection plugged[] = {
      touch_before_login},
     {"device-library", true, "install the vendor's library (docs/devices/forcedimension.md)",
      falcon_without_library},
+    {"device-library", true, "sudo apt install libncurses5 libtinfo5",
+     touch_without_terminal_libraries},
+    {"device-permission", true, "ATTR{idVendor}==\"2988\", ATTR{idProduct}==\"0304\"",
+     [](M& m) { m.plug("2988", "0304", "Touch", 0600); }},
     {"device-service", true, "sudo apt install spacenavd", mouse_without_service},
     {"device-port", true, "modprobe cdc_acm", [](M& m) { m.plug("2988", "0302", "Touch"); }},
     {"device-sleep", false, "echo on | sudo tee /sys/bus/usb/devices/1-2/power/control",
@@ -199,6 +209,37 @@ TEST(Doctor, has_nothing_to_say_about_a_healthy_machine) {
     MadeUpMachine machine;
     machine.plug("1451", "0402", "omega.x");
     for (const Fault& fault : machine.faults()) ADD_FAILURE() << fault.name << fault.meaning;
+}
+
+TEST(Doctor, names_each_device_that_is_plugged_in_and_has_nothing_to_say_about_it) {
+    const struct {
+        const char *vendor, *product, *calls_itself;
+        const char *backend, *name;
+        bool has_port = false;
+    } devices[] = {
+        {"2988", "0302", "Touch", "openhaptics", "3D Systems Touch", true},
+        {"2988", "0304", "Touch", "openhaptics", "3D Systems Touch (USB)"},
+        {"1451", "0402", "omega.x", "forcedimension", "Force Dimension omega"},
+        {"1451", "0403", "sigma.7", "forcedimension", "Force Dimension sigma"},
+        {"1451", "040c", "lambda.7", "forcedimension", "Force Dimension lambda"},
+        {"1451", "0301", "haptic device", "forcedimension", "Force Dimension device"},
+        {"0403", "cb48", "FALCON HAPTIC", "forcedimension", "Novint Falcon"},
+        {"256f", "c635", "SpaceMouse Compact", "spacenav", "3Dconnexion mouse"},
+    };
+    for (const auto& device : devices) {
+        MadeUpMachine machine;
+        machine.plug(device.vendor, device.product, device.calls_itself);
+        if (device.has_port) machine.plug_serial(0666);
+        for (const Fault& fault : machine.faults()) ADD_FAILURE() << fault.name << fault.meaning;
+        const std::vector<PluggedIn> plugged = plugged_in(machine.facts.machine.usb);
+        ASSERT_EQ(plugged.size(), 1U) << device.name;
+        EXPECT_EQ(plugged[0].backend, device.backend);
+        EXPECT_EQ(plugged[0].name, std::string(device.name) + ", " + device.vendor + ":" +
+                                       device.product + ", calls itself " + device.calls_itself);
+    }
+    MadeUpMachine machine;
+    machine.plug("1d6b", "0002", "a hub");
+    EXPECT_TRUE(plugged_in(machine.read().usb).empty());
 }
 
 class InjectedFault : public testing::TestWithParam<Injection> {};

@@ -50,10 +50,17 @@ TEST_F(ForceDimension, options_that_cannot_be_meant_are_refused) {
     const auto wrong = [&](const std::string& options) {
         return message_of<std::invalid_argument>([&] { open(options); });
     };
-    EXPECT_TRUE(contains(wrong(",gripper=yes"), "there are: index, autoinit, centre, library"));
+    EXPECT_TRUE(
+        contains(wrong(",gripper=yes"), "there are: index, autoinit, centre, simulator, library"));
     EXPECT_TRUE(contains(wrong(",index=1.5"), "a whole number is needed"));
     EXPECT_TRUE(contains(wrong(",index=-1"), "a number from 0 to 100"));
     EXPECT_TRUE(contains(wrong(",autoinit=perhaps"), "must be one of yes, no"));
+}
+
+TEST_F(ForceDimension, the_vendors_simulator_is_a_device_when_asked_for) {
+    with([](auto& dhd) { dhd.count = 0; });
+    EXPECT_TRUE(presses(*open(",simulator=yes")));
+    EXPECT_TRUE(contains(refusal(), "no device (0 found)"));
 }
 
 TEST_F(ForceDimension, a_device_that_is_not_there_or_does_not_open_is_told_with_what_to_do) {
@@ -80,8 +87,48 @@ TEST_F(ForceDimension, each_model_has_its_own_limits) {
     EXPECT_EQ(falcon.buttons, 4);
     with([](auto& dhd) { dhd.type = 63; });
     EXPECT_EQ(open()->info().limits.maximum_force, 20);
+    // The workspace of a right-handed sigma.7 lies to the right of its origin.
+    with([](auto& dhd) { dhd.type = 104; });
+    EXPECT_EQ(open()->info().workspace_low, Vec3(-45, -65, -75));
+    EXPECT_EQ(open()->info().workspace_high, Vec3(85, 65, 55));
+}
+
+TEST_F(ForceDimension, a_model_that_nobody_has_listed_is_what_its_library_says) {
     with([](auto& dhd) { dhd.type = 4242; });
-    EXPECT_EQ(open()->info().limits.maximum_force, 8);
+    const DeviceInfo bare = open()->info();
+    EXPECT_EQ(bare.limits.maximum_force, 8);
+    EXPECT_FALSE(bare.has_orientation);
+    with([](auto& dhd) {
+        dhd.wrist = dhd.gripper = dhd.active_wrist = true;
+        dhd.limit = 15;
+        dhd.max_force = -1;
+    });
+    const DeviceInfo full = open()->info();
+    EXPECT_EQ(full.limits.maximum_force, 15);
+    EXPECT_TRUE(full.has_orientation);
+    EXPECT_EQ(full.limits.maximum_torque, 150);
+    EXPECT_EQ(full.buttons, 1);
+    // Of one that is listed, the library's limit counts where it is the lower one.
+    with([](auto& dhd) { dhd.type = 33, dhd.limit = 15, dhd.max_force = -1; });
+    EXPECT_EQ(open()->info().limits.maximum_force, 12);
+    with([](auto& dhd) { dhd.limit = 5, dhd.max_force = -1; });
+    EXPECT_EQ(open()->info().limits.maximum_force, 5);
+}
+
+TEST_F(ForceDimension, a_gripper_is_a_button_while_the_device_is_open) {
+    with([](auto& dhd) {
+        dhd.type = 35;
+        dhd.buttons = 1;
+    });
+    {
+        const auto device = open();
+        EXPECT_EQ(device->info().buttons, 1);
+        ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
+        EXPECT_EQ(device->read(0).buttons, 1U);
+    }
+    EXPECT_FALSE(with([](auto& dhd) { return dhd.emulates_button; }));
+    with([](auto& dhd) { dhd.refuses_emulation = true; });
+    EXPECT_EQ(open()->info().buttons, 0);
 }
 
 TEST_F(ForceDimension, position_and_buttons_come_in_mm_in_our_axes) {
@@ -177,6 +224,7 @@ TEST_F(ForceDimension, it_is_switched_on_and_off_in_order_and_its_last_force_is_
     EXPECT_EQ(with([](auto& dhd) { return dhd.calls; }), expected);
     EXPECT_EQ(with([](auto& dhd) { return dhd.force_at_stop; }), (std::array<double, 3>{}));
     EXPECT_EQ(with([](auto& dhd) { return dhd.watchdog; }), 17);  // as it was
+    EXPECT_FALSE(with([](auto& dhd) { return dhd.is_expert; }));
     EXPECT_EQ(with([](auto& dhd) { return dhd.wrong_id; }), 0);
     EXPECT_NO_THROW(open());
 }
@@ -341,11 +389,23 @@ TEST_F(ForceDimension, readings_of_a_slow_library_are_never_ready_and_get_no_for
     const auto device = open();
     ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
     EXPECT_TRUE(says(*device, "takes too long"));
+    EXPECT_TRUE(says(*device, "the device drops the last force by itself"));
     EXPECT_TRUE(throughout(
         300ms, [&] { return device->read(0).status != DeviceStatus::ready && force().isZero(0); },
         [&] { device->write({Vec3(1, 1, 1)}, 0); }));
     with([](auto& dhd) { dhd.while_reading = nullptr; });
     EXPECT_TRUE(presses(*device));
+}
+
+TEST_F(ForceDimension, a_watchdog_that_was_refused_is_not_promised) {
+    with([](auto& dhd) {
+        dhd.refuses_watchdog = true;
+        dhd.while_reading = [] { pass(50ms); };
+    });
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::stale));
+    EXPECT_TRUE(says(*device, "it may still hold the last force"));
+    EXPECT_EQ(with([](auto& dhd) { return dhd.watchdog; }), 17);
 }
 
 /// The device's thread, at its real pace.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 
 #define MOCK_EXPORT extern "C" __attribute__((visibility("default")))
 
@@ -27,8 +28,9 @@ int fail(int code) {
 
 void apply(MockDhdState& state, const std::array<double, 3>& force,
            const std::array<double, 3>& torque = {}) {
+    const bool held = state.is_regulating && state.regulates_position;
     const bool works =
-        state.initialised && state.force_on && !state.brakes && state.force_off_cause == 0;
+        state.initialised && state.force_on && !state.brakes && !held && state.force_off_cause == 0;
     state.force = works ? force : std::array<double, 3>{};
     const double size = std::hypot(state.force[0], state.force[1], state.force[2]);
     state.largest_force = std::max(state.largest_force, size);
@@ -36,6 +38,14 @@ void apply(MockDhdState& state, const std::array<double, 3>& force,
     state.torque = turns ? torque : std::array<double, 3>{};
     const double turning = std::hypot(state.torque[0], state.torque[1], state.torque[2]);
     state.largest_torque = std::max(state.largest_torque, turning);
+}
+
+bool is_one_of(int type, std::initializer_list<int> types) {
+    return std::ranges::find(types, type) != types.end();
+}
+
+bool has_gripper(const MockDhdState& state) {
+    return state.gripper.value_or(is_one_of(state.type, {35, 37, 104, 105, 108, 109}));
 }
 
 /// The state, for a call for this device; its lock is held.
@@ -77,7 +87,12 @@ MOCK_EXPORT MockDhd* mock_dhd() {
 
 MOCK_EXPORT int dhdGetDeviceCount() {
     const std::lock_guard lock(mock.mutex);
-    return mock.state.count;
+    return mock.state.count + (mock.state.simulates ? 1 : 0);
+}
+
+MOCK_EXPORT void dhdEnableSimulator(bool on) {
+    const std::lock_guard lock(mock.mutex);
+    mock.state.simulates = on;
 }
 
 MOCK_EXPORT void dhdGetSDKVersion(int* major, int* minor, int* release, int* revision) {
@@ -97,6 +112,8 @@ MOCK_EXPORT const char* dhdErrorGetLastStr() {
             return "communication error";
         case 8:
             return "geometry error";
+        case 9:
+            return "expert mode disabled";
         case 20:
             return "device already in use";
         default:
@@ -152,7 +169,7 @@ MOCK_EXPORT int dhdGetStatus(int* status, char id) {
     const Call call(id);
     if (call->status_error) return fail(call->status_error);
     std::fill(status, status + 17, 0);
-    status[3] = call->initialised ? 1 : 0;
+    status[3] = call->initialised ? 0 : 1;
     status[5] = call->tells_of_force && call->force_on && call->force_off_cause == 0 ? 1 : 0;
     status[6] = call->brakes ? 1 : 0;
     status[12] = call->wrist_initialised ? 1 : 0;
@@ -180,7 +197,30 @@ MOCK_EXPORT int dhdGetOrientationFrame(double (*rows)[3], char id) {
 
 MOCK_EXPORT unsigned int dhdGetButtonMask(char id) {
     const Call call(id);
-    return call->buttons;
+    return has_gripper(mock.state) && !call->emulates_button ? 0 : call->buttons;
+}
+
+MOCK_EXPORT int dhdEmulateButton(unsigned char on, char id) {
+    const Call call(id);
+    if (!has_gripper(mock.state) || call->refuses_emulation) return fail(6);
+    call->emulates_button = on != 0;
+    return 0;
+}
+
+MOCK_EXPORT bool dhdHasWrist(char id) {
+    const Call call(id);
+    return call->wrist.value_or(
+        is_one_of(call->type, {34, 35, 36, 37, 64, 104, 105, 108, 109, 131, 132}));
+}
+
+MOCK_EXPORT bool dhdHasGripper(char id) {
+    const Call call(id);
+    return has_gripper(mock.state);
+}
+
+MOCK_EXPORT double dhdGetMaxForce(char id) {
+    const Call call(id);
+    return call->max_force > 0 ? call->max_force : call->limit;
 }
 
 MOCK_EXPORT int dhdSetForce(double x, double y, double z, char id) {
@@ -243,14 +283,29 @@ MOCK_EXPORT int dhdSetMaxForce(double limit, char id) {
     return 0;
 }
 
+MOCK_EXPORT int dhdEnableExpertMode() {
+    const std::lock_guard lock(mock.mutex);
+    mock.state.is_expert = true;
+    return 0;
+}
+
+MOCK_EXPORT int dhdDisableExpertMode() {
+    const std::lock_guard lock(mock.mutex);
+    mock.state.is_expert = false;
+    return 0;
+}
+
 MOCK_EXPORT int dhdSetWatchdog(unsigned char duration, char id) {
     const Call call(id, "watchdog");
+    if (!call->is_expert) return fail(9);
+    if (call->refuses_watchdog) return fail(6);
     call->watchdog = duration;
     return 0;
 }
 
 MOCK_EXPORT int dhdGetWatchdog(unsigned char* duration, char id) {
     const Call call(id);
+    if (!call->is_expert) return fail(9);
     *duration = static_cast<unsigned char>(call->watchdog);
     return 0;
 }
@@ -274,6 +329,7 @@ MOCK_EXPORT bool drdIsInitialized(char id) {
 MOCK_EXPORT int drdAutoInit(char id) {
     meanwhile(&MockDhdState::while_initialising);
     const Call call(id, "initialise");
+    call->is_regulating = true;
     if (!call->initialises) return fail(8);
     call->initialised = true;
     return 0;

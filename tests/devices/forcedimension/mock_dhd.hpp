@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,16 +15,19 @@ struct MockDhdState {
     // The device.
     int count = 1;
     int type = 33;
-    bool initialised = true;
+    bool initialised = true;           // false: it is in RESET mode and waits for its calibration
     std::array<double, 3> position{};  // [m]
     double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    unsigned int buttons = 0;
+    unsigned int buttons = 0;  // of a gripper: seen only while a button is emulated
     bool wrist_initialised = true;
     bool active_wrist = false;
+    std::optional<bool> wrist, gripper;  // where they are not those of its type
+    double limit = -1;                   // [N] dhdGetMaxForce before anybody sets one
 
     // How it misbehaves.
     bool refuses_open = false;
     bool refuses_force = false;  // dhdEnableForce fails
+    bool refuses_emulation = false, refuses_watchdog = false;
     bool initialises = true;     // drdAutoInit
     int position_error = 0;      // dhdGetPosition fails with this
     int force_error = 0;         // dhdSetForce fails with this
@@ -43,10 +47,12 @@ struct MockDhdState {
     std::array<double, 3> torque{};  // [N m] the same; zero also while the wrist is regulated
     double largest_force = 0, largest_torque = 0;
     double max_torque = -1;  // dhdSetMaxTorque
+    // While it regulates the position, forces that are set have no effect.
     bool regulates_position = true, regulates_rotation = true, is_regulating = false;
     int turned_to_centre = 0;
     double max_force = -1;  // dhdSetMaxForce
     int watchdog = 17, gravity = 0;
+    bool simulates = false, emulates_button = false, is_expert = false;
     bool force_on = false, brakes = true, is_open = false;
     std::vector<std::string> calls;                // but for those of the loop
     long loops = 0;                                // dhdSetForce

@@ -22,7 +22,7 @@ TEST_F(ForceDimensionWrist, a_model_with_motors_at_its_wrist_says_so_and_any_oth
     const DeviceInfo sigma = open()->info();
     EXPECT_TRUE(sigma.has_orientation);
     EXPECT_TRUE(sigma.renders_torque);
-    EXPECT_EQ(sigma.limits.maximum_torque, 400);
+    EXPECT_EQ(sigma.limits.maximum_torque, 200);
     with([](auto& dhd) { dhd.active_wrist = false; });
     EXPECT_FALSE(open()->info().renders_torque);
     EXPECT_EQ(open()->info().limits.maximum_torque, 0);
@@ -40,20 +40,20 @@ TEST_F(ForceDimensionWrist, a_torque_arrives_in_newton_metres_in_the_axes_it_was
         const auto device = open();
         EXPECT_TRUE(turns(*device, Vec3(-30, 50, 7)));
         EXPECT_EQ(with([](auto& dhd) { return dhd.wrong_id; }), 0);
-        EXPECT_NEAR(with([](auto& dhd) { return dhd.max_torque; }), 0.4, 1e-12);
+        EXPECT_NEAR(with([](auto& dhd) { return dhd.max_torque; }), 0.2, 1e-12);
         EXPECT_TRUE(has_no_problem(*device));
     }
 }
 
 TEST_F(ForceDimensionWrist, a_torque_beyond_the_devices_own_is_cut_to_it) {
     const auto device = open();
-    const Vec3 cut = Vec3(0.6, 0, 0.8) * 0.4;
+    const Vec3 cut = Vec3(0.6, 0, 0.8) * 0.2;
     EXPECT_TRUE(within(
         felt, [&] { return (torque() - cut).norm() < 1e-12; },
         [&] {
             device->write({Vec3::Zero(), Vec3(6000, 0, 8000)}, 0);
         }));
-    EXPECT_LE(with([](auto& dhd) { return dhd.largest_torque; }), 0.4 + 1e-12);
+    EXPECT_LE(with([](auto& dhd) { return dhd.largest_torque; }), 0.2 + 1e-12);
 }
 
 TEST_F(ForceDimensionWrist, a_passive_wrist_is_never_sent_a_torque) {

@@ -102,6 +102,8 @@ MOCK_EXPORT void mock_hd_reset() {
     state.transform = fresh.transform;
     state.buttons = 0;
     state.most_force = fresh.most_force;
+    state.continuous_force = fresh.continuous_force;
+    state.temperature = fresh.temperature;
     state.stiffness = fresh.stiffness;
     state.workspace = fresh.workspace;
     state.rate = fresh.rate;
@@ -113,6 +115,8 @@ MOCK_EXPORT void mock_hd_reset() {
     state.largest_torque = 0;
     state.calibration = fresh.calibration;
     state.calibration_style = fresh.calibration_style;
+    state.only_name = fresh.only_name;
+    state.has_no_licence = false;
     state.refuses_null = state.refuses_all = state.refuses_start = false;
     state.update_helps = true;
     state.every_error = state.next_error = 0;
@@ -130,8 +134,9 @@ MOCK_EXPORT void mock_hd_reset() {
 MOCK_EXPORT unsigned int hdInitDevice(const char* name) {
     const std::lock_guard lock(state.mutex);
     called("init " + std::string(name ? name : "NULL"));
-    const bool refused = state.refuses_all || (!name && state.refuses_null) ||
-                         (name && std::strcmp(name, "Default PHANToM") != 0);
+    if (state.has_no_licence) return complain(0x600), 0xFFFFFFFF;
+    const bool refused =
+        state.refuses_all || (!name && state.refuses_null) || (name && name != state.only_name);
     if (refused || state.device_open) {
         complain(refused ? 0x300 : 0x301);
         return 0xFFFFFFFF;
@@ -174,6 +179,9 @@ MOCK_EXPORT void hdEndFrame(unsigned int device) {
     drive(frame_force, frame_torque);
     if (state.every_error) complain(state.every_error);
     if (state.next_error) complain(state.next_error);
+    for (const unsigned int ending : {0x304U, 0x500U, 0x501U}) {
+        if (state.next_error == ending) state.silent = true;
+    }
     state.next_error = 0;
 }
 
@@ -237,6 +245,14 @@ MOCK_EXPORT void hdGetDoublev(unsigned int parameter, double* value) {
             break;
         case 0x2603:
             *value = state.most_force;
+            break;
+        case 0x2604:
+            *value = state.continuous_force;
+            break;
+        case 0x2605:
+            if (state.temperature < 0) return complain(0x100);
+            value[0] = value[2] = 0;
+            value[1] = state.temperature;
             break;
         case 0x2622:
             if (state.output_dof < 6) return complain(0x100);

@@ -17,7 +17,8 @@ struct MockHd {
     std::array<double, 3> position{};  // [mm]
     std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     int buttons = 0;
-    double most_force = 3.3, stiffness = 0.7;
+    double most_force = 3.3, continuous_force = 0.88, stiffness = 0.7;
+    double temperature = 0;  // of its second motor; below 0: it tells none
     std::array<double, 6> workspace{-80, -60, -35, 80, 60, 35};
     int rate = 1000;
     int input_dof = 6, output_dof = 3;
@@ -26,11 +27,14 @@ struct MockHd {
     int calibration_style = 4;
 
     // How it misbehaves.
-    bool refuses_null = false;              // hdInitDevice(NULL) fails
-    bool refuses_all = false;               // and so does any name
-    bool refuses_start = false;             // hdStartScheduler
-    bool update_helps = true;               // hdUpdateCalibration
-    unsigned int every_error = 0;           // reported by every frame
+    bool refuses_null = false;  // hdInitDevice(NULL) fails
+    std::string only_name = "Default PHANToM";
+    bool has_no_licence = false;
+    bool refuses_all = false;      // and so does any name
+    bool refuses_start = false;    // hdStartScheduler
+    bool update_helps = true;      // hdUpdateCalibration
+    unsigned int every_error = 0;  // reported by every frame
+    // Those that end the servo loop (0x304, 0x500, 0x501) end it.
     unsigned int next_error = 0;            // reported by the next frame
     unsigned int torque_error = 0;          // reported by every call that sets a torque
     bool silent = false;                    // the servo loop calls nobody

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "devices/openhaptics/openhaptics_fixture.hpp"
 #include "support/eventually.hpp"
@@ -64,13 +65,15 @@ TEST_F(OpenHaptics, a_driver_without_a_device_is_told_with_its_words_and_can_be_
 TEST_F(OpenHaptics, where_the_default_device_fails_its_usual_name_is_tried) {
     with([](MockHd& hd) { hd.refuses_null = true; });
     EXPECT_NO_THROW(open());
-    EXPECT_EQ(with([](MockHd& hd) { return hd.calls.at(1); }), "init Default PHANToM");
+    EXPECT_EQ(with([](MockHd& hd) { return hd.calls.at(2); }), "init Default PHANToM");
 }
 
 TEST_F(OpenHaptics, a_name_that_is_given_is_the_only_one_tried) {
     EXPECT_TRUE(contains(refusal(",name=Left Device"), "device 'Left Device': "));
     EXPECT_EQ(with([](MockHd& hd) { return hd.calls.size(); }), 1U);
     EXPECT_NO_THROW(open(",name=Default PHANToM"));
+    with([](MockHd& hd) { hd.refuses_null = true, hd.only_name = "Default Device"; });
+    EXPECT_NO_THROW(open());
 }
 
 TEST_F(OpenHaptics, a_servo_loop_that_does_not_start_gives_the_device_back) {
@@ -299,6 +302,66 @@ TEST_F(OpenHaptics, warm_motors_get_no_force_until_they_have_cooled) {
     EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
     EXPECT_TRUE(presses(*device, Vec3(1, 2, 0)));
     EXPECT_TRUE(has_no_problem(*device));
+}
+
+TEST_F(OpenHaptics, an_error_that_ends_the_drivers_loop_ends_the_session) {
+    for (const unsigned int ending : {0x304U, 0x500U, 0x501U}) {
+        const auto device = open();
+        ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+        with([&](MockHd& hd) { hd.next_error = ending; });
+        ASSERT_TRUE(becomes(*device, DeviceStatus::lost));
+        EXPECT_TRUE(contains(device->problem(), "servo loop has ended: start again"))
+            << device->problem();
+        EXPECT_TRUE(stays_at_zero(*device));
+        with([](MockHd& hd) { hd.silent = false; });
+        EXPECT_FALSE(within(2s, [&] { return device->read(0).status != DeviceStatus::lost; }));
+    }
+}
+
+TEST_F(OpenHaptics, a_missing_licence_is_told_with_what_to_do) {
+    with([](MockHd& hd) { hd.has_no_licence = true; });
+    EXPECT_TRUE(contains(refusal(), "License Manager"));
+    with([](MockHd& hd) { hd.has_no_licence = false; });
+    const auto device = open();
+    ASSERT_TRUE(presses(*device, Vec3(1, 2, 0)));
+    with([](MockHd& hd) { hd.next_error = 0x600; });
+    ASSERT_TRUE(becomes(*device, DeviceStatus::fault));
+    EXPECT_TRUE(contains(device->problem(), "License Manager")) << device->problem();
+    EXPECT_TRUE(stays_at_zero(*device));
+    EXPECT_FALSE(within(2s, [&] { return device->read(0).status != DeviceStatus::fault; }));
+}
+
+/// [N] rendered after this force has been asked for so long.
+class OpenHapticsMotors : public OpenHaptics {
+  protected:
+    double after(std::chrono::milliseconds time, double newtons) {
+        throughout(
+            time, [] { return true; }, [&] { device_->write({Vec3(0, newtons, 0)}, 0); });
+        return force().norm();
+    }
+    std::unique_ptr<Device> device_;
+};
+
+TEST_F(OpenHapticsMotors, that_are_warm_are_asked_for_less_until_the_continuous_force_is_left) {
+    device_ = open();
+    for (const auto& [temperature, newtons] :
+         {std::pair(0.5, 3.3), {0.6, 0.5 * (3.3 + 0.88)}, {0.9, 0.88}, {0.1, 3.3}}) {
+        with([warm = temperature](MockHd& hd) { hd.temperature = warm; });
+        EXPECT_NEAR(after(150ms, 3.3), newtons, 1e-9);
+        EXPECT_EQ(contains(device_->problem(), "motors are warm"), newtons < 3.3);
+        EXPECT_EQ(device_->read(0).status, DeviceStatus::ready);
+    }
+}
+
+TEST_F(OpenHapticsMotors, whose_temperature_no_driver_tells_are_estimated) {
+    with([](MockHd& hd) { hd.temperature = -1; });
+    device_ = open();
+    EXPECT_NEAR(after(2s, 3.3), 3.3, 1e-9);
+    EXPECT_LT(after(10s, 3.3), 1.1);
+    EXPECT_TRUE(contains(device_->problem(), "motors are warm")) << device_->problem();
+    EXPECT_GE(after(300s, 3.3), 0.88 - 1e-9);  // what it can render for hours stays
+    EXPECT_NEAR(after(60s, 0.1), 0.1, 1e-9);
+    EXPECT_NEAR(after(1s, 3.3), 3.3, 1e-9);
 }
 
 TEST_F(OpenHaptics, an_error_of_which_the_driver_knows_no_words_is_told_by_its_number) {

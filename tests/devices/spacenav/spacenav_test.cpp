@@ -96,7 +96,34 @@ TEST_F(Spacenav, a_puck_at_rest_sends_nothing_and_stays_ready) {
     pass(21ms);  // a thread that stands still
     EXPECT_EQ(device->read(0).status, DeviceStatus::stale);
     EXPECT_EQ(device->read(0).position, Vec3(0, 0, 0));
-    EXPECT_EQ(daemon_.heard(), 0U);  // protocol 0 needs no word from us
+    EXPECT_EQ(daemon_.heard(), 4U);  // the request for protocol 1, once
+}
+
+TEST_F(Spacenav, a_mouse_that_is_unplugged_while_deflected_stops_and_is_told) {
+    const auto device = open();
+    daemon_.say_bytes(&spacenav::protocol_1, sizeof spacenav::protocol_1);
+    daemon_.say({0, 350, 0, 0, 0, 0, 0, 8});
+    ASSERT_TRUE(within(1s, [&] { return device->read(0).position[0] > 10; }));
+    daemon_.say({3, 1, 0});
+    ASSERT_TRUE(within(2ms, [&] { return device->read(0).status == DeviceStatus::lost; }));
+    EXPECT_TRUE(contains(device->problem(), "unplugged")) << device->problem();
+    const Vec3 left = device->read(0).position;
+    EXPECT_TRUE(throughout(1s, [&] { return device->read(0).status == DeviceStatus::lost; }));
+    daemon_.say({3, 0, 0});
+    ASSERT_TRUE(within(2ms, [&] { return device->read(0).status == DeviceStatus::ready; }));
+    EXPECT_EQ(device->read(0).position, left);
+    EXPECT_EQ(device->problem(), "");
+}
+
+TEST_F(Spacenav, a_second_mouse_goes_on_when_the_first_is_unplugged) {
+    const auto device = open();
+    daemon_.say_bytes(&spacenav::protocol_1, sizeof spacenav::protocol_1);
+    daemon_.say({3, 1, 0});
+    ASSERT_TRUE(within(2ms, [&] { return device->read(0).status == DeviceStatus::lost; }));
+    daemon_.say({0, 0, 0, 0, 0, 0, 0, 8});  // a daemon may send a puck at rest
+    EXPECT_TRUE(throughout(10ms, [&] { return device->read(0).status == DeviceStatus::lost; }));
+    daemon_.say({0, 350, 0, 0, 0, 0, 0, 8});
+    EXPECT_TRUE(within(2ms, [&] { return device->read(0).status == DeviceStatus::ready; }));
 }
 
 TEST_F(Spacenav, the_hand_slides_while_the_puck_is_deflected) {
