@@ -64,4 +64,7 @@ bare_root() {
 }
 
 # inside [NAME=VALUE...] COMMAND...: runs it in the bare system, with nothing of this environment.
-inside() { chroot "$root" env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root "$@" </dev/null; }
+inside() {
+    mkdir -p "$root/home/$(id -un)"
+    chroot "$root" env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/home/"$(id -un)" "$@" </dev/null
+}
