@@ -14,18 +14,44 @@ PythonDevice::PythonDevice(py::object self, DeviceInfo info, double rate)
     thread_ = std::thread([this] { run(); });
 }
 
-void PythonDevice::finish() {
+bool PythonDevice::finish() {
+    using namespace std::chrono;
+    constexpr milliseconds longest{2000}, between{1};
     link_.stop();
     ending_ = true;
-    if (std::this_thread::get_id() == asking_.load()) return;
+    if (is_own_thread()) return true;
     const std::lock_guard lock(finish_);
-    if (thread_.joinable()) thread_.join();
+    const auto until = steady_clock::now() + longest;
+    while (!left_behind_ && !ended_ && steady_clock::now() < until) {
+        std::this_thread::sleep_for(between);
+    }
+    if (ended_) {
+        if (thread_.joinable()) thread_.join();
+        return true;
+    }
+    if (left_behind_) return false;
+    left_behind_ = true;
+    set_problem("its read() or write() does not return");
+    const py::gil_scoped_acquire gil;
+    try {
+        write_zero();
+    } catch (const std::exception& error) {
+        set_problem(std::string("its read() or write() does not return, and write() raised ") +
+                    error.what());
+    }
+    return false;
 }
 
 PythonDevice::~PythonDevice() {
     finish();
+    if (thread_.joinable()) thread_.join();
     const py::gil_scoped_acquire gil;
     self_ = py::object();
+}
+
+void PythonDevice::write_zero() {
+    const Vec3 none = Vec3::Zero();
+    if (py::hasattr(self_, "write")) self_.attr("write")(none, none);
 }
 
 std::string PythonDevice::problem() const {
@@ -49,6 +75,7 @@ void PythonDevice::run() {
         std::this_thread::sleep_until(next);
     }
     end();
+    ended_ = true;
 }
 
 /// False once a function has raised: there is no force then.
@@ -72,8 +99,7 @@ bool PythonDevice::step() {
 void PythonDevice::end() {
     const py::gil_scoped_acquire gil;
     try {
-        const Vec3 none = Vec3::Zero();
-        if (py::hasattr(self_, "write")) self_.attr("write")(none, none);
+        write_zero();
         for (int i = 0; i < 2; ++i) link_.wrench(devices::monotonic_ns());  // the zero is out
         if (py::hasattr(self_, "close")) self_.attr("close")();
     } catch (const std::exception& error) {

@@ -18,12 +18,16 @@ class PythonDevice final : public Device {
     /// `self` has read() and may have write(force, torque) and close(). Starts the thread, which
     /// calls them `rate` [Hz] times a second. With the GIL. Throws std::invalid_argument.
     PythonDevice(py::object self, DeviceInfo info, double rate);
-    /// finish(). Without the GIL.
+    /// finish(), and waits for the thread however long it takes. Not on that thread, without the
+    /// GIL.
     ~PythonDevice() override;
 
     /// Ends the thread, after a last write of zero and close(). Any thread, any number of times,
-    /// without the GIL; from the device's own functions it only asks for the end.
-    void finish();
+    /// without the GIL; from the device's own functions it only asks for the end. False if they do
+    /// not return within two seconds: then this thread has written the zero, and the device's still
+    /// uses this object.
+    bool finish();
+    bool is_own_thread() const { return std::this_thread::get_id() == asking_.load(); }
 
     DeviceInfo info() const override { return info_; }
     /// What its functions raised.
@@ -39,6 +43,7 @@ class PythonDevice final : public Device {
     void run();
     bool step();
     void end();
+    void write_zero();
     void set_problem(const std::string& problem);
 
     py::object self_;  // used with the GIL
@@ -47,7 +52,8 @@ class PythonDevice final : public Device {
     devices::Link link_;
     mutable std::mutex mutex_;  // of problem_
     std::string problem_;
-    std::atomic<bool> ending_{false};
+    std::atomic<bool> ending_{false}, ended_{false};
+    bool left_behind_ = false;             // under finish_
     std::atomic<std::thread::id> asking_;  // the device's thread
     std::mutex finish_;
     std::thread thread_;  // last: it uses all of the above
