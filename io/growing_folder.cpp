@@ -299,6 +299,8 @@ void GrowingFolder::move_into_place(const MayReplace& may_replace) {
 
 /// False if what was there has gone meanwhile.
 bool GrowingFolder::exchange_with_out(const MayReplace& may_replace) {
+    struct stat looked_at {};
+    if (::lstat(out_.c_str(), &looked_at) != 0) return false;
     try {
         may_replace(out_);
     } catch (const OutputError&) {
@@ -309,7 +311,7 @@ bool GrowingFolder::exchange_with_out(const MayReplace& may_replace) {
         try {
             may_replace(result());  // it may have been replaced since it was looked at
         } catch (const OutputError& e) {
-            if (!exchange(result(), out_)) keep_replaced(e.what());
+            if (!exchange(result(), out_)) keep_replaced(result(), e.what());
             throw;
         }
         return true;
@@ -317,36 +319,41 @@ bool GrowingFolder::exchange_with_out(const MayReplace& may_replace) {
     if (errno == ENOENT) return false;
     const bool cannot = errno == EINVAL || errno == ENOSYS || errno == EOPNOTSUPP;
     if (!cannot) refuse(out_, reason(errno) + what_to_do);
-    return replace_in_steps(may_replace);
+    return replace_in_steps(may_replace, looked_at);
 }
 
-/// What must not be replaced lies in result() and cannot go back.
-void GrowingFolder::keep_replaced(const std::string& problem) {
-    const fs::path aside = free_name(out_, ".previous");
-    const bool is_moved = rename_new(result(), aside);
+/// What must not be replaced lies at `at` and cannot go back.
+void GrowingFolder::keep_replaced(const fs::path& at, const std::string& problem) {
+    const fs::path aside = at == result() ? free_name(out_, ".previous") : at;
+    const bool is_moved = at == aside || rename_new(at, aside);
     if (!is_moved) stays_ = true;
-    throw OutputError(problem + "; it is kept as " + (is_moved ? aside : result()).string() +
+    throw OutputError(problem + "; it is kept as " + (is_moved ? aside : at).string() +
                       ", and the new result is in its place");
 }
 
-/// Where names cannot be exchanged. False if another process was quicker.
-bool GrowingFolder::replace_in_steps(const MayReplace& may_replace) {
+/// Where names cannot be exchanged: nothing has the name OUT between two renames, so that nothing
+/// is looked at in between but which folder it is. False if another process was quicker.
+bool GrowingFolder::replace_in_steps(const MayReplace& may_replace, const struct stat& looked_at) {
     const fs::path aside = free_name(out_, ".previous");
     if (!rename_new(out_, aside)) {
         if (errno == ENOENT || errno == EEXIST) return false;
         refuse(out_, reason(errno) + what_to_do);
     }
-    try {
-        may_replace(aside);  // it may have been replaced since it was looked at
-    } catch (const std::exception& e) {
-        if (rename_new(aside, out_)) throw;
-        refuse(aside, std::string("must not be replaced and cannot go back: ") + e.what());
-    }
-    const bool done = rename_new(result(), out_);
-    const int problem = errno;
+    struct stat moved {};
+    const bool is_other = ::lstat(aside.c_str(), &moved) != 0 || !is_same(moved, looked_at);
+    if (is_other && rename_new(aside, out_)) return false;
+    const bool done = !is_other && rename_new(result(), out_);
+    const int problem = is_other ? EEXIST : errno;
     if (!done && problem != EEXIST && problem != ENOTEMPTY) {
         if (rename_new(aside, out_)) refuse(out_, reason(problem) + what_to_do);
         refuse(out_, reason(problem) + "; what was there before is in " + aside.string());
+    }
+    try {
+        may_replace(aside);  // something may have been put into it since it was looked at
+    } catch (const OutputError& e) {
+        const bool can_go_back = done && rename_new(out_, result());
+        if (!can_go_back || !rename_new(aside, out_)) keep_replaced(aside, e.what());
+        throw;
     }
     // It is replaced, by this process or another one: it goes with this folder.
     rename_new(aside, free_name(folder_ / "previous", ""));

@@ -1,5 +1,6 @@
 // Reads recordings: the head, then commands and ticks in the order in which they took effect.
 #include <deque>
+#include <fstream>
 #include <limits>
 
 #include "io/json_text.hpp"
@@ -8,6 +9,9 @@
 
 namespace palpate::io {
 namespace {
+
+/// That is read without the whole file [bytes].
+constexpr std::size_t longest_head = std::size_t{64} << 20;
 
 struct Head {
     int format = 0;
@@ -227,6 +231,22 @@ struct RecordingReader::Rows {
         return result;
     }
 };
+
+RecordingHead read_recording_head(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error)) return RecordingReader(path).head();
+    std::ifstream file(path);
+    std::string head, line;
+    while (file.peek() == '#' && std::getline(file, line) && head.size() < longest_head) {
+        head += std::string_view(line).substr(1);
+        head += '\n';
+    }
+    // What cannot be read, is no recording or too long is refused as the whole is.
+    if (file.bad() || head.empty() || head.size() >= longest_head) {
+        return RecordingReader(path).head();
+    }
+    return read_head(head, path.string()).head;
+}
 
 RecordingReader::RecordingReader(const std::filesystem::path& path)
     : RecordingReader(read_text(path), path.string()) {}

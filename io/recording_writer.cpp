@@ -144,7 +144,21 @@ void RecordingWriter::step() {
     }
 }
 
+void RecordingWriter::begin_with(std::vector<Command> commands) {
+    const std::scoped_lock lock(mutex_);
+    first_ = std::move(commands);
+}
+
 void RecordingWriter::drain() {
+    std::vector<Command> first;
+    {
+        const std::scoped_lock lock(mutex_);
+        first.swap(first_);
+    }
+    for (const Command& command : first) {
+        append(command);
+        if (buffer_.size() > most_buffered) flush();
+    }
     while (const auto event = queue_.pop()) {
         std::visit([this](const auto& one) { append(one); }, *event);
         if (buffer_.size() > most_buffered) flush();

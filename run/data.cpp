@@ -93,6 +93,13 @@ void Data::update(Field& field) const {
     field.use(editor_->state().samples);
 }
 
+void Data::check_recording() const {
+    if (!editor_ || editor_->knows_history()) return;
+    throw io::OutputError(
+        "more edits were made than a recording can begin with: save them, open what was saved, and "
+        "record that");
+}
+
 std::unique_ptr<Servo> Data::attach(Session session, const StartServo& start) {
     return player_ ? player_->attach(std::move(session), start)
                    : editor_->attach(std::move(session), start);

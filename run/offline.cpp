@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "palpate/density.hpp"
+#include "stream/while_telling.hpp"
 
 namespace palpate::run {
 namespace {
@@ -119,18 +120,20 @@ double reach_of(const Renderer& renderer, const Vec3& hip, const Quaternion& tur
 }  // namespace
 
 std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume& loaded,
-                                                             const io::Trajectory& trajectory) {
+                                                             const io::Trajectory& trajectory,
+                                                             std::function<void()> tell) {
     if (!loaded.streamed) return {};
     const auto loader = std::make_shared<stream::BrickLoader>(loaded.streamed->store, loaded.volume,
                                                               loaded.streamed->loader);
-    return [loader, &trajectory](Renderer& renderer, std::int64_t tick) {
+    return [loader, &trajectory, tell = std::move(tell)](Renderer& renderer, std::int64_t tick) {
         const auto at = static_cast<std::size_t>(tick);
         const Vec3& hip = trajectory.position[at];
         const Quaternion turned =
             trajectory.orientation.empty() ? Quaternion::Identity() : trajectory.orientation[at];
         const double reach = reach_of(renderer, hip, turned);
         if (is_resident(renderer.field, hip, reach)) return;
-        loader->wait_for(hip, reach);
+        stream::while_telling(
+            tell, [&](const std::stop_token& stop) { loader->wait_for(hip, reach, stop); });
         if (const auto version = loader->take()) {
             field_will_change(renderer.proxy, renderer.field);
             renderer.field.use(version->samples);

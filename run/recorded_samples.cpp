@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "stream/while_telling.hpp"
+
 namespace palpate::run {
 
 std::function<Volume(int)> frames_of(const LoadedVolume& loaded) {
@@ -16,12 +18,19 @@ std::function<Volume(int)> frames_of(const LoadedVolume& loaded) {
     };
 }
 
-GridReader grid_of(const LoadedVolume& loaded) {
+GridReader grid_of(const LoadedVolume& loaded, std::function<void()> tell) {
     if (!loaded.streamed) return {};
     auto loader = std::make_shared<stream::BrickLoader>(loaded.streamed->store, loaded.volume,
                                                         loaded.streamed->loader);
-    return {[loader](const Index3& brick, int level) { return loader->read(brick, level); },
-            [loader](const SampleBox& box, std::span<std::byte> out) { loader->read(box, out); }};
+    return {[loader, tell](const Index3& brick, int level) {
+                return stream::while_telling(tell, [&](const std::stop_token& stop) {
+                    return loader->read(brick, level, stop);
+                });
+            },
+            [loader, tell](const SampleBox& box, std::span<std::byte> out) {
+                stream::while_telling(
+                    tell, [&](const std::stop_token& stop) { loader->read(box, out, stop); });
+            }};
 }
 
 RecordedSamples::RecordedSamples(std::shared_ptr<const Samples> start,

@@ -99,6 +99,7 @@ Source recorded_source(const io::RecordingHead& head, const std::filesystem::pat
                              "the recording, so it can be plotted but not rendered again");
     }
     volume = instead.empty() ? volume_name(volume, recording) : instead;
+    if (!instead.empty()) names.erase("secrets");
     try {
         return source_from(names);
     } catch (const std::invalid_argument& e) {
@@ -160,12 +161,14 @@ std::optional<Difference> difference(const SessionTick& recorded, const SessionT
     return compare.found;
 }
 
-Replay::Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::string recording)
+Replay::Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::string recording,
+               std::function<void()> tell)
     : reader_(reader),
       recording_(std::move(recording)),
       session_(recorded_session(reader.head(), loaded, recording_)),
       start_(session_.renderer.settings),
-      samples_(session_.renderer.field.shared_samples(), frames_of(loaded), grid_of(loaded)) {}
+      samples_(session_.renderer.field.shared_samples(), frames_of(loaded),
+               grid_of(loaded, std::move(tell))) {}
 
 void Replay::carry_out(const Command& recorded) {
     try {

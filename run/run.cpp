@@ -55,20 +55,6 @@ std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setu
 constexpr std::chrono::milliseconds longest_stop{500};  // for a device that hangs
 constexpr double between_steps = 0.004;
 
-/// Puts what a run begins with into its recording. Waits while the queue is full; the servo does
-/// not use it yet.
-void tell(io::RecordingWriter& recording, Pace pace, const std::vector<Command>& commands) {
-    for (const Command& command : commands) {
-        while (recording.problem().empty() && !recording.queue().push(command)) {
-            if (pace == Pace::by_steps) {
-                recording.step();
-            } else {
-                std::this_thread::sleep_for(std::chrono::milliseconds(10));
-            }
-        }
-    }
-}
-
 }  // namespace
 
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
@@ -162,7 +148,7 @@ void Run::launch(Session session) {
                                  .real_time = setup_.real_time,
                                  .recorder = recording_ ? &recording_->queue() : nullptr};
     servo_ = data_->attach(std::move(session), [&](Session now, const auto& history) {
-        if (recording_) tell(*recording_, pace, history);
+        if (recording_) recording_->begin_with(history);
         auto servo = std::make_unique<Servo>(std::move(now), *device_, settings);
         if (pace == Pace::own_thread) servo->start();
         return servo;
@@ -297,6 +283,7 @@ void Run::use_field(Solid solid, Interpolation interpolation, std::optional<doub
 }
 
 void Run::record(const std::filesystem::path& path) {
+    data_->check_recording();
     Session session = session_now();
     auto recording = std::make_unique<io::RecordingWriter>(
         path, recording_head(session, device_->info(), data_->loaded().source, setup_.render),
@@ -308,16 +295,15 @@ void Run::record(const std::filesystem::path& path) {
     stop_servo();
     const std::int64_t lost = servo_->report().unrecorded;
     recording_.swap(recording);
-    launch(std::move(session));
+    launch(std::move(session));  // first the hand, then the file
     if (recording) recording->finish(lost);
 }
 
 std::int64_t Run::stop_recording() {
     if (!recording_) return 0;
-    if (running_) stop_servo();
+    if (servo_) servo_->stop_recording();
     const std::int64_t lost = servo_ ? servo_->report().unrecorded : 0;
     const auto recording = std::move(recording_);
-    if (running_) launch(session_stopped());  // first the hand, then the file
     recording->finish(lost);
     return recording->ticks();
 }

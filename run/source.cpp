@@ -130,6 +130,18 @@ stream::StoreOptions options_of(const StoreSource& from, int time) {
     return options;
 }
 
+std::shared_ptr<const stream::Store> opened_store(const StoreSource& from, int time,
+                                                  const io::Progress& progress) {
+    try {
+        return stream::open_store(from.address, options_of(from, time), progress);
+    } catch (const io::InputError& e) {
+        if (!from.lacks_secrets) throw;
+        throw io::InputError(std::string(e.what()) +
+                             "; this address was saved without its password and query: give the "
+                             "whole one");
+    }
+}
+
 LoadedVolume all_times_of(const StoreSource& from, const Source& source,
                           const io::Progress& progress) {
     if (source.frame) {
@@ -142,7 +154,7 @@ LoadedVolume all_times_of(const StoreSource& from, const Source& source,
                                     "nothing; --sequence-memory bounds the frames");
     }
     const auto open = [from](int time, const io::Progress& tell) {
-        return stream::open_store(from.address, options_of(from, time), tell);
+        return opened_store(from, time, tell);
     };
     const auto first = open(0, progress);
     const stream::StoreInfo& info = first->info();
@@ -167,13 +179,14 @@ LoadedVolume all_times_of(const StoreSource& from, const Source& source,
 }
 
 /// So that edits are not saved for another volume that takes its place meanwhile.
-void note_original(StreamedVolume& streamed) {
+void note_original(StreamedVolume& streamed, const std::function<void()>& tell) {
     std::error_code error;
     const auto whole = std::filesystem::absolute(streamed.opened.address, error);
     if (!error) streamed.opened.address = whole.string();
     try {
-        streamed.opened.content =
-            stream::content_below_edits(*streamed.store, streamed.loader.level);
+        streamed.opened.content = stream::while_telling(tell, [&](const std::stop_token& stop) {
+            return stream::content_below_edits(*streamed.store, streamed.loader.level, stop);
+        });
     } catch (const io::InputError&) {  // damaged somewhere: it can be touched elsewhere
     }
 }
@@ -186,18 +199,18 @@ LoadedVolume loaded_of(const StoreSource& from, const Source& source,
                                     ": is felt while it is read, so it cannot be smoothed, "
                                     "dequantized or sharpened");
     }
-    const stream::StoreOptions options = options_of(from, source.frame.value_or(0));
-    std::shared_ptr<const stream::Store> store =
-        stream::open_store(from.address, options, progress);
+    const int time = source.frame.value_or(0);
+    std::shared_ptr<const stream::Store> store = opened_store(from, time, progress);
     const stream::StoreInfo& info = store->info();
-    const auto tell = [&] { progress(0.1); };
-    LoadedVolume loaded = loaded_from(
-        stream::while_telling(progress ? tell : std::function<void()>(),
-                              [&](std::stop_token stop) {
-                                  return stream::overview_of(*store, stream::overview_samples,
-                                                             std::move(stop));
-                              }),
-        source);
+    std::function<void()> tell;
+    if (progress) tell = [&] { progress(0.1); };
+    LoadedVolume loaded =
+        loaded_from(stream::while_telling(tell,
+                                          [&](const std::stop_token& stop) {
+                                              return stream::overview_of(
+                                                  *store, stream::overview_samples, stop);
+                                          }),
+                    source);
     loaded.format = info.format;
     loaded.notes = info.notes;
     loaded.time_steps = info.times;
@@ -206,12 +219,16 @@ LoadedVolume loaded_of(const StoreSource& from, const Source& source,
         "it is read as it is felt; histogram and suggested levels are those of an overview of " +
         std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
         std::to_string(size[2]) + " samples");
+    if (from.lacks_secrets) {
+        loaded.notes.emplace_back("its address was saved without its password and query");
+    }
     if (!info.range) {
         loaded.notes.emplace_back("its range is estimated from that overview");
     }
-    loaded.streamed = StreamedVolume{std::move(store), from.loader, {from.address, options}};
+    loaded.streamed =
+        StreamedVolume{std::move(store), from.loader, {from.address, options_of(from, time)}};
     start_samples(loaded);  // says now what is wrong with the level
-    if (!is_web_address(from.address)) note_original(*loaded.streamed);
+    if (!is_web_address(from.address)) note_original(*loaded.streamed, tell);
     return loaded;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "io/number.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/raw_options.hpp"
 #include "palpate/run/source.hpp"
 
@@ -57,6 +58,10 @@ void add_names(Names& names, const StoreSource& store) {
     if (store.loader.whole_process) names["memory"] = std::to_string(store.loader.memory);
     if (store.loader.coarse_first) names["coarse-first"] = "yes";
     if (store.all_times) names["all-times"] = "yes";
+    if (store.options.forbidden_is_missing) names["forbidden-is-missing"] = "yes";
+    const std::string kept = io::address_to_keep(store.address);
+    if (store.lacks_secrets || kept != store.address) names["secrets"] = "left out";
+    names["volume"] = kept;
 }
 
 /// What only files have.
@@ -109,6 +114,9 @@ std::optional<StoreSource> store_of(const FileSource& file, const Names& names) 
     }
     StoreSource store{file.path, options, {}};
     store.all_times = value_of(names, "all-times") == "yes";
+    store.options.forbidden_is_missing = value_of(names, "forbidden-is-missing") == "yes";
+    store.lacks_secrets =
+        names.contains("secrets") && io::address_to_keep(store.address) == store.address;
     store.loader.level = count_of(names, "level");
     if (const auto memory = io::number_from<std::uint64_t>(value_of(names, "memory"))) {
         store.loader.memory = *memory;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <stdexcept>
 
 #include "palpate/run/streamer.hpp"
@@ -35,17 +36,28 @@ std::uint64_t bytes_of_edits(const Samples& samples) {
     return bricks ? bricks->size() * Bricks::per_brick * size_of(samples.type()) : 0;
 }
 
+/// One more to the bytes that edits take of a volume that is read as it is felt.
+void count_brick(std::uint64_t& bytes, const Samples& samples, std::uint64_t memory) {
+    bytes += Bricks::per_brick * size_of(samples.type());
+    if (bytes > memory / edits_part) {
+        throw std::invalid_argument(
+            "the edits take more than " + std::to_string(memory / edits_part / 1000000) +
+            " MB, a quarter of the memory: allow more, or save them and open what was saved");
+    }
+}
+
 }  // namespace
 
-VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace)
-    : VolumeEditor(std::move(samples), nullptr, 0, pace) {}
+VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace,
+                           std::size_t most_versions)
+    : VolumeEditor(std::move(samples), nullptr, 0, pace, most_versions) {}
 
 VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Streamer& streamer,
                            std::uint64_t memory, Pace pace)
-    : VolumeEditor(std::move(samples), &streamer, memory, pace) {}
+    : VolumeEditor(std::move(samples), &streamer, memory, pace, usual_versions) {}
 
 VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* streamer,
-                           std::uint64_t memory, Pace pace)
+                           std::uint64_t memory, Pace pace, std::size_t most_versions)
     : streamer_(streamer),
       memory_(memory),
       editor_(streamer ? Editor(samples, memory / history_part,
@@ -53,7 +65,9 @@ VolumeEditor::VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* str
                                     read(box, out);
                                 })
                        : Editor(samples)),
-      versions_{{samples, {}}} {
+      versions_{{samples, {}}},
+      most_versions_(most_versions),
+      forget_at_(std::min(most_versions, first_forgetting)) {
     publish();
     if (pace == Pace::by_steps) return;
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -163,13 +177,33 @@ void VolumeEditor::edit(const Edit& asked, EditStep step) {
     } catch (const NotFetched&) {
         throw Lacking{asked};
     }
-    fetched_.clear();
     if (changed.empty()) return;
-    const std::uint64_t number = streamer_ ? streamer_->next_version() : versions_.size();
-    command::Samples made{editor_.samples(), number,
+    last_version_ = streamer_ ? streamer_->next_version() : last_version_ + 1;
+    command::Samples made{editor_.samples(), last_version_,
                           std::make_shared<const Recipe>(EditOf{from, asked})};
     versions_.push_back({editor_.samples(), {nullptr, made.version, made.recipe}});
+    if (versions_.size() > forget_at_) forget_versions();
     send(made);
+}
+
+/// Forgets versions that neither undo() nor redo() leads to and that no other one was made of; of
+/// too many all that cannot be felt any more. Twice as many may come before it is done again.
+void VolumeEditor::forget_versions() {
+    std::set<std::uint64_t> needed{0};
+    for (std::size_t i = versions_.size(); i-- > 1;) {
+        const auto& [samples, recipe] = versions_[i];
+        if (!samples.expired()) needed.insert(recipe.version);
+        if (needed.contains(recipe.version)) {
+            needed.insert(std::get<EditOf>(*recipe.recipe).version);
+        }
+    }
+    const bool too_many = needed.size() > most_versions_ / 2;
+    knows_history_ = knows_history_ && !too_many;
+    std::erase_if(versions_, [&](const Version& version) {
+        const bool is_known = !too_many || !version.samples.expired();
+        return version.recipe.version > 0 && !(is_known && needed.contains(version.recipe.version));
+    });
+    forget_at_ = 2 * versions_.size() + std::min(most_versions_, first_forgetting);
 }
 
 /// Makes the state visible to threads that do not wait for an edit.
@@ -205,20 +239,22 @@ void VolumeEditor::send(const command::Samples& command) {
 }
 
 /// Does work(), which makes edits, again and again until it lacks no samples. They are read without
-/// the lock: a network must hold nobody up who holds or needs it.
+/// the lock: a network must hold nobody up who holds or needs it. They are of this call alone, so
+/// that nobody else's edit can take them away.
 template <class Work>
 void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, Work&& work) {
+    Fetched fetched;
     while (true) {
+        fetched_ = &fetched;
         try {
             return work();
         } catch (const Lacking& lacking) {
             const std::shared_ptr<const Samples> samples = editor_.samples();
             lock.unlock();
             try {
-                fetch(samples, lacking.edit);
+                fetch(samples, lacking.edit, fetched);
             } catch (...) {
                 lock.lock();
-                fetched_.clear();
                 throw;
             }
             lock.lock();
@@ -227,40 +263,26 @@ void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, Work&& work)
 }
 
 /// Without the lock: all that an edit of these samples reads.
-void VolumeEditor::fetch(const std::shared_ptr<const Samples>& samples, const Edit& asked) {
+void VolumeEditor::fetch(const std::shared_ptr<const Samples>& samples, const Edit& asked,
+                         Fetched& fetched) const {
+    std::uint64_t bytes = bytes_of_edits(*samples);
     (void)edited(samples, asked, [&](const SampleBox& box, std::span<std::byte> out) {
-        const std::array<int, 3> at{box.low[0], box.low[1], box.low[2]};
-        {
-            const std::scoped_lock lock(mutex_);
-            const auto found = fetched_.find(at);
-            if (found != fetched_.end() && found->second.size() == out.size()) {
-                std::ranges::copy(found->second, out.begin());
-                return;
-            }
-            count_edited();
+        count_brick(bytes, *samples, memory_);
+        std::vector<std::byte>& read = fetched[{box.low[0], box.low[1], box.low[2]}];
+        if (read.size() != out.size()) {
+            streamer_->read(box, out, reading_.get_token());
+            read.assign(out.begin(), out.end());
         }
-        streamer_->read(box, out, reading_.get_token());
-        const std::scoped_lock lock(mutex_);
-        fetched_[at].assign(out.begin(), out.end());
+        std::ranges::copy(read, out.begin());
     });
 }
 
 /// Samples of a brick that is edited for the first time.
 void VolumeEditor::read(const SampleBox& box, std::span<std::byte> out) {
-    const auto found = fetched_.find({box.low[0], box.low[1], box.low[2]});
-    if (found == fetched_.end() || found->second.size() != out.size()) throw NotFetched{};
-    count_edited();
+    const auto found = fetched_->find({box.low[0], box.low[1], box.low[2]});
+    if (found == fetched_->end() || found->second.size() != out.size()) throw NotFetched{};
+    count_brick(edited_bytes_, *editor_.samples(), memory_);
     std::ranges::copy(found->second, out.begin());
-}
-
-/// Needs the lock.
-void VolumeEditor::count_edited() {
-    edited_bytes_ += Bricks::per_brick * size_of(editor_.samples()->type());
-    if (edited_bytes_ > memory_ / edits_part) {
-        throw std::invalid_argument(
-            "the edits take more than " + std::to_string(memory_ / edits_part / 1000000) +
-            " MB, a quarter of the memory: allow more, or save them and open what was saved");
-    }
 }
 
 void VolumeEditor::run(const std::stop_token& stop) {
@@ -346,6 +368,11 @@ void VolumeEditor::set_saved(const std::shared_ptr<const Samples>& samples) {
     const std::scoped_lock lock(mutex_);
     if (editor_.samples() == samples) editor_.set_saved();
     publish();
+}
+
+bool VolumeEditor::knows_history() const {
+    const std::scoped_lock lock(mutex_);
+    return knows_history_;
 }
 
 std::vector<Command> VolumeEditor::history() const {

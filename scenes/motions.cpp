@@ -340,10 +340,20 @@ class Course {
     Journey in_, on_;
 };
 
+using Progress = std::function<void(double)>;
+
+/// One of `count` samples is done.
+void tell(const Progress& progress, std::size_t done, std::size_t count) {
+    constexpr std::size_t between = 4096;
+    if (progress && done % between == 0) {
+        progress(static_cast<double>(done) / static_cast<double>(count));
+    }
+}
+
 /// The trajectory, averaged over 31 ms. This cannot make it faster, and it bounds the change of the
 /// velocity in a tick for any corner of the surface (2/31 of the speed at 1 kHz).
 std::vector<HandSample> travelled(const Plan& plan, const MotionSettings& settings,
-                                  std::vector<HandSample> samples) {
+                                  std::vector<HandSample> samples, const Progress& progress) {
     constexpr double half_window_s = 0.015;
     const auto half = static_cast<std::size_t>(half_window_s * settings.rate_hz);
     const Course course(plan, settings.speed_mm_s);
@@ -351,19 +361,21 @@ std::vector<HandSample> travelled(const Plan& plan, const MotionSettings& settin
     for (std::size_t i = 0; i < sharp.size(); ++i) {
         const double tick = static_cast<double>(i) - static_cast<double>(half);
         sharp[i] = course.at(tick / settings.rate_hz);
+        tell(progress, i, 2 * sharp.size());
     }
     for (std::size_t i = 0; i < samples.size(); ++i) {
         Vec3 sum = Vec3::Zero();
         for (std::size_t j = i; j <= i + 2 * half; ++j) sum += sharp[j];
         samples[i].position = sum / static_cast<double>(2 * half + 1);
+        tell(progress, samples.size() + i, 2 * samples.size());
     }
     return samples;
 }
 
 /// Steps of every size from far below a voxel to the whole grid, rests, and jumps to any place in
 /// the grid with two voxels around it. No hand does this, but every update must cope with it.
-std::vector<HandSample> jumping(const Field& field, Random random,
-                                std::vector<HandSample> samples) {
+std::vector<HandSample> jumping(const Field& field, Random random, std::vector<HandSample> samples,
+                                const Progress& progress) {
     const Geometry& geometry = field.geometry();
     const Vec3 low = Vec3::Constant(-2), high = geometry.size.cast<double>() + Vec3::Ones();
     const auto anywhere = [&] {
@@ -372,7 +384,8 @@ std::vector<HandSample> jumping(const Field& field, Random random,
         return index;
     };
     Vec3 index = anywhere();
-    for (HandSample& sample : samples) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        tell(progress, i, samples.size());
         const std::uint64_t what = random.bits() % 64;
         if (what == 0) {
             index = anywhere();
@@ -380,7 +393,7 @@ std::vector<HandSample> jumping(const Field& field, Random random,
             const double size = std::ldexp((high - low).norm(), -static_cast<int>(what % 32));
             index = (index + size * unit_vector(random)).cwiseMax(low).cwiseMin(high);
         }
-        sample.position = physical_from_index(geometry, index);
+        samples[i].position = physical_from_index(geometry, index);
     }
     return samples;
 }
@@ -427,7 +440,8 @@ std::vector<std::string> motion_names() {
 }
 
 std::vector<HandSample> make_motion(std::string_view name, const Field& field, double isovalue,
-                                    const MotionSettings& settings) {
+                                    const MotionSettings& settings,
+                                    const std::function<void(double)>& progress) {
     std::string names;
     for (const Motion& motion : motions) {
         if (name != motion.name) {
@@ -436,10 +450,12 @@ std::vector<HandSample> make_motion(std::string_view name, const Field& field, d
         }
         std::vector<HandSample> samples = clock(settings);
         Random random(settings.seed);
-        if (motion.plan == nullptr) return jumping(field, random, std::move(samples));
+        if (motion.plan == nullptr) {
+            return jumping(field, random, std::move(samples), progress);
+        }
         const Contact contact = any_contact(field, isovalue, random);
         Hand hand{field, isovalue, settings, random, contact};
-        return travelled(motion.plan(hand), settings, std::move(samples));
+        return travelled(motion.plan(hand), settings, std::move(samples), progress);
     }
     throw std::invalid_argument("there is no motion '" + std::string(name) + "': use one of " +
                                 names);

@@ -118,6 +118,7 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
       now_(settings.clock ? settings.clock : &monotonic_ns),
       cpu_now_(settings.clock ? settings.clock : &thread_cpu_ns),
       field_(kind_of(session_.renderer.field)),
+      recorder_(settings.recorder),
       held_{session_.renderer.field.shared_samples(), session_.renderer.settings.layers,
             session_.renderer.settings.tool} {
     // What no device can render is refused, not lowered.
@@ -174,6 +175,11 @@ void Servo::stop() noexcept {
         std::this_thread::sleep_for(poll);
     }
     stops_.fetch_sub(1, std::memory_order_release);  // the last that touches the servo
+}
+
+void Servo::stop_recording() noexcept {
+    recorder_.store(nullptr);
+    while (in_recorder_.load()) std::this_thread::sleep_for(poll);
 }
 
 bool Servo::send(const Command& command) {
@@ -361,7 +367,11 @@ void Servo::keep_device_limits(const DeviceLimits& limits) noexcept {
 }
 
 void Servo::record(const SessionEvent& event) noexcept {
-    if (settings_.recorder && !settings_.recorder->push(event)) add(unrecorded_, 1);
+    // In one order for all threads: stop_recording() sees the mark, or this the null.
+    in_recorder_.store(true);
+    Queue<SessionEvent>* const recorder = recorder_.load();
+    if (recorder && !recorder->push(event)) add(unrecorded_, 1);
+    in_recorder_.store(false);
 }
 
 /// Of the tick before. Uses nothing outside the servo: nobody waits for a thread that hangs, so it

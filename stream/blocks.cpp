@@ -144,6 +144,10 @@ Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
         return bytes;
     };
     if (others.valid()) {
+        constexpr std::chrono::milliseconds between{20};
+        while (others.wait_for(between) != std::future_status::ready) {
+            if (stop.stop_requested()) throw Cancelled{};  // the other one may go on for long
+        }
         if (Bytes bytes = others.get()) return bytes;
         // It failed; but another caller may have cancelled it, or it began before its cause was
         // mended.

@@ -52,14 +52,15 @@ Effort effort_for(const StoreInfo& info) {
     return {std::uint64_t{64} << 20, 64};
 }
 
-void take_box(ContentHash& hash, const Store& store, int level, const SampleBox& box) {
+void take_box(ContentHash& hash, const Store& store, int level, const SampleBox& box,
+              const std::stop_token& stop) {
     Bytes samples(bytes_of(box, store.info().type));
-    store.read(level, box, samples, {});
+    store.read(level, box, samples, stop);
     hash.take(samples);
 }
 
 /// All samples, some planes at a time.
-void take_whole(ContentHash& hash, const Store& store, int level) {
+void take_whole(ContentHash& hash, const Store& store, int level, const std::stop_token& stop) {
     const Level& grid = store.info().levels[static_cast<std::size_t>(level)];
     const Index3 last = grid.geometry.size - Index3::Ones();
     const std::uint64_t plane = bytes_of({{0, 0, 0}, {last[0], last[1], 0}}, store.info().type);
@@ -68,12 +69,13 @@ void take_whole(ContentHash& hash, const Store& store, int level) {
     const int planes = std::clamp(grid.chunk[2], 1, most);
     for (int z = 0; z <= last[2]; z += planes) {
         take_box(hash, store, level,
-                 {{0, 0, z}, {last[0], last[1], std::min(z + planes - 1, last[2])}});
+                 {{0, 0, z}, {last[0], last[1], std::min(z + planes - 1, last[2])}}, stop);
     }
 }
 
 /// One of each of `count` runs of pieces, at a place in the run that looks like chance.
-void take_pieces(ContentHash& hash, const Store& store, int level, std::uint64_t count) {
+void take_pieces(ContentHash& hash, const Store& store, int level, std::uint64_t count,
+                 const std::stop_token& stop) {
     constexpr int longest = 64;  // [samples]
     const Level& grid = store.info().levels[static_cast<std::size_t>(level)];
     const Index3& size = grid.geometry.size;
@@ -87,7 +89,7 @@ void take_pieces(ContentHash& hash, const Store& store, int level, std::uint64_t
         const Counts place(at % along[0], at / along[0] % along[1], at / along[0] / along[1]);
         const Index3 low = place.cast<int>().cwiseProduct(piece);
         take_box(hash, store, level,
-                 {low, (low + piece - Index3::Ones()).cwiseMin(size - Index3::Ones())});
+                 {low, (low + piece - Index3::Ones()).cwiseMin(size - Index3::Ones())}, stop);
     }
 }
 
@@ -141,7 +143,7 @@ std::uint64_t ContentHash::value() const {
     return hash ^ hash >> 32;
 }
 
-std::string content_of(const Store& store, int level) {
+std::string content_of(const Store& store, int level, const std::stop_token& stop) {
     const StoreInfo& info = store.info();
     const Effort effort = effort_for(info);
     ContentHash hash;
@@ -158,9 +160,9 @@ std::string content_of(const Store& store, int level) {
         const std::uint64_t bytes =
             bytes_of({Index3::Zero(), grid.size - Index3::Ones()}, info.type);
         if (bytes <= effort.whole) {
-            take_whole(hash, store, l);
+            take_whole(hash, store, l, stop);
         } else {
-            take_pieces(hash, store, l, l == level ? effort.pieces : effort.pieces / fewer);
+            take_pieces(hash, store, l, l == level ? effort.pieces : effort.pieces / fewer, stop);
         }
     }
     std::array<char, 17> text{};

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <string>
 
 #include "palpate/stream/store.hpp"
@@ -30,8 +31,8 @@ class ContentHash {
 /// each level all, if they are at most 64 MiB (1 MiB of a store behind HTTP). Else those of 64 (8)
 /// pieces that are spread evenly over the grid, at most 64 samples long along each axis; of coarser
 /// levels an eighth as many. All samples of a volume in memory. Hexadecimal. Throws what the store
-/// throws.
-std::string content_of(const Store& store, int level);
+/// throws, and Cancelled as soon as `stop` is requested.
+std::string content_of(const Store& store, int level, const std::stop_token& stop = {});
 
 /// Names, sizes and times of change of a file, or of all files of a folder and below, as one
 /// number: which files they are, without reading them. 0 if there is no such file.

@@ -13,6 +13,7 @@
 
 #include "io/growing_folder.hpp"
 #include "io/path_json.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/stream/growing_image.hpp"
 #include "stream/content.hpp"
@@ -77,7 +78,7 @@ void in_parallel(std::int64_t count, int threads, Work&& work, Tell&& tell) {
 /// filters).
 nlohmann::json job_of(const Store& from, int level, const ConvertOptions& options) {
     nlohmann::json job = {{"version", 1},  // of what is computed and how it is written
-                          {"source", io::json_of_path(from.info().address)},
+                          {"source", io::json_of_path(io::address_to_keep(from.info().address))},
                           {"content", content_of(from, level)},
                           {"level", level},
                           {"zarr", options.zarr_version},

@@ -6,6 +6,7 @@
 #include "io/json_text.hpp"
 #include "io/own_names.hpp"
 #include "io/path_json.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/box_bytes.hpp"
 #include "stream/content.hpp"
@@ -43,12 +44,12 @@ fs::path placed(const fs::path& path) {
 
 Json json_of(const EditsNote& note, const fs::path& out) {
     const StoreOptions& options = note.of.options;
-    Json json = {{"of", io::json_of_path(note.of.address)},
-                 {"content", note.content},
-                 {"level", note.level},
-                 {"channel", options.channel},
-                 {"time", options.time},
-                 {"bounds", {note.bounds.minimum, note.bounds.maximum}}};
+    const std::string kept = io::address_to_keep(note.of.address);
+    Json json = {
+        {"of", io::json_of_path(kept)}, {"content", note.content},
+        {"level", note.level},          {"channel", options.channel},
+        {"time", options.time},         {"bounds", {note.bounds.minimum, note.bounds.maximum}}};
+    if (note.lacks_secrets || kept != note.of.address) json["secrets"] = "left out";
     if (!is_remote(note.of.address)) {
         json["of"] = io::json_of_path(fs::absolute(note.of.address));
         const fs::path beside =
@@ -78,6 +79,8 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
     EditsNote note;
     note.of = {io::path_from_json(json.at("of")).string(), options};
     note.content = json.value("content", std::string());
+    note.lacks_secrets = json.contains("secrets") && is_remote(note.of.address) &&
+                         io::address_to_keep(note.of.address) == note.of.address;
     const fs::path relative = io::path_from_json(json.value("beside", Json("")));
     const fs::path beside = placed(folder).parent_path() / relative;
     std::error_code error;
@@ -145,10 +148,10 @@ void check_chunks(const EditsNote& note, const StoreInfo& original) {
 }
 
 /// Another volume of the same size may have taken the original's place.
-void check_content(const Store& original, const EditsNote& note) {
+void check_content(const std::stop_token& stop, const Store& original, const EditsNote& note) {
     const auto levels = static_cast<int>(original.info().levels.size());
     if (note.content.empty() || note.level < 0 || note.level >= levels) return;
-    if (content_of(original, note.level) == note.content) return;
+    if (content_of(original, note.level, stop) == note.content) return;
     throw std::invalid_argument("holds other data than when they were saved");
 }
 
@@ -178,6 +181,10 @@ EditedStore::EditedStore(std::shared_ptr<const Store> original, std::shared_ptr<
     }
     if (!fits) throw std::invalid_argument("has another size or type now");
     info_.notes.push_back("it is " + info_.address + " with edits");
+    if (note_.lacks_secrets) {
+        info_.notes.emplace_back(
+            "the address of the original was saved without its password and query");
+    }
     if (note_.content.empty()) {
         info_.notes.push_back(
             "the edits are of an earlier version, which did not note what the original held");
@@ -218,14 +225,28 @@ bool holds_edits(const fs::path& folder) {
 
 namespace {
 
-std::shared_ptr<const Store> open_with_original(const std::string& folder, EditsNote note) {
+std::shared_ptr<const Store> open_original(const std::stop_token& stop, const std::string& folder,
+                                           const EditsNote& note) {
+    try {
+        return open_until(stop, note.of.address, note.of.options);
+    } catch (const io::InputError& e) {
+        if (!note.lacks_secrets) throw;
+        throw io::InputError(std::string(e.what()) +
+                             "; this address was saved without its password and query: write the "
+                             "whole one into " +
+                             (fs::path(folder) / io::edits_note).string());
+    }
+}
+
+std::shared_ptr<const Store> open_with_original(const std::stop_token& stop,
+                                                const std::string& folder, EditsNote note) {
     if (!is_remote(note.of.address) && holds_edits(note.of.address)) {
         throw io::InputError(folder + ": is of a volume that is of edits itself: it is damaged");
     }
-    auto original = open_store(note.of.address, note.of.options);
+    auto original = open_original(stop, folder, note);
     auto chunks = open_zarr(folder_objects(folder), folder, {});
     try {
-        check_content(*original, note);
+        check_content(stop, *original, note);
         if (!chunks) throw std::invalid_argument("is there, but the edited chunks are not");
         return std::make_shared<EditedStore>(std::move(original), std::move(chunks),
                                              std::move(note));
@@ -237,19 +258,20 @@ std::shared_ptr<const Store> open_with_original(const std::string& folder, Edits
 
 }  // namespace
 
-std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOptions& options) {
+std::shared_ptr<const Store> open_edits(const std::stop_token& stop, const std::string& folder,
+                                        const StoreOptions& options) {
     EditsNote note = read_note(folder, options);
-    if (note.beside.empty()) return open_with_original(folder, std::move(note));
+    if (note.beside.empty()) return open_with_original(stop, folder, std::move(note));
     EditsNote moved = note;
     moved.of.address = note.beside;
     try {
-        return open_with_original(folder, std::move(moved));
+        return open_with_original(stop, folder, std::move(moved));
     } catch (const io::InputError&) {
         // Another volume may lie there while the right one is where it was.
         std::error_code error;
         if (note.of.address == note.beside || !fs::exists(note.of.address, error)) throw;
     }
-    return open_with_original(folder, std::move(note));
+    return open_with_original(stop, folder, std::move(note));
 }
 
 void write_note(const fs::path& folder, const fs::path& out, const EditsNote& note) {

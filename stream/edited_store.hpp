@@ -21,6 +21,7 @@ struct EditsNote {
     std::vector<ChunkSet> chunks;  ///< for that level and the coarser ones
     std::string content = {};      ///< of the original from that level on: content_of()
     std::string beside = {};       ///< where the original is if it was moved with the edits
+    bool lacks_secrets = false;    ///< its address was saved without password and query
 };
 
 /// The samples of a chunk that lie in the grid.
@@ -63,8 +64,9 @@ class EditedStore : public Store {
 
 /// True for a folder that save_edits() wrote.
 bool holds_edits(const std::filesystem::path& folder);
-/// Opens one with its original. Throws io::InputError.
-std::shared_ptr<const Store> open_edits(const std::string& folder, const StoreOptions& options);
+/// Opens one with its original. Throws io::InputError, and Cancelled as open_until().
+std::shared_ptr<const Store> open_edits(const std::stop_token& stop, const std::string& folder,
+                                        const StoreOptions& options);
 /// Of a folder that is being made and will be `out`. Throws io::OutputError.
 void write_note(const std::filesystem::path& folder, const std::filesystem::path& out,
                 const EditsNote& note);

@@ -27,10 +27,12 @@ struct Job {
     int attempts = 0;
     Clock::time_point not_before{};
     std::uint64_t page_bytes = 0;  // of a page that explains an error
-    bool too_long = false, no_memory = false, page_was_cut = false;
-    bool cancelled = false;  // under the mutex, as `done`
+    bool too_long = false, page_was_cut = false;
+    bool cancelled = false;  // under the mutex, as what follows
     bool done = false;
+    bool no_memory = false;  // words take memory, too: its caller finds them
 };
+constexpr const char* no_memory_words = "there is too little memory for its bytes";
 
 std::uint64_t most_of(const HttpRequest& request) {
     return request.range ? std::min(request.range->length, request.most) : request.most;
@@ -135,7 +137,7 @@ std::string words_of(const Job& job, CURLcode code, long status) {
     if (job.too_long && job.request.range && status == 200) {
         return "the server gives whole files only, no parts of them; copy the store from there";
     }
-    if (job.no_memory) return "there is too little memory for its bytes";
+    if (job.no_memory) return no_memory_words;
     if (job.too_long) return "the server gives more bytes than the metadata allow";
     if (code != CURLE_OK) return curl_easy_strerror(code);
     if (status >= 400) return "the server answers with status " + std::to_string(status);
@@ -150,6 +152,9 @@ class HttpClient::Worker {
         static const CURLcode ready = curl_global_init(CURL_GLOBAL_DEFAULT);
         multi_ = curl_multi_init();
         if (ready != CURLE_OK || multi_ == nullptr) throw std::bad_alloc();
+        // What takes no memory cannot lose a request.
+        running_.reserve(static_cast<std::size_t>(limits.requests));
+        idle_.reserve(static_cast<std::size_t>(limits.requests));
         curl_multi_setopt(multi_, CURLMOPT_MAX_HOST_CONNECTIONS,
                           static_cast<long>(limits.requests));
         curl_multi_setopt(multi_, CURLMOPT_PIPELINING, static_cast<long>(CURLPIPE_MULTIPLEX));
@@ -187,7 +192,10 @@ class HttpClient::Worker {
             throw Cancelled{};
         }
         std::vector<HttpAnswer> answers;
-        for (const auto& job : jobs) answers.push_back(std::move(job->answer));
+        for (const auto& job : jobs) {
+            if (job->no_memory && job->answer.error.empty()) job->answer.error = no_memory_words;
+            answers.push_back(std::move(job->answer));
+        }
         return answers;
     }
 
@@ -228,39 +236,53 @@ class HttpClient::Worker {
 
     /// The first ones that may go, as far as there is room.
     void start_some() {
-        const auto now = Clock::now();
-        std::vector<std::shared_ptr<Job>> starting;
-        {
-            const std::lock_guard lock(mutex_);
-            const auto room = static_cast<std::size_t>(limits_.requests);
-            for (auto job = waiting_.begin();
-                 job != waiting_.end() && running_.size() + starting.size() < room;) {
-                if ((*job)->not_before > now) {
-                    ++job;
-                    continue;
-                }
-                starting.push_back(*job);
-                job = waiting_.erase(job);
-            }
+        while (running_.size() < static_cast<std::size_t>(limits_.requests)) {
+            const std::shared_ptr<Job> job = next_to_start();
+            if (!job) return;
+            or_no_memory(job, [&] { start(job); });
         }
-        for (const auto& job : starting) start(job);
+    }
+
+    std::shared_ptr<Job> next_to_start() {
+        const auto now = Clock::now();
+        const std::lock_guard lock(mutex_);
+        const auto found =
+            std::ranges::find_if(waiting_, [&](const auto& job) { return job->not_before <= now; });
+        if (found == waiting_.end()) return nullptr;
+        std::shared_ptr<Job> job = std::move(*found);
+        waiting_.erase(found);
+        return job;
     }
 
     void start(const std::shared_ptr<Job>& job) {
         if (idle_.empty()) {
             job->easy = curl_easy_init();
-            if (job->easy == nullptr) return give(job, "no memory for a request");
+            if (job->easy == nullptr) throw std::bad_alloc();
         } else {
             job->easy = idle_.back();
             idle_.pop_back();
         }
+        running_.push_back(job);
         ++job->attempts;
         job->answer = {};
         job->page_bytes = 0;
         job->too_long = job->no_memory = job->page_was_cut = false;
         set_up(*job);
-        running_.push_back(job);
-        curl_multi_add_handle(multi_, job->easy);
+        if (curl_multi_add_handle(multi_, job->easy) != CURLM_OK) throw std::bad_alloc();
+    }
+
+    /// Does a part of a request. Without memory for that its caller is told so, instead of waiting
+    /// for good.
+    template <class Work>
+    void or_no_memory(const std::shared_ptr<Job>& job, Work&& work) {
+        try {
+            work();
+        } catch (const std::bad_alloc&) {
+            if (job->easy != nullptr) release(job);
+            job->answer.body = {};
+            job->no_memory = true;
+            give(job, {});
+        }
     }
 
     void set_up(Job& job) const {
@@ -304,6 +326,11 @@ class HttpClient::Worker {
         const auto found =
             std::ranges::find_if(running_, [&](const auto& job) { return job->easy == easy; });
         const std::shared_ptr<Job> job = *found;
+        or_no_memory(job, [&] { finish(job, code); });
+    }
+
+    void finish(const std::shared_ptr<Job>& job, CURLcode code) {
+        CURL* const easy = job->easy;
         const long status = status_of(easy);
         curl_off_t wait_s = 0;
         curl_easy_getinfo(easy, CURLINFO_RETRY_AFTER, &wait_s);
@@ -352,10 +379,10 @@ class HttpClient::Worker {
         std::erase(running_, job);
     }
 
-    void give(const std::shared_ptr<Job>& job, const std::string& error) {
+    void give(const std::shared_ptr<Job>& job, std::string error) {
         {
             const std::lock_guard lock(mutex_);
-            job->answer.error = error;
+            job->answer.error = std::move(error);
             job->done = true;
         }
         finished_.notify_all();

@@ -1,5 +1,6 @@
 // Objects behind http://, https:// and s3:// addresses.
 #include <array>
+#include <atomic>
 #include <cctype>
 #include <map>
 #include <mutex>
@@ -63,7 +64,8 @@ class HttpObjects : public Objects {
 
     /// As the answer to a request for the first byte says.
     std::optional<std::uint64_t> size_of(const std::string& key) const override {
-        HttpAnswer answer = first_byte_of(url_of(key), stop_);
+        const HttpRequest first = first_byte_of(url_of(key));
+        HttpAnswer answer = std::move(client_.get({&first, 1}, stop_).front());
         const auto size = answer.whole_size;
         return body_of({.key = key}, std::move(answer)) ? size : std::nullopt;
     }
@@ -89,13 +91,13 @@ class HttpObjects : public Objects {
             requests.push_back({url_of(one.key), one.range, one.most});
         }
         if (!stop.stop_possible()) stop = stop_;
+        if (knows_no_suffixes_) place_suffixes(requests, stop);
         std::vector<HttpAnswer> answers = client_.get(requests, stop);
+        get_suffixes_otherwise(requests, answers, stop);
         std::vector<std::optional<Bytes>> all;
         for (std::size_t i = 0; i < answers.size(); ++i) {
-            HttpAnswer& answer = answers[i];
-            if (lacks_suffixes(requests[i], answer)) answer = end_of(requests[i], answer, stop);
-            const std::string version = std::move(answer.version);
-            all.push_back(body_of(wanted[i], std::move(answer)));
+            const std::string version = std::move(answers[i].version);
+            all.push_back(body_of(wanted[i], std::move(answers[i])));
             if (!wanted[i].lasting && all.back()) remember(wanted[i].key, version, *all.back());
         }
         return all;
@@ -104,27 +106,50 @@ class HttpObjects : public Objects {
   private:
     std::string url_of(const std::string& key) const { return base_ + "/" + escaped(key) + query_; }
 
-    HttpAnswer first_byte_of(const std::string& url, const std::stop_token& stop) const {
-        const HttpRequest first{url, ByteRange{0, 1}};
-        return std::move(client_.get({&first, 1}, stop).front());
+    static HttpRequest first_byte_of(std::string url) { return {std::move(url), ByteRange{0, 1}}; }
+
+    static bool is_suffix(const HttpRequest& request) {
+        return request.range && request.range->from_end;
     }
 
-    /// Some servers know "bytes=A-B" but not "bytes=-LENGTH": they give the whole, or an error.
+    /// Some servers know "bytes=A-B" but not "bytes=-LENGTH": they give the whole, another part, or
+    /// an error.
     static bool lacks_suffixes(const HttpRequest& request, const HttpAnswer& answer) {
         const long status = answer.status;
-        return request.range && request.range->from_end &&
-               (status == 200 || status == 400 || status == 416 || status == 501 ||
-                (status == 206 && !answer.error.empty()));
+        return is_suffix(request) && (status == 200 || status == 400 || status == 416 ||
+                                      status == 501 || (status == 206 && !answer.error.empty()));
     }
 
-    /// The same bytes by their place; the answer of before if there is no such way.
-    HttpAnswer end_of(HttpRequest request, HttpAnswer before, const std::stop_token& stop) const {
-        const HttpAnswer first = first_byte_of(request.url, stop);
-        if (!first.error.empty() || first.status != 206) return before;
-        const std::uint64_t length = request.range->length;
-        if (!first.whole_size || *first.whole_size < length) return before;
-        request.range = ByteRange{*first.whole_size - length, length};
-        return std::move(client_.get({&request, 1}, stop).front());
+    /// Asks for ends of objects by their place, as far as the server tells how long the objects
+    /// are.
+    void place_suffixes(std::span<HttpRequest> requests, const std::stop_token& stop) const {
+        std::vector<HttpRequest> first;
+        for (const HttpRequest& request : requests) {
+            if (is_suffix(request)) first.push_back(first_byte_of(request.url));
+        }
+        const std::vector<HttpAnswer> answers = client_.get(first, stop);
+        auto answer = answers.begin();
+        for (HttpRequest& request : requests) {
+            if (!is_suffix(request)) continue;
+            const HttpAnswer& told = *answer++;
+            const std::uint64_t length = request.range->length;
+            if (!told.error.empty() || told.status != 206 || told.whole_size < length) continue;
+            request.range = ByteRange{*told.whole_size - length, length};
+        }
+    }
+
+    /// Replaces the answers of a server that knows no suffixes. That is found out once, as it can
+    /// take all attempts of a request.
+    void get_suffixes_otherwise(std::span<const HttpRequest> requests,
+                                std::span<HttpAnswer> answers, const std::stop_token& stop) const {
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+            if (!lacks_suffixes(requests[i], answers[i])) continue;
+            HttpRequest request = requests[i];
+            place_suffixes({&request, 1}, stop);
+            if (is_suffix(request)) continue;
+            answers[i] = std::move(client_.get({&request, 1}, stop).front());
+            if (answers[i].error.empty()) knows_no_suffixes_ = true;
+        }
     }
 
     void remember(const std::string& key, const std::string& version, const Bytes& bytes) const {
@@ -163,6 +188,7 @@ class HttpObjects : public Objects {
     std::stop_token stop_;
     mutable std::mutex mutex_;
     mutable std::map<std::string, std::string> versions_;  // by key, of what is not lasting
+    mutable std::atomic<bool> knows_no_suffixes_{false};
     mutable TrafficCount traffic_;
     mutable HttpClient client_;
 };

@@ -140,9 +140,10 @@ std::optional<BrickVersion> BrickLoader::take() {
     return version;
 }
 
-void BrickLoader::wait_for(const Vec3& centre, double radius) {
-    const std::vector<Index3> needed = bricks_round(geometry_, centre, radius);
-    if (needed.size() > most_bricks_ - most_bricks_ / 8) {
+void BrickLoader::wait_for(const Vec3& centre, double radius, std::stop_token stop) {
+    std::vector<Index3> needed = bricks_round(geometry_, centre, radius);
+    const std::size_t room = most_bricks_ - most_bricks_ / 8;
+    if (needed.size() > room) {
         throw std::invalid_argument(io::without_secrets(store_->info().address) +
                                     ": a stroke needs more samples at a time than fit into " +
                                     std::to_string(settings_.memory / 1000000) +
@@ -150,20 +151,24 @@ void BrickLoader::wait_for(const Vec3& centre, double radius) {
                                     "coarser level");
     }
     std::unique_lock lock(mutex_);
-    const auto own = required_.insert(required_.end(), needed);
-    want({});
-    failed_.clear();
-    ++waits_;
-    wake();
-    changed_.wait(lock, [&] {
-        return std::ranges::all_of(needed, [&](const Index3& brick) {
-            return failed_.contains({array_of(brick)}) || has(brick, 0);
-        });
+    changed_.wait(lock, stop, [&] {
+        std::size_t bricks = needed.size();
+        for (const Waiting& other : waiting_) bricks += other.needed.size();
+        return waiting_.empty() || bricks <= room;
     });
-    required_.erase(own);
-    for (const Index3& brick : needed) {
-        if (failed_.contains({array_of(brick)})) throw io::InputError(problem_);
-    }
+    for (const Index3& brick : needed) failed_.erase({array_of(brick)});
+    const auto own = waiting_.insert(waiting_.end(), {std::move(needed), ++waits_, {}});
+    want({});
+    wake();
+    const bool ended = changed_.wait(lock, stop, [&] {
+        return !own->problem.empty() ||
+               std::ranges::all_of(own->needed, [&](const auto& brick) { return has(brick, 0); });
+    });
+    const std::string problem = std::move(own->problem);
+    waiting_.erase(own);
+    wake();
+    if (!ended) throw Cancelled{};
+    if (!problem.empty()) throw io::InputError(problem);
 }
 
 BrickLoaderStatus BrickLoader::status() const {
@@ -207,7 +212,7 @@ void BrickLoader::choose_levels(std::span<const Interest> hands, Clock::time_poi
 /// Needs the lock. The most urgent brick of which something is to be read: all threads work for the
 /// first, so that it is there soon.
 std::optional<BrickLoader::Job> BrickLoader::next_job() {
-    const bool exact = !required_.empty();
+    const bool exact = !waiting_.empty();
     const int first = exact ? 0 : first_, finest = exact ? 0 : finest_;
     // First something everywhere near, then the level that is felt; where the hands are soon, both
     // come before anything elsewhere.
@@ -255,8 +260,8 @@ bool BrickLoader::has(const Index3& brick, int level) const {
 /// Needs the lock. What somebody waits for comes first, whatever the hands need.
 void BrickLoader::want(std::vector<Index3> bricks) {
     wanted_.clear();
-    for (const std::vector<Index3>& needed : required_) {
-        wanted_.insert(wanted_.end(), needed.begin(), needed.end());
+    for (const Waiting& waiting : waiting_) {
+        wanted_.insert(wanted_.end(), waiting.needed.begin(), waiting.needed.end());
     }
     wanted_.insert(wanted_.end(), bricks.begin(), bricks.end());
     begun_ = {};
@@ -265,7 +270,7 @@ void BrickLoader::want(std::vector<Index3> bricks) {
 /// Needs the lock. Older versions are let go when the next one comes, so it never waits for long.
 /// Who waits for bricks gets them first.
 bool BrickLoader::is_behind() const {
-    return required_.empty() && memory_->used() > held_.size() + most_left_bricks &&
+    return waiting_.empty() && memory_->used() > held_.size() + most_left_bricks &&
            Clock::now() - newest_ < time_to_let_go;
 }
 
@@ -312,12 +317,26 @@ void BrickLoader::work(const std::stop_token& stop) {
                 brick_s_ += (brick_s_ > 0 ? newest_part : 1) * (took - brick_s_);
             }
             put(*job, *brick);
-        } else if (!problem.empty() && waits == waits_) {  // else it is tried again for who waits
-            failed_[place] = Clock::now() + pause_after_failure;
-            problem_ = problem;
+        } else if (!problem.empty()) {
+            fail(place, problem, waits);
         }
         wake();
     }
+}
+
+/// Needs the lock. Tells those who waited for the brick when its read began, after `begun` calls of
+/// wait_for(). For those who came later it is tried again at once.
+void BrickLoader::fail(const Place& place, const std::string& problem, std::uint64_t begun) {
+    bool again = false;
+    for (Waiting& waiting : waiting_) {
+        const auto is_it = [&](const Index3& brick) { return array_of(brick) == place.at; };
+        if (std::ranges::none_of(waiting.needed, is_it)) continue;
+        if (waiting.number <= begun) waiting.problem = problem;
+        again |= waiting.number > begun;
+    }
+    if (again) return;
+    failed_[place] = Clock::now() + pause_after_failure;
+    problem_ = problem;
 }
 
 /// What fails here fails for the thread that makes the brick, too, which says so.

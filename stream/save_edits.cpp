@@ -205,10 +205,10 @@ void check_replaceable(const fs::path& out) {
 
 }  // namespace
 
-std::string content_below_edits(const Store& from, int level) {
+std::string content_below_edits(const Store& from, int level, const std::stop_token& stop) {
     const auto* edited = dynamic_cast<const EditedStore*>(&from);
-    return edited ? content_of(edited->original(), edited->note().level + level)
-                  : content_of(from, level);
+    return edited ? content_of(edited->original(), edited->note().level + level, stop)
+                  : content_of(from, level, stop);
 }
 
 void check_edits_name(const fs::path& out) {

@@ -123,26 +123,28 @@ bool is_store(const std::string& address, const StoreOptions& options) {
            is_plain(address, options);
 }
 
-std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options,
-                                        const io::Progress& progress) {
+std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::string& address,
+                                        const StoreOptions& options) {
     if (is_remote(address)) {
-        const auto tell = [&] { progress(0); };
-        return while_telling(
-            progress ? tell : std::function<void()>(),
-            [&](const std::stop_token& stop) -> std::shared_ptr<const Store> {
-                if (const auto file = remote_file(address)) {
-                    return open_located(remote_objects(file->folder, options, stop), file->name,
-                                        options);
-                }
-                return open_chunked(remote_objects(address, options, stop), address, options);
-            });
+        if (const auto file = remote_file(address)) {
+            return open_located(remote_objects(file->folder, options, stop), file->name, options);
+        }
+        return open_chunked(remote_objects(address, options, stop), address, options);
     }
-    if (holds_edits(address)) return open_edits(address, options);
+    if (holds_edits(address)) return open_edits(stop, address, options);
     if (is_chunked_folder(address)) {
         return open_chunked(folder_objects(address), address, options);
     }
     if (is_located(address, options)) return open_located(address, options);
     return open_plain_file(address, options);
+}
+
+std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options,
+                                        const io::Progress& progress) {
+    const auto tell = [&] { progress(0); };
+    return while_telling(
+        progress ? tell : std::function<void()>(),
+        [&](const std::stop_token& stop) { return open_until(stop, address, options); });
 }
 
 }  // namespace palpate::stream

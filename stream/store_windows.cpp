@@ -35,7 +35,7 @@ void check_edits_name(const std::filesystem::path& out) {
     throw std::invalid_argument(out.string() + no_chunks);
 }
 
-std::string content_below_edits(const Store&, int) {
+std::string content_below_edits(const Store&, int, const std::stop_token&) {
     return {};
 }
 

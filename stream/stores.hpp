@@ -9,6 +9,11 @@
 
 namespace palpate::stream {
 
+/// open_store() on this thread. Throws Cancelled soon after `stop` is requested while a server is
+/// waited for.
+std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::string& address,
+                                        const StoreOptions& options);
+
 /// Raw, NRRD, MetaImage and NIfTI files whose samples are not compressed.
 std::shared_ptr<const Store> open_plain_file(const std::string& path, const StoreOptions& options);
 

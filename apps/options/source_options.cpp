@@ -100,9 +100,9 @@ run::Source SourceOptions::source() const {
     if (memory) given["memory"] = std::to_string(*memory);
     if (coarse_first) given["coarse-first"] = "yes";
     if (all_times) given["all-times"] = "yes";
+    if (forbidden_is_missing) given["forbidden-is-missing"] = "yes";
     run::Source source = run::source_from(given);
     if (auto* store = std::get_if<run::StoreSource>(&source.from)) {
-        store->options.forbidden_is_missing = forbidden_is_missing;
         store->options.cache_folder = cache_folder;
         store->options.cache_bytes = cache_folder.empty() ? 0 : cache_bytes;
     }

@@ -54,7 +54,7 @@ void validate(const std::string& recording, const std::string& volume, bool quie
     io::RecordingReader reader(io::read_text(recording, stop_if_interrupted), recording);
     const run::LoadedVolume loaded =
         load_for_terminal(run::recorded_source(reader.head(), recording, volume), quiet);
-    run::Replay replay(reader, loaded, recording);
+    run::Replay replay(reader, loaded, recording, [] { stop_if_interrupted(); });
     ProgressBar bar("validating", quiet);
     while (const auto tick = replay.next()) {
         if (const auto differs = run::difference(tick->recorded, tick->again)) {
@@ -148,7 +148,7 @@ void replay(const ReplayOptions& options) {
     }
     ProgressBar bar("replaying", options.source.quiet);
     run::OfflineSinks sinks;
-    sinks.change = run::wait_for_bricks(loaded, trajectory);
+    sinks.change = run::wait_for_bricks(loaded, trajectory, [] { stop_if_interrupted(); });
     sinks.row = [&](const io::TraceRow& row) { trace.add(row); };
     if (path) sinks.corner = [&](std::int64_t tick, const Vec3& p) { path->add(tick, p); };
     if (poses) sinks.pose = [&](std::int64_t tick, const Pose& p) { poses->add(tick, p); };

@@ -1,5 +1,6 @@
 // Reads and writes volumes in every format, and pushes frames to other programs.
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/own_process.hpp"
 #include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 #include "palpate/io/live_file.hpp"
@@ -56,7 +57,9 @@ run::LoadedVolume load(const fs::path& name, const LoadOptions& options,
     }
     const auto tell = progress_of(progress);
     const py::gil_scoped_release unlocked;
-    return run::load(source, tell);
+    run::LoadedVolume loaded = run::load(source, tell);
+    if (loaded.streamed) loaded.streamed->store = destroyed_here_only(loaded.streamed->store);
+    return loaded;
 }
 
 std::vector<double> suggested(const run::LoadedVolume& loaded) {

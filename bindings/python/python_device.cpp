@@ -43,16 +43,34 @@ PythonDevice::PythonDevice(py::object self, DeviceInfo info, double rate)
     thread_ = std::thread([this] { run(); });
 }
 
-void PythonDevice::finish() {
+bool PythonDevice::finish() {
+    using namespace std::chrono;
+    constexpr milliseconds longest{2000}, between{1};
     link_.stop();
     ending_ = true;
-    if (std::this_thread::get_id() == asking_.load()) return;
+    if (is_own_thread()) return true;
     const std::lock_guard lock(finish_);
-    if (thread_.joinable()) thread_.join();
+    const auto until = steady_clock::now() + longest;
+    while (!left_behind_ && !ended_ && steady_clock::now() < until) {
+        std::this_thread::sleep_for(between);
+    }
+    if (ended_) {
+        if (thread_.joinable()) thread_.join();
+        return true;
+    }
+    if (left_behind_) return false;
+    left_behind_ = true;
+    const std::string stuck = "its read() or write() does not return";
+    set_problem(stuck);
+    const py::gil_scoped_acquire gil;
+    const std::string unwritten = write_to_device({});
+    if (!unwritten.empty()) set_problem(stuck + ", and " + unwritten);
+    return false;
 }
 
 PythonDevice::~PythonDevice() {
     finish();
+    if (thread_.joinable()) thread_.join();
     const py::gil_scoped_acquire gil;
     self_ = py::object();
 }
@@ -79,6 +97,7 @@ void PythonDevice::run() {
         std::this_thread::sleep_until(next);
     }
     end();
+    ended_ = true;
 }
 
 /// While one of the functions raises the device has a fault, so there is no force; afterwards it

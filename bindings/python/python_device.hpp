@@ -27,12 +27,16 @@ class PythonDevice final : public Device {
     /// `self` has read() and may have write(force, torque) and close(). Starts the thread, which
     /// calls them `rate` [Hz] times a second. With the GIL. Throws std::invalid_argument.
     PythonDevice(py::object self, DeviceInfo info, double rate);
-    /// finish(). Without the GIL.
+    /// finish(), and waits for the thread however long it takes. Not on that thread, without the
+    /// GIL.
     ~PythonDevice() override;
 
     /// Ends the thread, after a last write of zero and close(). Any thread, any number of times,
-    /// without the GIL; from the device's own functions it only asks for the end.
-    void finish();
+    /// without the GIL; from the device's own functions it only asks for the end. False if they do
+    /// not return within two seconds: then this thread has written the zero, and the device's still
+    /// uses this object.
+    bool finish();
+    bool is_own_thread() const { return std::this_thread::get_id() == asking_.load(); }
 
     DeviceInfo info() const override { return info_; }
     /// What its functions raised.
@@ -59,7 +63,8 @@ class PythonDevice final : public Device {
     mutable std::mutex mutex_;  // of problem_
     std::string problem_;
     bool can_write_ = true;  // the device's thread's, as of its last step
-    std::atomic<bool> ending_{false};
+    std::atomic<bool> ending_{false}, ended_{false};
+    bool left_behind_ = false;             // under finish_
     std::atomic<std::thread::id> asking_;  // the device's thread
     std::mutex finish_;
     std::thread thread_;  // last: it uses all of the above

@@ -61,7 +61,7 @@ py::dict validate(const fs::path& path, const fs::path& volume, const ProgressFu
         const py::gil_scoped_release unlocked;
         const run::LoadedVolume loaded =
             run::load(run::recorded_source(reader.head(), path, volume.string()), tell);
-        run::Replay replay(reader, loaded, path.string());
+        run::Replay replay(reader, loaded, path.string(), [&] { tell(reader.progress()); });
         while (const auto tick = replay.next()) {
             compare(*tick, path.string());
             if (tick->number % ticks_between_progress == 0) tell(reader.progress());

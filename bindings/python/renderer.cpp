@@ -163,11 +163,12 @@ void bind_renderer(py::module_& module) {
         .def("render", &tick, py::arg("time"), py::arg("position"), py::kw_only(),
              py::arg("orientation") = py::none(), py::arg("valid") = true, py::arg("armed") = true,
              py::arg("released") = false, py::arg("pointing") = Vec3(0, 0, 0),
-             py::call_guard<py::gil_scoped_release>(),
              "One tick: `time` [s], strictly increasing; `position` [device mm]; `orientation`\n"
              "(w, x, y, z), tool axes to device axes. valid=False: broken input, no force;\n"
              "armed=False: a dead-man switch is open; released: no force, within the rate limit.\n"
-             "pointing: unit, to a needle's tip.")
+             "pointing: unit, to a needle's tip. Takes microseconds and keeps the GIL, so threads "
+             "may\n"
+             "share a Renderer.")
         .def_property_readonly("field", [](const Renderer& r) { return r.field; })
         .def("copy", [](const Renderer& r) { return r; })
         .def("__copy__", [](const Renderer& r) { return r; })

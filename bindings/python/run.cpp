@@ -68,14 +68,19 @@ void bind_setup(py::module_& module) {
             "live", [] { return Setup{}; }, "The same as Setup().");
 }
 
-std::shared_ptr<run::Run> make(const run::LoadedVolume& loaded, const std::optional<Setup>& given) {
+struct LiveRun : run::Run {
+    using run::Run::Run;
+    OwnProcess process;
+};
+
+std::shared_ptr<LiveRun> make(const run::LoadedVolume& loaded, const std::optional<Setup>& given) {
     const run::Setup setup = live_setup(given.value_or(Setup{}));
     std::shared_ptr<run::Data> data = made_without_gil<run::Data>(loaded, setup.playback);
-    return made_without_gil<run::Run>(std::move(data), setup);
+    return made_without_gil<LiveRun>(std::move(data), setup);
 }
 
-void bind_playback(py::class_<run::Run, std::shared_ptr<run::Run>>& run) {
-    using R = run::Run;
+void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
+    using R = LiveRun;
     run.def(
            "play", [](R& r, double speed) { r.data().player().play(speed); }, py::arg("speed"),
            Unlocked(), "Of a sequence: seconds of it per second; 0 pauses.")
@@ -92,8 +97,8 @@ void bind_playback(py::class_<run::Run, std::shared_ptr<run::Run>>& run) {
             "What is wrong with device, edits or frames; usually empty.");
 }
 
-void bind_editing(py::class_<run::Run, std::shared_ptr<run::Run>>& run) {
-    using R = run::Run;
+void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
+    using R = LiveRun;
     run.def(
            "edit", [](R& r, const Edit& edit) { r.data().editor().apply(edit); }, py::arg("edit"),
            Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
@@ -115,13 +120,14 @@ void bind_editing(py::class_<run::Run, std::shared_ptr<run::Run>>& run) {
 }
 
 void start(const py::object& self) {
-    auto& r = self.cast<run::Run&>();
-    stop_at_exit<run::Run>(self, [](run::Run& running) { running.stop(); });
+    auto& r = self.cast<LiveRun&>();
+    r.process.check();
+    stop_at_exit<LiveRun>(self, [](LiveRun& running) { running.stop(); });
     const py::gil_scoped_release unlocked;
     r.start();
 }
 
-void send(run::Run& r, const Sent& sent) {
+void send(LiveRun& r, const Sent& sent) {
     const Field field = r.field_now();
     ForceSettings usual = live_force();
     usual.limit = r.device().limits.maximum_force;
@@ -132,7 +138,7 @@ void send(run::Run& r, const Sent& sent) {
 
 void bind_run(py::module_& module) {
     bind_setup(module);
-    using R = run::Run;
+    using R = LiveRun;
     py::class_<R, std::shared_ptr<R>> live(
         module, "Run",
         "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
@@ -142,14 +148,33 @@ void bind_run(py::module_& module) {
             "loaded: from load(), a Volume or a Store. setup: Setup, by default Setup(). Opens the "
             "device; nothing\nmoves before start(). Raises ValueError, InputError, DeviceError.")
         .def("start", &start, "Once.")
-        .def("stop", &R::stop, Unlocked(), "Forces go to zero; for good.")
+        .def(
+            "stop",
+            [](R& r) {
+                r.process.check();
+                r.stop();
+            },
+            Unlocked(),
+            "Forces go to zero; for good. Raises RuntimeError in a forked child, which has no "
+            "servo.")
         .def("send", &send, py::arg("command"), Unlocked(),
              "As Servo.send(). Raises ValueError, QueueFull.")
         .def("snapshot", &R::snapshot, "The newest tick, a Snapshot; None before the first.")
         .def("report", &R::report, "ServoReport")
-        .def("record", &R::record, py::arg("path"), Unlocked(),
-             "Records from now on, to a new file. Raises OutputError.")
-        .def("stop_recording", &R::stop_recording, Unlocked(), "The number of its ticks.")
+        .def(
+            "record",
+            [](R& r, const fs::path& path) {
+                r.process.check();
+                r.record(path);
+            },
+            py::arg("path"), Unlocked(), "Records from now on, to a new file. Raises OutputError.")
+        .def(
+            "stop_recording",
+            [](R& r) {
+                r.process.check();
+                return r.stop_recording();
+            },
+            Unlocked(), "The number of its ticks. The session goes on.")
         .def("field", &R::field_now, Unlocked(), "A copy of the Field felt, edits included.")
         .def_property_readonly("device", &R::device, "DeviceInfo")
         .def_property_readonly("privileges",
@@ -162,7 +187,7 @@ void bind_run(py::module_& module) {
              })
         .def("__exit__", [](R& r, const py::args&) {
             const py::gil_scoped_release unlocked;
-            r.stop();
+            if (r.process.is_here()) r.stop();
         });
     bind_playback(live);
     bind_editing(live);

@@ -1,6 +1,7 @@
 // Named synthetic volumes and motions of a hand.
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 #include "palpate/scenes/motions.hpp"
 #include "palpate/scenes/volumes.hpp"
@@ -21,9 +22,11 @@ py::tuple motion(const std::string& name, const Field& field, const io::Level& l
                  const scenes::MotionSettings& settings) {
     const double isovalue = io::level_in(field.volume(), level);
     std::vector<scenes::HandSample> samples;
+    const ProgressFunction none;
+    const auto progress = progress_of(none);  // Ctrl-C
     {
         const py::gil_scoped_release unlocked;
-        samples = scenes::make_motion(name, field, isovalue, settings);
+        samples = scenes::make_motion(name, field, isovalue, settings, progress);
     }
     return py::make_tuple(column(samples, [](const scenes::HandSample& s) { return s.t; }),
                           column(samples, [](const scenes::HandSample& s) { return s.position; }));

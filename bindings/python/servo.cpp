@@ -3,26 +3,37 @@
 
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/commands.hpp"
+#include "bindings/python/own_process.hpp"
 #include "bindings/python/python_device.hpp"
 #include "bindings/python/without_gil.hpp"
+#include "palpate/devices/error.hpp"
 
 namespace palpate::python {
 namespace {
 
 /// A servo and the device that it runs; the device goes last.
 struct DeviceServo {
-    DeviceServo(const Renderer& renderer, std::unique_ptr<PythonDevice> its_device,
+    DeviceServo(Renderer renderer, std::unique_ptr<PythonDevice> its_device,
                 const ServoSettings& settings)
         : device(std::move(its_device)),
           field(renderer.field),
           isovalue(renderer.proxy.isovalue),
-          servo(Session{renderer, {}}, *device, settings) {}
+          servo(Session{std::move(renderer), {}}, *device, settings) {}
 
-    void stop() {
+    /// False if the device's thread goes on for good (PythonDevice::finish()).
+    bool finish() {
         servo.stop();
-        device->finish();
+        return device->finish();
+    }
+    void stop() {
+        process.check();
+        if (finish()) return;
+        throw devices::DeviceError("the device: " + device->problem() +
+                                   ": the session has ended, a force of zero was written, and the "
+                                   "thread that hangs is left behind");
     }
 
+    OwnProcess process;
     std::unique_ptr<PythonDevice> device;
     Field field;
     double isovalue;
@@ -31,6 +42,30 @@ struct DeviceServo {
 
 using Held = std::shared_ptr<DeviceServo>;
 using Unlocked = py::call_guard<py::gil_scoped_release>;
+
+/// Whoever lets go last. Where that are the device's own functions, another thread of Python does
+/// it, which waits for them. One that never ends keeps the servo for good.
+void destroy(DeviceServo* servo) {
+    if (!servo->process.is_here()) return;
+    if (servo->device->is_own_thread()) {
+        const py::gil_scoped_acquire gil;
+        try {
+            servo->finish();
+            const py::cpp_function later([servo] { destroy(servo); });
+            py::module_::import("threading")
+                .attr("Thread")(py::arg("target") = later, py::arg("daemon") = false)
+                .attr("start")();
+        } catch (const std::exception&) {  // Python ends
+        }
+        return;
+    }
+    const auto end = [servo] {
+        if (servo->finish()) delete servo;
+    };
+    if (!PyGILState_Check()) return end();
+    const py::gil_scoped_release unlocked;
+    end();
+}
 
 Held make_servo(const Renderer& renderer, const py::object& device, double rate, bool real_time,
                 double device_rate) {
@@ -42,11 +77,14 @@ Held make_servo(const Renderer& renderer, const py::object& device, double rate,
     settings.rate = rate;
     settings.real_time = real_time;
     auto its_device = std::make_unique<PythonDevice>(device, info, device_rate);
-    return made_without_gil<DeviceServo>(renderer, std::move(its_device), settings);
+    Renderer own = renderer;  // with the GIL, as other threads may use it
+    const py::gil_scoped_release unlocked;
+    return {new DeviceServo(std::move(own), std::move(its_device), settings), &destroy};
 }
 
 void start_servo(const py::object& self) {
     auto& s = self.cast<DeviceServo&>();
+    s.process.check();
     stop_at_exit<DeviceServo>(self, [](DeviceServo& running) { running.stop(); });
     const py::gil_scoped_release unlocked;
     s.servo.start();
@@ -79,7 +117,10 @@ void bind_servo(py::module_& module) {
         .def("start", &start_servo, "Once.")
         .def("stop", &DeviceServo::stop, Unlocked(),
              "Zero force, and the end of both threads: the device is written a last zero and "
-             "closed.")
+             "closed.\n"
+             "Raises DeviceError if its functions do not return within 2 s: the caller's thread "
+             "has\n"
+             "then written the zero. Raises RuntimeError in a forked child, which has no servo.")
         .def("send", &send_to_servo, py::arg("command"),
              "A command of palpate.command, or ForceSettings, Friction, Penetrability,\n"
              "DeviceTransform or DeviceLimits. Never waits. Raises ValueError, QueueFull.")
@@ -103,7 +144,7 @@ void bind_servo(py::module_& module) {
              })
         .def("__exit__", [](DeviceServo& s, const py::args&) {
             const py::gil_scoped_release unlocked;
-            s.stop();
+            if (s.process.is_here()) s.stop();
         });
 }
 

@@ -1,6 +1,7 @@
 // Stores: samples that are read by the box, of files, chunked formats and web addresses. All
 // reading runs without the GIL.
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/own_process.hpp"
 #include "bindings/python/progress.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/run/source.hpp"
@@ -98,27 +99,29 @@ void bind_open_store(py::module_& module) {
     module.def(
         "open_store",
         [](const fs::path& place, std::optional<io::RawLayout> raw, std::optional<Vec3> spacing,
-           int channel, int time, const fs::path& cache) {
+           int channel, int time, const fs::path& cache, bool forbidden_is_missing) {
             stream::StoreOptions options;
             options.raw = raw;
             options.spacing = spacing;
             options.channel = channel;
             options.time = time;
+            options.forbidden_is_missing = forbidden_is_missing;
             options.cache_folder = cache;
             if (!cache.empty()) options.cache_bytes = std::uint64_t{4} << 30;
             const ProgressFunction none;
             const std::string address = place.string();
-            return OpenStore{stream::open_store(address, options, progress_of(none)), address,
-                             options};
+            return OpenStore{
+                destroyed_here_only(stream::open_store(address, options, progress_of(none))),
+                address, options};
         },
         py::arg("address"), py::kw_only(), py::arg("raw") = py::none(),
         py::arg("spacing") = py::none(), py::arg("channel") = 0, py::arg("time") = 0,
-        py::arg("cache") = "", Unlocked(),
+        py::arg("cache") = "", py::arg("forbidden_is_missing") = false, Unlocked(),
         "Opens what is read by the box: OME-Zarr and other chunked formats, folders or http://,\n"
         "https:// and s3:// addresses, and plain files whose samples are not compressed\n"
-        "(docs/streaming.md). cache: a folder that keeps what came over the network. Reads "
-        "headers\n"
-        "only. Raises InputError.");
+        "(docs/streaming.md). cache: a folder that keeps what came over the network.\n"
+        "forbidden_is_missing: chunks for which the server answers 403 are not stored, as with\n"
+        "S3. Reads headers only. Raises InputError.");
     // For palpate.distributed.
     module.def(
         "_content_of",

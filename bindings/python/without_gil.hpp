@@ -5,13 +5,16 @@
 #include <utility>
 
 #include "bindings/python/casters.hpp"
+#include "bindings/python/own_process.hpp"
 
 namespace palpate::python {
 
-/// Made and destroyed without the GIL, whoever lets go of it last.
+/// Made and destroyed without the GIL, whoever lets go of it last; never destroyed in a forked
+/// child.
 template <class T, class... Arguments>
 std::shared_ptr<T> made_without_gil(Arguments&&... arguments) {
-    const auto destroy = [](T* object) {
+    const auto destroy = [process = OwnProcess()](T* object) {
+        if (!process.is_here()) return;
         if (PyGILState_Check()) {
             const py::gil_scoped_release unlocked;
             delete object;
@@ -27,9 +30,9 @@ std::shared_ptr<T> made_without_gil(Arguments&&... arguments) {
 template <class T, class Stop>
 void stop_at_exit(const py::object& self, Stop stop) {
     const std::weak_ptr<T> held = self.cast<std::shared_ptr<T>>();
-    const py::cpp_function at_exit([held, stop] {
+    const py::cpp_function at_exit([held, stop, process = OwnProcess()] {
         const std::shared_ptr<T> object = held.lock();
-        if (!object) return;
+        if (!object || !process.is_here()) return;
         const py::gil_scoped_release unlocked;
         stop(*object);
     });

@@ -30,9 +30,9 @@ struct ServoSettings {
     bool real_time = true;
     int priority = 80;                ///< of SCHED_FIFO, 1 to 99
     std::size_t command_room = 1024;  ///< commands that may wait
-    /// Where ticks and commands are recorded; null: nowhere. Must outlive the servo. A queue that
-    /// is full loses events (ServoReport::unrecorded). Samples with a recipe are recorded as that
-    /// alone.
+    /// Where ticks and commands are recorded; null: nowhere. Must outlive the servo, or its
+    /// stop_recording(). A queue that is full loses events (ServoReport::unrecorded). Samples with
+    /// a recipe are recorded as that alone.
     Queue<SessionEvent>* recorder = nullptr;
     /// Times the ticks [ns, never back]; null: the machine's monotonic clock. With a clock of the
     /// caller's, CPU time is counted by it as well.
@@ -142,6 +142,10 @@ class Servo {
     /// step(), or on others while that thread goes on calling step().
     void stop() noexcept;
 
+    /// Nothing is recorded any more when this returns; the session goes on. Any thread but that of
+    /// step().
+    void stop_recording() noexcept;
+
     /// Checks a command and puts it in the queue; false if the queue is full. Throws
     /// std::invalid_argument as check(Command) does. Any thread; never waits for the servo thread.
     /// Keeps samples alive until the servo uses others, so that its thread never frees them.
@@ -208,6 +212,8 @@ class Servo {
     std::atomic<State> state_{State::idle};
     std::atomic<bool> ready_{false}, stopping_{false};
     std::atomic<int> stops_{0};  // calls of stop() under way
+    std::atomic<Queue<SessionEvent>*> recorder_;
+    std::atomic<bool> in_recorder_{false};  // the servo thread uses it at this moment
 
     std::mutex held_mutex_;  // between threads that send; the servo thread never takes it
     std::vector<std::shared_ptr<const void>> held_;  // each object once

@@ -112,5 +112,19 @@ TEST(Replay, of_a_damaged_recording_renders_it_or_refuses_it_as_input) {
     EXPECT_GT(refused, 3000);
 }
 
+TEST(Replay, the_head_of_a_recording_is_read_without_the_rest) {
+    const support::ScratchFolder folder;
+    const std::filesystem::path path = folder / "r.csv";
+    support::put_bytes(path, recording(test::loaded(sphere)) + std::string(10, '\0'));
+    EXPECT_THROW(io::RecordingReader reader(path), io::InputError) << "is no text at the end";
+    const io::RecordingHead head = io::read_recording_head(path);
+    EXPECT_EQ(head.version, "1.2.3");
+    EXPECT_EQ(head.isovalue, 76.5);
+    EXPECT_EQ(run::recorded_source(head, path).from.index(), 1U) << "synthetic";
+    EXPECT_THROW(io::read_recording_head(folder / "none.csv"), io::InputError);
+    support::put_bytes(path, "t,x,y,z\n0,1,2,3\n");
+    EXPECT_THROW(io::read_recording_head(path), io::InputError);
+}
+
 }  // namespace
 }  // namespace palpate::run

@@ -349,6 +349,23 @@ TEST(Run, a_background_that_is_none_changes_nothing) {
     EXPECT_GT(s.live.snapshot()->number, before);
 }
 
+TEST(Run, the_end_of_a_recording_does_not_interrupt_the_force) {
+    const ScratchFolder folder;
+    BallRun s(pressing);
+    s.live.record(folder / "a.csv");
+    ASSERT_TRUE(steps_until(s.live, [&] {
+        const auto now = s.live.snapshot();
+        return now && now->session.tick.force.norm() > 0.1;
+    }));
+    const Snapshot before = *s.live.snapshot();
+    EXPECT_EQ(s.live.stop_recording(), before.number + 1);
+    s.live.step();
+    const Snapshot after = *s.live.snapshot();
+    EXPECT_EQ(after.number, before.number + 1);
+    EXPECT_GT(after.session.tick.force.norm(), 0.1);
+    EXPECT_TRUE(Again(folder / "a.csv").complete);
+}
+
 TEST(Run, every_restart_begins_without_force_and_keeps_to_the_limits) {
     const ScratchFolder folder;
     BallRun s(pressing);

@@ -189,14 +189,41 @@ TEST(Streamed, what_is_edited_is_felt_undone_recorded_and_repeats_bit_for_bit) {
     EXPECT_GT(expect_same_again(last), 100);
 }
 
-TEST(Streamed, undo_and_brush_do_not_wait_for_the_samples_of_an_edit) {
-    const auto store = stream::store_in_pieces(scenes::make_volume("sphere:128x126x125").volume);
+/// Of a store that a test may interfere with.
+LoadedVolume loaded_of(const std::shared_ptr<stream::VolumesStore>& store) {
     LoadedVolume loaded{.volume = stream::overview_of(*store), .source = {}, .name = "v"};
     StoreSource source{.address = "v", .options = {}, .loader = {}};
     source.loader.memory = std::uint64_t{200} << 20;
     loaded.streamed = StreamedVolume{store, source.loader};
     loaded.source.from = source;
-    Data data(loaded, {}, Pace::by_steps);
+    return loaded;
+}
+
+TEST(Streamed, an_edit_reads_its_samples_once_although_others_edit_meanwhile) {
+    // Rows are read each time that they are asked for.
+    const auto store =
+        stream::store_in_pieces(scenes::make_volume("sphere:128x126x125").volume, {128, 1, 1});
+    Data data(loaded_of(store), {}, Pace::by_steps);
+    std::map<std::array<int, 3>, int> reads;
+    int others = 0;
+    bool is_other = false;
+    store->before_read = [&](int, const SampleBox& box, const std::stop_token&) {
+        if (is_other) return;
+        ++reads[{box.low[0], box.low[1], box.low[2]}];
+        if (++others > 1000) return;
+        is_other = true;
+        data.editor().apply(edit::Fill{{{90, 90, 90}, {91, 91, 91}}, 80.0 + others % 2});
+        is_other = false;
+    };
+    data.editor().apply(edit::Fill{{{10, 10, 10}, {50, 50, 20}}, 90});
+    EXPECT_GT(reads.size(), 1U);
+    for (const auto& [at, count] : reads) EXPECT_EQ(count, 1) << at[0] << " " << at[1];
+    EXPECT_EQ(data.editor().state().samples->sample({20, 20, 15}), 90);
+}
+
+TEST(Streamed, undo_and_brush_do_not_wait_for_the_samples_of_an_edit) {
+    const auto store = stream::store_in_pieces(scenes::make_volume("sphere:128x126x125").volume);
+    Data data(loaded_of(store), {}, Pace::by_steps);
     data.editor().apply(edit::Fill{{{1, 1, 1}, {5, 5, 5}}, 90});
     std::atomic<bool> reads{false}, may_read{false};
     store->before_read = [&](int, const SampleBox&, const std::stop_token& stop) {
@@ -383,6 +410,25 @@ TEST(Streamed, sources_keep_level_channel_and_memory_in_their_names) {
     EXPECT_TRUE(std::holds_alternative<StoreSource>(
         source_from({{"volume", "https://example.org/a.zarr"}}).from));
     EXPECT_TRUE(std::holds_alternative<FileSource>(ball.whole().from)) << "a small file is read";
+}
+
+TEST(Streamed, sources_keep_no_passwords_but_that_there_was_one) {
+    const auto names = to_names(
+        source_from({{"volume", "https://me:secret@example.org/a.zarr?versionId=3&sig=secret"},
+                     {"forbidden-is-missing", "yes"}}));
+    EXPECT_EQ(names.at("volume"), "https://example.org/a.zarr?versionId=3");
+    EXPECT_EQ(names.at("secrets"), "left out");
+    EXPECT_EQ(names.at("forbidden-is-missing"), "yes");
+    EXPECT_EQ(to_names(source_from(names)), names);
+    EXPECT_FALSE(
+        to_names(source_from({{"volume", "https://example.org/a.zarr"}})).contains("secrets"));
+    try {
+        load(source_from({{"volume", "http://127.0.0.1:9/a.zarr"}, {"secrets", "left out"}}));
+        FAIL() << "nothing is there";
+    } catch (const io::InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("without its password"), std::string::npos)
+            << e.what();
+    }
 }
 
 /// All threads of two runs on the same data at their real pace: servos, streamer, editor with a

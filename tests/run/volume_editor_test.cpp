@@ -229,6 +229,47 @@ TEST(VolumeEditor, its_history_makes_the_same_samples_again) {
     EXPECT_EQ(std::memcmp(felt.data(), made.data(), felt.bytes()), 0);
 }
 
+/// The history that a servo which is attached now gets.
+std::vector<Command> history_of(VolumeEditor& editor, const Field& field) {
+    support::ScriptedDevice device{[](double) { return support::ready_at({-15, 0, 0}); }};
+    std::vector<Command> history;
+    const auto servo =
+        editor.attach({make_renderer(field, 0.5, {}), {}}, test::servo_on(device, &history));
+    servo->stop();
+    editor.detach(*servo);
+    return history;
+}
+
+TEST(VolumeEditor, versions_that_nothing_leads_to_any_more_are_forgotten) {
+    const Field field(test::loaded("synthetic:sphere:32x32x32").volume);
+    VolumeEditor editor(field.shared_samples(), Pace::by_steps);
+    editor.apply(edit::Fill{{{1, 1, 1}, {2, 2, 2}}, 7});
+    for (int i = 0; i < 5000; ++i) {
+        editor.apply(edit::Fill{{{1, 1, 1}, {1, 1, 1}}, 8.0 + i % 2});
+        EXPECT_TRUE(editor.undo());
+    }
+    const auto history = history_of(editor, field);
+    EXPECT_LT(history.size(), 2500U);
+    EXPECT_TRUE(editor.knows_history());
+    RecordedSamples samples(field.shared_samples());
+    for (const Command& told : history) (void)samples.whole(told);
+    EXPECT_EQ(samples.of(editor.state().version)->sample({2, 2, 2}), 7);
+    EXPECT_EQ(samples.of(editor.state().version)->sample({1, 1, 1}), 7);
+}
+
+TEST(VolumeEditor, of_too_many_edits_it_keeps_those_of_undo_and_says_that_it_forgot_the_others) {
+    const Field field(test::loaded("synthetic:sphere:32x32x32").volume);
+    VolumeEditor editor(field.shared_samples(), Pace::by_steps, 100);
+    for (int i = 0; i < 3000; ++i) {
+        EXPECT_EQ(editor.knows_history(), i < 100);
+        editor.apply(edit::Fill{{{1, 1, 1}, {1, 1, 1}}, 8.0 + i % 2});
+    }
+    EXPECT_EQ(editor.state().samples->sample({1, 1, 1}), 9);
+    EXPECT_TRUE(editor.undo());
+    EXPECT_EQ(editor.state().samples->sample({1, 1, 1}), 8);
+    EXPECT_EQ(editor.state().version, 2999U);
+}
+
 TEST(VolumeEditor, refuses_brushes_that_cannot_work_and_says_why) {
     Pressing p;
     const double nan = std::nan("");

@@ -3,8 +3,12 @@
 #include <fstream>
 
 #include "io/volume_support.hpp"
+#include "palpate/stream/edits.hpp"
+#include "palpate/stream/loader.hpp"
+#include "stream/shards.hpp"
 #include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
+#include "support/allocation_counter.hpp"
 
 namespace palpate::stream::test {
 namespace {
@@ -14,22 +18,6 @@ using support::contains;
 using support::message_of;
 using support::put_bytes;
 using support::ScratchFolder;
-
-/// A Zarr array of 4 x 4 x 4 bytes in one shard with two chunks: 'u' below, 'v' above.
-void put_shards(const fs::path& folder) {
-    fs::create_directories(folder / "c/0/0");
-    put_bytes(folder / "zarr.json",
-              R"({"zarr_format":3,"node_type":"array","shape":[4,4,4],"data_type":"uint8",)"
-              R"("chunk_grid":{"name":"regular","configuration":{"chunk_shape":[4,4,4]}},)"
-              R"("chunk_key_encoding":{"name":"default"},"fill_value":0,"codecs":[)"
-              R"({"name":"sharding_indexed","configuration":{"chunk_shape":[2,4,4],)"
-              R"("codecs":[{"name":"bytes"}],"index_codecs":[{"name":"bytes"}]}}]})");
-    const auto entry = [](std::uint64_t a, std::uint64_t b) {
-        return io::test::little(a) + io::test::little(b);
-    };
-    put_bytes(folder / "c/0/0/0", std::string(5, '-') + std::string(32, 'u') +
-                                      std::string(32, 'v') + entry(5, 32) + entry(37, 32));
-}
 
 /// A Zarr array of 4 x 4 x 4 bytes in two chunks; the second is not stored.
 void put_chunk(const fs::path& folder, char value) {
@@ -68,15 +56,27 @@ struct Served {
     }
 };
 
+/// Thrown to stop what waits.
+struct Impatient {};
+
 TEST(HttpAnswers, a_part_that_was_not_asked_for_is_refused) {
     const std::string message = Served({"--other-range"}).refusal("s.zarr");
     EXPECT_TRUE(contains(message, "which were not asked for")) << message;
 }
 
 TEST(HttpAnswers, the_end_of_a_file_is_read_by_its_place_where_a_server_knows_no_suffixes) {
-    const Volume volume = Served({"--no-suffixes"}).read("s.zarr");
-    EXPECT_EQ(volume.sample({0, 0, 0}), 'u');
-    EXPECT_EQ(volume.sample({0, 0, 3}), 'v');
+    for (const char* kind : {"--no-suffixes", "--other-suffix"}) {
+        const Served served({kind});
+        StoreOptions options = patient_once();
+        options.attempts = 3;
+        const auto store = open_store(served.server.address("s.zarr"), options);
+        const auto retries = [&] { return store->traffic().retries; };
+        EXPECT_EQ(read_box(*store, 0, {{0, 0, 1}, {0, 0, 1}}), std::vector{std::byte{'v'}});
+        const auto before = retries();
+        EXPECT_EQ(before > 0, std::string(kind) == "--other-suffix");
+        EXPECT_EQ(read_box(*store, 0, {{0, 0, 7}, {0, 0, 7}}), std::vector{std::byte{'u'}});
+        EXPECT_EQ(retries(), before) << "it is known how to ask this server";
+    }
 }
 
 TEST(HttpAnswers, what_lies_compressed_on_the_server_is_unpacked) {
@@ -129,6 +129,21 @@ TEST(HttpAnswers, a_store_that_is_rewritten_with_the_same_metadata_does_not_meet
     EXPECT_EQ(served.read("c.zarr?versionId=2", options).sample({0, 0, 0}), 'z');
 }
 
+TEST(HttpAnswers, an_answer_for_which_there_is_no_memory_is_an_error_and_does_not_hang) {
+    const Served served({"--long-tags"});
+    const std::string address = served.server.address("c.zarr");
+    int calls = 0;
+    const auto tell = [&](double) {
+        if (++calls == 1000) throw Impatient{};
+    };
+    const std::string message = message_of<io::InputError>([&] {
+        const support::DeniedAllocations of_the_tag(5000, 12000);
+        (void)open_store(address, patient_once(), tell);
+    });
+    EXPECT_TRUE(contains(message, "too little memory")) << message;
+    EXPECT_EQ(volume_of(*open_store(address, patient_once())).sample({0, 0, 0}), 'x');
+}
+
 TEST(HttpAnswers, messages_do_not_give_away_passwords_and_signatures) {
     for (const std::string& address :
          {std::string("http://me:secret@127.0.0.1:9/a.zarr?sig=secret"),
@@ -144,22 +159,53 @@ TEST(HttpAnswers, messages_do_not_give_away_passwords_and_signatures) {
     EXPECT_EQ(io::without_secrets("a://b@"), "a://");
 }
 
-struct Impatient {};
+/// Edits of the store at an address, in a folder.
+void save_edits_of(const std::string& address, const fs::path& out) {
+    const auto store = open_store(address, patient_once());
+    const ReadSamples read = [&](const SampleBox& box, std::span<std::byte> to) {
+        store->read(0, box, to, {});
+    };
+    const auto empty = empty_samples(*store, volume_of(*store), 0);
+    const auto samples = edited(empty, edit::Fill{{{1, 1, 1}, {2, 2, 2}}, 5}, read).samples;
+    save_edits(*store, {address, patient_once()}, 0, *samples, out, {});
+}
 
 TEST(HttpAnswers, opening_a_store_of_a_silent_server_stops_when_asked_to) {
     const Served served;
+    const fs::path edits = served.folder / "e.zarr";
+    save_edits_of(served.server.address("c.zarr"), edits);
+    EXPECT_EQ(volume_of(*open_store(edits.string())).sample({1, 1, 1}), 5);
     served.server.stop_answering();
-    for (const char* name : {"c.zarr", "c.ims"}) {
+    for (const std::string& address :
+         {served.server.address("c.zarr"), served.server.address("c.ims"), edits.string()}) {
         int calls = 0;
         const auto begin = std::chrono::steady_clock::now();
         const auto tell = [&](double) {
             if (++calls == 3) throw Impatient{};
         };
-        EXPECT_THROW((void)open_store(served.server.address(name), patient_once(), tell),
-                     Impatient);
+        EXPECT_THROW((void)open_store(address, patient_once(), tell), Impatient);
         // It would wait for 60 s.
         EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
     }
+}
+
+TEST(HttpAnswers, edits_do_not_keep_the_password_of_their_original_and_say_so) {
+    const Served served;
+    const fs::path edits = served.folder / "e.zarr";
+    const std::string plain = served.server.address("c.zarr");
+    save_edits_of("http://me:secret@" + plain.substr(7) + "?versionId=3&sig=secret", edits);
+    const std::string note = support::bytes_of(edits / "palpate-edits.json");
+    EXPECT_FALSE(contains(note, "=secret") || contains(note, ":secret")) << note;
+    EXPECT_TRUE(contains(note, plain + "?versionId=3\"")) << note;
+    const auto store = open_store(edits.string());
+    EXPECT_EQ(volume_of(*store).sample({1, 1, 1}), 5);
+    EXPECT_TRUE(std::ranges::any_of(store->info().notes, [](const std::string& words) {
+        return contains(words, "without its password");
+    }));
+    fs::rename(served.folder / "c.zarr", served.folder / "hidden.zarr");
+    const std::string message =
+        message_of<io::InputError>([&] { (void)open_store(edits.string()); });
+    EXPECT_TRUE(contains(message, "write the whole one into")) << message;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "io/volume_support.hpp"
+#include "stream/shards.hpp"
 #include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
 
@@ -150,18 +151,7 @@ TEST(Http, a_missing_chunk_is_fill_and_missing_metadata_an_error) {
 
 TEST(Http, shards_are_read_in_parts_and_a_server_without_parts_is_refused) {
     const ScratchFolder folder;
-    fs::create_directories(folder / "s.zarr/c/0/0");
-    put_bytes(folder / "s.zarr/zarr.json",
-              R"({"zarr_format":3,"node_type":"array","shape":[4,4,4],"data_type":"uint8",)"
-              R"("chunk_grid":{"name":"regular","configuration":{"chunk_shape":[4,4,4]}},)"
-              R"("chunk_key_encoding":{"name":"default"},"fill_value":0,"codecs":[)"
-              R"({"name":"sharding_indexed","configuration":{"chunk_shape":[2,4,4],)"
-              R"("codecs":[{"name":"bytes"}],"index_codecs":[{"name":"bytes"}]}}]})");
-    const auto entry = [](std::uint64_t a, std::uint64_t b) {
-        return io::test::little(a) + io::test::little(b);
-    };
-    put_bytes(folder / "s.zarr/c/0/0/0", std::string(5, '-') + std::string(32, 'u') +
-                                             std::string(32, 'v') + entry(37, 32) + entry(5, 32));
+    put_shards(folder / "s.zarr");
     const VolumeServer server({"--folder", folder.path().string()});
     const Volume volume = volume_of(*open_store(server.address("s.zarr"), quick()));
     EXPECT_EQ(volume.sample(Index3(0, 0, 0)), 'v');

@@ -282,6 +282,25 @@ TEST_F(Killed, what_must_not_be_replaced_survives_every_rename_that_fails) {
     }
 }
 
+TEST_F(Killed, what_is_replaced_is_looked_at_only_while_something_has_its_name) {
+    for (const bool exchanges : {true, false}) {
+        const ScratchFolder folder;
+        const fs::path out = folder / "e.zarr";
+        fs::create_directory(out);
+        const auto work = [&] {
+            if (!exchanges) deny_exchange();
+            io::GrowingFolder grown = io::GrowingFolder::alone(out);
+            int looks = 0;
+            grown.put_in_place([&](const fs::path&) {
+                if (!fs::exists(out)) throw io::InputError("nothing is there");
+                ++looks;
+            });
+            if (looks < 2) throw io::InputError("what was moved away was not looked at");
+        };
+        EXPECT_EQ(end_of(start_process(work)), 0);
+    }
+}
+
 TEST_F(Killed, two_that_save_edits_under_one_name_leave_those_of_one_of_them_whole) {
     const Edits edits;
     for (int i = 0; i < 20; ++i) {

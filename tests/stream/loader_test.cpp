@@ -342,6 +342,55 @@ TEST(BrickLoader, who_waits_gets_the_bricks_although_hands_look_elsewhere_and_ot
     EXPECT_TRUE(is_resident(field, {300, 30, 30}, 5));
 }
 
+TEST(BrickLoader, who_waits_for_a_brick_that_cannot_be_had_is_told_although_others_begin_to_wait) {
+    const auto store =
+        store_in_pieces(noise_of(SampleType::uint8, grid({400, 64, 64}), 7), {32, 64, 64});
+    Volume overview = overview_of(*store);
+    BrickLoader* loader = nullptr;
+    int failures = 0;
+    store->before_read = [&](int, const SampleBox& box, const std::stop_token&) {
+        if (!loader || box.low[0] > 0 || ++failures > 20) return;
+        loader->wait_for({300, 30, 30}, 5);  // others do while it fails
+        throw io::InputError("volumes: gone; plug it in again");
+    };
+    BrickLoader loads(store, std::move(overview), {.memory = least_memory, .threads = 2});
+    loader = &loads;
+    EXPECT_THROW(loads.wait_for({5, 30, 30}, 3), io::InputError);
+    EXPECT_EQ(failures, 1);
+}
+
+TEST(BrickLoader, waiting_ends_when_it_is_asked_to) {
+    const auto store = store_in_pieces(noise_of(SampleType::uint8, grid({64, 64, 64}), 7));
+    Volume overview = overview_of(*store);
+    std::stop_source source;
+    store->before_read = [&](int, const SampleBox&, const std::stop_token& stop) {
+        source.request_stop();
+        while (!stop.stop_requested()) std::this_thread::yield();
+        throw Cancelled{};
+    };
+    BrickLoader loader(store, std::move(overview), {.memory = least_memory, .threads = 2});
+    EXPECT_THROW(loader.wait_for({30, 30, 30}, 10, source.get_token()), Cancelled);
+}
+
+TEST(BrickLoader, a_read_stops_when_asked_to_although_another_thread_reads_the_same_piece) {
+    const auto store = store_in_pieces(noise_of(SampleType::uint8, grid({64, 64, 64}), 7));
+    Volume overview = overview_of(*store);
+    std::atomic<int> reading{0};
+    store->before_read = [&](int, const SampleBox&, const std::stop_token& stop) {
+        ++reading;
+        while (!stop.stop_requested()) std::this_thread::yield();
+        throw Cancelled{};
+    };
+    BrickLoader loader(store, std::move(overview), {.memory = least_memory, .threads = 8});
+    const Interest hand{Vec3(30, 30, 30), Vec3(30, 30, 30)};
+    loader.look({&hand, 1});
+    ASSERT_TRUE(comes_true([&] { return reading == 8; }));  // all eight pieces
+    std::stop_source source;
+    source.request_stop();
+    std::vector<std::byte> out(1);
+    EXPECT_THROW(loader.read({{1, 1, 1}, {1, 1, 1}}, out, source.get_token()), Cancelled);
+}
+
 TEST(BrickLoader, waits_for_all_that_an_update_may_look_at_and_refuses_what_does_not_fit) {
     const Volume volume = large_noise({1000, 400, 400}, 8);
     const auto store = store_in_pieces(volume, {64, 64, 64});

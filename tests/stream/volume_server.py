@@ -170,6 +170,8 @@ def make_handler(options):
             status, body, headers = self.ranged(body)
             if not path.startswith(name):
                 headers["ETag"] = tag_of(options.folder, path)
+                if options.long_tags:
+                    headers["ETag"] = '"' + "x" * 5000 + '"'
             if options.gzip and status == 200:
                 body = gzip.compress(body)
                 headers["Content_Encoding"] = "gzip"
@@ -208,6 +210,8 @@ def make_handler(options):
             first, last = wanted.split("=")[1].split("-")
             if options.other_range and first not in ("", "0"):
                 first, last = str(int(first) - 1), str(int(last) - 1)
+            if options.other_suffix and first == "":
+                first, last = "0", str(int(last) - 1)
             begin = max(0, len(body) - int(last)) if first == "" else int(first)
             end = len(body) if first == "" else min(int(last) + 1, len(body))
             return 206, body[begin:end], {"Content_Range": f"bytes {begin}-{end - 1}/{len(body)}"}
@@ -232,6 +236,8 @@ def main():
     parser.add_argument("--no-ranges", action="store_true", help="whole files only")
     parser.add_argument("--no-suffixes", action="store_true", help="no ranges from the end")
     parser.add_argument("--other-range", action="store_true", help="a byte too early, and says so")
+    parser.add_argument("--other-suffix", action="store_true", help="the begin for ranges from the end")
+    parser.add_argument("--long-tags", action="store_true", help="ETags of 5000 characters")
     parser.add_argument("--gzip", action="store_true", help="Content-Encoding: gzip for whole files")
     parser.add_argument("--missing", default="404",
                         help="status of what is not there; 'page' with status 200, or 'endless'")

@@ -1,4 +1,5 @@
-// Replaces the global operators new and delete by ones that count. See allocation_counter.hpp.
+// Replaces the global operators new and delete by ones that count and can fail. See
+// allocation_counter.hpp.
 #include "support/allocation_counter.hpp"
 
 #include <algorithm>
@@ -10,12 +11,14 @@
 namespace {
 
 std::atomic<std::int64_t> count{0};
+std::atomic<std::size_t> denied_from{0}, denied_to{0};
 thread_local std::int64_t thread_count = 0;
 thread_local std::int64_t thread_frees = 0;
 
 void* counted(std::size_t size) noexcept {
     count.fetch_add(1, std::memory_order_relaxed);
     ++thread_count;
+    if (size >= denied_from && size < denied_to) return nullptr;
     return std::malloc(size == 0 ? 1 : size);
 }
 
@@ -60,6 +63,14 @@ std::int64_t thread_allocation_count() {
 
 std::int64_t thread_free_count() {
     return thread_frees;
+}
+
+DeniedAllocations::DeniedAllocations(std::size_t from, std::size_t to) {
+    denied_from = from;
+    denied_to = to;
+}
+DeniedAllocations::~DeniedAllocations() {
+    denied_to = 0;
 }
 
 }  // namespace palpate::support

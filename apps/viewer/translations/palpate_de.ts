@@ -2891,6 +2891,22 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>Plays them; each is read whole at this level</source>
         <translation>Spielt sie ab; jede wird auf dieser Stufe ganz gelesen</translation>
     </message>
+    <message>
+        <source>Status 403 means: not stored</source>
+        <translation>Status 403 heißt: nicht gespeichert</translation>
+    </message>
+    <message>
+        <source>S3 answers so for missing pieces where the list is not public</source>
+        <translation>S3 antwortet so für fehlende Stücke, wo die Liste nicht öffentlich ist</translation>
+    </message>
+    <message>
+        <source>Missing pieces</source>
+        <translation>Fehlende Stücke</translation>
+    </message>
+    <message>
+        <source>What a server answers for pieces that hold only the fill value</source>
+        <translation>Was ein Server für Stücke antwortet, die nur den Füllwert enthalten</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::StrokePlot</name>

@@ -17,6 +17,7 @@
 #include "apps/viewer/window/run_controller.hpp"
 #include "apps/viewer/window/series_dialog.hpp"
 #include "apps/viewer/window/store_dialog.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/sample_volume.hpp"
 
 namespace palpate::viewer {
@@ -155,7 +156,7 @@ void FileController::open_sample() {
 void FileController::feel(std::shared_ptr<Opened> opened, const RunRequest& request) {
     run_.start(opened, request.setup);
     if (!request.record.empty()) recordings_.start(QString::fromStdString(request.record));
-    remember_file(QString::fromStdString(opened->loaded.name));
+    remember_file(QString::fromStdString(io::address_to_keep(opened->loaded.name)));
     for (const std::string& note : opened->loaded.notes) {
         messages_.show_done(QString::fromStdString(note));
     }
@@ -195,8 +196,8 @@ void FileController::feel_again(const run::Source& source) {
 void FileController::open_recording(const QString& path) {
     messages_.forget();
     messages_.guarded([&] {
-        const io::RecordingReader reader(path_of(path));
-        const run::Source source = run::recorded_source(reader.head(), path_of(path));
+        const io::RecordingHead head = io::read_recording_head(path_of(path));
+        const run::Source source = run::recorded_source(head, path_of(path));
         (void)run_.take_request();  // they were for a volume to feel
         load_or_reuse(source, [this, path](std::shared_ptr<Opened> opened) {
             play(std::move(opened), path);

@@ -82,6 +82,8 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
       time_(named(new QSpinBox, "store_time")),
       all_times_(named(new QCheckBox(tr("All, as a sequence")), "store_all_times",
                        tr("Plays them; each is read whole at this level"))),
+      forbidden_(named(new QCheckBox(tr("Status 403 means: not stored")), "store_forbidden",
+                       tr("S3 answers so for missing pieces where the list is not public"))),
       verdict_(named(new QLabel, "store_verdict")),
       first_time_(time) {
     setObjectName("store");
@@ -96,6 +98,8 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
     add_row(*form, tr("Channel"), channel_, tr("Of an image with several"));
     add_row(*form, tr("Time"), row_of({time_, all_times_}, 0),
             tr("The moment of an image with several, from 0"));
+    add_row(*form, tr("Missing pieces"), forbidden_,
+            tr("What a server answers for pieces that hold only the fill value"));
     form->addRow(verdict_);
     verdict_->setWordWrap(true);
     verdict_->setTextFormat(Qt::PlainText);
@@ -121,6 +125,7 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
         first_level_ = known->loader.level;
         first_channel_ = known->options.channel;
         all_times_->setChecked(known->all_times);
+        forbidden_->setChecked(known->options.forbidden_is_missing);
         address_->setText(QString::fromStdString(known->address));
         address_->setReadOnly(true);
         look();
@@ -200,6 +205,7 @@ run::Source StoreDialog::source() const {
     run::StoreSource store = found_ ? found_->source : known_;
     store.loader.level = std::max(0, level_->currentIndex());
     store.options.channel = std::max(0, channel_->currentIndex());
+    store.options.forbidden_is_missing = forbidden_->isChecked();
     store.all_times = time_->maximum() > 0 && all_times_->isChecked();
     // They are for what is read as it is felt.
     if (store.all_times) store.loader.whole_process = store.loader.coarse_first = false;

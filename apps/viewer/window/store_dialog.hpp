@@ -41,7 +41,7 @@ class StoreDialog : public QDialog {
     QPushButton* look_;
     QComboBox *level_, *channel_;
     QSpinBox* time_;
-    QCheckBox* all_times_;
+    QCheckBox *all_times_, *forbidden_;
     QLabel* verdict_;
     QPushButton* accept_;
     int first_level_ = 0, first_channel_ = 0, first_time_ = 0;  // as they are felt now

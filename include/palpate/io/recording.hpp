@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "palpate/io/error.hpp"
 #include "palpate/servo.hpp"
@@ -64,6 +65,8 @@ class RecordingWriter {
     /// Writes what is in the queue. Its thread calls this ten times a second, and a second one
     /// brings the file to the disk; with Pace::by_steps there is neither.
     void step();
+    /// Commands before all that is in the queue, and before the servo uses it.
+    void begin_with(std::vector<Command> commands);
     /// Where the servo puts its ticks; room for eight seconds.
     Queue<SessionEvent>& queue() { return queue_; }
     /// Why nothing is written any more (a full disk); empty while all is well. What was written
@@ -93,10 +96,15 @@ class RecordingWriter {
     std::int64_t written_ = 0;                             // bytes that are whole lines on the disk
     bool seekable_ = false;
     std::atomic<std::int64_t> ticks_{0};
-    mutable std::mutex mutex_;  // of problem_; the servo never comes near
+    mutable std::mutex mutex_;  // of what follows; the servo never comes near
     std::string problem_;
+    std::vector<Command> first_;
     std::jthread thread_, syncer_;
 };
+
+/// What a recording says of itself, without reading all of it. Throws as the constructor of
+/// RecordingReader does because of the head.
+RecordingHead read_recording_head(const std::filesystem::path& path);
 
 /// Reads a recording event by event. A last line that is not whole is left out. Ticks and commands
 /// that were removed, added, moved or changed since the recording was made are an InputError.

@@ -47,6 +47,8 @@ class Data {
     /// Brings a field of these data up to date: edits, or frames and moment.
     void update(Field& field) const;
     /// Starts a servo on the data as they are now and keeps it up to date until detach().
+    /// Throws io::OutputError where a recording that begins now could not be rendered again.
+    void check_recording() const;
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     void detach(const Servo& servo);
     /// What an attached servo feels with from now on, for brushes.

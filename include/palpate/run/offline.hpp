@@ -44,9 +44,11 @@ struct OfflineSinks {
 /// For OfflineSinks::change, with a volume that is read as it is felt: waits before each tick until
 /// all samples are in memory that it may need, so the ticks are those of the whole volume. Keeps
 /// references to both. Null for other volumes. What is called throws as
-/// stream::BrickLoader::wait_for().
+/// stream::BrickLoader::wait_for(), and what `tell` throws, which is called all the time while it
+/// waits.
 std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume& loaded,
-                                                             const io::Trajectory& trajectory);
+                                                             const io::Trajectory& trajectory,
+                                                             std::function<void()> tell = {});
 
 /// Renders each position of the trajectory (physical space) in order. The proxy begins at the first
 /// position if that is free, else where recovery finds free space; with layers, inside whatever is

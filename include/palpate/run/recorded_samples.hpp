@@ -20,7 +20,8 @@ struct GridReader {
     std::function<ResidentBrick(const Index3& brick, int level)> brick;  ///< of a level of detail
     ReadSamples box;  ///< of the level felt, before all edits
 };
-GridReader grid_of(const LoadedVolume& loaded);
+/// `tell` is called all the time while it reads, and may throw to stop.
+GridReader grid_of(const LoadedVolume& loaded, std::function<void()> tell = {});
 
 class RecordedSamples {
   public:

@@ -33,8 +33,11 @@ std::optional<Difference> difference(const SessionTick& recorded, const SessionT
 
 class Replay {
   public:
-    /// `reader` stands before the first event and outlives this. Throws as recorded_session().
-    Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::string recording);
+    /// `reader` stands before the first event and outlives this. `tell` is called all the time
+    /// while next() waits for samples of a store, and may throw to stop. Throws as
+    /// recorded_session().
+    Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::string recording,
+           std::function<void()> tell = {});
 
     struct Tick {
         SessionTick recorded, again;

@@ -98,11 +98,11 @@ class Run {
 
     /// Records from start() on, or from now on: then the session starts anew (forces ramp up) with
     /// everything that was asked for. Throws io::OutputError for a file that cannot be created;
-    /// then nothing has changed. A recording that was running is finished; if that fails
-    /// io::OutputError says so, but the new one runs. After many edits this takes a while: it
-    /// begins with them all.
+    /// and where more edits were made than a recording can begin with; then nothing has changed.
+    /// A recording that was running is finished; if that fails io::OutputError says so, but the new
+    /// one runs.
     void record(const std::filesystem::path& path);
-    /// Ends the recording; a running session starts anew. Returns its ticks, 0 without a recording.
+    /// Ends the recording; the session goes on. Returns its ticks, 0 without a recording.
     /// Throws io::OutputError for what could not be written.
     std::int64_t stop_recording();
     /// Null while nothing is recorded.

@@ -41,6 +41,8 @@ struct StoreSource {
     stream::BrickLoaderSettings loader;
     /// A sequence of all its times, each read whole at the loader's level when it is due.
     bool all_times = false;
+    /// The address comes from a file, which does not keep password and query (to_names()).
+    bool lacks_secrets = false;
 };
 
 struct Source {
@@ -62,8 +64,9 @@ Source source_named(const std::string& name);
 /// The names and values under which recordings and session files keep a source: "volume" is its
 /// name, the others are "dims", "type", "spacing", "skip", "byte-order", "series", "time-step",
 /// "level", "channel", "memory" [bytes, of the process], "coarse-first", "all-times",
-/// "frame-interval", "smooth", "dequantize" and "prefilter". What was not given is left out; so is
-/// a cache, which is of one machine.
+/// "forbidden-is-missing", "frame-interval", "smooth", "dequantize" and "prefilter". What was not
+/// given is left out; so is a cache, which is of one machine. Web addresses are without password
+/// and query (io::address_to_keep()); if they had one, "secrets" says "left out".
 std::map<std::string, std::string> to_names(const Source& source);
 /// The inverse. Unknown names are ignored, numbers that cannot be read count as not given. Throws
 /// std::invalid_argument for a layout that cannot be, and for values that this kind of source does

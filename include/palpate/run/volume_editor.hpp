@@ -30,7 +30,8 @@ struct EditState {
 };
 
 /// Starts a servo with this session, which has the newest data. `history` is what a recording needs
-/// before its first tick: every version so far by its recipe, without samples, and the one felt.
+/// before its first tick: every version that it may meet by its recipe, without samples, and the
+/// one felt.
 using StartServo =
     std::function<std::unique_ptr<Servo>(Session session, const std::vector<Command>& history)>;
 
@@ -41,7 +42,12 @@ class Streamer;
 /// when they are there, and others may come before it meanwhile.
 class VolumeEditor {
   public:
-    explicit VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace = Pace::own_thread);
+    /// A brush at work for seven minutes, 30 MB.
+    static constexpr std::size_t usual_versions = 100'000;
+
+    /// `most_versions`: of which it is known how they were made.
+    explicit VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace = Pace::own_thread,
+                          std::size_t most_versions = usual_versions);
     /// Of a volume that is read as it is felt: an edit waits for the samples that it changes. Edits
     /// take at most a quarter of `memory` [bytes] and what undo() needs an eighth. `streamer`
     /// outlives this and sends the versions; `samples` are those without any brick.
@@ -72,6 +78,8 @@ class VolumeEditor {
     bool undo();
     bool redo();
 
+    /// False after so many edits that not all are known any more: then StartServo gets some only.
+    bool knows_history() const;
     EditState state() const;
     /// These samples were written to a file.
     void set_saved(const std::shared_ptr<const Samples>& samples);
@@ -93,18 +101,22 @@ class VolumeEditor {
         std::int64_t from = 0;                      // the first tick that surely has the tool
         std::shared_ptr<const ToolBody> body = {};  // of the tool, for the last sweep
     };
+    /// What an edit reads, by the low corner of the box.
+    using Fetched = std::map<std::array<int, 3>, std::vector<std::byte>>;
+    static constexpr std::size_t first_forgetting = 1024;
     struct Version {
         std::weak_ptr<const Samples> samples;  // expired once undo cannot come back to them
         command::Samples recipe;               // without samples, with the number
     };
 
     VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* streamer, std::uint64_t memory,
-                 Pace pace);
+                 Pace pace, std::size_t most_versions);
+    void forget_versions();
     template <class Work>
     void with_samples(std::unique_lock<std::mutex>& lock, Work&& work);
-    void fetch(const std::shared_ptr<const Samples>& samples, const Edit& edit);
+    void fetch(const std::shared_ptr<const Samples>& samples, const Edit& edit,
+               Fetched& fetched) const;
     void read(const SampleBox& box, std::span<std::byte> out);
-    void count_edited();
     void run(const std::stop_token& stop);
     void brush(Hand& hand, std::chrono::steady_clock::time_point now);
     bool brush_from(const Touch& from, const Touch& to, Hand& hand, double isovalue);
@@ -124,7 +136,7 @@ class VolumeEditor {
     const std::uint64_t memory_;      // [bytes] of a volume that is read as it is felt
     std::uint64_t edited_bytes_ = 0;  // of that, in the bricks that are edited now
     std::stop_source reading_;
-    std::map<std::array<int, 3>, std::vector<std::byte>> fetched_;  // by the low corner of the box
+    Fetched* fetched_ = nullptr;  // by the call that has the lock and edits
     Editor editor_;
     std::vector<Hand> hands_;
     std::optional<HandBrush> brush_;
@@ -133,7 +145,11 @@ class VolumeEditor {
     std::chrono::steady_clock::time_point last_change_;  // by a brush
     std::string problem_;
     std::vector<Version> versions_;  // in order; the first has number 0
-    std::jthread thread_;            // last: it uses all of the above
+    std::uint64_t last_version_ = 0;
+    const std::size_t most_versions_;
+    std::size_t forget_at_;  // so many versions
+    bool knows_history_ = true;
+    std::jthread thread_;  // last: it uses all of the above
 };
 
 }  // namespace palpate::run

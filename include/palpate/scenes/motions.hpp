@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,8 +36,10 @@ std::vector<std::string> motion_names();
 /// A motion needs about 0.2 s + depth_mm / speed_mm_s before it is at depth; a shorter one ends
 /// on its way.
 /// Same arguments, same bits, on every compiler (no libm beyond sqrt).
+/// `progress` is called all the time with the part that is done, and may throw to stop.
 /// Throws std::invalid_argument listing the names, or saying which setting is not usable.
 std::vector<HandSample> make_motion(std::string_view name, const Field& field, double isovalue,
-                                    const MotionSettings& settings = {});
+                                    const MotionSettings& settings = {},
+                                    const std::function<void(double)>& progress = {});
 
 }  // namespace palpate::scenes

@@ -20,8 +20,8 @@ struct Opened {
 };
 
 /// Recognises the content of the original from a level of `from` on: of `from`, or of what its
-/// edits are of. Throws what the store throws.
-std::string content_below_edits(const Store& from, int level);
+/// edits are of. Throws what the store throws, and Cancelled as soon as `stop` is requested.
+std::string content_below_edits(const Store& from, int level, const std::stop_token& stop = {});
 
 /// Throws std::invalid_argument unless the name ends with .zarr.
 void check_edits_name(const std::filesystem::path& out);

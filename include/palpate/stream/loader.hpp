@@ -107,10 +107,11 @@ class BrickLoader {
     /// down while more than a few bricks that were dropped are still in use, by who has older
     /// versions.
     std::optional<BrickVersion> take();
-    /// Waits until all samples within `radius` [mm] of a point are in memory at the level felt.
-    /// Throws std::invalid_argument if they do not fit, io::InputError for the first that cannot be
-    /// had.
-    void wait_for(const Vec3& centre, double radius);
+    /// Waits until all samples within `radius` [mm] of a point are in memory at the level felt, and
+    /// before that while others wait for so many that these do not fit beside them. Throws
+    /// std::invalid_argument if they do not fit at all, io::InputError for the first that cannot be
+    /// had, Cancelled as soon as `stop` is requested.
+    void wait_for(const Vec3& centre, double radius, std::stop_token stop = {});
     BrickLoaderStatus status() const;
 
     /// Samples of the level felt, x fastest: from memory where one brick has them all, else from
@@ -133,6 +134,12 @@ class BrickLoader {
         int coarser;
         bool helps;  ///< another thread makes the brick; this one reads a piece of it
     };
+    /// A wait_for() that has not ended.
+    struct Waiting {
+        std::vector<Index3> needed;
+        std::uint64_t number;  ///< in the order in which they began, from 1
+        std::string problem;   ///< why one of them cannot be had
+    };
     using Clock = std::chrono::steady_clock;
 
     void work(const std::stop_token& stop);
@@ -145,6 +152,7 @@ class BrickLoader {
     void want(std::vector<Index3> bricks);
     void wake();
     void put(const Job& job, const ResidentBrick& brick);
+    void fail(const Place& place, const std::string& problem, std::uint64_t begun);
     void make_room();
     void choose_levels(std::span<const Interest> hands, Clock::time_point now);
     std::uint64_t bytes() const;
@@ -168,13 +176,13 @@ class BrickLoader {
     std::map<Place, Clock::time_point> failed_;  // not tried again before
     std::vector<Index3> wanted_;                 // most urgent first
     std::array<std::size_t, 4> begun_{};  // of each of next_job()'s rounds: all before is there
-    std::list<std::vector<Index3>> required_;  // by each wait_for() that has not ended
-    std::uint64_t waits_ = 0;                  // calls of wait_for() so far
-    int first_ = 0, finest_ = 0;               // steps coarser that are read, coarse_first
-    double brick_s_ = 0;                       // that a brick lately took to come, 0: none yet
-    double speed_ = 0;                         // of the fastest hand [bricks/s]
-    Clock::time_point looked_{};               // when that was
-    std::uint64_t changes_ = 0;                // that may have made a job
+    std::list<Waiting> waiting_;
+    std::uint64_t waits_ = 0;     // calls of wait_for() so far
+    int first_ = 0, finest_ = 0;  // steps coarser that are read, coarse_first
+    double brick_s_ = 0;          // that a brick lately took to come, 0: none yet
+    double speed_ = 0;            // of the fastest hand [bricks/s]
+    Clock::time_point looked_{};  // when that was
+    std::uint64_t changes_ = 0;   // that may have made a job
     std::vector<BrickEvent> events_;
     std::uint64_t other_bytes_ = 0;    // leave_room()
     std::uint64_t process_bytes_ = 0;  // of the process, beyond bricks, pieces and edits

@@ -1,0 +1,141 @@
+"""Servos whose last reference goes, devices that hang, forked processes, and Ctrl-C."""
+
+import functools
+import http.server
+import json
+import os
+import socket
+import subprocess
+import sys
+import threading
+
+import palpate
+
+import live_test
+
+
+def run_program(program, *arguments):
+    """Runs it in a process of its own; returns what it prints, word by word."""
+    lines = "import sys; sys.path.insert(0, sys.argv[1])\nimport os, threading, live_test, palpate\n"
+    ran = subprocess.run([sys.executable, "-B", "-c", lines + program, os.path.dirname(__file__), *arguments],
+                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+    assert ran.returncode == 0, ran.stdout
+    return ran.stdout.split()
+
+
+def test_the_last_reference_to_a_running_servo_may_go_in_a_function_of_its_device():
+    words = run_program("""
+class Tired(live_test.Still):
+    def read(self):
+        if len(self.forces) == 50:
+            self.servo = None
+        return super().read()
+    def close(self):
+        super().close()
+        print("closed", self.forces[-1].any(), max(f[2] for f in self.forces) > 0)
+device = Tired(live_test.surface_height() - 0.5)
+device.servo = palpate.Servo(live_test.renderer(), device, real_time=False)
+device.servo.start()
+live_test.until(lambda: device.closed)
+print("end")
+""")
+    assert words == ["closed", "False", "True", "end"]
+
+
+def test_a_device_that_hangs_is_written_zero_and_stopping_says_so():
+    words = run_program("""
+class Hanging(live_test.Still):
+    hangs = False
+    def read(self):
+        if self.hangs and self.forces[-1].any():
+            threading.Event().wait()
+        return super().read()
+device = Hanging(live_test.surface_height() - 0.5)
+servo = palpate.Servo(live_test.renderer(), device, real_time=False)
+servo.start()
+live_test.until(lambda: device.forces and device.forces[-1].any())
+device.hangs = True
+live_test.until(lambda: servo.snapshot().device.status == "stale")
+assert device.forces[-1].any()
+for i in range(2):
+    try:
+        servo.stop()
+    except palpate.DeviceError as e:
+        print("does not return" in str(e), device.forces[-1].any())
+del servo
+print("end")
+""")
+    assert words == ["True", "False", "True", "False", "end"]
+
+
+def serve(folder):
+    handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=folder)
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    return f"http://127.0.0.1:{server.server_address[1]}/"
+
+
+def test_a_forked_child_ends_and_does_not_touch_what_its_parent_runs(tmp_path):
+    (tmp_path / "v.zarr").mkdir()
+    (tmp_path / "v.zarr/.zarray").write_text(json.dumps(
+        dict(zarr_format=2, shape=[4, 4, 4], chunks=[4, 4, 4], dtype="|u1", compressor=None,
+             fill_value=9, order="C", filters=None)))
+    words = run_program("""
+store = palpate.open_store(sys.argv[2])
+device = live_test.Still(50)
+servo = palpate.Servo(live_test.renderer(), device, real_time=False)
+servo.start()
+run = palpate.Run(palpate.load("synthetic:sphere:16x16x16"), palpate.Setup(real_time=False))
+run.start()
+child = os.fork()
+if child == 0:
+    for thing in servo, run:
+        try:
+            thing.stop()
+        except RuntimeError as e:
+            print("forked" in str(e), flush=True)
+    servo.__exit__(None, None, None)
+    sys.exit(0)
+live_test.until(lambda: os.waitpid(child, os.WNOHANG)[0], 60)
+ticks = servo.snapshot().number
+live_test.until(lambda: servo.snapshot().number > ticks)
+run.stop()
+servo.stop()
+print(device.closed)
+""", serve(tmp_path) + "v.zarr")
+    assert words == ["True", "True", "True"]
+
+
+def interrupted_after(program, *arguments):
+    """Runs the call that stands last in a program, interrupts it as Ctrl-C does when it is under
+    way, and returns how long it took to end [s]."""
+    *before, call = program.strip().splitlines()
+    words = run_program("\n".join(before) + f"""
+import signal, time
+when = []
+def interrupt():
+    time.sleep(0.5)
+    when.append(time.monotonic())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Thread(target=interrupt, daemon=True).start()
+try:
+    {call}
+    print("inf")
+except KeyboardInterrupt:
+    print(time.monotonic() - when[0])
+""", *arguments)
+    return float(words[0])
+
+
+def test_ctrl_c_ends_a_long_motion():
+    assert interrupted_after("""
+scene = palpate.scene("sphere:32x32x32")
+settings = palpate.MotionSettings(duration_s=8, rate_hz=5e5)  # means of 15,000 samples each
+palpate.motion("slide", palpate.Field(scene.volume), scene.isovalue, settings)
+""") < 10  # of minutes; usually 0.1
+
+
+def test_ctrl_c_ends_the_wait_for_a_silent_server():
+    with socket.create_server(("127.0.0.1", 0)) as silent:  # connects, and never answers
+        address = f"http://127.0.0.1:{silent.getsockname()[1]}/v.zarr"
+        assert interrupted_after("palpate.open_store(sys.argv[2])", address) < 10  # of 50
