@@ -16,7 +16,7 @@ namespace palpate::io {
 
 inline constexpr HelperProgram io_helper{
     "palpate-io-helper", "the format's library",
-    "the file is damaged or not what its name says; export it again",
+    "the file may be sound all the same: convert it with another program, or export it again",
     "close other programs or use a smaller volume",
     "files of its size take less; it is most likely damaged: export it again"};
 

@@ -2,7 +2,11 @@
 #include "stream/chunked_store.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
+#include <mutex>
+#include <optional>
 
 #include "palpate/io/error.hpp"
 #include "stream/unpacking_room.hpp"
@@ -35,6 +39,8 @@ ChunkLayout layout_of(const ChunkedArray& array, const ChunkedVolume& volume) {
     }
     return layout;
 }
+
+constexpr std::int64_t most_searched = 1 << 28;  // samples, for the least finite one
 
 class ChunkedStore : public Store {
   public:
@@ -85,7 +91,7 @@ class ChunkedStore : public Store {
         const UnpackingRoom::Share share(room_, needed, stop);
         const auto bytes = reader.chunk(index_of(reader.array(), chunk), stop);
         copy(reader.array(), bytes, layouts_[static_cast<std::size_t>(level)], corner, part, box,
-             out);
+             out, stop);
     }
 
     [[noreturn]] void refuse(int level, std::uint64_t needed) const {
@@ -110,12 +116,12 @@ class ChunkedStore : public Store {
     /// The rows of `part`, out of a chunk whose first sample is `corner`, to their place in `box`.
     void copy(const ChunkedArray& array, const std::optional<Bytes>& chunk,
               const ChunkLayout& layout, const Index3& corner, const SampleBox& part,
-              const SampleBox& box, std::span<std::byte> out) const {
+              const SampleBox& box, std::span<std::byte> out, const std::stop_token& stop) const {
         const std::size_t from_size = array.bytes.size(), to_size = size_of(volume_.info.type);
         const auto row = static_cast<std::size_t>(part.high[0] - part.low[0] + 1);
         const Index3 size = box.high - box.low + Index3::Ones();
         std::vector<std::byte> raw(row * from_size), filled;
-        if (!chunk) filled = fill_row(row);
+        if (!chunk) filled = fill_row(row, stop);
         for (int z = part.low[2]; z <= part.high[2]; ++z) {
             for (int y = part.low[1]; y <= part.high[1]; ++y) {
                 const Index3 at = Index3(part.low[0], y, z) - box.low;
@@ -137,7 +143,11 @@ class ChunkedStore : public Store {
                             static_cast<std::size_t>(in[static_cast<Eigen::Index>(i)]);
                 }
                 gather(chunk->data() + from * from_size, layout.stride[0], from_size, raw);
-                array.bytes.convert(raw, to);
+                array.bytes.unpack(raw, to);
+                const std::span<std::byte> samples{to, row * to_size};
+                if (!finite_samples(volume_.info.type, samples).all) {
+                    make_finite(volume_.info.type, samples, least_finite(stop));
+                }
             }
         }
     }
@@ -153,10 +163,71 @@ class ChunkedStore : public Store {
         }
     }
 
-    std::vector<std::byte> fill_row(std::size_t count) const {
+    /// What takes the place of samples that are not finite: the least one of the finest level that
+    /// is not too large to be searched, as in io::read_volume(). Reads it when it is first needed.
+    double least_finite(const std::stop_token& stop) const {
+        if (volume_.info.range) return volume_.info.range->minimum;
+        const std::lock_guard lock(searching_);
+        if (least_finite_) return *least_finite_;
+        std::size_t level = 0;
+        const auto is_large = [&] {
+            return sample_count(volume_.info.levels[level].geometry) > most_searched;
+        };
+        while (level + 1 < readers_.size() && is_large()) ++level;
+        const ChunkReader& reader = *readers_[level];
+        const Level& grid = volume_.info.levels[level];
+        const Index3 size = grid.geometry.size;
+        double least = std::numeric_limits<double>::infinity();
+        for (int z = 0; z < size[2]; z += grid.chunk[2]) {
+            for (int y = 0; y < size[1]; y += grid.chunk[1]) {
+                for (int x = 0; x < size[0]; x += grid.chunk[0]) {
+                    least = std::min(least, least_in(reader, level, Index3(x, y, z), stop));
+                }
+            }
+        }
+        if (std::isinf(least)) {
+            throw io::InputError(volume_.info.address +
+                                 ": none of its samples is a finite number; export it again");
+        }
+        least_finite_ = least;
+        return least;
+    }
+
+    /// Infinity if the chunk has no finite sample.
+    double least_in(const ChunkReader& reader, std::size_t level, const Index3& corner,
+                    const std::stop_token& stop) const {
+        const Level& grid = volume_.info.levels[level];
+        const ChunkedArray& array = reader.array();
+        const auto chunk = reader.chunk(index_of(array, corner.cwiseQuotient(grid.chunk)), stop);
+        if (!chunk) {
+            const double fill = array.bytes.fill;
+            return std::isfinite(fill) ? fill : std::numeric_limits<double>::infinity();
+        }
+        const ChunkLayout& layout = layouts_[level];
+        const Index3 end = grid.geometry.size.cwiseMin(corner + grid.chunk) - corner;
+        std::vector<std::byte> raw(static_cast<std::size_t>(end[0]) * array.bytes.size());
+        std::vector<std::byte> row(static_cast<std::size_t>(end[0]) * size_of(volume_.info.type));
+        double least = std::numeric_limits<double>::infinity();
+        for (int z = 0; z < end[2]; ++z) {
+            for (int y = 0; y < end[1]; ++y) {
+                const std::size_t from = layout.base +
+                                         layout.stride[2] * static_cast<std::size_t>(z) +
+                                         layout.stride[1] * static_cast<std::size_t>(y);
+                gather(chunk->data() + from * array.bytes.size(), layout.stride[0],
+                       array.bytes.size(), raw);
+                array.bytes.unpack(raw, row.data());
+                least = std::min<double>(least, finite_samples(volume_.info.type, row).least);
+            }
+        }
+        return least;
+    }
+
+    std::vector<std::byte> fill_row(std::size_t count, const std::stop_token& stop) const {
         std::vector<std::byte> row(count * size_of(volume_.info.type));
+        const bool is_finite = std::isfinite(volume_.arrays[0].bytes.fill);
+        const double fill = is_finite ? volume_.info.fill : least_finite(stop);
         with_type(volume_.info.type, [&](auto zero) {
-            const auto value = static_cast<decltype(zero)>(volume_.info.fill);
+            const auto value = static_cast<decltype(zero)>(fill);
             for (std::size_t i = 0; i < count; ++i) {
                 std::memcpy(row.data() + i * sizeof value, &value, sizeof value);
             }
@@ -169,6 +240,8 @@ class ChunkedStore : public Store {
     std::vector<std::unique_ptr<ChunkReader>> readers_;
     std::vector<ChunkLayout> layouts_;
     mutable UnpackingRoom room_;
+    mutable std::mutex searching_;
+    mutable std::optional<double> least_finite_;
 };
 
 }  // namespace

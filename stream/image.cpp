@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "io/units.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/stores.hpp"
 
@@ -40,8 +41,7 @@ Roles roles_of(const std::vector<ImageAxis>& axes) {
 }
 
 double millimetres_of(const ImageAxis& axis, std::vector<std::string>& notes) {
-    const double millimetres = millimetres_in(axis.unit);
-    if (millimetres > 0) return millimetres;
+    if (const auto millimetres = io::millimetres_in(axis.unit)) return *millimetres;
     const std::string note = axis.unit.empty()
                                  ? "its metadata give no unit of length: mm were taken"
                                  : "its unit of length '" + io::one_line(axis.unit.substr(0, 40)) +
@@ -67,8 +67,9 @@ class Taking {
             }
         }
         info.type = finest.bytes.type();
-        info.fill = finest.bytes.fill;
+        info.fill = std::isfinite(finest.bytes.fill) ? finest.bytes.fill : 0;
         info.range = image.range;
+        if (!image.range) note_finite(finest.bytes, info.notes);
         io::note_conversion(finest.bytes.stored, finest.bytes.values, info.notes);
         take_choice(image, roles);
         volume_.space = roles.space;
@@ -87,7 +88,7 @@ class Taking {
         if (roles.time >= 0) {
             const auto t = static_cast<std::size_t>(roles.time);
             info.times = static_cast<int>(std::min<std::int64_t>(finest.shape[t], 1 << 30));
-            const double unit = seconds_in(image.axes[t].unit);
+            const double unit = io::seconds_in(image.axes[t].unit).value_or(0);
             const double interval = unit * image.levels[0].scale[t];
             if (info.times > 1 && interval > 0) info.frame_interval = interval;
             volume_.fixed[t] = options_.time;
@@ -171,6 +172,10 @@ std::vector<ImageAxis> usual_axes(std::size_t count) {
     return axes;
 }
 
+void check_axes(const std::vector<ImageAxis>& axes) {
+    (void)roles_of(axes);
+}
+
 ChunkedVolume volume_of(const Image& image, ChunkedVolume begun, const StoreOptions& options) {
     return Taking(image, std::move(begun), options).volume();
 }
@@ -181,51 +186,6 @@ void check_array(const ChunkedArray& array) {
     } catch (const std::invalid_argument& e) {
         throw BadMetadata(e.what());
     }
-}
-
-namespace {
-
-using Unit = std::pair<const char*, double>;
-
-template <std::size_t N>
-double factor_in(const std::array<Unit, N>& units, const std::string& unit) {
-    for (const auto& [name, factor] : units) {
-        if (unit == name) return factor;
-    }
-    return 0;
-}
-
-}  // namespace
-
-double millimetres_in(const std::string& unit) {
-    static constexpr std::array<Unit, 15> units = {{{"millimeter", 1},
-                                                    {"millimetre", 1},
-                                                    {"mm", 1},
-                                                    {"micrometer", 1e-3},
-                                                    {"micrometre", 1e-3},
-                                                    {"micron", 1e-3},
-                                                    {"um", 1e-3},
-                                                    {"\u00b5m", 1e-3},
-                                                    {"\u03bcm", 1e-3},
-                                                    {"nanometer", 1e-6},
-                                                    {"nm", 1e-6},
-                                                    {"angstrom", 1e-7},
-                                                    {"centimeter", 10},
-                                                    {"meter", 1000},
-                                                    {"inch", 25.4}}};
-    return factor_in(units, unit);
-}
-
-double seconds_in(const std::string& unit) {
-    static constexpr std::array<Unit, 8> units = {{{"second", 1},
-                                                   {"s", 1},
-                                                   {"millisecond", 1e-3},
-                                                   {"ms", 1e-3},
-                                                   {"microsecond", 1e-6},
-                                                   {"minute", 60},
-                                                   {"hour", 3600},
-                                                   {"day", 86400}}};
-    return factor_in(units, unit);
 }
 
 }  // namespace palpate::stream

@@ -40,6 +40,9 @@ struct Image {
 /// Throws BadMetadata unless there are 2 to 5.
 std::vector<ImageAxis> usual_axes(std::size_t count);
 
+/// Throws BadMetadata unless each axis is one of t, c, z, y, x, once, with x and y.
+void check_axes(const std::vector<ImageAxis>& axes);
+
 /// Completes a volume whose info has address, format and perhaps notes, channels and times, and
 /// whose arrays are those of the levels: type, range, levels, the choice of channel and time.
 /// Throws BadMetadata, io::InputError about a choice that there is not.
@@ -47,9 +50,5 @@ ChunkedVolume volume_of(const Image& image, ChunkedVolume begun, const StoreOpti
 
 /// Throws BadMetadata instead of std::invalid_argument.
 void check_array(const ChunkedArray& array);
-
-/// [mm] of a unit of length, [s] of a unit of time; 0: not known.
-double millimetres_in(const std::string& unit);
-double seconds_in(const std::string& unit);
 
 }  // namespace palpate::stream

@@ -74,20 +74,25 @@ std::optional<Numbers> along_axes(const Json& list, std::size_t axes, double oth
 
 struct Resolution {
     Numbers spacing;
-    std::string unit;
+    std::vector<std::string> units;  ///< of each axis
 };
 
-/// {"pixelResolution": {"dimensions": [..], "unit": ".."}}, or lists with a unit beside them.
+/// {"pixelResolution": {"dimensions": [..], "unit": ".."}}, or lists with units beside them.
 std::optional<Resolution> resolution_of(std::span<const Json> groups, std::size_t axes) {
     for (const char* name : {"pixelResolution", "resolution"}) {
         const Json& given = attribute(groups, name);
         const auto spacing =
             along_axes(given.is_object() ? given.value("dimensions", Json()) : given, axes, 1);
         if (!spacing) continue;
-        Json unit = given.is_object() ? given.value("unit", Json()) : attribute(groups, "unit");
-        const Json& units = attribute(groups, "units");
-        if (!unit.is_string() && units.is_array() && !units.empty()) unit = units[0];
-        return Resolution{*spacing, unit.is_string() ? unit.get<std::string>() : ""};
+        const Json unit =
+            given.is_object() ? given.value("unit", Json()) : attribute(groups, "unit");
+        std::vector<std::string> units(axes, unit.is_string() ? unit.get<std::string>() : "");
+        const Json& all = attribute(groups, "units");
+        for (std::size_t i = 0; !unit.is_string() && all.is_array() && i < axes; ++i) {
+            const Json& one = i < all.size() ? all[i] : all.empty() ? unit : all.back();
+            if (one.is_string()) units[axes - 1 - i] = one.get<std::string>();
+        }
+        return Resolution{*spacing, units};
     }
     return std::nullopt;
 }
@@ -208,7 +213,7 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
             const double spacing = resolution ? resolution->spacing[a] : 1;
             level.scale[a] = spacing * (*factors)[a];
             level.translation[a] = spacing * ((*factors)[a] - 1) / 2;
-            image.axes[a].unit = resolution ? resolution->unit : "millimeter";
+            image.axes[a].unit = resolution ? resolution->units[a] : "millimeter";
         }
         if (!resolution) note_once(notes, "it does not tell its spacing: 1 mm was taken");
         image.levels.push_back(level);

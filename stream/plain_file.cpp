@@ -81,11 +81,7 @@ class PlainFile : public Store {
         // A row is the least that costs one access to a disk.
         info_.levels = {{plain.geometry, Index3(plain.geometry.size[0], 1, 1)}};
         io::note_conversion(plain.stored, plain.value_map, info_.notes);
-        if (info_.type == SampleType::float32) {
-            info_.notes.emplace_back(
-                "samples that are not finite (NaN or infinity), if there are any, become the least "
-                "finite value");
-        }
+        note_finite(bytes_, info_.notes);
         check_choice(info_, options);
         info_.channel = options.channel;
         info_.time = options.time;

@@ -27,11 +27,6 @@ void SampleBytes::unpack(std::span<std::byte> raw, std::byte* to) const {
     io::convert(stored, raw.data(), type(), to, raw.size() / size(), values);
 }
 
-void SampleBytes::convert(std::span<std::byte> raw, std::byte* to) const {
-    unpack(raw, to);
-    make_finite(type(), {to, raw.size() / size() * size_of(type())}, fill);
-}
-
 FiniteSamples finite_samples(SampleType type, std::span<const std::byte> bytes) {
     FiniteSamples found;
     if (type != SampleType::float32) return found;
@@ -52,8 +47,19 @@ void make_finite(SampleType type, std::span<std::byte> bytes, double instead) {
     replace_non_finite(bytes.data(), bytes.size() / sizeof(float), static_cast<float>(instead));
 }
 
+void note_finite(const SampleBytes& bytes, std::vector<std::string>& notes) {
+    const bool is_float =
+        bytes.stored == io::Stored::float32 || bytes.stored == io::Stored::float64;
+    if (!is_float && !(bytes.type() == SampleType::float32 && bytes.values.changes())) return;
+    notes.emplace_back(
+        "samples that are not finite (NaN or infinity), if there are any, become the least finite "
+        "value");
+}
+
 double fitting_fill(double fill, const SampleBytes& bytes) {
-    if (!std::isfinite(fill) || std::abs(fill) > std::numeric_limits<float>::max()) return 0;
+    if (!std::isfinite(fill) || std::abs(fill) > std::numeric_limits<float>::max()) {
+        return bytes.type() == SampleType::float32 ? std::nan("") : 0;
+    }
     return with_type(bytes.type(), [&](auto zero) {
         using T = decltype(zero);
         const auto low = static_cast<double>(std::numeric_limits<T>::lowest());

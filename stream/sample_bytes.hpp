@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "io/stored.hpp"
 #include "palpate/samples.hpp"
@@ -14,14 +16,12 @@ struct SampleBytes {
     io::Stored stored = io::Stored::uint8;
     bool swapped = false;  ///< in the other byte order than the machine's
     io::ValueMap values = {};
-    double fill = 0;  ///< in place of what is not finite [data units]
+    double fill = 0;  ///< of what is not stored [data units]; NaN: it is not finite
 
     SampleType type() const { return io::kept_as(stored, values); }
     std::size_t size() const { return io::size_of(stored); }
     /// Converts the stored samples of `raw`, which it may change, into `to`, which has room for as
-    /// many of type(). Those that are not finite become `fill`.
-    void convert(std::span<std::byte> raw, std::byte* to) const;
-    /// The same, but those that are not finite stay.
+    /// many of type(). Those that are not finite stay.
     void unpack(std::span<std::byte> raw, std::byte* to) const;
 };
 
@@ -35,7 +35,10 @@ FiniteSamples finite_samples(SampleType type, std::span<const std::byte> bytes);
 /// Samples that are not finite become `instead`, as io::read_volume() does it.
 void make_finite(SampleType type, std::span<std::byte> bytes, double instead);
 
-/// A fill value as the type that is kept has it; 0 if it is not finite.
+/// Notes that such samples, if there can be any, become the least finite one.
+void note_finite(const SampleBytes& bytes, std::vector<std::string>& notes);
+
+/// A fill value as the type that is kept has it; NaN if it is not finite, 0 in whole numbers.
 double fitting_fill(double fill, const SampleBytes& bytes);
 
 /// Throws std::invalid_argument unless the box is not empty, inside the grid, and `bytes` are those

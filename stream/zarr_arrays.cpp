@@ -2,7 +2,10 @@
 // and v3/core, with the codecs of v3.
 #include <algorithm>
 #include <bit>
+#include <charconv>
+#include <cmath>
 
+#include "palpate/io/error.hpp"
 #include "stream/zarr_metadata.hpp"
 
 namespace palpate::stream {
@@ -45,9 +48,22 @@ void take_dtype(const Json& json, SampleBytes& bytes) {
         (type[0] == '>') == (std::endian::native == std::endian::little) && bytes.size() > 1;
 }
 
-double fill_of(const Json& json) {
+/// A number, "NaN", "Infinity", or the bits of a float in hexadecimal digits.
+double fill_of(const Json& json, io::Stored stored) {
     if (json.is_boolean()) return json.get<bool>() ? 1 : 0;
-    return json.is_number() ? json.get<double>() : 0;  // none, NaN, infinite, or a text of bytes
+    if (json.is_number()) return json.get<double>();
+    if (json.is_null()) return 0;
+    const std::string text = json.is_string() ? json.get<std::string>() : "";
+    if (text == "NaN" || text == "Infinity" || text == "-Infinity") return std::nan("");
+    std::uint64_t bits = 0;
+    const char* const end = text.data() + text.size();
+    if (text.starts_with("0x") && std::from_chars(text.data() + 2, end, bits, 16).ptr == end) {
+        if (stored == io::Stored::float32) {
+            return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+        }
+        if (stored == io::Stored::float64) return std::bit_cast<double>(bits);
+    }
+    throw BadMetadata("its fill_value '" + io::one_line(text.substr(0, 40)) + "' is not read");
 }
 
 char separator_of(const std::string& text) {
@@ -71,7 +87,8 @@ ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
     array.shape = sizes_of(zarray.at("shape"), "shape");
     array.chunk = sizes_of(zarray.at("chunks"), "chunks");
     take_dtype(zarray.at("dtype"), array.bytes);
-    array.bytes.fill = fitting_fill(fill_of(zarray.value("fill_value", Json())), array.bytes);
+    array.bytes.fill =
+        fitting_fill(fill_of(zarray.value("fill_value", Json()), array.bytes.stored), array.bytes);
     array.separator = separator_of(zarray.value("dimension_separator", std::string(".")));
     const std::string order = zarray.value("order", std::string("C"));
     if (order != "C" && order != "F")
@@ -225,7 +242,8 @@ ChunkedArray zarr3_array(const Json& zarr, const std::string& folder) {
     const auto stored = io::stored_named(name == "bool" ? "uint8" : name);
     if (!stored) refuse_type(name);
     array.bytes.stored = *stored;
-    array.bytes.fill = fitting_fill(fill_of(zarr.value("fill_value", Json())), array.bytes);
+    array.bytes.fill =
+        fitting_fill(fill_of(zarr.value("fill_value", Json()), array.bytes.stored), array.bytes);
     for (std::size_t a = 0; a < array.axes(); ++a) array.stored_axes.push_back(static_cast<int>(a));
     take_key_encoding(zarr.at("chunk_key_encoding"), array);
     for (const Json& transformer : zarr.value("storage_transformers", Json::array())) {

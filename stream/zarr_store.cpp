@@ -1,7 +1,10 @@
 // Opens OME-Zarr images of versions 0.4 (Zarr 2) and 0.5 (Zarr 3), single Zarr arrays, and the
 // first series of what bioformats2raw writes.
+#include <algorithm>
 #include <array>
+#include <cctype>
 
+#include "palpate/io/error.hpp"
 #include "stream/metadata_files.hpp"
 #include "stream/stores.hpp"
 #include "stream/zarr_metadata.hpp"
@@ -82,11 +85,42 @@ class Opening {
         volume_.info.notes.push_back("it is an array without a place in space: 1 mm was taken");
         Image image;
         image.axes = usual_axes(array.axes());
+        take_names(root, image.axes);
         for (ImageAxis& axis : image.axes) axis.unit = "millimeter";
+        for (const char* name : {"scale_factor", "add_offset"}) {
+            if (!root.attributes.is_object() || !root.attributes.contains(name)) continue;
+            volume_.info.notes.push_back("its attribute '" + std::string(name) +
+                                         "' was not applied: the samples are as they are stored");
+        }
         image.levels = {
             {"", std::vector<double>(array.axes(), 1), std::vector<double>(array.axes(), 0)}};
         volume_.arrays = {array};
         return volume_of(image, std::move(volume_), options_);
+    }
+
+    /// The names of its dimensions: Zarr 3 has a place for them, xarray an attribute.
+    void take_names(const Node& root, std::vector<ImageAxis>& axes) {
+        Json names = root.array.value("dimension_names", Json());
+        if (!names.is_array() && root.attributes.is_object()) {
+            names = root.attributes.value("_ARRAY_DIMENSIONS", Json());
+        }
+        if (!names.is_array() || names.size() != axes.size()) return;
+        std::vector<ImageAxis> named;
+        std::string text;
+        for (const Json& name : names) {
+            std::string one = name.is_string() ? name.get<std::string>() : "";
+            text += (text.empty() ? "" : ", ") + io::one_line(one.substr(0, 20));
+            std::ranges::transform(one, one.begin(),
+                                   [](unsigned char c) { return std::tolower(c); });
+            named.push_back({one, ""});
+        }
+        try {
+            check_axes(named);
+            axes = std::move(named);
+        } catch (const BadMetadata&) {
+            volume_.info.notes.push_back("its dimensions have the names " + text +
+                                         ": the last were taken as z, y, x");
+        }
     }
 
     /// The series of a bioformats2raw folder are images named 0, 1, ...

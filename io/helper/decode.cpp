@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
-#include <map>
 
 #include "io/finite.hpp"
+#include "io/units.hpp"
 
 namespace palpate::io {
 namespace {
@@ -118,51 +118,19 @@ void finish(Result& result, const Request& request, std::span<std::byte> samples
 
 FrameTimes frame_times(double interval, double first, const std::string& unit,
                        std::vector<std::string>& notes) {
-    static const std::map<std::string, double> units = {{"", 1},
-                                                        {"s", 1},
-                                                        {"sec", 1},
-                                                        {"second", 1},
-                                                        {"seconds", 1},
-                                                        {"ms", 1e-3},
-                                                        {"msec", 1e-3},
-                                                        {"millisecond", 1e-3},
-                                                        {"milliseconds", 1e-3},
-                                                        {"us", 1e-6},
-                                                        {"usec", 1e-6},
-                                                        {"microsecond", 1e-6},
-                                                        {"microseconds", 1e-6},
-                                                        {"min", 60},
-                                                        {"minute", 60},
-                                                        {"minutes", 60}};
-    const auto known = units.find(unit);
-    if (known == units.end() || !(std::isfinite(interval) && interval > 0)) return {};
+    const auto second = unit.empty() ? std::optional(1.0) : seconds_in(unit);
+    if (!second || !(std::isfinite(interval) && interval > 0)) return {};
     if (unit.empty()) notes.push_back("its header gives no unit of time: seconds were taken");
-    const double second = known->second;
-    return {interval * second, std::isfinite(first) ? first * second : 0};
+    return {interval * *second, std::isfinite(first) ? first * *second : 0};
 }
 
 void add_note(std::vector<std::string>& notes, const std::string& note) {
     if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
 }
 
-std::optional<double> millimetres_of(const std::string& unit) {
-    static const std::map<std::string, double> known = {
-        {"nm", 1e-6},         {"nanometer", 1e-6}, {"nanometers", 1e-6}, {"um", 1e-3},
-        {"\\u00b5m", 1e-3},   {"\xc2\xb5m", 1e-3}, {"\xb5m", 1e-3},      {"\xce\xbcm", 1e-3},
-        {"micron", 1e-3},     {"microns", 1e-3},   {"micrometer", 1e-3}, {"micrometers", 1e-3},
-        {"micrometre", 1e-3}, {"mm", 1},           {"millimeter", 1},    {"millimeters", 1},
-        {"millimetre", 1},    {"millimetres", 1},  {"\xc3\x85", 1e-7},   {"angstrom", 1e-7},
-        {"cm", 10},           {"centimeter", 10},  {"centimeters", 10},  {"centimetre", 10},
-        {"dm", 100},          {"m", 1000},         {"meter", 1000},      {"meters", 1000},
-        {"metre", 1000},      {"inch", 25.4},      {"inches", 25.4},     {"in", 25.4}};
-    const auto found = known.find(lower(trimmed(unit)));
-    if (found == known.end()) return std::nullopt;
-    return found->second;
-}
-
 double length_unit(const std::string& unit, std::vector<std::string>& notes) {
     if (unit.empty()) return 1;
-    const auto length = millimetres_of(unit);
+    const auto length = millimetres_in(unit);
     if (!length) {
         add_note(notes,
                  "its unit of length '" + unit.substr(0, 40) + "' is not known: mm were taken");

@@ -62,11 +62,8 @@ FrameTimes frame_times(double interval, double first, const std::string& unit,
 /// Appends a note unless it is there.
 void add_note(std::vector<std::string>& notes, const std::string& note);
 
-/// The length of a unit [mm], as headers, ImageJ's users and OME-XML write it; nothing for pixels
-/// and unknown units.
-std::optional<double> millimetres_of(const std::string& unit);
-/// The same with a note unless it is mm: lengths are converted, those of unknown units taken as mm.
-/// No unit is mm.
+/// The length of a unit [mm], with a note unless it is mm: lengths are converted, those of unknown
+/// units taken as mm. No unit is mm.
 double length_unit(const std::string& unit, std::vector<std::string>& notes);
 
 struct Result {

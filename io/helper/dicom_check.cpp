@@ -10,6 +10,7 @@
 #include "io/helper/dicom_bytes.hpp"
 #include "io/helper/dicom_pixels.hpp"
 #include "io/inflate.hpp"
+#include "io/number.hpp"
 
 namespace palpate::io {
 namespace {
@@ -39,6 +40,7 @@ class Walk {
             walk(data_set_, UINT64_MAX, syntax != "1.2.840.10008.1.2", 0);
             if (extent_.sop_class.empty()) fail("is cut off in its first lines, or damaged there");
             take_out_overlays();
+            take_high_bit();
             extent_.needs_copy = extent_.deflated || !changes_.empty();
             if (extent_.rows > 0 && extent_.columns > 0) check_pixels(syntax);
         } catch (const DamagedStream& e) {
@@ -261,12 +263,16 @@ class Walk {
     /// What a library is to be given instead of an element of the data set, which is all there.
     void tidy_up(std::uint64_t start, std::uint64_t at, const Element& e) {
         // Of PixelSpacing and other lengths, positions and slopes.
-        static const std::set<std::uint32_t> numbers = {0x00180050, 0x00180088, 0x00181164,
-                                                        0x00200032, 0x00200037, 0x00280030,
-                                                        0x00281052, 0x00281053};
+        static const std::set<std::uint32_t> numbers = {
+            0x00180050, 0x00180088, 0x00181164, 0x00200032, 0x00200037,
+            0x00280030, 0x00182010, 0x00201041, 0x00281052, 0x00281053};
         if (e.tag == 0x00080016 && extent_.sop_class.empty()) extent_.sop_class = text(at, e);
+        if (e.tag == 0x00280101 && e.length == 2) stored_at_ = at;
+        if (e.tag == 0x00280102 && e.length == 2) high_bit_ = number<std::uint16_t>(at);
         if (e.tag == 0x00280004 && text(at, e) == "MONOCHROME1") {
-            change({at + 10, 1, "2"});
+            std::uint64_t one = at;
+            while (number<char>(one) != '1') ++one;
+            change({one, 1, "2"});
             add_note(extent_.notes,
                      "its MONOCHROME1 says that greater values are shown darker: "
                      "values were taken as they are stored");
@@ -280,9 +286,41 @@ class Walk {
         if (numbers.contains(e.tag) && e.length <= 1024) tidy_number(start, at, e);
     }
 
+    /// Samples above the lowest of their bits, as old files may have them. GDCM would take some of
+    /// their bits off: for it, they use the bits below as well.
+    void take_high_bit() {
+        if (stored_at_ == 0 || high_bit_ > 31 || !pixels_.plain) return;
+        const int stored = number<std::uint16_t>(stored_at_), used = high_bit_ + 1;
+        if (stored == 0 || used <= stored) return;
+        extent_.shift = used - stored;
+        change({stored_at_, 2, bytes_of(static_cast<std::uint16_t>(used))});
+        add_note(extent_.notes, "its samples lie " + std::to_string(extent_.shift) +
+                                    " bits above the lowest (HighBit): they were shifted down");
+    }
+
+    /// Numbers of a binary type where a text is usual, which GDCM aborts on; empty for texts.
+    std::string binary_as_text(std::uint64_t at, const Element& e) {
+        std::string text;
+        const auto append = [&](auto zero) {
+            using T = decltype(zero);
+            for (std::uint64_t i = 0; i + sizeof(T) <= e.length; i += sizeof(T)) {
+                if (!text.empty()) text += '\\';
+                append_number(text, static_cast<double>(number<T>(at + i)));
+            }
+        };
+        if (e.vr == "FD") append(double{});
+        if (e.vr == "FL") append(float{});
+        if (e.vr == "SS") append(std::int16_t{});
+        if (e.vr == "US") append(std::uint16_t{});
+        if (e.vr == "SL") append(std::int32_t{});
+        if (e.vr == "UL") append(std::uint32_t{});
+        return text;
+    }
+
     void tidy_number(std::uint64_t start, std::uint64_t at, const Element& e) {
-        std::string value;
-        for (std::uint64_t i = 0; i < e.length; ++i) value += number<char>(at + i);
+        std::string value = binary_as_text(at, e);
+        const bool is_binary = !value.empty();
+        for (std::uint64_t i = 0; i < e.length && !is_binary; ++i) value += number<char>(at + i);
         value = trimmed(value.substr(0, value.find('\0')));
         const bool one_length = e.tag == 0x00280030 && !value.empty() &&
                                 value.find_first_of("\\,") == std::string::npos;
@@ -294,7 +332,7 @@ class Walk {
         }
         static const std::set<std::string> texts = {"UT", "UC", "LT", "ST", "LO", "SH", "CS"};
         const bool other_type = texts.contains(e.vr);
-        if (!one_length && !other_type) return;
+        if (!one_length && !other_type && !is_binary) return;
         if (value.size() % 2 == 1) value += ' ';
         const auto length = static_cast<std::uint16_t>(value.size());
         // Without types, the length has four bytes.
@@ -365,7 +403,8 @@ class Walk {
         bool has_data = false;
     };
     std::map<std::uint32_t, Overlay> overlays_;  // by group
-    std::uint64_t syntax_at_ = 0, data_set_ = 0;
+    std::uint64_t syntax_at_ = 0, data_set_ = 0, stored_at_ = 0;
+    std::uint16_t high_bit_ = 0;
     std::uint64_t zeros_end_ = 0;  // where the last run of zeros that was looked at ends
 };
 

@@ -13,6 +13,7 @@ struct DicomExtent {
     std::int64_t frames = 1;
     std::int64_t components = 1;  ///< values a pixel
     std::int64_t bits = 16;       ///< allocated for a value
+    int shift = 0;                ///< unused bits below the samples
     bool deflated = false;        ///< the data set as a whole
     bool needs_copy = false;      ///< a library is to be given tidied_dicom() instead
     std::string compression;      ///< "JPEG 2000", "deflate", ...; empty if there is none
@@ -34,6 +35,7 @@ bool has_no_image(const std::string& sop_class);
 
 /// The file as libraries read it as it is meant: a deflated one unpacked, in explicit little
 /// endian; MONOCHROME1, which is about display only, as MONOCHROME2, so that no value is turned;
+/// samples above the lowest of their bits with those below;
 /// numbers of lengths as text of the usual type; without overlays that lie in unused bits of the
 /// samples.
 std::vector<std::byte> tidied_dicom(const std::filesystem::path& file);

@@ -8,7 +8,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <new>
+#include <utility>
 
 #include "io/helper/dicom_check.hpp"
 #include "io/helper/dicom_group.hpp"
@@ -39,12 +42,18 @@ void set_place(DicomSlice& s, const DicomGroup& position, const DicomGroup& orie
 }
 
 void set_pixel(DicomSlice& s, const DicomGroup& measures) {
-    auto pixel = measures.numbers(pixel_tag);
-    if (pixel.size() != 2) pixel = measures.numbers({0x0018, 0x1164});
-    if (pixel.size() == 2) {
+    static constexpr std::array<std::pair<DicomTag, const char*>, 3> tags = {
+        {{pixel_tag, ""},
+         {{0x0018, 0x1164}, "at the detector (ImagerPixelSpacing)"},
+         {{0x0018, 0x2010}, "of a scanned image (NominalScannedPixelSpacing)"}}};
+    for (const auto& [tag, where] : tags) {
+        const auto pixel = measures.numbers(tag);
+        if (pixel.size() != 2) continue;
         check_spacing(pixel[0], "DICOM tag PixelSpacing");
         check_spacing(pixel[1], "DICOM tag PixelSpacing");
         s.pixel = Vec3(pixel[1], pixel[0], 0);  // DICOM gives the distance between rows first
+        if (tag != pixel_tag) add_note(s.notes, std::string("its pixel spacing is that ") + where);
+        break;
     }
     const double between = measures.number(between_tag, 0);
     if (between > 0) s.thickness = between;
@@ -52,8 +61,19 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
 }
 
 void set_rescale(DicomSlice& s, const DicomGroup& transformation) {
-    s.slope = transformation.number(slope_tag, s.slope);
-    s.intercept = transformation.number(intercept_tag, s.intercept);
+    const auto slope = transformation.numbers(slope_tag),
+               intercept = transformation.numbers(intercept_tag);
+    if (!slope.empty()) s.slope = slope[0];
+    if (!intercept.empty()) s.intercept = intercept[0];
+    const auto replace = [&](double& number, bool is_good, const char* name, double with) {
+        if (is_good) return;
+        add_note(s.notes, "its " + std::string(name) + " is " + text_of(number) +
+                              ", which makes no sense: " + text_of(with) + " was taken");
+        number = with;
+        s.own_values = true;
+    };
+    replace(s.slope, s.slope != 0 && std::isfinite(s.slope), "RescaleSlope", 1);
+    replace(s.intercept, std::isfinite(s.intercept), "RescaleIntercept", 0);
     const std::string units = transformation.text({0x0028, 0x1054});
     if (!units.empty() && units != "US") s.values.units = units;  // "US": unspecified
 }
@@ -242,6 +262,8 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     s.file = file;
     s.needs_copy = extent.needs_copy;
     s.compression = extent.compression;
+    s.shift = extent.shift;
+    s.own_values = extent.shift > 0;
     s.notes = extent.notes;
     s.rows = static_cast<int>(extent.rows);
     s.columns = static_cast<int>(extent.columns);
@@ -261,6 +283,17 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     set_window(s, data);
     set_padding(s, data);
     set_table(s, data);
+    if (data.has({0x0040, 0x9096})) {
+        add_note(s.notes,
+                 "its Real World Value Mapping was not applied: values are by RescaleSlope and "
+                 "RescaleIntercept");
+    }
+    const std::string colours = data.text({0x0028, 0x0004});
+    s.has_colours = !colours.empty() && lower(colours).find("monochrome") != 0;
+    if (const auto location = data.numbers({0x0020, 0x1041}); location.size() == 1) {
+        check_coordinate(location[0], "DICOM tag SliceLocation");
+        s.location = location[0];
+    }
     if (constexpr DicomTag dose{0x3004, 0x000e}; data.has(dose)) {
         s.slope = data.number(dose, 1);
         s.own_values = true;

@@ -80,16 +80,19 @@ Stored stored_from(itk::IOComponentEnum type) {
     }
 }
 
+[[noreturn]] void throw_colours(const fs::path& file) {
+    throw Failure(quoted(file) + " has colours; give a series with one value a sample");
+}
+
 /// All frames of a slice's file, the slope and intercept of the first one applied.
 Decoded decode_file(const DicomSlice& slice, const Request& request) {
     say_doing(slice.file.filename().string());
+    if (slice.has_colours) throw_colours(slice.file);  // GDCM aborts where their table is missing
     const LibraryFile readable(slice.file, slice.needs_copy);
     const auto io = itk::GDCMImageIO::New();
     io->SetFileName(readable.name());
     io->ReadImageInformation();
-    if (io->GetNumberOfComponents() != 1) {
-        throw Failure(quoted(slice.file) + " has colours; give a series with one value a sample");
-    }
+    if (io->GetNumberOfComponents() != 1) throw_colours(slice.file);
     Decoded decoded;
     decoded.stored = stored_from(io->GetComponentType());
     itk::ImageIORegion region(io->GetNumberOfDimensions());
@@ -126,7 +129,7 @@ Decoded decode_file(const DicomSlice& slice, const Request& request) {
 /// Slope and intercept that have been applied replaced by the frame's own.
 void rescale(Decoded& frame, const DicomSlice& own) {
     const auto applied = std::pair(frame.slope, frame.intercept);
-    if (applied == std::pair(own.slope, own.intercept)) return;
+    if (applied == std::pair(own.slope, own.intercept) && own.shift == 0) return;
     if (applied.first == 0) throw Failure("its frames have slopes of 0; export it again");
     const std::size_t count = frame.samples.size() / size_of(frame.stored);
     std::vector<std::byte> values(count * sizeof(double));
@@ -136,10 +139,18 @@ void rescale(Decoded& frame, const DicomSlice& own) {
         for (std::size_t i = 0; i < count; ++i) {
             const double stored =
                 std::round((static_cast<double>(from[i]) - applied.second) / applied.first);
-            to[i] = stored * own.slope + own.intercept;
+            to[i] = std::floor(std::ldexp(stored, -own.shift)) * own.slope + own.intercept;
         }
     });
     frame.stored = Stored::float64;
+    constexpr double most = 2147483647;
+    const auto is_whole = [](double v) { return v == std::floor(v) && std::abs(v) <= most; };
+    if (std::all_of(to, to + count, is_whole)) {
+        frame.stored = Stored::int32;
+        std::vector<std::byte> whole(count * sizeof(std::int32_t));
+        std::copy_n(to, count, reinterpret_cast<std::int32_t*>(whole.data()));
+        values = std::move(whole);
+    }
     frame.samples = std::move(values);
 }
 

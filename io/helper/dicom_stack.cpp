@@ -4,13 +4,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 namespace palpate::io {
 namespace {
 
-constexpr double same_place_mm = 0.005;
-constexpr double even_mm = 0.01;       // rounding in the files' decimals
 constexpr double even_part = 0.02;     // of the spacing
 constexpr double shift_pixels = 0.05;  // more is gantry tilt
 
@@ -19,14 +18,24 @@ std::string key_of(const DicomSlice& s) {
                       std::to_string(s.rows) + "x" + std::to_string(s.columns);
     // Moments of different places, which are not known, make no volume.
     if (s.is_moment && !s.position) key += "|" + s.instance_uid;
-    for (const auto& v : {s.row, s.column, s.pixel}) {
-        if (!v) continue;
-        for (int i = 0; i < 3; ++i) {
-            key += '|';
-            key += std::to_string(std::lround((*v)[i] * 1000));
-        }
-    }
     return key;
+}
+
+/// Equal but for rounding in the files' decimals.
+bool is_same(const std::optional<Vec3>& a, const std::optional<Vec3>& b) {
+    constexpr double part = 1e-3;
+    if (!a || !b) return !a && !b;
+    return (*a - *b).cwiseAbs().maxCoeff() <= part * a->cwiseAbs().maxCoeff();
+}
+
+bool lie_alike(const DicomSlice& a, const DicomSlice& b) {
+    return is_same(a.row, b.row) && is_same(a.column, b.column) && is_same(a.pixel, b.pixel);
+}
+
+/// [mm] nearer slices lie at one place. Some scanners have pixels of 1 um.
+double same_place_mm(const DicomSeries& series) {
+    const auto& pixel = series.slices.front().pixel;
+    return std::min(0.005, 0.02 * (pixel ? pixel->head<2>().minCoeff() : 1));
 }
 
 /// [mm] along the normal; the number of a slice without a place.
@@ -58,7 +67,7 @@ Groups groups_of(const DicomSeries& series, const Vec3& normal) {
                      [](const auto& a, const auto& b) { return a.along < b.along; });
     Groups groups;
     for (const PlacedSlice& p : placed) {
-        if (groups.empty() || p.along - groups.back().front().along > same_place_mm) {
+        if (groups.empty() || p.along - groups.back().front().along > same_place_mm(series)) {
             groups.emplace_back();
         }
         groups.back().push_back(p);
@@ -108,7 +117,8 @@ Steps steps_of(Stack& stack) {
     std::sort(sorted.begin(), sorted.end());
     const double median = sorted[sorted.size() / 2];
     const double total = stack.slices.back().along;
-    const double tolerance = std::max(even_mm, even_part * median);
+    const double rounding = std::min(0.01, 0.1 * median);  // [mm] in the files' decimals
+    const double tolerance = std::max(rounding, even_part * median);
     if (sorted.back() - median <= tolerance && median - sorted.front() <= tolerance) {
         return {total / static_cast<double>(gaps.size()), gaps.size() + 1, 0.5 * median};
     }
@@ -192,6 +202,39 @@ void find_shear(const DicomSeries& series, const Vec3& row, const Vec3& column, 
     stack.geometry.size[1] += high;
 }
 
+void set_single_spacing(const DicomSlice& slice, Stack& stack) {
+    stack.geometry.spacing[2] = slice.thickness > 0 ? slice.thickness : 1;
+    if (!(slice.thickness > 0)) {
+        stack.notes.emplace_back("it gives no distance between slices: 1 mm was taken");
+    }
+}
+
+bool is_placed(const DicomSlice& s) {
+    return s.position && s.row && s.column;
+}
+
+/// Places slices that have no position by their SliceLocation, if each has one of its own.
+void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
+    std::vector<double> locations;
+    for (const DicomSlice& s : series.slices) {
+        if (s.position || !s.location) return;
+        locations.push_back(*s.location);
+    }
+    std::ranges::sort(locations);
+    const double least = same_place_mm(series);
+    const auto is_near = [&](double a, double b) { return b - a <= least; };
+    if (std::ranges::adjacent_find(locations, is_near) != locations.end()) return;
+    for (DicomSlice& s : series.slices) {
+        if (!s.row || !s.column) {
+            s.row = Vec3::UnitX();
+            s.column = Vec3::UnitY();
+        }
+        s.position = s.row->cross(*s.column) * *s.location;
+    }
+    notes.emplace_back(
+        "its slices have no position: they were placed by their SliceLocation, along their normal");
+}
+
 /// Slices without position or orientation, stacked in the order of their numbers, or moments of
 /// one.
 void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
@@ -203,32 +246,30 @@ void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
     if (series.slices.front().is_moment) {
         choose_time_step(series, {slices}, request, stack);
         stack.grid.push_back({0, 0, 0});
+        set_single_spacing(series.slices.front(), stack);
         return;
     }
     stack.slices = std::move(slices);
     for (std::size_t i = 0; i < stack.slices.size(); ++i) stack.grid.push_back({i, i, 0});
     checked_time_step(request, 1);
-    stack.notes.emplace_back("its slices say nothing of their position: piled up by their numbers");
-}
-
-void set_single_spacing(const DicomSlice& slice, Stack& stack) {
-    stack.geometry.spacing[2] = slice.thickness > 0 ? slice.thickness : 1;
-    if (!(slice.thickness > 0)) {
-        stack.notes.emplace_back("it gives no distance between slices: 1 mm was taken");
-    }
+    set_single_spacing(series.slices.front(), stack);
+    stack.notes.push_back("its slices do not say where they lie: piled up by their numbers, " +
+                          text_of(stack.geometry.spacing[2]) + " mm apart");
 }
 
 }  // namespace
 
 std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
-    std::map<std::string, DicomSeries> sorted;
+    std::map<std::string, std::vector<DicomSeries>> sorted;
     for (DicomSlice& s : slices) {
-        DicomSeries& series = sorted[key_of(s)];
-        series.uid = s.series_uid;
-        series.slices.push_back(std::move(s));
+        std::vector<DicomSeries>& alike = sorted[key_of(s)];
+        auto series = std::ranges::find_if(
+            alike, [&](const DicomSeries& one) { return lie_alike(one.slices.front(), s); });
+        if (series == alike.end()) series = alike.insert(alike.end(), {s.series_uid, {}});
+        series->slices.push_back(std::move(s));
     }
     std::vector<DicomSeries> all;
-    for (auto& [key, series] : sorted) all.push_back(std::move(series));
+    for (auto& [key, alike] : sorted) std::ranges::move(alike, std::back_inserter(all));
     return all;
 }
 
@@ -248,7 +289,7 @@ SeriesInfo info_of(const DicomSeries& series) {
     double gap = 0;
     for (std::size_t i = 1; i < along.size(); ++i) {
         const double step = along[i] - along[i - 1];
-        if (step > same_place_mm && (gap == 0 || step < gap)) gap = step;
+        if (step > same_place_mm(series) && (gap == 0 || step < gap)) gap = step;
     }
     info.spacing[2] = gap > 0 ? gap : one.thickness;
     return info;
@@ -281,23 +322,22 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
     Stack stack;
     const DicomSlice& any = series.slices.front();
     stack.geometry.size = {any.columns, any.rows, 1};
-    const bool placed = std::all_of(series.slices.begin(), series.slices.end(),
-                                    [](const auto& s) { return s.position && s.row && s.column; });
     DicomSeries scaled = series;  // with a pixel size in any case
     if (!any.pixel) {
         stack.notes.emplace_back("it gives no pixel spacing: 1 mm was taken");
         for (auto& s : scaled.slices) s.pixel = Vec3(1, 1, 0);
     }
     stack.geometry.spacing.head<2>() = scaled.slices.front().pixel->head<2>();
-    if (!placed) {
+    if (scaled.slices.size() > 1) place_by_location(scaled, stack.notes);
+    if (!std::ranges::all_of(scaled.slices, is_placed)) {
         pile_up(scaled, request, stack);
-        set_single_spacing(any, stack);
         stack.geometry.size[2] = static_cast<int>(stack.slices.size());
         return stack;
     }
-    const Vec3 row = any.row->normalized();
-    const Vec3 column = (*any.column - row * row.dot(*any.column)).normalized();
-    if (!(std::abs(row.dot(any.column->normalized())) < 1e-3)) {
+    const DicomSlice& one = scaled.slices.front();
+    const Vec3 row = one.row->normalized();
+    const Vec3 column = (*one.column - row * row.dot(*one.column)).normalized();
+    if (!(std::abs(row.dot(one.column->normalized())) < 1e-3)) {
         throw Failure("its row and column directions are not at right angles; export it again");
     }
     const Vec3 normal = row.cross(column);

@@ -46,6 +46,7 @@ Stored stored_from(const std::string& type) {
         {"MET_CHAR", Stored::int8},       {"MET_UCHAR", Stored::uint8},
         {"MET_SHORT", Stored::int16},     {"MET_USHORT", Stored::uint16},
         {"MET_INT", Stored::int32},       {"MET_UINT", Stored::uint32},
+        {"MET_LONG", Stored::int32},      {"MET_ULONG", Stored::uint32},
         {"MET_LONG_LONG", Stored::int64}, {"MET_ULONG_LONG", Stored::uint64},
         {"MET_FLOAT", Stored::float32},   {"MET_DOUBLE", Stored::float64}};
     const auto found = types.find(type);
@@ -87,39 +88,54 @@ DataPlace place_of(const HeaderFields& fields, const std::filesystem::path& path
     } else if (!fields.value("binarydata").empty() && !is_true(fields.value("binarydata"))) {
         place.encoding = DataPlace::Encoding::text;
     }
-    for (const char* order : {"elementbyteordermsb", "binarydatabyteordermsb"}) {
-        if (!fields.has(order)) continue;
-        place.swapped = is_true(fields.value(order)) != (std::endian::native == std::endian::big);
+    const std::string element = fields.value("elementbyteordermsb"),
+                      data = fields.value("binarydatabyteordermsb");
+    if (!element.empty() && !data.empty() && is_true(element) != is_true(data)) {
+        throw Failure(
+            "its ElementByteOrderMSB and BinaryDataByteOrderMSB say different things; correct the "
+            "header");
     }
+    const bool is_big = is_true(element) || is_true(data);
+    place.swapped = is_big != (std::endian::native == std::endian::big);
     return place;
 }
 
-/// The first of these fields that is there, with `count` numbers; empty if none is.
-std::vector<double> first_of(const HeaderFields& fields, std::initializer_list<const char*> names,
-                             std::size_t count) {
+/// The first of these fields that is there, with `count` numbers; empty if none is. A note says it
+/// if another one of them says something else.
+std::vector<double> first_of(VolumeHeader& header, const HeaderFields& fields,
+                             std::initializer_list<const char*> names, std::size_t count) {
+    std::vector<double> taken;
+    std::string first;
     for (const char* name : names) {
         if (!fields.has(name)) continue;
         const auto numbers = numbers_in(fields.value(name), name);
-        if (numbers.size() == count) return numbers;
-        throw Failure("its header field '" + std::string(name) + "' has " +
-                      std::to_string(numbers.size()) + " numbers where " + std::to_string(count) +
-                      " belong; correct the header");
+        if (numbers.size() != count) {
+            throw Failure("its header field '" + std::string(name) + "' has " +
+                          std::to_string(numbers.size()) + " numbers where " +
+                          std::to_string(count) + " belong; correct the header");
+        }
+        if (first.empty()) {
+            taken = numbers;
+            first = name;
+        } else if (numbers != taken) {
+            header.notes.push_back("its header fields '" + first + "' and '" + name +
+                                   "' differ: the first one was taken");
+        }
     }
-    return {};
+    return taken;
 }
 
 void read_geometry(const HeaderFields& fields, VolumeHeader& header) {
     const std::size_t axes = header.sizes.size();
-    const auto size = first_of(fields, {"elementsize"}, axes);
-    const auto spacing = first_of(fields, {"elementspacing", "elementsize"}, axes);
-    const auto origin = first_of(fields, {"origin", "offset", "position"}, axes);
-    const auto turn = first_of(fields, {"transformmatrix", "rotation", "orientation"}, axes * axes);
+    const auto spacing = first_of(header, fields, {"elementspacing", "elementsize"}, axes);
+    const auto origin = first_of(header, fields, {"origin", "offset", "position"}, axes);
+    const auto turn =
+        first_of(header, fields, {"transformmatrix", "rotation", "orientation"}, axes * axes);
     Geometry& g = header.geometry;
     g.size = Index3::Ones();
     for (std::size_t a = 0; a < std::min<std::size_t>(3, axes); ++a) {
         const auto i = static_cast<Eigen::Index>(a);
         g.size[i] = static_cast<int>(header.sizes[a]);
-        if (!size.empty()) check_spacing(size[a], "header field 'elementsize'");
         if (!spacing.empty()) check_spacing(spacing[a], "header field 'elementspacing'");
         if (!spacing.empty()) g.spacing[i] = spacing[a];
         if (!origin.empty()) g.origin[i] = origin[a];
@@ -171,6 +187,9 @@ VolumeHeader meta_image_header(const Request& request) {
         checked_bytes(header.sizes, size_of(header.stored), error ? 0 : file_bytes, request);
     const bool at_end = fields.has("headersize") &&
                         whole_number_in(fields.value("headersize"), "HeaderSize", -1) == -1;
+    if (at_end && header.place.encoding != DataPlace::Encoding::raw) {
+        throw Failure("its HeaderSize of -1 is for raw samples only; correct the header");
+    }
     if (at_end && !error && file_bytes >= bytes + header.place.offset) {
         header.place.offset = file_bytes - bytes;
     }

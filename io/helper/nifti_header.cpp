@@ -212,12 +212,16 @@ double distance_between(const Transform& a, const Transform& b, const Header& he
 }
 
 /// A tenth of the smallest spacing is what two rounded descriptions of one grid may differ by.
-void note_disagreement(const Transform& taken, const Transform& qform, const Header& header,
+void note_disagreement(const Transform& taken, const Header& header, double unit,
                        std::vector<std::string>& notes) {
-    const double distance = distance_between(taken, qform, header);
-    if (distance <= 0.1 * taken.leftCols<3>().colwise().norm().minCoeff()) return;
-    notes.push_back("its sform and qform place it differently (" + text_of(distance) +
-                    " mm apart): the sform was taken");
+    try {
+        const double distance = distance_between(taken, qform_of(header, unit), header);
+        if (distance <= 0.1 * taken.leftCols<3>().colwise().norm().minCoeff()) return;
+        notes.push_back("its sform and qform place it differently (" + text_of(distance) +
+                        " mm apart): the sform was taken");
+    } catch (const Failure&) {
+        notes.emplace_back("its qform makes no sense: the sform was taken");
+    }
 }
 
 void note_spacings(const Transform& sform, const Header& header, double unit,
@@ -249,7 +253,7 @@ Transform transform_of(const Header& header, std::vector<std::string>& notes) {
     const Transform sform = sform_of(header, unit);
     if (!is_sheared(sform)) {
         note_spacings(sform, header, unit, notes);
-        if (has_qform) note_disagreement(sform, qform_of(header, unit), header, notes);
+        if (has_qform) note_disagreement(sform, header, unit, notes);
         return sform;
     }
     if (!has_qform) {

@@ -3,13 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
-#include <set>
+#include <utility>
 
 #include "io/helper/decode.hpp"
 #include "io/helper/tiff_calibration.hpp"
 #include "io/helper/xml.hpp"
 #include "io/number.hpp"
+#include "io/units.hpp"
 
 namespace palpate::io {
 namespace {
@@ -34,7 +36,7 @@ std::optional<double> length_of(const XmlElement& pixels, const std::string& nam
     const auto length = number_from<double>(trimmed(pixels.attribute(name)));
     if (!length || !std::isfinite(*length) || *length <= 0) return std::nullopt;
     const std::string unit = pixels.attribute(name + "Unit");
-    const auto millimetres = millimetres_of(unit.empty() ? "um" : unit);
+    const auto millimetres = millimetres_in(unit.empty() ? "um" : unit);
     return millimetres ? std::optional(*length * *millimetres) : std::nullopt;
 }
 
@@ -90,21 +92,50 @@ void put_pages(OmeImage& image, const PlaneOrder& order, std::array<std::int64_t
     }
 }
 
-void take_pages(const XmlElement& pixels, OmeImage& image) {
+/// Files that planes lie in, by their UUID and perhaps their name. One of another name is this one,
+/// renamed.
+class FilesOfPlanes {
+  public:
+    explicit FilesOfPlanes(std::string own) : own_(std::move(own)) {}
+
+    void take(const XmlElement& data) {
+        for (const XmlElement* in : data.all("UUID")) {
+            const std::string uuid = trimmed(in->text), name = in->attribute("FileName");
+            names_[uuid.empty() ? name : uuid] = name;
+        }
+        names_.erase("");
+        if (names_.size() < 2) return;
+        const auto named = [](const auto& file) {
+            return quoted(std::filesystem::path(file.second.empty() ? file.first : file.second));
+        };
+        throw Failure("has planes in " + named(*names_.begin()) + ", others in " +
+                      named(*names_.rbegin()) + "; images over several files are not read");
+    }
+
+    void note(std::vector<std::string>& notes) const {
+        if (own_.empty() || names_.empty() || names_.contains(own_)) return;
+        const auto& [uuid, name] = *names_.begin();
+        if (uuid == name) return;
+        notes.push_back("its OME-XML says that its planes are those of another file (" +
+                        (name.empty() ? uuid : name).substr(0, 60) +
+                        "): those of this one were taken");
+    }
+
+  private:
+    std::string own_;
+    std::map<std::string, std::string> names_;  ///< by UUID, or by name
+};
+
+void take_pages(const XmlElement& pixels, const std::string& own, OmeImage& image,
+                std::vector<std::string>& notes) {
     const PlaneOrder order(pixels.attribute("DimensionOrder"));
     const std::int64_t planes = image.sizes[0] * image.sizes[1] * image.sizes[2];
     image.pages.assign(static_cast<std::size_t>(planes), no_page);
     const auto all = pixels.all("TiffData");
     if (all.empty()) put_pages(image, order, {0, 0, 0}, 0, planes);
-    std::set<std::string> files;  // one of another name is this one, renamed
+    FilesOfPlanes files(own);
     for (const XmlElement* data : all) {
-        for (const XmlElement* in : data->all("UUID")) files.insert(in->attribute("FileName"));
-        files.erase("");
-        if (files.size() > 1) {
-            throw Failure("has planes in " + quoted(std::filesystem::path(*files.begin())) +
-                          ", others in " + quoted(std::filesystem::path(*files.rbegin())) +
-                          "; images over several files are not read");
-        }
+        files.take(*data);
         const std::int64_t page = whole(*data, "IFD", 0, 0);
         const bool alone = !data->attribute("IFD").empty();
         const std::int64_t count = whole(*data, "PlaneCount", alone ? 1 : planes, 0);
@@ -114,6 +145,7 @@ void take_pages(const XmlElement& pixels, OmeImage& image) {
                    whole(*data, "FirstT", 0, 0)},
                   page, count);
     }
+    files.note(notes);
     if (std::ranges::find(image.pages, no_page) != image.pages.end()) {
         throw Failure("its OME-XML does not tell where all its planes are; write it again");
     }
@@ -122,7 +154,10 @@ void take_pages(const XmlElement& pixels, OmeImage& image) {
 }  // namespace
 
 bool is_ome_xml(const std::string& description) {
-    return description.find("<OME") < 4096 && description.find("/OME>") != std::string::npos;
+    constexpr std::size_t byte_order_mark = 3;
+    const bool is_xml = description.find('<') <= byte_order_mark;
+    return is_xml && (description.find("/OME>") != std::string::npos ||
+                      description.find(":OME>") != std::string::npos);  // with a prefix
 }
 
 OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes) {
@@ -140,6 +175,7 @@ OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes) {
     image.format = "OME-TIFF";
     image.sizes = {whole(*pixels[0], "SizeZ", 1), whole(*pixels[0], "SizeC", 1),
                    whole(*pixels[0], "SizeT", 1)};
+    image.plane_size = {whole(*pixels[0], "SizeX", 0), whole(*pixels[0], "SizeY", 0)};
     const double planes = static_cast<double>(image.sizes[0]) *
                           static_cast<double>(image.sizes[1]) * static_cast<double>(image.sizes[2]);
     if (planes > static_cast<double>(most_planes)) throw Failure("it has more than 2^20 planes");
@@ -155,7 +191,7 @@ OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes) {
         const std::string name = c < channels.size() ? channels[c]->attribute("Name") : "";
         image.channels.push_back(name.empty() ? "channel " + std::to_string(c) : name);
     }
-    take_pages(*pixels[0], image);
+    take_pages(*pixels[0], trimmed(root.attribute("UUID")), image, notes);
     return image;
 }
 

@@ -12,6 +12,7 @@ namespace palpate::io {
 struct OmeImage {
     std::string format;
     std::array<std::int64_t, 3> sizes = {1, 1, 1};  ///< of z, channels, times
+    std::array<std::int64_t, 2> plane_size{};       ///< x, y; 0: it does not say
     std::array<double, 3> spacing = {1, 1, 1};      ///< z, y, x [mm]
     std::string spacing_note;                       ///< what was chosen; to be said if it is used
     std::vector<std::string> channels;              ///< names; empty: one

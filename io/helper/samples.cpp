@@ -3,16 +3,20 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <iomanip>
 #include <limits>
+#include <locale>
 
 #include "io/byte_order.hpp"
 #include "io/helper/headers.hpp"
+#include "io/number.hpp"
 
 namespace palpate::io {
 namespace {
 
 constexpr std::uint64_t padding_allowed = 4096;
 constexpr std::size_t chunk_bytes = 1 << 20;
+constexpr int longest_word = 512;  // a double has up to some 320 digits
 
 /// Cuts the samples out of a stream of bytes of any piece sizes, puts every sample's bytes in the
 /// machine's order and says how far it is.
@@ -66,7 +70,7 @@ void compare(std::uint64_t have, std::uint64_t need, const std::string& what,
 }
 
 template <class T>
-void append_number(double number, std::vector<std::byte>& bytes) {
+void append_sample(double number, std::vector<std::byte>& bytes) {
     if constexpr (std::is_integral_v<T>) {
         const double above =
             std::ldexp(1.0, std::numeric_limits<T>::digits);  // exact, unlike max()
@@ -82,27 +86,45 @@ void append_number(double number, std::vector<std::byte>& bytes) {
     std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
+/// Numbers may have commas between them, as in C.
+class CommasAreBlank : public std::ctype<char> {
+  public:
+    CommasAreBlank() : std::ctype<char>(table()) {}
+
+  private:
+    static const mask* table() {
+        static const std::vector<mask> table = [] {
+            std::vector<mask> masks(classic_table(), classic_table() + table_size);
+            masks[','] |= space;
+            return masks;
+        }();
+        return table.data();
+    }
+};
+
 /// Numbers of a text, all of them counted, as many as the header says converted.
 void read_text(VolumeHeader& header, const ByteSink& sink) {
     std::ifstream in(header.place.file, std::ios::binary);
     in.seekg(static_cast<std::streamoff>(header.place.offset + header.place.skip));
+    in.imbue(std::locale(in.getloc(), new CommasAreBlank));
     header.place.skip = 0;
     header.place.swapped = false;
     SampleBytes samples(header, sink);
     std::vector<std::byte> bytes;
     std::uint64_t count = 0;
     const std::uint64_t wanted = header.samples();
-    for (double number = 0; in >> number; ++count) {
+    for (std::string word; in >> std::setw(longest_word) >> word; ++count) {
+        const auto number = number_from<double>(word);
+        if (!number) {
+            throw Failure("its data are not all numbers ('" + word.substr(0, 20) + "' after " +
+                          std::to_string(count) + " of them); export it again");
+        }
         if (count >= wanted) continue;
         with_stored(header.stored,
-                    [&](auto type) { append_number<decltype(type)>(number, bytes); });
+                    [&](auto type) { append_sample<decltype(type)>(*number, bytes); });
         if (bytes.size() < chunk_bytes) continue;
         samples(bytes);
         bytes.clear();
-    }
-    if (!in.eof()) {
-        throw Failure("its data are not all numbers (after " + std::to_string(count) +
-                      "); the file is damaged: export it again");
     }
     compare(count, wanted, "numbers", header.notes);
     samples(bytes);

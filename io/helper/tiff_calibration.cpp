@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/number.hpp"
+#include "io/units.hpp"
 
 namespace palpate::io {
 namespace {
@@ -34,14 +35,13 @@ std::optional<double> number_in(const Description& description, const char* name
     return number_from<double>(found->second);
 }
 
-/// The distance between slices in ImageJ's unit. ImageJ leaves out a 1 where there are slices.
-std::optional<double> slice_distance(const Description& description) {
-    if (const auto spacing = description.find("spacing"); spacing != description.end()) {
-        const auto distance = number_from<double>(spacing->second);
-        return distance ? std::optional(std::abs(*distance)) : std::nullopt;
+/// The distance between slices in ImageJ's unit; NaN where it gives none. ImageJ leaves out a 1
+/// where there are slices.
+double slice_distance(const Description& description) {
+    if (description.contains("spacing")) {
+        return std::abs(number_in(description, "spacing").value_or(std::nan("")));
     }
-    if (description.contains("slices")) return 1.0;
-    return std::nullopt;
+    return description.contains("slices") ? 1 : std::nan("");
 }
 
 /// A count of the description; 1 if it does not say.
@@ -52,7 +52,7 @@ double count_in(const Description& description, const char* name) {
 /// How long the unit of an axis is [mm]: its own, or that of all.
 std::optional<double> unit_in(const Description& description, const char* own) {
     const auto found = description.find(description.contains(own) ? own : "unit");
-    return found == description.end() ? std::nullopt : millimetres_of(found->second);
+    return found == description.end() ? std::nullopt : millimetres_in(found->second);
 }
 
 }  // namespace
@@ -89,14 +89,15 @@ Moments image_j_moments(const std::string& text, std::size_t pages,
 std::optional<Vec3> image_j_spacing(TIFF* tiff, const std::string& text) {
     const Description description = fields_of(text);
     const auto along_x = unit_in(description, "unit"), along_y = unit_in(description, "yunit"),
-               along_z = unit_in(description, "zunit"), distance = slice_distance(description);
+               along_z = unit_in(description, "zunit");
+    const double distance = slice_distance(description);
     float x = 0, y = 0;
     TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x);
     TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y);
-    if (!along_x || !along_y || !along_z || !distance || !(x > 0) || !(y > 0)) return std::nullopt;
-    const Vec3 spacing(*along_x / double(x), *along_y / double(y), *along_z * *distance);
-    if (!spacing.allFinite() || !(spacing.minCoeff() > 0)) return std::nullopt;
-    return spacing;
+    if (!along_x || !along_y || !along_z || !(x > 0) || !(y > 0)) return std::nullopt;
+    const Vec3 spacing(*along_x / double(x), *along_y / double(y), *along_z * distance);
+    const bool possible = std::isfinite(spacing[0]) && spacing.head<2>().minCoeff() > 0;
+    return possible ? std::optional(spacing) : std::nullopt;
 }
 
 ValueMap image_j_values(const std::string& text, Stored stored, std::vector<std::string>& notes) {

@@ -2,6 +2,7 @@
 #include "io/helper/tiff_layout.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "io/helper/tiff_calibration.hpp"
@@ -12,9 +13,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-OmeImage told_by_ome(const std::string& description, const TiffPages& pages,
+OmeImage told_by_ome(const std::string& description, const TiffPages& pages, const TiffPage& first,
                      std::vector<std::string>& notes) {
     OmeImage image = ome_image(description, notes);
+    const auto [width, height] = image.plane_size;
+    if ((width > 0 && width != first.width) || (height > 0 && height != first.height)) {
+        notes.push_back("its OME-XML tells of planes of " + std::to_string(width) + "x" +
+                        std::to_string(height) + ", its pages are " + text_of(first) +
+                        ": the pages were taken");
+    }
     const std::size_t known = pages.whole.size() + pages.reduced.size();
     for (const std::uint32_t page : image.pages) {
         if (page < known) continue;
@@ -48,8 +55,12 @@ void check_shape(const std::string& description, const TiffPage& page, std::size
                       std::to_string(pages) +
                       " pages as TIFF counts them; save each slice as a page");
     }
-    if (axes > 3) {
+    const nlohmann::json names = told.value("axes", nlohmann::json());  // such as "TYX"
+    const bool has_others =
+        names.is_string() && names.get<std::string>().find_first_of("TC") != std::string::npos;
+    if (axes > 3 || (axes > 2 && has_others)) {
         notes.push_back("its description gives it the shape " + text.substr(0, 60) +
+                        (has_others ? " of axes " + names.get<std::string>().substr(0, 20) : "") +
                         ": all its pages were taken as slices");
     }
 }
@@ -92,14 +103,14 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
     const TiffPages pages = pages_of(tiff, file);
     TIFFSetDirectory(tiff, 0);
     TiffLayout layout;
+    std::vector<std::string> of_page;  // said again when it is read
+    const TiffPage first = page_of(tiff, file, of_page);
     if (is_ome_xml(description)) {
-        layout.image = told_by_ome(description, pages, notes);
+        layout.image = told_by_ome(description, pages, first, notes);
         return layout;
     }
     OmeImage& image = layout.image;
     image.format = "TIFF";
-    std::vector<std::string> of_page;  // said again when it is read
-    const TiffPage first = page_of(tiff, file, of_page);
     check_shape(description, first, pages.whole.size(), notes);
     const Moments moments = image_j_moments(description, pages.whole.size(), notes);
     layout.values = image_j_values(description, first.stored, notes);
@@ -108,7 +119,13 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
     image.pages = pages.whole;
     if (pages.whole.size() == 1 && coarser_levels(tiff).empty()) layout.reduced = pages.reduced;
     if (const auto spacing = image_j_spacing(tiff, description)) {
-        image.spacing = {(*spacing)[2], (*spacing)[1], (*spacing)[0]};
+        const bool has_distance = std::isfinite((*spacing)[2]) && (*spacing)[2] > 0;
+        image.spacing = {(*spacing)[has_distance ? 2 : 0], (*spacing)[1], (*spacing)[0]};
+        if (!has_distance) {
+            image.spacing_note =
+                "its description does not tell the distance between slices: that of pixels was "
+                "taken";
+        }
     } else {
         image.spacing_note =
             "it does not tell its spacing (as ImageJ and OME-XML would): 1 mm was taken along "

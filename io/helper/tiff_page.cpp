@@ -45,7 +45,8 @@ std::string text_of(const TiffPage& page) {
 }
 
 TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
-    std::uint16_t samples = 1, bits = 1, format = SAMPLEFORMAT_UINT, photometric = 0;
+    std::uint16_t samples = 1, bits = 1, format = SAMPLEFORMAT_UINT,
+                  photometric = PHOTOMETRIC_MINISBLACK;
     TiffPage page;
     TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &page.width);
     TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &page.height);
@@ -60,9 +61,18 @@ TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
             " slices each (a volumetric TIFF, ImageDepth), which is not read; save a page "
             "for each slice");
     }
-    if (samples != 1 || photometric == PHOTOMETRIC_PALETTE || photometric == PHOTOMETRIC_RGB) {
+    // MetaMorph's .stk: the planes follow each other behind the first, which alone TIFF knows of.
+    constexpr std::uint32_t metamorph_planes = 33629;
+    std::uint32_t planes = 0;
+    const void* ignored = nullptr;
+    if (TIFFGetField(tiff, metamorph_planes, &planes, &ignored) != 0 && planes > 1) {
+        throw Failure(quoted(file) + " is a stack of MetaMorph with " + std::to_string(planes) +
+                      " planes behind one page, which is not read; save a page for each slice");
+    }
+    if (samples != 1 || (photometric > PHOTOMETRIC_MINISBLACK && photometric != PHOTOMETRIC_MASK)) {
         throw Failure(quoted(file) + " has colours (" + std::to_string(samples) +
-                      " values a sample); save it in grey");
+                      " values a sample, PhotometricInterpretation " + std::to_string(photometric) +
+                      "); save it in grey");
     }
     const char* const white = "its zero means white: values were taken as they are";
     if (photometric == PHOTOMETRIC_MINISWHITE &&

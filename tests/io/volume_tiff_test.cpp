@@ -94,11 +94,15 @@ TEST(tiff, the_spacing_that_image_j_writes_is_taken) {
             << micron;
     }
     EXPECT_EQ(read(head + "unit=mm\nspacing=1.5\n").notes, std::vector<std::string>{});
+    for (const std::string& flat :
+         {head + "unit=mm\nspacing=0\n", head + "unit=mm\nspacing=wide\n",
+          head + "unit=mm\nspacing=nan\n", std::string("ImageJ=1.53t\nunit=mm\n")}) {
+        EXPECT_EQ(spacing(flat), Vec3(0.25, 0.25, 0.25)) << flat;
+        EXPECT_TRUE(contains(all_notes(read(flat)), "that of pixels was taken")) << flat;
+    }
     for (const std::string& silent :
-         {head + "spacing=1.5\n", head + "unit=pixel\nspacing=1.5\n", head + "unit=mm\nspacing=0\n",
-          head + "unit=mm\nspacing=wide\n", head + "unit=mm\nspacing=nan\n",
-          std::string("ImageJ=1.53t\nunit=mm\n"), std::string("unit=mm\nspacing=1.5\n"),
-          std::string("a heart")}) {
+         {head + "spacing=1.5\n", head + "unit=pixel\nspacing=1.5\n",
+          std::string("unit=mm\nspacing=1.5\n"), std::string("a heart")}) {
         const VolumeFile file = read(silent);
         EXPECT_EQ(file.volume.geometry().spacing, Vec3::Ones()) << silent;
         EXPECT_TRUE(contains(all_notes(file), "1 mm was taken")) << silent;
