@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::run {
 namespace {
