@@ -44,7 +44,7 @@ function(palpate_program target component)
   endif()
 endfunction()
 
-# palpate_helper(TARGET COMPONENT): a program that our libraries start. io/helper_folders.cpp looks for
+# palpate_helper(TARGET COMPONENT): a program that our libraries start. io/process/helper_folders.cpp looks for
 # it; in a build tree all of them are in one folder.
 set(palpate_helper_dir ${PROJECT_BINARY_DIR}/libexec/palpate)
 function(palpate_helper target component)

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::devices {
 namespace {

@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "doctor/facts.hpp"
-#include "io/helper_folders.hpp"
+#include "io/process/helper_folders.hpp"
 #include "palpate/devices/devices.hpp"
 #include "palpate/io/sample_volume.hpp"
 #include "palpate/io/volume_file.hpp"

@@ -6,7 +6,7 @@
 
 #include "evaluation/contestants.hpp"
 #include "evaluation/figure.hpp"
-#include "io/plot.hpp"
+#include "io/recording/plot.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::evaluation {

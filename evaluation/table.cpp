@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "evaluation/html.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::evaluation {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <system_error>
 
-#include "io/helper_folders.hpp"
+#include "io/process/helper_folders.hpp"
 
 namespace palpate::io {
 

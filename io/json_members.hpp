@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/settings_json.hpp"
+#include "io/recording/settings_json.hpp"
 
 namespace palpate::io {
 

@@ -1,7 +1,7 @@
 // Layers as JSON, for layer files, recordings and session files.
 #pragma once
 
-#include "io/settings_json.hpp"
+#include "io/recording/settings_json.hpp"
 
 namespace palpate::io {
 

@@ -22,7 +22,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "io/leftovers.hpp"
+#include "io/system/leftovers.hpp"
 
 namespace palpate::io {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "io/stepping_thread.hpp"
+#include "io/system/stepping_thread.hpp"
 
 namespace palpate::io {
 namespace {

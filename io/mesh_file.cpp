@@ -11,7 +11,7 @@
 #include <string>
 #include <type_traits>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::io {

@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "io/helper/protocol.hpp"
-#include "io/io_helper.hpp"
-#include "io/system.hpp"
+#include "io/process/io_helper.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/mesh_file.hpp"
 

@@ -8,9 +8,9 @@
 #include <cctype>
 
 #include "io/helper/protocol.hpp"
-#include "io/helper_process.hpp"
 #include "io/inflate.hpp"
-#include "io/io_helper.hpp"
+#include "io/process/helper_process.hpp"
+#include "io/process/io_helper.hpp"
 #include "io/raw_file.hpp"
 #include "palpate/io/error.hpp"
 

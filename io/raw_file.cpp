@@ -10,7 +10,7 @@
 #include "io/byte_order.hpp"
 #include "io/finite.hpp"
 #include "io/inflate.hpp"
-#include "io/system.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::io {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/io/written_formats.hpp"
 
 namespace palpate::io {

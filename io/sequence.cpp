@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {

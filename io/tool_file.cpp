@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/mesh_file.hpp"
 #include "palpate/session.hpp"

@@ -11,12 +11,12 @@
 #include <system_error>
 
 #include "io/helper/protocol.hpp"
-#include "io/helper_process.hpp"
-#include "io/io_helper.hpp"
-#include "io/leftovers.hpp"
+#include "io/process/helper_process.hpp"
+#include "io/process/io_helper.hpp"
 #include "io/raw_file.hpp"
-#include "io/removal.hpp"
-#include "io/system.hpp"
+#include "io/system/leftovers.hpp"
+#include "io/system/removal.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/output.hpp"
 #include "palpate/io/written_formats.hpp"
 

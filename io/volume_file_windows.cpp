@@ -4,9 +4,9 @@
 #include <cctype>
 
 #include "io/helper/readers.hpp"
-#include "io/io_helper.hpp"
+#include "io/process/io_helper.hpp"
 #include "io/raw_file.hpp"
-#include "io/system.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "palpate/io/written_formats.hpp"
 

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "io/helper_process.hpp"
+#include "io/process/helper_process.hpp"
 #include "palpate/io/output.hpp"
 #include "pictures/surface.hpp"
 #include "pictures/wire.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "io/stepping_thread.hpp"
+#include "io/system/stepping_thread.hpp"
 
 namespace palpate::run {
 namespace {

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/baselines/methods.hpp"
 
 namespace palpate::run {

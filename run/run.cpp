@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::run {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/run/statistics.hpp"
 
 namespace palpate::run {

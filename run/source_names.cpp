@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/raw_options.hpp"
 #include "palpate/run/source.hpp"

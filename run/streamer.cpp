@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "io/stepping_thread.hpp"
+#include "io/system/stepping_thread.hpp"
 
 namespace palpate::run {
 namespace {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "io/located_chunks.hpp"
+#include "io/process/located_chunks.hpp"
 
 namespace palpate::stream {
 

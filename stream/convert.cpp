@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "io/growing_folder.hpp"
 #include "io/path_json.hpp"
+#include "io/system/growing_folder.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/stream/growing_image.hpp"

@@ -11,9 +11,9 @@
 #include <cstring>
 #include <vector>
 
-#include "io/helper_process.hpp"
-#include "io/leftovers.hpp"
-#include "io/open_file.hpp"
+#include "io/process/helper_process.hpp"
+#include "io/system/leftovers.hpp"
+#include "io/system/open_file.hpp"
 
 namespace palpate::stream {
 namespace {

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "io/json_text.hpp"
-#include "io/own_names.hpp"
 #include "io/path_json.hpp"
+#include "io/system/own_names.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/box_bytes.hpp"

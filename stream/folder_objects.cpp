@@ -5,8 +5,8 @@
 #include <cerrno>
 #include <stdexcept>
 
-#include "io/helper_process.hpp"
-#include "io/system.hpp"
+#include "io/process/helper_process.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/objects.hpp"
 

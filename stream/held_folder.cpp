@@ -7,7 +7,7 @@
 
 #include <cerrno>
 
-#include "io/open_file.hpp"
+#include "io/system/open_file.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::stream {

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "io/helper_process.hpp"
+#include "io/process/helper_process.hpp"
 
 namespace palpate::stream {
 

@@ -12,7 +12,7 @@
 #include <random>
 #include <thread>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::stream {
 namespace {

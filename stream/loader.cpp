@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "io/system.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/blocks.hpp"
 #include "stream/brick_memory.hpp"

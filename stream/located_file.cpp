@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "io/located_chunks.hpp"
+#include "io/process/located_chunks.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/chunk_table.hpp"
 #include "stream/metadata_files.hpp"

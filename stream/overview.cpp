@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "io/system.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/stream/loader.hpp"
 #include "stream/blocks.hpp"

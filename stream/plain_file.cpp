@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "io/helper_process.hpp"
 #include "io/plain_samples.hpp"
-#include "io/system.hpp"
+#include "io/process/helper_process.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/sample_bytes.hpp"
 #include "stream/stores.hpp"

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <map>
 
-#include "io/growing_folder.hpp"
-#include "io/own_names.hpp"
+#include "io/system/growing_folder.hpp"
+#include "io/system/own_names.hpp"
 #include "palpate/io/output.hpp"
 #include "stream/box_bytes.hpp"
 #include "stream/content.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "io/located_chunks.hpp"
 #include "io/plain_samples.hpp"
+#include "io/process/located_chunks.hpp"
 #include "io/tiff_peek.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/edited_store.hpp"

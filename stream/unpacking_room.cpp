@@ -1,7 +1,7 @@
 // Memory for chunks while they are unpacked; see the header.
 #include "stream/unpacking_room.hpp"
 
-#include "io/system.hpp"
+#include "io/system/system.hpp"
 #include "palpate/stream/store.hpp"
 
 namespace palpate::stream {

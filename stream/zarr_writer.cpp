@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "io/helper_process.hpp"
-#include "io/system.hpp"
+#include "io/process/helper_process.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/zarr_metadata.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/run/labels.hpp"
 
 namespace palpate::app {

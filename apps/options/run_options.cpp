@@ -4,7 +4,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/filters/dequantize.hpp"
 #include "palpate/renderer.hpp"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/io/level.hpp"
 
 namespace palpate::app {

@@ -13,7 +13,7 @@
 #include "apps/palpate/result_folder.hpp"
 #include "evaluation/figure.hpp"
 #include "evaluation/html.hpp"
-#include "io/plot.hpp"
+#include "io/recording/plot.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::app {

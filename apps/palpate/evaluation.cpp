@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "io/helper_folders.hpp"
+#include "io/process/helper_folders.hpp"
 
 namespace palpate::app {
 

@@ -8,7 +8,7 @@
 
 #include "apps/options/render_options.hpp"
 #include "apps/palpate/commands.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "palpate/io/level.hpp"

@@ -12,7 +12,7 @@
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/force.hpp"
 #include "palpate/io/output.hpp"
 #include "palpate/io/raw_options.hpp"

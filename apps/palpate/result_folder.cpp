@@ -6,9 +6,9 @@
 #include <cerrno>
 #include <fstream>
 
-#include "io/leftovers.hpp"
-#include "io/removal.hpp"
-#include "io/system.hpp"
+#include "io/system/leftovers.hpp"
+#include "io/system/removal.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::app {

@@ -26,7 +26,7 @@ class ResultFolder {
     std::filesystem::path folder_, part_;
     bool is_new_ = false;
     bool complete_ = false;
-    int lock_ = -1;  // on part_, see io/leftovers.hpp
+    int lock_ = -1;  // on part_, see io/system/leftovers.hpp
 };
 
 }  // namespace palpate::app

@@ -13,7 +13,7 @@
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/picture.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/io/output.hpp"
 #include "palpate/io/tool_file.hpp"
 #include "pictures/surface.hpp"

@@ -3,7 +3,7 @@
 #include "palpate/stream/growing_image.hpp"
 
 #include "bindings/python/bindings.hpp"
-#include "io/growing_folder.hpp"
+#include "io/system/growing_folder.hpp"
 
 namespace palpate::python {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "devices/haply/inverse3.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::devices {
 namespace {

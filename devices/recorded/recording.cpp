@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/recording.hpp"
 #include "palpate/io/trajectory.hpp"

@@ -11,7 +11,7 @@
 
 #include "evaluation/table.hpp"
 #include "evaluation/timing.hpp"
-#include "io/helper_process.hpp"
+#include "io/process/helper_process.hpp"
 
 namespace palpate::evaluation {
 namespace {

@@ -10,7 +10,7 @@
 #include "io/helper/dicom_bytes.hpp"
 #include "io/helper/dicom_pixels.hpp"
 #include "io/inflate.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {

@@ -10,7 +10,7 @@
 #include "io/helper/decode.hpp"
 #include "io/helper/hdf5_mirror.hpp"
 #include "io/helper/mirrored.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {

@@ -13,7 +13,7 @@
 #include "io/helper/headers.hpp"
 #include "io/helper/images.hpp"
 #include "io/helper/xml.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {

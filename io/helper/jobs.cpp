@@ -18,8 +18,8 @@
 #include "io/helper/library_words.hpp"
 #include "io/helper/mirrored.hpp"
 #include "io/helper/report.hpp"
-#include "io/leftovers.hpp"
-#include "io/system.hpp"
+#include "io/system/leftovers.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/written_formats.hpp"
 

@@ -19,7 +19,7 @@
 #include "io/helper/ply_mesh.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_errors.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::io {

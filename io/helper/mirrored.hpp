@@ -1,5 +1,5 @@
-// The helper's side of io/mirror.hpp: reads the parts of a file that are here, and keeps the first
-// one that is not.
+// The helper's side of io/process/mirror.hpp: reads the parts of a file that are here, and keeps
+// the first one that is not.
 #pragma once
 
 #include <cstddef>

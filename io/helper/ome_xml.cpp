@@ -10,7 +10,7 @@
 #include "io/helper/decode.hpp"
 #include "io/helper/tiff_calibration.hpp"
 #include "io/helper/xml.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "io/units.hpp"
 
 namespace palpate::io {

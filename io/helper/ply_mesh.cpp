@@ -15,8 +15,8 @@
 
 #include "io/byte_order.hpp"
 #include "io/helper/decode.hpp"
-#include "io/number.hpp"
 #include "io/stored.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {

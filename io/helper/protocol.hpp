@@ -8,9 +8,9 @@
 //   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside
 //                                             PATH, is created for the unfinished file and removed
 // With "mirror" in the REQUEST of describe and chunks, descriptor 5 has the parts of the file that
-// were fetched so far (io/mirror.hpp); {"done":{"missing":[offset, length]}} asks for another.
-// REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},
-// and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
+// were fetched so far (io/process/mirror.hpp); {"done":{"missing":[offset, length]}} asks for
+// another. REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a
+// file"}, and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
 #pragma once
 
 #include <cstddef>

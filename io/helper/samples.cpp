@@ -9,7 +9,7 @@
 
 #include "io/byte_order.hpp"
 #include "io/helper/headers.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {

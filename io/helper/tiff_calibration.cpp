@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "io/units.hpp"
 
 namespace palpate::io {

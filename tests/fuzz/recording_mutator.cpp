@@ -1,7 +1,7 @@
 // Mutates recordings event by event, then makes tick numbers, checksums and the last line right
 // again, as the recorder would have written them.
 #include "fuzz/mutation.hpp"
-#include "io/recording_head.hpp"
+#include "io/recording/recording_head.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Removing never follows links; a folder that grows is locked, recognised, and put in place whole.
-#include "io/growing_folder.hpp"
+#include "io/system/growing_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -10,12 +10,12 @@
 
 #include <cerrno>
 
-#include "io/helper_process.hpp"
-#include "io/open_file.hpp"
-#include "io/own_names.hpp"
 #include "io/path_json.hpp"
-#include "io/removal.hpp"
-#include "io/system.hpp"
+#include "io/process/helper_process.hpp"
+#include "io/system/open_file.hpp"
+#include "io/system/own_names.hpp"
+#include "io/system/removal.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "support/scratch_folder.hpp"
 

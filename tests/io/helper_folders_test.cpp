@@ -1,5 +1,5 @@
 // Where helper programs are looked for, and what is said if there is none.
-#include "io/helper_folders.hpp"
+#include "io/process/helper_folders.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <set>
 
-#include "io/helper_process.hpp"
+#include "io/process/helper_process.hpp"
 
 namespace palpate::io {
 namespace {

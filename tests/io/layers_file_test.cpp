@@ -7,7 +7,7 @@
 #include <fstream>
 #include <limits>
 
-#include "io/settings_json.hpp"
+#include "io/recording/settings_json.hpp"
 #include "support/fields.hpp"
 #include "support/scratch_folder.hpp"
 

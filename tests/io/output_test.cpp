@@ -13,7 +13,7 @@
 #include <functional>
 #include <thread>
 
-#include "io/leftovers.hpp"
+#include "io/system/leftovers.hpp"
 #include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 #include "support/traced_process.hpp"

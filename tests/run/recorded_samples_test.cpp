@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "io/settings_json.hpp"
+#include "io/recording/settings_json.hpp"
 #include "run/run_support.hpp"
 #include "support/random.hpp"
 

@@ -3,7 +3,7 @@
 // before or the new data, whole.
 #include <cstdlib>
 
-#include "io/growing_folder.hpp"
+#include "io/system/growing_folder.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/stream/convert.hpp"
 #include "palpate/stream/edits.hpp"

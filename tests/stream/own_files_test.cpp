@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "io/growing_folder.hpp"
+#include "io/system/growing_folder.hpp"
 #include "palpate/stream/convert.hpp"
 #include "palpate/stream/edits.hpp"
 #include "palpate/stream/loader.hpp"

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "io/mirror.hpp"
+#include "io/process/mirror.hpp"
 #include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
 #include "stream/written_files.hpp"

@@ -16,7 +16,7 @@
 #include "apps/palpate/result_folder.hpp"
 #include "evaluation/machine.hpp"
 #include "evaluation/report.hpp"
-#include "io/plot.hpp"
+#include "io/recording/plot.hpp"
 #include "palpate/baselines/methods.hpp"
 #include "palpate/io/error.hpp"
 

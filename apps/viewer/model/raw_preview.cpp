@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "io/byte_order.hpp"
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::viewer {
 namespace {

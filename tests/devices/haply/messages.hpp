@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/number.hpp"
+#include "io/system/number.hpp"
 #include "palpate/volume.hpp"
 
 namespace palpate::support {

@@ -1,0 +1,60 @@
+// What every job of palpate-io-helper has in common; see the header.
+#include "io/process/io_helper.hpp"
+
+#include <system_error>
+
+#include "io/system/system.hpp"
+#include "palpate/io/error.hpp"
+
+namespace palpate::io {
+
+namespace fs = std::filesystem;
+
+double bytes_in(const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) return static_cast<double>(fs::file_size(path, error));
+    double bytes = 0;
+    for (fs::directory_iterator entry(path, error), end; entry != end && !error;
+         entry.increment(error)) {
+        std::error_code of_entry;
+        const auto size = entry->file_size(of_entry);
+        if (!of_entry) bytes += static_cast<double>(size);
+    }
+    return bytes;
+}
+
+void check_readable(const fs::path& path) {
+    const std::string name = path.empty() ? "(no name)" : path.string();
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found) {
+        throw InputError(name + ": does not exist; check the name");
+    }
+    if (status.type() == fs::file_type::none) {
+        throw InputError(name + ": " + error.message() + "; check the name and its permissions");
+    }
+    if (status.type() != fs::file_type::regular && status.type() != fs::file_type::directory) {
+        throw InputError(name + ": is neither a file nor a folder; give a file");
+    }
+    const bool folder = status.type() == fs::file_type::directory;
+    if (const int problem = why_unreadable(path, folder); problem != 0) {
+        throw InputError(name + ": " + reason(problem) + "; check its permissions");
+    }
+    if (!folder && fs::file_size(path, error) == 0) {
+        throw InputError(name + ": is empty (0 bytes); copy or download it again");
+    }
+}
+
+void fail_without_answer(const fs::path& path) {
+    throw InputError(path.string() +
+                     ": the helper process gave no sensible answer; check that "
+                     "palpate-io-helper belongs to this version of Palpate");
+}
+
+HelperResult result_of(const fs::path& path, const HelperJob& job) {
+    HelperResult result = run_helper(job);
+    if (!result.failure.empty()) throw InputError(path.string() + ": " + result.failure);
+    return result;
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,106 @@
+// Converts the head of a recording, which describes the run, to JSON and back.
+#include "io/recording/recording_head.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+namespace palpate::io {
+namespace {
+
+constexpr std::array<std::string_view, 4> type_names{"uint8", "int16", "uint16", "float32"};
+
+std::string text_of(const Json& json, const char* name) {
+    const Json& value = member(json, name);
+    if (!value.is_string()) {
+        throw std::invalid_argument(std::string("'") + name + "' must be text");
+    }
+    return value.get<std::string>();
+}
+
+VolumeIdentity volume_from_json(const Json& json) {
+    VolumeIdentity volume;
+    const Json& options = member(json, "options");
+    if (!options.is_object()) throw std::invalid_argument("'options' must be an object");
+    for (const auto& [name, value] : options.items()) {
+        if (!value.is_string()) throw std::invalid_argument("'options' must hold text only");
+        volume.options[name] = value.get<std::string>();
+    }
+    text_of(options, "volume");
+    const Json& size = member(json, "size");
+    if (!size.is_array() || size.size() != 3) {
+        throw std::invalid_argument("'size' must be three numbers");
+    }
+    for (int a = 0; a < 3; ++a) {
+        const double edge = number_from_json(size[static_cast<std::size_t>(a)], "size");
+        if (!(edge >= 1 && edge <= 1e6)) throw std::invalid_argument("'size' is out of range");
+        volume.size[a] = static_cast<int>(edge);
+    }
+    const auto type = std::ranges::find(type_names, text_of(json, "type"));
+    if (type == type_names.end()) throw std::invalid_argument("'type' is no sample type");
+    volume.type = static_cast<SampleType>(type - type_names.begin());
+    const double crc = number_from_json(member(json, "crc32"), "crc32");
+    if (!(crc >= 0 && crc <= 4294967295.0)) throw std::invalid_argument("'crc32' is out of range");
+    volume.crc32 = static_cast<std::uint32_t>(crc);
+    return volume;
+}
+
+}  // namespace
+
+std::uint32_t checksum_with(std::string_view line, std::uint32_t before) {
+    const auto* bytes = reinterpret_cast<const Bytef*>(line.data());
+    return static_cast<std::uint32_t>(::crc32_z(before, bytes, line.size()));
+}
+
+VolumeIdentity identify(const Volume& volume, std::map<std::string, std::string> options) {
+    const auto* bytes = static_cast<const Bytef*>(volume.data());
+    const auto crc = ::crc32_z(::crc32_z(0, nullptr, 0), bytes, volume.bytes());
+    return {std::move(options), volume.geometry().size, volume.type(),
+            static_cast<std::uint32_t>(crc)};
+}
+
+Json to_json(const RecordingHead& head) {
+    Json json;
+    json["version"] = head.version;
+    json["begun"] = head.begun;
+    json["volume"] = {{"options", head.volume.options},
+                      {"size", {head.volume.size[0], head.volume.size[1], head.volume.size[2]}},
+                      {"type", type_names[static_cast<std::size_t>(head.volume.type)]},
+                      {"crc32", head.volume.crc32}};
+    json["solid"] = head.solid == Solid::above ? "above" : "below";
+    json["field"] = name_of(head.interpolation);
+    json["background"] = number_to_json(head.background);
+    json["isovalue"] = number_to_json(head.isovalue);
+    json["device"] = head.device;
+    json["rate"] = head.rate;
+    json["method"] = head.method;
+    json["settings"] = to_json(head.settings);
+    json["session"] = to_json(head.session);
+    return json;
+}
+
+RecordingHead head_from_json(const Json& json) {
+    RecordingHead head;
+    head.version = text_of(json, "version");
+    head.begun = text_of(json, "begun");
+    head.volume = volume_from_json(member(json, "volume"));
+    const std::string solid = text_of(json, "solid");
+    if (solid != "above" && solid != "below") {
+        throw std::invalid_argument("'solid' must be above or below");
+    }
+    head.solid = solid == "above" ? Solid::above : Solid::below;
+    // Recordings made before there was a choice have none.
+    if (json.contains("field")) head.interpolation = interpolation_from(text_of(json, "field"));
+    head.background = number_from_json(member(json, "background"), "background");
+    head.isovalue = number_from_json(member(json, "isovalue"), "isovalue");
+    head.device = text_of(json, "device");
+    head.rate = number_from_json(member(json, "rate"), "rate");
+    head.method = text_of(json, "method");
+    from_json(member(json, "settings"), head.settings);
+    from_json(member(json, "session"), head.session);
+    return head;
+}
+
+}  // namespace palpate::io

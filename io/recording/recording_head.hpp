@@ -1,0 +1,23 @@
+// The head of a recording as JSON. Private to io/.
+#pragma once
+
+#include "io/recording/settings_json.hpp"
+#include "palpate/io/recording.hpp"
+
+namespace palpate::io {
+
+/// Format 1 had neither tick numbers nor checksums.
+inline constexpr int recording_format = 4;
+inline constexpr std::string_view recording_mark = " palpate recording ";  // after the #
+inline constexpr std::string_view command_mark = " command ";
+inline constexpr std::string_view end_mark = " end ";
+
+/// The CRC-32 of events, continued by the text of one more line: a command's, or a tick's up to the
+/// comma before its last cell, which is the checksum. That of no events is 0.
+std::uint32_t checksum_with(std::string_view line, std::uint32_t before);
+
+Json to_json(const RecordingHead& head);
+/// Throws std::invalid_argument, saying what is missing or wrong.
+RecordingHead head_from_json(const Json& json);
+
+}  // namespace palpate::io

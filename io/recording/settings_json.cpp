@@ -1,0 +1,342 @@
+// Settings and commands: their lists of members, and plain values as JSON.
+#include "io/recording/settings_json.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "io/json_members.hpp"
+#include "io/layers_json.hpp"
+#include "io/recording/samples_json.hpp"
+
+namespace palpate::io {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+template <class T>
+T whole_number(const Json& json, const std::string& name) {
+    const auto number = json.is_number_integer() ? json.get<std::int64_t>() : -1;
+    if (number < 0 || number > std::int64_t{std::numeric_limits<T>::max()}) {
+        wrong_member(name, "a whole number");
+    }
+    return static_cast<T>(number);
+}
+
+}  // namespace
+
+void wrong_member(const std::string& name, const std::string& wanted) {
+    throw std::invalid_argument("'" + name + "' must be " + wanted);
+}
+
+Json to_value(const Vec3& value) {
+    Json list = Json::array();
+    for (int i = 0; i < 3; ++i) list.push_back(number_to_json(value[i]));
+    return list;
+}
+
+Json to_value(const Mat3& value) {
+    Json rows = Json::array();
+    for (int r = 0; r < 3; ++r) rows.push_back(to_value(Vec3(value.row(r))));
+    return rows;
+}
+
+void from_value(const Json& json, const std::string& name, bool& value) {
+    if (!json.is_boolean()) wrong_member(name, "true or false");
+    value = json.get<bool>();
+}
+
+void from_value(const Json& json, const std::string& name, double& value) {
+    value = number_from_json(json, name);
+}
+
+void from_value(const Json& json, const std::string& name, std::string& value) {
+    if (!json.is_string()) wrong_member(name, "text");
+    value = json.get<std::string>();
+}
+
+void from_value(const Json& json, const std::string& name, int& value) {
+    value = whole_number<int>(json, name);
+}
+
+void from_value(const Json& json, const std::string& name, std::uint32_t& value) {
+    value = whole_number<std::uint32_t>(json, name);
+}
+
+void from_value(const Json& json, const std::string& name, Vec3& value) {
+    if (!json.is_array() || json.size() != 3) wrong_member(name, "three numbers");
+    for (int i = 0; i < 3; ++i) value[i] = number_from_json(json[std::size_t(i)], name);
+}
+
+void from_value(const Json& json, const std::string& name, Mat3& value) {
+    if (!json.is_array() || json.size() != 3) wrong_member(name, "three rows of three numbers");
+    for (int r = 0; r < 3; ++r) {
+        Vec3 row;
+        from_value(json[std::size_t(r)], name, row);
+        value.row(r) = row;
+    }
+}
+
+Json to_value(const Layers& layers) {
+    return to_json(layers);
+}
+
+void from_value(const Json& json, const std::string&, Layers& layers) {
+    layers = layers_from_json(json);
+}
+
+/// Of a shape: finer ones are left out.
+constexpr std::size_t most_triangles_kept = 20'000;
+
+Json to_value(const Tool& tool) {
+    Json points = Json::array();
+    for (const Vec3& point : tool.points()) points.push_back(to_value(point));
+    Json json = {{"points", points}, {"gyration", tool.gyration()}, {"turns", tool.turns()}};
+    const ToolShape& shape = tool.shape();
+    if (shape.triangles.empty() || shape.triangles.size() > most_triangles_kept) return json;
+    Json& vertices = json["vertices"] = Json::array();
+    for (const Vec3& vertex : shape.vertices) vertices.push_back(to_value(vertex));
+    json["triangles"] = shape.triangles;
+    return json;
+}
+
+/// What a tool looks like; may be missing.
+ToolShape shape_from(const Json& json, const std::string& name) {
+    ToolShape shape;
+    if (!json.contains("triangles")) return shape;
+    const Json &vertices = member(json, "vertices"), &triangles = json["triangles"];
+    if (!vertices.is_array()) wrong_member(name + ".vertices", "a list of points");
+    if (!triangles.is_array()) wrong_member(name + ".triangles", "a list of triangles");
+    shape.vertices.resize(vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        from_value(vertices[i], name + ".vertices", shape.vertices[i]);
+    }
+    shape.triangles.resize(triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        if (!triangles[i].is_array() || triangles[i].size() != 3) {
+            wrong_member(name + ".triangles", "three numbers each");
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            from_value(triangles[i][k], name + ".triangles", shape.triangles[i][k]);
+        }
+    }
+    return shape;
+}
+
+void from_value(const Json& json, const std::string& name, Tool& tool) {
+    const Json& list = member(json, "points");
+    if (!list.is_array() || list.size() > most_tool_points) {
+        wrong_member(name + ".points", "a list of at most 20000 points");
+    }
+    std::vector<Vec3> points(list.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        from_value(list[i], name + ".points", points[i]);
+    }
+    double gyration = 0;
+    bool turns = true;
+    from_value(member(json, "gyration"), name + ".gyration", gyration);
+    from_value(member(json, "turns"), name + ".turns", turns);
+    tool = Tool(std::move(points), gyration, turns, shape_from(json, name));
+}
+
+// The lists of members. Not in an unnamed namespace, where JsonWriter would not find them.
+
+static void members(auto& v, Is<Friction> auto& s) {
+    v("static", s.static_coefficient);
+    v("dynamic", s.dynamic_coefficient);
+}
+
+static void members(auto& v, Is<Magnet> auto& s) {
+    v("distance", s.distance);
+    v("peak", s.peak);
+}
+
+static void members(auto& v, Is<Texture> auto& s) {
+    v("amplitude", s.amplitude);
+    v("wavelength", s.wavelength);
+}
+
+static void members(auto& v, Is<ForceSettings> auto& s) {
+    v("stiffness", s.stiffness);
+    v("damping", s.damping);
+    v("viscosity", s.viscosity);
+    v("magnet", s.magnet);
+    v("texture", s.texture);
+    v("limit", s.limit);
+    v("rate_limit", s.rate_limit);
+    v("ramp", s.ramp);
+    v("stale_after", s.stale_after);
+    v("start_below", s.start_below);
+    v("rotational_stiffness", s.rotational_stiffness);
+    v("rotational_damping", s.rotational_damping);
+    v("torque_limit", s.torque_limit);
+    v("torque_rate_limit", s.torque_rate_limit);
+}
+
+static void members(auto& v, Is<DeviceLimits> auto& s) {
+    v("maximum_force", s.maximum_force);
+    v("rate", s.rate);
+    v("physical_damping", s.physical_damping);
+    v("maximum_torque", s.maximum_torque);
+    v("physical_rotational_damping", s.physical_rotational_damping);
+}
+
+static void members(auto& v, Is<DeviceTransform> auto& s) {
+    v("rotation", s.rotation);
+    v("translation", s.translation);
+    v("scale", s.scale);
+}
+
+static void members(auto& v, Is<DensityRange> auto& s) {
+    v("low", s.low);
+    v("high", s.high);
+}
+
+static void members(auto& v, Is<Penetrability> auto& s) {
+    v("on", s.on);
+    v("threshold", s.threshold);
+    v("range_count", s.range_count);
+    if (s.range_count < 0 || s.range_count > Penetrability::most_ranges) {
+        wrong_member("range_count", "0 to 16");
+    }
+    for (int i = 0; i < s.range_count; ++i) {
+        v("range_" + std::to_string(i + 1), s.ranges[static_cast<std::size_t>(i)]);
+    }
+}
+
+static void members(auto& v, Is<SessionSettings> auto& s) {
+    v("clutch_buttons", s.clutch_buttons);
+    v("deadman_buttons", s.deadman_buttons);
+    v("fastest_hand", s.fastest_hand);
+    v("overrun", s.overrun);
+}
+
+static void members(auto& v, Is<RendererSettings> auto& s) {
+    v("friction", s.proxy.friction);
+    v("step_budget", s.proxy.step_budget);
+    v("penetrability", s.penetrability);
+    v("layers", s.layers);
+    v("tool", s.tool);
+    v("force", s.force);
+    v("device", s.device);
+    v("transform", s.transform);
+    v("forces_on", s.forces_on);
+}
+
+static void members(auto& v, Is<command::Isovalue> auto& s) {
+    v("value", s.isovalue);
+}
+static void members(auto& v, Is<command::Freeze> auto& s) {
+    v("on", s.on);
+}
+static void members(auto& v, Is<command::Clutch> auto& s) {
+    v("on", s.on);
+}
+static void members(auto& v, Is<command::Forces> auto& s) {
+    v("on", s.on);
+}
+static void members(auto& v, Is<command::Scale> auto& s) {
+    v("scale", s.scale);
+}
+
+static void members(auto& v, Is<command::UseLayers> auto& s) {
+    v("layers", s.layers);
+    v("same_surfaces", s.same_surfaces);
+}
+static void members(auto& v, Is<command::UseTool> auto& s) {
+    v("tool", s.tool);
+}
+static void members(auto& v, Is<command::Moment> auto& s) {
+    v("time", s.time);
+}
+static void members(auto& v, Is<command::Speed> auto& s) {
+    v("speed", s.speed);
+}
+
+namespace {
+
+template <class T>
+Json written(const T& value) {
+    return JsonWriter::of(value);
+}
+
+/// The name of each alternative of Command, in its order.
+constexpr std::array command_names{"isovalue", "freeze",   "clutch",        "forces",    "scale",
+                                   "samples",  "moment",   "speed",         "layers",    "tool",
+                                   "force",    "friction", "penetrability", "transform", "limits"};
+static_assert(command_names.size() == std::variant_size_v<Command>);
+
+template <std::size_t i = 0>
+Command command_named(const std::string& name, const Json& json, Bodies& bodies) {
+    if constexpr (i == command_names.size()) {
+        throw std::invalid_argument("there is no command '" + name + "'");
+    } else {
+        if (name != command_names[i]) return command_named<i + 1>(name, json, bodies);
+        std::variant_alternative_t<i, Command> command{};
+        if constexpr (std::same_as<decltype(command), command::Samples>) {
+            return samples_command_from_json(json, bodies);
+        } else {
+            JsonReader reader{json};
+            members(reader, command);
+            return command;
+        }
+    }
+}
+
+}  // namespace
+
+const Json& member(const Json& json, const char* name) {
+    if (!json.is_object() || !json.contains(name)) {
+        throw std::invalid_argument(std::string("'") + name + "' is missing");
+    }
+    return json.at(name);
+}
+
+double number_from_json(const Json& json, const std::string& name) {
+    if (json.is_number()) return json.get<double>();
+    if (json == "inf") return infinity;
+    if (json == "-inf") return -infinity;
+    wrong_member(name, "a number, \"inf\" or \"-inf\"");
+}
+
+Json number_to_json(double value) {
+    if (std::isfinite(value)) return value;
+    return value > 0 ? "inf" : "-inf";
+}
+
+Json to_json(const RendererSettings& settings) {
+    return written(settings);
+}
+
+Json to_json(const SessionSettings& settings) {
+    return written(settings);
+}
+
+Json to_json(const Command& command, Bodies& bodies) {
+    // Samples are written as their recipe, which is more than a list of members.
+    const Overloaded write{
+        [&](const command::Samples& samples) { return to_json(samples, bodies); },
+        [](const auto& alternative) { return written(alternative); }};
+    return {{command_names[command.index()], std::visit(write, command)}};
+}
+
+void from_json(const Json& json, RendererSettings& settings) {
+    JsonReader reader{json};
+    members(reader, settings);
+}
+
+void from_json(const Json& json, SessionSettings& settings) {
+    JsonReader reader{json};
+    members(reader, settings);
+}
+
+Command command_from_json(const Json& json, Bodies& bodies) {
+    if (!json.is_object() || json.size() != 1) {
+        throw std::invalid_argument("a command is an object of one member");
+    }
+    return command_named(json.begin().key(), json.begin().value(), bodies);
+}
+
+}  // namespace palpate::io

@@ -1,0 +1,84 @@
+// Removes temporary files and folders whose process is dead; see leftovers.hpp. Windows.
+#include <windows.h>
+
+#include <atomic>
+#include <string>
+#include <system_error>
+
+#include "io/system/leftovers.hpp"
+#include "io/system/number.hpp"
+#include "io/system/removal.hpp"
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view name_begin = ".palpate-", name_end = ".part";
+
+/// The process in ".palpate-PID-N.part"; 0 for any other name.
+DWORD process_of(std::string_view name) {
+    if (!name.starts_with(name_begin) || !name.ends_with(name_end)) return 0;
+    name.remove_prefix(name_begin.size());
+    name.remove_suffix(name_end.size());
+    const auto dash = name.find('-');
+    if (dash == std::string_view::npos || !number_from<unsigned>(name.substr(dash + 1))) return 0;
+    return number_from<DWORD>(name.substr(0, dash)).value_or(0);
+}
+
+bool is_dead(DWORD process) {
+    const HANDLE handle = ::OpenProcess(SYNCHRONIZE, FALSE, process);
+    if (!handle) return ::GetLastError() == ERROR_INVALID_PARAMETER;  // there is none
+    const bool ended = ::WaitForSingleObject(handle, 0) == WAIT_OBJECT_0;
+    ::CloseHandle(handle);
+    return ended;
+}
+
+}  // namespace
+
+bool is_temporary(std::string_view name) {
+    return process_of(name) > 0;
+}
+
+fs::path temporary_in(const fs::path& folder) {
+    static std::atomic<unsigned> count = 0;
+    const std::string begin =
+        std::string(name_begin) + std::to_string(::GetCurrentProcessId()) + "-";
+    while (true) {
+        const fs::path path = folder / (begin + std::to_string(count++) + std::string(name_end));
+        std::error_code error;
+        if (!fs::exists(fs::symlink_status(path, error))) return path;
+    }
+}
+
+fs::path make_temporary_folder(const fs::path& folder, std::error_code& error) {
+    while (true) {
+        fs::path path = temporary_in(folder);
+        // Not there: a folder that another process has made in this moment is not ours.
+        if (fs::create_directory(path, error) || error) return path;
+    }
+}
+
+/// Not needed: a file that is open cannot be removed.
+int lock_temporary(const std::filesystem::path&) {
+    return -1;
+}
+
+void remove_leftovers(const fs::path& folder) {
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; entry != end && !error;
+         entry.increment(error)) {
+        const DWORD process = process_of(entry->path().filename().string());
+        if (process == 0 || !is_dead(process)) continue;
+        std::error_code ignored;
+        const bool is_folder = fs::is_directory(entry->symlink_status(ignored));
+        // A folder without the marker is removed only if it is empty.
+        if (!is_folder || fs::exists(entry->path() / temporary_marker, ignored)) {
+            remove_tree(entry->path());
+        } else {
+            fs::remove(entry->path(), ignored);
+        }
+    }
+}
+
+}  // namespace palpate::io

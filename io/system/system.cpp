@@ -1,0 +1,119 @@
+// What io asks of the operating system; see the header. Linux.
+#include "io/system/system.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <new>
+
+#include "io/system/open_file.hpp"
+
+namespace palpate::io {
+
+std::uint64_t resident_memory() {
+    std::ifstream file("/proc/self/statm");
+    std::uint64_t pages = 0, resident = 0;
+    file >> pages >> resident;
+    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::uint64_t machine_memory() {
+    return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+           static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+std::shared_ptr<std::byte> fresh_memory(std::size_t bytes) {
+    void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (at == MAP_FAILED) throw std::bad_alloc();
+    return {static_cast<std::byte*>(at), [bytes](std::byte* mapped) { munmap(mapped, bytes); }};
+}
+
+int why_unreadable(const std::filesystem::path& path, bool folder) {
+    return access(path.c_str(), folder ? R_OK | X_OK : R_OK) == 0 ? 0 : errno;
+}
+
+int why_unwritable(const std::filesystem::path& path) {
+    return access(path.c_str(), W_OK) == 0 ? 0 : errno;
+}
+
+int open_file_in(int folder, const std::string& name, int flags) {
+    // O_NONBLOCK: the opening of a pipe would wait for its writer.
+    const int file =
+        ::openat(folder, name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | flags);
+    struct stat about {};
+    if (file < 0 || (::fstat(file, &about) == 0 && S_ISREG(about.st_mode))) return file;
+    ::close(file);
+    errno = S_ISDIR(about.st_mode) ? EISDIR : ENXIO;
+    return -1;
+}
+
+bool means_full(int error) noexcept {
+    return error == ENOSPC || error == EDQUOT || error == EFBIG;
+}
+
+int open_to_read(const std::filesystem::path& path) {
+    return open_file_in(AT_FDCWD, path.string(), 0);
+}
+
+int open_to_write(const std::filesystem::path& path) {
+    return ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+}
+
+int open_standard_output() {
+    return ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+}
+
+int create_to_write(const std::filesystem::path& path) {
+    return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+
+std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at) {
+    return ::pread(descriptor, to, bytes, static_cast<off_t>(at));
+}
+
+bool synchronise(int descriptor) {
+    return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
+}
+
+bool synchronise_all(int folder) {
+    return ::syncfs(folder) == 0 || errno == ENOSYS;
+}
+
+bool truncate(int descriptor, std::int64_t bytes) {
+    return ::ftruncate(descriptor, bytes) == 0;
+}
+
+bool replace(const std::filesystem::path& from, const std::filesystem::path& to) {
+    return ::rename(from.c_str(), to.c_str()) == 0;
+}
+
+bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) {
+        return true;
+    }
+    if (errno != EINVAL && errno != ENOSYS) return false;
+    struct stat about {};
+    if (::lstat(to.c_str(), &about) == 0) {
+        errno = EEXIST;
+        return false;
+    }
+    return ::rename(from.c_str(), to.c_str()) == 0;  // fails for a folder that is not empty
+}
+
+bool exchange(const std::filesystem::path& one, const std::filesystem::path& other) {
+    return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
+}
+
+void synchronise_folder(const std::filesystem::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    (void)synchronise(descriptor);
+    ::close(descriptor);
+}
+
+}  // namespace palpate::io
