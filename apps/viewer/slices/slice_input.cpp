@@ -15,7 +15,7 @@ void SlicePane::mousePressEvent(QMouseEvent* event) {
     if (event->button() == Qt::LeftButton && measuring_) {
         Q_EMIT point_chosen(point_at(event->localPos()));
     } else if (event->button() == Qt::LeftButton) {
-        if (probe_ && !(event->modifiers() & Qt::ControlModifier)) {
+        if (probe_ && event->modifiers() & Qt::ControlModifier) {
             drag_ = Drag::probe;
             drag_layer_ = layer();
             aim_at(event->localPos());

@@ -39,8 +39,8 @@ SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis), 
     setObjectName(QStringLiteral("slice%1").arg(axis));
     setAccessibleName(tr("Slice"));
     setWhatsThis(
-        tr("Wheel: next slice. Left: crosshair, or the probe where the mouse is the hand (Ctrl: "
-           "crosshair). Right drag: window (sideways) and level (up, down). Middle drag: move. "
+        tr("Wheel: next slice. Left: crosshair. Ctrl+left: the probe, if the mouse is the hand. "
+           "Right drag: window (sideways) and level (up, down). Middle drag: move. "
            "Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home."));
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);

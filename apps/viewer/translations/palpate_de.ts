@@ -103,8 +103,8 @@
         <translation>Links</translation>
     </message>
     <message>
-        <source>crosshair; with the mouse as device: the probe (Ctrl: crosshair)</source>
-        <translation>Fadenkreuz; mit der Maus als Gerät: die Sonde (Strg: Fadenkreuz)</translation>
+        <source>crosshair (Ctrl: the probe, with the mouse as device)</source>
+        <translation>Fadenkreuz (Strg: die Sonde, mit der Maus als Gerät)</translation>
     </message>
     <message>
         <source>next slice (Ctrl: zoom)</source>
@@ -2787,8 +2787,8 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Schnitt</translation>
     </message>
     <message>
-        <source>Wheel: next slice. Left: crosshair, or the probe where the mouse is the hand (Ctrl: crosshair). Right drag: window (sideways) and level (up, down). Middle drag: move. Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home.</source>
-        <translation>Rad: nächster Schnitt. Links: Fadenkreuz, oder die Sonde, wenn die Maus die Hand ist (Strg: Fadenkreuz). Rechts ziehen: Fensterbreite (seitwärts) und Fensterlage (auf, ab). Mittlere Taste ziehen: verschieben. Strg+Rad: zoomen. Doppelklick: zurücksetzen. Tasten: Pfeile, Bild auf und ab, +, -, Pos1.</translation>
+        <source>Wheel: next slice. Left: crosshair. Ctrl+left: the probe, if the mouse is the hand. Right drag: window (sideways) and level (up, down). Middle drag: move. Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home.</source>
+        <translation>Rad: nächster Schnitt. Links: Fadenkreuz. Strg+Links: die Sonde, wenn die Maus die Hand ist. Rechts ziehen: Fensterbreite (seitwärts) und Fensterlage (auf, ab). Mittlere Taste ziehen: verschieben. Strg+Rad: zoomen. Doppelklick: zurücksetzen. Tasten: Pfeile, Bild auf und ab, +, -, Pos1.</translation>
     </message>
     <message>
         <source>%1 slice</source>

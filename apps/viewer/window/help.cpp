@@ -41,7 +41,7 @@ QString mouse_table() {
            row(Help::tr("Shift and double click"), Help::tr("centre there")) + "</table>" +
            heading(Help::tr("Mouse in a slice")) +
            row(Help::tr("Left"),
-               Help::tr("crosshair; with the mouse as device: the probe (Ctrl: crosshair)")) +
+               Help::tr("crosshair (Ctrl: the probe, with the mouse as device)")) +
            row(Help::tr("Wheel"), Help::tr("next slice (Ctrl: zoom)")) +
            row(Help::tr("Right drag"), Help::tr("window and level")) +
            row(Help::tr("Middle drag"), Help::tr("pan; Shift and double click: the whole slice")) +

@@ -41,25 +41,27 @@ TEST(SlicePane, a_click_beside_the_data_goes_to_their_border) {
     EXPECT_NEAR(shown.chosen[0][0], -23.5, 1e-9);
 }
 
-TEST(SlicePane, as_a_hand_it_aims_the_probe_and_ctrl_is_the_crosshair) {
+TEST(SlicePane, as_a_hand_it_aims_the_probe_with_ctrl_only) {
     ShownPane shown(2, ball_on(oblique_direction()));
     shown.pane.set_hand(true);
     const Vec3 before = shown.pane.crosshair();
-    shown.drag(Qt::LeftButton, {150, 150}, {250, 190});
+    shown.drag(Qt::LeftButton, {150, 150}, {250, 190}, Qt::ControlModifier);
     ASSERT_EQ(shown.aimed.size(), 2U);
     EXPECT_LT((shown.aimed[0] - shown.pane.point_at(QPointF(150, 150))).norm(), 1e-9);
     EXPECT_LT((shown.aimed[1] - shown.pane.point_at(QPointF(250, 190))).norm(), 1e-9);
     EXPECT_EQ(shown.pane.crosshair(), before);
-    shown.drag(Qt::LeftButton, {150, 150}, {250, 190}, Qt::ControlModifier);
+    EXPECT_TRUE(shown.chosen.empty());
+    shown.drag(Qt::LeftButton, {150, 150}, {250, 190});
+    QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, {200, 180});
     EXPECT_EQ(shown.aimed.size(), 2U);
-    EXPECT_EQ(shown.chosen.size(), 2U);
+    EXPECT_EQ(shown.chosen.size(), 3U);
 }
 
 TEST(SlicePane, the_probe_stays_in_its_slice_while_it_is_dragged_and_the_wheel_moves_it_in_depth) {
     ShownPane shown(2, ball_on(Mat3::Identity()));
     shown.pane.set_hand(true);
     shown.pane.set_crosshair({0, 0, 3});
-    QTest::mousePress(&shown.pane, Qt::LeftButton, Qt::NoModifier, {200, 180});
+    QTest::mousePress(&shown.pane, Qt::LeftButton, Qt::ControlModifier, {200, 180});
     shown.pane.set_crosshair({0, 0, 4.2});  // the probe was pushed back
     QMouseEvent move(QEvent::MouseMove, QPointF(210, 180), Qt::NoButton, Qt::LeftButton,
                      Qt::NoModifier);

@@ -245,12 +245,15 @@ TEST_F(Files, screenshot_of_what_cannot_be_opened_ends_with_its_status) {
     EXPECT_FALSE(QFile::exists(scratch("shot.png")));
 }
 
-TEST_F(Files, a_slice_puts_the_probe_where_it_is_clicked) {
+TEST_F(Files, a_slice_moves_the_hand_with_ctrl_only) {
     feel("synthetic:sphere:48x48x48");
     SlicePane& axial = window_->views().slice(2);
     const QPoint at(axial.width() / 2, axial.height() / 8);
+    const Vec3 before = window_->live()->mouse()->aimed();
+    QTest::mouseDClick(&axial, Qt::LeftButton, {}, at);
+    EXPECT_EQ(window_->live()->mouse()->aimed(), before);
     const Vec3 wanted = axial.point_at(at);
-    QTest::mouseClick(&axial, Qt::LeftButton, {}, at);
+    QTest::mouseClick(&axial, Qt::LeftButton, Qt::ControlModifier, at);
     wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; });
 }
 
