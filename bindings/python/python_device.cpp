@@ -6,6 +6,8 @@
 namespace palpate::python {
 namespace {
 
+constexpr std::int64_t rest = 50'000'000;  // [ns]
+
 /// Throws std::invalid_argument for what is no reading.
 DeviceReading reading_from(const py::object& returned) {
     const auto reading = returned_by<DeviceReading>("read()", returned);
@@ -100,23 +102,25 @@ void PythonDevice::run() {
     ended_ = true;
 }
 
-/// While one of the functions raises the device has a fault, so there is no force; afterwards it
-/// goes on.
+/// While one of the functions raises the device has a fault, so there is no force. It lasts for so
+/// many ticks that the servo sees it: afterwards the force begins with the ramp.
 void PythonDevice::step() {
     const py::gil_scoped_acquire gil;
     DeviceReading reading;
     const std::string unread =
         tried("read()", [&] { reading = reading_from(self_.attr("read")()); });
     const std::int64_t now = devices::monotonic_ns();
-    if (unread.empty() && can_write_) {
-        link_.report(reading, now);
-    } else {
+    if (!unread.empty()) rests_until_ = now + rest;
+    const bool rests = now < rests_until_;
+    if (rests) {
         link_.report(DeviceStatus::fault, now);
+    } else {
+        link_.report(reading, now);
     }
     // Taken after the GIL was waited for, so that an old force is not sent.
     const Wrench newest = link_.wrench(devices::monotonic_ns());
-    const std::string unwritten = write_to_device(unread.empty() ? newest : Wrench{});
-    can_write_ = unwritten.empty();
+    const std::string unwritten = write_to_device(rests ? Wrench{} : newest);
+    if (!unwritten.empty()) rests_until_ = now + rest;
     set_problem(unread.empty() ? unwritten : unread);
 }
 

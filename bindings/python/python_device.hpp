@@ -62,7 +62,7 @@ class PythonDevice final : public Device {
     devices::Link link_;
     mutable std::mutex mutex_;  // of problem_
     std::string problem_;
-    bool can_write_ = true;  // the device's thread's, as of its last step
+    std::int64_t rests_until_ = 0;  // [ns, monotonic] the device's thread's: a fault until then
     std::atomic<bool> ending_{false}, ended_{false};
     bool left_behind_ = false;             // under finish_
     std::atomic<std::thread::id> asking_;  // the device's thread

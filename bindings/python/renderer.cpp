@@ -113,9 +113,7 @@ void bind_changes(py::class_<Renderer>& renderer) {
         .def_property(
             "force", [](const Renderer& r) { return AskedForce(r.settings.force); },
             [](Renderer& r, const AskedForce& asked) {
-                ForceSettings usual;
-                usual.limit = r.settings.device.maximum_force;
-                change(r, [&](RendererSettings& s) { s.force = force_of(asked, usual); });
+                change(r, [&](RendererSettings& s) { s.force = force_of(asked, s.force); });
             },
             "ForceSettings; ValueError for what cannot be rendered, as of the next two.")
         .def_property(

@@ -73,7 +73,12 @@ struct LiveRun : run::Run {
     OwnProcess process;
 };
 
-std::shared_ptr<LiveRun> make(const run::LoadedVolume& loaded, const std::optional<Setup>& given) {
+/// `what`: LoadedVolume, Volume or Store. A Store is not converted by itself: what its reading raises would be lost.
+std::shared_ptr<LiveRun> make(const py::object& what, const std::optional<Setup>& given) {
+    const py::module_ module = py::module_::import("palpate._palpate");
+    const auto loaded = py::isinstance(what, module.attr("Store"))
+                            ? module.attr("LoadedVolume")(what).cast<run::LoadedVolume>()
+                            : what.cast<run::LoadedVolume>();
     const run::Setup setup = live_setup(given.value_or(Setup{}));
     std::shared_ptr<run::Data> data = made_without_gil<run::Data>(loaded, setup.playback);
     return made_without_gil<LiveRun>(std::move(data), setup);
@@ -129,9 +134,7 @@ void start(const py::object& self) {
 
 void send(LiveRun& r, const Sent& sent) {
     const Field field = r.field_now();
-    ForceSettings usual = live_force();
-    usual.limit = r.device().limits.maximum_force;
-    r.send(command_of(sent, field, r.isovalue(), usual));
+    r.send(command_of(sent, field, r.isovalue(), r.settings().force));
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ struct DeviceServo {
         : device(std::move(its_device)),
           field(renderer.field),
           isovalue(renderer.proxy.isovalue),
+          force(renderer.settings.force),
           servo(Session{std::move(renderer), {}}, *device, settings) {}
 
     /// False if the device's thread goes on for good (PythonDevice::finish()).
@@ -37,6 +38,7 @@ struct DeviceServo {
     std::unique_ptr<PythonDevice> device;
     Field field;
     double isovalue;
+    ForceSettings force;  ///< as sent last
     Servo servo;
 };
 
@@ -91,13 +93,13 @@ void start_servo(const py::object& self) {
 }
 
 void send_to_servo(DeviceServo& s, const Sent& sent) {
-    ForceSettings usual;
-    usual.limit = s.device->info().limits.maximum_force;
-    if (!s.servo.send(command_of(sent, s.field, s.isovalue, usual))) {
+    const Command command = command_of(sent, s.field, s.isovalue, s.force);
+    if (!s.servo.send(command)) {
         const py::object type = py::module_::import("palpate.errors").attr("QueueFull");
         PyErr_SetString(type.ptr(), "no room for another command: send fewer");
         throw py::error_already_set();
     }
+    if (const auto* force = std::get_if<ForceSettings>(&command)) s.force = *force;
 }
 
 }  // namespace

@@ -141,7 +141,10 @@ run::LoadedVolume loaded_from(const OpenStore& store, int level, std::uint64_t m
     run::Source source;
     source.from = from;
     source.frame = from.options.time;
-    return run::load(source);
+    const ProgressFunction none;
+    run::LoadedVolume loaded = run::load(source, progress_of(none));
+    if (loaded.streamed) loaded.streamed->store = destroyed_here_only(loaded.streamed->store);
+    return loaded;
 }
 
 void bind_loaded_store(py::module_& module) {
@@ -150,7 +153,6 @@ void bind_loaded_store(py::module_& module) {
              py::arg("memory_bytes") = stream::BrickLoaderSettings{}.memory, Unlocked(),
              "A Store, for Run: felt at this level while it is read. memory_bytes: most that its\n"
              "samples take.");
-    py::implicitly_convertible<OpenStore, run::LoadedVolume>();
 }
 
 }  // namespace

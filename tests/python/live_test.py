@@ -197,14 +197,40 @@ def test_the_servo_ticks_on_while_a_python_thread_holds_the_gil():
         assert servo.report().compute["p999"] < 1e6  # ns
 
 
+def test_after_a_single_failure_the_force_begins_with_the_ramp():
+    class Once(Still):
+        fails = False
+
+        def read(self):
+            if self.fails:
+                self.fails, self.failed_at = False, len(self.forces)
+                raise RuntimeError("once")
+            return super().read()
+
+    device = Once(surface_height() - 0.5)
+    servo = palpate.Servo(renderer(), device, device_rate=4000)  # the servo sees a part of its readings
+    with servo:
+        until(lambda: servo.snapshot() and servo.snapshot().tick.force[2] > 0.2)
+        device.fails = True
+        until(lambda: not device.fails and len(device.forces) > device.failed_at + 40)
+        # In the first 10 ms there is none.
+        assert not numpy.any(device.forces[device.failed_at:device.failed_at + 40])
+        until(lambda: servo.snapshot().tick.force[2] > 0.2)  # and it comes back
+
+
 def test_while_python_does_not_come_back_to_a_device_there_is_no_force():
     device = Still(surface_height() - 0.5)
     servo = palpate.Servo(renderer(), device, real_time=False)
     with servo:
         until(lambda: servo.snapshot() and servo.snapshot().tick.force[2] > 0.1)
-        before = len(device.forces)
-        let_go = lambda: not numpy.any(servo.snapshot().tick.force)  # noqa: E731
-        assert with_the_gil(let_go)
+        lengths = []  # of the forces, while no other thread of Python runs
+
+        def has_let_go():
+            lengths.append(len(device.forces))
+            return not numpy.any(servo.snapshot().tick.force)
+
+        assert with_the_gil(has_let_go)
+        before = lengths[0]
         until(lambda: len(device.forces) > before + 2)
         # The first force after the silence is that of a session that let go. One write may have been
         # under way when the silence began.

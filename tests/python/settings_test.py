@@ -85,8 +85,8 @@ def owners():
         friction=palpate.Friction(static_coefficient=0.5, dynamic_coefficient=0.1))
     made |= {"Layers": lambda: pickle.loads(pickle.dumps(layers)),
              "RenderSetup": lambda: copy.copy(setup),
-             "Setup": lambda: palpate.Setup(render=setup),
-             "Renderer": lambda: renderer(palpate.RenderSetup(friction=setup.friction))}
+             "Setup": lambda: palpate.Setup(render=copy.copy(setup)),
+             "Renderer": lambda: renderer(palpate.RenderSetup(friction=copy.copy(setup.friction)))}
     return made
 
 
@@ -196,6 +196,31 @@ def deepest_force(renderer):
     scene_radius = 19.5
     ticks = [renderer.render(i / 1000, (0, 0, scene_radius - 0.01 * i)) for i in range(1, 1500)]
     return max(numpy.linalg.norm(tick.force) for tick in ticks)
+
+
+def test_what_was_assigned_belongs_to_each_owner():
+    mine = palpate.ForceSettings()
+    one, other = palpate.RenderSetup(force=mine), palpate.RenderSetup()
+    other.force = mine
+    mine.limit = 0.5
+    assert (one.limit, other.limit, copy.copy(one).limit) == (0.5, 0.5, 0.5)
+    one.force = one.force  # nothing is lost
+    mine.limit = 0.25
+    assert (one.limit, other.limit) == (0.25, 0.25)
+    one.force = palpate.ForceSettings()
+    mine.limit = 1
+    assert (one.limit, other.limit) == (None, 1)
+    with pytest.raises(ValueError):
+        mine.limit = -1
+        renderer(one).force = mine
+
+
+def test_layers_in_another_order_are_still_those_of_the_set():
+    layers = palpate.layers_named("ct-needle")
+    first = layers.layers[0]
+    layers.layers = layers.layers[::-1]
+    first.level = 123
+    assert copy.copy(layers).layers[-1].level == 123
 
 
 def test_a_limit_is_kept_wherever_it_is_set():

@@ -81,11 +81,7 @@ class _Nested:
         if self.name in vars(owner):
             return vars(owner)[self.name]
         value = _kept(self.raw.__get__(owner))
-        children = _settings_in(value)
-        for child in children:
-            vars(child)["_owner"] = weakref.ref(owner), self
-        if children:
-            vars(owner)[self.name] = value
+        self.adopt(owner, value)
         return value
 
     def __set__(self, owner, value):
@@ -101,17 +97,34 @@ class _Nested:
             self.raw.__set__(owner, before)
             _hand_on(owner)
             raise
-        for child in _settings_in(vars(owner).pop(self.name, None)):
-            del vars(child)["_owner"]
+        vars(owner).pop(self.name, None)
+        value = _List(value) if type(value) in (list, tuple) else value
+        # Not where the owner has filled in what was left open.
+        children = _settings_in(value)
+        if children and not any("_frozen" in vars(child) for child in children) and (
+                _same(value, self.raw.__get__(owner))):
+            self.adopt(owner, value)
+
+    def adopt(self, owner, value):
+        """From now on the owner has each change of these settings."""
+        children = _settings_in(value)
+        for child in children:
+            vars(child).setdefault("_owners", []).append((weakref.ref(owner), self))
+        if children:
+            vars(owner)[self.name] = value
 
 
 def _hand_on(child):
-    """To the owner of these settings, and on to its owner."""
-    reference, nested = vars(child).get("_owner", (lambda: None, None))
-    owner = reference()
-    if owner is not None:
-        nested.raw.__set__(owner, vars(owner)[nested.name])
-        _hand_on(owner)
+    """To the owners of these settings, and on to theirs."""
+    owners = vars(child).get("_owners", [])
+    for link in list(owners):
+        owner, nested = link[0](), link[1]
+        held = owner is not None and vars(owner).get(nested.name)
+        if held is child or isinstance(held, list) and any(one is child for one in held):
+            nested.raw.__set__(owner, held)
+            _hand_on(owner)
+        else:  # it is another's now, or nobody's
+            owners.remove(link)
 
 
 def _set(self, name, value):
