@@ -197,13 +197,14 @@ void VolumeEditor::forget_versions() {
             needed.insert(std::get<EditOf>(*recipe.recipe).version);
         }
     }
-    const bool too_many = needed.size() > most_versions_ / 2;
+    const bool too_many = needed.size() > most_versions_;
     knows_history_ = knows_history_ && !too_many;
     std::erase_if(versions_, [&](const Version& version) {
         const bool is_known = !too_many || !version.samples.expired();
         return version.recipe.version > 0 && !(is_known && needed.contains(version.recipe.version));
     });
-    forget_at_ = 2 * versions_.size() + std::min(most_versions_, first_forgetting);
+    const std::size_t few = versions_.size() + std::min(most_versions_, first_forgetting);
+    forget_at_ = std::min(versions_.size() + few, std::max(most_versions_, few));
 }
 
 /// Makes the state visible to threads that do not wait for an edit.

@@ -73,7 +73,8 @@ struct LiveRun : run::Run {
     OwnProcess process;
 };
 
-/// `what`: LoadedVolume, Volume or Store. A Store is not converted by itself: what its reading raises would be lost.
+/// `what`: LoadedVolume, Volume or Store. A Store is not converted by itself: what its reading
+/// raises would be lost.
 std::shared_ptr<LiveRun> make(const py::object& what, const std::optional<Setup>& given) {
     const py::module_ module = py::module_::import("palpate._palpate");
     const auto loaded = py::isinstance(what, module.attr("Store"))

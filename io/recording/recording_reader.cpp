@@ -245,7 +245,11 @@ RecordingHead read_recording_head(const std::filesystem::path& path) {
     if (file.bad() || head.empty() || head.size() >= longest_head) {
         return RecordingReader(path).head();
     }
-    return read_head(head, path.string()).head;
+    try {
+        return read_head(head, path.string()).head;
+    } catch (const InputError&) {
+        return RecordingReader(path).head();
+    }
 }
 
 RecordingReader::RecordingReader(const std::filesystem::path& path)

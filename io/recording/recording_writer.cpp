@@ -150,16 +150,20 @@ void RecordingWriter::begin_with(std::vector<Command> commands) {
 }
 
 void RecordingWriter::drain() {
-    std::vector<Command> first;
-    {
-        const std::scoped_lock lock(mutex_);
-        first.swap(first_);
-    }
-    for (const Command& command : first) {
-        append(command);
-        if (buffer_.size() > most_buffered) flush();
-    }
+    const auto begin = [&] {
+        std::vector<Command> first;
+        {
+            const std::scoped_lock lock(mutex_);
+            first.swap(first_);
+        }
+        for (const Command& command : first) {
+            append(command);
+            if (buffer_.size() > most_buffered) flush();
+        }
+    };
+    begin();
     while (const auto event = queue_.pop()) {
+        begin();  // those that were given meanwhile, before the first event
         std::visit([this](const auto& one) { append(one); }, *event);
         if (buffer_.size() > most_buffered) flush();
     }

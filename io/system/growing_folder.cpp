@@ -311,7 +311,7 @@ bool GrowingFolder::exchange_with_out(const MayReplace& may_replace) {
         try {
             may_replace(result());  // it may have been replaced since it was looked at
         } catch (const OutputError& e) {
-            if (!exchange(result(), out_)) keep_replaced(result(), e.what());
+            if (!exchange(result(), out_)) keep_replaced(result(), e.what(), true);
             throw;
         }
         return true;
@@ -323,12 +323,13 @@ bool GrowingFolder::exchange_with_out(const MayReplace& may_replace) {
 }
 
 /// What must not be replaced lies at `at` and cannot go back.
-void GrowingFolder::keep_replaced(const fs::path& at, const std::string& problem) {
+void GrowingFolder::keep_replaced(const fs::path& at, const std::string& problem,
+                                  bool is_replaced) {
     const fs::path aside = at == result() ? free_name(out_, ".previous") : at;
     const bool is_moved = at == aside || rename_new(at, aside);
     if (!is_moved) stays_ = true;
     throw OutputError(problem + "; it is kept as " + (is_moved ? aside : at).string() +
-                      ", and the new result is in its place");
+                      (is_replaced ? ", and the new result is in its place" : ""));
 }
 
 /// Where names cannot be exchanged: nothing has the name OUT between two renames, so that nothing
@@ -350,10 +351,10 @@ bool GrowingFolder::replace_in_steps(const MayReplace& may_replace, const struct
     }
     try {
         may_replace(aside);  // something may have been put into it since it was looked at
-    } catch (const OutputError& e) {
-        const bool can_go_back = done && rename_new(out_, result());
-        if (!can_go_back || !rename_new(aside, out_)) keep_replaced(aside, e.what());
-        throw;
+    } catch (const std::exception& e) {
+        const bool is_taken_back = done && rename_new(out_, result());
+        if (is_taken_back && rename_new(aside, out_)) throw;
+        keep_replaced(aside, e.what(), done && !is_taken_back);
     }
     // It is replaced, by this process or another one: it goes with this folder.
     rename_new(aside, free_name(folder_ / "previous", ""));

@@ -57,7 +57,8 @@ class GrowingFolder {
     void let_go() noexcept;
     void move_into_place(const MayReplace& may_replace);
     bool exchange_with_out(const MayReplace& may_replace);
-    [[noreturn]] void keep_replaced(const std::filesystem::path& at, const std::string& problem);
+    [[noreturn]] void keep_replaced(const std::filesystem::path& at, const std::string& problem,
+                                    bool is_replaced);
     bool replace_in_steps(const MayReplace& may_replace, const struct stat& looked_at);
     void rescue(const std::string& problem) const;
 

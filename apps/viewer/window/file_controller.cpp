@@ -75,12 +75,14 @@ void FileController::choose_series(const io::SeriesChoice& choice, const run::So
     dialog->open();  // does not block the live run
 }
 
-/// As load(), but does not read a volume again that is open already.
+/// As load(), but does not read a volume again that is open already. Addresses whose query was left
+/// out cannot be compared.
 void FileController::load_or_reuse(const run::Source& source, Then then) {
     const std::shared_ptr<Opened> opened = content_.volume();
     // The samples of one that was saved elsewhere are those of before its edits.
-    if (!opened || content_.saved_elsewhere() ||
-        run::to_names(opened->loaded.source) != run::to_names(source)) {
+    const auto names = run::to_names(source);
+    if (!opened || content_.saved_elsewhere() || names.contains("secrets") ||
+        run::to_names(opened->loaded.source) != names) {
         return load(source, std::move(then));
     }
     loader_.abandon();
