@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <mutex>
 #include <optional>
 
 #include "palpate/io/error.hpp"
@@ -40,8 +39,6 @@ ChunkLayout layout_of(const ChunkedArray& array, const ChunkedVolume& volume) {
     return layout;
 }
 
-constexpr std::int64_t most_searched = 1 << 28;  // samples, for the least finite one
-
 class ChunkedStore : public Store {
   public:
     ChunkedStore(std::shared_ptr<const Objects> objects, ChunkedVolume volume,
@@ -68,30 +65,70 @@ class ChunkedStore : public Store {
         for (int z = first[2]; z <= last[2]; ++z) {
             for (int y = first[1]; y <= last[1]; ++y) {
                 for (int x = first[0]; x <= last[0]; ++x) {
-                    take_chunk(level, {x, y, z}, box, out, stop);
+                    copy_chunk(level, {x, y, z}, box, out, stop);
                 }
             }
+        }
+        if (!finite_samples(volume_.info.type, out).all) {
+            make_finite(volume_.info.type, out, least_finite(stop));
         }
     }
 
   private:
-    void take_chunk(int level, const Index3& chunk, const SampleBox& box, std::span<std::byte> out,
-                    std::stop_token stop) const {
+    /// The rows of a chunk that are inside `box`, to their place in `out`.
+    void copy_chunk(int level, const Index3& chunk, const SampleBox& box, std::span<std::byte> out,
+                    const std::stop_token& stop) const {
+        const Index3 size = box.high - box.low + Index3::Ones();
+        for_each_row(level, chunk, box, stop,
+                     [&](const Index3& first, std::span<const std::byte> row) {
+                         const Index3 at = first - box.low;
+                         const std::size_t before =
+                             (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size[1]) +
+                              static_cast<std::size_t>(at[1])) *
+                                 static_cast<std::size_t>(size[0]) +
+                             static_cast<std::size_t>(at[0]);
+                         std::memcpy(out.data() + before * size_of(volume_.info.type), row.data(),
+                                     row.size());
+                     });
+    }
+
+    /// Calls take(index of the first sample, samples) for each row of a chunk inside `box`. Samples
+    /// that are not finite stay.
+    template <class Take>
+    void for_each_row(int level, const Index3& chunk, const SampleBox& box,
+                      const std::stop_token& stop, const Take& take) const {
         if (stop.stop_requested()) throw Cancelled{};
         const Level& grid = volume_.info.levels[static_cast<std::size_t>(level)];
+        const ChunkLayout& layout = layouts_[static_cast<std::size_t>(level)];
         const Index3 corner = chunk.cwiseProduct(grid.chunk);
-        SampleBox part;
-        for (int a = 0; a < 3; ++a) {
-            part.low[a] = std::max(box.low[a], corner[a]);
-            part.high[a] = std::min<int>(box.high[a], corner[a] + (grid.chunk[a] - 1));
-        }
+        const Index3 low = box.low.cwiseMax(corner);
+        const Index3 high = box.high.cwiseMin(corner + grid.chunk - Index3::Ones());
         const ChunkReader& reader = *readers_[static_cast<std::size_t>(level)];
-        const std::uint64_t needed = reader.array().bytes_to_read_chunk();
+        const ChunkedArray& array = reader.array();
+        const std::uint64_t needed = array.bytes_to_read_chunk();
         if (needed > room_.most()) refuse(level, needed);
         const UnpackingRoom::Share share(room_, needed, stop);
-        const auto bytes = reader.chunk(index_of(reader.array(), chunk), stop);
-        copy(reader.array(), bytes, layouts_[static_cast<std::size_t>(level)], corner, part, box,
-             out, stop);
+        const auto bytes = reader.chunk(index_of(array, chunk), stop);
+        const auto count = static_cast<std::size_t>(high[0] - low[0] + 1);
+        std::vector<std::byte> raw(count * array.bytes.size());
+        std::vector<std::byte> row =
+            bytes ? std::vector<std::byte>(count * size_of(volume_.info.type)) : fill_row(count);
+        for (int z = low[2]; z <= high[2]; ++z) {
+            for (int y = low[1]; y <= high[1]; ++y) {
+                const Index3 first(low[0], y, z);
+                if (bytes) {
+                    std::size_t from = layout.base;
+                    for (std::size_t i = 0; i < 3; ++i) {
+                        const auto a = static_cast<Eigen::Index>(i);
+                        from += layout.stride[i] * static_cast<std::size_t>(first[a] - corner[a]);
+                    }
+                    gather(bytes->data() + from * array.bytes.size(), layout.stride[0],
+                           array.bytes.size(), raw);
+                    array.bytes.unpack(raw, row.data());
+                }
+                take(first, row);
+            }
+        }
     }
 
     [[noreturn]] void refuse(int level, std::uint64_t needed) const {
@@ -113,45 +150,6 @@ class ChunkedStore : public Store {
         return index;
     }
 
-    /// The rows of `part`, out of a chunk whose first sample is `corner`, to their place in `box`.
-    void copy(const ChunkedArray& array, const std::optional<Bytes>& chunk,
-              const ChunkLayout& layout, const Index3& corner, const SampleBox& part,
-              const SampleBox& box, std::span<std::byte> out, const std::stop_token& stop) const {
-        const std::size_t from_size = array.bytes.size(), to_size = size_of(volume_.info.type);
-        const auto row = static_cast<std::size_t>(part.high[0] - part.low[0] + 1);
-        const Index3 size = box.high - box.low + Index3::Ones();
-        std::vector<std::byte> raw(row * from_size), filled;
-        if (!chunk) filled = fill_row(row, stop);
-        for (int z = part.low[2]; z <= part.high[2]; ++z) {
-            for (int y = part.low[1]; y <= part.high[1]; ++y) {
-                const Index3 at = Index3(part.low[0], y, z) - box.low;
-                std::byte* const to =
-                    out.data() +
-                    ((static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size[1]) +
-                      static_cast<std::size_t>(at[1])) *
-                         static_cast<std::size_t>(size[0]) +
-                     static_cast<std::size_t>(at[0])) *
-                        to_size;
-                if (!chunk) {
-                    std::memcpy(to, filled.data(), filled.size());
-                    continue;
-                }
-                const Index3 in = Index3(part.low[0], y, z) - corner;
-                std::size_t from = layout.base;
-                for (std::size_t i = 0; i < 3; ++i) {
-                    from += layout.stride[i] *
-                            static_cast<std::size_t>(in[static_cast<Eigen::Index>(i)]);
-                }
-                gather(chunk->data() + from * from_size, layout.stride[0], from_size, raw);
-                array.bytes.unpack(raw, to);
-                const std::span<std::byte> samples{to, row * to_size};
-                if (!finite_samples(volume_.info.type, samples).all) {
-                    make_finite(volume_.info.type, samples, least_finite(stop));
-                }
-            }
-        }
-    }
-
     static void gather(const std::byte* from, std::size_t stride, std::size_t each,
                        std::span<std::byte> row) {
         if (stride == 1) {
@@ -163,71 +161,63 @@ class ChunkedStore : public Store {
         }
     }
 
-    /// What takes the place of samples that are not finite: the least one of the finest level that
-    /// is not too large to be searched, as in io::read_volume(). Reads it when it is first needed.
+    /// What takes the place of samples that are not finite. Searched when it is first needed.
     double least_finite(const std::stop_token& stop) const {
         if (volume_.info.range) return volume_.info.range->minimum;
-        const std::lock_guard lock(searching_);
-        if (least_finite_) return *least_finite_;
-        std::size_t level = 0;
-        const auto is_large = [&] {
-            return sample_count(volume_.info.levels[level].geometry) > most_searched;
+        const UnpackingRoom::Share only(searching_, 1, stop);
+        if (!least_finite_) least_finite_ = searched(stop);
+        return *least_finite_;
+    }
+
+    /// The least finite sample of the finest level of at most `most_searched` samples, as in
+    /// io::read_volume(). If each level has more: that of as many, in chunks spread evenly over the
+    /// coarsest level. Damaged chunks are left out; the fill value if nothing is found so.
+    double searched(const std::stop_token& stop) const {
+        const auto is_too_large = [&](std::size_t at) {
+            return sample_count(volume_.info.levels[at].geometry) > most_searched ||
+                   volume_.arrays[at].bytes_to_read_chunk() > room_.most();
         };
-        while (level + 1 < readers_.size() && is_large()) ++level;
-        const ChunkReader& reader = *readers_[level];
+        std::size_t level = 0;
+        while (level + 1 < readers_.size() && is_too_large(level)) ++level;
         const Level& grid = volume_.info.levels[level];
-        const Index3 size = grid.geometry.size;
+        const Index3 chunks =
+            (grid.geometry.size + grid.chunk - Index3::Ones()).cwiseQuotient(grid.chunk);
+        const auto in_chunk = grid.chunk.cast<std::int64_t>().prod();
+        int step = 1;
+        const auto taken = [&] {
+            const auto along = ((chunks.array() + (step - 1)) / step).cast<std::int64_t>().eval();
+            return along.prod();
+        };
+        const bool all = sample_count(grid.geometry) <= most_searched;
+        while (!all && taken() > 1 && taken() * in_chunk > most_searched) ++step;
         double least = std::numeric_limits<double>::infinity();
-        for (int z = 0; z < size[2]; z += grid.chunk[2]) {
-            for (int y = 0; y < size[1]; y += grid.chunk[1]) {
-                for (int x = 0; x < size[0]; x += grid.chunk[0]) {
-                    least = std::min(least, least_in(reader, level, Index3(x, y, z), stop));
+        bool damaged = false;
+        const auto look = [&](const Index3&, std::span<const std::byte> row) {
+            least = std::min<double>(least, finite_samples(volume_.info.type, row).least);
+        };
+        for (int z = 0; z < chunks[2]; z += step) {
+            for (int y = 0; y < chunks[1]; y += step) {
+                for (int x = 0; x < chunks[0]; x += step) {
+                    try {
+                        for_each_row(static_cast<int>(level), {x, y, z}, whole_box(grid.geometry),
+                                     stop, look);
+                    } catch (const io::InputError&) {
+                        damaged = true;
+                    }
                 }
             }
         }
-        if (std::isinf(least)) {
-            throw io::InputError(volume_.info.address +
-                                 ": none of its samples is a finite number; export it again");
-        }
-        least_finite_ = least;
-        return least;
+        if (std::isfinite(least)) return least;
+        if (!all || damaged) return volume_.info.fill;
+        throw io::InputError(volume_.info.address +
+                             ": none of its samples is a finite number; export it again");
     }
 
-    /// Infinity if the chunk has no finite sample.
-    double least_in(const ChunkReader& reader, std::size_t level, const Index3& corner,
-                    const std::stop_token& stop) const {
-        const Level& grid = volume_.info.levels[level];
-        const ChunkedArray& array = reader.array();
-        const auto chunk = reader.chunk(index_of(array, corner.cwiseQuotient(grid.chunk)), stop);
-        if (!chunk) {
-            const double fill = array.bytes.fill;
-            return std::isfinite(fill) ? fill : std::numeric_limits<double>::infinity();
-        }
-        const ChunkLayout& layout = layouts_[level];
-        const Index3 end = grid.geometry.size.cwiseMin(corner + grid.chunk) - corner;
-        std::vector<std::byte> raw(static_cast<std::size_t>(end[0]) * array.bytes.size());
-        std::vector<std::byte> row(static_cast<std::size_t>(end[0]) * size_of(volume_.info.type));
-        double least = std::numeric_limits<double>::infinity();
-        for (int z = 0; z < end[2]; ++z) {
-            for (int y = 0; y < end[1]; ++y) {
-                const std::size_t from = layout.base +
-                                         layout.stride[2] * static_cast<std::size_t>(z) +
-                                         layout.stride[1] * static_cast<std::size_t>(y);
-                gather(chunk->data() + from * array.bytes.size(), layout.stride[0],
-                       array.bytes.size(), raw);
-                array.bytes.unpack(raw, row.data());
-                least = std::min<double>(least, finite_samples(volume_.info.type, row).least);
-            }
-        }
-        return least;
-    }
-
-    std::vector<std::byte> fill_row(std::size_t count, const std::stop_token& stop) const {
+    /// Of samples that are not stored. NaN where the fill value is not finite.
+    std::vector<std::byte> fill_row(std::size_t count) const {
         std::vector<std::byte> row(count * size_of(volume_.info.type));
-        const bool is_finite = std::isfinite(volume_.arrays[0].bytes.fill);
-        const double fill = is_finite ? volume_.info.fill : least_finite(stop);
         with_type(volume_.info.type, [&](auto zero) {
-            const auto value = static_cast<decltype(zero)>(fill);
+            const auto value = static_cast<decltype(zero)>(volume_.arrays[0].bytes.fill);
             for (std::size_t i = 0; i < count; ++i) {
                 std::memcpy(row.data() + i * sizeof value, &value, sizeof value);
             }
@@ -240,7 +230,7 @@ class ChunkedStore : public Store {
     std::vector<std::unique_ptr<ChunkReader>> readers_;
     std::vector<ChunkLayout> layouts_;
     mutable UnpackingRoom room_;
-    mutable std::mutex searching_;
+    mutable UnpackingRoom searching_{1};  // for one thread; others wait, or are stopped
     mutable std::optional<double> least_finite_;
 };
 

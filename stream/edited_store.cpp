@@ -63,6 +63,7 @@ Json json_of(const EditsNote& note, const fs::path& out) {
                        {"skip", options.raw->skip},
                        {"big_endian", options.raw->big_endian}};
     }
+    if (options.forbidden_is_missing) json["forbidden_is_missing"] = true;
     if (options.spacing) json["spacing"] = list_of(*options.spacing);
     for (const ChunkSet& level : note.chunks) {
         Json chunks = Json::array();
@@ -88,6 +89,7 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
     StoreOptions& of = note.of.options;
     of.channel = json.at("channel").get<int>();
     of.time = json.at("time").get<int>();
+    of.forbidden_is_missing |= json.value("forbidden_is_missing", false);
     of.raw.reset();
     of.spacing.reset();
     if (json.contains("raw")) {

@@ -3,7 +3,7 @@
 #include <cerrno>
 #include <cmath>
 #include <limits>
-#include <mutex>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -14,6 +14,7 @@
 #include "stream/sample_bytes.hpp"
 #include "stream/stores.hpp"
 #include "stream/traffic_count.hpp"
+#include "stream/unpacking_room.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -93,23 +94,26 @@ class PlainFile : public Store {
     const Geometry& grid() const { return info_.levels.front().geometry; }
 
     /// The least finite sample of the chosen time, which takes the place of those that are not
-    /// finite, as in io::read_volume(). Reads all of them when it is first needed.
+    /// finite, as in io::read_volume(). Searched when it is first needed; where there are more than
+    /// `most_searched` samples, in as many, in rows spread over the file.
     float least_finite(const std::stop_token& stop) const {
-        const std::lock_guard lock(searching_);
+        const UnpackingRoom::Share only(searching_, 1, stop);
         if (least_finite_) return *least_finite_;
         const Index3& size = grid().size;
         std::vector<std::byte> raw, row;
         float least = std::numeric_limits<float>::infinity();
-        for (int z = 0; z < size[2]; ++z) {
-            for (int y = 0; y < size[1]; ++y) {
-                if (stop.stop_requested()) throw Cancelled{};
-                raw.resize(static_cast<std::size_t>(size[0]) * bytes_.size());
-                row.resize(static_cast<std::size_t>(size[0]) * sizeof(float));
-                fetch({0, y, z}, raw);
-                bytes_.unpack(raw, row.data());
-                least = std::min(least, finite_samples(info_.type, row).least);
-            }
+        const std::int64_t rows = std::int64_t{size[1]} * size[2];
+        std::int64_t step = (sample_count(grid()) + most_searched - 1) / most_searched;
+        while (step > 1 && std::gcd(step, std::int64_t{size[1]}) > 1) ++step;  // else few y
+        for (std::int64_t at = 0; at < rows; at += step) {
+            if (stop.stop_requested()) throw Cancelled{};
+            raw.resize(static_cast<std::size_t>(size[0]) * bytes_.size());
+            row.resize(static_cast<std::size_t>(size[0]) * sizeof(float));
+            fetch({0, static_cast<int>(at % size[1]), static_cast<int>(at / size[1])}, raw);
+            bytes_.unpack(raw, row.data());
+            least = std::min(least, finite_samples(info_.type, row).least);
         }
+        if (std::isinf(least) && step > 1) least = 0;
         if (std::isinf(least)) {
             throw io::InputError(info_.address +
                                  ": none of its samples is a finite number; export it again");
@@ -143,8 +147,8 @@ class PlainFile : public Store {
     io::Descriptor file_;
     StoreInfo info_;
     SampleBytes bytes_;
-    std::uint64_t first_ = 0;  ///< [bytes] of the first sample of the chosen time
-    mutable std::mutex searching_;
+    std::uint64_t first_ = 0;             ///< [bytes] of the first sample of the chosen time
+    mutable UnpackingRoom searching_{1};  // for one thread; others wait, or are stopped
     mutable std::optional<float> least_finite_;
     mutable TrafficCount traffic_;
 };

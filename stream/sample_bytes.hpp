@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -24,6 +25,9 @@ struct SampleBytes {
     /// many of type(). Those that are not finite stay.
     void unpack(std::span<std::byte> raw, std::byte* to) const;
 };
+
+/// Samples that are searched for the least finite one, at most.
+inline constexpr std::int64_t most_searched = std::int64_t{1} << 28;
 
 /// What is known of some samples: the least finite one, and whether others are not finite.
 struct FiniteSamples {

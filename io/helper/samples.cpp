@@ -102,6 +102,27 @@ class CommasAreBlank : public std::ctype<char> {
     }
 };
 
+/// Whether the commas of a text are decimal ones, as in "1,5 2,5": they stand between two digits,
+/// and no number has one on both sides.
+class CommasSeen {
+  public:
+    /// `in`: behind `word`. Takes a comma out of it.
+    void look(std::istream& in, const std::string& word) {
+        const bool after = joins_;
+        joins_ = false;
+        if (in.peek() != ',') return;
+        in.get();
+        joins_ = is_digit(word.back()) && is_digit(in.peek());
+        some_ = some_ || joins_;
+        lists_ = lists_ || (after && joins_);
+    }
+    bool are_decimal() const { return some_ && !lists_; }
+
+  private:
+    static bool is_digit(int c) { return c >= '0' && c <= '9'; }
+    bool joins_ = false, some_ = false, lists_ = false;
+};
+
 /// Numbers of a text, all of them counted, as many as the header says converted.
 void read_text(VolumeHeader& header, const ByteSink& sink) {
     std::ifstream in(header.place.file, std::ios::binary);
@@ -112,6 +133,7 @@ void read_text(VolumeHeader& header, const ByteSink& sink) {
     SampleBytes samples(header, sink);
     std::vector<std::byte> bytes;
     std::uint64_t count = 0;
+    CommasSeen commas;
     const std::uint64_t wanted = header.samples();
     for (std::string word; in >> std::setw(longest_word) >> word; ++count) {
         const auto number = number_from<double>(word);
@@ -119,12 +141,17 @@ void read_text(VolumeHeader& header, const ByteSink& sink) {
             throw Failure("its data are not all numbers ('" + word.substr(0, 20) + "' after " +
                           std::to_string(count) + " of them); export it again");
         }
+        commas.look(in, word);
         if (count >= wanted) continue;
         with_stored(header.stored,
                     [&](auto type) { append_sample<decltype(type)>(*number, bytes); });
         if (bytes.size() < chunk_bytes) continue;
         samples(bytes);
         bytes.clear();
+    }
+    if (count != wanted && commas.are_decimal()) {
+        throw Failure(
+            "its numbers have decimal commas, which are not read; write them with points");
     }
     compare(count, wanted, "numbers", header.notes);
     samples(bytes);

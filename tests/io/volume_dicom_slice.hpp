@@ -25,6 +25,7 @@ struct TestSlice {
     std::string pixel_spacing = "0.5\\0.25";  ///< rows first, as DICOM has it
     std::string position = "0\\0\\0";         ///< empty: not given
     std::string orientation = "1\\0\\0\\0\\1\\0";
+    std::string location;               ///< SliceLocation; empty: not given
     std::vector<std::uint16_t> pixels;  ///< columns x rows x frames; empty: number * 100 + index
 };
 
@@ -95,6 +96,7 @@ inline std::string dicom_data_set(const TestSlice& slice) {
         data.text(0x20, 0x32, "DS", slice.position);
         data.text(0x20, 0x37, "DS", slice.orientation);
     }
+    if (!slice.location.empty()) data.text(0x20, 0x1041, "DS", slice.location);
     data.number(0x28, 2, slice.samples_per_pixel);
     data.text(0x28, 4, "CS", slice.samples_per_pixel == 3 ? "RGB" : "MONOCHROME2");
     if (slice.samples_per_pixel == 3) data.number(0x28, 6, 0);

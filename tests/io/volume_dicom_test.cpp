@@ -270,6 +270,19 @@ TEST(dicom, slices_without_a_position_are_piled_up_by_number_and_that_is_said) {
     EXPECT_TRUE(contains(all_notes(file), "pixel spacing"));
 }
 
+TEST(dicom, a_bad_slice_location_matters_only_without_a_position) {
+    for (const char* location : {"none", "1e30"}) {
+        const ScratchFolder folder;
+        TestSlice slice = slice_at(1, 0);
+        slice.location = location;
+        put_slice(folder / "1.dcm", slice);
+        EXPECT_EQ(read_volume(folder / "1.dcm").volume.sample({0, 0, 0}), 100);
+        slice.position.clear();
+        put_slice(folder / "1.dcm", slice);
+        EXPECT_TRUE(one_line_about(refusal(folder / "1.dcm"), folder / "1.dcm"));
+    }
+}
+
 TEST(dicom, a_mosaic_of_slices_is_refused_with_what_to_do) {
     const ScratchFolder folder;
     TestSlice slice = slice_at(1, 0);

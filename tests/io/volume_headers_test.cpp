@@ -71,6 +71,19 @@ TEST(nrrd, text_gzip_detached_and_skipped_data_are_read) {
         std::string(plain_nrrd) + "encoding: raw\nbyte skip: -1\ndata file: data.bin\n"));
 }
 
+TEST(nrrd, text_with_decimal_commas_is_refused_and_with_commas_between_numbers_read) {
+    const ScratchFolder folder;
+    const std::string head = std::string(plain_nrrd) + "encoding: ascii\n\n";
+    std::string list, decimals;
+    for (int i = 0; i < 24; ++i) {
+        list += (i > 0 ? "," : "") + std::to_string(i);
+        decimals += std::to_string(i) + ",5 ";
+    }
+    expect_counting(read_bytes(folder, "a.nrrd", head + list));
+    EXPECT_TRUE(contains(all_notes(read_bytes(folder, "b.nrrd", head + list + ",24")), "are 25"));
+    EXPECT_TRUE(contains(refusal_of(folder, "c.nrrd", head + decimals), "decimal commas"));
+}
+
 TEST(nrrd, right_anterior_superior_becomes_left_posterior_superior) {
     const ScratchFolder folder;
     const VolumeFile file =

@@ -53,6 +53,47 @@ TEST(Bounds, a_chunk_that_takes_more_than_may_be_used_is_refused_by_name_and_cos
     EXPECT_EQ(support::end_of(support::start_process(work)), 0);
 }
 
+/// Cubes of floats in chunks of 64^3; those that are not stored are NaN.
+void put_cube(const fs::path& folder, int size,
+              const std::vector<std::pair<std::string, float>>& chunks) {
+    fs::create_directories(folder);
+    const std::string n = std::to_string(size);
+    put_bytes(folder / ".zarray",
+              R"({"zarr_format":2,"shape":[)" + n + "," + n + "," + n +
+                  R"(],"chunks":[64,64,64],"dtype":"<f4","compressor":null,"fill_value":"NaN",)"
+                  R"("order":"C","filters":null})");
+    for (const auto& [name, value] : chunks) {
+        std::string bytes;
+        for (int i = 0; i < 64 * 64 * 64; ++i) bytes += io::test::little(value);
+        put_bytes(folder / name, bytes);
+    }
+}
+
+float sample_at(const Store& store, const Index3& at) {
+    float value = 0;
+    std::memcpy(&value, read_box(store, 0, {at, at}).data(), sizeof value);
+    return value;
+}
+
+TEST(Bounds, the_least_finite_sample_of_a_large_store_is_searched_in_part_of_it) {
+    const ScratchFolder folder;
+    put_cube(folder / "a.zarr", 1 << 16, {{"0.0.0", 5.0F}, {"0.0.1", 3.0F}});
+    const auto store = open_store(folder / "a.zarr");
+    EXPECT_EQ(sample_at(*store, {64, 0, 0}), 3);
+    EXPECT_EQ(sample_at(*store, {4000, 0, 0}), 5);
+    put_cube(folder / "b.zarr", 1 << 16, {{"0.0.1", 3.0F}});
+    EXPECT_EQ(sample_at(*open_store(folder / "b.zarr"), {4000, 0, 0}), 0);
+}
+
+TEST(Bounds, the_least_finite_sample_is_searched_beside_damaged_chunks) {
+    const ScratchFolder folder;
+    put_cube(folder / "a.zarr", 256, {{"0.0.0", 5.0F}, {"0.0.1", 3.0F}});
+    put_bytes(folder / "a.zarr/1.1.1", "short");
+    const auto store = open_store(folder / "a.zarr");
+    EXPECT_EQ(sample_at(*store, {200, 0, 0}), 3);
+    EXPECT_THROW(sample_at(*store, {100, 100, 100}), io::InputError);
+}
+
 TEST(Bounds, a_grid_whose_table_of_bricks_would_fill_the_memory_is_refused) {
     const ScratchFolder folder;
     fs::create_directories(folder / "a.zarr");

@@ -56,6 +56,18 @@ struct Served {
     }
 };
 
+/// Edits of the store at an address, in a folder.
+void save_edits_of(const std::string& address, const fs::path& out,
+                   const StoreOptions& options = patient_once()) {
+    const auto store = open_store(address, options);
+    const ReadSamples read = [&](const SampleBox& box, std::span<std::byte> to) {
+        store->read(0, box, to, {});
+    };
+    const auto empty = empty_samples(*store, volume_of(*store), 0);
+    const auto samples = edited(empty, edit::Fill{{{1, 1, 1}, {2, 2, 2}}, 5}, read).samples;
+    save_edits(*store, {address, options}, 0, *samples, out, {});
+}
+
 /// Thrown to stop what waits.
 struct Impatient {};
 
@@ -92,6 +104,10 @@ TEST(HttpAnswers, a_chunk_that_is_forbidden_is_missing_only_if_the_caller_says_s
     StoreOptions options = patient_once();
     options.forbidden_is_missing = true;
     EXPECT_EQ(served.read("c.zarr", options).sample({0, 0, 3}), 9);
+    const fs::path saved = served.folder / "edits.zarr";
+    save_edits_of(served.server.address("c.zarr"), saved, options);
+    EXPECT_EQ(volume_of(*open_store(saved, patient_once())).sample({0, 0, 3}), 9)
+        << "edits are opened as their original was";
 }
 
 TEST(HttpAnswers, a_web_page_in_the_place_of_metadata_is_called_one) {
@@ -157,17 +173,6 @@ TEST(HttpAnswers, messages_do_not_give_away_passwords_and_signatures) {
               "https://h.org/a?...: is no s3://b, or x@y?");
     EXPECT_EQ(io::without_secrets("http://h.org"), "http://h.org");
     EXPECT_EQ(io::without_secrets("a://b@"), "a://");
-}
-
-/// Edits of the store at an address, in a folder.
-void save_edits_of(const std::string& address, const fs::path& out) {
-    const auto store = open_store(address, patient_once());
-    const ReadSamples read = [&](const SampleBox& box, std::span<std::byte> to) {
-        store->read(0, box, to, {});
-    };
-    const auto empty = empty_samples(*store, volume_of(*store), 0);
-    const auto samples = edited(empty, edit::Fill{{{1, 1, 1}, {2, 2, 2}}, 5}, read).samples;
-    save_edits(*store, {address, patient_once()}, 0, *samples, out, {});
 }
 
 TEST(HttpAnswers, opening_a_store_of_a_silent_server_stops_when_asked_to) {
