@@ -24,19 +24,20 @@ std::string called(const UsbDevice& device, const KnownUsb& kind) {
 /// The node that this person's programs have to open, if they may not.
 const Node* closed_node(const UsbDevice& device, const KnownUsb& kind, const Account& account) {
     if (kind.through == Through::usb && !may_open(device.node, account)) return &device.node;
-    if (kind.through != Through::serial) return nullptr;
+    if (kind.through != Through::port) return nullptr;
     const auto closed = std::ranges::find_if(
-        device.serial, [&](const Node& port) { return !may_open(port, account); });
-    return closed == device.serial.end() ? nullptr : &*closed;
+        device.ports, [&](const Node& port) { return !may_open(port, account); });
+    return closed == device.ports.end() ? nullptr : &*closed;
 }
 
 /// A udev rule below 73, where the tag uaccess gives a device to the person at the screen.
-std::string by_rule(const UsbDevice& device) {
+std::string by_rule(const UsbDevice& device, const Node& node) {
+    const bool is_hidraw = node.path.starts_with("/dev/hidraw");  // below the device of the numbers
     return fmt::format(
-        "echo 'SUBSYSTEM==\"usb\", ATTR{{idVendor}}==\"{}\", ATTR{{idProduct}}==\"{}\", "
+        "echo 'SUBSYSTEM==\"{0}\", {1}{{idVendor}}==\"{2}\", {1}{{idProduct}}==\"{3}\", "
         "TAG+=\"uaccess\"' | sudo tee -a /etc/udev/rules.d/70-palpate.rules; sudo "
         "udevadm control --reload; plug it in again",
-        device.vendor, device.product);
+        is_hidraw ? "hidraw" : "usb", is_hidraw ? "ATTRS" : "ATTR", device.vendor, device.product);
 }
 
 Fault forbidden(const UsbDevice& device, const KnownUsb& kind, const Node& node,
@@ -45,7 +46,7 @@ Fault forbidden(const UsbDevice& device, const KnownUsb& kind, const Node& node,
     return {"device-permission", true,
             fmt::format("{} is plugged in, but you may not open it ({})", called(device, kind),
                         node.path),
-            by_group.empty() ? by_rule(device) : by_group};
+            by_group.empty() ? by_rule(device, node) : by_group};
 }
 
 /// The vendor's library is there, but not what it was built for.
@@ -77,12 +78,13 @@ void judge_plugged(const UsbDevice& device, const Facts& facts, std::vector<Faul
     const auto* const finding = finding_of(facts, kind->backend);
     if (finding && !finding->found && !is_explained)
         faults.push_back(without_backend(device, *kind, *finding));
-    if (kind->through == Through::serial && device.serial.empty()) {
-        faults.push_back({"device-port", true,
-                          called(device, *kind) +
-                              " is plugged in, but has no serial port: the kernel's driver cdc_acm "
-                              "is not loaded",
-                          "sudo modprobe cdc_acm; plug it in again"});
+    if (kind->through == Through::port && device.ports.empty()) {
+        faults.push_back(
+            {"device-port", true,
+             called(device, *kind) +
+                 " is plugged in, but has neither a serial port nor a hidraw node: the "
+                 "kernel's drivers cdc_acm and usbhid are not loaded",
+             "sudo modprobe -a cdc_acm usbhid; plug it in again"});
     }
     if (kind->through != Through::service && device.may_sleep) {
         faults.push_back({"device-sleep", false,

@@ -32,7 +32,7 @@ struct UsbDevice {
     std::string name;             ///< as the device calls itself
     std::string folder;           ///< of its settings: /sys/bus/usb/devices/1-2
     Node node;                    ///< below /dev/bus/usb
-    std::vector<Node> serial;     ///< /dev/ttyACM0 and the like
+    std::vector<Node> ports;      ///< /dev/ttyACM0, /dev/hidraw0 and the like
     bool may_sleep = false;       ///< the kernel may switch it off while it is not used
 };
 

@@ -37,8 +37,8 @@ constexpr std::array<KnownUsb, 20> table{{
     {"1451", nullptr, "forcedimension", "Force Dimension device", Through::usb, dimension_firmware},
     {"0403", "cb48", "forcedimension", "Novint Falcon", Through::usb, falcon_firmware},
     {"2988", "0304", "openhaptics", "3D Systems Touch (USB)", Through::usb, touch_firmware},
-    {"2988", nullptr, "openhaptics", "3D Systems Touch", Through::serial, touch_firmware},
-    {"0301", "2988", "openhaptics", "3D Systems Touch", Through::serial, touch_firmware},
+    {"2988", nullptr, "openhaptics", "3D Systems Touch", Through::port, touch_firmware},
+    {"0301", "2988", "openhaptics", "3D Systems Touch", Through::port, touch_firmware},
     {"256f", nullptr, "spacenav", "3Dconnexion mouse", Through::service, nullptr},
     {"046d", "c603", "spacenav", "3Dconnexion SpaceMouse", Through::service, nullptr},
     {"046d", "c605", "spacenav", "3Dconnexion CADman", Through::service, nullptr},
@@ -76,18 +76,27 @@ std::string place(const std::string& number) {
     return text.data();
 }
 
-/// The serial ports of a device: folders `tty` of its interfaces, 1-2:1.0/tty/ttyACM0.
-std::vector<Node> serial_ports(const fs::path& root, const fs::path& device) {
+void add_nodes(std::vector<Node>& nodes, const fs::path& root, const fs::path& folder) {
+    std::error_code error;
+    for (fs::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
+        nodes.push_back(node_at(root, "/dev/" + i->path().filename().string()));
+    }
+}
+
+/// The serial ports and hidraw nodes of a device, below the folders of its interfaces:
+/// 1-2:1.0/tty/ttyACM0, 1-2:1.0/0003:2988:0302.0001/hidraw/hidraw0.
+std::vector<Node> ports_of(const fs::path& root, const fs::path& device) {
     std::vector<Node> ports;
     std::error_code error;
     const std::string own = device.filename().string() + ":";
     for (fs::directory_iterator i(device.parent_path(), error), end; !error && i != end;
          i.increment(error)) {
         if (i->path().filename().string().rfind(own, 0) != 0) continue;
+        add_nodes(ports, root, i->path() / "tty");
         std::error_code none;
-        for (fs::directory_iterator tty(i->path() / "tty", none), last; !none && tty != last;
-             tty.increment(none)) {
-            ports.push_back(node_at(root, "/dev/" + tty->path().filename().string()));
+        for (fs::directory_iterator hid(i->path(), none), last; !none && hid != last;
+             hid.increment(none)) {
+            add_nodes(ports, root, hid->path() / "hidraw");
         }
     }
     std::ranges::sort(ports, {}, &Node::path);
@@ -143,7 +152,7 @@ std::vector<UsbDevice> read_usb(const fs::path& root) {
         device.folder = "/sys/bus/usb/devices/" + folder.filename().string();
         device.node = node_at(root, "/dev/bus/usb/" + place(first_line(folder / "busnum")) + "/" +
                                         place(first_line(folder / "devnum")));
-        device.serial = serial_ports(root, folder);
+        device.ports = ports_of(root, folder);
         device.may_sleep = first_line(folder / "power/control") == "auto";
         devices.push_back(device);
     }

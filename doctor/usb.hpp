@@ -18,7 +18,7 @@ struct KnownUsb {
     /// By what Palpate's backend reaches it.
     enum class Through : std::uint8_t {
         usb,      ///< the vendor's library opens the device on the bus
-        serial,   ///< the vendor's library opens a serial port
+        port,     ///< the vendor's library opens a serial port or a hidraw node
         service,  ///< a service opens it, as root
     } through;
     const char* firmware;  ///< a hint for a device that does not answer; null: none

@@ -15,30 +15,16 @@ struct Type {
     double centre_right = 0, centre_near = 0;  ///< [mm] of the workspace
 };
 
-/// Numbers of dhdGetSystemType(). Those that the vendor no longer sells are in CHAI3D's driver, as
-/// are the centres.
+/// Numbers of dhdGetSystemType(). Those that the vendor no longer sells are in CHAI3D's driver. So
+/// are the centres, as the offsets that it adds to a position, which are the other way round.
 constexpr Type types[] = {
-    {31, "delta.3"},
-    {32, "omega.3"},
-    {33, "omega.3"},
-    {34, "omega.6"},
-    {36, "omega.6"},
-    {35, "omega.7"},
-    {37, "omega.7"},
-    {60, "Falcon"},
-    {61, "delta.6"},
-    {62, "delta.6"},
-    {63, "delta.3"},
-    {64, "delta.6"},
-    {104, "sigma.7", 20, -10},
-    {105, "sigma.7", -20, -10},
-    {106, "sigma.6+", 20, -10},
-    {107, "sigma.6+", -20, -10},
-    {108, "lambda.7"},
-    {109, "lambda.7"},
-    {131, "lambda.6"},
-    {132, "lambda.6"},
-    {203, "lambda.3"},
+    {31, "delta.3"},           {32, "omega.3"},          {33, "omega.3"},
+    {34, "omega.6"},           {36, "omega.6"},          {35, "omega.7"},
+    {37, "omega.7"},           {60, "Falcon"},           {61, "delta.6"},
+    {62, "delta.6"},           {63, "delta.3"},          {64, "delta.6"},
+    {104, "sigma.7", -20, 10}, {105, "sigma.7", 20, 10}, {106, "sigma.6+", -20, 10},
+    {107, "sigma.6+", 20, 10}, {108, "lambda.7"},        {109, "lambda.7"},
+    {131, "lambda.6"},         {132, "lambda.6"},        {203, "lambda.3"},
     {206, "sigma.3"},
 };
 constexpr int falcon = 60;

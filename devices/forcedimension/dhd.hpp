@@ -26,6 +26,7 @@ constexpr int force = 5;               // DHD_STATUS_FORCE
 constexpr int wrist_initialised = 12;  // DHD_STATUS_WRIST_INIT
 constexpr int force_off_cause = 14;    // DHD_STATUS_FORCE_OFF_CAUSE
 constexpr int count = 17;              // DHD_MAX_STATUS
+constexpr int room = 32;  // ours: newer libraries fill more, without asking how much there is
 }  // namespace status
 /// Why the device itself has switched its force off.
 enum class ForceOff : int {

@@ -182,7 +182,7 @@ void DhdDevice::run() noexcept {
 
 void DhdDevice::initialise() noexcept {
     is_to_initialise_ = false;
-    std::array<int, status::count> told{};
+    std::array<int, status::room> told{};
     const bool wrist = !renders_torque_ || (dhd_.get_status(told.data(), id_) >= 0 &&
                                             told[status::wrist_initialised] != 0);
     if (wrist && dhd_.drd_is_initialised(id_)) return;
@@ -248,7 +248,7 @@ void DhdDevice::step() noexcept {
 }
 
 void DhdDevice::look_after_device() noexcept {
-    std::array<int, status::count> told{};
+    std::array<int, status::room> told{};
     state_ = {};
     if (dhd_.get_status(told.data(), id_) < 0) {
         state_ = failure();

@@ -23,10 +23,12 @@ constexpr auto longest_sleep = 10ms;
 constexpr auto longest_age = std::chrono::duration_cast<Clock::duration>(
     std::chrono::duration<double>(Device::longest_force));
 
-// A change of the mapping shows within `between_full`; one this soon after the first state is our
-// own.
+// A change of the mapping shows within `between_full`; one this soon after what was pinned has
+// arrived is our own.
 constexpr auto between_full = 8ms;
 constexpr auto settling = longest_age;
+constexpr auto longest_pinning = 2s;          // then the service is said to ignore it
+constexpr auto shortest_break = longest_age;  // that every servo notices
 constexpr auto longest_unechoed = 100ms;
 constexpr double felt = 0.1;           // [N] a force that a service cannot round to zero
 const Vec3 box_low(-300, -299, -118);  // [mm, service axes] reachable, after public drivers
@@ -136,6 +138,12 @@ DeviceInfo Inverse3::info() const {
     const Vec3 one = settings_.axes * box_low, other = settings_.axes * box_high;
     info.workspace_low = one.cwiseMin(other);
     info.workspace_high = one.cwiseMax(other);
+    if (is_minverse_) {
+        const Vec3 middle = (one + other) / 2;
+        const Vec3 half = Vec3(model().width, model().height, model().depth) / 2;
+        info.workspace_low = middle - half;
+        info.workspace_high = middle + half;
+    }
     if (const auto identity = identity_.get()) {
         info.model = identity->model.data();
         info.has_orientation = identity->has_grip;
@@ -198,8 +206,8 @@ void Inverse3::reconnect() {
     next_attempt_ = now() + wait_;
     questions_ = {};
     has_pinned_ = false;
+    is_watched_ = false;
     mapping_.reset();
-    changed_ = {};
     if (connected_ && !talk_.state.device_id.empty()) tell_identity(talk_.state);
 }
 
@@ -238,6 +246,7 @@ bool Inverse3::ask(Clock::time_point now) {
     const std::string& id = talk_.state.device_id;
     if (id.empty()) return talk_.channel->send(snapshot_command(), now + send_limit);
     const bool pins = !std::exchange(has_pinned_, true) && settings_.preset != "keep";
+    if (pins) pinned_at_ = now;
     const bool wants_all = now >= next_full_;
     if (wants_all) next_full_ = now + between_full;
     ForceCommand command(id, force_key_,
@@ -271,6 +280,13 @@ void Inverse3::take(const Received& received, Clock::time_point asked, Clock::ti
             break;
         case News::none:
             if (!state.error.empty()) {
+                // Nothing but this comes from a service that refuses commands with the wrong key.
+                // The first answer may complain of the preset.
+                const bool is_refused = !mapping_ && asked != pinned_at_;
+                if (is_refused && !settings_.force_key && keys_tried_ == 1) {
+                    try_other_key(now);
+                    has_pinned_ = false;  // that command was refused, too
+                }
                 tell(problem_of(state));
             } else if (now - measured_at_ > longest_age) {
                 tell(state.device_id.empty() ? no_device(talk_, address_)
@@ -285,26 +301,40 @@ void Inverse3::take(const Received& received, Clock::time_point asked, Clock::ti
         case News::state:
             wait_ = first_wait;
             report_state(asked, now);
-            tell(now - asked > longest_age ? service_ + " answers too late" : what_is_wrong());
+            tell(now - asked > longest_age ? service_ + " answers too late" : what_is_wrong(now));
             break;
     }
 }
 
-/// Another program may set a mount, a preset or a basis while we press, and that turns the force,
-/// too. What changes in the first moment is what we have asked for ourselves.
-bool Inverse3::mapping_holds(Clock::time_point now) {
+/// What the service does not tell is taken for pinned.
+bool Inverse3::is_as_pinned() const {
     const Mapping& told = talk_.state.mapping;
-    if (!changed_.empty()) return false;
+    const auto is = [](const std::string& part, std::string_view wanted) {
+        return part.empty() || part == wanted;
+    };
+    return settings_.preset == "keep" ||
+           (is(told.preset, settings_.preset) && is(told.basis, "XYZ"));
+}
+
+/// Another program may set a mount, a preset or a basis while we press, and that turns the force,
+/// too. Until what we have pinned ourselves has arrived, and for a moment after it, any change is
+/// accepted, without force.
+DeviceStatus Inverse3::status_of_mapping(Clock::time_point now) {
+    const Mapping& told = talk_.state.mapping;
+    if (!changed_.empty()) return DeviceStatus::fault;
     const std::string_view difference = mapping_ ? told.difference(*mapping_) : "all";
-    if (difference.empty()) return true;
-    if (mapping_ && now - mapping_since_ >= settling) {
+    if (is_watched_ && !difference.empty() && now - mapping_since_ >= settling) {
         changed_ = difference;
-        return false;
+        return DeviceStatus::fault;
     }
-    mapping_ = told;
-    mapping_since_ = now;
-    gate_.note(false, ns_of(now));
-    return true;
+    is_watched_ = is_watched_ || is_as_pinned();
+    if (!difference.empty()) {
+        mapping_ = told;
+        mapping_since_ = now;
+        gate_.note(false, ns_of(now));
+    }
+    if (is_watched_) return DeviceStatus::ready;
+    return now - pinned_at_ < longest_pinning ? DeviceStatus::starting : DeviceStatus::fault;
 }
 
 /// A service that expects the force under the other key ignores it, or complains. Each key is
@@ -313,28 +343,45 @@ void Inverse3::check_echo(Clock::time_point now) {
     const ServiceState& state = talk_.state;
     if (is_echoed_ || settings_.force_key) return;
     const bool complains = !state.error.empty();
-    if (asked_force_ < felt || (!state.rendered && !complains)) {
+    const bool is_powered = state.powered.value_or(true);
+    if (!is_powered || asked_force_ < felt || (!state.rendered && !complains)) {
         unechoed_since_ = now;
         return;
     }
     is_echoed_ = state.rendered && !state.rendered->isZero(0);
     if (is_echoed_ || keys_tried_ > 2) return;
     if (!complains && now - unechoed_since_ < longest_unechoed) return;
+    try_other_key(now);
+}
+
+/// By now the servo presses with all its force, which must not arrive in one step: the break makes
+/// it start again.
+void Inverse3::try_other_key(Clock::time_point now) {
     force_key_ = force_key_ == ForceKey::values ? ForceKey::vector : ForceKey::values;
     ++keys_tried_;
     unechoed_since_ = now;
+    ready_again_ = now + shortest_break;
 }
 
-std::string Inverse3::what_is_wrong() const {
+std::string Inverse3::what_is_wrong(Clock::time_point now) const {
     const ServiceState& state = talk_.state;
     if (!changed_.empty()) {
         return "another program has changed the " + std::string(changed_) + " of " + state.model +
                ", which maps the force, too: end that program, then start again";
     }
-    if (keys_tried_ > 2 && !is_echoed_ && state.error.empty()) {
+    const Mapping& told = state.mapping;
+    if (!is_watched_ && now - pinned_at_ >= longest_pinning) {
+        return "the service does not take preset " + settings_.preset +
+               " with basis XYZ, but has " + told.preset +
+               (told.preset.empty() ? "basis " : " with basis ") + told.basis +
+               ": is there such a preset, or does another program hold it? preset=keep takes what "
+               "there is";
+    }
+    if (std::string problem = problem_of(state); !problem.empty()) return problem;
+    if (keys_tried_ > 2 && !is_echoed_) {
         return service_ + " renders no force of ours: see the option force_key";
     }
-    return problem_of(state);
+    return {};
 }
 
 void Inverse3::report_state(Clock::time_point asked, Clock::time_point now) {
@@ -346,12 +393,15 @@ void Inverse3::report_state(Clock::time_point asked, Clock::time_point now) {
     reading.buttons = state.grip.buttons;
     const auto age = now - asked;
     reading.age = std::chrono::duration<double>(age).count();
-    reading.status = mapping_holds(now) ? status_of(state) : DeviceStatus::fault;
+    check_echo(now);
+    reading.status = status_of_mapping(now);
+    if (reading.status == DeviceStatus::ready) reading.status = status_of(state);
+    const bool breaks = reading.status == DeviceStatus::ready && now < ready_again_;
+    if (breaks) reading.status = DeviceStatus::starting;
     link_.report(reading, ns_of(now));
 
     measured_at_ = asked;
     gate_.note(reading.status == DeviceStatus::ready && age <= longest_age, ns_of(now));
-    check_echo(now);
     if (told_grip_ != !state.grip.list.empty()) tell_identity(state);
 }
 

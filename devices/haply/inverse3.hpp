@@ -94,12 +94,14 @@ class Inverse3 final : public Device {
     std::optional<std::string> converse();
     bool ask(Clock::time_point now);
     void take(const Received& received, Clock::time_point asked, Clock::time_point now);
-    bool mapping_holds(Clock::time_point now);
+    DeviceStatus status_of_mapping(Clock::time_point now);
+    bool is_as_pinned() const;
     void check_echo(Clock::time_point now);
+    void try_other_key(Clock::time_point now);
     void report_state(Clock::time_point asked, Clock::time_point now);
     void lose(const std::string& why);
     void say_goodbye();
-    std::string what_is_wrong() const;
+    std::string what_is_wrong(Clock::time_point now) const;
     const Model& model() const;
     Vec3 force(Clock::time_point now);
     Clock::time_point now() const { return time_of(timing_); }
@@ -131,10 +133,13 @@ class Inverse3 final : public Device {
     std::string told_;
     bool told_grip_ = false;
     bool has_pinned_ = false;         // on this connection
+    Clock::time_point pinned_at_;     // asked to
+    bool is_watched_ = false;         // the mapping is what was pinned, and has to stay so
     std::optional<Mapping> mapping_;  // that holds on this connection
     Clock::time_point mapping_since_;
-    std::string_view changed_;     // the part of it that another program has changed
-    Clock::time_point next_full_;  // question for all, not before
+    std::string_view changed_;       // the part of it that another program has changed; for good
+    Clock::time_point ready_again_;  // not before: the servo has to see a break
+    Clock::time_point next_full_;    // question for all, not before
     ForceKey force_key_ = ForceKey::values;
     double asked_force_ = 0;  // [N] in the newest question
     bool is_echoed_ = false;  // the service has rendered a force of ours

@@ -26,6 +26,11 @@ Trouble trouble_of(unsigned int code) {
     return {code == error::device_fault ? Kind::broken : Kind::passing, code};
 }
 
+/// HD_INVALID_ENUM, _VALUE, _OPERATION or _INPUT_TYPE: the driver does not know what it was asked.
+bool is_unknown_parameter(unsigned int code) {
+    return code >= 0x100 && code <= 0x103;
+}
+
 /// Columns of the driver's matrix are the tool's axes in the device's.
 Mat3 orientation_of(const double (&transform)[16]) {
     Mat3 axes;
@@ -147,11 +152,14 @@ void Frames::take_errors() noexcept {
     for (int i = 0; i < Hd::most_errors; ++i) {
         const unsigned int code = hd_.get_error().code;
         if (code == 0) return;
-        const Trouble found = trouble_of(code);
-        error_until_ = setup_.now() + error_lasts;
-        if (!for_good()) error_ = found;
-        force_output(false);
+        note_error(code);
     }
+}
+
+void Frames::note_error(unsigned int code) noexcept {
+    error_until_ = setup_.now() + error_lasts;
+    if (!for_good()) error_ = trouble_of(code);
+    force_output(false);
 }
 
 void Frames::guard_motors(double force, std::int64_t now) noexcept {
@@ -159,8 +167,13 @@ void Frames::guard_motors(double force, std::int64_t now) noexcept {
     if (tells_temperature_ && now >= guarded_ + between_readings) {
         std::array<double, most_motors> motors{};
         hd_.get_double(parameter::motor_temperature, motors.data());
-        tells_temperature_ = hd_.take_error() == 0;
-        if (tells_temperature_) motors_.measured(std::ranges::max(motors));
+        const unsigned int code = hd_.take_error();
+        tells_temperature_ = !is_unknown_parameter(code);
+        if (code == 0) {
+            motors_.measured(std::ranges::max(motors));
+        } else if (tells_temperature_) {
+            note_error(code);
+        }
         guarded_ = now;
     }
     if (!tells_temperature_) guarded_ = now;

@@ -91,6 +91,7 @@ class Frames {
     Trouble read_device(DeviceReading& reading) noexcept;
     bool for_good() const noexcept;
     void take_errors() noexcept;
+    void note_error(unsigned int code) noexcept;
     void guard_motors(double force, std::int64_t now) noexcept;
     void force_output(bool on) noexcept;
 

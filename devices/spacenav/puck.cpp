@@ -28,10 +28,10 @@ void EventReader::take(std::span<const unsigned char> bytes) {
 
 std::optional<Event> EventReader::next() {
     std::uint32_t answer = 0;
-    if (is_first_ && bytes_.size() >= sizeof answer) {
-        std::memcpy(&answer, bytes_.data(), sizeof answer);
-        if (answer >> 8 == protocol_1 >> 8) used_ = sizeof answer;
-        is_first_ = false;
+    if (!was_answered_ && bytes_.size() - used_ >= sizeof answer) {
+        std::memcpy(&answer, bytes_.data() + used_, sizeof answer);
+        was_answered_ = answer >> 8 == protocol_1 >> 8;
+        if (was_answered_) used_ += sizeof answer;
     }
     Event event;
     if (bytes_.size() - used_ < sizeof event) return std::nullopt;

@@ -28,7 +28,7 @@ enum EventType : std::int32_t {
 using Event = std::array<std::int32_t, 8>;
 
 /// Assembles events from pieces of any size. Passes over the answer about the protocol, which comes
-/// first if it comes.
+/// once or never, before or between events.
 class EventReader {
   public:
     /// Adds bytes; next() returns the events they complete.
@@ -38,7 +38,7 @@ class EventReader {
   private:
     std::vector<unsigned char> bytes_;
     std::size_t used_ = 0;
-    bool is_first_ = true;
+    bool was_answered_ = false;  // about the protocol
 };
 
 struct Feel {

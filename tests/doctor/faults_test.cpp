@@ -103,6 +103,10 @@ void closed_touch(M& m) {
     m.plug_serial(0660);
     m.node_group = 20;
 }
+void closed_hid_touch(M& m) {
+    m.plug("2988", "0302", "Touch");
+    m.plug_hidraw(0600);
+}
 void touch_before_login(M& m) {
     m.plug("2988", "0302", "Touch");
     m.plug_serial(0660);
@@ -199,7 +203,11 @@ const Injection plugged[] = {
     {"device-permission", true, "ATTR{idVendor}==\"2988\", ATTR{idProduct}==\"0304\"",
      [](M& m) { m.plug("2988", "0304", "Touch", 0600); }},
     {"device-service", true, "sudo apt install spacenavd", mouse_without_service},
-    {"device-port", true, "modprobe cdc_acm", [](M& m) { m.plug("2988", "0302", "Touch"); }},
+    {"device-permission", true,
+     "SUBSYSTEM==\"hidraw\", ATTRS{idVendor}==\"2988\", ATTRS{idProduct}==\"0302\"",
+     closed_hid_touch},
+    {"device-port", true, "modprobe -a cdc_acm usbhid",
+     [](M& m) { m.plug("2988", "0302", "Touch"); }},
     {"device-sleep", false, "echo on | sudo tee /sys/bus/usb/devices/1-2/power/control",
      sleepy_omega},
     {"device-missing", true, "docs/devices/haply.md", wanted_haply},
@@ -208,6 +216,13 @@ const Injection plugged[] = {
 TEST(Doctor, has_nothing_to_say_about_a_healthy_machine) {
     MadeUpMachine machine;
     machine.plug("1451", "0402", "omega.x");
+    for (const Fault& fault : machine.faults()) ADD_FAILURE() << fault.name << fault.meaning;
+}
+
+TEST(Doctor, needs_no_serial_port_of_a_touch_that_has_a_hidraw_node) {
+    MadeUpMachine machine;
+    machine.plug("2988", "0302", "Touch");
+    machine.plug_hidraw(0666);
     for (const Fault& fault : machine.faults()) ADD_FAILURE() << fault.name << fault.meaning;
 }
 

@@ -80,6 +80,12 @@ class MadeUpMachine {
         std::filesystem::create_directories(folder_ / "sys/bus/usb/devices/1-2:1.0/tty/ttyACM0");
         node("dev/ttyACM0", mode);
     }
+    /// Its node as a human interface device.
+    void plug_hidraw(unsigned mode) const {
+        std::filesystem::create_directories(
+            folder_ / "sys/bus/usb/devices/1-2:1.0/0003:2988:0302.0001/hidraw/hidraw0");
+        node("dev/hidraw0", mode);
+    }
     void node(const std::string& name, unsigned mode) const {
         put(name, "");
         ::chmod((folder_ / name).c_str(), mode);
@@ -98,7 +104,7 @@ class MadeUpMachine {
         // The files belong to whoever runs the test; the person is somebody else.
         for (UsbDevice& usb : facts.machine.usb) disown(usb.node);
         for (UsbDevice& usb : facts.machine.usb) {
-            for (Node& port : usb.serial) disown(port);
+            for (Node& port : usb.ports) disown(port);
         }
         for (Node& card : facts.machine.render_nodes) disown(card);
         return faults_of(facts);

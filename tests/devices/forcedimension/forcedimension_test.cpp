@@ -87,10 +87,21 @@ TEST_F(ForceDimension, each_model_has_its_own_limits) {
     EXPECT_EQ(falcon.buttons, 4);
     with([](auto& dhd) { dhd.type = 63; });
     EXPECT_EQ(open()->info().limits.maximum_force, 20);
-    // The workspace of a right-handed sigma.7 lies to the right of its origin.
-    with([](auto& dhd) { dhd.type = 104; });
-    EXPECT_EQ(open()->info().workspace_low, Vec3(-45, -65, -75));
-    EXPECT_EQ(open()->info().workspace_high, Vec3(85, 65, 55));
+}
+
+TEST_F(ForceDimension, the_middle_of_a_sigma_lies_beside_its_origin) {
+    for (const auto& [type, right] : {std::pair(104, -20), {105, 20}, {106, -20}, {107, 20}}) {
+        with([number = type](auto& dhd) { dhd.type = number; });
+        const DeviceInfo info = open()->info();
+        EXPECT_EQ(0.5 * (info.workspace_low + info.workspace_high), Vec3(right, 0, 10)) << type;
+        EXPECT_EQ(info.workspace_high - info.workspace_low, Vec3(130, 130, 130)) << type;
+    }
+}
+
+TEST_F(ForceDimension, a_library_that_tells_more_of_its_status_than_is_known_does_no_harm) {
+    with([](auto& dhd) { dhd.status_count = 32; });
+    const auto device = open();
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
 }
 
 TEST_F(ForceDimension, a_model_that_nobody_has_listed_is_what_its_library_says) {

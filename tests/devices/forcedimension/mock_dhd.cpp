@@ -169,6 +169,7 @@ MOCK_EXPORT int dhdGetStatus(int* status, char id) {
     const Call call(id);
     if (call->status_error) return fail(call->status_error);
     std::fill(status, status + 17, 0);
+    std::fill(status + 17, status + call->status_count, 0x55555555);
     status[3] = call->initialised ? 0 : 1;
     status[5] = call->tells_of_force && call->force_on && call->force_off_cause == 0 ? 1 : 0;
     status[6] = call->brakes ? 1 : 0;

@@ -31,6 +31,7 @@ struct MockDhdState {
     bool initialises = true;     // drdAutoInit
     int position_error = 0;      // dhdGetPosition fails with this
     int force_error = 0;         // dhdSetForce fails with this
+    int status_count = 17;       // numbers that dhdGetStatus fills
     int status_error = 0;        // dhdGetStatus fails with this
     int position_result = 0;     // where it does not fail: 1 time guard
     int force_result = 0;        // 1 time guard, 2 motor saturated

@@ -94,11 +94,98 @@ TEST_F(HaplyMapping, is_pinned_with_the_first_message_and_what_that_changes_is_n
     ASSERT_EQ(pins.size(), 1U);
     EXPECT_NE(pins[0].find(R"({"preset":{"preset":"defaults"},"basis":{"permutation":"XYZ"}})"),
               std::string::npos);
+    preset = "arm_front";
     EXPECT_TRUE(is_pressed(*open("preset=arm_front"), 50ms));
     EXPECT_NE(pins.back().find(R"({"preset":"arm_front"})"), std::string::npos);
     EXPECT_TRUE(is_pressed(*open("preset=keep"), 50ms));
     EXPECT_EQ(pins.size(), 2U);
     EXPECT_NE(refusal("preset=\"").find("a name of the service's"), std::string::npos);
+}
+
+TEST_F(HaplyMapping, a_slow_pin_is_waited_for_without_force) {
+    preset = "led_front";
+    const auto device = open();
+    EXPECT_TRUE(throughout(
+        500ms, [&] { return device->read(0).status == DeviceStatus::starting && rendered == 0; },
+        [&] { press(*device); }));
+    EXPECT_EQ(device->problem(), "");
+    preset = "defaults";
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready, 10ms));
+    EXPECT_TRUE(is_pressed(*device));
+    preset = "led_front";  // from now on it is another program's
+    EXPECT_TRUE(becomes(*device, DeviceStatus::fault, 10ms));
+}
+
+TEST_F(HaplyMapping, a_pin_that_the_service_ignores_is_told_after_two_seconds) {
+    preset = "led_front";
+    const auto device = open();
+    EXPECT_TRUE(throughout(
+        1990ms, [&] { return device->problem().empty(); }, [&] { press(*device); }));
+    EXPECT_TRUE(says(*device, "does not take preset defaults", 20ms));
+    EXPECT_TRUE(says(*device, "has led_front with basis XYZ"));
+    EXPECT_EQ(device->read(0).status, DeviceStatus::fault);
+    EXPECT_TRUE(nothing_is_felt(*device));
+}
+
+TEST_F(HaplyMapping, a_new_connection_does_not_bring_back_the_force_after_a_change) {
+    const auto device = open();
+    ASSERT_TRUE(is_pressed(*device));
+    handedness = "left";
+    ASSERT_TRUE(becomes(*device, DeviceStatus::fault, 20ms));
+    service.greet(all());
+    service.drop();
+    ASSERT_TRUE(within(
+        150ms, [&] { return service.connections() == 2; }, [&] { press(*device); }));
+    EXPECT_TRUE(nothing_is_felt(*device));
+    EXPECT_TRUE(says(*device, "has changed the handedness"));
+}
+
+TEST_F(HaplyMapping, the_force_under_another_key_begins_with_a_break_for_the_servo) {
+    key = "values";
+    const auto device = open();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
+    ASSERT_TRUE(within(
+        150ms, [&] { return device->read(0).status != DeviceStatus::ready; },
+        [&] { press(*device); }));
+    EXPECT_TRUE(throughout(
+        19ms, [&] { return device->read(0).status != DeviceStatus::ready && rendered == 0; },
+        [&] { press(*device); }));
+    ASSERT_TRUE(becomes(*device, DeviceStatus::ready, 2ms));
+    EXPECT_TRUE(throughout(
+        18ms, [&] { return rendered == 0; }, [&] { press(*device); }));
+    EXPECT_TRUE(is_pressed(*device));
+}
+
+TEST_F(HaplyMapping, a_service_that_answers_the_wrong_key_with_an_error_alone_gets_the_other_one) {
+    preset = "led_front";
+    service.greet(all());
+    key = "values";  // though it looks like a service that takes the other one
+    service.answer([this](const std::string& message) {
+        if (message.find("\"values\":{") == std::string::npos) {
+            return FakeService::Reply{R"({"error":"set_cursor_force: no values"})"};
+        }
+        if (message.find("\"configure\":{\"preset\"") != std::string::npos) preset = "defaults";
+        note(message);
+        return FakeService::Reply{all()};
+    });
+    const auto device = open();
+    EXPECT_TRUE(is_pressed(*device, 60ms));
+    EXPECT_EQ(device->problem(), "");
+}
+
+TEST_F(HaplyMapping, without_power_no_key_is_blamed) {
+    key = "newtons";
+    service.answer([this](const std::string&) {
+        std::string answer = all();
+        const std::string on = R"("power_supply":true)";
+        return FakeService::Reply{
+            answer.replace(answer.find(on), on.size(), R"("power_supply":false)")};
+    });
+    const auto device = open();
+    EXPECT_TRUE(throughout(
+        500ms, [&] { return service.last_message().find("\"values\"") == std::string::npos; },
+        [&] { press(*device); }));
+    EXPECT_TRUE(says(*device, "has no power for forces"));
 }
 
 TEST_F(HaplyMapping, the_force_goes_under_the_key_that_the_service_renders) {
@@ -110,7 +197,7 @@ TEST_F(HaplyMapping, the_force_goes_under_the_key_that_the_service_renders) {
     key = "values";  // though it looks like a service that takes the other one
     const auto device = open();
     EXPECT_TRUE(within(
-        150ms, [&] { return rendered > 3; }, [&] { press(*device); }));
+        200ms, [&] { return rendered > 3; }, [&] { press(*device); }));
     EXPECT_TRUE(throughout(
         100ms, [&] { return rendered > 3; }, [&] { press(*device); }));
     key = "newtons";
@@ -143,6 +230,8 @@ TEST_F(HaplyMapping, a_device_in_another_list_is_found_and_pressed) {
     const auto device = open();
     EXPECT_EQ(device->info().model, "Minverse 049D");
     EXPECT_EQ(device->info().limits.maximum_force, 3.3);
+    EXPECT_EQ(device->info().workspace_low, Vec3(-57, 80, 18));
+    EXPECT_EQ(device->info().workspace_high, Vec3(43, 180, 118));
     EXPECT_TRUE(within(
         felt, [&] { return service.forces().back() == Vec3(1, 0, 0); },
         [&] { device->write({Vec3(1, 0, 0)}, 0); }));

@@ -111,6 +111,7 @@ MOCK_EXPORT void mock_hd_reset() {
     state.output_dof = fresh.output_dof;
     state.most_torque = fresh.most_torque;
     state.torque_error = 0;
+    state.temperature_error = 0;
     state.torque = {};
     state.largest_torque = 0;
     state.calibration = fresh.calibration;
@@ -250,6 +251,7 @@ MOCK_EXPORT void hdGetDoublev(unsigned int parameter, double* value) {
             *value = state.continuous_force;
             break;
         case 0x2605:
+            if (state.temperature_error) return complain(state.temperature_error);
             if (state.temperature < 0) return complain(0x100);
             value[0] = value[2] = 0;
             value[1] = state.temperature;

@@ -37,6 +37,7 @@ struct MockHd {
     // Those that end the servo loop (0x304, 0x500, 0x501) end it.
     unsigned int next_error = 0;            // reported by the next frame
     unsigned int torque_error = 0;          // reported by every call that sets a torque
+    unsigned int temperature_error = 0;     // reported by every call that asks for it
     bool silent = false;                    // the servo loop calls nobody
     bool no_position = false;               // hdGetDoublev(position) tells nothing
     std::function<void()> while_beginning;  // called without the lock by hdBeginFrame

@@ -353,6 +353,20 @@ TEST_F(OpenHapticsMotors, that_are_warm_are_asked_for_less_until_the_continuous_
     }
 }
 
+TEST_F(OpenHapticsMotors, whose_temperature_was_lost_to_an_error_are_asked_again) {
+    with([](MockHd& hd) { hd.temperature_error = 0x201; });
+    device_ = open();
+    after(150ms, 3.3);
+    EXPECT_EQ(device_->read(0).status, DeviceStatus::fault);
+    EXPECT_EQ(force().norm(), 0);
+    with([](MockHd& hd) {
+        hd.temperature_error = 0;
+        hd.temperature = 0.9;
+    });
+    EXPECT_NEAR(after(1500ms, 3.3), 0.88, 1e-9);
+    EXPECT_EQ(device_->read(0).status, DeviceStatus::ready);
+}
+
 TEST_F(OpenHapticsMotors, whose_temperature_no_driver_tells_are_estimated) {
     with([](MockHd& hd) { hd.temperature = -1; });
     device_ = open();

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
+#include <cstring>
 #include <limits>
 
 #include "support/random.hpp"
@@ -147,6 +149,24 @@ TEST(Puck, events_are_put_together_from_pieces_of_any_size) {
         }
     }
     EXPECT_EQ(seen, 200);
+}
+
+TEST(Puck, the_answer_about_the_protocol_is_passed_over_wherever_it_comes) {
+    std::array<unsigned char, sizeof protocol_1> answer{};
+    std::memcpy(answer.data(), &protocol_1, sizeof protocol_1);
+    for (std::int32_t before = 0; before <= 3; ++before) {
+        EventReader reader;
+        for (std::int32_t i = 0; i < 5; ++i) {
+            if (i == before) {
+                reader.take(std::span(answer).first(3));
+                EXPECT_FALSE(reader.next());
+                reader.take(std::span(answer).subspan(3));
+            }
+            reader.take(bytes_of(slides(i, -i, 7 * i)));
+            EXPECT_EQ(reader.next(), slides(i, -i, 7 * i)) << i << " with the answer at " << before;
+        }
+        EXPECT_FALSE(reader.next());
+    }
 }
 
 TEST(Puck, the_socket_is_looked_for_where_libspnav_does) {
