@@ -52,6 +52,7 @@ TEST(SlicePane, as_a_hand_it_aims_the_probe_with_ctrl_only) {
     EXPECT_EQ(shown.pane.crosshair(), before);
     EXPECT_TRUE(shown.chosen.empty());
     shown.drag(Qt::LeftButton, {150, 150}, {250, 190});
+    QTest::mouseClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, {200, 180});
     QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, {200, 180});
     EXPECT_EQ(shown.aimed.size(), 2U);
     EXPECT_EQ(shown.chosen.size(), 3U);

@@ -250,6 +250,7 @@ TEST_F(Files, a_slice_moves_the_hand_with_ctrl_only) {
     SlicePane& axial = window_->views().slice(2);
     const QPoint at(axial.width() / 2, axial.height() / 8);
     const Vec3 before = window_->live()->mouse()->aimed();
+    QTest::mouseClick(&axial, Qt::LeftButton, {}, at);
     QTest::mouseDClick(&axial, Qt::LeftButton, {}, at);
     EXPECT_EQ(window_->live()->mouse()->aimed(), before);
     const Vec3 wanted = axial.point_at(at);
