@@ -75,12 +75,19 @@ DeniedAllocations::~DeniedAllocations() {
 
 }  // namespace palpate::support
 
-// The array and nothrow forms of the standard library call these.
+// The array forms of the standard library call these; the address sanitizer has nothrow forms of
+// its own.
 void* operator new(std::size_t size) {
     return or_throw(counted(size));
 }
 void* operator new(std::size_t size, std::align_val_t alignment) {
     return or_throw(counted(size, alignment));
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    return counted(size);
+}
+void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+    return counted(size, alignment);
 }
 void operator delete(void* memory) noexcept {
     give_back(memory);
@@ -88,7 +95,13 @@ void operator delete(void* memory) noexcept {
 void operator delete(void* memory, std::size_t) noexcept {
     give_back(memory);
 }
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
+    give_back(memory);
+}
 void operator delete(void* memory, std::align_val_t alignment) noexcept {
+    give_back(memory, alignment);
+}
+void operator delete(void* memory, std::align_val_t alignment, const std::nothrow_t&) noexcept {
     give_back(memory, alignment);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t alignment) noexcept {
