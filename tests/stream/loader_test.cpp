@@ -346,17 +346,22 @@ TEST(BrickLoader, who_waits_for_a_brick_that_cannot_be_had_is_told_although_othe
     const auto store =
         store_in_pieces(noise_of(SampleType::uint8, grid({400, 64, 64}), 7), {32, 64, 64});
     Volume overview = overview_of(*store);
-    BrickLoader* loader = nullptr;
-    int failures = 0;
+    std::atomic<bool> waits{false}, fails{false}, other_waits{false};
     store->before_read = [&](int, const SampleBox& box, const std::stop_token&) {
-        if (!loader || box.low[0] > 0 || ++failures > 20) return;
-        loader->wait_for({300, 30, 30}, 5);  // others do while it fails
+        if (waits && box.low[0] > 200) other_waits = true;
+        if (!waits || box.low[0] > 0) return;
+        fails = true;
+        while (!other_waits) std::this_thread::yield();
         throw io::InputError("volumes: gone; plug it in again");
     };
-    BrickLoader loads(store, std::move(overview), {.memory = least_memory, .threads = 2});
-    loader = &loads;
-    EXPECT_THROW(loads.wait_for({5, 30, 30}, 3), io::InputError);
-    EXPECT_EQ(failures, 1);
+    // More threads than bricks of the piece that fails, as those that read them wait for it.
+    BrickLoader loader(store, std::move(overview), {.memory = least_memory, .threads = 8});
+    waits = true;
+    std::jthread other([&] {
+        while (!fails) std::this_thread::yield();
+        loader.wait_for({300, 10, 10}, 5);
+    });
+    EXPECT_THROW(loader.wait_for({5, 10, 10}, 3), io::InputError);
 }
 
 TEST(BrickLoader, waiting_ends_when_it_is_asked_to) {
