@@ -52,8 +52,9 @@ std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setu
 }
 
 /// Of data and recording, with Pace::by_steps [s].
-constexpr std::chrono::milliseconds longest_stop{500};  // for a device that hangs
 constexpr double between_steps = 0.004;
+/// How long stop() waits for a device that hangs.
+constexpr std::chrono::milliseconds longest_stop{500};
 
 }  // namespace
 
