@@ -32,7 +32,8 @@ inline Json to_value(double value) {
     return number_to_json(value);
 }
 Json to_value(const Vec3& value);
-Json to_value(const Mat3& value);  ///< rows
+Json to_value(const Mat3& value);        ///< rows
+Json to_value(const Quaternion& value);  ///< w, x, y, z
 Json to_value(const Layers& layers);
 Json to_value(const Tool& tool);
 
@@ -44,6 +45,7 @@ void from_value(const Json& json, const std::string& name, int& value);
 void from_value(const Json& json, const std::string& name, std::uint32_t& value);
 void from_value(const Json& json, const std::string& name, Vec3& value);
 void from_value(const Json& json, const std::string& name, Mat3& value);
+void from_value(const Json& json, const std::string& name, Quaternion& value);
 void from_value(const Json& json, const std::string& name, Layers& layers);
 void from_value(const Json& json, const std::string& name, Tool& tool);
 

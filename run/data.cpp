@@ -110,6 +110,10 @@ void Data::detach(const Servo& servo) {
     if (player_) player_->detach(servo);
 }
 
+void Data::record(const Servo& servo, const BeginRecording& begin) {
+    player_ ? player_->record(servo, begin) : editor_->record(servo, begin);
+}
+
 stream::BrickLoaderStatus Data::streaming() const {
     return streamer_ ? streamer_->status() : stream::BrickLoaderStatus{};
 }

@@ -68,6 +68,15 @@ void Player::detach(const Servo& servo) {
     std::erase_if(listeners_, [&](const Listener& l) { return l.servo == &servo; });
 }
 
+void Player::record(const Servo& servo, const BeginRecording& begin) {
+    const std::scoped_lock lock(mutex_);
+    const bool lacks = std::ranges::any_of(listeners_, [&](const Listener& listener) {
+        return listener.servo == &servo && listener.version != sent_.version;
+    });
+    if (lacks) throw std::runtime_error(takes_no_commands);
+    begin(history());
+}
+
 void Player::play(double speed) {
     if (!(std::abs(speed) <= 1000)) {
         throw std::invalid_argument("a sequence is played at most 1000 times as fast");

@@ -155,6 +155,7 @@ void Run::launch(Session session) {
         return servo;
     });
     running_ = true;
+    lost_before_ = 0;
 }
 
 /// The servo first: an edit under way, which detach() waits for, may take seconds.
@@ -285,25 +286,36 @@ void Run::use_field(Solid solid, Interpolation interpolation, std::optional<doub
 
 void Run::record(const std::filesystem::path& path) {
     data_->check_recording();
-    Session session = session_now();
+    const Session session = session_now();
     auto recording = std::make_unique<io::RecordingWriter>(
         path, recording_head(session, device_->info(), data_->loaded().source, setup_.render),
         data_->pace());
-    if (!running_) {
-        recording_ = std::move(recording);
-        return;
+    std::exception_ptr lost;
+    try {
+        stop_recording();
+    } catch (const io::OutputError&) {
+        lost = std::current_exception();
     }
-    stop_servo();
-    const std::int64_t lost = servo_->report().unrecorded;
-    recording_.swap(recording);
-    launch(std::move(session));  // first the hand, then the file
-    if (recording) recording->finish(lost);
+    recording_ = std::move(recording);
+    if (running_) record_from_now();
+    if (lost) std::rethrow_exception(lost);
+}
+
+void Run::record_from_now() {
+    data_->record(*servo_, [this](const std::vector<Command>& history) {
+        recording_->begin_with(history);
+        if (!servo_->record(recording_->queue())) {
+            recording_.reset();
+            throw QueueFull("too many commands at once: nothing is recorded");
+        }
+    });
 }
 
 std::int64_t Run::stop_recording() {
     if (!recording_) return 0;
     if (servo_) servo_->stop_recording();
-    const std::int64_t lost = servo_ ? servo_->report().unrecorded : 0;
+    const std::int64_t lost = servo_ ? servo_->report().unrecorded - lost_before_ : 0;
+    lost_before_ += lost;
     const auto recording = std::move(recording_);
     recording->finish(lost);
     return recording->ticks();

@@ -2,6 +2,7 @@
 #include "palpate/run/streamer.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "io/system/stepping_thread.hpp"
 
@@ -38,6 +39,16 @@ std::unique_ptr<Servo> Streamer::attach(Session session, const StartServo& start
 void Streamer::detach(const Servo& servo) {
     const std::scoped_lock lock(mutex_);
     std::erase_if(hands_, [&](const Hand& hand) { return hand.servo == &servo; });
+}
+
+void Streamer::record(const Servo& servo, const BeginRecording& begin, std::vector<Command> edits) {
+    const std::scoped_lock lock(mutex_);
+    send();
+    const bool lacks = std::ranges::any_of(hands_, [&](const Hand& hand) {
+        return hand.servo == &servo && hand.got < first_ + versions_.size();
+    });
+    if (lacks) throw std::runtime_error(takes_no_commands);
+    begin(history(std::move(edits)));
 }
 
 std::shared_ptr<const Samples> Streamer::samples() const {

@@ -103,6 +103,11 @@ void VolumeEditor::detach(const Servo& servo) {
     new_step_ = true;
 }
 
+void VolumeEditor::record(const Servo& servo, const BeginRecording& begin) {
+    const std::scoped_lock lock(mutex_);
+    streamer_ ? streamer_->record(servo, begin, history()) : begin(history());
+}
+
 void VolumeEditor::use_tool(const Servo& servo, std::shared_ptr<const Tool> tool) {
     const std::scoped_lock lock(mutex_);
     for (Hand& hand : hands_) {
@@ -236,7 +241,7 @@ void VolumeEditor::send(const command::Samples& command) {
         while (!hand.servo->send(command) && ++attempt < attempts) std::this_thread::sleep_for(1ms);
         refused |= attempt == attempts;
     }
-    if (refused) throw std::runtime_error("the session takes no commands");
+    if (refused) throw std::runtime_error(takes_no_commands);
 }
 
 /// Does work(), which makes edits, again and again until it lacks no samples. They are read without

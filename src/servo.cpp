@@ -177,12 +177,30 @@ void Servo::stop() noexcept {
     stops_.fetch_sub(1, std::memory_order_release);  // the last that touches the servo
 }
 
+bool Servo::record(Queue<SessionEvent>& recorder) {
+    next_point_ = std::make_shared<SessionPoint>();
+    hold(next_point_);
+    next_recorder_ = &recorder;
+    awaited_.store(next_point_.get());
+    if (push(CheckedCommand(command::Resume{next_point_}, start_, field_))) return true;
+    awaited_.store(nullptr);
+    return false;
+}
+
 void Servo::stop_recording() noexcept {
+    const auto wait = [&] {
+        while (in_recorder_.load()) std::this_thread::sleep_for(poll);
+    };
+    awaited_.store(nullptr);
+    wait();  // a recording that begins at this moment has begun
     recorder_.store(nullptr);
-    while (in_recorder_.load()) std::this_thread::sleep_for(poll);
+    wait();
 }
 
 bool Servo::send(const Command& command) {
+    if (std::holds_alternative<command::Resume>(command)) {
+        throw std::invalid_argument("a session that runs goes on from where it is");
+    }
     const CheckedCommand checked(command, start_, field_);
     if (const auto* samples = std::get_if<command::Samples>(&command)) {
         hold(samples->samples);
@@ -190,6 +208,10 @@ bool Servo::send(const Command& command) {
     }
     if (const auto* layers = std::get_if<command::UseLayers>(&command)) hold(layers->layers);
     if (const auto* tool = std::get_if<command::UseTool>(&command)) hold(tool->tool);
+    return push(checked);
+}
+
+bool Servo::push(const CheckedCommand& checked) {
     sent_.fetch_add(1, std::memory_order_relaxed);  // before the servo thread can count it
     if (commands_.push(checked)) return true;
     sent_.fetch_sub(1, std::memory_order_relaxed);
@@ -351,6 +373,10 @@ void Servo::obey() noexcept {
     for (int i = 0; i < commands_per_tick; ++i) {
         const std::optional<CheckedCommand> checked = commands_.pop();
         if (!checked) return;
+        if (const auto* from = std::get_if<command::Resume>(&checked->command())) {
+            begin_recording(*from);
+            continue;
+        }
         apply(session_, *checked);
         const auto* samples = std::get_if<command::Samples>(&checked->command());
         // Held until they are written, samples would be in memory long after the servo uses others.
@@ -359,6 +385,25 @@ void Servo::obey() noexcept {
                    : checked->command());
         obeyed_.store(obeyed_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }
+}
+
+/// From here on, unless it was stopped before.
+void Servo::begin_recording(const command::Resume& from) noexcept {
+    in_recorder_.store(true);
+    const bool begins = awaited_.load() == from.point.get();
+    if (begins) {
+        halt(session_, *next_point_);
+        recorder_.store(next_recorder_);
+    }
+    in_recorder_.store(false);
+    if (begins) {
+        const RendererSettings& settings = session_.renderer.settings;
+        record(Command(settings.device));
+        record(Command(settings.force));
+        record(Command(settings.transform));
+        record(Command(from));
+    }
+    obeyed_.store(obeyed_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
 }
 
 /// Limits that change the session go into the recording as the command that does the same.

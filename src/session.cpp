@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "session/session_point.hpp"
+
 namespace palpate {
 namespace {
 
@@ -17,9 +19,9 @@ constexpr double farthest_hand = 1e4;
 /// Whether a hand can have moved here since the last good position.
 bool plausible(const Session& session, double time, const Vec3& position) {
     if (!position.allFinite() || !(position.cwiseAbs().maxCoeff() <= farthest_hand)) return false;
-    if (!session.seen) return true;
-    const double distance = (position - session.hand).norm();
-    return distance <= session.settings.fastest_hand * (time - session.seen_at);
+    if (!session.past.seen) return true;
+    const double distance = (position - session.past.hand).norm();
+    return distance <= session.settings.fastest_hand * (time - session.past.seen_at);
 }
 
 /// The rotation without the rounding errors that orientations add each time the clutch closes.
@@ -39,12 +41,13 @@ bool is_rotation(const Mat3& m) {
 /// Moves and turns the volume so that HIP and tool stay where they were in it.
 void hold(Session& session, const Mat3& tool, const Vec3& position) {
     DeviceTransform& transform = session.renderer.settings.transform;
-    if (!session.holding) {
-        session.held_hip = physical_from_device(transform, position);
-        session.held_tool = transform.rotation * tool;
+    if (!session.past.holding) {
+        session.past.held_hip = physical_from_device(transform, position);
+        session.past.held_tool = transform.rotation * tool;
     }
-    transform.rotation = orthonormal(session.held_tool * tool.transpose());
-    transform.translation = session.held_hip - transform.scale * (transform.rotation * position);
+    transform.rotation = orthonormal(session.past.held_tool * tool.transpose());
+    transform.translation =
+        session.past.held_hip - transform.scale * (transform.rotation * position);
 }
 
 /// Scales about the SCP: its device position stays, and with it the pull in device mm.
@@ -81,14 +84,14 @@ void change_data(Renderer& renderer, Change&& change) noexcept {
 /// Moves a playing sequence on with the time of the ticks, within its frames.
 void play(Session& session, double time) {
     Field& field = session.renderer.field;
-    const double dt = session.begun ? time - session.last_tick : 0;
+    const double dt = session.past.begun ? time - session.past.last_tick : 0;
     if (session.speed != 0 && dt > 0) {
         const double to = field.samples().within(field.time() + session.speed * dt);
         change_data(session.renderer, [to](Field& changed) { changed.set_time(to); });
     }
     if (std::isfinite(time)) {
-        session.begun = true;
-        session.last_tick = time;
+        session.past.begun = true;
+        session.past.last_tick = time;
     }
 }
 
@@ -137,6 +140,10 @@ static RendererSettings changed_by(const Command& command, const RendererSetting
             check_tool(to.tool.get(), changed.method, field);
             changed.tool = to.tool;
         },
+        [&](const command::Resume& to) {
+            if (!to.point) throw std::invalid_argument("no point to go on from is given");
+            check(*to.point, settings, field);
+        },
         [&](const ForceSettings& to) { changed.force = to; },
         [&](const Friction& to) { changed.proxy.friction = to; },
         [&](const Penetrability& to) {
@@ -180,8 +187,8 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
         [&](const command::Isovalue& to) { use_isovalue(renderer, to.isovalue); },
         [&](const command::Freeze& to) {
             if (to.on && !session.frozen) {
-                session.frozen_hand = session.hand;
-                session.frozen_tool = session.tool;
+                session.past.frozen_hand = session.past.hand;
+                session.past.frozen_tool = session.past.tool;
             }
             session.frozen = to.on;
         },
@@ -189,7 +196,7 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
         [&](const command::Forces& to) { settings.forces_on = to.on; },
         [&](const command::Scale& to) {
             scale_about_scp(renderer, to.scale);
-            session.holding = false;  // what was held was held at the other scale
+            session.past.holding = false;  // what was held was held at the other scale
         },
         [&](const command::Samples& to) {
             change_data(renderer, [&](Field& changed) {
@@ -204,13 +211,14 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
         },
         [&](const command::Speed& to) { session.speed = to.speed; },
         [&](const command::UseLayers& to) { use_layers(renderer, to); },
-        [&](const command::UseTool& to) { use_tool(renderer, to.tool, session.tool); },
+        [&](const command::UseTool& to) { use_tool(renderer, to.tool, session.past.tool); },
+        [&](const command::Resume& to) { resume(session, *to.point); },
         [&](const ForceSettings& to) { settings.force = stable(to, settings.device); },
         [&](const Friction& to) { settings.proxy.friction = to; },
         [&](const Penetrability& to) { settings.penetrability = to; },
         [&](const DeviceTransform& to) {
             settings.transform = to;
-            session.holding = false;
+            session.past.holding = false;
             renderer.force.waiting = true;
         },
         [&](const DeviceLimits& to) { keep_within(session, to); },
@@ -244,20 +252,20 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
 
     if (state.valid) {
         // An orientation that is not a rotation is ignored: the last one stays.
-        if (is_rotation(reading.orientation)) session.tool = reading.orientation;
-        if (!session.seen) {
-            session.frozen_hand = reading.position;
-            session.frozen_tool = session.tool;
+        if (is_rotation(reading.orientation)) session.past.tool = reading.orientation;
+        if (!session.past.seen) {
+            session.past.frozen_hand = reading.position;
+            session.past.frozen_tool = session.past.tool;
         }
-        session.seen = true;
-        session.seen_at = time;
-        session.hand = reading.position;
+        session.past.seen = true;
+        session.past.seen_at = time;
+        session.past.hand = reading.position;
     }
     const bool hangs = clutched && !session.frozen;
-    if (hangs && state.valid) hold(session, session.tool, reading.position);
-    session.holding = hangs && (state.valid || session.holding);
-    state.position = session.frozen ? session.frozen_hand : reading.position;
-    state.orientation = session.frozen ? session.frozen_tool : session.tool;
+    if (hangs && state.valid) hold(session, session.past.tool, reading.position);
+    session.past.holding = hangs && (state.valid || session.past.holding);
+    state.position = session.frozen ? session.past.frozen_hand : reading.position;
+    state.orientation = session.frozen ? session.past.frozen_tool : session.past.tool;
     // Devices without an orientation give the identity.
     if (!reading.orientation.isIdentity(0) && is_rotation(reading.orientation)) {
         state.pointing = -reading.orientation.col(2);

@@ -462,7 +462,7 @@ PALPATE_API palpate_status palpate_run_change_layers(palpate_run *run, const cha
 
 /* Goes on with another device, and with everything that was asked for. */
 PALPATE_API palpate_status palpate_run_use_device(palpate_run *run, const char *device);
-/* Records into a new file (an existing one is never touched): the session starts anew. */
+/* Records into a new file (an existing one is never touched): the session goes on, with its force. */
 PALPATE_API palpate_status palpate_run_record(palpate_run *run, const char *path);
 /* ticks (may be null): how many were recorded. */
 PALPATE_API palpate_status palpate_run_stop_recording(palpate_run *run, int64_t *ticks);

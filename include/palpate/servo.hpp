@@ -142,6 +142,12 @@ class Servo {
     /// step(), or on others while that thread goes on calling step().
     void stop() noexcept;
 
+    /// Begins to record while the session runs, after the commands sent so far. The force goes on.
+    /// The recording begins with the limits, force settings and transform in use and with
+    /// command::Resume, so that a session of the same settings and samples goes on from here. False
+    /// if the queue of commands is full. Nothing may be recorded before. Any thread but that of
+    /// step(). Throws std::bad_alloc.
+    bool record(Queue<SessionEvent>& recorder);
     /// Nothing is recorded any more when this returns; the session goes on. Any thread but that of
     /// step().
     void stop_recording() noexcept;
@@ -190,9 +196,11 @@ class Servo {
     void keep_device_limits(const DeviceLimits& limits) noexcept;
     void count(std::int64_t number, const Stamps& stamps, std::int64_t end) noexcept;
     void record(const SessionEvent& event) noexcept;
+    void begin_recording(const command::Resume& from) noexcept;
     void show_failure() noexcept;
     void publish(std::int64_t number, const SessionTick& tick) noexcept;
     void hold(const std::shared_ptr<const void>& sent);
+    bool push(const CheckedCommand& checked);
 
     // These begin on cache lines of their own; placed first, they waste no space.
     Queue<CheckedCommand> commands_;
@@ -214,6 +222,10 @@ class Servo {
     std::atomic<int> stops_{0};  // calls of stop() under way
     std::atomic<Queue<SessionEvent>*> recorder_;
     std::atomic<bool> in_recorder_{false};  // the servo thread uses it at this moment
+    /// The recording that waits for the servo thread: filled in there, then its recorder is used.
+    std::shared_ptr<SessionPoint> next_point_;
+    Queue<SessionEvent>* next_recorder_ = nullptr;
+    std::atomic<const SessionPoint*> awaited_{nullptr};
 
     std::mutex held_mutex_;  // between threads that send; the servo thread never takes it
     std::vector<std::shared_ptr<const void>> held_;  // each object once

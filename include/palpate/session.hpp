@@ -46,6 +46,8 @@ struct BricksOf {
 };
 using Recipe = std::variant<EditOf, FramesOf, BricksOf>;
 
+struct SessionPoint;
+
 /// Commands change a running session; each is applied between two ticks.
 namespace command {
 struct Isovalue {
@@ -94,14 +96,19 @@ struct UseTool {
 struct Scale {
     double scale;  ///< physical mm per device mm, > 0
 };
+/// Goes on from a point of another session with the same settings and samples, for a recording that
+/// begins while a session runs. Servo::record() makes it.
+struct Resume {
+    std::shared_ptr<const SessionPoint> point;  ///< not null
+};
 }  // namespace command
 /// ForceSettings are lowered to what is stable within the session's device limits (stable()). A new
 /// DeviceTransform may move the HIP, so the force starts again from zero. Of DeviceLimits and its
 /// own limits the session keeps the smaller, for good (keep_within()).
 using Command = std::variant<command::Isovalue, command::Freeze, command::Clutch, command::Forces,
                              command::Scale, command::Samples, command::Moment, command::Speed,
-                             command::UseLayers, command::UseTool, ForceSettings, Friction,
-                             Penetrability, DeviceTransform, DeviceLimits>;
+                             command::UseLayers, command::UseTool, command::Resume, ForceSettings,
+                             Friction, Penetrability, DeviceTransform, DeviceLimits>;
 
 /// One callable of several, for std::visit over a Command: an alternative that is left out does not
 /// compile.
@@ -112,17 +119,8 @@ struct Overloaded : Each... {
 template <class... Each>
 Overloaded(Each...) -> Overloaded<Each...>;
 
-/// The state between two ticks. A value: a copy that gets the same readings and commands gives the
-/// same ticks, bit for bit.
-struct Session {
-    Renderer renderer;
-    SessionSettings settings;
-    double speed = 0;           ///< at which a sequence is played
-    std::uint64_t version = 0;  ///< of the samples, as it was sent with them
-    bool frozen = false;        ///< from the first accepted position on
-    bool clutched = false;      ///< by command
-
-    // Set by the ticks so far.
+/// The hand as the ticks so far have left it.
+struct HandPast {
     bool begun = false;                   ///< there was a tick
     bool seen = false;                    ///< a position was accepted
     bool holding = false;                 ///< the clutch was closed in the last tick
@@ -135,6 +133,39 @@ struct Session {
     Vec3 held_hip = Vec3::Zero();         ///< [mm, physical] at the moment it closed
     Mat3 held_tool = Mat3::Identity();    ///< tool axes to physical axes at that moment
 };
+
+/// The state between two ticks. A value: a copy that gets the same readings and commands gives the
+/// same ticks, bit for bit.
+struct Session {
+    Renderer renderer;
+    SessionSettings settings;
+    double speed = 0;           ///< at which a sequence is played
+    std::uint64_t version = 0;  ///< of the samples, as it was sent with them
+    bool frozen = false;        ///< from the first accepted position on
+    bool clutched = false;      ///< by command
+    HandPast past = {};
+};
+
+/// The state of a session between two ticks that follows from neither its settings nor its samples.
+struct SessionPoint {
+    double moment = 0;  ///< [s] of the sequence
+    double speed = 0;
+    bool frozen = false;
+    bool clutched = false;
+    HandPast past = {};
+    Proxy proxy;
+    std::optional<double> isovalue_without_layers;
+    ForceState force;
+    LayerState layers;
+    /// A tool's proxy.
+    Pose tool;
+    Mode tool_mode = Mode::free;
+    bool tool_placed = false;
+    bool tool_slides = false;
+};
+/// Writes the state of a session. A tool first forgets its contacts, and finds them again in the
+/// next tick. Neither throws nor allocates.
+void halt(Session& session, SessionPoint& point) noexcept;
 
 /// The result of a live tick.
 struct SessionTick {

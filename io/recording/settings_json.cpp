@@ -10,6 +10,7 @@
 #include "io/json_members.hpp"
 #include "io/layers_json.hpp"
 #include "io/recording/samples_json.hpp"
+#include "io/recording/session_point_json.hpp"
 
 namespace palpate::io {
 namespace {
@@ -77,6 +78,21 @@ void from_value(const Json& json, const std::string& name, Mat3& value) {
         from_value(json[std::size_t(r)], name, row);
         value.row(r) = row;
     }
+}
+
+Json to_value(const Quaternion& value) {
+    Json list = Json::array();
+    for (const double part : {value.w(), value.x(), value.y(), value.z()}) {
+        list.push_back(number_to_json(part));
+    }
+    return list;
+}
+
+void from_value(const Json& json, const std::string& name, Quaternion& value) {
+    if (!json.is_array() || json.size() != 4) wrong_member(name, "four numbers");
+    std::array<double, 4> part{};
+    for (std::size_t i = 0; i < 4; ++i) part[i] = number_from_json(json[i], name);
+    value = Quaternion(part[0], part[1], part[2], part[3]);
 }
 
 Json to_value(const Layers& layers) {
@@ -263,9 +279,9 @@ Json written(const T& value) {
 }
 
 /// The name of each alternative of Command, in its order.
-constexpr std::array command_names{"isovalue", "freeze",   "clutch",        "forces",    "scale",
-                                   "samples",  "moment",   "speed",         "layers",    "tool",
-                                   "force",    "friction", "penetrability", "transform", "limits"};
+constexpr std::array command_names{
+    "isovalue", "freeze", "clutch", "forces", "scale",    "samples",       "moment",    "speed",
+    "layers",   "tool",   "resume", "force",  "friction", "penetrability", "transform", "limits"};
 static_assert(command_names.size() == std::variant_size_v<Command>);
 
 template <std::size_t i = 0>

@@ -42,6 +42,24 @@ void forget_layers(LayerState& state, Proxy& proxy, const Field& data) noexcept 
     if (elsewhere && proxy.placed) put_on_lattice(proxy, data);
 }
 
+/// By labels: the field that the proxy touches, not covered yet.
+static std::optional<Field> to_cover(const Layers& layers, const Field& density) {
+    if (!layers.by_label || !layers.labels || layers.layers.empty()) return std::nullopt;
+    Field field = level_count(layers) > 0 ? density : *layers.labels;
+    field.set_interpolation(density.interpolation());
+    return field;
+}
+
+void restore_set(LayerState& state, const Layers* layers, const Field& density) noexcept {
+    if (!layers || state.layer_count != static_cast<int>(layers->layers.size())) {
+        state = {};
+        return;
+    }
+    state.set = layers;
+    state.covered = to_cover(*layers, density);
+    if (state.covered) state.covered->cover(layers->labels, 0, 0, 0);  // until the next tick
+}
+
 Tissues::Tissues(const Layers& layers, LayerState& state, Proxy& proxy, const Field& density)
     : layers_(layers),
       count_(static_cast<int>(layers.layers.size())),
@@ -192,10 +210,9 @@ void Tissues::begin(int inside) {
         state_.set = &layers_;
         state_.layer_count = count_;
         state_.level_count = levels_;
-        if (has_labels()) {
-            state_.covered = levels_ > 0 ? density_ : *layers_.labels;
-            state_.covered->set_interpolation(density_.interpolation());
-            if (levels_ == 0 && proxy_.placed) put_on_lattice(proxy_, *state_.covered);
+        state_.covered = to_cover(layers_, density_);
+        if (state_.covered && levels_ == 0 && proxy_.placed) {
+            put_on_lattice(proxy_, *state_.covered);
         }
     }
     const bool in_label = inside > levels_;

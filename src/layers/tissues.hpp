@@ -13,6 +13,10 @@ struct NextLayers {
     int ahead = -1, behind = -1;
 };
 
+/// Makes a state that has lost its set and its covered field one of these layers again; null, or a
+/// state of no set: it begins anew.
+void restore_set(LayerState& state, const Layers* layers, const Field& density) noexcept;
+
 /// Levels nest, so the SCP lies between two of them. Labels cover the density: those that the SCP
 /// may be in count as free, the others as solid.
 class Tissues {

@@ -186,8 +186,8 @@ bool is_finite(const Session& s) {
            (!r.tool_proxy || (r.tool_proxy->pose.position.allFinite() &&
                               r.tool_proxy->pose.orientation.coeffs().allFinite())) &&
            t.rotation.allFinite() && t.translation.allFinite() && std::isfinite(t.scale) &&
-           std::isfinite(r.field.time()) && s.hand.allFinite() && s.held_hip.allFinite() &&
-           s.held_tool.allFinite();
+           std::isfinite(r.field.time()) && s.past.hand.allFinite() &&
+           s.past.held_hip.allFinite() && s.past.held_tool.allFinite();
 }
 
 /// A hand that presses into level 30, moves in and out, and turns.

@@ -51,6 +51,8 @@ class Data {
     void check_recording() const;
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     void detach(const Servo& servo);
+    /// As VolumeEditor::record().
+    void record(const Servo& servo, const BeginRecording& begin);
     /// What an attached servo feels with from now on, for brushes.
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// Why edits or frames do not come; usually empty.

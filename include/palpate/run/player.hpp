@@ -46,6 +46,8 @@ class Player {
     /// throws is passed on.
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     void detach(const Servo& servo);
+    /// As VolumeEditor::record().
+    void record(const Servo& servo, const BeginRecording& begin);
     /// `speed` in seconds of the sequence per second, backwards if negative; 0 pauses. This and
     /// seek() try again to read frames that could not be read. Throws std::invalid_argument beyond
     /// 1000, and for a servo that takes no more commands.

@@ -33,6 +33,8 @@ class Streamer {
     std::unique_ptr<Servo> attach(Session session, const StartServo& start,
                                   std::vector<Command> edits = {});
     void detach(const Servo& servo);
+    /// As VolumeEditor::record().
+    void record(const Servo& servo, const BeginRecording& begin, std::vector<Command> edits);
     /// The number for the next edit; those of bricks and edits are of one row.
     std::uint64_t next_version() const;
     /// From now on these edits are felt; `edits.samples` has no bricks in memory. A servo that

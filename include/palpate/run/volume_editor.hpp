@@ -34,6 +34,10 @@ struct EditState {
 /// one felt.
 using StartServo =
     std::function<std::unique_ptr<Servo>(Session session, const std::vector<Command>& history)>;
+inline constexpr const char* takes_no_commands = "the session takes no commands";
+/// Begins a recording of a servo that has got everything up to the end of this history, and gets
+/// nothing else meanwhile.
+using BeginRecording = std::function<void(const std::vector<Command>& history)>;
 
 class Streamer;
 
@@ -64,6 +68,9 @@ class VolumeEditor {
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     /// For a servo that is not attached: nothing.
     void detach(const Servo& servo);
+    /// For an attached servo. Throws std::runtime_error, and does not begin, if it takes no
+    /// commands.
+    void record(const Servo& servo, const BeginRecording& begin);
     /// What this servo feels with from now on; null: a point. For one that is not attached:
     /// nothing.
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);

@@ -112,10 +112,10 @@ ForceSettings busy_force(const Servo& servo) {
     return servo.settings().force;
 }
 
-/// Threads that observe, record and send commands.
+/// Threads that observe, record and send commands, and now and then begin another recording.
 struct Company {
     std::atomic<bool> done{false};
-    std::atomic<std::int64_t> seen{0}, recorded{0}, sent{0};
+    std::atomic<std::int64_t> seen{0}, recorded{0}, sent{0}, begun{0};
     std::vector<std::jthread> threads;
 
     Company(Servo& servo, Queue<SessionEvent>& recorder, double isovalue,
@@ -127,6 +127,7 @@ struct Company {
             while (!done) recorded += recorder.pop().has_value();
         });
         threads.emplace_back([&, isovalue, force] {
+            int rounds = 0;
             const Command commands[] = {command::Isovalue{isovalue},
                                         command::Freeze{true},
                                         command::Freeze{false},
@@ -136,6 +137,10 @@ struct Company {
                                         DeviceTransform{}};
             while (!done) {
                 for (const Command& command : commands) sent += servo.send(command);
+                if (++rounds % 20 == 0) {
+                    servo.stop_recording();
+                    begun += servo.record(recorder);
+                }
                 std::this_thread::yield();
             }
         });
@@ -185,7 +190,7 @@ TEST(Servo, thread_does_not_allocate_lock_call_the_system_or_throw_in_100000_tic
     // Until all of this has happened, too.
     const auto enough = [&] {
         return busy.servo.report().ticks >= wanted && company.seen > 1000 &&
-               company.recorded > wanted / 2 && company.sent > 100;
+               company.recorded > wanted / 2 && company.sent > 100 && company.begun > 10;
     };
     step_on_a_thread(busy.servo, enough);
     company.leave();

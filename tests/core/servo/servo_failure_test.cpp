@@ -145,7 +145,7 @@ TEST_P(ServoFailure, takes_the_force_away_and_ends_the_session_not_the_program) 
     EXPECT_STRNE(name_of(expected), "");
     EXPECT_EQ(servo.snapshot()->session.device.status, DeviceStatus::fault);
     EXPECT_TRUE(servo.snapshot()->session.tick.force.isZero(0));
-    EXPECT_TRUE(servo.session().begun);
+    EXPECT_TRUE(servo.session().past.begun);
     // The call that hung ends as a write, but no other begins.
     const bool one = GetParam().call == Call::write && !throws();
     EXPECT_EQ(device.late_writes(), one ? 1 : 0);

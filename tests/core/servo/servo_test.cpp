@@ -371,7 +371,7 @@ TEST(PacedServo, its_thread_renders_at_its_rate_until_it_is_stopped) {
     EXPECT_NE(report.worst.cause, TickCause::none);
     EXPECT_EQ(device.reads(), report.ticks);
     EXPECT_EQ(device.writes(), report.ticks + 1);
-    EXPECT_TRUE(servo.session().begun);
+    EXPECT_TRUE(servo.session().past.begun);
 }
 
 }  // namespace

@@ -1,0 +1,144 @@
+// The members of where a session is (SessionPoint), for settings_json.cpp.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+#include "io/json_members.hpp"
+
+namespace palpate::io {
+
+/// Whole numbers of any kind.
+template <class T>
+static void whole(auto& v, const std::string& name, T& value, double low, double high) {
+    auto number = static_cast<double>(value);
+    v(name, number);
+    if constexpr (!std::is_const_v<T>) {
+        if (number != std::floor(number) || !(number >= low && number <= high)) {
+            wrong_member(name, "a whole number within its range");
+        }
+        value = static_cast<T>(number);
+    }
+}
+
+static void members(auto& v, Is<HandPast> auto& s) {
+    v("begun", s.begun);
+    v("seen", s.seen);
+    v("holding", s.holding);
+    v("last_tick", s.last_tick);
+    v("seen_at", s.seen_at);
+    v("hand", s.hand);
+    v("frozen_hand", s.frozen_hand);
+    v("tool", s.tool);
+    v("frozen_tool", s.frozen_tool);
+    v("held_hip", s.held_hip);
+    v("held_tool", s.held_tool);
+}
+
+static void members(auto& v, Is<Tetrahedron> auto& s) {
+    for (int i = 0; i < 3; ++i) {
+        const std::string axis(1, "xyz"[i]);
+        const auto k = static_cast<std::size_t>(i);
+        whole(v, "cell_" + axis, s.cell[i], -farthest_index, farthest_index);
+        whole(v, "axis_" + axis, s.axis[k], 0, 2);
+        whole(v, "sign_" + axis, s.sign[k], -1, 1);
+    }
+}
+
+static void members(auto& v, Is<Proxy> auto& s) {
+    v("tetrahedron", s.scp.tetrahedron);
+    v("folded", s.scp.folded);
+    v("scp", s.scp_physical);
+    v("isovalue", s.isovalue);
+    v("behind", s.behind);
+    v("turned", s.turned);
+    whole(v, "mode", s.mode, 0, 1);
+    whole(v, "interpolation", s.interpolation, 0, 1);
+    v("placed", s.placed);
+    v("sliding", s.sliding);
+    v("recovery_reach", s.recovery_reach);
+    v("ahead", s.ahead);
+}
+
+static void members(auto& v, Is<ForceState> auto& s) {
+    v("started", s.started);
+    v("waiting", s.waiting);
+    v("time", s.time);
+    v("ramp_begin", s.ramp_begin);
+    v("hand", s.hand);
+    v("velocity", s.velocity);
+    v("force", s.force);
+    v("turns", s.turns);
+    v("orientation", s.orientation);
+    v("angular_velocity", s.angular_velocity);
+    v("torque", s.torque);
+}
+
+static void members(auto& v, Is<ContactSpring> auto& s) {
+    v("touching", s.touching);
+    v("stiffness", s.stiffness);
+    v("rest", s.rest);
+}
+
+static void members(auto& v, Is<Crossing> auto& s) {
+    v("at", s.at);
+    whole(v, "surface", s.surface, 0, Layers::most_layers);
+    whole(v, "layer", s.layer, -1, Layers::most_layers);
+}
+
+static void members(auto& v, Is<NeedleState> auto& s) {
+    v("inserted", s.inserted);
+    v("entry", s.entry);
+    v("axis", s.axis);
+    v("hand", s.hand);
+    v("anchor", s.anchor);
+    v("aside", s.aside);
+    v("slipping", s.slipping);
+    whole(v, "crossing_count", s.crossing_count, 0, NeedleState::most_crossings);
+    for (int i = 0; i < s.crossing_count; ++i) {
+        v("crossing_" + std::to_string(i + 1), s.crossings[static_cast<std::size_t>(i)]);
+    }
+}
+
+static void members(auto& v, Is<LayerState> auto& s) {
+    whole(v, "layer_count", s.layer_count, -1, Layers::most_layers);
+    whole(v, "level_count", s.level_count, -1, Layers::most_layers);
+    v("open", s.open);
+    v("label_opening", s.label_opening);
+    whole(v, "outer", s.outer, 0, Layers::most_layers);
+    whole(v, "inner", s.inner, 0, Layers::most_layers);
+    for (int i = 0; i < s.inner; ++i) {
+        v("opening_" + std::to_string(i + 1), s.opening[static_cast<std::size_t>(i)]);
+    }
+    whole(v, "touched", s.touched, -1, Layers::most_layers);
+    v("spring", s.spring);
+    v("needle", s.needle);
+    v("moved", s.moved);
+    v("time", s.time);
+    v("hip", s.hip);
+}
+
+static void members(auto& v, Is<SessionPoint> auto& s) {
+    v("moment", s.moment);
+    v("speed", s.speed);
+    v("frozen", s.frozen);
+    v("clutched", s.clutched);
+    v("past", s.past);
+    v("proxy", s.proxy);
+    v("isovalue_without_layers", s.isovalue_without_layers);
+    v("force", s.force);
+    v("layers", s.layers);
+    v("tool", s.tool.position);
+    v("tool_orientation", s.tool.orientation);
+    whole(v, "tool_mode", s.tool_mode, 0, 1);
+    v("tool_placed", s.tool_placed);
+    v("tool_slides", s.tool_slides);
+}
+
+static void members(auto& v, Is<command::Resume> auto& s) {
+    v("point", s.point);
+}
+
+}  // namespace palpate::io

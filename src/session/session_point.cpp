@@ -1,0 +1,155 @@
+// Takes the state out of a session that follows from neither settings nor samples, and puts it back.
+#include "session/session_point.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "layers/tissues.hpp"
+
+namespace palpate {
+namespace {
+
+/// Nothing of what a tool's proxy knows but its pose stays.
+void forget_contacts(ToolProxy& proxy, const std::shared_ptr<const Tool>& tool) noexcept {
+    proxy.use(tool);  // has room, as it is felt
+    proxy.contacts = {};
+    ToolProxy::Kept& kept = proxy.kept;
+    kept.trust = 1;
+    kept.stride = 64;
+    kept.idle = {};
+    kept.inside = false;
+    kept.search = 0;
+    kept.surroundings.samples.reset();  // others hold them
+}
+
+void require(bool is_so, const char* what) {
+    if (!is_so) throw std::invalid_argument(std::string("the point to go on from: ") + what);
+}
+
+bool is_number(double value) {
+    return !std::isnan(value);
+}
+bool is_unit(const Quaternion& q) {
+    return std::abs(q.squaredNorm() - 1) < 1e-6;  // false for NaN
+}
+
+bool is_place(const LatticePoint& point) {
+    const Tetrahedron& t = point.tetrahedron;
+    std::array<std::int8_t, 3> axes = t.axis;
+    std::ranges::sort(axes);
+    const bool has_frame = axes == std::array<std::int8_t, 3>{0, 1, 2} &&
+                           std::ranges::all_of(t.sign, [](int s) { return s == 1 || s == -1; });
+    const Vec3& u = point.folded;
+    return has_frame && t.cell.cwiseAbs().maxCoeff() <= farthest_index && u.allFinite() &&
+           u[0] <= 0.5 && u[1] <= u[0] && std::abs(u[2]) <= u[1];
+}
+
+bool is_finite(const HandPast& past) {
+    return std::isfinite(past.last_tick) && std::isfinite(past.seen_at) && past.hand.allFinite() &&
+           past.frozen_hand.allFinite() && past.held_hip.allFinite() && past.tool.allFinite() &&
+           past.frozen_tool.allFinite() && past.held_tool.allFinite();
+}
+
+bool is_finite(const ForceState& force) {
+    return std::isfinite(force.time) && std::isfinite(force.ramp_begin) &&
+           force.hand.allFinite() && force.velocity.allFinite() && force.force.allFinite() &&
+           is_unit(force.orientation) && force.angular_velocity.allFinite() &&
+           force.torque.allFinite();
+}
+
+bool is_of(const NeedleState& needle, int layers) {
+    if (needle.crossing_count < 0 || needle.crossing_count > NeedleState::most_crossings) {
+        return false;
+    }
+    const auto is_crossing = [&](const Crossing& c) {
+        return is_number(c.at) && c.surface >= 0 && c.surface < layers && c.layer >= -1 &&
+               c.layer < layers;
+    };
+    return std::all_of(needle.crossings.begin(),
+                       needle.crossings.begin() + needle.crossing_count, is_crossing) &&
+           needle.entry.allFinite() && needle.axis.allFinite() && std::isfinite(needle.hand) &&
+           std::isfinite(needle.anchor) && std::isfinite(needle.aside.stiffness) &&
+           std::isfinite(needle.aside.rest);
+}
+
+bool is_of(const LayerState& state, const Layers* layers) {
+    if (state.layer_count < 0) return true;  // of no set
+    const int count = layers ? static_cast<int>(layers->layers.size()) : -1;
+    const auto all = static_cast<std::uint32_t>((std::uint64_t{2} << std::max(count, 0)) - 1);
+    return state.layer_count == count &&
+           state.level_count == static_cast<int>(level_count(*layers)) && state.open != 0 &&
+           (state.open & ~all) == 0 && state.outer >= 0 && state.outer <= state.inner &&
+           state.inner <= state.level_count && state.touched >= -1 && state.touched < count &&
+           state.label_opening.allFinite() && state.hip.allFinite() &&
+           std::ranges::all_of(state.opening, [](const Vec3& at) { return at.allFinite(); }) &&
+           std::isfinite(state.spring.stiffness) && std::isfinite(state.spring.rest) &&
+           std::isfinite(state.time) && is_of(state.needle, count);
+}
+
+}  // namespace
+
+void halt(Session& session, SessionPoint& point) noexcept {
+    Renderer& renderer = session.renderer;
+    const RendererSettings& settings = renderer.settings;
+    if (settings.tool) {
+        ToolProxy& proxy = *renderer.tool_proxy;
+        forget_contacts(proxy, settings.tool);
+        point.tool = proxy.pose;
+        point.tool_mode = proxy.mode;
+        point.tool_placed = proxy.placed;
+        point.tool_slides = proxy.sliding;
+    }
+    point.moment = renderer.field.time();
+    point.speed = session.speed;
+    point.frozen = session.frozen;
+    point.clutched = session.clutched;
+    point.past = session.past;
+    point.proxy = renderer.proxy;
+    point.isovalue_without_layers = renderer.isovalue_without_layers;
+    point.force = renderer.force;
+    point.layers = renderer.layers.set == settings.layers.get() ? renderer.layers : LayerState{};
+    point.layers.covered.reset();
+}
+
+void check(const SessionPoint& point, const RendererSettings& settings, const FieldKind& field) {
+    require(std::isfinite(point.moment) && std::abs(point.speed) <= 1000,
+            "the moment or the speed is out of range");
+    require(is_finite(point.past) && is_finite(point.force), "a number is not finite");
+    const Proxy& proxy = point.proxy;
+    require(is_place(proxy.scp) && proxy.scp_physical.allFinite(), "the SCP has no place");
+    require(is_number(proxy.isovalue) && is_number(proxy.behind.value_or(0)) &&
+                is_number(point.isovalue_without_layers.value_or(0)),
+            "a level is not a number");
+    require(std::isfinite(proxy.recovery_reach) && proxy.ahead.allFinite(),
+            "the proxy's state is not finite");
+    require(!proxy.placed || proxy.interpolation == field.interpolation, "the proxy is of another field");
+    require(is_of(point.layers, settings.layers.get()), "it is of other layers");
+    require(point.tool.position.allFinite() && is_unit(point.tool.orientation),
+            "the tool has no pose");
+}
+
+void resume(Session& session, const SessionPoint& point) noexcept {
+    Renderer& renderer = session.renderer;
+    const RendererSettings& settings = renderer.settings;
+    renderer.field.set_time(renderer.field.samples().within(point.moment));
+    session.speed = point.speed;
+    session.frozen = point.frozen;
+    session.clutched = point.clutched;
+    session.past = point.past;
+    renderer.proxy = point.proxy;
+    renderer.isovalue_without_layers = point.isovalue_without_layers;
+    renderer.force = point.force;
+    renderer.layers = point.layers;
+    restore_set(renderer.layers, settings.layers.get(), renderer.field);
+    if (!settings.tool || !renderer.tool_proxy) return;
+    ToolProxy& proxy = *renderer.tool_proxy;
+    forget_contacts(proxy, settings.tool);
+    proxy.pose = point.tool;
+    proxy.mode = point.tool_mode;
+    proxy.placed = point.tool_placed;
+    proxy.sliding = point.tool_slides;
+}
+
+}  // namespace palpate

@@ -1,0 +1,14 @@
+// Stops a session at a point and goes on from one.
+#pragma once
+
+#include "palpate/session.hpp"
+
+namespace palpate {
+
+/// Throws std::invalid_argument, saying what is wrong, for a point that no session with these
+/// settings and such a field comes to.
+void check(const SessionPoint& point, const RendererSettings& settings, const FieldKind& field);
+/// For a point that passed check().
+void resume(Session& session, const SessionPoint& point) noexcept;
+
+}  // namespace palpate
