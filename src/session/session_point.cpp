@@ -1,4 +1,5 @@
-// Takes the state out of a session that follows from neither settings nor samples, and puts it back.
+// Takes the state out of a session that follows from neither settings nor samples, and puts it
+// back.
 #include "session/session_point.hpp"
 
 #include <algorithm>
@@ -53,10 +54,9 @@ bool is_finite(const HandPast& past) {
 }
 
 bool is_finite(const ForceState& force) {
-    return std::isfinite(force.time) && std::isfinite(force.ramp_begin) &&
-           force.hand.allFinite() && force.velocity.allFinite() && force.force.allFinite() &&
-           is_unit(force.orientation) && force.angular_velocity.allFinite() &&
-           force.torque.allFinite();
+    return std::isfinite(force.time) && std::isfinite(force.ramp_begin) && force.hand.allFinite() &&
+           force.velocity.allFinite() && force.force.allFinite() && is_unit(force.orientation) &&
+           force.angular_velocity.allFinite() && force.torque.allFinite();
 }
 
 bool is_of(const NeedleState& needle, int layers) {
@@ -67,8 +67,8 @@ bool is_of(const NeedleState& needle, int layers) {
         return is_number(c.at) && c.surface >= 0 && c.surface < layers && c.layer >= -1 &&
                c.layer < layers;
     };
-    return std::all_of(needle.crossings.begin(),
-                       needle.crossings.begin() + needle.crossing_count, is_crossing) &&
+    return std::all_of(needle.crossings.begin(), needle.crossings.begin() + needle.crossing_count,
+                       is_crossing) &&
            needle.entry.allFinite() && needle.axis.allFinite() && std::isfinite(needle.hand) &&
            std::isfinite(needle.anchor) && std::isfinite(needle.aside.stiffness) &&
            std::isfinite(needle.aside.rest);
@@ -124,7 +124,8 @@ void check(const SessionPoint& point, const RendererSettings& settings, const Fi
             "a level is not a number");
     require(std::isfinite(proxy.recovery_reach) && proxy.ahead.allFinite(),
             "the proxy's state is not finite");
-    require(!proxy.placed || proxy.interpolation == field.interpolation, "the proxy is of another field");
+    require(!proxy.placed || proxy.interpolation == field.interpolation,
+            "the proxy is of another field");
     require(is_of(point.layers, settings.layers.get()), "it is of other layers");
     require(point.tool.position.allFinite() && is_unit(point.tool.orientation),
             "the tool has no pose");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <limits>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -125,7 +126,8 @@ struct Case {
     void (*begin)(Run& live, const Folder& folder);
     const std::string& volume = a_ball;
     const std::string& device = a_hand;
-    /// [N] A tool finds its contacts anew: the force goes on, if not with the same bits.
+    /// [N] How much the forces of two runs may differ. A tool finds its contacts anew, and frames
+    /// come when they have been read.
     double apart = 0;
 };
 std::ostream& operator<<(std::ostream& out, const Case& one) {
@@ -178,16 +180,17 @@ TEST_P(RecordingStart, is_not_felt_and_the_recording_comes_out_the_same) {
 
 INSTANTIATE_TEST_SUITE_P(
     Everywhere, RecordingStart,
-    testing::Values(Case{"before_the_first_tick", from::before_the_first_tick},
-                    Case{"in_the_ramp", from::in_the_ramp}, Case{"pressing", from::pressing},
-                    Case{"on_the_linear_field", from::on_the_linear_field},
-                    Case{"pressed_through", from::pressed_through},
-                    Case{"with_the_clutch", from::with_the_clutch, a_ball, a_turning_hand},
-                    Case{"frozen_with_other_forces", from::frozen_with_other_forces},
-                    Case{"in_layers_with_a_needle", from::in_layers_with_a_needle, a_ball, a_turning_hand},
-                    Case{"in_a_label", from::in_a_label}, Case{"after_edits", from::after_edits},
-                    Case{"with_a_tool", from::with_a_tool, a_ball, a_turning_hand, 0.02},
-                    Case{"playing", from::playing, a_heart}),
+    testing::Values(
+        Case{"before_the_first_tick", from::before_the_first_tick},
+        Case{"in_the_ramp", from::in_the_ramp}, Case{"pressing", from::pressing},
+        Case{"on_the_linear_field", from::on_the_linear_field},
+        Case{"pressed_through", from::pressed_through},
+        Case{"with_the_clutch", from::with_the_clutch, a_ball, a_turning_hand},
+        Case{"frozen_with_other_forces", from::frozen_with_other_forces},
+        Case{"in_layers_with_a_needle", from::in_layers_with_a_needle, a_ball, a_turning_hand},
+        Case{"in_a_label", from::in_a_label}, Case{"after_edits", from::after_edits},
+        Case{"with_a_tool", from::with_a_tool, a_ball, a_turning_hand, 0.02},
+        Case{"playing", from::playing, a_heart, a_hand, std::numeric_limits<double>::infinity()}),
     [](const auto& info) { return info.param.name; });
 
 /// One that ends at once, with the next in its place: each has its own ticks.
@@ -204,7 +207,8 @@ TEST(Recordings, follow_each_other_while_the_session_goes_on) {
     for (const auto& [name, ticks] : {std::pair("a.csv", 0), {"b.csv", 5}, {"c.csv", 7}}) {
         io::RecordingReader reader(folder / name);
         int count = 0;
-        while (const auto event = reader.next()) count += std::holds_alternative<SessionTick>(*event);
+        while (const auto event = reader.next())
+            count += std::holds_alternative<SessionTick>(*event);
         EXPECT_EQ(count, ticks) << name;
         EXPECT_TRUE(reader.complete()) << name;
     }
