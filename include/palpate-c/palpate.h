@@ -2,8 +2,8 @@
  * and recordings. C99. docs/c_api.md has the rules for growth and an example.
  *
  * Errors. Functions return a palpate_status; palpate_last_error() says in one line what was wrong and
- * what to do, for the last call of the same thread. No exception leaves the library. Where a function
- * fails, what its out-parameters point to is unchanged. A null handle or pointer is PALPATE_INVALID.
+ * what to do, for the last call of the same thread. No exception leaves the library. If a function
+ * fails, it leaves its out-parameters unchanged. A null handle or pointer is PALPATE_INVALID.
  *
  * Structs. Each begins with its own size. Write PALPATE_STRUCT(palpate_run_options, options); then
  * every other member is 0, and 0 always means the default. A later library accepts structs of earlier
@@ -153,7 +153,7 @@ typedef struct palpate_ray_hit {
     double point[3];  /* the segment's end without a hit */
     double normal[3]; /* unit, out of the solid */
 } palpate_ray_hit;
-/* Where a segment first meets the isosurface. */
+/* Finds the first point of a segment on the isosurface. */
 PALPATE_API palpate_status palpate_field_ray(const palpate_field *field, double isovalue,
                                              const double from[3], const double to[3],
                                              palpate_ray_hit *out);
@@ -189,7 +189,7 @@ typedef struct palpate_render_options {
     const char *layers;    /* a file or the name of a built-in set; null: none */
 } palpate_render_options;
 
-/* Where the device's space lies: physical = translation + scale * rotation * device. */
+/* Place of the device's space: physical = translation + scale * rotation * device. */
 typedef struct palpate_transform {
     uint32_t size_of;
     int32_t unused;
@@ -362,7 +362,7 @@ PALPATE_API palpate_status palpate_data_field(const palpate_data *data,
                                               const palpate_field_options *options,
                                               palpate_field **out);
 PALPATE_API palpate_status palpate_data_save(palpate_data *data, const char *path);
-/* Of a sequence: the speed at which it plays (1: as recorded, 0: it stands still), and its time [s]. */
+/* Sets the speed of a sequence (1: as recorded, 0: it stands still), and its time [s]. */
 PALPATE_API palpate_status palpate_data_play(palpate_data *data, double speed);
 PALPATE_API palpate_status palpate_data_seek(palpate_data *data, double time);
 PALPATE_API void palpate_data_destroy(palpate_data *data);
@@ -466,7 +466,7 @@ PALPATE_API palpate_status palpate_run_use_device(palpate_run *run, const char *
 PALPATE_API palpate_status palpate_run_record(palpate_run *run, const char *path);
 /* ticks (may be null): how many were recorded. */
 PALPATE_API palpate_status palpate_run_stop_recording(palpate_run *run, int64_t *ticks);
-/* Of the device "mouse": where its hand is to go [device mm]. */
+/* Sets the target of the hand of the device "mouse" [device mm]. */
 PALPATE_API palpate_status palpate_run_aim(palpate_run *run, const double position[3]);
 
 #ifdef __cplusplus

@@ -57,8 +57,8 @@ enum class Facing : std::uint8_t { anterior, posterior, left, right, superior, i
 DeviceTransform fit_workspace(const Geometry& geometry, const DeviceInfo& device,
                               Facing facing = Facing::anterior);
 
-/// A haptic device. The constructors of backends (devices/) connect to it or start trying to. Where
-/// that cannot succeed they throw std::runtime_error, saying what was looked for and what to do.
+/// A haptic device. The constructors of backends (devices/) connect to it or begin to try. If that
+/// cannot succeed, they throw std::runtime_error, which says what was missing and what to do.
 /// Destroying a device sets its force to zero and closes it.
 class Device {
   public:

@@ -95,9 +95,9 @@ using ReadSamples = std::function<void(const SampleBox& box, std::span<std::byte
 /// of range or not finite, or samples that are a sequence (edit one frame of it instead).
 void check(const Edit& edit, const Samples& samples);
 /// The samples after an edit; values outside the sample type's range are clamped. The same input
-/// gives the same bits. Of a large grid `read` gives the samples of the bricks that are edited for
-/// the first time, whether they are in memory or not. Throws as check() does, for a large grid
-/// without `read`, and what that throws.
+/// gives the same bits. For a large grid, `read` gives the samples of the bricks that are edited
+/// for the first time, in memory or not. Throws as check() does, for a large grid without `read`,
+/// and whatever `read` throws.
 Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit,
               const ReadSamples& read = {});
 

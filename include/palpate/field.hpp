@@ -62,7 +62,7 @@ class Field {
                double solid) noexcept;
     /// Null without cover().
     const Field* covering_labels() const noexcept { return cover_.labels.get(); }
-    /// Of the sample `at`, from the labels that cover it.
+    /// The label of the sample `at`, from the labels that cover it.
     int covering_label(const Index3& at) const noexcept;
     /// Whether the sample `at` or one of its neighbours has such a label.
     bool is_covered_around(const Index3& at) const noexcept;

@@ -43,7 +43,7 @@ struct ForceSettings {
     /// this, so that a hand that starts inside a solid is not thrown out. Infinity: do not wait.
     double start_below = std::numeric_limits<double>::infinity();
 
-    // Of a tool that turns.
+    // For a tool that turns.
 
     /// [N mm/rad] torque = this times the rotation from hand to proxy. 0: the stiffness times the
     /// square of the tool's gyration, which makes the wrench that of the contacts.
@@ -83,9 +83,9 @@ double rotational_stiffness(const ForceSettings& settings, const DeviceLimits& l
 /// The smaller of both, number by number. A number that is negative or NaN counts as 0: no force.
 DeviceLimits smaller(const DeviceLimits& one, const DeviceLimits& other) noexcept;
 /// The settings as these limits can render them stably. Settings that pass check() come back as
-/// they are. Of others, stiffness, damping and viscosity are lowered by one factor, which keeps
-/// their proportions, stiffness and damping of rotation by another, and the magnet's peak as far as
-/// needed. `limit` stays: render_force() takes the smaller of it and the device's.
+/// they are. Otherwise one factor lowers stiffness, damping and viscosity, which keeps their
+/// proportions. Another factor lowers stiffness and damping of rotation. The magnet's peak is
+/// lowered as far as needed. `limit` stays: render_force() takes the smaller of the two.
 ForceSettings stable(ForceSettings settings, const DeviceLimits& limits) noexcept;
 
 /// Throws std::invalid_argument, naming the limit, its value and the accepted range, for limits

@@ -66,8 +66,8 @@ void check(const Penetrability& penetrability, Solid solid);
 /// `device_per_volume`: device mm per mm of physical space. Updates that are not `done` are left
 /// unchanged.
 ///
-/// With penetrability on, G1 and G2 hold for the level felt at the end of the tick. Where the
-/// surface gives way the SCP passes through the solid, reported as StepKind::press. A press that
+/// With penetrability on, G1 and G2 hold for the level felt at the end of the tick. When the
+/// surface gives way, the SCP passes through the solid (StepKind::press). A press that
 /// ends between two ranges leaves a free SCP at a distance of PT from the HIP; the next update
 /// closes it. Past the last range the isovalue is infinity (minus infinity where `solid` is below).
 void apply_penetrability(const Penetrability& penetrability, const Field& field,

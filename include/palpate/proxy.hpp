@@ -144,7 +144,7 @@ void field_will_change(Proxy& proxy, const Field& field);
 /// that of one of the tetrahedra that meet there.
 Vec3 normal_at(const Proxy& proxy, const Field& field);
 
-/// Where a straight segment first meets the isosurface, walking the lattice exactly.
+/// The first point of a straight segment on the isosurface, from an exact walk in the lattice.
 struct RayHit {
     bool hit = false;
     Vec3 point = Vec3::Zero();   ///< [mm, physical]; the segment's end without a hit

@@ -61,7 +61,7 @@ struct Renderer {
     LayerState layers = {};
     /// [data units] Felt again when there are no layers with surfaces; set while there are.
     std::optional<double> isovalue_without_layers = {};
-    /// Of the tool; `proxy.isovalue` counts. Has a value where there is a tool, or may be one.
+    /// The tool's proxy. Uses `proxy.isovalue`. Has a value if there is a tool, or may be one.
     std::optional<ToolProxy> tool_proxy = {};
 };
 
@@ -132,9 +132,9 @@ std::string isovalue_warning(const Field& field, double isovalue);
 /// it is (UpdateStatus::refused) and gives no force. A time that is not finite or did not advance
 /// gives no force either, but the proxy follows. The same renderer and input give the same tick,
 /// bit for bit, but for `update_ns`, which is measured where a clock is given.
-/// The proxy only moves where all samples are in memory. Where the hand draws it farther it is held
-/// (UpdateStatus::waiting): the force falls to zero within its rate limit, and comes back with the
-/// ramp once they are. Layers and penetrability need the whole way of the hand in memory.
+/// The proxy only moves where all samples are in memory. If the hand pulls it farther, it is held
+/// (UpdateStatus::waiting): the force falls to zero within its rate limit, and returns with the
+/// ramp when they are. Layers and penetrability need the whole way of the hand in memory.
 /// `observer` is for a point, `pose_observer` for a tool.
 Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {},
             Clock clock = nullptr, PoseObserver pose_observer = {});

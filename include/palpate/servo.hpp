@@ -30,7 +30,7 @@ struct ServoSettings {
     bool real_time = true;
     int priority = 80;                ///< of SCHED_FIFO, 1 to 99
     std::size_t command_room = 1024;  ///< commands that may wait
-    /// Where ticks and commands are recorded; null: nowhere. Must outlive the servo, or its
+    /// The queue that records ticks and commands. May be null. Must outlive the servo, or its
     /// stop_recording(). A queue that is full loses events (ServoReport::unrecorded). Samples with
     /// a recipe are recorded as that alone.
     Queue<SessionEvent>* recorder = nullptr;
@@ -86,7 +86,7 @@ struct Snapshot {
     double stiffness = 0;        ///< [N/mm] in use
     Vec3 normal = Vec3::Zero();  ///< of the constraint plane at the SCP, out of the solid, physical
     LatticePoint scp;            ///< the SCP and its tetrahedron, of the lattice of `interpolation`
-    /// Of the tool at the proxy's pose: those with pressure touch. With a point: none.
+    /// Contacts of the tool at the proxy's pose. Those with pressure touch. None for a point.
     std::array<ToolContact, most_tool_contacts> contacts{};
     int contact_count = 0;
     Interpolation interpolation = Interpolation::linear;

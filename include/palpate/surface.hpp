@@ -13,8 +13,8 @@
 
 namespace palpate {
 
-/// Where an isosurface cuts a tetrahedron: nowhere, or in a triangle or a plane quadrilateral,
-/// whose corners lie on edges from a solid to a free corner of the tetrahedron (0 to 3).
+/// The cut of an isosurface through a tetrahedron: nothing, a triangle or a plane quadrilateral.
+/// Its corners lie on edges from a solid to a free corner of the tetrahedron (0 to 3).
 struct TetrahedronCut {
     struct Edge {
         std::uint8_t solid = 0, free = 0;
@@ -85,8 +85,8 @@ inline constexpr double surface_margin = 1.0 / 1024;
 
 /// The boundary of the solid: sign * (density - isovalue) >
 /// 0 is solid, equal is free. Outside the grid the field has the background's value, so bodies cut
-/// by the border are closed there. Where the background is solid the mesh bounds the free space
-/// instead; it is closed, too, with normals out of the solid. The same input gives the same mesh,
+/// by the border are closed there. If the background is solid, the mesh bounds the free space
+/// instead. It is also closed, with normals out of the solid. The same input gives the same mesh,
 /// bit for bit. Throws std::invalid_argument for an isovalue that is not finite and
 /// std::length_error past max_vertices. (Corenthy et al. 2012, section 3; docs/surface.md)
 SurfaceMesh extract_surface(const Field& field, double isovalue,

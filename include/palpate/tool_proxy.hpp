@@ -97,9 +97,9 @@ class ToolProxy {
     int contact_count = 0;  ///< contacts known, those without pressure included
     bool sliding = false;   ///< dynamic friction applies
 
-    /// Of updates, to save time.
+    /// Results of earlier updates, which save time.
     struct Kept {
-        // Of each point, with room for more.
+        // One per point, with room for more.
         std::vector<double> arms;    ///< distance from the reference point [mm]
         std::vector<double> expiry;  ///< travel [mm] up to which it certainly meets nothing
         double moved = 0;            ///< odometers: translation [mm] ...

@@ -26,10 +26,10 @@ class Mouse final : public Device {
     /// `speed` [mm/s]: the hand's greatest.
     explicit Mouse(double speed);
 
-    /// Where the hand is to go [device mm], cut to twice the workspace. By one
-    /// thread, the window's; not finite: nothing happens.
+    /// Sets the target of the hand [device mm], cut to twice the workspace. Ignores a target that
+    /// is not finite. Called by one thread, the window's.
     void aim(const Vec3& position) noexcept;
-    /// Where it is going. The thread that aims.
+    /// The target of the hand. Called by the thread that aims.
     const Vec3& aimed() const noexcept { return aim_.position; }
     /// How the tool is to be turned (tool axes to device axes), by the shortest way; not finite or
     /// zero: nothing happens. By the thread that aims.

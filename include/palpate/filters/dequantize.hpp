@@ -62,7 +62,7 @@ struct DequantizeOptions {
 
 /// The smoothest samples from which rounding makes the volume's own, as float32: no sample moves by
 /// more than half a level, or beyond the volume's range. Samples beyond the border count as those
-/// on it. Where data have no levels (level_of()), the samples stay what they are.
+/// on it. If data has no levels (level_of()), the samples do not change.
 ///
 /// A round of step s, from the coarsest to 1: b = B u, with B the binomial (1 2 1)/4 along each
 /// axis over neighbours s apart; u = 2b - Bb, kept within half a level of the volume's sample. 2B -

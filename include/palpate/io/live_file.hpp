@@ -29,7 +29,7 @@ struct LiveHeader {
 
     std::uint64_t frame_bytes() const;
     std::uint64_t file_bytes() const { return first_slot + slot_bytes * std::uint64_t(slots); }
-    /// Where a frame's slot lies [bytes from the file's start].
+    /// The place of a frame's slot [bytes from the file's start].
     std::uint64_t slot_at(std::uint64_t frame) const {
         return first_slot + slot_bytes * (frame % std::uint64_t(slots));
     }

@@ -67,7 +67,7 @@ class RecordingWriter {
     void step();
     /// Commands before all that is in the queue, and before the servo uses it.
     void begin_with(std::vector<Command> commands);
-    /// Where the servo puts its ticks; room for eight seconds.
+    /// The queue into which the servo puts its ticks. It has room for eight seconds.
     Queue<SessionEvent>& queue() { return queue_; }
     /// Why nothing is written any more (a full disk); empty while all is well. What was written
     /// stays. Any thread.

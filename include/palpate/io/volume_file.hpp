@@ -37,7 +37,7 @@ struct ReadOptions {
     std::optional<Vec3> spacing;
     /// Which DICOM series: its UID, or its number in the list that the error message gives.
     std::string series;
-    /// Where a series has to be chosen: make pictures of them for SeriesChoice.
+    /// Make pictures for SeriesChoice if a series has to be chosen.
     bool series_pictures = false;
     /// Which volume of a 4-D file, counted from 0.
     int time_step = 0;

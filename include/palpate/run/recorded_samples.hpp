@@ -65,7 +65,7 @@ class RecordedSamples {
     std::map<int, Volume> read_;  // frames of the last window
     std::shared_ptr<const Samples> frames_;
     GridReader grid_;
-    // Of a large grid: what is in memory now, the edits now, and those of each version of bricks.
+    // For a large grid: the bricks in memory, the edits now, and those of each version of bricks.
     std::optional<ResidentBricks> bricks_;
     std::uint64_t bricks_version_ = 0, edits_version_ = 0;
     std::map<std::uint64_t, std::uint64_t> edits_at_;

@@ -58,10 +58,10 @@ struct RenderSetup {
     std::optional<double> rate;       ///< [Hz] nothing: rate_of()
 };
 
-/// Of a loop without a device that says otherwise [Hz].
+/// Rate of a loop whose device does not ask for another one [Hz].
 inline constexpr double usual_rate = 1000;
-/// Of the loop with this device [Hz]: what was asked for; else the usual rate, or 250 with a device
-/// that renders no force, where a quarter of the work shows the same (springs up to 1.2 N/mm).
+/// Rate of the loop with this device [Hz]: the requested one, else the usual one. 250 with a device
+/// that renders no force, which shows the same with a quarter of the work (springs up to 1.2 N/mm).
 double rate_of(const RenderSetup& setup, const DeviceInfo& device);
 
 /// A button of the device, by its number from 1.

@@ -82,8 +82,8 @@ struct StreamedVolume {
 
 /// A volume and what is known about it.
 struct LoadedVolume {
-    /// Of a sequence its first frame, of a live source the frame it began with, of a store its
-    /// overview.
+    /// The volume. For a sequence its first frame, for a live source the frame that it began with,
+    /// for a store its overview.
     Volume volume;
     Source source;
     std::string name;

@@ -22,11 +22,11 @@ struct Histogram {
     double greatest = 0;             ///< of the samples; the last bin may end above it
 };
 
-/// Of the samples that are not padding.
+/// The histogram of the samples that are not padding.
 Histogram histogram_of(const Volume& volume, int bins, std::optional<double> padding = {});
 
-/// Of the gradient's magnitude [data units / mm] at some of the samples, spread evenly: from 0 to
-/// the greatest (to 1 in constant data); without mean and deviation.
+/// The histogram of the gradient's magnitude [data units / mm] at some samples, spread evenly: from
+/// 0 to the greatest (to 1 in constant data). It has no mean and no deviation.
 Histogram gradients_of(const Volume& volume, int bins);
 
 /// Two levels between the three classes that explain most of the variance (Otsu 1979, three

@@ -19,7 +19,7 @@ namespace palpate::run {
 /// Any thread may call any function.
 class Streamer {
   public:
-    /// Of a volume with a store. Throws std::invalid_argument as stream::BrickLoader.
+    /// Streams a volume with a store. Throws std::invalid_argument as stream::BrickLoader.
     explicit Streamer(const LoadedVolume& loaded, Pace pace = Pace::own_thread);
     ~Streamer();
     Streamer(const Streamer&) = delete;

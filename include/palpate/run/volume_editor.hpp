@@ -48,8 +48,8 @@ class VolumeEditor {
     /// `most_versions`: of which it is known how they were made.
     explicit VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace = Pace::own_thread,
                           std::size_t most_versions = usual_versions);
-    /// Of a volume that is read as it is felt: an edit waits for the samples that it changes. Edits
-    /// take at most a quarter of `memory` [bytes] and what undo() needs an eighth. `streamer`
+    /// Edits a streamed volume: an edit waits for the samples that it changes. Edits take at most a
+    /// quarter of `memory` [bytes], and undo() an eighth. `streamer`
     /// outlives this and sends the versions; `samples` are those without any brick.
     VolumeEditor(std::shared_ptr<const Samples> samples, Streamer& streamer, std::uint64_t memory,
                  Pace pace = Pace::own_thread);
@@ -85,7 +85,7 @@ class VolumeEditor {
     void set_saved(const std::shared_ptr<const Samples>& samples);
 
   private:
-    /// Where the proxy was when it was last seen in contact.
+    /// The proxy when it was last seen in contact.
     struct Touch {
         Pose at;          ///< of the tool; of a point its place
         double time = 0;  ///< [s] of the session

@@ -32,7 +32,7 @@ std::vector<std::string> motion_names();
 ///
 /// Speed: no step is longer than speed_mm_s / rate_hz, and position and velocity are continuous;
 /// only `random` jumps. Depth: along the surface's normal, as far as the field shows one.
-/// Where no surface is found (isovalue beyond the data) the hand moves about the grid's centre.
+/// If no surface is found (isovalue beyond the data), the hand moves around the grid's centre.
 /// A motion needs about 0.2 s + depth_mm / speed_mm_s before it is at depth; a shorter one ends
 /// on its way.
 /// Same arguments, same bits, on every compiler (no libm beyond sqrt).

@@ -27,8 +27,8 @@ struct DetailBox {
     bool operator==(const DetailBox&) const = default;
 };
 
-/// The samples of such a box, as far as they have come. Where pieces of it are missing, the samples
-/// are interpolated from a coarser box that was read before, or from the overview.
+/// The samples of such a box, as far as they are loaded. Missing pieces are interpolated from a
+/// coarser box that was read before, or from the overview.
 struct Detail {
     DetailBox of;
     Volume volume;            ///< of the box alone, in its place in space

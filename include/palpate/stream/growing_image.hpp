@@ -16,7 +16,7 @@ namespace palpate::stream {
 
 class GrowingImage {
   public:
-    /// Touches no file. Of the options, those of the format count. `temporary`: how names of files
+    /// Touches no file. Uses the options of the format only. `temporary`: how names of files
     /// end while they are written; processes that may write the same chunk at the same time (one of
     /// them taken for dead) need different ones. Throws std::invalid_argument for options.
     GrowingImage(std::filesystem::path folder, SampleType type, const Geometry& finest,
@@ -33,8 +33,8 @@ class GrowingImage {
     /// The samples of a chunk that lie in the grid.
     SampleBox box(int level, const Index3& chunk) const;
 
-    /// Of all levels: needed before anything is read. `range` of the finest level, once it is
-    /// known. Throws io::OutputError, like all that writes here.
+    /// Writes the metadata of all levels, which readers need first. `range` of the finest level, if
+    /// it is known. Throws io::OutputError, like all that writes here.
     void write_metadata(const std::optional<Range>& range) const;
     /// The samples of box(level, chunk), x fastest. Read back and compared. False: all are 0, and
     /// the chunk is not stored.
