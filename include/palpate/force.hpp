@@ -35,8 +35,8 @@ struct ForceSettings {
     double viscosity = 0;  ///< [N s/mm] of the medium, against all motion, in contact or not
     Magnet magnet;
     Texture texture;
-    double limit = 3.3;         ///< [N] largest force; the device's own limit holds as well
-    double rate_limit = 2000;   ///< [N/s] largest change of force; a stop may drop to zero at once
+    double limit = 3.3;         ///< [N] largest force. The device's own limit holds as well
+    double rate_limit = 2000;   ///< [N/s] largest change of force. A stop may drop to zero at once
     double ramp = 0.25;         ///< [s] from zero to full force, at the start and after a pause
     double stale_after = 0.02;  ///< [s] a longer time between two device states is a pause
     /// [N] After a start, a pause or a release there is no force until the computed one is at most
@@ -50,7 +50,7 @@ struct ForceSettings {
     double rotational_stiffness = 0;
     /// [N mm s/rad] against the hand's turning out of equilibrium; at most cancels the torque
     double rotational_damping = 0;
-    /// [N mm] largest torque; the device's own limit holds as well. 0: none.
+    /// [N mm] largest torque. The device's own limit holds as well. 0: none.
     double torque_limit = std::numeric_limits<double>::infinity();
     double torque_rate_limit = 2e5;  ///< [N mm/s] as rate_limit
 
@@ -65,7 +65,7 @@ struct DeviceLimits {
     /// k / (2 rate) + damping <= this (Colgate and Schenkel 1994). 2.5 N s/m is a desktop device in
     /// a light grip.
     double physical_damping = 2.5e-3;
-    double maximum_torque = 0;  ///< [N mm] never exceeded; 0: the device renders none
+    double maximum_torque = 0;  ///< [N mm] never exceeded. 0: the device renders none
     /// [N mm s/rad] the same of turning: a sampled rotational spring is passive for
     /// k / (2 rate) + damping <= this. 1 is `physical_damping` at a lever of 20 mm.
     double physical_rotational_damping = 1;
@@ -106,7 +106,7 @@ struct ForceInput {
     bool constrained = false;
     Vec3 hand = Vec3::Zero();    ///< device position [device mm]
     Vec3 pull = Vec3::Zero();    ///< SCP - HIP [device mm]
-    Vec3 normal = Vec3::Zero();  ///< unit, out of the solid; zero if unknown
+    Vec3 normal = Vec3::Zero();  ///< unit, out of the solid. Zero if unknown
     double surface_distance =
         -1;  ///< free: [device mm] to the surface against the normal; < 0 none
     Vec3 texture_slope = Vec3::Zero();  ///< gradient of the texture's height at the SCP

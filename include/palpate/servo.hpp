@@ -34,7 +34,7 @@ struct ServoSettings {
     /// stop_recording(). A queue that is full loses events (ServoReport::unrecorded). Samples with
     /// a recipe are recorded as that alone.
     Queue<SessionEvent>* recorder = nullptr;
-    /// Times the ticks [ns, never back]; null: the machine's monotonic clock. With a clock of the
+    /// Times the ticks [ns, never back]. Null: the machine's monotonic clock. With a clock of the
     /// caller's, CPU time is counted by it as well.
     Clock clock = nullptr;
 };
@@ -55,7 +55,7 @@ enum class DeviceFailure : std::uint8_t {
     threw,  ///< read() or write() threw an exception
     hung,   ///< read() or write() did not return within 10 ms, though its thread could run
 };
-/// In words; empty for none.
+/// In words. Empty for none.
 const char* name_of(DeviceFailure failure);
 
 /// The tick that took longest, lateness included.
@@ -73,7 +73,7 @@ struct ServoReport {
     std::int64_t missed = 0;      ///< deadlines: ticks that did not happen when they were due
     std::int64_t overruns = 0;    ///< ticks that took too long, so that their force was dropped
     std::int64_t unrecorded = 0;  ///< events that were lost because the recorder was full
-    LatencySummary period, lateness, work, compute;  ///< [ns]; compute is CPU time
+    LatencySummary period, lateness, work, compute;  ///< [ns]. Compute is CPU time
     WorstTick worst;
 };
 
@@ -110,7 +110,7 @@ class WatchedDevice;
 /// fault and no force.
 class Servo {
   public:
-    /// Takes over the session; the device must outlive the servo. Nothing runs yet. The session
+    /// Takes over the session. The device must outlive the servo. Nothing runs yet. The session
     /// keeps the smaller of its settings and the limits that the device declares (keep_within());
     /// where that changes it, a recording begins with the command that does. Throws
     /// std::invalid_argument for settings that cannot be run.
@@ -123,7 +123,7 @@ class Servo {
     /// Starts the thread, once, and not after step(). Throws std::system_error if the system gives
     /// none.
     void start();
-    /// One tick, now, on one thread; the first one is at time 0 of the session. False once the
+    /// One tick, now, on one thread. The first one is at time 0 of the session. False once the
     /// session has ended: stop() was called or the device has failed, and zero force was written.
     bool step() noexcept;
     /// The same at a time of the caller's [ns, never back], without a clock: nothing is
@@ -135,24 +135,24 @@ class Servo {
     /// the third look in a row sees under way. `cpu`: all CPU time of the thread of step() [ns];
     /// `could_run`: it waits for nothing but a processor. Then only its CPU time counts.
     void watch(std::int64_t cpu, bool could_run) noexcept;
-    /// Writes zero force and ends the thread; returns when it has ended. With a device call that
-    /// hangs it returns when the force was taken away; the thread ends when that call returns, and
+    /// Writes zero force and ends the thread. Returns when it has ended. With a device call that
+    /// hangs it returns when the force was taken away. The thread ends when that call returns, and
     /// touches nothing but the servo then. Any thread, any number of times; from the servo thread
     /// (a device's read() or write()) it only asks for the end. Without start(): on the thread of
     /// step(), or on others while that thread goes on calling step().
     void stop() noexcept;
 
-    /// Nothing is recorded any more when this returns; the session goes on. Any thread but that of
+    /// Nothing is recorded any more when this returns. The session goes on. Any thread but that of
     /// step().
     void stop_recording() noexcept;
 
-    /// Checks a command and puts it in the queue; false if the queue is full. Throws
+    /// Checks a command and puts it in the queue. False if the queue is full. Throws
     /// std::invalid_argument as check(Command) does. Any thread; never waits for the servo thread.
     /// Keeps samples alive until the servo uses others, so that its thread never frees them.
     bool send(const Command& command);
     /// A command that was sent after tick n shows in tick n + sure_after at the latest.
     static constexpr std::int64_t sure_after = 2;
-    /// The newest tick; nothing before the first. Any thread, never waits.
+    /// The newest tick. Nothing before the first. Any thread, never waits.
     std::optional<Snapshot> snapshot() const noexcept { return snapshot_.get(); }
     ServoReport report() const noexcept;
     /// Commands that were sent and not carried out yet. Any thread, never waits.
@@ -165,7 +165,7 @@ class Servo {
 
     /// A sentence for each privilege: granted, or not granted and what to set. After start().
     const std::vector<std::string>& privileges() const { return privileges_; }
-    /// How late the thread was woken, every tick [ns]; goes on counting while it runs.
+    /// How late the thread was woken, every tick [ns]. Goes on counting while it runs.
     const LatencyHistogram& lateness() const { return lateness_; }
     /// The settings of the session at the start, within the device's limits.
     const RendererSettings& settings() const { return start_; }
@@ -194,7 +194,7 @@ class Servo {
     void publish(std::int64_t number, const SessionTick& tick) noexcept;
     void hold(const std::shared_ptr<const void>& sent);
 
-    // These begin on cache lines of their own; placed first, they waste no space.
+    // These begin on cache lines of their own. Placed first, they waste no space.
     Queue<CheckedCommand> commands_;
     Newest<Snapshot> snapshot_;
     Newest<WorstTick> worst_;
@@ -215,7 +215,7 @@ class Servo {
     std::atomic<Queue<SessionEvent>*> recorder_;
     std::atomic<bool> in_recorder_{false};  // the servo thread uses it at this moment
 
-    std::mutex held_mutex_;  // between threads that send; the servo thread never takes it
+    std::mutex held_mutex_;  // between threads that send. The servo thread never takes it
     std::vector<std::shared_ptr<const void>> held_;  // each object once
     LatencyHistogram period_, lateness_, work_, compute_;
     std::atomic<std::int64_t> ticks_{0}, missed_{0}, overruns_{0}, unrecorded_{0};

@@ -11,7 +11,7 @@
 
 namespace palpate::filters {
 
-/// The values that occur, ascending; empty for float samples of more than 65536. Those of a volume
+/// The values that occur, ascending. Empty for float samples of more than 65536. Those of a volume
 /// are those of its parts together.
 std::vector<double> values_of(const Volume& volume);
 /// level_of() a volume with these values. `whole_numbers`: its samples are integers.

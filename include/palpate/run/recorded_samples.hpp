@@ -12,10 +12,10 @@
 
 namespace palpate::run {
 
-/// Reads the frames of a sequence; null for a volume that is none.
+/// Reads the frames of a sequence. Null for a volume that is none.
 std::function<Volume(int)> frames_of(const LoadedVolume& loaded);
 
-/// Reads a large grid; both null for other data.
+/// Reads a large grid. Both null for other data.
 struct GridReader {
     std::function<ResidentBrick(const Index3& brick, int level)> brick;  ///< of a level of detail
     ReadSamples box;  ///< of the level felt, before all edits
@@ -26,7 +26,7 @@ GridReader grid_of(const LoadedVolume& loaded, std::function<void()> tell = {});
 class RecordedSamples {
   public:
     /// `start`: the samples at the start of the recording. `frame` reads a frame of the sequence
-    /// and may throw; null for data that are no sequence.
+    /// and may throw. Null for data that are no sequence.
     explicit RecordedSamples(std::shared_ptr<const Samples> start,
                              std::function<Volume(int)> frame = {}, GridReader grid = {});
 

@@ -19,7 +19,7 @@ struct Histogram {
     std::vector<std::int64_t> counts;
     double mean = 0, deviation = 0;  ///< of the samples [data units]
     bool whole_numbers = false;      ///< each bin holds (high - low) / bins whole numbers
-    double greatest = 0;             ///< of the samples; the last bin may end above it
+    double greatest = 0;             ///< of the samples. The last bin may end above it
 };
 
 /// The histogram of the samples that are not padding.
@@ -30,7 +30,7 @@ Histogram histogram_of(const Volume& volume, int bins, std::optional<double> pad
 Histogram gradients_of(const Volume& volume, int bins);
 
 /// Two levels between the three classes that explain most of the variance (Otsu 1979, three
-/// classes); fewer for data with fewer values. In CT of a head: skin and bone. The best is first:
+/// classes). Fewer for data with fewer values. In CT of a head: skin and bone. The best is first:
 /// the lower one, unless it bounds what an object was put into (resin, gel).
 std::vector<double> suggested_isovalues(const Histogram& histogram);
 

@@ -26,7 +26,7 @@ struct EditState {
     std::uint64_t version = 0;  ///< as snapshots tell it
     std::size_t undo_steps = 0, redo_steps = 0;
     bool changed = false;      ///< since the start, or since they were saved
-    std::string problem = {};  ///< why the brush does nothing although it touches; usually empty
+    std::string problem = {};  ///< why the brush does nothing although it touches. Usually empty
 };
 
 /// Starts a servo with this session, which has the newest data. `history` is what a recording needs
@@ -57,17 +57,17 @@ class VolumeEditor {
     VolumeEditor(const VolumeEditor&) = delete;
     VolumeEditor& operator=(const VolumeEditor&) = delete;
 
-    /// Works with the brush where it touches; its thread calls this every 4 ms while there is one.
+    /// Works with the brush where it touches. Its thread calls this every 4 ms while there is one.
     void step(std::chrono::steady_clock::time_point now);
     /// Starts a servo with the samples as they are and keeps it up to date until detach(): no edit
-    /// is lost in between. Edits wait for `start` to return; what it throws is passed on.
+    /// is lost in between. Edits wait for `start` to return. What it throws is passed on.
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     /// For a servo that is not attached: nothing.
     void detach(const Servo& servo);
-    /// What this servo feels with from now on; null: a point. For one that is not attached:
+    /// What this servo feels with from now on. Null: a point. For one that is not attached:
     /// nothing.
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
-    /// The brush of every attached servo; nothing: the hand only feels. Throws as check().
+    /// The brush of every attached servo. Nothing: the hand only feels. Throws as check().
     void set_brush(const std::optional<HandBrush>& brush);
     /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does and for
     /// one that takes more memory than there is, std::runtime_error for a servo that takes no
@@ -144,7 +144,7 @@ class VolumeEditor {
     bool new_step_ = true;  // the next change by a brush begins a step for undo
     std::chrono::steady_clock::time_point last_change_;  // by a brush
     std::string problem_;
-    std::vector<Version> versions_;  // in order; the first has number 0
+    std::vector<Version> versions_;  // in order. The first has number 0
     std::uint64_t last_version_ = 0;
     const std::size_t most_versions_;
     std::size_t forget_at_;  // so many versions

@@ -17,7 +17,7 @@ namespace palpate::stream {
 class GrowingImage {
   public:
     /// Touches no file. Uses the options of the format only. `temporary`: how names of files
-    /// end while they are written; processes that may write the same chunk at the same time (one of
+    /// end while they are written. Processes that may write the same chunk at the same time (one of
     /// them taken for dead) need different ones. Throws std::invalid_argument for options.
     GrowingImage(std::filesystem::path folder, SampleType type, const Geometry& finest,
                  const ConvertOptions& options, std::string temporary = ".part");
@@ -39,7 +39,7 @@ class GrowingImage {
     /// The samples of box(level, chunk), x fastest. Read back and compared. False: all are 0, and
     /// the chunk is not stored.
     bool write(int level, const Index3& chunk, std::span<const std::byte> samples) const;
-    /// What was written before; nothing if it is not there or not whole.
+    /// What was written before. Nothing if it is not there or not whole.
     std::optional<std::vector<std::byte>> written(int level, const Index3& chunk) const;
     /// Chunks of all levels that are stored.
     std::uint64_t stored_chunks() const;
