@@ -9,17 +9,17 @@
  * every other member is 0, and 0 always means the default. A later library accepts structs of earlier
  * ones; an earlier library refuses members that it does not know if they are not 0. A struct inside
  * another never grows, and its size_of is not looked at. Enumerations and
- * truth values (0: no) are int32_t. Matrices are three rows of three; quaternions are x, y, z, w.
+ * truth values (0: no) are int32_t. Matrices are three rows of three. Quaternions are x, y, z, w.
  *
  * Space. Lengths in mm, physical space as in the file (LPS: x to the left, y to the back, z up).
  * Device axes: x to the right, y up, z towards the person. Forces in N, torques in N mm, times in s.
  *
  * Threads. Volumes, fields and meshes never change: any threads may use one at the same time. Data
- * and runs may be used by any threads, too; calls on the same run take turns. palpate_run_snapshot()
+ * and runs may be used by any threads. Calls on the same run take turns. palpate_run_snapshot()
  * never waits for the servo, but for another call on the run: starting, changing the device and
  * recording may take seconds. One renderer is for one thread at a time. Destroy a handle when no other
- * call uses it; handles made from it keep what they need. The servo has a thread of its own, at
- * real-time priority if the system grants it; it calls no function of yours. Callbacks may not call
+ * call uses it. Handles made from it keep what they need. The servo has a thread of its own, at
+ * real-time priority if the system grants it. It calls no function of yours. Callbacks may not call
  * the run that they belong to.
  */
 #ifndef PALPATE_H

@@ -53,9 +53,9 @@ class Field {
     void use(const std::shared_ptr<const Samples>& samples) noexcept;
     /// Goes to a time of a sequence [s], see Samples::moment_at().
     void set_time(double time) noexcept;
-    /// From now on samples with a label above 0 are `solid` [data units] where it is one of these
-    /// bits, else `open`; with bit 0 samples without a label, and all outside the grid, are solid,
-    /// too. `labels`: one uint8 volume of labels up to 31 that is not edited, on any grid. A sample
+    /// From now on samples with a label above 0 are `solid` [data units] if it is one of these
+    /// bits, else `open`. With bit 0, samples without a label, and all outside the grid, are also
+    /// solid. `labels`: a uint8 volume of labels up to 31 that is not edited, on any grid. A sample
     /// of this field has the label that is nearest to it, 0 outside of them. Does not allocate. The
     /// samples may be those of the labels: then `open` has to be 0.
     void cover(const std::shared_ptr<const Field>& labels, std::uint32_t solid_labels, double open,

@@ -111,9 +111,9 @@ inline std::size_t level_count(const Layers& layers) {
 std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers,
                                              std::size_t first = 0);
 
-/// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, levels out of
-/// order or not finite (labels: not whole, below 1 or given twice), names missing or given twice,
-/// knots out of order, and values that are NaN, negative or (but for puncture forces) infinite.
+/// Throws std::invalid_argument, which names layer or curve. Refuses over 16 layers, levels out of
+/// order or not finite (labels: not whole, below 1 or twice), and names missing or twice. Also
+/// knots out of order, and values that are NaN, negative or, except puncture forces, infinite.
 void check(const Layers& layers, Solid solid);
 
 /// A property in a layer (by number from 0; -1: outside of all), at a density [data units] and
@@ -168,9 +168,9 @@ struct LayerState {
     int layer_count = -1, level_count = -1;  ///< of that set
     /// Which labels (bit k + 1 for layer k; bit 0: none of them) the SCP may be in.
     std::uint32_t open = 1;
-    /// By labels: the field that the proxy touches in place of the data's, which is the data's
-    /// covered by the labels or, without levels beside them, that of the labels alone, on their own
-    /// lattice: 1 where the SCP may not be, 0 elsewhere, felt at 0.5.
+    /// By labels: the field that the proxy touches in place of the data's. It is the data's covered
+    /// by the labels. Without levels it is that of the labels alone, on their own lattice: 1 where
+    /// the SCP may not be, 0 elsewhere, felt at 0.5.
     std::optional<Field> covered;
     Vec3 label_opening = Vec3::Zero();  ///< where a label gave way last [mm, physical]
     /// The SCP may be anywhere from inside `outer` layers to inside `inner` ones: the surfaces

@@ -56,9 +56,9 @@ Penetrability penetrability_threshold(double threshold, double minimum, Solid so
 Penetrability penetrability_ranges(double threshold, std::span<const DensityRange> ranges,
                                    Solid solid = Solid::above);
 
-/// Throws std::invalid_argument, saying what is wrong, for a value that is on and that the
-/// functions above do not make for this side: PT NaN or below 0, ranges out of order, no or too
-/// many ranges.
+/// Throws std::invalid_argument, with the reason, for a value that is on and that the functions
+/// above would not make for this side. Reasons are PT NaN or below 0, ranges out of order, and no
+/// or too many ranges.
 void check(const Penetrability& penetrability, Solid solid);
 
 /// Applied after a proxy update (Fig. 7): moves the proxy where the surface gives way and sets the

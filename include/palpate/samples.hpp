@@ -1,6 +1,6 @@
-// Stage 3, samples: one version of the numbers on a grid, which is a volume with its edited
-// bricks, the frames of a sequence, or the part of a large grid that is in memory, perhaps with
-// edited bricks. A version never changes. A change makes a new version, published by pointer, and
+// Stage 3, samples: one version of the numbers on a grid. It is a volume with its edited bricks,
+// the frames of a sequence, or the part of a large grid that is in memory, perhaps with edited
+// bricks. A version never changes. A change makes a new version, published by pointer, and
 // readers pick it up between two reads (copy on write). See docs/changing_data.md.
 #pragma once
 
@@ -157,9 +157,9 @@ class Samples {
 /// files and for code that needs them in one piece. No copy is made where an existing volume is the
 /// same. For a large grid, the overview with the edits (ShownEdits).
 Volume flattened(const Samples& samples, const Moment& moment = {});
-/// Edits of a large grid on a volume of the same part of space that has other samples (an overview,
-/// or a box of some level): each of those whose nearest sample lies in an edited brick takes its
-/// value. One thread at a time.
+/// Shows the edits of a large grid in a volume of the same part of space that has other samples (an
+/// overview, or a box of some level). A sample whose nearest sample of the grid lies in an edited
+/// brick takes its value. One thread at a time.
 class ShownEdits {
   public:
     explicit ShownEdits(Volume shown);

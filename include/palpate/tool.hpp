@@ -87,9 +87,9 @@ Tool burr_tool(double radius, double spacing);
 /// from the tip.
 Tool fingertip_tool(double spacing, double scale = 1);
 
-/// The surface of a mesh, closed or not, its triangles turned either way: no place on it is farther
-/// than `spacing` [mm] from a point, and no two points are nearer than three quarters of it;
-/// corners and edges (30 degrees) have theirs first. Throws std::invalid_argument without a
+/// The surface of a mesh, closed or not, its triangles turned either way. No place on it is farther
+/// than `spacing` [mm] from a point, and no two points are nearer than three quarters of it.
+/// Corners and edges (30 degrees) get their points first. Throws std::invalid_argument without a
 /// triangle that has an area, for vertices that are not finite or not there, and for more points
 /// than a tool may have.
 Tool mesh_tool(ToolShape mesh, double spacing);

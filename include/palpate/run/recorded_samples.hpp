@@ -34,8 +34,8 @@ class RecordedSamples {
     /// std::invalid_argument for samples that cannot be made again, and as check(Edit) does.
     Command whole(const Command& recorded);
 
-    /// The samples of a version that was made before; those of the start for an unknown version; of
-    /// a sequence the last frames; of a large grid without any brick, with the edits that it had.
+    /// The samples of a version that was made before, or those of the start for an unknown version.
+    /// For a sequence the last frames, for a large grid no brick, but the edits that it had.
     /// Repeats at most fifteen edits.
     std::shared_ptr<const Samples> of(std::uint64_t version);
 

@@ -61,11 +61,11 @@ std::string name_of(const Source& source);
 /// The inverse, with everything else as its default.
 Source source_named(const std::string& name);
 
-/// The names and values under which recordings and session files keep a source: "volume" is its
-/// name, the others are "dims", "type", "spacing", "skip", "byte-order", "series", "time-step",
+/// The names and values under which recordings and session files keep a source. "volume" is its
+/// name. The others are "dims", "type", "spacing", "skip", "byte-order", "series", "time-step",
 /// "level", "channel", "memory" [bytes, of the process], "coarse-first", "all-times",
-/// "forbidden-is-missing", "frame-interval", "smooth", "dequantize" and "prefilter". What was not
-/// given is left out; so is a cache, which is of one machine. Web addresses are without password
+/// "forbidden-is-missing", "frame-interval", "smooth", "dequantize" and "prefilter". Missing
+/// options are left out, and so is a cache, which is local. Web addresses are without password
 /// and query (io::address_to_keep()). If they had one, "secrets" says "left out".
 std::map<std::string, std::string> to_names(const Source& source);
 /// The inverse. Unknown names are ignored, numbers that cannot be read count as not given. Throws

@@ -9,9 +9,9 @@
 
 namespace palpate::run {
 
-/// The value of samples that were not measured (outside a scanner's circle, -2000 in many CT), if
-/// there are such [data units]: the least one, if it lies below 0 and either the header says so or
-/// a thousandth of the samples have it, a tenth of what the others span below the next.
+/// The value [data units] of samples that were not measured (outside a scanner's circle, -2000 in
+/// many CT). It is the least value, if it lies below 0 and the header says so. Otherwise a
+/// thousandth of the samples must have it, a tenth of the others' range below the next value.
 std::optional<double> padding_of(const Volume& volume, std::optional<double> header = {});
 
 struct Histogram {
