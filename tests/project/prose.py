@@ -79,7 +79,7 @@ def comments(text, everywhere):
 
 def opening(text):
     """The docstring that opens a Python file."""
-    match = re.match(r'(?:#.*\n|\s*\n)*"""(.*?)"""', text, re.DOTALL)
+    match = re.match(r'(?:#[^\n]*\n|\s*\n)*"""(.*?)"""', text, re.DOTALL)
     first = text.count("\n", 0, match.start(1)) if match else 0
     return markdown("\n" * first + match.group(1)) if match else ()
 
