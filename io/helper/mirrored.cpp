@@ -1,4 +1,4 @@
-// Reads a mirror; see the header.
+// Reads a mirror. See the header.
 #include "io/helper/mirrored.hpp"
 
 #include <sys/stat.h>

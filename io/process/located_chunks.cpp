@@ -1,4 +1,4 @@
-// What image is in a file of chunks, and where they lie; see the header.
+// The image in a file of chunks, and the places of the chunks. See the header.
 #include "io/process/located_chunks.hpp"
 
 #include <sys/stat.h>
