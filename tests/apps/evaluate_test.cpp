@@ -1,4 +1,4 @@
-// palpate evaluate: what it leaves behind, and how it refuses.
+// palpate evaluate: its output, and its refusals.
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 

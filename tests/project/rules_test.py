@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The rule checks find what they are for: each has violations planted here."""
+"""The rule checks find violations that are planted here."""
 
 import subprocess
 import sys
