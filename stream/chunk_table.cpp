@@ -1,4 +1,4 @@
-// Finds the chunks of an array in its one file. See the header.
+// Where the chunks of an array lie in its one file; see the header.
 #include "stream/chunk_table.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A hand that presses into a body: its path, and the forces on the way in and out.
+// Where and how a hand presses into a body, and what it feels going in and out again.
 #pragma once
 
 #include <functional>

@@ -23,7 +23,7 @@ enum class Solid : std::uint8_t { above, below };
 enum class Interpolation : std::uint8_t { linear, cubic };
 /// "linear" or "cubic".
 std::string_view name_of(Interpolation interpolation);
-/// The inverse of name_of. Throws std::invalid_argument with the accepted names.
+/// The inverse of name_of; throws std::invalid_argument with the accepted names.
 Interpolation interpolation_from(std::string_view name);
 
 /// The eight samples at the corners of a cell, in the data's units, less the field's offset.
@@ -33,7 +33,7 @@ using CellSamples = std::array<double, 8>;
 /// (x, y, z), each -1, 0 or 1, has place 13 + x + 3 y + 9 z.
 using Neighbours = std::array<double, 27>;
 
-/// What is felt: samples at one moment and their solid side. A small value. Copies share samples.
+/// What is felt: samples at one moment and their solid side. A small value; copies share samples.
 class Field {
   public:
     /// `background` is the density outside the grid. Its default is the data's minimum, or the
@@ -42,27 +42,27 @@ class Field {
     explicit Field(Volume volume, Solid solid = Solid::above,
                    std::optional<double> background = std::nullopt,
                    Interpolation interpolation = Interpolation::linear);
-    /// The same for changing data. A sequence begins at its first moment. Not null.
+    /// The same for changing data; a sequence begins at its first moment. Not null.
     explicit Field(std::shared_ptr<const Samples> samples, Solid solid = Solid::above,
                    std::optional<double> background = std::nullopt,
                    Interpolation interpolation = Interpolation::linear);
 
-    /// Changes to another version of the samples, on the same grid, not null. Background, side and
-    /// time stay. Neither allocates, locks nor throws. Frees the previous version only if nobody
+    /// Changes to another version of the samples, on the same grid, not null; background, side and
+    /// time stay. Neither allocates, locks nor throws; frees the previous version only if nobody
     /// else holds it.
     void use(const std::shared_ptr<const Samples>& samples) noexcept;
     /// Goes to a time of a sequence [s], see Samples::moment_at().
     void set_time(double time) noexcept;
-    /// From now on samples with a label above 0 are `solid` [data units] if it is one of these
-    /// bits, else `open`. With bit 0, samples without a label, and all outside the grid, are also
-    /// solid. `labels`: a uint8 volume of labels up to 31 that is not edited, on any grid. A sample
+    /// From now on samples with a label above 0 are `solid` [data units] where it is one of these
+    /// bits, else `open`; with bit 0 samples without a label, and all outside the grid, are solid,
+    /// too. `labels`: one uint8 volume of labels up to 31 that is not edited, on any grid; a sample
     /// of this field has the label that is nearest to it, 0 outside of them. Does not allocate. The
     /// samples may be those of the labels: then `open` has to be 0.
     void cover(const std::shared_ptr<const Field>& labels, std::uint32_t solid_labels, double open,
                double solid) noexcept;
     /// Null without cover().
     const Field* covering_labels() const noexcept { return cover_.labels.get(); }
-    /// The label of the sample `at`, from the labels that cover it.
+    /// Of the sample `at`, from the labels that cover it.
     int covering_label(const Index3& at) const noexcept;
     /// Whether the sample `at` or one of its neighbours has such a label.
     bool is_covered_around(const Index3& at) const noexcept;
@@ -98,13 +98,13 @@ class Field {
     /// 1 / spacing [voxel/mm].
     const Vec3& voxels_per_mm() const { return voxels_per_mm_; }
 
-    /// The samples of the cell whose lowest corner is `cell` (index space), less offset(). Any cell
+    /// The samples of the cell whose lowest corner is `cell` (index space), less offset(); any cell
     /// in space. Samples that are not in memory are as solid as any (ResidentBricks; reach.hpp says
     /// why no proxy meets them).
     CellSamples cell(const Index3& cell) const {
         return with_type(type_, [&](auto zero) { return cell_of<decltype(zero)>(cell); });
     }
-    /// The sample `at` (index space) with its neighbours, less offset(). Any sample in space.
+    /// The sample `at` (index space) with its neighbours, less offset(); any sample in space.
     Neighbours around(const Index3& at) const;
     /// The same samples where they lie: returns visit(centre, row, slice), where `centre` points to
     /// the sample, its neighbours in x are beside it, those in y `row` away, in z `slice`. Samples
@@ -203,7 +203,7 @@ class Field {
     Vec3 voxels_per_mm_;
     double sign_ = 1;
     Index3 size_, cells_;  // samples, and cells between them
-    Index3 plain_;  // cells along each axis that lie at data_ as they are felt. None if they change
+    Index3 plain_;  // cells along each axis that lie at data_ as they are felt; none if they change
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
     Interpolation interpolation_ = Interpolation::linear;

@@ -1,5 +1,5 @@
 // Stage 13, layers: several surfaces in one stroke, each with its own character. A haptic transfer
-// function gives stiffness, friction and so on by density. Surfaces are levels of it, from outside
+// function gives stiffness, friction and so on by density; surfaces are levels of it, from outside
 // in, and give way when they are pressed hard enough. (What Corenthy et al. 2012, section 7, leave
 // open: penetrability made for an application.) Model, energy and limits: docs/layers.md.
 #pragma once
@@ -23,7 +23,7 @@ enum class HapticProperty : std::uint8_t {
     dynamic_friction,  ///< the same, counts as at most the static one
     damping,           ///< [N s/mm] of a surface
     viscosity,         ///< [N s/mm] inside, behind the surface
-    puncture_force,    ///< [N] at which a surface gives way. Infinity: never
+    puncture_force,    ///< [N] at which a surface gives way; infinity: never
     drag,              ///< [N/mm] rubbing on a needle's shaft per mm (physical) of it inside
 };
 inline constexpr int haptic_property_count = 7;
@@ -71,7 +71,7 @@ struct Needle {
 };
 
 /// A haptic transfer function. What neither a layer nor a curve gives is as the session's settings
-/// have it. Without a puncture force surfaces never give way.
+/// have it; without a puncture force surfaces never give way.
 struct Layers {
     static constexpr int most_layers = 16;
 
@@ -101,7 +101,7 @@ struct Layers {
 inline bool is_label(const Layers& layers, std::size_t layer) {
     return layers.by_label && layer >= layers.levels_beside_labels;
 }
-/// How many layers are levels of the density. They come first.
+/// How many layers are levels of the density; they come first.
 inline std::size_t level_count(const Layers& layers) {
     return layers.by_label ? layers.levels_beside_labels : layers.layers.size();
 }
@@ -111,9 +111,9 @@ inline std::size_t level_count(const Layers& layers) {
 std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers,
                                              std::size_t first = 0);
 
-/// Throws std::invalid_argument, which names layer or curve. Refuses over 16 layers, levels out of
-/// order or not finite (labels: not whole, below 1 or twice), and names missing or twice. Also
-/// knots out of order, and values that are NaN, negative or, except puncture forces, infinite.
+/// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, levels out of
+/// order or not finite (labels: not whole, below 1 or given twice), names missing or given twice,
+/// knots out of order, and values that are NaN, negative or (but for puncture forces) infinite.
 void check(const Layers& layers, Solid solid);
 
 /// A property in a layer (by number from 0; -1: outside of all), at a density [data units] and
@@ -123,7 +123,7 @@ double property_of(const Layers& layers, int layer, HapticProperty property, dou
 
 /// What a tick felt of layers.
 struct LayersFelt {
-    std::int8_t touched = -1;  ///< layer whose surface is touched. -1: none
+    std::int8_t touched = -1;  ///< layer whose surface is touched; -1: none
     /// The SCP is inside this many layers, 0 .. inside - 1; where layer inside - 1 is a label, in
     /// that one alone.
     std::int8_t inside = 0;
@@ -145,7 +145,7 @@ struct ContactSpring {
 struct Crossing {
     double at = 0;
     std::int8_t surface = 0;
-    std::int8_t layer = -1;  ///< beyond it. -1: none
+    std::int8_t layer = -1;  ///< beyond it; -1: none
 };
 struct NeedleState {
     static constexpr int most_crossings = 64;
@@ -163,21 +163,21 @@ struct NeedleState {
 
 /// Everything that layers keep between two ticks.
 struct LayerState {
-    /// The set that this is about, which is only compared. Null: of none yet.
+    /// The set that this is about, which is only compared; null: of none yet.
     const Layers* set = nullptr;
     int layer_count = -1, level_count = -1;  ///< of that set
     /// Which labels (bit k + 1 for layer k; bit 0: none of them) the SCP may be in.
     std::uint32_t open = 1;
-    /// By labels: the field that the proxy touches in place of the data's. It is the data's covered
-    /// by the labels. Without levels it is that of the labels alone, on their own lattice: 1 where
-    /// the SCP may not be, 0 elsewhere, felt at 0.5.
+    /// By labels: the field that the proxy touches in place of the data's, which is the data's
+    /// covered by the labels or, without levels beside them, that of the labels alone, on their own
+    /// lattice: 1 where the SCP may not be, 0 elsewhere, felt at 0.5.
     std::optional<Field> covered;
     Vec3 label_opening = Vec3::Zero();  ///< where a label gave way last [mm, physical]
     /// The SCP may be anywhere from inside `outer` layers to inside `inner` ones: the surfaces
     /// between them gave way, at `opening` [mm, physical], and have not closed yet.
     int outer = 0, inner = 0;
     std::array<Vec3, Layers::most_layers> opening{};
-    int touched = -1;  ///< the layer whose surface was touched last. -1: none
+    int touched = -1;  ///< the layer whose surface was touched last; -1: none
     ContactSpring spring;
     NeedleState needle;
     bool moved = false;       ///< there was a tick
@@ -205,7 +205,7 @@ struct LayerInput {
     DeviceLimits limits;
     double device_per_volume = 1;  ///< device mm per mm of physical space
     double time = 0;               ///< [s]
-    Vec3 pointing = Vec3::Zero();  ///< unit, physical axes, to the tool's tip. Zero: not known
+    Vec3 pointing = Vec3::Zero();  ///< unit, physical axes, to the tool's tip; zero: not known
 };
 struct LayersUpdate {
     ProxyUpdate proxy;
@@ -217,7 +217,7 @@ struct LayersUpdate {
 
 /// One tick: moves the proxy, in place of a ProxyMethod and of penetrability. Never through a
 /// surface that did not give way, from either side (G1, G2 for all of them; docs/layers.md). A
-/// surface gives way where on the hand's way its spring reached the puncture force. The SCP then
+/// surface gives way where on the hand's way its spring reached the puncture force; the SCP then
 /// goes on towards the hand in the same tick, at most through eight surfaces. A state of another
 /// set begins anew, where the proxy is.
 LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,

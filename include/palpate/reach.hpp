@@ -16,8 +16,8 @@ struct Pull {
 
 /// The part of the pull, 1, 1/2, ... 1/64 or 0, that needs only samples that are in memory. An
 /// update never comes farther from its goal than it was (G4, T4), so all that it looks at lies in a
-/// ball around the goal. A proxy that rests on a surface finds the same place with a part of the
-/// pull. 1 if all samples are in memory. Neither allocates nor throws. The field remembers what
+/// ball round the goal. Where the proxy rests on a surface, a part of the pull finds the same
+/// place. 1 where all samples are in memory. Neither allocates nor throws. The field remembers what
 /// was found, so that a hand that stays near costs next to nothing.
 double part_within_reach(Field& field, const Pull& pull) noexcept;
 

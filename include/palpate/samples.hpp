@@ -1,6 +1,6 @@
-// Stage 3, samples: one version of the numbers on a grid. It is a volume with its edited bricks,
-// the frames of a sequence, or the part of a large grid that is in memory, perhaps with edited
-// bricks. A version never changes. A change makes a new version, published by pointer, and
+// Stage 3, samples: one version of the numbers on a grid, which is a volume with its edited
+// bricks, the frames of a sequence, or the part of a large grid that is in memory, perhaps with
+// edited bricks. A version never changes. A change makes a new version, published by pointer, and
 // readers pick it up between two reads (copy on write). See docs/changing_data.md.
 #pragma once
 
@@ -19,13 +19,13 @@ namespace palpate {
 struct Frame {
     double time;  ///< [s]
     Volume volume;
-    int number = -1;  ///< of the frame in its file or series, from 0. -1: in neither
+    int number = -1;  ///< of the frame in its file or series, from 0; -1: in neither
 };
 
 /// Edited samples: bricks of 16 x 16 x 16 cells, each with the 17 x 17 x 17 samples at their
 /// corners, so that every cell lies in one brick. Two neighbours both hold the samples on their
 /// common face, with equal values. A brick that was not edited is null: there the grid's own
-/// samples count. Samples of a brick outside the grid are 0. A value. Copies share their bricks.
+/// samples count. Samples of a brick outside the grid are 0. A value; copies share their bricks.
 class Bricks {
   public:
     static constexpr int cells = 16;
@@ -52,7 +52,7 @@ class Bricks {
         const Brick* found = find(brick);
         return found ? *found : nullptr;
     }
-    /// The brick of a cell inside the grid. Null if it was not edited.
+    /// The brick of a cell inside the grid; null if it was not edited.
     const std::byte* of_cell(const Index3& cell) const {
         const Brick* found = find({cell[0] >> 4, cell[1] >> 4, cell[2] >> 4});
         return found ? found->get() : nullptr;
@@ -92,7 +92,7 @@ struct Moment {
     double weight = 0;             ///< of `to`, 0 to below 1; `from` has the rest
 };
 
-/// One version. Immutable, held by shared pointers. Versions share what did not change.
+/// One version. Immutable, held by shared pointers; versions share what did not change.
 class Samples {
   public:
     /// A volume without edits.
@@ -137,9 +137,9 @@ class Samples {
     /// The moment at a time [s]. Without a period, times before the first frame give the first
     /// frame and times after the last one the last. NaN gives the first. Does not allocate.
     Moment moment_at(double time) const noexcept;
-    /// The time [s] clamped to that of the frames. Unchanged where the sequence repeats.
+    /// The time [s] clamped to that of the frames; unchanged where the sequence repeats.
     double within(double time) const noexcept;
-    /// One sample at a moment, in the data's units. The index must be inside the grid, and the
+    /// One sample at a moment, in the data's units; the index must be inside the grid, and the
     /// sample edited or in memory.
     double sample(const Index3& index, const Moment& moment = {}) const;
 
@@ -157,14 +157,14 @@ class Samples {
 /// files and for code that needs them in one piece. No copy is made where an existing volume is the
 /// same. For a large grid, the overview with the edits (ShownEdits).
 Volume flattened(const Samples& samples, const Moment& moment = {});
-/// Shows the edits of a large grid in a volume of the same part of space that has other samples (an
-/// overview, or a box of some level). A sample whose nearest sample of the grid lies in an edited
-/// brick takes its value. One thread at a time.
+/// Edits of a large grid on a volume of the same part of space that has other samples (an overview,
+/// or a box of some level): each of those whose nearest sample lies in an edited brick takes its
+/// value. One thread at a time.
 class ShownEdits {
   public:
     explicit ShownEdits(Volume shown);
     /// The volume with the edits of these samples, of the same type, all versions of one grid. What
-    /// did not change since the last call is shared. The same pointer where nothing did.
+    /// did not change since the last call is shared; the same pointer where nothing did.
     std::shared_ptr<const Samples> of(const Samples& edited);
 
   private:

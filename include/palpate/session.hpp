@@ -15,7 +15,7 @@ struct SessionSettings {
     /// Bits of the device's buttons. While any of them is held (the clutch), the volume moves with
     /// the hand and there is no force.
     std::uint32_t clutch_buttons = 0;
-    /// Without one of these held there is no force (a dead-man switch). 0: no such switch.
+    /// Without one of these held there is no force (a dead-man switch); 0: no such switch.
     std::uint32_t deadman_buttons = 0;
     /// [device mm/s] Fastest plausible motion of a hand. A position that it could not have reached
     /// since the last good one counts as broken input until it could have.
@@ -40,13 +40,13 @@ struct BricksOf {
     std::uint64_t version = 0;  ///< of the samples before
     struct Brick {
         Index3 at;
-        int level = 0;  ///< of detail, see ResidentBrick. -1: it went
+        int level = 0;  ///< of detail, see ResidentBrick; -1: it went
     };
     std::vector<Brick> bricks;
 };
 using Recipe = std::variant<EditOf, FramesOf, BricksOf>;
 
-/// Commands change a running session. Each is applied between two ticks.
+/// Commands change a running session; each is applied between two ticks.
 namespace command {
 struct Isovalue {
     double isovalue;  ///< [data units]
@@ -64,12 +64,12 @@ struct Forces {
 /// next frames. The sequence's time stays, clamped to the frames.
 struct Samples {
     std::shared_ptr<const palpate::Samples> samples;  ///< not null
-    std::uint64_t version = 0;  ///< any number. Observers see it while these samples are felt
+    std::uint64_t version = 0;  ///< any number; observers see it while these samples are felt
     /// For recordings. Null where this version was sent before, is that of the start (0), or
     /// cannot be made again by a replay.
     std::shared_ptr<const Recipe> recipe = nullptr;
 };
-/// Goes to a time of a sequence [s]. The speed stays.
+/// Goes to a time of a sequence [s]; the speed stays.
 struct Moment {
     double time;
 };
@@ -77,7 +77,7 @@ struct Moment {
 struct Speed {
     double speed;
 };
-/// Layers from the next tick on. Null: none, and the isovalue is felt again. What gave way and is
+/// Layers from the next tick on; null: none, and the isovalue is felt again. What gave way and is
 /// still open is forgotten: the SCP is in whatever is where it is.
 struct UseLayers {
     std::shared_ptr<const Layers> layers;
@@ -85,7 +85,7 @@ struct UseLayers {
     /// open. Counts where there are as many of them, and of labels the same.
     bool same_surfaces = false;
 };
-/// Another tool from the next tick on. Null: a point. The force starts again. While a tool is felt,
+/// Another tool from the next tick on; null: a point. The force starts again. While a tool is felt,
 /// layers, penetrability, magnet and texture rest.
 struct UseTool {
     std::shared_ptr<const Tool> tool;
@@ -169,12 +169,12 @@ class CheckedCommand {
     Command command_ = command::Forces{false};
 };
 
-/// Carries out a command. Never throws or allocates. Frees the samples that it replaces unless
+/// Carries out a command. Never throws or allocates; frees the samples that it replaces unless
 /// somebody else holds them (Servo::send() does). A tool needs make_room_for_tools() before.
 void apply(Session& session,  // NOLINT(bugprone-exception-escape)
            const CheckedCommand& command) noexcept;
 /// The same for a command that is checked here, with room made where it needs some. Throws as
-/// check(). Then nothing has changed.
+/// check(); then nothing has changed.
 void apply(Session& session, const Command& command);
 
 /// Keeps the smaller of the session's device limits and these, and lowers the force settings as far

@@ -1,5 +1,5 @@
 // Tool: a rigid body that touches with the points of its surface. A point is the simplest
-// tool. Plain values. Nothing here knows of fields.
+// tool. Plain values; nothing here knows of fields.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -46,7 +46,7 @@ class Tool {
     /// [N mm / rad] and translational stiffness [N / mm] of a coupling that finds the proxy's pose
     /// in equilibrium. Default: the root of the points' mean squared distance from the reference
     /// point. Without `turns` the tool keeps its orientation, which a single point at the origin
-    /// always does. `shape` is what it looks like. Nothing is felt of it. Throws
+    /// always does. `shape` is what it looks like; nothing is felt of it. Throws
     /// std::invalid_argument without points, with more than `most_tool_points`, for points and a
     /// gyration beyond 1e6 mm or a gyration below 1e-6 mm, and for a shape with vertices beyond
     /// 1e6 mm or triangles of others.
@@ -87,9 +87,9 @@ Tool burr_tool(double radius, double spacing);
 /// from the tip.
 Tool fingertip_tool(double spacing, double scale = 1);
 
-/// The surface of a mesh, closed or not, its triangles turned either way. No place on it is farther
-/// than `spacing` [mm] from a point, and no two points are nearer than three quarters of it.
-/// Corners and edges (30 degrees) get their points first. Throws std::invalid_argument without a
+/// The surface of a mesh, closed or not, its triangles turned either way: no place on it is farther
+/// than `spacing` [mm] from a point, and no two points are nearer than three quarters of it;
+/// corners and edges (30 degrees) have theirs first. Throws std::invalid_argument without a
 /// triangle that has an area, for vertices that are not finite or not there, and for more points
 /// than a tool may have.
 Tool mesh_tool(ToolShape mesh, double spacing);

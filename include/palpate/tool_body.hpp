@@ -9,9 +9,9 @@
 
 namespace palpate {
 
-/// The space that a closed shape encloses. A shape is closed if each edge has an even number of
-/// triangles, turned either way. Otherwise the body consists of the tool's points and has no
-/// inside: edits reach as far around the points as their brush says.
+/// Where the tool's shape is closed (each edge has an even number of triangles, turned either way)
+/// the body is what it encloses. Otherwise the body is the tool's points, which has no inside:
+/// edits reach as far round them as their brush says.
 class ToolBody {
   public:
     /// Distances are computed at places `step` [mm] apart (farther where that would be more than

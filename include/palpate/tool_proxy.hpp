@@ -20,11 +20,11 @@ struct ToolSettings {
     /// Most rounds of an update: each finds a direction and goes along it. An update that finds no
     /// way on before it is at rest ends as one that is out of budget.
     int most_rounds = 60;
-    /// Most work of an update, in cubes of the lattice looked at, 0.15 microseconds each. One for
+    /// Most work of an update, in cubes of the lattice looked at, 0.15 microseconds each; one for
     /// each point of the tool comes on top. Later updates finish what is left. A thousand points
-    /// take 0.8 ms at most. Faster loops need a smaller budget.
+    /// take 0.8 ms at most; faster loops need a smaller budget.
     int work_budget = 4096;
-    /// [mm] in place of the tool's own. 0: that.
+    /// [mm] in place of the tool's own; 0: that.
     double gyration = 0;
 };
 
@@ -33,7 +33,7 @@ struct ToolContact {
     int point = 0;               ///< of the tool
     Vec3 place = Vec3::Zero();   ///< [mm, physical]
     Vec3 normal = Vec3::Zero();  ///< unit, out of the solid, physical axes
-    double pressure = 0;         ///< share of the pull that it holds [mm]. 0: does not touch
+    double pressure = 0;         ///< share of the pull that it holds [mm]; 0: does not touch
 };
 inline constexpr int most_tool_contacts = 32;
 
@@ -85,8 +85,8 @@ class ToolProxy {
     const Tool& tool() const { return *tool_; }
     /// Allocates what use() needs for tools of this many points. Changes nothing else.
     void make_room(std::size_t points);
-    /// Another tool from the next update on, at the same pose. Recovers where that is inside.
-    /// Allocates nothing. Frees the tool before unless somebody else holds it. False, and nothing
+    /// Another tool from the next update on, at the same pose; recovers where that is inside.
+    /// Allocates nothing; frees the tool before unless somebody else holds it. False, and nothing
     /// changes: there is no room for its points.
     bool use(std::shared_ptr<const Tool> tool) noexcept;
     Pose pose;
@@ -97,9 +97,9 @@ class ToolProxy {
     int contact_count = 0;  ///< contacts known, those without pressure included
     bool sliding = false;   ///< dynamic friction applies
 
-    /// Results of earlier updates, which save time.
+    /// Of updates, to save time.
     struct Kept {
-        // One per point, with room for more.
+        // Of each point, with room for more.
         std::vector<double> arms;    ///< distance from the reference point [mm]
         std::vector<double> expiry;  ///< travel [mm] up to which it certainly meets nothing
         double moved = 0;            ///< odometers: translation [mm] ...
@@ -112,7 +112,7 @@ class ToolProxy {
         double isovalue = 0;
         bool renewed = true;  ///< the tool is another one
         bool inside = false;  ///< recovery goes on
-        int search = 0;       ///< place that it looks at next. 0: it pushes
+        int search = 0;       ///< place that it looks at next; 0: it pushes
     } kept;
 
   private:

@@ -1,4 +1,4 @@
-// Reads a mirror. See the header.
+// Reads a mirror; see the header.
 #include "io/helper/mirrored.hpp"
 
 #include <sys/stat.h>

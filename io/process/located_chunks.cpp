@@ -1,4 +1,4 @@
-// The image in a file of chunks, and the places of the chunks. See the header.
+// What image is in a file of chunks, and where they lie; see the header.
 #include "io/process/located_chunks.hpp"
 
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-// Pages of a file that lies elsewhere. See the header.
+// Pages of a file that lies elsewhere; see the header.
 #include "io/process/mirror.hpp"
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// palpate evaluate: its output, and its refusals.
+// palpate evaluate: what it leaves behind, and how it refuses.
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-// Tool body: its distances against slow references, and the samples that its sweeps carve.
+// Tool body: its distances against slow references, and what sweeps of it carve.
 #include "palpate/tool_body.hpp"
 
 #include <gtest/gtest.h>
