@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Measures what a bridge costs the servo, in one session, so that what drifts on the machine falls on all.
+"""Measures the cost of a bridge for the servo, in one session, so that drift of the machine affects all turns.
 
     benchmarks/bridge.py PALPATE VOLUME [--minutes M] [--block S] [--commands N] [RECORD OPTION...]
 
 A session with `--igtl` is recorded. A client takes turns of --block seconds, three at a time in random order:
-  with     it is connected, takes everything that is sent and sends --commands a second
-  without  it is not
-  beside   it takes as much from a server of its own: what any second program costs on this machine
+  with     it is connected, receives everything and sends --commands per second
+  without  it is not connected
+  beside   it receives as much from a server of its own: the cost of any second program on this machine
 How late each tick was woken follows from the recording's times. Prints lateness of each kind, and its ratio
 to "without" with the interval that holds 95 % of the ratios of blocks drawn again (bootstrap).
 """

@@ -1,5 +1,5 @@
-// What changing data cost: updates in edited samples and between two frames, beside the same in one
-// piece; and edits themselves, on whichever thread makes them. docs/changing_data.md.
+// The cost of changing data: updates in edited samples and between two frames, in comparison with
+// plain samples, and the edits themselves. docs/changing_data.md.
 #include <string>
 
 #include "benchmarks/hand.hpp"

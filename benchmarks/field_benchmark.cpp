@@ -1,4 +1,4 @@
-// What else is fast or slow with the size of the data: a density at a point, the whole surface.
+// Other costs by the size of the data: a density at a point, the whole surface.
 #include <benchmark/benchmark.h>
 
 #include <string>

@@ -6,7 +6,7 @@
 Two sessions at once, on the smooth field, with a simulated hand that explores: `synthetic:beating`, playing at
 speeds that change, and VOLUME with a brush that follows the hand, and undo. In both the isovalue sweeps, 20 commands a
 second, and friction and penetrability are switched. Each is recorded, and the recording rendered again. Prints
-a table; status 1 if ticks were lost or a recording does not give the same again.
+a table. The status is 1 if ticks were lost or a recording does not give the same again.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-// What a tetrahedron costs: updates over 1 to 64 voxels at once, straight through free space and
+// The cost of a tetrahedron: updates over 1 to 64 voxels at once, straight through free space and
 // along a flat surface, and a line fitted through them.
 #include <Eigen/Geometry>
 #include <array>

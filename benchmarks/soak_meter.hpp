@@ -1,4 +1,4 @@
-// What palpate_soak measures besides the servo's own report: the same interval by interval.
+// Measurements of palpate_soak for each interval, in addition to the servo's own report.
 #pragma once
 
 #include <algorithm>

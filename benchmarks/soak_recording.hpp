@@ -1,4 +1,4 @@
-// Reads the recording of palpate_soak: whether it replays bit for bit, and what its ticks cost.
+// Reads the recording of palpate_soak: whether it replays bit for bit, and the cost of its ticks.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// How every benchmark of the servo loop is timed: batches, which a busy machine disturbs little,
-// and single ticks, whose tail is what a servo loop feels.
+// Times every benchmark of the servo loop in two ways: batches, which a busy machine disturbs
+// little, and single ticks, whose tail matters for a servo loop.
 #pragma once
 
 #include <benchmark/benchmark.h>

@@ -1,5 +1,5 @@
-// One proxy update: in contact and free, all methods and sample types; on noise; after a change of
-// isovalue; in volumes of any size; and over how many tetrahedra it goes.
+// Times one proxy update: in contact and free, for all methods and sample types, on noise, after a
+// change of isovalue, and in volumes of any size. Counts the tetrahedra that it enters.
 #include <functional>
 #include <map>
 #include <memory>

@@ -1,6 +1,6 @@
-// A bridge to 3D Slicer and others by OpenIGTLink: it sends what is felt and takes volumes and
-// commands. It lives beside a run: its owner shows it snapshots and carries out what
-// was asked for. Nobody waits for it. docs/bridge.md.
+// A bridge to 3D Slicer and others by OpenIGTLink. It sends hand, proxy and force, and receives
+// volumes and commands. The owner of the run shows it snapshots and carries out its requests. The
+// run never waits for it. docs/bridge.md.
 #pragma once
 
 #include <atomic>

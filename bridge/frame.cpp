@@ -1,4 +1,4 @@
-// What is felt, as messages.
+// Messages with the hand, the proxy and the force.
 #include <Eigen/Geometry>
 #include <cstdio>
 

@@ -1,6 +1,6 @@
 // OpenIGTLink messages as bytes: those that Palpate sends, and those that it takes, checked before
-// anything is allocated or believed. Pure functions; no sockets. Format: openigtlink.org, protocol
-// versions 1 to 3.
+// anything is allocated or believed. Pure functions without sockets. Format: openigtlink.org,
+// protocol versions 1 to 3.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-# What a person who types `cmake -B build` expects; a project that takes Palpate in decides itself.
+# Defaults for a person who types `cmake -B build`. A project that takes Palpate in decides itself.
 if(PROJECT_IS_TOP_LEVEL)
   if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)

@@ -1,4 +1,4 @@
-// What a thread that talks to a device asks of the system; see link.hpp. Linux.
+// Requests to the system of a thread that talks to a device. See link.hpp. Linux.
 #include <pthread.h>
 #include <sched.h>
 #include <sys/prctl.h>

@@ -1,4 +1,4 @@
-// What a thread that talks to a device asks of the system; see link.hpp. Windows.
+// Requests to the system of a thread that talks to a device. See link.hpp. Windows.
 #include <windows.h>
 
 #include <avrt.h>

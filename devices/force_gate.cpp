@@ -1,4 +1,4 @@
-// Decides which forces reach a vendor's call; see vendor_library.hpp.
+// Decides which forces reach a vendor's call. See vendor_library.hpp.
 #include "devices/vendor_library.hpp"
 
 namespace palpate::devices {

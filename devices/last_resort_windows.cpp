@@ -1,4 +1,4 @@
-// Stops the device when the program crashes or is ended; see last_resort.hpp. Windows. A filter can
+// Stops the device when the program crashes or is ended. See last_resort.hpp. Windows. A filter can
 // reach globals only: these are the writable globals of the devices.
 #include <windows.h>
 

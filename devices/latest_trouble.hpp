@@ -1,4 +1,4 @@
-// What is wrong with a device, from the device's own thread to any other. For backends whose
+// Passes a device's latest problem from its own thread to any other. For backends whose
 // `Trouble` has a `kind` (with `none`) and whose status_of(kind) gives the status that the servo
 // sees.
 #pragma once

@@ -1,4 +1,4 @@
-// What haptic devices can do, by their data sheets: one table for the backends and for the
+// The abilities of haptic devices, by their data sheets: one table for the backends and for the
 // simulated devices. docs/devices/models.md gives the sources.
 #pragma once
 

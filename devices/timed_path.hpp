@@ -1,5 +1,5 @@
-// Where a hand is over time, from rows of positions. Header only: the recorded device plays such a
-// path, the simulated hand follows one.
+// The position of a hand over time, from rows of positions. Header only: the recorded device plays
+// such a path, the simulated hand follows one.
 #pragma once
 
 #include <algorithm>

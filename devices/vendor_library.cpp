@@ -1,4 +1,4 @@
-// Opens vendor libraries; see the header. Linux.
+// Opens vendor libraries. See the header. Linux.
 #include "devices/vendor_library.hpp"
 
 #include <dlfcn.h>

@@ -1,4 +1,4 @@
-// Opens vendor libraries; see vendor_library.hpp. Windows, where a library's symbols are its own.
+// Opens vendor libraries. See vendor_library.hpp. Windows, where a library's symbols are its own.
 #include <windows.h>
 
 #include <array>

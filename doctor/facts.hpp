@@ -1,5 +1,5 @@
-// What `palpate doctor` knows about a machine: plain values, gathered by survey(), judged by
-// faults_of(). Tests fill them in from a folder of their own.
+// The facts that `palpate doctor` collects about a machine: plain values, collected by survey() and
+// judged by faults_of(). Tests fill them in from a folder of their own.
 #pragma once
 
 #include <cstdint>

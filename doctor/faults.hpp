@@ -1,4 +1,4 @@
-// Judges a machine: what it lacks for good haptics, what that means, and what mends it.
+// Judges whether a machine is fit for haptics: its faults, their meaning, and their remedies.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Reads what the kernel's files say about a machine. Linux.
+// Reads the kernel's files about a machine. Linux.
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// Priority, locked memory and timers: what the kernel grants this person's programs.
+// Faults of priority, locked memory and timers, which the kernel grants a user's programs.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The devices on USB: what is plugged in, which of them Palpate knows, and who may open them.
+// The devices on USB: which are plugged in, which of them Palpate knows, and who may open them.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
-// The smallest use of the library: a hand presses into a volume made in memory; prints the force.
+// The smallest use of the library: a hand presses into a volume made in memory, and the force is
+// printed.
 #include <cmath>
 #include <cstdio>
 #include <vector>

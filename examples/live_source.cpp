@@ -1,4 +1,4 @@
-// A live source, which is a process of its own: it writes a ball that moves to and fro, a frame
+// A live source, which is a process of its own. It writes a ball that moves to and fro, one frame
 // every 20 ms, into a file that Palpate follows.
 //   example_live_source FILE [SECONDS]      FILE for example in /dev/shm; default: until killed
 #include <chrono>

@@ -1,4 +1,4 @@
-// The levels that samples lie on, and what rounding to them does to surfaces.
+// The levels on which samples lie, and the effect of rounding to them on surfaces.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-// What the choice of steps looks at: samples spread over a volume, and how the data run there.
+// The sites for the choice of steps: samples spread over a volume, with slope and bend of the data.
 #pragma once
 
 #include <functional>

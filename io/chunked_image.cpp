@@ -1,4 +1,4 @@
-// What a file of chunks says of the image in it, as JSON; see the header.
+// The description of the image in a file of chunks, as JSON. See the header.
 #include "io/chunked_image.hpp"
 
 #include <algorithm>

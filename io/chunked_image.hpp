@@ -1,5 +1,5 @@
-// What a file of chunks (HDF5, TIFF) says of the image in it, as the helper process tells its
-// caller; the chunks are then read where they lie. Private to io/ and stream/.
+// The description of the image in a file of chunks (HDF5, TIFF), which the helper process gives its
+// caller. The chunks are then read from the file. Private to io/ and stream/.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Unpacks gzip and zlib streams; see the header.
+// Unpacks gzip and zlib streams. See the header.
 #include "io/inflate.hpp"
 
 #include <zlib.h>

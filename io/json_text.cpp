@@ -1,4 +1,4 @@
-// JSON that others wrote; see the header.
+// JSON that other programs wrote. See the header.
 #include "io/json_text.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// How JSON has paths; see the header.
+// Paths in JSON. See the header.
 #include "io/path_json.hpp"
 
 #include <charconv>

@@ -1,4 +1,4 @@
-// Where the samples of a volume file lie; see the header.
+// Finds the samples in a volume file. See the header.
 #include "io/plain_samples.hpp"
 
 #include <unistd.h>

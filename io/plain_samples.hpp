@@ -1,4 +1,4 @@
-// Where the samples of a volume file lie, uncompressed, so that they can be read by the box. The
+// Finds the uncompressed samples in a volume file, so that they can be read by the box. The
 // helper process reads the header, as it does for read_volume(). Private to io/ and stream/.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Reads and writes headerless files; see the header.
+// Reads and writes headerless files. See the header.
 #include "io/raw_file.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// How files store a sample; see the header.
+// How files store a sample. See the header.
 #include "io/stored.hpp"
 
 #include <algorithm>

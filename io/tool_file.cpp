@@ -1,4 +1,4 @@
-// Reads what options say of a tool.
+// Makes a tool from the text of options.
 #include "palpate/io/tool_file.hpp"
 
 #include <array>

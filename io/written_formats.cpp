@@ -1,4 +1,4 @@
-// The extensions of the formats that are written; see the header.
+// The extensions of the formats that are written. See the header.
 #include "palpate/io/written_formats.hpp"
 
 #include <array>

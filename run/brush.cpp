@@ -1,4 +1,4 @@
-// What the brush that follows a proxy does in a step.
+// A step of the brush that follows a proxy.
 #include "palpate/run/brush.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Fills in what a setup leaves to volume and device.
+// Fills in the values of a setup that depend on volume and device.
 #include "palpate/run/setup.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Loads what a source names.
+// Loads the volume that a source names.
 #include "palpate/run/source.hpp"
 
 #include <stdexcept>

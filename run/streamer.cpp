@@ -1,4 +1,4 @@
-// Where the hands are, and what came into memory round them.
+// Tells the loader where the hands are, and passes on the samples that it has loaded.
 #include "palpate/run/streamer.hpp"
 
 #include <algorithm>

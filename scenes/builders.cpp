@@ -1,4 +1,4 @@
-// Builds small hard volumes for tests; also what these share with the scenes.
+// Builds small difficult volumes for tests, and code that these share with the scenes.
 #include <algorithm>
 #include <array>
 #include <stdexcept>

@@ -4,21 +4,28 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: scripts/docs.sh [--no-packages]
+usage: scripts/docs.sh [--no-packages] [--serve [PORT]]
 
 Makes build/docs/site from the pages of the repository (MkDocs) and the public headers (Doxygen).
 Warnings are errors: links that lead nowhere, pages that are not in the navigation, mistakes in the
-comments of headers. Open build/docs/site/index.html; the site needs no network and no server.
+comments of headers. Open build/docs/site/index.html: the pages need no network and no server. The
+search box needs one: --serve shows the site at http://127.0.0.1:8000 (PORT) until Ctrl-C.
 TEXT
 }
 
-packages=yes
-case "${1:-}" in
-    '') ;;
-    --no-packages) packages=no ;;
-    -h | --help) usage; exit 0 ;;
-    *) usage >&2; exit 2 ;;
-esac
+packages=yes port=''
+while [ $# -gt 0 ]; do
+    case $1 in
+        --no-packages) packages=no ;;
+        --serve)
+            port=8000
+            if [[ ${2:-} =~ ^[0-9]+$ ]]; then port=$2; shift; fi
+            ;;
+        -h | --help) usage; exit 0 ;;
+        *) usage >&2; exit 2 ;;
+    esac
+    shift
+done
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 [ "$packages" = no ] || scripts/install_packages.sh docs
@@ -30,6 +37,11 @@ python=/usr/bin/python3 # Debian's, which has MkDocs
 doxygen docs/site/Doxyfile
 mv "$out/doxygen/html" "$out/pages/api"
 "$python" docs/site/stage.py . "$out/pages"
+version=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+export PALPATE_SITE_NAME="Palpate ${version:?CMakeLists.txt names no version}"
 "$python" -m mkdocs build --strict --quiet --config-file docs/site/mkdocs.yml
 "$python" docs/site/check_links.py "$out/site"
 echo "site: $out/site/index.html"
+if [ -n "$port" ]; then
+    exec "$python" -m http.server --bind 127.0.0.1 --directory "$out/site" "$port"
+fi

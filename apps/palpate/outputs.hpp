@@ -1,4 +1,4 @@
-// Where results go: checks before any work is done, and JSON on standard output.
+// Outputs of commands: checks before any work is done, and JSON on standard output.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,6 +1,6 @@
-// palpate_viewer_benchmark: what the window costs. The servo loop with and without a window that
-// draws, in turns in one run; how long a start and an open take, and for how long the window did
-// not answer; frames per second while the view turns. How to run and read it:
+// palpate_viewer_benchmark: the cost of the window. It runs the servo loop in turns with and
+// without a window that draws. It also measures how long a start and an open take, for how long the
+// window did not answer, and the frames per second while the view turns. How to run and read it:
 // docs/viewer_internals.md.
 #include <QVTKOpenGLNativeWidget.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What runs feel, in the C interface: edits, and playing sequences.
+// The data of runs in the C interface: edits, and playing sequences.
 #include <limits>
 
 #include "bindings/c/handles.hpp"

@@ -1,4 +1,4 @@
-// What runtimes of other languages ask of a thread that runs their code.
+// Requirements of other languages' runtimes for a thread that runs their code.
 #pragma once
 
 namespace palpate::c {

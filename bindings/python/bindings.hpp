@@ -1,4 +1,4 @@
-// The parts of the module; each adds its classes and functions. In the order in which they need
+// The parts of the module. Each adds its classes and functions. In the order in which they need
 // each other.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Fields: what is felt, and questions about it.
+// Fields, and queries of their values.
 #include <cmath>
 
 #include "bindings/python/arrays.hpp"

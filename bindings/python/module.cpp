@@ -1,5 +1,5 @@
-// The extension module palpate._palpate. The package palpate (palpate/__init__.py) is what people
-// import.
+// The extension module palpate._palpate. Users import the package palpate (palpate/__init__.py),
+// which imports this one.
 #include <dlfcn.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // A device that is written in Python. Its functions run on a thread of their own, which takes the
-// GIL; the servo thread exchanges readings and forces with that thread through a Link and never
+// GIL. The servo thread exchanges readings and forces with that thread through a Link and never
 // waits for it.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What observers see of a live session: snapshots and reports.
+// Snapshots and reports of a live session.
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "palpate/servo.hpp"

@@ -1,4 +1,4 @@
-// Finds the functions of Force Dimension's library; what its devices can do.
+// Finds the functions of Force Dimension's library, and the abilities of its devices.
 #include "devices/forcedimension/dhd.hpp"
 
 #include <algorithm>

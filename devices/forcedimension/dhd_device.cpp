@@ -1,5 +1,5 @@
-// Each step maintains a Force Dimension device, reads it and sends a force; messages about what is
-// wrong.
+// Each step maintains a Force Dimension device, reads it and sends a force. Also its messages about
+// problems.
 #include "devices/forcedimension/dhd_device.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// An open Force Dimension device: what its thread does in each step.
+// An open Force Dimension device, and the step of its thread.
 #pragma once
 
 #include <array>

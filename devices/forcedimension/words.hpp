@@ -1,4 +1,4 @@
-// What differs by system in how Force Dimension's library is called and installed.
+// Differences between systems in calling and installing Force Dimension's library.
 #pragma once
 
 #include <string>

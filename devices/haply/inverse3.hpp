@@ -1,4 +1,4 @@
-// An Inverse3: what its thread says to the Inverse Service in each step, and a link to the servo.
+// An Inverse3: the messages of its thread to the Inverse Service, and a link to the servo.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// What the Inverse Service says and what it is told, as text. Pure functions, no network: service
+// The messages to and from the Inverse Service, as text. Pure functions, no network: service
 // units (m, N) and service axes throughout.
 #pragma once
 

@@ -1,4 +1,4 @@
-// One frame of OpenHaptics' servo loop, and what its errors mean.
+// One frame of OpenHaptics' servo loop, and the meaning of its errors.
 #include "devices/openhaptics/frames.hpp"
 
 #include <algorithm>

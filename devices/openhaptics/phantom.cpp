@@ -1,5 +1,5 @@
-// Attaches to the driver, asks what the device can do, starts and stops the driver's servo loop;
-// messages about what is wrong.
+// Attaches to the driver, asks for the device's abilities, and starts and stops the driver's servo
+// loop. Also its messages about problems.
 #include "devices/openhaptics/phantom.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What differs by system in how OpenHaptics is called and installed.
+// Differences between systems in calling and installing OpenHaptics.
 #pragma once
 
 #include <string>

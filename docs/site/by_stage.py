@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Puts headers into Doxygen's groups, so that no header has to say it: its first line names its stage
 ("// Stage 20, servo: ..."), its folder its library. With a file: prints it as Doxygen is to read it, with
-the same line numbers. With --groups and a folder: defines the groups, in the order of the flow, with what
-the headers say at their top.
+the same line numbers. With --groups and a folder: defines the groups, in the order of the flow, with the
+openers of the headers.
 """
 
 import re

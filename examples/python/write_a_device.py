@@ -2,7 +2,7 @@
 """Write a device: a mass of 100 g on a guide that falls onto a floor and comes to rest there.
 
 The functions of the device run on a thread of their own. The servo's real-time thread never waits
-for Python; where Python is late, there is no force.
+for Python. If Python is late, there is no force.
 """
 
 import time

@@ -2,24 +2,24 @@
  * and recordings. C99. docs/c_api.md has the rules for growth and an example.
  *
  * Errors. Functions return a palpate_status; palpate_last_error() says in one line what was wrong and
- * what to do, for the last call of the same thread. No exception leaves the library. Where a function
- * fails, what its out-parameters point to is unchanged. A null handle or pointer is PALPATE_INVALID.
+ * what to do, for the last call of the same thread. No exception leaves the library. If a function
+ * fails, it leaves its out-parameters unchanged. A null handle or pointer is PALPATE_INVALID.
  *
  * Structs. Each begins with its own size. Write PALPATE_STRUCT(palpate_run_options, options); then
  * every other member is 0, and 0 always means the default. A later library accepts structs of earlier
  * ones; an earlier library refuses members that it does not know if they are not 0. A struct inside
  * another never grows, and its size_of is not looked at. Enumerations and
- * truth values (0: no) are int32_t. Matrices are three rows of three; quaternions are x, y, z, w.
+ * truth values (0: no) are int32_t. Matrices are three rows of three. Quaternions are x, y, z, w.
  *
  * Space. Lengths in mm, physical space as in the file (LPS: x to the left, y to the back, z up).
  * Device axes: x to the right, y up, z towards the person. Forces in N, torques in N mm, times in s.
  *
  * Threads. Volumes, fields and meshes never change: any threads may use one at the same time. Data
- * and runs may be used by any threads, too; calls on the same run take turns. palpate_run_snapshot()
+ * and runs may be used by any threads. Calls on the same run take turns. palpate_run_snapshot()
  * never waits for the servo, but for another call on the run: starting, changing the device and
  * recording may take seconds. One renderer is for one thread at a time. Destroy a handle when no other
- * call uses it; handles made from it keep what they need. The servo has a thread of its own, at
- * real-time priority if the system grants it; it calls no function of yours. Callbacks may not call
+ * call uses it. Handles made from it keep what they need. The servo has a thread of its own, at
+ * real-time priority if the system grants it. It calls no function of yours. Callbacks may not call
  * the run that they belong to.
  */
 #ifndef PALPATE_H
@@ -153,7 +153,7 @@ typedef struct palpate_ray_hit {
     double point[3];  /* the segment's end without a hit */
     double normal[3]; /* unit, out of the solid */
 } palpate_ray_hit;
-/* Where a segment first meets the isosurface. */
+/* Finds the first point of a segment on the isosurface. */
 PALPATE_API palpate_status palpate_field_ray(const palpate_field *field, double isovalue,
                                              const double from[3], const double to[3],
                                              palpate_ray_hit *out);
@@ -189,7 +189,7 @@ typedef struct palpate_render_options {
     const char *layers;    /* a file or the name of a built-in set; null: none */
 } palpate_render_options;
 
-/* Where the device's space lies: physical = translation + scale * rotation * device. */
+/* Place of the device's space: physical = translation + scale * rotation * device. */
 typedef struct palpate_transform {
     uint32_t size_of;
     int32_t unused;
@@ -362,7 +362,7 @@ PALPATE_API palpate_status palpate_data_field(const palpate_data *data,
                                               const palpate_field_options *options,
                                               palpate_field **out);
 PALPATE_API palpate_status palpate_data_save(palpate_data *data, const char *path);
-/* Of a sequence: the speed at which it plays (1: as recorded, 0: it stands still), and its time [s]. */
+/* Sets the speed of a sequence (1: as recorded, 0: it stands still), and its time [s]. */
 PALPATE_API palpate_status palpate_data_play(palpate_data *data, double speed);
 PALPATE_API palpate_status palpate_data_seek(palpate_data *data, double time);
 PALPATE_API void palpate_data_destroy(palpate_data *data);
@@ -466,7 +466,7 @@ PALPATE_API palpate_status palpate_run_use_device(palpate_run *run, const char *
 PALPATE_API palpate_status palpate_run_record(palpate_run *run, const char *path);
 /* ticks (may be null): how many were recorded. */
 PALPATE_API palpate_status palpate_run_stop_recording(palpate_run *run, int64_t *ticks);
-/* Of the device "mouse": where its hand is to go [device mm]. */
+/* Sets the target of the hand of the device "mouse" [device mm]. */
 PALPATE_API palpate_status palpate_run_aim(palpate_run *run, const double position[3]);
 
 #ifdef __cplusplus

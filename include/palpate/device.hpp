@@ -15,7 +15,7 @@ enum class DeviceStatus : std::uint8_t {
     ready,         ///< positions come in
     uncalibrated,  ///< positions cannot be trusted before it is calibrated
     stale,         ///< the last position is too old
-    lost,          ///< the connection is gone; it may come back
+    lost,          ///< the connection is gone. It may come back
     fault,         ///< the device or its driver reports an error
     finished,      ///< a recorded or scripted hand has come to its end
 };
@@ -27,7 +27,7 @@ struct DeviceInfo {
     std::string name;        ///< of the backend: simulated, haply, ...
     std::string model;       ///< as the device reports it, with the serial number if it has one
     DeviceLimits limits;     ///< never exceeded by a servo, whatever the settings
-    double stiffness = 0.5;  ///< [N/mm] it is rated for; a hint for applications, not a limit
+    double stiffness = 0.5;  ///< [N/mm] it is rated for. A hint for applications, not a limit
     Vec3 workspace_low = Vec3::Constant(-80);
     Vec3 workspace_high = Vec3::Constant(80);  ///< corners of the usable box [device mm]
     bool renders_force = true;                 ///< false: position only
@@ -41,7 +41,7 @@ struct DeviceReading {
     Vec3 position = Vec3::Zero();         ///< [device mm]
     Mat3 orientation = Mat3::Identity();  ///< tool axes to device axes; identity if not known
     std::uint32_t buttons = 0;            ///< bit b is set while button b is held
-    double age = 0;                       ///< [s] since it was measured; below 0, NaN, inf: stale
+    double age = 0;                       ///< [s] since it was measured. Below 0, NaN, inf: stale
     DeviceStatus status = DeviceStatus::starting;
     /// Limits of a device that learns them only when it connects, in every reading from then on;
     /// none: those that info() gave when the servo was made still hold.
@@ -57,8 +57,8 @@ enum class Facing : std::uint8_t { anterior, posterior, left, right, superior, i
 DeviceTransform fit_workspace(const Geometry& geometry, const DeviceInfo& device,
                               Facing facing = Facing::anterior);
 
-/// A haptic device. The constructors of backends (devices/) connect to it or start trying to. Where
-/// that cannot succeed they throw std::runtime_error, saying what was looked for and what to do.
+/// A haptic device. The constructors of backends (devices/) connect to it or begin to try. If that
+/// cannot succeed, they throw std::runtime_error, which says what was missing and what to do.
 /// Destroying a device sets its force to zero and closes it.
 class Device {
   public:
@@ -67,19 +67,19 @@ class Device {
     Device& operator=(const Device&) = delete;
     virtual ~Device() = default;
 
-    /// Any thread but the servo thread. May change when a device connects; a running servo learns
+    /// Any thread but the servo thread. May change when a device connects. A running servo learns
     /// of changed limits by DeviceReading::limits.
     virtual DeviceInfo info() const = 0;
-    /// What is wrong and what to do about it; empty if nothing is. Not for the servo thread.
+    /// What is wrong and what to do about it. Empty if nothing is. Not for the servo thread.
     virtual std::string problem() const { return {}; }
 
     /// Servo thread: neither waits, allocates nor throws. `time` [s] is the session's. Simulated
-    /// devices follow it; hardware devices measure ages by the machine's clock. A servo ends its
+    /// devices follow it. Hardware devices measure ages by the machine's clock. A servo ends its
     /// session, with stop(), when this or write() throws or does not return within 10 ms
     /// (DeviceFailure).
     virtual DeviceReading read(double time) = 0;
     /// Servo thread, as above. A wrench (device axes; torque about the point that read() gives the
-    /// position of) holds until the next one, but no longer than `longest_force`; then the device's
+    /// position of) holds until the next one, but no longer than `longest_force`. Then the device's
     /// own thread sets it to zero. A device without torque renders the force alone.
     virtual void write(const Wrench& wrench, double time) = 0;
     static constexpr double longest_force = 0.02;  ///< [s]

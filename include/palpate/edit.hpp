@@ -20,7 +20,7 @@ enum class BrushKind : std::uint8_t {
 };
 /// "carve", "add", "smooth" or "paint".
 std::string_view name_of(BrushKind kind);
-/// The inverse of name_of(); throws std::invalid_argument with the accepted names.
+/// The inverse of name_of(). Throws std::invalid_argument with the accepted names.
 BrushKind brush_kind_from(std::string_view name);
 
 /// A brush, round or with a tool's own shape. Its effect falls from full to none across an edge,
@@ -29,7 +29,7 @@ struct Brush {
     BrushKind kind = BrushKind::carve;
     /// [mm, physical] > 0. With a tool's shape: how far the brush reaches beyond the tool's skin.
     double radius = 3;
-    /// 1: the edge is two voxels wide, the narrowest that the grid shows without steps; 0: as wide
+    /// 1: the edge is two voxels wide, the narrowest that the grid shows without steps. 0: as wide
     /// as the brush.
     double hardness = 1;
     /// The fraction of the difference to its target by which one touch changes a sample, above 0 to
@@ -94,10 +94,10 @@ using ReadSamples = std::function<void(const SampleBox& box, std::span<std::byte
 /// Throws std::invalid_argument, saying what is wrong, for an edit that cannot be made: numbers out
 /// of range or not finite, or samples that are a sequence (edit one frame of it instead).
 void check(const Edit& edit, const Samples& samples);
-/// The samples after an edit; values outside the sample type's range are clamped. The same input
-/// gives the same bits. Of a large grid `read` gives the samples of the bricks that are edited for
-/// the first time, whether they are in memory or not. Throws as check() does, for a large grid
-/// without `read`, and what that throws.
+/// The samples after an edit. Values outside the sample type's range are clamped. The same input
+/// gives the same bits. For a large grid, `read` gives the samples of the bricks that are edited
+/// for the first time, in memory or not. Throws as check() does, for a large grid without `read`,
+/// and whatever `read` throws.
 Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit,
               const ReadSamples& read = {});
 

@@ -35,22 +35,22 @@ struct ForceSettings {
     double viscosity = 0;  ///< [N s/mm] of the medium, against all motion, in contact or not
     Magnet magnet;
     Texture texture;
-    double limit = 3.3;         ///< [N] largest force; the device's own limit holds as well
-    double rate_limit = 2000;   ///< [N/s] largest change of force; a stop may drop to zero at once
+    double limit = 3.3;         ///< [N] largest force. The device's own limit holds as well
+    double rate_limit = 2000;   ///< [N/s] largest change of force. A stop may drop to zero at once
     double ramp = 0.25;         ///< [s] from zero to full force, at the start and after a pause
     double stale_after = 0.02;  ///< [s] a longer time between two device states is a pause
     /// [N] After a start, a pause or a release there is no force until the computed one is at most
     /// this, so that a hand that starts inside a solid is not thrown out. Infinity: do not wait.
     double start_below = std::numeric_limits<double>::infinity();
 
-    // Of a tool that turns.
+    // For a tool that turns.
 
     /// [N mm/rad] torque = this times the rotation from hand to proxy. 0: the stiffness times the
     /// square of the tool's gyration, which makes the wrench that of the contacts.
     double rotational_stiffness = 0;
     /// [N mm s/rad] against the hand's turning out of equilibrium; at most cancels the torque
     double rotational_damping = 0;
-    /// [N mm] largest torque; the device's own limit holds as well. 0: none.
+    /// [N mm] largest torque. The device's own limit holds as well. 0: none.
     double torque_limit = std::numeric_limits<double>::infinity();
     double torque_rate_limit = 2e5;  ///< [N mm/s] as rate_limit
 
@@ -65,7 +65,7 @@ struct DeviceLimits {
     /// k / (2 rate) + damping <= this (Colgate and Schenkel 1994). 2.5 N s/m is a desktop device in
     /// a light grip.
     double physical_damping = 2.5e-3;
-    double maximum_torque = 0;  ///< [N mm] never exceeded; 0: the device renders none
+    double maximum_torque = 0;  ///< [N mm] never exceeded. 0: the device renders none
     /// [N mm s/rad] the same of turning: a sampled rotational spring is passive for
     /// k / (2 rate) + damping <= this. 1 is `physical_damping` at a lever of 20 mm.
     double physical_rotational_damping = 1;
@@ -83,9 +83,9 @@ double rotational_stiffness(const ForceSettings& settings, const DeviceLimits& l
 /// The smaller of both, number by number. A number that is negative or NaN counts as 0: no force.
 DeviceLimits smaller(const DeviceLimits& one, const DeviceLimits& other) noexcept;
 /// The settings as these limits can render them stably. Settings that pass check() come back as
-/// they are. Of others, stiffness, damping and viscosity are lowered by one factor, which keeps
-/// their proportions, stiffness and damping of rotation by another, and the magnet's peak as far as
-/// needed. `limit` stays: render_force() takes the smaller of it and the device's.
+/// they are. Otherwise one factor lowers stiffness, damping and viscosity, which keeps their
+/// proportions. Another factor lowers stiffness and damping of rotation. The magnet's peak is
+/// lowered as far as needed. `limit` stays: render_force() takes the smaller of the two.
 ForceSettings stable(ForceSettings settings, const DeviceLimits& limits) noexcept;
 
 /// Throws std::invalid_argument, naming the limit, its value and the accepted range, for limits
@@ -106,7 +106,7 @@ struct ForceInput {
     bool constrained = false;
     Vec3 hand = Vec3::Zero();    ///< device position [device mm]
     Vec3 pull = Vec3::Zero();    ///< SCP - HIP [device mm]
-    Vec3 normal = Vec3::Zero();  ///< unit, out of the solid; zero if unknown
+    Vec3 normal = Vec3::Zero();  ///< unit, out of the solid. Zero if unknown
     double surface_distance =
         -1;  ///< free: [device mm] to the surface against the normal; < 0 none
     Vec3 texture_slope = Vec3::Zero();  ///< gradient of the texture's height at the SCP

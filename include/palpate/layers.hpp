@@ -130,8 +130,8 @@ struct LayersFelt {
     std::int8_t punctured = 0;  ///< surfaces that gave way in this tick
 };
 
-/// The contact's spring. Where its stiffness changes, on the way along a surface or from one to the
-/// next, it never gains energy: it takes on a rest length [device mm].
+/// The contact's spring. If its stiffness changes, along a surface or from one to the next, it
+/// takes on a rest length [device mm], so it never gains energy.
 struct ContactSpring {
     bool touching = false;
     double stiffness = 0;
@@ -141,7 +141,7 @@ struct ContactSpring {
     double move(double distance, double to_stiffness) noexcept;
 };
 
-/// Where a needle's shaft goes through a surface: `at` [mm, physical] along the line.
+/// A point at which a needle's shaft crosses a surface: `at` [mm, physical] along the line.
 struct Crossing {
     double at = 0;
     std::int8_t surface = 0;

@@ -29,7 +29,7 @@ struct Pressing {
 using PenetrabilityFunction = double (*)(const Pressing& pressing, const void* context);
 
 /// When surfaces give way, and which levels may be felt. A plain value, so it can be sent to a
-/// running servo thread; switch it between any two ticks.
+/// running servo thread. Switch it between any two ticks.
 struct Penetrability {
     static constexpr int most_ranges = 16;
 
@@ -38,27 +38,27 @@ struct Penetrability {
     /// damping and viscosity are added to it.
     double threshold = 1;
     PenetrabilityFunction function = nullptr;
-    const void* context = nullptr;  ///< given to `function`; must outlive its use
+    const void* context = nullptr;  ///< given to `function`. Must outlive its use
     /// Disjoint and in the order in which the hand meets them (rising; falling for solid below).
     std::array<DensityRange, most_ranges> ranges{};
     int range_count = 1;
 };
 
 /// Off: the level felt stays as it is now. Past the last range the level is infinity and nothing is
-/// felt; set `proxy.isovalue` in that case.
+/// felt. Set `proxy.isovalue` in that case.
 Penetrability no_penetrability();
 /// Threshold: gives way at PT [device mm]. Levels below `minimum` are not felt, or those above it
 /// where `solid` is below. Throws std::invalid_argument unless PT >= 0.
 Penetrability penetrability_threshold(double threshold, double minimum, Solid solid = Solid::above);
-/// Ranges of interest: only these levels are felt; between two of them the proxy is free. Ranges
+/// Ranges of interest: only these levels are felt. Between two of them the proxy is free. Ranges
 /// may overlap and come in any order. Throws std::invalid_argument for PT < 0, no range, NaN, low >
 /// high or more than 16.
 Penetrability penetrability_ranges(double threshold, std::span<const DensityRange> ranges,
                                    Solid solid = Solid::above);
 
-/// Throws std::invalid_argument, saying what is wrong, for a value that is on and that the
-/// functions above do not make for this side: PT NaN or below 0, ranges out of order, no or too
-/// many ranges.
+/// Throws std::invalid_argument, with the reason, for a value that is on and that the functions
+/// above would not make for this side. Reasons are PT NaN or below 0, ranges out of order, and no
+/// or too many ranges.
 void check(const Penetrability& penetrability, Solid solid);
 
 /// Applied after a proxy update (Fig. 7): moves the proxy where the surface gives way and sets the
@@ -66,9 +66,9 @@ void check(const Penetrability& penetrability, Solid solid);
 /// `device_per_volume`: device mm per mm of physical space. Updates that are not `done` are left
 /// unchanged.
 ///
-/// With penetrability on, G1 and G2 hold for the level felt at the end of the tick. Where the
-/// surface gives way the SCP passes through the solid, reported as StepKind::press. A press that
-/// ends between two ranges leaves a free SCP at a distance of PT from the HIP; the next update
+/// With penetrability on, G1 and G2 hold for the level felt at the end of the tick. When the
+/// surface gives way, the SCP passes through the solid (StepKind::press). A press that
+/// ends between two ranges leaves a free SCP at a distance of PT from the HIP. The next update
 /// closes it. Past the last range the isovalue is infinity (minus infinity where `solid` is below).
 void apply_penetrability(const Penetrability& penetrability, const Field& field,
                          double device_per_volume, Proxy& proxy, ProxyUpdate& update,

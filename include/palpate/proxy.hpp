@@ -43,7 +43,7 @@ struct Proxy {
     bool placed = false;        ///< false: the next update starts at its HIP
     bool sliding = false;       ///< dynamic friction applies
     double recovery_reach = 0;  ///< [voxel] how far recovery has searched for free space so far
-    /// Unit normal of the surface felt before the field changed, physical axes; zero: none
+    /// Unit normal of the surface felt before the field changed, physical axes. Zero: none
     Vec3 ahead = Vec3::Zero();
     /// These save time on a cubic field and change no result.
     cubic::KeptPiece kept;
@@ -62,7 +62,7 @@ struct ProxySettings {
     Friction behind = {};  ///< at the level behind
     /// Most straight pieces (tetrahedra entered) an update may use. 4096 are 500 voxels of travel,
     /// far more than a hand moves in a tick. At worst (all of it along a surface) they take some
-    /// 0.3 ms, a third of a tick at 1 kHz; faster loops need a smaller budget.
+    /// 0.3 ms, a third of a tick at 1 kHz. Faster loops need a smaller budget.
     int step_budget = 4096;
 };
 
@@ -94,7 +94,7 @@ struct ProxyUpdate {
     Vec3 hip = Vec3::Zero();  ///< [mm, physical]
     Vec3 scp = Vec3::Zero();  ///< [mm, physical]; equal to hip bit for bit when it was reached
     double density = 0;       ///< f(SCP) [data units]
-    double isovalue = 0;      ///< [data units] of the surface felt; free: of the one ahead
+    double isovalue = 0;      ///< [data units] of the surface felt. Free: of the one ahead
     bool behind = false;      ///< the surface felt is that of Proxy::behind
     int tetrahedra = 0;       ///< number of them that the SCP moved through
     int work = 0;             ///< straight pieces evaluated, of the step budget
@@ -139,15 +139,15 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
 /// over it, however thin the wall is.
 void field_will_change(Proxy& proxy, const Field& field);
 
-/// Unit normal of the level set at the SCP, out of the solid, physical axes; zero where the field
+/// Unit normal of the level set at the SCP, out of the solid, physical axes. Zero where the field
 /// is constant. At the level behind it points into the layer that the SCP is in. On a wall it is
 /// that of one of the tetrahedra that meet there.
 Vec3 normal_at(const Proxy& proxy, const Field& field);
 
-/// Where a straight segment first meets the isosurface, walking the lattice exactly.
+/// The first point of a straight segment on the isosurface, from an exact walk in the lattice.
 struct RayHit {
     bool hit = false;
-    Vec3 point = Vec3::Zero();   ///< [mm, physical]; the segment's end without a hit
+    Vec3 point = Vec3::Zero();   ///< [mm, physical]. The segment's end without a hit
     Vec3 normal = Vec3::Zero();  ///< unit, out of the solid, physical axes
 };
 /// `from` and `to` in mm, physical. A start inside the solid is a hit at `from`.

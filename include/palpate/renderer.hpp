@@ -27,10 +27,10 @@ double scale_for_voxels_per_mm(const Geometry& geometry, double voxels);
 struct DeviceState {
     double time = 0;               ///< [s], strictly increasing
     Vec3 position = Vec3::Zero();  ///< [device mm], device axes
-    bool valid = true;             ///< false: stale or broken input; no force, proxy stays
-    bool armed = true;             ///< false: a dead-man switch is open; no force at once
+    bool valid = true;             ///< false: stale or broken input. No force, proxy stays
+    bool armed = true;             ///< false: a dead-man switch is open. No force at once
     bool released = false;         ///< true: no force, see ForceInput::released
-    /// Unit, device axes, from the hand to the tool's tip; zero: not known.
+    /// Unit, device axes, from the hand to the tool's tip. Zero: not known.
     Vec3 pointing = Vec3::Zero();
     Mat3 orientation = Mat3::Identity();  ///< tool axes to device axes; used with a tool
 };
@@ -40,10 +40,10 @@ struct RendererSettings {
     ProxySettings proxy;
     Penetrability penetrability;
     /// With layers, what they say of surfaces and forces counts in place of penetrability, friction
-    /// and force; without any surface of their own, penetrability stays.
+    /// and force. Without any surface of their own, penetrability stays.
     std::shared_ptr<const Layers> layers;
     /// Felt with all its points, in six degrees of freedom, on the smooth field and by the method
-    /// exact; null: a point. With a tool there are no layers, penetrability, magnet and texture.
+    /// exact. Null: a point. With a tool there are no layers, penetrability, magnet and texture.
     std::shared_ptr<const Tool> tool;
     ForceSettings force;
     DeviceLimits device;
@@ -59,9 +59,9 @@ struct Renderer {
     Proxy proxy;
     ForceState force;
     LayerState layers = {};
-    /// [data units] Felt again when there are no layers with surfaces; set while there are.
+    /// [data units] Felt again when there are no layers with surfaces. Set while there are.
     std::optional<double> isovalue_without_layers = {};
-    /// Of the tool; `proxy.isovalue` counts. Has a value where there is a tool, or may be one.
+    /// The tool's proxy. Uses `proxy.isovalue`. Has a value if there is a tool, or may be one.
     std::optional<ToolProxy> tool_proxy = {};
 };
 
@@ -90,7 +90,7 @@ struct Tick {
     std::uint8_t force_flags = 0;  ///< ForceFlag bits
     LayersFelt layers;
     ToolFelt tool;
-    std::int64_t update_ns = 0;  ///< [ns] the proxy update alone, by the caller's clock; 0: none
+    std::int64_t update_ns = 0;  ///< [ns] the proxy update alone, by the caller's clock. 0: none
 };
 
 /// Throws std::invalid_argument, saying what is wrong, for settings that cannot be rendered.
@@ -132,9 +132,9 @@ std::string isovalue_warning(const Field& field, double isovalue);
 /// it is (UpdateStatus::refused) and gives no force. A time that is not finite or did not advance
 /// gives no force either, but the proxy follows. The same renderer and input give the same tick,
 /// bit for bit, but for `update_ns`, which is measured where a clock is given.
-/// The proxy only moves where all samples are in memory. Where the hand draws it farther it is held
-/// (UpdateStatus::waiting): the force falls to zero within its rate limit, and comes back with the
-/// ramp once they are. Layers and penetrability need the whole way of the hand in memory.
+/// The proxy only moves where all samples are in memory. If the hand pulls it farther, it is held
+/// (UpdateStatus::waiting): the force falls to zero within its rate limit, and returns with the
+/// ramp when they are. Layers and penetrability need the whole way of the hand in memory.
 /// `observer` is for a point, `pose_observer` for a tool.
 Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {},
             Clock clock = nullptr, PoseObserver pose_observer = {});

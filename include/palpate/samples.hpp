@@ -114,7 +114,7 @@ class Samples {
     /// The same with these edits; `minimum` and `maximum` [data units] bound the bricks' samples.
     /// Throws std::invalid_argument if the bricks do not fit the grid.
     Samples with(Bricks bricks, double minimum, double maximum) const;
-    /// Of a large grid: the same with another part in memory. Throws std::invalid_argument for
+    /// The same large grid with another part in memory. Throws std::invalid_argument for
     /// bricks of another grid.
     Samples with(ResidentBricks resident) const;
 
@@ -155,7 +155,7 @@ class Samples {
 
 /// The samples at a moment as one volume of the same type (rounded to it between two frames), for
 /// files and for code that needs them in one piece. No copy is made where an existing volume is the
-/// same. Of a large grid: the overview with the edits (ShownEdits).
+/// same. For a large grid, the overview with the edits (ShownEdits).
 Volume flattened(const Samples& samples, const Moment& moment = {});
 /// Edits of a large grid on a volume of the same part of space that has other samples (an overview,
 /// or a box of some level): each of those whose nearest sample lies in an edited brick takes its

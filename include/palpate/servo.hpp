@@ -30,11 +30,11 @@ struct ServoSettings {
     bool real_time = true;
     int priority = 80;                ///< of SCHED_FIFO, 1 to 99
     std::size_t command_room = 1024;  ///< commands that may wait
-    /// Where ticks and commands are recorded; null: nowhere. Must outlive the servo, or its
+    /// The queue that records ticks and commands. May be null. Must outlive the servo, or its
     /// stop_recording(). A queue that is full loses events (ServoReport::unrecorded). Samples with
     /// a recipe are recorded as that alone.
     Queue<SessionEvent>* recorder = nullptr;
-    /// Times the ticks [ns, never back]; null: the machine's monotonic clock. With a clock of the
+    /// Times the ticks [ns, never back]. Null: the machine's monotonic clock. With a clock of the
     /// caller's, CPU time is counted by it as well.
     Clock clock = nullptr;
 };
@@ -55,7 +55,7 @@ enum class DeviceFailure : std::uint8_t {
     threw,  ///< read() or write() threw an exception
     hung,   ///< read() or write() did not return within 10 ms, though its thread could run
 };
-/// In words; empty for none.
+/// In words. Empty for none.
 const char* name_of(DeviceFailure failure);
 
 /// The tick that took longest, lateness included.
@@ -73,7 +73,7 @@ struct ServoReport {
     std::int64_t missed = 0;      ///< deadlines: ticks that did not happen when they were due
     std::int64_t overruns = 0;    ///< ticks that took too long, so that their force was dropped
     std::int64_t unrecorded = 0;  ///< events that were lost because the recorder was full
-    LatencySummary period, lateness, work, compute;  ///< [ns]; compute is CPU time
+    LatencySummary period, lateness, work, compute;  ///< [ns]. Compute is CPU time
     WorstTick worst;
 };
 
@@ -86,7 +86,7 @@ struct Snapshot {
     double stiffness = 0;        ///< [N/mm] in use
     Vec3 normal = Vec3::Zero();  ///< of the constraint plane at the SCP, out of the solid, physical
     LatticePoint scp;            ///< the SCP and its tetrahedron, of the lattice of `interpolation`
-    /// Of the tool at the proxy's pose: those with pressure touch. With a point: none.
+    /// Contacts of the tool at the proxy's pose. Those with pressure touch. None for a point.
     std::array<ToolContact, most_tool_contacts> contacts{};
     int contact_count = 0;
     Interpolation interpolation = Interpolation::linear;
@@ -110,7 +110,7 @@ class WatchedDevice;
 /// fault and no force.
 class Servo {
   public:
-    /// Takes over the session; the device must outlive the servo. Nothing runs yet. The session
+    /// Takes over the session. The device must outlive the servo. Nothing runs yet. The session
     /// keeps the smaller of its settings and the limits that the device declares (keep_within());
     /// where that changes it, a recording begins with the command that does. Throws
     /// std::invalid_argument for settings that cannot be run.
@@ -123,7 +123,7 @@ class Servo {
     /// Starts the thread, once, and not after step(). Throws std::system_error if the system gives
     /// none.
     void start();
-    /// One tick, now, on one thread; the first one is at time 0 of the session. False once the
+    /// One tick, now, on one thread. The first one is at time 0 of the session. False once the
     /// session has ended: stop() was called or the device has failed, and zero force was written.
     bool step() noexcept;
     /// The same at a time of the caller's [ns, never back], without a clock: nothing is
@@ -135,8 +135,8 @@ class Servo {
     /// the third look in a row sees under way. `cpu`: all CPU time of the thread of step() [ns];
     /// `could_run`: it waits for nothing but a processor. Then only its CPU time counts.
     void watch(std::int64_t cpu, bool could_run) noexcept;
-    /// Writes zero force and ends the thread; returns when it has ended. With a device call that
-    /// hangs it returns when the force was taken away; the thread ends when that call returns, and
+    /// Writes zero force and ends the thread. Returns when it has ended. With a device call that
+    /// hangs it returns when the force was taken away. The thread ends when that call returns, and
     /// touches nothing but the servo then. Any thread, any number of times; from the servo thread
     /// (a device's read() or write()) it only asks for the end. Without start(): on the thread of
     /// step(), or on others while that thread goes on calling step().
@@ -148,17 +148,17 @@ class Servo {
     /// if the queue of commands is full. Nothing may be recorded before. Any thread but that of
     /// step(). Throws std::bad_alloc.
     bool record(Queue<SessionEvent>& recorder);
-    /// Nothing is recorded any more when this returns; the session goes on. Any thread but that of
+    /// Nothing is recorded any more when this returns. The session goes on. Any thread but that of
     /// step().
     void stop_recording() noexcept;
 
-    /// Checks a command and puts it in the queue; false if the queue is full. Throws
+    /// Checks a command and puts it in the queue. False if the queue is full. Throws
     /// std::invalid_argument as check(Command) does. Any thread; never waits for the servo thread.
     /// Keeps samples alive until the servo uses others, so that its thread never frees them.
     bool send(const Command& command);
     /// A command that was sent after tick n shows in tick n + sure_after at the latest.
     static constexpr std::int64_t sure_after = 2;
-    /// The newest tick; nothing before the first. Any thread, never waits.
+    /// The newest tick. Nothing before the first. Any thread, never waits.
     std::optional<Snapshot> snapshot() const noexcept { return snapshot_.get(); }
     ServoReport report() const noexcept;
     /// Commands that were sent and not carried out yet. Any thread, never waits.
@@ -171,7 +171,7 @@ class Servo {
 
     /// A sentence for each privilege: granted, or not granted and what to set. After start().
     const std::vector<std::string>& privileges() const { return privileges_; }
-    /// How late the thread was woken, every tick [ns]; goes on counting while it runs.
+    /// How late the thread was woken, every tick [ns]. Goes on counting while it runs.
     const LatencyHistogram& lateness() const { return lateness_; }
     /// The settings of the session at the start, within the device's limits.
     const RendererSettings& settings() const { return start_; }
@@ -202,7 +202,7 @@ class Servo {
     void hold(const std::shared_ptr<const void>& sent);
     bool push(const CheckedCommand& checked);
 
-    // These begin on cache lines of their own; placed first, they waste no space.
+    // These begin on cache lines of their own. Placed first, they waste no space.
     Queue<CheckedCommand> commands_;
     Newest<Snapshot> snapshot_;
     Newest<WorstTick> worst_;
@@ -227,7 +227,7 @@ class Servo {
     Queue<SessionEvent>* next_recorder_ = nullptr;
     std::atomic<const SessionPoint*> awaited_{nullptr};
 
-    std::mutex held_mutex_;  // between threads that send; the servo thread never takes it
+    std::mutex held_mutex_;  // between threads that send. The servo thread never takes it
     std::vector<std::shared_ptr<const void>> held_;  // each object once
     LatencyHistogram period_, lateness_, work_, compute_;
     std::atomic<std::int64_t> ticks_{0}, missed_{0}, overruns_{0}, unrecorded_{0};

@@ -103,8 +103,8 @@ struct Resume {
 };
 }  // namespace command
 /// ForceSettings are lowered to what is stable within the session's device limits (stable()). A new
-/// DeviceTransform may move the HIP, so the force starts again from zero. Of DeviceLimits and its
-/// own limits the session keeps the smaller, for good (keep_within()).
+/// DeviceTransform may move the HIP, so the force starts again from zero. The session keeps
+/// the smaller of DeviceLimits and its own limits, permanently (keep_within()).
 using Command = std::variant<command::Isovalue, command::Freeze, command::Clutch, command::Forces,
                              command::Scale, command::Samples, command::Moment, command::Speed,
                              command::UseLayers, command::UseTool, command::Resume, ForceSettings,

@@ -1,5 +1,5 @@
 // Surface: the whole isosurface of a field as one watertight triangle mesh, made from the same
-// tetrahedra that the lattice walks. For display and for files; the proxy does not use it.
+// tetrahedra that the lattice walks. For display and for files. The proxy does not use it.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace palpate {
 
-/// Where an isosurface cuts a tetrahedron: nowhere, or in a triangle or a plane quadrilateral,
-/// whose corners lie on edges from a solid to a free corner of the tetrahedron (0 to 3).
+/// The cut of an isosurface through a tetrahedron: nothing, a triangle or a plane quadrilateral.
+/// Its corners lie on edges from a solid to a free corner of the tetrahedron (0 to 3).
 struct TetrahedronCut {
     struct Edge {
         std::uint8_t solid = 0, free = 0;
@@ -54,12 +54,12 @@ struct SurfaceMesh {
     /// Indices into `vertices`, counter-clockwise seen from the free side: normals point out of the
     /// solid.
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<Vec3> normals;  ///< unit, one a vertex, out of the solid; empty unless asked for
+    std::vector<Vec3> normals;  ///< unit, one a vertex, out of the solid. Empty unless asked for
     bool complete = true;       ///< false if `progress` cancelled: then the mesh is empty
 };
 
 struct SurfaceOptions {
-    /// Called about once per slice with the fraction done, in [0, 1]; returning false cancels.
+    /// Called about once per slice with the fraction done, in [0, 1]. Returning false cancels.
     std::function<bool(double fraction)> progress;
     /// More vertices than this are an error. The default is the most that a 32-bit index can name;
     /// a vertex with its two triangles takes 48 bytes.
@@ -78,15 +78,15 @@ struct SurfaceOptions {
 };
 
 /// Least distance of a vertex from the ends of its tetrahedron's edge, as a fraction of the edge.
-/// Samples equal to the isovalue would put many vertices in one place; this distance keeps them
+/// Samples equal to the isovalue would put many vertices in one place. This distance keeps them
 /// apart, so that the mesh is a manifold even in a file of 32-bit floats without indices (STL). All
 /// other vertices lie on the isosurface to rounding.
 inline constexpr double surface_margin = 1.0 / 1024;
 
 /// The boundary of the solid: sign * (density - isovalue) >
 /// 0 is solid, equal is free. Outside the grid the field has the background's value, so bodies cut
-/// by the border are closed there. Where the background is solid the mesh bounds the free space
-/// instead; it is closed, too, with normals out of the solid. The same input gives the same mesh,
+/// by the border are closed there. If the background is solid, the mesh bounds the free space
+/// instead. It is also closed, with normals out of the solid. The same input gives the same mesh,
 /// bit for bit. Throws std::invalid_argument for an isovalue that is not finite and
 /// std::length_error past max_vertices. (Corenthy et al. 2012, section 3; docs/surface.md)
 SurfaceMesh extract_surface(const Field& field, double isovalue,
@@ -96,7 +96,7 @@ SurfaceMesh extract_surface(const Field& field, double isovalue,
 /// cubic field lie round a sample each, with its index.
 SampleBox surface_cells(const Field& field);
 
-/// Volume enclosed by a closed mesh [mm^3], by the divergence theorem; negative where the mesh
+/// Volume enclosed by a closed mesh [mm^3], by the divergence theorem. Negative where the mesh
 /// bounds the free space.
 double enclosed_volume(const SurfaceMesh& mesh);
 

@@ -15,7 +15,7 @@ namespace palpate {
 
 using Quaternion = Eigen::Quaterniond;
 
-/// Where a rigid body is and how it is turned.
+/// Position and orientation of a rigid body.
 struct Pose {
     Vec3 position = Vec3::Zero();                     ///< of its reference point [mm, physical]
     Quaternion orientation = Quaternion::Identity();  ///< unit; from tool axes to physical axes

@@ -1,4 +1,4 @@
-// What every helper program does first: it ties its life to its caller's and limits its memory.
+// The first steps of every helper program: it ties its life to its caller's and limits its memory.
 // Header only, so that each program can use it without the others' libraries.
 #pragma once
 

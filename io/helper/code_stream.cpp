@@ -1,4 +1,4 @@
-// Reads the headers of compressed images; see the header.
+// Reads the headers of compressed images. See the header.
 #include "io/helper/code_stream.hpp"
 
 #include <algorithm>

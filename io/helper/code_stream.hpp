@@ -1,4 +1,4 @@
-// What a compressed image says of itself: the size in the headers of JPEG, JPEG-LS and JPEG 2000
+// The properties of a compressed image: the size in the headers of JPEG, JPEG-LS and JPEG 2000
 // code streams, and how many samples an RLE segment holds. Decoders believe these, headers of files
 // may say something else. Uses no library.
 #pragma once

@@ -1,4 +1,4 @@
-// Shared by the readers in the helper program; see the header.
+// Shared by the readers in the helper program. See the header.
 #include "io/helper/decode.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Maps a DICOM file, and unpacks a deflated one step by step; see the header.
+// Maps a DICOM file, and unpacks a deflated one step by step. See the header.
 #include "io/helper/dicom_bytes.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-// Walks through the elements of a DICOM file (PS3.5 chapter 7, PS3.10); see the header.
+// Walks through the elements of a DICOM file (PS3.5 chapter 7, PS3.10). See the header.
 #include "io/helper/dicom_check.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The elements of a DICOM data set or of an item of a sequence, read leniently: what is not there
-// is empty.
+// The elements of a DICOM data set or of an item of a sequence, read leniently: missing
+// ones are empty.
 #pragma once
 
 #include <gdcmDataSet.h>

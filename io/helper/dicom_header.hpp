@@ -1,4 +1,4 @@
-// What a DICOM file's header says of its slices: one, or one for each of its frames.
+// The slices of a DICOM file by its header: one, or one for each of its frames.
 #pragma once
 
 #include "io/helper/dicom_stack.hpp"

@@ -1,4 +1,4 @@
-// Reads samples through ITK, which applies slope and intercept; see the header.
+// Reads samples through ITK, which applies slope and intercept. See the header.
 #include <fcntl.h>
 #include <itkGDCMImageIO.h>
 #include <sys/mman.h>

@@ -1,4 +1,4 @@
-// Checks of pixel data (PS3.5 chapter 8, annex A.4); see the header.
+// Checks of pixel data (PS3.5 chapter 8, annex A.4). See the header.
 #include "io/helper/dicom_pixels.hpp"
 
 #include <algorithm>

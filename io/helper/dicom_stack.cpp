@@ -1,4 +1,4 @@
-// Arranges DICOM slices in a regular grid; see the header and docs/io.md.
+// Arranges DICOM slices in a regular grid. See the header and docs/io.md.
 #include "io/helper/dicom_stack.hpp"
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// HDF5 files by libhdf5; see the header.
+// HDF5 files by libhdf5. See the header.
 #include "io/helper/hdf5_file.hpp"
 
 #include <algorithm>

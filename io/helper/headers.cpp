@@ -1,4 +1,4 @@
-// What the readers of headers share: fields, lists of numbers, spacings.
+// Shared by the readers of headers: fields, lists of numbers, spacings.
 #include "io/helper/headers.hpp"
 
 #include <charconv>

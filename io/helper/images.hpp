@@ -1,4 +1,4 @@
-// Images in files of chunks, one source file for each family of formats: what they hold, and where
+// Images in files of chunks, one source file for each family of formats: their contents, and where
 // their chunks lie.
 #pragma once
 

@@ -1,5 +1,5 @@
-// The jobs of the helper programs: requests, answers and limits are the same in all of them; what
-// differs are the formats, and so the libraries that a program has to load.
+// The jobs of the helper programs. Requests, answers and limits are the same in all of them. They
+// differ in the formats, and therefore in the libraries that a program has to load.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What a library says, made fit for a user: one short line without its source files and pointers.
+// Messages of a library, made fit for a user: one short line without its source files and pointers.
 // Header only, because the helper and its caller both pass on such words.
 #pragma once
 

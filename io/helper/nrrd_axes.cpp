@@ -1,5 +1,5 @@
-// What the axes of a NRRD header count and where its grid lies: sizes, kinds, spacings, centerings,
-// units, the space. Where the format leaves a choice, ITK's is taken (docs/io.md).
+// The axes of a NRRD header, and the place of its grid: sizes, kinds, spacings, centerings,
+// units, the space. If the format leaves a choice, ITK's is taken (docs/io.md).
 #include "io/helper/nrrd_axes.hpp"
 
 #include <Eigen/Geometry>

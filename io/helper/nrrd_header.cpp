@@ -1,5 +1,5 @@
 // Reads NRRD headers. Format: https://teem.sourceforge.net/nrrd/format.html, "NRRD0001" to
-// "NRRD0005". Where the format leaves a choice, ITK's is taken (docs/io.md).
+// "NRRD0005". If the format leaves a choice, ITK's is taken (docs/io.md).
 #include <algorithm>
 #include <bit>
 #include <fstream>

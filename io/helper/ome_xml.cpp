@@ -1,4 +1,4 @@
-// OME-XML in the description of a TIFF file; see the header.
+// OME-XML in the description of a TIFF file. See the header.
 #include "io/helper/ome_xml.hpp"
 
 #include <algorithm>

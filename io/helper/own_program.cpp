@@ -1,7 +1,7 @@
 // palpate-io-helper: reads or writes one volume, or reads a mesh, and reports as described in
 // protocol.hpp. It exists so that a crash of a format's library does not crash the caller. It reads
-// NRRD, MetaImage and NIfTI itself; for all else it becomes the program that has the library, so
-// that none is loaded for nothing.
+// NRRD, MetaImage and NIfTI itself. For all other formats it becomes the program that has the
+// library, so that only needed libraries are loaded.
 #include <unistd.h>
 
 #include <algorithm>

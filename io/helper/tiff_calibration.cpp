@@ -1,5 +1,5 @@
 // ImageJ's description: lines of key=value after a first line ImageJ=VERSION. Lengths are in its
-// unit; XResolution and YResolution are pixels a unit, whatever ResolutionUnit says.
+// unit. XResolution and YResolution are pixels per unit, whatever ResolutionUnit says.
 #include "io/helper/tiff_calibration.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
-// The spacing of a TIFF stack, in the one way that microscopy software agrees on: pixels a length
-// in XResolution and YResolution, the distance between slices and the unit in the description, as
-// ImageJ and Fiji write them.
+// The spacing of a TIFF stack, as microscopy software agrees on it. XResolution and YResolution
+// hold pixels per length. The description holds the distance between slices and the unit, as ImageJ
+// and Fiji write them.
 #pragma once
 
 #include <optional>

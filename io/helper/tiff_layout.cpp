@@ -1,4 +1,4 @@
-// What a TIFF file says of its planes; see the header.
+// The planes of a TIFF file by its descriptions. See the header.
 #include "io/helper/tiff_layout.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What a TIFF file says of its planes: which page each is, their spacing, channels, times and what
-// their numbers mean; by OME-XML, ImageJ's or tifffile's description. Reading it whole and reading
+// The planes of a TIFF file by OME-XML, ImageJ's or tifffile's description: the page of each plane,
+// their spacing, channels and times, and the meaning of their numbers. Reading it whole and reading
 // it by the tile both use this. Functions throw Failure.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Opens TIFF files and keeps libtiff's errors; see the header.
+// Opens TIFF files and keeps libtiff's errors. See the header.
 #include "io/helper/tiff_library.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A page of a TIFF file; see the header.
+// A page of a TIFF file. See the header.
 #include "io/helper/tiff_page.hpp"
 
 #include <algorithm>

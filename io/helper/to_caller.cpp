@@ -1,4 +1,4 @@
-// What a reader in the helper program shares with its caller: samples, progress, limits on memory.
+// Shared by a reader in the helper program and its caller: samples, progress, limits on memory.
 #include <sys/mman.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// What VTK says when a file is wrong.
+// The errors of VTK for a file that is wrong.
 #pragma once
 
 #include <vtkObjectFactory.h>

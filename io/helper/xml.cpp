@@ -1,4 +1,4 @@
-// Small XML files; see the header.
+// Small XML files. See the header.
 #include "io/helper/xml.hpp"
 
 #include <vtkNew.h>

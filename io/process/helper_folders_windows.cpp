@@ -1,4 +1,4 @@
-// The folder of the program or the library that holds this code; see helper_folders.hpp. Windows,
+// The folder of the program or the library that holds this code. See helper_folders.hpp. Windows,
 // where there are no helper programs, but the data files lie where they lie elsewhere.
 #include <windows.h>
 

@@ -1,4 +1,4 @@
-// Runs a helper program and collects its answer; see the header.
+// Runs a helper program and collects its answer. See the header.
 #include "io/process/helper_process.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-// What every job of palpate-io-helper has in common; see the header.
+// Shared by all jobs of palpate-io-helper. See the header.
 #include "io/process/io_helper.hpp"
 
 #include <system_error>

@@ -1,5 +1,5 @@
-// What every job of palpate-io-helper has in common: the program, its limits, and what can be said
-// of a path before it starts.
+// Shared by all jobs of palpate-io-helper: the program, its limits, and the checks of a path before
+// it starts.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// What image is in a file of chunks (HDF5, TIFF), and where its chunks lie: the helper process
-// looks, so that no library parses the file in the process that drives the device. Private to io/
-// and stream/.
+// The image in a file of chunks (HDF5, TIFF), and the places of its chunks. The helper process
+// reads them, so that no library parses the file in the process that drives the device. Private to
+// io/ and stream/.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// A folder of a result that grows and takes its place at once; see the header.
+// A folder of a result that grows and takes its place at once. See the header.
 #include "io/system/growing_folder.hpp"
 
 #include <fcntl.h>

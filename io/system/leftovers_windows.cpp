@@ -1,4 +1,4 @@
-// Removes temporary files and folders whose process is dead; see leftovers.hpp. Windows.
+// Removes temporary files and folders whose process is dead. See leftovers.hpp. Windows.
 #include <windows.h>
 
 #include <atomic>

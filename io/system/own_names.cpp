@@ -1,4 +1,4 @@
-// Recognises and removes what Palpate writes into folders of results; see the header.
+// Recognises and removes the files that Palpate writes into folders of results. See the header.
 #include "io/system/own_names.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-// Removes files and folders without following symbolic links; see the header. Linux: each step is
+// Removes files and folders without following symbolic links. See the header. Linux: each step is
 // relative to a folder that is open, so that a link that is put in its place meanwhile is harmless.
 #include "io/system/removal.hpp"
 

@@ -1,4 +1,4 @@
-// Removes files and folders; see removal.hpp. Windows.
+// Removes files and folders. See removal.hpp. Windows.
 #include <system_error>
 
 #include "io/system/removal.hpp"

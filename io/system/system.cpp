@@ -1,4 +1,4 @@
-// What io asks of the operating system; see the header. Linux.
+// Requests of io to the operating system. See the header. Linux.
 #include "io/system/system.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-// What io asks of the operating system beyond the standard library: memory, permissions, files by
+// Requests of io to the operating system beyond the standard library: memory, permissions, files by
 // descriptor. system.cpp for Linux, system_windows.cpp for Windows. Errors are left in errno.
 #pragma once
 

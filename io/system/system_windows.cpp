@@ -1,5 +1,5 @@
-// What io asks of the operating system; see system.hpp. Windows, where files are opened for bytes,
-// not for text.
+// Requests of io to the operating system. See system.hpp. Windows, where files are opened for
+// bytes, not for text.
 #include <windows.h>
 // After it:
 #include <psapi.h>

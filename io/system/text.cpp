@@ -1,5 +1,5 @@
-// Reads a whole text from a file, a pipe or a device, with limits on its length and with waits that
-// can be ended: a pipe may have no writer, and a device has no end. POSIX.
+// Reads a whole text from a file, a pipe or a device. Its length is limited, and waits can be
+// ended, because a pipe may have no writer and a device has no end. POSIX.
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/stat.h>

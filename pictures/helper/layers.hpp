@@ -1,5 +1,5 @@
-// Blends drawings over one another, pixel by pixel. Of a transparent surface only the nearest part
-// is drawn, since its far side and inner parts would hide what is behind it.
+// Blends drawings over one another, pixel by pixel. Only the nearest part of a transparent surface
+// is drawn, because its far side and inner parts would hide the rest.
 #pragma once
 
 #include <vector>

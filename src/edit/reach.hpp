@@ -1,4 +1,4 @@
-// Where the brushes of edits reach: a round one along a line, and a tool's shape between two poses.
+// The space that a brush reaches: a round one along a line, and a tool's shape between two poses.
 #pragma once
 
 #include <vector>

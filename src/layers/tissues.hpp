@@ -1,5 +1,5 @@
-// Where the surfaces of layers lie, and which of them gave way: levels of the density, labels, or
-// both. At any moment one field with a level ahead and perhaps one behind is solid where the SCP
+// The surfaces of layers, and which of them gave way: levels of the density, labels, or both.
+// At any moment one field with a level ahead and perhaps one behind is solid where the SCP
 // may not be; all questions are put to that field (docs/layers.md).
 #pragma once
 

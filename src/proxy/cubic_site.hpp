@@ -1,5 +1,5 @@
-// Where the proxy is while an update on the smooth field runs, and certified straight motion there:
-// the Bernstein coefficients of the field along a segment bound it, so no crossing is missed
+// The proxy's place while an update on the smooth field runs, and certified straight motion there.
+// The Bernstein coefficients of the field along a segment bound it, so no crossing is missed
 // (docs/smooth.md).
 #pragma once
 

@@ -1,4 +1,4 @@
-// Where the proxy is while an update runs (a lattice point with its tetrahedron's linear field),
+// The proxy's place while an update runs (a lattice point with its tetrahedron's linear field),
 // and the straight walk from tetrahedron to tetrahedron that every method uses.
 #pragma once
 

@@ -1,6 +1,6 @@
-// Friction of a tool by sweeps over its contacts (projected Gauss and Seidel): each contact takes
-// as much of the pull as keeps it from slipping, up to what its pressure allows, and after a sweep
-// the pressures are found anew.
+// Friction of a tool by sweeps over its contacts (projected Gauss and Seidel). Each contact takes
+// as much of the pull as keeps it from slipping, up to the limit of its pressure. After each sweep
+// the pressures are computed again.
 #include "tool_proxy/friction.hpp"
 
 #include <cmath>

@@ -1,6 +1,6 @@
-// Motion of a whole tool. Each point travels a chord; the least free part of all counts, and what
-// the chords of the shorter motion meet is looked at again, because a turning point's chord is not
-// part of its longer one.
+// Motion of a whole tool. Each point travels a chord, and the shortest free part of all counts. The
+// chords of the shorter motion are tested again, because a turning point's chord is not part of its
+// longer one.
 #include "tool_proxy/motion.hpp"
 
 #include <algorithm>

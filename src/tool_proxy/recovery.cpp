@@ -1,6 +1,6 @@
-// Recovery of a tool: pushed out along the normals of the points that are inside, deepest first;
-// where that gets stuck, the nearest free place along 26 directions, from which it comes back as
-// far as it is free.
+// Recovery of a tool. It is pushed out along the normals of the points that are inside, deepest
+// first. If that gets stuck, it goes to the nearest free place along 26 directions, and comes back
+// from there as far as it is free.
 #include "tool_proxy/recovery.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Attacks the program from outside, as an adversary would: with data, hands, files, services, signals and
-disks that nobody wishes it. It shares no code with the program. Every round has a seed of its own; what is
-found is printed with the words that do it again, and its files are kept.
+"""Attacks the program from outside, as an adversary would: with difficult data, hands, files, services,
+signals and disks. It shares no code with the program. Every round has a seed of its own. A finding is printed
+with the command that repeats it, and its files are kept.
 
     adversary.py --program build/dev/apps/palpate/palpate --seeds 12,readers=48     the same rounds everywhere
     adversary.py --program ... --minutes 60                               as many as the machine has time for

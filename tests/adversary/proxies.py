@@ -1,5 +1,5 @@
-"""Attack on the proxy: unkind data, unkind hands, and a check of every path with the field evaluated from
-its definition: never inside the solid (G1), on the surface in contact (G2), never a number that is none."""
+"""Attacks the proxy with difficult data and hands. Every path is checked with the field evaluated from its
+definition: never inside the solid (G1), on the surface in contact (G2), and all numbers finite."""
 
 import csv
 import math

@@ -1,5 +1,5 @@
-"""Attack on recordings: a row less, a row twice, two rows exchanged, a digit changed, the end cut off. A
-recording that is not what was recorded never validates as the same."""
+"""Attack on recordings: a row less, a row twice, two rows exchanged, a digit changed, the end cut off. A recording
+that was changed never validates as the same."""
 
 import re
 

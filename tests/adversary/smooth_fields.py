@@ -1,6 +1,6 @@
-"""The smooth field from its definition, apart from the program's own code: a cube round each sample is cut
-into 24 tetrahedra (the sample, a face's centre, an edge of that face), with a cubic in each, whose 20
-Bernstein coefficients are means of the samples round the cube."""
+"""The smooth field from its definition, without the program's own code. A cube around each sample is cut into
+24 tetrahedra (the sample, a face's centre, an edge of that face). In each there is a cubic, whose 20
+Bernstein coefficients are means of the samples around the cube."""
 
 import math
 

@@ -1,4 +1,4 @@
-// palpate info: what it says of synthetic and of real volumes.
+// palpate info: its output for synthetic and for real volumes.
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"

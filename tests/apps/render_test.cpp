@@ -1,4 +1,4 @@
-// palpate render: what is asked for is in the picture, and each failure is told.
+// palpate render: the picture has the requested parts, and each failure is reported.
 #include <cmath>
 
 #include "apps/program.hpp"

@@ -1,5 +1,5 @@
 // Live sessions from the command line: touch, record, devices, replay --validate. A simulated hand
-// is the device. Where a session need not go with the clock it does not (--unpaced).
+// is the device. A session that does not need the clock runs without it (--unpaced).
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// The penalty method for tools does what it says, and lets through what it cannot hold.
+// The penalty method for tools works as published, and lets points through that it cannot hold.
 #include "palpate/baselines/penalty_tool.hpp"
 
 #include <gtest/gtest.h>

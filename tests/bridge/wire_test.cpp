@@ -1,4 +1,4 @@
-// Messages as bytes: what is sent, what is taken, what is refused.
+// Messages as bytes: which are sent, accepted and refused.
 #include "bridge/wire.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// Edit: each sample against a slow reference, where a brush leaves the surface, and what is
-// refused.
+// Edit: each sample against a slow reference, the surface that a brush leaves, and refusals.
 #include "palpate/edit.hpp"
 
 #include <gtest/gtest.h>

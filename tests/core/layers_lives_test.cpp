@@ -1,6 +1,6 @@
-// Random lives of layers of every kind, on every field, over samples of every kind: the SCP never
-// is where it may not be, by a slow evaluation of the field of its own, and nothing opens but by a
-// puncture.
+// Random runs with layers of every kind, on every field, over samples of every kind. The SCP is
+// never in a forbidden place, by a slow evaluation of the field of its own, and only punctures open
+// surfaces.
 #include <gtest/gtest.h>
 
 #include "palpate/session.hpp"

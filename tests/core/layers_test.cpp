@@ -1,4 +1,4 @@
-// Layers: what a hand feels of several surfaces in one stroke, against closed forms.
+// Layers: the force of several surfaces in one stroke, against closed forms.
 #include "palpate/layers.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Proxy: recovery from inside the solid after the isovalue or the field changed, or when a session
-// starts there; and placing.
+// starts there, and placing.
 #include <gtest/gtest.h>
 
 #include <cmath>

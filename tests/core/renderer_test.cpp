@@ -1,4 +1,4 @@
-// Renderer: device state in, force and proxy out; spaces, broken input, changes while running.
+// Renderer: device state in, force and proxy out, spaces, broken input, changes while running.
 #include "palpate/renderer.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Volume: samples keep their type and place; impossible geometry is refused.
+// Volume: samples keep their type and place, and impossible geometry is refused.
 #include "palpate/volume.hpp"
 
 #include <gtest/gtest.h>

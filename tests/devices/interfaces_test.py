@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares what the backends declare, look up and name with docs/devices/interfaces.md, both ways."""
+"""Compares the functions and names of the backends with docs/devices/interfaces.md, both ways."""
 
 import re
 import sys

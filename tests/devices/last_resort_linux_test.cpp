@@ -1,4 +1,4 @@
-// What a crash leaves behind: zero force, sent before the program ends. Each crash is a child
+// A crash sends zero force before the program ends. Each crash is a child
 // process's; a file that it shares stands for the motors.
 #include "palpate/devices/last_resort.hpp"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The checks of the documentation find what they are for: each has mistakes planted here."""
+"""The checks of the documentation find mistakes that are planted here."""
 
 import contextlib
 import importlib.util

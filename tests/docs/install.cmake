@@ -1,4 +1,4 @@
-# Installs what the tutorials use into a prefix of its own: PREFIX, from BUILD.
+# Installs Palpate for the tutorials into a prefix of its own: PREFIX, from BUILD.
 foreach(component core baselines scenes filters io stream devices run c c-dev python io-helper program)
   execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX} --config ${CONFIG}
                           --component palpate-${component}

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Does what a tutorial's reader does: saves its files, runs its commands and programs in an empty folder,
-and compares what they print.
+"""Follows a tutorial as a reader would: saves its files, runs its commands and programs in an empty folder,
+and compares their output with that of the page.
 
 usage: tutorial.py PAGE PREFIX (where Palpate is installed)
 
-Blocks of the page: `sh` is run by bash. `python` is run; neighbouring ones are one program. Where the
+Blocks of the page: bash runs `sh`. `python` is run, and neighbouring blocks are one program. If the
 first line of a block is a comment that begins with a file name ("// hand.cpp", "# CMakeLists.txt"), the
-block is that file, or, if the page has named it before, its continuation. `text` is a part of what the
-block before it prints; `...` there stands for anything.
+block is that file, or, if the page has named it before, its continuation. `text` is a part of the output
+of the block before it, in which `...` stands for anything.
 """
 
 import os

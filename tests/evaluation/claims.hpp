@@ -1,4 +1,4 @@
-// Running an experiment in its quick mode and looking at what it claims.
+// Runs an experiment in its quick mode and checks its claims.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The volumes of experiments: scenes, files, and what the user names.
+// The volumes of experiments: scenes, files, and the user's own.
 #include "evaluation/subject.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The distance between levels, and what info says of terraces.
+// The distance between levels, and the output of info about terraces.
 #include <gtest/gtest.h>
 
 #include "palpate/filters/dequantize.hpp"

@@ -1,4 +1,4 @@
-// Mutates what the Inverse Service says, message by message: most stay JSON, with one value
+// Mutates messages of the Inverse Service, one by one: most stay JSON, with one value
 // changed, left out or copied.
 #include "fuzz/mutation.hpp"
 

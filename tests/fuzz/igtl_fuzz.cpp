@@ -1,5 +1,5 @@
-// Any bytes from the network give whole messages or a refusal; any IMAGE a volume no larger than
-// what came, any STRING a printable line. The first byte chooses what the others are.
+// Any bytes from the network give whole messages or a refusal. Any IMAGE gives a volume no larger
+// than its message, any STRING a printable line. The first byte chooses the meaning of the others.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// What mutators share: bytes, chance, libFuzzer's own mutations, and mutations of JSON that leave
-// it JSON. For sources that libFuzzer calls.
+// Shared by the mutators: bytes, chance, libFuzzer's own mutations, and mutations of JSON that
+// leave it JSON. For sources that libFuzzer calls.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Any metadata, shards and chunks make a store whose samples can be read, or an error of one line.
-// The input is JSON with what lies where in a folder of Zarr or N5: {"s0/attributes.json": {...},
-// "c/0/0/0": "00ff.."}, metadata as they are and bytes in hexadecimal digits. "located" is what the
-// helper process says of a file of HDF5 or TIFF.
+// The input is JSON with the files of a folder of Zarr or N5: {"s0/attributes.json": {...},
+// "c/0/0/0": "00ff.."}. Metadata is plain JSON, and bytes are hexadecimal digits. "located" is the
+// answer of the helper process for a file of HDF5 or TIFF.
 #include <cctype>
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Any text gives a valid trajectory or a one-line InputError; the same for a trace.
+// Any text gives a valid trajectory or a one-line InputError. The same holds for a trace.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
-// Mutates volumes so that what a reader checks first stays right: a compressed stream is unpacked,
-// changed and packed again with its checksum; the samples get the length that the header declares;
-// an element of a DICOM file gets the length of its value.
+// Mutates volumes so that they pass the first checks of a reader. A compressed stream is unpacked,
+// changed and packed again with its checksum. The samples get the length that the header declares,
+// and an element of a DICOM file gets the length of its value.
 #include <zlib.h>
 
 #include <cstring>

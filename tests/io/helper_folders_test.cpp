@@ -1,4 +1,4 @@
-// Where helper programs are looked for, and what is said if there is none.
+// The folders in which helper programs are searched for, and the message if there is none.
 #include "io/process/helper_folders.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Levels are read from text as people write them; what is no number is refused.
+// Levels are read from text as people write them, and text without a number is refused.
 #include "palpate/io/level.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Recordings: what goes in comes out bit for bit, whatever ends the writing.
+// Recordings: all events come back bit for bit, whatever ends the writing.
 #include "palpate/io/recording.hpp"
 
 #include <gtest/gtest.h>

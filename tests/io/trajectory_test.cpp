@@ -1,4 +1,4 @@
-// Trajectories: what people and programs write is read, anything else is refused with its line.
+// Trajectories: forms that people and programs write are read, others are refused with their line.
 #include "palpate/io/trajectory.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Where NRRD and MetaImage headers put a grid: spacings, axis mins and maxs, centerings, units and
-// spaces in every combination; headers of any length.
+// Grids of NRRD and MetaImage headers: spacings, axis mins and maxs, centerings, units and spaces
+// in every combination, and headers of any length.
 #include <zlib.h>
 
 #include <optional>

@@ -1,4 +1,5 @@
-// What is written is what is read: samples, type, spacing, origin and direction, in every format.
+// Files read back as they were written: samples, type, spacing, origin and direction, in every
+// format.
 #include <zlib.h>
 
 #include "volume_support.hpp"

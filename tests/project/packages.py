@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What can be said of the Debian packages without installing them: lintian finds no error, the files that
-users and other programs look for are there, and the static libraries' own libraries come with a package
-that theirs depends on. scripts/deep/packages installs them."""
+"""Checks the Debian packages without installing them. lintian finds no error, the files that users and other
+programs look for are there, and a dependency provides each library that the static libraries need.
+scripts/deep/packages installs them."""
 
 import pathlib
 import re

@@ -37,7 +37,7 @@ RULES = {
 
 def plain(text):
     """A line of Markdown without its marks: code is one word, links are their text."""
-    text = re.sub(r"!\[[^\]]*\]\([^)]*\)", "", text)
+    text = re.sub(r"!\[[^\]]*\]\([^)]*\)|<!--.*?-->", "", text)
     text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", re.sub(r"`[^`]*`", "code", text))
     text = re.sub(r"https?://\S+", "link", re.sub(r"[*]+|</?\w[^>]*>|&\w+;", "", text))
     return re.sub(r"\b(e\.g|i\.e|et al|Figs?|Eqs?|vs|cf|approx)\.", r"\1", text)
@@ -79,7 +79,7 @@ def comments(text, everywhere):
 
 def opening(text):
     """The docstring that opens a Python file."""
-    match = re.match(r'(?:#.*\n|\s*\n)*"""(.*?)"""', text, re.DOTALL)
+    match = re.match(r'(?:#[^\n]*\n|\s*\n)*"""(.*?)"""', text, re.DOTALL)
     first = text.count("\n", 0, match.start(1)) if match else 0
     return markdown("\n" * first + match.group(1)) if match else ()
 

@@ -1,4 +1,4 @@
-"""What the rule checks share: which files are ours, and how a check ends."""
+"""Shared by the rule checks: which files are ours, and how a check ends."""
 
 import sys
 from pathlib import Path

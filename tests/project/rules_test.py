@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The rule checks find what they are for: each has violations planted here."""
+"""The rule checks find violations that are planted here."""
 
 import subprocess
 import sys
@@ -7,6 +7,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import figures
 import globals as writable
 import includes
 import prose
@@ -222,6 +223,30 @@ class Prose(unittest.TestCase):
             self.assertEqual(self.found("docs/a.md", text + "\n"), {}, text)
         self.assertEqual(self.found("docs/a.md", "# Of it; and it\n\n```\nOf a; b\n```\n\n    Of a; b\n"), {})
         self.assertEqual(self.found("src/force.cpp", "// Forces.\n\n// Of another comment; not checked.\n"), {})
+
+
+class Figures(unittest.TestCase):
+    CSV = "method,mean_ns\nexact,108.9\nsmooth,270.5\nsmooth,511.2\n"
+
+    def wrong(self, said, mark):
+        text = f"An update takes\n{said} \u00b5s.\n<!-- figure {mark} -->\n"
+        with Tree({"docs/a.csv": self.CSV}) as root:
+            return figures.problem(root, text, figures.MARK.search(text))
+
+    def test_numbers_that_the_csv_gives_pass(self):
+        self.assertIsNone(self.wrong("0.51", "0.51: docs/a.csv, max mean_ns / 1000, method=smooth"))
+        self.assertIsNone(self.wrong("109", "109: docs/a.csv, only mean_ns, method=exact"))
+        self.assertIsNone(self.wrong("8.91e2", "8.91e2: docs/a.csv, sum mean_ns"))
+
+    def test_numbers_that_are_others_or_not_in_the_text_are_found(self):
+        for said, mark in (("0.52", "0.52: docs/a.csv, max mean_ns / 1000, method=smooth"),
+                           ("10.51", "0.51: docs/a.csv, max mean_ns / 1000, method=smooth"),
+                           ("0.51", "0.51: docs/a.csv, max mean_ns / 1000, method=paper"),
+                           ("511", "511: docs/a.csv, only mean_ns, method=smooth"),
+                           ("511", "511: docs/a.csv, max mean, method=smooth"),
+                           ("511", "511: docs/b.csv, max mean_ns"),
+                           ("511", "511 of docs/a.csv")):
+            self.assertIsNotNone(self.wrong(said, mark), mark)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The tutorial in examples/python: each script runs and finds what it says."""
+"""The tutorial in examples/python: each script runs and gives the promised result."""
 
 import os
 import pathlib

@@ -1,4 +1,4 @@
-// What a run is set up with: the rate that suits the device.
+// The setup of a run: the rate that suits the device.
 #include <gtest/gtest.h>
 
 #include "run/run_support.hpp"

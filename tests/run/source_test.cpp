@@ -1,4 +1,4 @@
-// Sources: what is done to samples once they are read, and that names keep it.
+// Sources: the filters of samples after reading, which names keep.
 #include "palpate/run/source.hpp"
 
 #include <gtest/gtest.h>

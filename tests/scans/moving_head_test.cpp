@@ -1,5 +1,5 @@
 // A head that turns from frame to frame: the proxy under a surface that moves. Needs the data
-// folder beside the project; skipped without it.
+// folder beside the project, and is skipped without it.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The builders of hard volumes: what they promise about their samples.
+// The builders of difficult volumes: the promised properties of their samples.
 #include <gtest/gtest.h>
 
 #include <cmath>

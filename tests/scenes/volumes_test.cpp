@@ -1,4 +1,4 @@
-// The named scenes: what they promise about their samples, sizes, types and texts.
+// The named scenes: the promised properties of their samples, sizes, types and texts.
 #include "palpate/scenes/volumes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Independent writer of N5 for the tests: zarr's N5Store, and the specification where that does not
-write what Java programs do: blocks that are cut at the array's end, lz4 of lz4-java, zstd without a size.
+"""Independent writer of N5 for the tests, by zarr's N5Store. Features of Java programs that it lacks are
+written by the specification: blocks that are cut at the array's end, lz4 of lz4-java, zstd without a size.
 
   n5_reference.py FOLDER    stores of many kinds, each with its samples in NAME.raw
 """

@@ -6,9 +6,9 @@ chunks are computed when they are asked for: balls of radius 256 voxels, 768 apa
 
     value = clamp(round(128 + (256 - distance to the nearest centre) / 2), 0, 255)
 
-with centres at 384 + 768 k voxels along each axis; 12288 voxels of 1 um along each axis, uint8, chunks of
-64^3. Sample i of level L is that formula at voxel (i + 0.5) 2^L - 0.5. Prints its port and runs until its
-standard input ends or it is killed. GET /counts gives what was asked for so far as JSON.
+with centres at 384 + 768 k voxels along each axis. It has 12288 voxels of 1 um along each axis, uint8, in chunks
+of 64^3. Sample i of level L is that formula at voxel (i + 0.5) 2^L - 0.5. Prints its port and runs until its
+standard input ends or it is killed. GET /counts gives the numbers of requests so far as JSON.
 """
 
 import argparse

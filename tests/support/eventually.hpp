@@ -1,5 +1,5 @@
-// Waits until a condition that other threads or programs cause becomes true. Where a class has a
-// step(), tests call that and need no waiting.
+// Waits until a condition that other threads or programs cause becomes true. Tests of a class
+// with a step() call that instead and do not wait.
 #pragma once
 
 #include <chrono>

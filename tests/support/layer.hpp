@@ -1,4 +1,4 @@
-// A layer by what tests of layers look at.
+// Makes a layer for tests from the properties that they examine.
 #pragma once
 
 #include <string>

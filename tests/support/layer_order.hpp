@@ -1,6 +1,6 @@
-// Judges a renderer with layers from the outside, tick by tick: by the exact lowest and highest
-// density on each straight piece of the proxy's path, no surface is passed that did not give way,
-// and none gives way that was not touched and pressed.
+// Judges a renderer with layers from the outside, tick by tick, by the exact lowest and highest
+// density on each straight piece of the proxy's path. Only surfaces that gave way are passed, and
+// only surfaces that were touched and pressed give way.
 #pragma once
 
 #include <gtest/gtest.h>

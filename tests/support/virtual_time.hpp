@@ -1,4 +1,4 @@
-// Time for tests of what is paced: it passes when the test says so, and at once.
+// Time for tests of paced components: it passes at once when the test says so.
 #pragma once
 
 #include <atomic>

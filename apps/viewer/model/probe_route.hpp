@@ -1,4 +1,4 @@
-// Where the surface is first met on the way into a picture, and how a hand goes there from in
+// Finds the first surface point on the way into a picture, and a way for the hand to it from in
 // front.
 #pragma once
 

@@ -1,4 +1,4 @@
-"""What a replay gives: arrays, one row a tick."""
+"""The result of a replay: arrays with one row per tick."""
 
 import dataclasses
 

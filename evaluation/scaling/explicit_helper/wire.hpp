@@ -1,8 +1,8 @@
 // How a volume and segments are passed to palpate-explicit-helper, for both sides of the pipe:
 //   palpate-explicit-helper extract REQUEST
 // REQUEST is JSON of ExplicitRequest. The shared memory (descriptor 3) holds the samples, then
-// `segments` times two points of three doubles [mm, grid axes, from sample (0, 0, 0)], then as many
-// doubles for how far along each the mesh was hit (NaN: not at all), which the helper writes.
+// `segments` times two points of three doubles [mm, grid axes, from sample (0, 0, 0)]. One double
+// per segment follows, in which the helper writes how far along it hit the mesh (NaN: not at all).
 #pragma once
 
 #include <cmath>

@@ -20,8 +20,8 @@ struct DeviceScene {
     const Field& field;
     double isovalue;  ///< [data units]
     double rate;      ///< [Hz] of the servo loop
-    /// Where a device with this workspace will lie in the volume. Scripted and recorded hands move
-    /// in physical space.
+    /// Gives the place of a device with this workspace in the volume. Scripted and recorded hands
+    /// move in physical space.
     std::function<DeviceTransform(const DeviceInfo&)> transform;
 };
 

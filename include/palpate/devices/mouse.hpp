@@ -1,4 +1,4 @@
-// The device `mouse`: a window's pointer and keys move the hand; the force is shown, not felt. See
+// The device `mouse`: a window's pointer and keys move the hand. The force is shown, not felt. See
 // docs/devices/mouse.md.
 #pragma once
 
@@ -10,13 +10,13 @@
 
 namespace palpate::devices {
 
-/// Always found; it needs a window to move it.
+/// Always found. It needs a window to move it.
 DeviceFinding find_mouse();
 
 /// A Mouse. Throws std::invalid_argument for options it has not.
 std::unique_ptr<Device> open_mouse(const DeviceChoice& choice, const DeviceScene& scene);
 
-/// A hand that goes where a window's pointer aims. Pointers jump a hundred times a second; the hand
+/// A hand that goes where a window's pointer aims. Pointers jump a hundred times a second. The hand
 /// follows smoothly, a thousand times, never faster than its speed, and turns no faster than two
 /// turns a second. Axes and workspace as of every
 /// device: x to the right, y up, z towards the person. Begins in front of the volume,
@@ -26,12 +26,12 @@ class Mouse final : public Device {
     /// `speed` [mm/s]: the hand's greatest.
     explicit Mouse(double speed);
 
-    /// Where the hand is to go [device mm], cut to twice the workspace. By one
-    /// thread, the window's; not finite: nothing happens.
+    /// Sets the target of the hand [device mm], cut to twice the workspace. Ignores a target that
+    /// is not finite. Called by one thread, the window's.
     void aim(const Vec3& position) noexcept;
-    /// Where it is going. The thread that aims.
+    /// The target of the hand. Called by the thread that aims.
     const Vec3& aimed() const noexcept { return aim_.position; }
-    /// How the tool is to be turned (tool axes to device axes), by the shortest way; not finite or
+    /// How the tool is to be turned (tool axes to device axes), by the shortest way. Not finite or
     /// zero: nothing happens. By the thread that aims.
     void turn(const Quaternion& orientation) noexcept;
     const Quaternion& turned_to() const noexcept { return aim_.orientation; }

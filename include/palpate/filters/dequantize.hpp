@@ -40,19 +40,19 @@ struct Terraces {
 };
 /// From up to 200,000 samples. Nothing where data have no levels.
 std::optional<Terraces> terraces_of(const Volume& volume);
-/// Why a volume with these terraces is worth dequantizing, in words; empty where it is not.
+/// Why a volume with these terraces is worth dequantizing, in words. Empty where it is not.
 std::string reason_to_dequantize(const Terraces& terraces);
 
 struct DequantizeOptions {
-    /// Rounds of step 1, 1 to most_rounds; coarser steps have their own number. More rounds flatten
+    /// Rounds of step 1, 1 to most_rounds. Coarser steps have their own number. More rounds flatten
     /// the stair steps of masks further, and change little else.
     int rounds = 40;
     /// The coarsest step [samples], a power of two up to greatest_step. Without it, the largest up
     /// to 16 over which half of the surfaces are straight to within the rounding; for masks 4.
     std::optional<int> coarsest = std::nullopt;
-    /// The distance between levels [data units], > 0; without it level_of() the volume.
+    /// The distance between levels [data units], > 0. Without it level_of() the volume.
     std::optional<double> level = std::nullopt;
-    /// Threads at most, and no more than there are cores; 0: as many. The result is the same, bit
+    /// Threads at most, and no more than there are cores. 0: as many. The result is the same, bit
     /// for bit.
     int threads = 0;
     /// Called from the calling thread with the part done, 0 to 1, many times a second. If it
@@ -62,7 +62,7 @@ struct DequantizeOptions {
 
 /// The smoothest samples from which rounding makes the volume's own, as float32: no sample moves by
 /// more than half a level, or beyond the volume's range. Samples beyond the border count as those
-/// on it. Where data have no levels (level_of()), the samples stay what they are.
+/// on it. If data has no levels (level_of()), the samples do not change.
 ///
 /// A round of step s, from the coarsest to 1: b = B u, with B the binomial (1 2 1)/4 along each
 /// axis over neighbours s apart; u = 2b - Bb, kept within half a level of the volume's sample. 2B -

@@ -11,7 +11,7 @@
 
 namespace palpate::filters {
 
-/// The values that occur, ascending; empty for float samples of more than 65536. Those of a volume
+/// The values that occur, ascending. Empty for float samples of more than 65536. Those of a volume
 /// are those of its parts together.
 std::vector<double> values_of(const Volume& volume);
 /// level_of() a volume with these values. `whole_numbers`: its samples are integers.
@@ -48,14 +48,14 @@ struct DequantizePlan {
     bool mask = false;                ///< samples of two values
     std::vector<Rounds> rounds;       ///< in their order
 };
-/// `sites(step)`: those of the whole volume, asked for until the coarsest step is found. Of the
-/// options, rounds and coarsest count. Throws std::invalid_argument as dequantized() does.
+/// `sites(step)`: those of the whole volume, asked for until the coarsest step is found. Uses
+/// the options rounds and coarsest. Throws std::invalid_argument as dequantized() does.
 DequantizePlan plan_of(double level, double minimum, double maximum,
                        const DequantizeOptions& options,
                        const std::function<std::vector<SurfaceSite>(int step)>& sites);
 
 /// Takes `state` (x fastest) through some rounds, on `threads` threads (0: all cores). It begins as
-/// the volume's own samples. Of a part of a volume, samples nearer than Rounds::reach() to a border
+/// the volume's own samples. In a part of a volume, samples nearer than Rounds::reach() to a border
 /// that is not the volume's are wrong afterwards. `at_slice` is called after each slice.
 void run_rounds(const Volume& volume, std::span<float> state, const DequantizePlan& plan,
                 const DequantizePlan::Rounds& rounds, int threads,

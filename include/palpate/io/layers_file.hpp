@@ -13,8 +13,8 @@ namespace palpate::io {
 
 struct LayersFile {
     Layers layers;
-    /// Of levels and of what curves are over: "HU", ...; "%": percent of the data's range. Empty:
-    /// the data's own.
+    /// Unit of the levels and of the curves' axis: "HU", ... "%" is percent of the data's range.
+    /// Empty: the data's own.
     std::string units;
     std::string about;  ///< for people: what it is for, and where its numbers come from
 };

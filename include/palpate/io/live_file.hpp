@@ -23,26 +23,26 @@ struct LiveHeader {
     Geometry geometry;
     SampleType type = SampleType::uint8;
     int slots = 4;                 ///< 2 to 1024
-    double interval = 0;           ///< [s] nominal, from frame to frame; 0: unknown
+    double interval = 0;           ///< [s] nominal, from frame to frame. 0: unknown
     std::uint64_t first_slot = 0;  ///< [bytes] from the file's start, a multiple of 64
     std::uint64_t slot_bytes = 0;  ///< [bytes] from slot to slot, a multiple of 64
 
     std::uint64_t frame_bytes() const;
     std::uint64_t file_bytes() const { return first_slot + slot_bytes * std::uint64_t(slots); }
-    /// Where a frame's slot lies [bytes from the file's start].
+    /// The place of a frame's slot [bytes from the file's start].
     std::uint64_t slot_at(std::uint64_t frame) const {
         return first_slot + slot_bytes * (frame % std::uint64_t(slots));
     }
 };
 
 /// Reads a header and checks it against the size of its file, so that all slots lie in the file.
-/// Throws InputError; its message begins with `name`.
+/// Throws InputError. Its message begins with `name`.
 LiveHeader live_header_from(std::span<const std::byte> bytes, std::uint64_t file_bytes,
                             const std::string& name);
 /// The header as `live_header_bytes` bytes.
 std::vector<std::byte> bytes_of(const LiveHeader& header);
 
-/// Writes frames into such a file; one process at a time. The file appears under its name when it
+/// Writes frames into such a file. One process at a time. The file appears under its name when it
 /// is complete, replaces an older one, and stays when the writer is destroyed.
 class LiveWriter {
   public:
@@ -59,7 +59,7 @@ class LiveWriter {
     /// not rise begins a new sequence. Never waits for a reader. Throws std::invalid_argument for
     /// samples of another size or a time that is not finite.
     void push(std::span<const std::byte> samples, double time);
-    /// The same; the volume must be of the file's geometry and type.
+    /// The same. The volume must be of the file's geometry and type.
     void push(const Volume& volume, double time);
     const LiveHeader& header() const { return header_; }
 
@@ -83,9 +83,9 @@ class LiveReader {
 
     const LiveHeader& header() const { return header_; }
     /// The frames written since the last call, at most the last `most`, complete and in order of
-    /// their numbers; frames that were overwritten meanwhile are missed. Frame::number counts from
+    /// their numbers. Frames that were overwritten meanwhile are missed. Frame::number counts from
     /// the file's first. Throws InputError if the file has become shorter, or a frame's time or
-    /// samples are not finite; the next call continues after that frame.
+    /// samples are not finite. The next call continues after that frame.
     std::vector<Frame> poll(int most = 4);
     std::uint64_t missed() const { return missed_; }
     /// The writer has marked the file as ended.

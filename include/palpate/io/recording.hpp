@@ -67,9 +67,9 @@ class RecordingWriter {
     void step();
     /// Commands before all that is in the queue, and before the servo uses it.
     void begin_with(std::vector<Command> commands);
-    /// Where the servo puts its ticks; room for eight seconds.
+    /// The queue into which the servo puts its ticks. It has room for eight seconds.
     Queue<SessionEvent>& queue() { return queue_; }
-    /// Why nothing is written any more (a full disk); empty while all is well. What was written
+    /// Why nothing is written any more (a full disk). Empty while all is well. What was written
     /// stays. Any thread.
     std::string problem() const;
     /// Ticks on the disk or on their way to it.
@@ -96,7 +96,7 @@ class RecordingWriter {
     std::int64_t written_ = 0;                             // bytes that are whole lines on the disk
     bool seekable_ = false;
     std::atomic<std::int64_t> ticks_{0};
-    mutable std::mutex mutex_;  // of what follows; the servo never comes near
+    mutable std::mutex mutex_;  // of what follows. The servo never comes near
     std::string problem_;
     std::vector<Command> first_;
     std::jthread thread_, syncer_;
@@ -117,7 +117,7 @@ class RecordingReader {
     ~RecordingReader();
 
     const RecordingHead& head() const { return head_; }
-    /// The next event; nothing at the end. Throws InputError for a line that is not valid.
+    /// The next event. Nothing at the end. Throws InputError for a line that is not valid.
     std::optional<SessionEvent> next();
     /// The line of the file that next() gave last, from 1.
     std::size_t line() const;

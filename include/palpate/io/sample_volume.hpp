@@ -10,8 +10,8 @@ namespace palpate::io {
 inline constexpr double sample_volume_skin = 35;
 inline constexpr double sample_volume_bone = 100;
 
-/// Where the file is: in the installed prefix that the running program belongs to, in the source
-/// tree it was built from, or where this library was installed. Throws InputError if it is in none.
+/// Finds the file in the installed prefix of the running program, in the source tree that it was
+/// built from, or in the prefix of this library. Throws InputError if it is in none of them.
 std::filesystem::path sample_volume_path();
 
 }  // namespace palpate::io

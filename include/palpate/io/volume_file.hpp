@@ -31,13 +31,13 @@ struct RawLayout {
 };
 
 struct ReadOptions {
-    /// Read the file as headerless samples, whatever its name; gzip is unpacked.
+    /// Read the file as headerless samples, whatever its name. Gzip is unpacked.
     std::optional<RawLayout> raw;
     /// Used instead of the spacing that the file gives or lacks [mm].
     std::optional<Vec3> spacing;
     /// Which DICOM series: its UID, or its number in the list that the error message gives.
     std::string series;
-    /// Where a series has to be chosen: make pictures of them for SeriesChoice.
+    /// Make pictures for SeriesChoice if a series has to be chosen.
     bool series_pictures = false;
     /// Which volume of a 4-D file, counted from 0.
     int time_step = 0;
@@ -45,7 +45,7 @@ struct ReadOptions {
     /// The program palpate-io-helper. Empty: the environment's PALPATE_IO_HELPER, else it is looked
     /// for as docs/package.md says.
     std::filesystem::path helper;
-    /// Most memory the samples may take [bytes]; 0: what this machine has.
+    /// Most memory the samples may take [bytes]. 0: what this machine has.
     std::uint64_t memory_limit_bytes = 0;
     /// The helper is ended after this long [s], and after as much processor time. 0: by the size of
     /// the file or folder, 600 s (120 s of processor time) and 2 s for each MB.
@@ -59,7 +59,7 @@ struct VolumeFile {
     int time_steps = 1;  ///< how many volumes the file holds
     std::vector<std::string>
         notes;                  ///< one sentence each: conversions, gaps, tilt, missing spacing
-    double frame_interval = 0;  ///< [s] from one volume to the next; 0: the file does not say
+    double frame_interval = 0;  ///< [s] from one volume to the next. 0: the file does not say
     double first_time = 0;      ///< [s] of the first volume
     ValueInfo values = {};
 };
@@ -67,7 +67,7 @@ struct VolumeFile {
 /// Reads a file, or a folder of DICOM or TIFF slices. Physical space is LPS, mm. Samples of uint8,
 /// int16, uint16 and float32 keep their type; int8 becomes int16, anything wider float32, with a
 /// note. Samples that are not finite become the least finite one, with a note.
-/// The volume holds the samples once; nothing else stays in memory.
+/// The volume holds the samples once. Nothing else stays in memory.
 /// Throws InputError, with a message of one line; SeriesChoice for a folder or file with several
 /// DICOM series and none chosen.
 VolumeFile read_volume(const std::filesystem::path& path, const ReadOptions& options = {});
@@ -83,8 +83,8 @@ struct WriteOptions {
 /// Writes one of written_extensions() (io/written_formats.hpp). The file appears under its name
 /// only when it is complete (.nhdr and .mhd: their .raw or .zraw before the header). MetaImage and
 /// VTI keep the geometry to the bit, NRRD to the last bit, NIfTI as 32-bit floats. TIFF, a page a
-/// slice, keeps the spacing as 32-bit floats, as ImageJ describes it; raw keeps none. These two
-/// refuse a volume with an origin or directions. Throws OutputError; the file that was there before
+/// slice, keeps the spacing as 32-bit floats, as ImageJ describes it. Raw keeps none. These two
+/// refuse a volume with an origin or directions. Throws OutputError. The file that was there before
 /// is then unchanged.
 void write_volume(const Volume& volume, const std::filesystem::path& path,
                   const WriteOptions& options = {});

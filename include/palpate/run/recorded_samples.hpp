@@ -12,10 +12,10 @@
 
 namespace palpate::run {
 
-/// Reads the frames of a sequence; null for a volume that is none.
+/// Reads the frames of a sequence. Null for a volume that is none.
 std::function<Volume(int)> frames_of(const LoadedVolume& loaded);
 
-/// Reads a large grid; both null for other data.
+/// Reads a large grid. Both null for other data.
 struct GridReader {
     std::function<ResidentBrick(const Index3& brick, int level)> brick;  ///< of a level of detail
     ReadSamples box;  ///< of the level felt, before all edits
@@ -26,7 +26,7 @@ GridReader grid_of(const LoadedVolume& loaded, std::function<void()> tell = {});
 class RecordedSamples {
   public:
     /// `start`: the samples at the start of the recording. `frame` reads a frame of the sequence
-    /// and may throw; null for data that are no sequence.
+    /// and may throw. Null for data that are no sequence.
     explicit RecordedSamples(std::shared_ptr<const Samples> start,
                              std::function<Volume(int)> frame = {}, GridReader grid = {});
 
@@ -34,8 +34,8 @@ class RecordedSamples {
     /// std::invalid_argument for samples that cannot be made again, and as check(Edit) does.
     Command whole(const Command& recorded);
 
-    /// The samples of a version that was made before; those of the start for an unknown version; of
-    /// a sequence the last frames; of a large grid without any brick, with the edits that it had.
+    /// The samples of a version that was made before, or those of the start for an unknown version.
+    /// For a sequence the last frames, for a large grid no brick, but the edits that it had.
     /// Repeats at most fifteen edits.
     std::shared_ptr<const Samples> of(std::uint64_t version);
 
@@ -65,7 +65,7 @@ class RecordedSamples {
     std::map<int, Volume> read_;  // frames of the last window
     std::shared_ptr<const Samples> frames_;
     GridReader grid_;
-    // Of a large grid: what is in memory now, the edits now, and those of each version of bricks.
+    // For a large grid: the bricks in memory, the edits now, and those of each version of bricks.
     std::optional<ResidentBricks> bricks_;
     std::uint64_t bricks_version_ = 0, edits_version_ = 0;
     std::map<std::uint64_t, std::uint64_t> edits_at_;

@@ -1,5 +1,5 @@
 // How to feel a volume: which level and side of it, how forces are rendered, through which device.
-// One plain value; what is not given depends on volume and device and is filled in when they are
+// One plain value. What is not given depends on volume and device and is filled in when they are
 // known.
 #pragma once
 
@@ -23,7 +23,7 @@ namespace palpate::run {
 
 struct FieldSetup {
     Solid solid = Solid::above;
-    std::optional<io::Level> background;  ///< outside the data; nothing: as Field has it
+    std::optional<io::Level> background;  ///< outside the data. Nothing: as Field has it
     std::optional<io::Level> isovalue;    ///< nothing: the volume's own or a suggested one
     /// Nothing: cubic, but linear for the methods that are made for it (paper and the gradients).
     std::optional<Interpolation> interpolation;
@@ -31,7 +31,7 @@ struct FieldSetup {
 
 struct ThresholdSetup {
     double threshold = 1;              ///< PT [device mm]
-    std::optional<io::Level> minimum;  ///< least level felt; nothing: the isovalue
+    std::optional<io::Level> minimum;  ///< least level felt. Nothing: the isovalue
 };
 struct LevelRange {
     io::Level low, high;
@@ -48,20 +48,20 @@ struct RenderSetup {
     PenetrabilitySetup penetrability;
     std::optional<io::LayersFile> layers;
     io::ToolSpec tool;                   ///< a point
-    std::optional<double> tool_spacing;  ///< of its points [mm]; nothing: half a voxel
+    std::optional<double> tool_spacing;  ///< of its points [mm]. Nothing: half a voxel
     std::optional<Friction> friction;
     ForceSettings force;          ///< `limit` and `stiffness` only where the next two are absent
     std::optional<double> limit;  ///< [N] nothing: the device's
     std::optional<double> stiffness;  ///< [N/mm] nothing: at most what the device is rated for
     std::optional<int> step_budget;   ///< nothing: ProxySettings', less above 1 kHz
-    std::optional<double> scale;      ///< physical mm per device mm; nothing: fits the workspace
+    std::optional<double> scale;      ///< physical mm per device mm. Nothing: fits the workspace
     std::optional<double> rate;       ///< [Hz] nothing: rate_of()
 };
 
-/// Of a loop without a device that says otherwise [Hz].
+/// Rate of a loop whose device does not ask for another one [Hz].
 inline constexpr double usual_rate = 1000;
-/// Of the loop with this device [Hz]: what was asked for; else the usual rate, or 250 with a device
-/// that renders no force, where a quarter of the work shows the same (springs up to 1.2 N/mm).
+/// Rate of the loop with this device [Hz]: the requested one, else the usual one. 250 with a device
+/// that renders no force, which shows the same with a quarter of the work (springs up to 1.2 N/mm).
 double rate_of(const RenderSetup& setup, const DeviceInfo& device);
 
 /// A button of the device, by its number from 1.
@@ -74,11 +74,11 @@ struct UsualButton {};
 using ButtonSetup = std::variant<std::monostate, UsualButton, Button>;
 
 struct PlaybackSetup {
-    double speed = 1;           ///< of a sequence, from the start; 0: it stands still
+    double speed = 1;           ///< of a sequence, from the start. 0: it stands still
     io::LoaderSettings loader;  ///< memory for frames, and whether the sequence loops
 };
 
-/// Opens the device of this name; throws as devices::open_device() does.
+/// Opens the device of this name. Throws as devices::open_device() does.
 using OpenDevice = std::function<std::unique_ptr<Device>(const devices::DeviceChoice& choice,
                                                          const devices::DeviceScene& scene)>;
 

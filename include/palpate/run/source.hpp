@@ -21,7 +21,7 @@ struct FileSource {
     std::string path;
     std::optional<io::RawLayout> raw;  ///< of a file without a header
     std::optional<Vec3> spacing;       ///< [mm] instead of what the file gives or lacks
-    std::string series;                ///< DICOM series: UID or number; empty: the only one
+    std::string series;                ///< DICOM series: UID or number. Empty: the only one
 };
 /// A volume that scenes::make_volume() makes.
 struct SyntheticSource {
@@ -50,7 +50,7 @@ struct Source {
     std::optional<int> frame;              ///< of a sequence this one alone, from 0
     std::optional<double> frame_interval;  ///< [s] instead of what the file gives or lacks
     int smooth = 0;                        ///< passes of the binomial kernel, see smoothed()
-    int dequantize = 0;      ///< before that: rounds, see filters::dequantized(); 0: none
+    int dequantize = 0;      ///< before that: rounds, see filters::dequantized(). 0: none
     bool prefilter = false;  ///< after all that, see sharpened()
 };
 
@@ -61,12 +61,12 @@ std::string name_of(const Source& source);
 /// The inverse, with everything else as its default.
 Source source_named(const std::string& name);
 
-/// The names and values under which recordings and session files keep a source: "volume" is its
-/// name, the others are "dims", "type", "spacing", "skip", "byte-order", "series", "time-step",
+/// The names and values under which recordings and session files keep a source. "volume" is its
+/// name. The others are "dims", "type", "spacing", "skip", "byte-order", "series", "time-step",
 /// "level", "channel", "memory" [bytes, of the process], "coarse-first", "all-times",
-/// "forbidden-is-missing", "frame-interval", "smooth", "dequantize" and "prefilter". What was not
-/// given is left out; so is a cache, which is of one machine. Web addresses are without password
-/// and query (io::address_to_keep()); if they had one, "secrets" says "left out".
+/// "forbidden-is-missing", "frame-interval", "smooth", "dequantize" and "prefilter". Missing
+/// options are left out, and so is a cache, which is local. Web addresses are without password
+/// and query (io::address_to_keep()). If they had one, "secrets" says "left out".
 std::map<std::string, std::string> to_names(const Source& source);
 /// The inverse. Unknown names are ignored, numbers that cannot be read count as not given. Throws
 /// std::invalid_argument for a layout that cannot be, and for values that this kind of source does
@@ -77,13 +77,13 @@ Source source_from(const std::map<std::string, std::string>& names);
 struct StreamedVolume {
     std::shared_ptr<const stream::Store> store;
     stream::BrickLoaderSettings loader;
-    stream::Opened opened = {};  ///< an absolute address; its content if it is on this machine
+    stream::Opened opened = {};  ///< an absolute address. Its content if it is on this machine
 };
 
 /// A volume and what is known about it.
 struct LoadedVolume {
-    /// Of a sequence its first frame, of a live source the frame it began with, of a store its
-    /// overview.
+    /// The volume. For a sequence its first frame, for a live source the frame that it began with,
+    /// for a store its overview.
     Volume volume;
     Source source;
     std::string name;

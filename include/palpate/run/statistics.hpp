@@ -9,9 +9,9 @@
 
 namespace palpate::run {
 
-/// The value of samples that were not measured (outside a scanner's circle, -2000 in many CT), if
-/// there are such [data units]: the least one, if it lies below 0 and either the header says so or
-/// a thousandth of the samples have it, a tenth of what the others span below the next.
+/// The value [data units] of samples that were not measured (outside a scanner's circle, -2000 in
+/// many CT). It is the least value, if it lies below 0 and the header says so. Otherwise a
+/// thousandth of the samples must have it, a tenth of the others' range below the next value.
 std::optional<double> padding_of(const Volume& volume, std::optional<double> header = {});
 
 struct Histogram {
@@ -19,18 +19,18 @@ struct Histogram {
     std::vector<std::int64_t> counts;
     double mean = 0, deviation = 0;  ///< of the samples [data units]
     bool whole_numbers = false;      ///< each bin holds (high - low) / bins whole numbers
-    double greatest = 0;             ///< of the samples; the last bin may end above it
+    double greatest = 0;             ///< of the samples. The last bin may end above it
 };
 
-/// Of the samples that are not padding.
+/// The histogram of the samples that are not padding.
 Histogram histogram_of(const Volume& volume, int bins, std::optional<double> padding = {});
 
-/// Of the gradient's magnitude [data units / mm] at some of the samples, spread evenly: from 0 to
-/// the greatest (to 1 in constant data); without mean and deviation.
+/// The histogram of the gradient's magnitude [data units / mm] at some samples, spread evenly: from
+/// 0 to the greatest (to 1 in constant data). It has no mean and no deviation.
 Histogram gradients_of(const Volume& volume, int bins);
 
 /// Two levels between the three classes that explain most of the variance (Otsu 1979, three
-/// classes); fewer for data with fewer values. In CT of a head: skin and bone. The best is first:
+/// classes). Fewer for data with fewer values. In CT of a head: skin and bone. The best is first:
 /// the lower one, unless it bounds what an object was put into (resin, gel).
 std::vector<double> suggested_isovalues(const Histogram& histogram);
 

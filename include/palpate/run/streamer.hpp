@@ -19,13 +19,13 @@ namespace palpate::run {
 /// Any thread may call any function.
 class Streamer {
   public:
-    /// Of a volume with a store. Throws std::invalid_argument as stream::BrickLoader.
+    /// Streams a volume with a store. Throws std::invalid_argument as stream::BrickLoader.
     explicit Streamer(const LoadedVolume& loaded, Pace pace = Pace::own_thread);
     ~Streamer();
     Streamer(const Streamer&) = delete;
     Streamer& operator=(const Streamer&) = delete;
 
-    /// Follows the hands and sends what has come; its thread calls this every 5 ms.
+    /// Follows the hands and sends what has come. Its thread calls this every 5 ms.
     void step(std::chrono::steady_clock::time_point now);
     /// Starts a servo with what is in memory and keeps it up to date until detach(). `edits`: what
     /// a recording needs of them before its first tick (StartServo). What `start` throws is passed
@@ -35,7 +35,7 @@ class Streamer {
     void detach(const Servo& servo);
     /// As VolumeEditor::record().
     void record(const Servo& servo, const BeginRecording& begin, std::vector<Command> edits);
-    /// The number for the next edit; those of bricks and edits are of one row.
+    /// The number for the next edit. Those of bricks and edits are of one row.
     std::uint64_t next_version() const;
     /// From now on these edits are felt; `edits.samples` has no bricks in memory. A servo that
     /// takes no commands at the moment gets them later.

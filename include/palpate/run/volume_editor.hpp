@@ -26,7 +26,7 @@ struct EditState {
     std::uint64_t version = 0;  ///< as snapshots tell it
     std::size_t undo_steps = 0, redo_steps = 0;
     bool changed = false;      ///< since the start, or since they were saved
-    std::string problem = {};  ///< why the brush does nothing although it touches; usually empty
+    std::string problem = {};  ///< why the brush does nothing although it touches. Usually empty
 };
 
 /// Starts a servo with this session, which has the newest data. `history` is what a recording needs
@@ -52,8 +52,8 @@ class VolumeEditor {
     /// `most_versions`: of which it is known how they were made.
     explicit VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace = Pace::own_thread,
                           std::size_t most_versions = usual_versions);
-    /// Of a volume that is read as it is felt: an edit waits for the samples that it changes. Edits
-    /// take at most a quarter of `memory` [bytes] and what undo() needs an eighth. `streamer`
+    /// Edits a streamed volume: an edit waits for the samples that it changes. Edits take at most a
+    /// quarter of `memory` [bytes], and undo() an eighth. `streamer`
     /// outlives this and sends the versions; `samples` are those without any brick.
     VolumeEditor(std::shared_ptr<const Samples> samples, Streamer& streamer, std::uint64_t memory,
                  Pace pace = Pace::own_thread);
@@ -61,20 +61,20 @@ class VolumeEditor {
     VolumeEditor(const VolumeEditor&) = delete;
     VolumeEditor& operator=(const VolumeEditor&) = delete;
 
-    /// Works with the brush where it touches; its thread calls this every 4 ms while there is one.
+    /// Works with the brush where it touches. Its thread calls this every 4 ms while there is one.
     void step(std::chrono::steady_clock::time_point now);
     /// Starts a servo with the samples as they are and keeps it up to date until detach(): no edit
-    /// is lost in between. Edits wait for `start` to return; what it throws is passed on.
+    /// is lost in between. Edits wait for `start` to return. What it throws is passed on.
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     /// For a servo that is not attached: nothing.
     void detach(const Servo& servo);
     /// For an attached servo. Throws std::runtime_error, and does not begin, if it takes no
     /// commands.
     void record(const Servo& servo, const BeginRecording& begin);
-    /// What this servo feels with from now on; null: a point. For one that is not attached:
+    /// What this servo feels with from now on. Null: a point. For one that is not attached:
     /// nothing.
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
-    /// The brush of every attached servo; nothing: the hand only feels. Throws as check().
+    /// The brush of every attached servo. Nothing: the hand only feels. Throws as check().
     void set_brush(const std::optional<HandBrush>& brush);
     /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does and for
     /// one that takes more memory than there is, std::runtime_error for a servo that takes no
@@ -92,7 +92,7 @@ class VolumeEditor {
     void set_saved(const std::shared_ptr<const Samples>& samples);
 
   private:
-    /// Where the proxy was when it was last seen in contact.
+    /// The proxy when it was last seen in contact.
     struct Touch {
         Pose at;          ///< of the tool; of a point its place
         double time = 0;  ///< [s] of the session
@@ -151,7 +151,7 @@ class VolumeEditor {
     bool new_step_ = true;  // the next change by a brush begins a step for undo
     std::chrono::steady_clock::time_point last_change_;  // by a brush
     std::string problem_;
-    std::vector<Version> versions_;  // in order; the first has number 0
+    std::vector<Version> versions_;  // in order. The first has number 0
     std::uint64_t last_version_ = 0;
     const std::size_t most_versions_;
     std::size_t forget_at_;  // so many versions

@@ -1,5 +1,5 @@
 // Deterministic motions of a hand over any field: they look for the surface themselves.
-// Shared by tests, benchmarks, evaluation and demo; the core only. See docs/scenes.md.
+// Shared by tests, benchmarks, evaluation and demo. The core only. See docs/scenes.md.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@
 namespace palpate::scenes {
 
 struct MotionSettings {
-    double rate_hz = 1000;   ///< samples a second; the device's rate
+    double rate_hz = 1000;   ///< samples per second. The device's rate
     double duration_s = 10;  ///< t runs from 0 to this
-    double speed_mm_s = 50;  ///< never above it (but for random); 50 is a hand at ease
+    double speed_mm_s = 50;  ///< never above it (but for random). 50 is a hand at ease
     double depth_mm = 2;     ///< how deep the hand presses below the surface, >= 0
     std::uint64_t seed = 1;  ///< where from, which way, in which order
 };
@@ -32,8 +32,8 @@ std::vector<std::string> motion_names();
 ///
 /// Speed: no step is longer than speed_mm_s / rate_hz, and position and velocity are continuous;
 /// only `random` jumps. Depth: along the surface's normal, as far as the field shows one.
-/// Where no surface is found (isovalue beyond the data) the hand moves about the grid's centre.
-/// A motion needs about 0.2 s + depth_mm / speed_mm_s before it is at depth; a shorter one ends
+/// If no surface is found (isovalue beyond the data), the hand moves around the grid's centre.
+/// A motion needs about 0.2 s + depth_mm / speed_mm_s before it is at depth. A shorter one ends
 /// on its way.
 /// Same arguments, same bits, on every compiler (no libm beyond sqrt).
 /// `progress` is called all the time with the part that is done, and may throw to stop.

@@ -27,8 +27,8 @@ struct DetailBox {
     bool operator==(const DetailBox&) const = default;
 };
 
-/// The samples of such a box, as far as they have come. Where pieces of it are missing, the samples
-/// are interpolated from a coarser box that was read before, or from the overview.
+/// The samples of such a box, as far as they are loaded. Missing pieces are interpolated from a
+/// coarser box that was read before, or from the overview.
 struct Detail {
     DetailBox of;
     Volume volume;            ///< of the box alone, in its place in space
@@ -40,7 +40,7 @@ struct Detail {
 struct DetailSettings {
     std::uint64_t memory = std::uint64_t{1} << 27;  ///< [bytes] most that decoded pieces take
     int threads = 6;                                ///< that read at a time
-    /// How many pieces may be read at a time now; asked often, by any thread. Empty: as many as
+    /// How many pieces may be read at a time now. Asked often, by any thread. Empty: as many as
     /// there are threads.
     std::function<int()> most_at_a_time = {};
     /// What each thread does first, for example to lower its priority.
@@ -53,7 +53,7 @@ struct DetailStatus {
     std::size_t coming = 0;   ///< of these, being read
     std::size_t failed = 0;   ///< of these, tried again later
     std::uint64_t bytes = 0;  ///< that decoded pieces take
-    std::string problem;      ///< why pieces do not come; usually empty
+    std::string problem;      ///< why pieces do not come. Usually empty
 };
 
 /// Any thread may call any function.
@@ -87,7 +87,7 @@ class DetailReader {
     struct Work;
     struct Job {
         std::shared_ptr<Work> work;
-        Piece* piece = nullptr;  ///< to read; null: the work is to be published
+        Piece* piece = nullptr;  ///< to read. Null: the work is to be published
         bool asks = false;       ///< disk or network
     };
 

@@ -16,8 +16,8 @@ namespace palpate::stream {
 
 class GrowingImage {
   public:
-    /// Touches no file. Of the options, those of the format count. `temporary`: how names of files
-    /// end while they are written; processes that may write the same chunk at the same time (one of
+    /// Touches no file. Uses the options of the format only. `temporary`: how names of files
+    /// end while they are written. Processes that may write the same chunk at the same time (one of
     /// them taken for dead) need different ones. Throws std::invalid_argument for options.
     GrowingImage(std::filesystem::path folder, SampleType type, const Geometry& finest,
                  const ConvertOptions& options, std::string temporary = ".part");
@@ -33,13 +33,13 @@ class GrowingImage {
     /// The samples of a chunk that lie in the grid.
     SampleBox box(int level, const Index3& chunk) const;
 
-    /// Of all levels: needed before anything is read. `range` of the finest level, once it is
-    /// known. Throws io::OutputError, like all that writes here.
+    /// Writes the metadata of all levels, which readers need first. `range` of the finest level, if
+    /// it is known. Throws io::OutputError, like all that writes here.
     void write_metadata(const std::optional<Range>& range) const;
     /// The samples of box(level, chunk), x fastest. Read back and compared. False: all are 0, and
     /// the chunk is not stored.
     bool write(int level, const Index3& chunk, std::span<const std::byte> samples) const;
-    /// What was written before; nothing if it is not there or not whole.
+    /// What was written before. Nothing if it is not there or not whole.
     std::optional<std::vector<std::byte>> written(int level, const Index3& chunk) const;
     /// Chunks of all levels that are stored.
     std::uint64_t stored_chunks() const;

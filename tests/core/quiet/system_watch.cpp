@@ -1,4 +1,4 @@
-// Replaces pthread_mutex_lock, pthread_cond_wait and __cxa_throw in this program; a kernel filter
+// Replaces pthread_mutex_lock, pthread_cond_wait and __cxa_throw in this program. A kernel filter
 // catches system calls.
 #include "core/quiet/system_watch.hpp"
 

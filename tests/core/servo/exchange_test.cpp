@@ -1,4 +1,4 @@
-// Values passed between threads arrive whole, in order and once; or only the newest.
+// Values passed between threads arrive whole, in order and once, or only the newest.
 #include "palpate/exchange.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the Inverse Service would say, for the tests.
+// Messages of the Inverse Service, for the tests.
 #pragma once
 
 #include <string>

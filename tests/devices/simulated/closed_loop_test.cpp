@@ -1,4 +1,4 @@
-// The whole loop, hand, device and renderer: what a person would feel when they press and hold.
+// The whole loop of hand, device and renderer, for a person who presses and holds.
 #include "devices/simulated/closed_loop.hpp"
 
 #include <gtest/gtest.h>

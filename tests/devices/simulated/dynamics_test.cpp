@@ -1,4 +1,4 @@
-// The physics of the simulated device against what is known of it in closed form.
+// The physics of the simulated device against closed forms.
 #include "devices/simulated/dynamics.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What spacenavd says, and what becomes of it.
+// The messages of spacenavd, and the motion that follows from them.
 #include "devices/spacenav/puck.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What ITK reads from a volume file, as plain numbers. No ITK type is visible here.
+// The result of ITK for a volume file, as plain numbers. No ITK type is visible here.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Where a click meets the surface, and the way there.
+// The point at which a click meets the surface, and the way there.
 #include "apps/viewer/model/probe_route.hpp"
 
 #include <gtest/gtest.h>
