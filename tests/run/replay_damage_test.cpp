@@ -16,7 +16,8 @@ namespace {
 
 constexpr const char* sphere = "synthetic:sphere:9x9x9";
 
-/// A hand that presses into the sphere, with commands of every kind that is recorded by itself.
+/// A hand that presses into the sphere, from the middle of a session on, with commands of every
+/// kind that is recorded by itself.
 std::string recording(const LoadedVolume& loaded) {
     const support::ScratchFolder folder;
     io::RecordingHead head;
@@ -39,16 +40,23 @@ std::string recording(const LoadedVolume& loaded) {
                                         Friction{0.5, 0.25},
                                         penetrability_threshold(1, 60),
                                         DeviceLimits{2, 1000, 0.0025}};
+    const auto tick = [&](int i) {
+        DeviceReading reading;
+        reading.status = DeviceStatus::ready;
+        reading.position = Vec3(0.05 * i, 4, 4);
+        return advance(session, 1e-3 * i, reading);
+    };
+    for (int i = -30; i < 0; ++i) (void)tick(i);
+    const auto point = std::make_shared<SessionPoint>();
+    halt(session, *point);
+    writer.queue().push(Command(command::Resume{point}));
     for (int i = 0; i < 65; ++i) {
         if (i % 5 == 4) {
             const Command& command = commands[static_cast<std::size_t>(i / 5)];
             apply(session, command);
             writer.queue().push(command);
         }
-        DeviceReading reading;
-        reading.status = DeviceStatus::ready;
-        reading.position = Vec3(0.05 * i, 4, 4);
-        writer.queue().push(advance(session, 1e-3 * i, reading));
+        writer.queue().push(tick(i));
     }
     writer.finish(0);
     return support::bytes_of(folder / "r.csv");
