@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "proxy/update.hpp"
+#include "reach.hpp"
+#include "tool_proxy/kept.hpp"
 
 namespace palpate {
 namespace {
@@ -196,8 +198,8 @@ ToolUpdate move_tool(Renderer& renderer, const Pose& hand, const ToolSettings& a
         !is_resident(renderer.field, from.position, update.searched + proxy.tool().radius())) {
         proxy.pose = update.proxy = from;
         proxy.contact_count = 0;
-        proxy.kept.inside = true;
-        proxy.kept.search = 0;
+        proxy.kept().inside = true;
+        proxy.kept().search = 0;
         update.status = UpdateStatus::waiting;
     }
     if (part < 1 && update.mode == Mode::free && counts(update.status)) {
@@ -394,7 +396,7 @@ void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
         point.scp_physical = proxy->pose.position;
         put_on_lattice(point, renderer.field);
         renderer.proxy = point;
-        proxy->kept.surroundings.samples.reset();  // nobody feels them
+        proxy->kept().surroundings.samples.reset();  // nobody feels them
     }
     settings.tool = std::move(tool);
     renderer.force.waiting = true;

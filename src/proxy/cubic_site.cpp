@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proxy/kept_samples.hpp"
 #include "proxy/straight.hpp"
 
 namespace palpate {
@@ -95,7 +96,7 @@ CubicSite::CubicSite(const Proxy& proxy, const Field& f, const LatticePoint& at)
     made = kept.isovalue == isovalue && kept.sign == sign &&
            same_frame(kept.tetrahedron, at.tetrahedron) &&
            visit_cube([&](const auto* centre, auto row, auto slice) {
-               return proxy.kept_samples.are(centre, row, slice);
+               return Kept::are(proxy.kept_samples, centre, row, slice);
            });
     if (!made || is_layer() || kept.most == std::numeric_limits<double>::infinity()) look_at_cube();
 }
@@ -123,7 +124,7 @@ void CubicSite::keep(Proxy& proxy) {
     if (!made || !kept_is_new) return;
     proxy.kept = kept;
     visit_cube([&](const auto* centre, auto row, auto slice) {
-        proxy.kept_samples.keep(centre, row, slice);
+        Kept::keep(proxy.kept_samples, centre, row, slice);
     });
 }
 

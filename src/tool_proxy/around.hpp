@@ -2,8 +2,8 @@
 // certainly go.
 #pragma once
 
-#include "palpate/tool_proxy.hpp"
 #include "proxy/cubic_site.hpp"
+#include "tool_proxy/kept.hpp"
 
 namespace palpate::tool {
 

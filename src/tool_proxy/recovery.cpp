@@ -106,12 +106,12 @@ Vec3 place_of_search(int n, double voxel) {
 }  // namespace
 
 double searched_so_far(const ToolProxy& proxy, const Around& around) {
-    const int next = proxy.kept.search;
+    const int next = proxy.kept().search;
     return next > 0 ? place_of_search(next - 1, around.shortest()).norm() : 0;
 }
 
 bool recover(ToolProxy& proxy, Around& around, PoseObserver observer) {
-    int& search = proxy.kept.search;
+    int& search = proxy.kept().search;
     if (search == 0) {
         if (is_free(proxy, proxy.pose, around)) return true;
         proxy.contact_count = 0;

@@ -84,10 +84,10 @@ class Rounds {
             const double least = 2e-9 * voxel_ * std::max(std::sqrt(before), 1e-9 * voxel_);
             if (before - after > least) {
                 failures = 0;
-                proxy_.kept.trust = std::min(1.0, 2 * proxy_.kept.trust);
+                proxy_.kept().trust = std::min(1.0, 2 * proxy_.kept().trust);
                 continue;
             }
-            proxy_.kept.trust = std::max(1e-4, 0.25 * proxy_.kept.trust);
+            proxy_.kept().trust = std::max(1e-4, 0.25 * proxy_.kept().trust);
             if (added_ > 0) {  // a new contact is news; it shares in the friction
                 is_at_hand();
                 continue;
@@ -95,8 +95,8 @@ class Rounds {
             if (++failures > most_failures) break;
         }
         if (around_.is_exhausted()) {
-            proxy_.kept.trust = std::max(1e-3, 0.5 * proxy_.kept.trust);
-            proxy_.kept.stride = std::max(1e-2, 0.25 * proxy_.kept.stride);
+            proxy_.kept().trust = std::max(1e-3, 0.5 * proxy_.kept().trust);
+            proxy_.kept().stride = std::max(1e-2, 0.25 * proxy_.kept().stride);
         }
         proxy_.mode = proxy_.contact_count > 0 ? Mode::constrained : Mode::free;
         return UpdateStatus::out_of_budget;
@@ -168,7 +168,7 @@ class Rounds {
         int kept = 0;
         for (int i = 0; i < proxy_.contact_count; ++i) {
             ToolContact contact = proxy_.contacts[i];
-            int idle = proxy_.kept.idle[i];
+            int idle = proxy_.kept().idle[i];
             contact.place = physical_from_tool(proxy_.pose, proxy_.tool().points()[contact.point]);
             const Around::Expansion at = around_.expand(contact.place);
             const double slope = std::sqrt(dot(at.gradient, at.gradient));
@@ -181,7 +181,7 @@ class Rounds {
                               at.hessian / slope, gap, gap > 0 ? -gap : -1.5 * gap};
             rows_[kept] = {row_of(touches_[kept].arm, contact.normal), touches_[kept].bound};
             proxy_.contacts[kept] = contact;
-            proxy_.kept.idle[kept] = idle;
+            proxy_.kept().idle[kept] = idle;
             ++kept;
         }
         proxy_.contact_count = kept;
@@ -202,7 +202,7 @@ class Rounds {
             else
                 ++proxy_.contact_count;
             proxy_.contacts[at] = {.point = point};
-            proxy_.kept.idle[at] = 0;
+            proxy_.kept().idle[at] = 0;
             ++added_;
         }
     }
@@ -210,7 +210,7 @@ class Rounds {
     int least_needed() const {
         int least = 0;
         for (int i = 1; i < most_tool_contacts; ++i) {
-            if (proxy_.kept.idle[i] > proxy_.kept.idle[least]) least = i;
+            if (proxy_.kept().idle[i] > proxy_.kept().idle[least]) least = i;
         }
         return least;
     }
@@ -228,21 +228,21 @@ class Rounds {
         added_ = 0;
         const Split s = split(pull_);
         const double angle = s.w.norm();
-        const double far = s.v.norm() + angle * reach_, stride = proxy_.kept.stride * voxel_;
+        const double far = s.v.norm() + angle * reach_, stride = proxy_.kept().stride * voxel_;
         double share = far > stride ? stride / far : 1;
         if (angle * share > most_angle_) share = most_angle_ / angle;
         Pose end = target_;
         if (!turns()) end.orientation = proxy_.pose.orientation;
         const bool whole = share == 1;
         const double part = go(pull_ * share, whole ? &end : nullptr);
-        if (part == 1) proxy_.kept.stride = std::min(longest_stride, 2 * proxy_.kept.stride);
+        if (part == 1) proxy_.kept().stride = std::min(longest_stride, 2 * proxy_.kept().stride);
         return part == 1 && whole;
     }
 
     /// No longer than the trust, in translation and at the farthest point, and no more of a turn
     /// than chords allow.
     double share_of(const Six& step) const {
-        const double trust = proxy_.kept.trust * voxel_;
+        const double trust = proxy_.kept().trust * voxel_;
         const Split s = split(step);
         const double v = s.v.norm(), w = s.w.norm();
         double share = 1;
@@ -276,7 +276,7 @@ class Rounds {
         for (int i = 0; i < count; ++i) {
             proxy_.contacts[i].pressure = flat.multiplier[i];
             if (!(flat.multiplier[i] > 0)) continue;
-            proxy_.kept.idle[i] = 0;
+            proxy_.kept().idle[i] = 0;
             pressing = std::max(pressing, std::abs(touches_[i].gap));
         }
         const double pull = std::sqrt(dot(pull_, pull_));
@@ -423,6 +423,16 @@ bool accepts(const Tool& tool, const Field& field, double isovalue, const Pose& 
 }
 
 }  // namespace
+
+Keeper::Keeper() : kept_(std::make_unique<Kept>()) {}
+Keeper::Keeper(const Keeper& other) : kept_(std::make_unique<Kept>(*other)) {}
+Keeper::Keeper(Keeper&&) noexcept = default;
+Keeper& Keeper::operator=(Keeper other) noexcept {
+    kept_ = std::move(other.kept_);
+    return *this;
+}
+Keeper::~Keeper() = default;
+
 }  // namespace tool
 
 ToolProxy::ToolProxy(std::shared_ptr<const Tool> tool) {
@@ -431,6 +441,7 @@ ToolProxy::ToolProxy(std::shared_ptr<const Tool> tool) {
 }
 
 void ToolProxy::make_room(std::size_t points) {
+    tool::Kept& kept = *kept_;
     const std::size_t room = std::max(points, kept.arms.size());
     kept.arms.resize(room);
     kept.expiry.resize(room);
@@ -439,6 +450,7 @@ void ToolProxy::make_room(std::size_t points) {
 
 bool ToolProxy::use(std::shared_ptr<const Tool> tool) noexcept {
     const auto points = tool->points();
+    tool::Kept& kept = *kept_;
     if (points.size() > kept.arms.size()) return false;
     std::ranges::transform(points, kept.arms.begin(), [](const Vec3& p) { return p.norm(); });
     contact_count = 0;
@@ -457,7 +469,7 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
     }
     // What is unit to all digits stays as it is, to the bit.
     if (std::abs(turn.squaredNorm() - 1) > 1e-14) turn.normalize();
-    ToolProxy::Kept& kept = proxy.kept;
+    tool::Kept& kept = proxy.kept();
     const int budget = settings.work_budget + static_cast<int>(proxy.tool().points().size());
     tool::Around around(field, proxy.isovalue, kept.surroundings, budget);
     const bool others = tool::renew(kept.surroundings, field) || !proxy.placed ||

@@ -3,10 +3,11 @@
 // Ruspini et al. 1997): the intersection of their free sides, where the free space is the union.
 #include <cmath>
 
+#include "palpate/baselines/methods.hpp"
 #include "proxy/cone.hpp"
 #include "proxy/update.hpp"
 
-namespace palpate {
+namespace palpate::baselines {
 namespace {
 
 /// The constraint planes of every tetrahedron that contains the SCP, normals in mm, index axes.
@@ -91,4 +92,4 @@ ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
     return finish_update(proxy, update, hip, Rest::out_of_budget);
 }
 
-}  // namespace palpate
+}  // namespace palpate::baselines
