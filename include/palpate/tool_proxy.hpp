@@ -19,9 +19,10 @@ struct ToolSettings {
     /// Most rounds of an update: each finds a direction and goes along it. An update that finds no
     /// way on before it is at rest ends as one that is out of budget.
     int most_rounds = 60;
-    /// Most work of an update, in cubes of the lattice looked at, 0.15 microseconds each; one for
-    /// each point of the tool comes on top. Later updates finish what is left. A thousand points
-    /// take 0.8 ms at most; faster loops need a smaller budget.
+    /// Most work of an update: cubes of the lattice looked at, 0.15 microseconds each, and all else
+    /// that takes as long. One for each point of the tool comes on top, two while it is brought out
+    /// of the solid. Later updates finish what is left. A thousand points take 0.8 ms at most;
+    /// faster loops need a smaller budget.
     int work_budget = 4096;
     /// [mm] in place of the tool's own; 0: that.
     double gyration = 0;
@@ -43,7 +44,7 @@ struct ToolUpdate {
     Pose proxy;        ///< the same to the bit where it was reached
     int contacts = 0;  ///< how many points hold the proxy
     int rounds = 0;
-    int work = 0;  ///< cubes looked at
+    int work = 0;  ///< of the work budget
     /// [mm] How far from its pose recovery has looked for free space for the reference point.
     double searched = 0;
 };

@@ -87,8 +87,7 @@ struct CubicSite {
     void cross(unsigned wall);
 
   private:
-    friend WalkEnd walk(CubicSite& site, const Vec3& displacement, double level,
-                        Progress& progress);
+    friend struct CubicCourse;
     /// advance(), for the one caller that spends its time there.
     double advance_inlined(const Vec3& step, double level, unsigned walls);
     void exchange_levels();

@@ -48,7 +48,12 @@ struct Kept {
     double isovalue = 0;
     bool renewed = true;  ///< the tool is another one
     bool inside = false;  ///< recovery goes on
-    int search = 0;       ///< place that it looks at next; 0: it pushes
+    /// Recovery so far.
+    struct Recovery {
+        int pushes = 0;
+        double push = 1;  ///< how far they go, as a share of the longest
+        int search = 0;   ///< place that it looks at next; 0: it pushes
+    } recovery;
 };
 
 }  // namespace palpate::tool

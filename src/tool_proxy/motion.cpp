@@ -23,6 +23,7 @@ double Motion::go(const Vec3& translation, const Vec3& rotation, const Pose* exa
     hit_count = 0;
     Kept& kept = proxy.kept();
     const auto points = proxy.tool().points();
+    around.spend(1 + static_cast<int>(points.size()) / 64);  // to pass over those with clearance
     const double far = std::sqrt(dot(translation, translation));
     const double angle = std::sqrt(dot(rotation, rotation));
     const auto pose_at = [&](double part) {

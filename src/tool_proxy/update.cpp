@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proxy/update.hpp"
 #include "tool_proxy/friction.hpp"
 #include "tool_proxy/motion.hpp"
 #include "tool_proxy/nearest.hpp"
@@ -134,8 +135,11 @@ class Rounds {
             tangents[i] = {{row_of(touches_[i].arm, along), row_of(touches_[i].arm, across)}};
         }
         const auto held = [&](double coefficient) {
-            return held_by_friction(pull_, rows_.data(), tangents.data(), count, coefficient,
-                                    1e-9 * std::max(length, voxel_), at_rest);
+            const Held found =
+                held_by_friction(pull_, rows_.data(), tangents.data(), count, coefficient,
+                                 1e-9 * std::max(length, voxel_), at_rest);
+            around_.spend(found.work);
+            return found;
         };
         Held left =
             held(proxy_.sliding ? friction_.dynamic_coefficient : friction_.static_coefficient);
@@ -264,7 +268,9 @@ class Rounds {
     }
 
     Nearest nearest_to(const Six& to) const {
-        return nearest(to, rows_.data(), proxy_.contact_count, 1e-13 * voxel_);
+        const Nearest found = nearest(to, rows_.data(), proxy_.contact_count, 1e-13 * voxel_);
+        around_.spend(found.work);
+        return found;
     }
 
     /// A round in contact. True at rest.
@@ -288,6 +294,7 @@ class Rounds {
         }
         const Nearest bent =
             nearest(pull_, curvature(flat), least_curvature, rows_.data(), count, 1e-13 * voxel_);
+        around_.spend(bent.work);
         const Six aim = bent.found ? bent.point : flat.point;
         const Six step = aim * share_of(aim);
         lift(step, failures);
@@ -408,18 +415,10 @@ class Rounds {
 };
 
 bool accepts(const Tool& tool, const Field& field, double isovalue, const Pose& hand) {
-    if (field.interpolation() != Interpolation::cubic) return false;
-    if (!(tool.radius() <= farthest_hip * field.geometry().spacing.minCoeff())) return false;
-    if (!hand.position.allFinite() || !hand.orientation.coeffs().allFinite()) return false;
-    if (!(std::abs(hand.orientation.squaredNorm() - 1) < 1e-6)) return false;
-    const Vec3 index = index_from_physical(field.geometry(), hand.position);
-    for (int a = 0; a < 3; ++a) {
-        if (!(index[a] >= -farthest_hip) ||
-            !(index[a] <= field.geometry().size[a] + farthest_hip)) {
-            return false;
-        }
-    }
-    return field.sign() * isovalue > -std::numeric_limits<double>::infinity();
+    return field.interpolation() == Interpolation::cubic &&
+           tool.radius() <= farthest_hip * field.geometry().spacing.minCoeff() &&
+           std::abs(hand.orientation.squaredNorm() - 1) < 1e-6 &&
+           palpate::accepts(isovalue, field, index_from_physical(field.geometry(), hand.position));
 }
 
 }  // namespace
@@ -470,10 +469,13 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
     // What is unit to all digits stays as it is, to the bit.
     if (std::abs(turn.squaredNorm() - 1) > 1e-14) turn.normalize();
     tool::Kept& kept = proxy.kept();
-    const int budget = settings.work_budget + static_cast<int>(proxy.tool().points().size());
-    tool::Around around(field, proxy.isovalue, kept.surroundings, budget);
     const bool others = tool::renew(kept.surroundings, field) || !proxy.placed ||
                         kept.isovalue != proxy.isovalue || kept.renewed;
+    // Each point is looked at once; where it is pushed out, before and after.
+    const int looks = (others || kept.inside ? 2 : 1) * static_cast<int>(proxy.tool().points().size());
+    const int budget = settings.work_budget + looks;
+    tool::Around around(field, proxy.isovalue, kept.surroundings, budget);
+    if (others) kept.recovery = {};
     if (!proxy.placed) {
         proxy.pose = result.hand;
         proxy.contact_count = 0;
