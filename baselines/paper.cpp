@@ -68,7 +68,8 @@ ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings, StepObserver observer) {
     const Vec3 target = index_from_physical(field.geometry(), hip);
     const bool is_linear = field.interpolation() == Interpolation::linear;
-    if (!is_linear || !accepts(proxy.isovalue, field, target)) return refuse_update(proxy, field, hip);
+    if (!is_linear || !accepts(proxy.isovalue, field, target))
+        return refuse_update(proxy, field, hip);
     Update<Site> update(proxy, field, target, settings, observer);
     Site& site = update.site;
     Progress& progress = update.progress;

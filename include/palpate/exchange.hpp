@@ -43,7 +43,7 @@ class Newest {
         count_.store(number, std::memory_order_release);
     }
 
-    /// The newest value; nothing if none was put yet. The number of attempts is bounded, so a
+    /// The newest value, or nothing if none was put yet. The number of attempts is bounded, so a
     /// reader that is overtaken by a whole ring of values each time gets nothing, too.
     std::optional<T> get() const noexcept {
         for (int attempt = 0; attempt < attempts; ++attempt) {
@@ -147,10 +147,10 @@ struct LatencySummary {
     std::int64_t p50 = 0, p99 = 0, p999 = 0, max = 0;
 };
 
-/// A histogram with 16 buckets per doubling. One thread adds; any thread may read meanwhile.
+/// A histogram with 16 buckets per doubling. One thread adds, and any thread may read meanwhile.
 class LatencyHistogram {
   public:
-    /// Wait-free; negative durations count as 0.
+    /// Wait-free. Negative durations count as 0.
     void add(std::int64_t ns) noexcept {
         const auto duration = static_cast<std::uint64_t>(std::max<std::int64_t>(0, ns));
         auto& bucket = buckets_[bucket_of(duration)];

@@ -111,7 +111,8 @@ inline std::size_t level_count(const Layers& layers) {
 std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers,
                                              std::size_t first = 0);
 
-/// Where a label of these layers is: 1, elsewhere 0. For showing them; their labels are not null.
+/// The field that is 1 in all labels of these layers and 0 elsewhere, to show them. It needs
+/// labels.
 Field labelled_space(const Layers& layers);
 
 /// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, levels out of

@@ -5,8 +5,9 @@
 //                                                    tool --+--> tool_proxy ---^
 //
 //   renderer: one call for all from proxy to force, with a point, with layers or with a tool
-//   session: a renderer with what hand and user do: clutch, freeze, commands, recordings
-//   servo: the thread that runs a session with a device; exchange: how other threads take part
+//   session: a renderer with clutch, freeze and commands
+//   servo: the thread that runs a session with a device
+//   exchange: how other threads take part
 //
 // surface (the whole isosurface as a mesh) observes field and lattice.
 #pragma once

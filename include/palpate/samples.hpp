@@ -24,7 +24,7 @@ struct Frame {
 
 /// Samples of a cube of the grid.
 struct Brick {
-    std::shared_ptr<const std::byte[]> samples;  ///< of the volume's type, x fastest; null: none
+    std::shared_ptr<const std::byte[]> samples;  ///< of the volume's type, x fastest, or null
     /// The level of detail that they come from: 0 is the grid's own, others are interpolated from
     /// coarser ones.
     std::uint8_t level = 0;
@@ -34,7 +34,7 @@ struct Brick {
 };
 
 /// A table over a box of bricks most of which are empty: a tree whose nodes have 8 x 8 x 8 places.
-/// A value; versions share the nodes that did not change (copy on write).
+/// A value. Versions share the nodes that did not change (copy on write).
 class SparseBricks {
   public:
     /// A brick that comes or, if it is empty, goes.
@@ -73,7 +73,8 @@ class SparseBricks {
     void change(std::span<const Change> changes);
 
   private:
-    using Node = std::shared_ptr<const void>;  // a fork, or at level 0 a leaf; null: all is empty
+    using Node =
+        std::shared_ptr<const void>;  // a fork, or at level 0 a leaf, or null if all is empty
     struct Fork {
         std::array<Node, 512> at;
     };
@@ -127,7 +128,7 @@ class BrickTable : public SparseBricks {
         return {(low - Index3::Constant(before)).cwiseMax(Index3::Zero()),
                 (low + Index3::Constant(edge)).cwiseMin(size - Index3::Ones())};
     }
-    /// The brick that a sample inside the grid, and its cell, belong to; null: empty.
+    /// The brick that a sample inside the grid, and its cell, belong to, or null.
     const Brick* of_sample(const Index3& sample) const { return at(brick_of(sample)); }
     /// Place of a sample among those of its brick.
     static std::ptrdiff_t place_of(const Index3& sample) {
@@ -138,7 +139,7 @@ class BrickTable : public SparseBricks {
 };
 
 /// Edited samples. Two neighbours both hold the samples on their common face, with equal values.
-/// Where a brick is empty the grid's own samples count.
+/// The grid's own samples count in place of empty bricks.
 using Bricks = BrickTable<4, 0>;
 /// The part of a large grid that is in memory (docs/streaming.md): a sample's neighbours lie in the
 /// brick of that sample.

@@ -37,7 +37,7 @@ struct ToolShape {
 };
 
 /// The points with which a tool touches, in its own axes, its reference point at their origin.
-/// What is thinner than the distance of neighbouring points passes between them. Immutable.
+/// Things thinner than the distance of neighbouring points pass between them. Immutable.
 class Tool {
   public:
     /// A single point at the reference point.
@@ -108,7 +108,7 @@ Quaternion turned(const Quaternion& from, const Vec3& rotation);
 /// The solid of a rigid tool as distances from its skin. Immutable. Not for the servo thread, which
 /// feels a tool with its points alone.
 ///
-/// Where the tool's shape is closed (each edge has an even number of triangles, turned either way)
+/// If the tool's shape is closed (each edge has an even number of triangles, turned either way)
 /// the body is what it encloses. Otherwise the body is the tool's points, which has no inside:
 /// edits reach as far round them as their brush says.
 class ToolBody {
@@ -119,8 +119,8 @@ class ToolBody {
     /// from 1e-6 to 1e6 mm, and a reach of more than half a million steps.
     ToolBody(std::shared_ptr<const Tool> tool, double step, double reach);
 
-    /// From the skin to a point in tool axes [mm], below 0 inside; where it is more than the reach,
-    /// at least that. Between the places it is interpolated linearly.
+    /// From the skin to a point in tool axes [mm], below 0 inside. Beyond the reach it is at least
+    /// that. Between the places it is interpolated linearly.
     double distance(const Vec3& point) const;
 
     const std::shared_ptr<const Tool>& tool() const { return tool_; }

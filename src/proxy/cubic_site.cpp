@@ -258,9 +258,8 @@ struct CubicCourse {
     double skip(const CubicSite& site, const Vec3& direction, double left) {
         outside = outside && is_outside(site);
         if (!outside) return 0;
-        const double t =
-            stretch_outside(site.index(), unfold(site.point.tetrahedron, direction), left, -2,
-                            site.field.geometry().size, 1);
+        const double t = stretch_outside(site.index(), unfold(site.point.tetrahedron, direction),
+                                         left, -2, site.field.geometry().size, 1);
         progress.tetrahedra += t > 0;
         return t;
     }

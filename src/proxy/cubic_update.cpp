@@ -284,8 +284,8 @@ class CubicDescent {
         const auto share = held_share(friction, proxy_, std::sqrt(c.aside_squared),
                                       c.depth / std::sqrt(c.per_squared));
         if (!share) return false;
-        set_target(progress_.target - unfold(site_.point.tetrahedron,
-                                             (*share * c.aside).cwiseProduct(per_mm())));
+        set_target(progress_.target -
+                   unfold(site_.point.tetrahedron, (*share * c.aside).cwiseProduct(per_mm())));
         return true;
     }
 

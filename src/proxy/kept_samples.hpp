@@ -18,7 +18,8 @@ struct Kept {
     static const cubic::Piece& piece(const KeptPiece& kept) { return kept.piece; }
 
     template <class T>
-    static void keep(KeptSamples& samples, const T* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
+    static void keep(KeptSamples& samples, const T* centre, std::ptrdiff_t row,
+                     std::ptrdiff_t slice) {
         samples.type = type_of<T>;
         std::byte* to = samples.bytes.data();
         if constexpr (sizeof(T) <= 2) {
@@ -36,7 +37,8 @@ struct Kept {
         }
     }
     template <class T>
-    static bool are(const KeptSamples& samples, const T* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
+    static bool are(const KeptSamples& samples, const T* centre, std::ptrdiff_t row,
+                    std::ptrdiff_t slice) {
         if (samples.type != type_of<T>) return false;
         const std::byte* kept = samples.bytes.data();
         if constexpr (sizeof(T) <= 2) {
@@ -111,7 +113,6 @@ struct Kept {
                     difference_at<std::uint64_t>(a + 16, b + 16)) == 0;
         }
     }
-
 };
 
 }  // namespace palpate

@@ -57,8 +57,8 @@ inline bool has_friction(const Friction& friction) {
     return friction.static_coefficient > 0 || friction.dynamic_coefficient > 0;
 }
 
-/// Coulomb's law for both fields: which share of the pull aside friction holds back, so that the SCP
-/// ends up trailing the hand at the friction angle. Nothing: the SCP sticks.
+/// Coulomb's law for both fields: which share of the pull aside friction holds back, so that the
+/// SCP ends up trailing the hand at the friction angle. Nothing: the SCP sticks.
 inline std::optional<double> held_share(const Friction& friction, Proxy& proxy, double aside,
                                         double pressing) {
     const double mu = proxy.sliding ? friction.dynamic_coefficient : friction.static_coefficient;

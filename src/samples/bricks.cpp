@@ -90,11 +90,9 @@ void SparseBricks::for_each_apart(
                         });
 }
 
-void SparseBricks::for_each(
-    const std::function<void(const Index3&, const Brick&)>& visit) const {
-    for_each_apart(SparseBricks(count_), [&](const Index3& at, const Brick& brick, const Brick&) {
-        visit(at, brick);
-    });
+void SparseBricks::for_each(const std::function<void(const Index3&, const Brick&)>& visit) const {
+    for_each_apart(SparseBricks(count_),
+                   [&](const Index3& at, const Brick& brick, const Brick&) { visit(at, brick); });
 }
 
 std::size_t SparseBricks::table_bytes_apart(const SparseBricks& other) const {

@@ -1,4 +1,4 @@
-// What updates of a tool keep for the next ones, to save time. It changes no result.
+// The memory of a tool's updates for the next ones. It saves time and changes no result.
 #pragma once
 
 #include <array>

@@ -98,7 +98,8 @@ bool push_out(ToolProxy& proxy, Around& around, PoseObserver observer) {
 
 bool is_free(const ToolProxy& proxy, const Pose& pose, Around& around) {
     for (const Vec3& point : proxy.tool().points()) {
-        if (around.is_exhausted() || around.is_inside(physical_from_tool(pose, point))) return false;
+        if (around.is_exhausted() || around.is_inside(physical_from_tool(pose, point)))
+            return false;
     }
     return true;
 }

@@ -422,41 +422,7 @@ bool accepts(const Tool& tool, const Field& field, double isovalue, const Pose& 
 }
 
 }  // namespace
-
-Keeper::Keeper() : kept_(std::make_unique<Kept>()) {}
-Keeper::Keeper(const Keeper& other) : kept_(std::make_unique<Kept>(*other)) {}
-Keeper::Keeper(Keeper&&) noexcept = default;
-Keeper& Keeper::operator=(Keeper other) noexcept {
-    kept_ = std::move(other.kept_);
-    return *this;
-}
-Keeper::~Keeper() = default;
-
 }  // namespace tool
-
-ToolProxy::ToolProxy(std::shared_ptr<const Tool> tool) {
-    make_room(tool->points().size());
-    use(std::move(tool));
-}
-
-void ToolProxy::make_room(std::size_t points) {
-    tool::Kept& kept = *kept_;
-    const std::size_t room = std::max(points, kept.arms.size());
-    kept.arms.resize(room);
-    kept.expiry.resize(room);
-    kept.suspects.resize(room);
-}
-
-bool ToolProxy::use(std::shared_ptr<const Tool> tool) noexcept {
-    const auto points = tool->points();
-    tool::Kept& kept = *kept_;
-    if (points.size() > kept.arms.size()) return false;
-    std::ranges::transform(points, kept.arms.begin(), [](const Vec3& p) { return p.norm(); });
-    contact_count = 0;
-    kept.renewed = true;
-    tool_ = std::move(tool);
-    return true;
-}
 
 ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
                        const ToolSettings& settings, PoseObserver observer) {
@@ -472,7 +438,8 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
     const bool others = tool::renew(kept.surroundings, field) || !proxy.placed ||
                         kept.isovalue != proxy.isovalue || kept.renewed;
     // Each point is looked at once; where it is pushed out, before and after.
-    const int looks = (others || kept.inside ? 2 : 1) * static_cast<int>(proxy.tool().points().size());
+    const int looks =
+        (others || kept.inside ? 2 : 1) * static_cast<int>(proxy.tool().points().size());
     const int budget = settings.work_budget + looks;
     tool::Around around(field, proxy.isovalue, kept.surroundings, budget);
     if (others) kept.recovery = {};

@@ -7,7 +7,7 @@
 
 #include "proxy/kept_samples.hpp"
 
-namespace palpate {
+namespace palpate::cubic {
 namespace {
 
 template <class T>
@@ -67,4 +67,4 @@ TEST(KeptSamples, of_one_type_are_not_those_of_another) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::cubic

@@ -12,8 +12,9 @@
 namespace palpate::baselines {
 
 /// The paper's method as published (Fig. 4): constraint planes of all tetrahedra at the SCP, one
-/// goal that satisfies all of them, walked to tetrahedron by tetrahedron. Keeps G1, G2 and G5;
-/// sticks on convex ridges, where it breaks G3. No friction. For comparison. Refuses cubic fields.
+/// goal that satisfies all of them, walked to tetrahedron by tetrahedron. Keeps G1, G2 and G5,
+/// but sticks on convex ridges, where it breaks G3. No friction. For comparison. Refuses cubic
+/// fields.
 ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings = {}, StepObserver observer = {});
 
