@@ -138,7 +138,7 @@ Touch all_resident(Touch touch) {
         for (int j = 0; j < bricks.count()[1]; ++j) {
             for (int i = 0; i < bricks.count()[0]; ++i) {
                 const Index3 brick(i, j, k);
-                const SampleBox box = bricks.box_of(brick);
+                const SampleBox box = ResidentBricks::box_of(brick, geometry.size);
                 std::shared_ptr<std::byte[]> samples(
                     new std::byte[ResidentBricks::per_brick * each]());
                 const Index3 corner =

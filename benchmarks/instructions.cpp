@@ -11,7 +11,6 @@
 #include "benchmarks/tool_hand.hpp"
 #include "palpate/baselines/methods.hpp"
 #include "palpate/layers.hpp"
-#include "palpate/reach.hpp"
 
 using namespace palpate;
 using namespace palpate::benchmarks;
@@ -152,7 +151,7 @@ void run(const Case& chosen, long updates) {
     std::uint64_t hash = 0xcbf29ce484222325U;
     for (long i = 0; i < updates; ++i) {
         const Vec3& hip = hand.next();
-        if (chosen.looks && part_within_reach(touch.field, {proxy.scp_physical, hip}) < 1) {
+        if (chosen.looks && !is_resident(touch.field, hip, (hip - proxy.scp_physical).norm())) {
             std::abort();
         }
         mix(hash, method(proxy, touch.field, hip, {}, {}).scp);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "palpate/device.hpp"
-#include "palpate/latency.hpp"
+#include "palpate/exchange.hpp"
 
 namespace palpate::benchmarks {
 

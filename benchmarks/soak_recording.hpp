@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "palpate/exchange.hpp"
 #include "palpate/field.hpp"
-#include "palpate/latency.hpp"
 
 namespace palpate::benchmarks {
 

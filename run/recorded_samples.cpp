@@ -89,7 +89,7 @@ std::shared_ptr<const Samples> RecordedSamples::bricks_of(const BricksOf& bricks
             throw std::invalid_argument("a brick outside the grid");
         }
         changes.push_back(
-            {brick.at, brick.level < 0 ? ResidentBrick{} : grid_.brick(brick.at, brick.level)});
+            {brick.at, brick.level < 0 ? Brick{} : grid_.brick(brick.at, brick.level)});
     }
     bricks_ = bricks_->with(changes);
     bricks_version_ = version;

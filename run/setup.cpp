@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "io/system/number.hpp"
+#include "palpate/baselines/methods.hpp"
 #include "palpate/run/statistics.hpp"
 
 namespace palpate::run {
@@ -135,7 +136,8 @@ RendererSettings render_settings(const RenderSetup& setup, const Field& field, d
     if (setup.friction && setup.method.method != &update_exact) {
         throw std::invalid_argument("friction is for the method exact; the others have none");
     }
-    if (field.interpolation() == Interpolation::cubic && setup.method.method == &update_paper) {
+    if (field.interpolation() == Interpolation::cubic &&
+        setup.method.method == &baselines::update_paper) {
         throw std::invalid_argument(
             "the method paper is made for the linear field: choose another method or field");
     }

@@ -42,7 +42,7 @@ esac
 
 build=build/golden
 mkdir -p "$build"
-find src scenes tests/core/proxy_golden_test.cpp -name '*.cpp' | grep -Ev "$other" | sort |
+find src scenes baselines/paper.cpp tests/core/proxy_golden_test.cpp -name '*.cpp' | grep -Ev "$other" | sort |
     sed "s|.*|#include \"$PWD/&\"|" >"$build/golden.cpp"
 
 # golden COMPILER LEVEL: builds and runs one configuration; its output comes as a whole.

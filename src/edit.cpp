@@ -75,8 +75,8 @@ class Rewriting {
                auto&& value) {
         if (box_.empty()) return {samples, {}};
         // A sample on the border of a brick lies in the brick before as well.
-        const Index3 first = (box_.low - Index3::Ones()).cwiseMax(Index3::Zero()) / Bricks::cells;
-        const Index3 last = box_.high / Bricks::cells;
+        const Index3 first = (box_.low - Index3::Ones()).cwiseMax(Index3::Zero()) / Bricks::edge;
+        const Index3 last = box_.high / Bricks::edge;
         for (int k = first[2]; k <= last[2]; ++k) {
             for (int j = first[1]; j <= last[1]; ++j) {
                 for (int i = first[0]; i <= last[0]; ++i) {
@@ -96,8 +96,8 @@ class Rewriting {
   private:
     /// The samples of a brick that the edit may change.
     SampleBox part_of(const Index3& brick) const {
-        const Index3 low = brick * Bricks::cells;
-        return {box_.low.cwiseMax(low), box_.high.cwiseMin(low + Index3::Constant(Bricks::cells))};
+        const Index3 low = brick * Bricks::edge;
+        return {box_.low.cwiseMax(low), box_.high.cwiseMin(low + Index3::Constant(Bricks::edge))};
     }
 
     /// Of a large grid: fetches what a brick needs; false if the edit does not reach it.
@@ -113,9 +113,9 @@ class Rewriting {
         }
         const bool held = before_.samples().bricks() && before_.samples().bricks()->at(brick);
         if (!reached || (held && around == 0)) return reached;
-        const Index3 low = brick * Bricks::cells;
+        const Index3 low = brick * Bricks::edge;
         before_.fetch(
-            {low - Index3::Constant(around), low + Index3::Constant(Bricks::cells + around)});
+            {low - Index3::Constant(around), low + Index3::Constant(Bricks::edge + around)});
         return true;
     }
 
@@ -123,7 +123,7 @@ class Rewriting {
     std::shared_ptr<std::byte[]> copy_of(const Index3& low) const {
         auto brick = std::shared_ptr<std::byte[]>(new std::byte[Bricks::per_brick * sizeof(T)]());
         const Index3 end =
-            (low + Index3::Constant(Bricks::samples)).cwiseMin(before_.last() + Index3::Ones());
+            (low + Index3::Constant(Bricks::edge + 1)).cwiseMin(before_.last() + Index3::Ones());
         const auto row = static_cast<std::size_t>(end[0] - low[0]) * sizeof(T);
         for (int k = low[2]; k < end[2]; ++k) {
             for (int j = low[1]; j < end[1]; ++j) {
@@ -135,21 +135,20 @@ class Rewriting {
         return brick;
     }
     static std::ptrdiff_t place(const Index3& at, const Index3& low) {
-        return (std::ptrdiff_t{at[2] - low[2]} * Bricks::samples + at[1] - low[1]) *
-                   Bricks::samples +
-               at[0] - low[0];
+        const Index3 in = at - low;  // up to the edge, which place_of() takes for the next brick's
+        return in[0] + in[1] * Bricks::row + in[2] * Bricks::slice;
     }
 
     template <class T>
     void rewrite(const Index3& brick, auto&& value) {
-        const Index3 low = brick * Bricks::cells;
+        const Index3 low = brick * Bricks::edge;
         const SampleBox part = part_of(brick);
         const Bricks* before = before_.samples().bricks();
-        const Bricks::Brick held = before ? before->at(brick) : nullptr;
+        const Brick* const held = before ? before->at(brick) : nullptr;
         std::shared_ptr<std::byte[]> fresh;
         if (held) {
             fresh = std::shared_ptr<std::byte[]>(new std::byte[Bricks::per_brick * sizeof(T)]);
-            std::memcpy(fresh.get(), held.get(), Bricks::per_brick * sizeof(T));
+            std::memcpy(fresh.get(), held->samples.get(), Bricks::per_brick * sizeof(T));
         } else {
             fresh = copy_of<T>(low);
         }
@@ -170,7 +169,7 @@ class Rewriting {
             }
         }
         if (changed.empty()) return;
-        changes_.push_back({brick, std::move(fresh)});
+        changes_.push_back({brick, {std::move(fresh)}});
         changed_ = united(changed_, changed);
     }
 

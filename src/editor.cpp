@@ -1,5 +1,5 @@
 // Editor: undo and redo by keeping versions of the samples.
-#include "palpate/editor.hpp"
+#include "palpate/edit.hpp"
 
 #include <stdexcept>
 #include <utility>

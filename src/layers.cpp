@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "layers/cover.hpp"
+
 namespace palpate {
 namespace {
 
@@ -120,6 +122,12 @@ std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<con
     });
     return std::make_shared<const Field>(Volume(labels.geometry(), std::move(numbers)),
                                          Solid::above, 0.0);
+}
+
+Field labelled_space(const Layers& layers) {
+    Field space = *layers.labels;
+    LabelCover::put(space, layers.labels, ~1U, 0, 1);
+    return space;
 }
 
 double property_of(const Layers& layers, int layer, HapticProperty property, double density,

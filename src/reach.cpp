@@ -1,5 +1,5 @@
 // Reach: balls round the hand's goal, and the bricks that they touch.
-#include "palpate/reach.hpp"
+#include "reach.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,6 @@ namespace {
 /// Samples round a point on which the field there depends, and those across the wall that it is on
 /// [voxel].
 constexpr double around = 3;
-/// So much more than a ball is looked at, so that the next ones are in it [voxel].
-constexpr double spare = 16;
 /// How often a pull is halved.
 constexpr int most_halvings = 6;
 
@@ -38,27 +36,24 @@ bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept
     if (!resident) return true;
     const SampleBox box = box_round(field, centre, radius);
     if (box.empty()) return true;
-    const Index3 brick = ResidentBricks::brick_of(box.low);
-    if (brick == ResidentBricks::brick_of(box.high)) return resident->at(brick) != nullptr;
-    return resident->has(box);
+    const Index3 low = ResidentBricks::brick_of(box.low), high = ResidentBricks::brick_of(box.high);
+    for (int k = low[2]; k <= high[2]; ++k) {
+        for (int j = low[1]; j <= high[1]; ++j) {
+            for (int i = low[0]; i <= high[0]; ++i) {
+                if (!resident->at({i, j, k})) return false;
+            }
+        }
+    }
+    return true;
 }
 
-double part_within_reach(Field& field, const Pull& pull) noexcept {
-    if (!field.samples().resident()) return 1;
+double part_within_reach(const Field& field, const Pull& pull) noexcept {
     const Vec3 way = pull.to - pull.from;
     const double length = pull.turn == 0 ? way.norm() : std::hypot(way.norm(), pull.turn);
-    const Field::ResidentBall& known = field.resident_ball();
-    const double whole = length + pull.arm;
-    if ((pull.to - known.centre).norm() + whole <= known.radius) return 1;
-    if (!std::isfinite(length)) return 1;  // the update refuses it
+    if (!field.samples().resident() || !std::isfinite(length)) return 1;  // the update refuses it
     double part = 1;
     for (int halvings = 0; halvings <= most_halvings; ++halvings, part /= 2) {
-        if (!is_resident(field, pull.from + part * way, part * length + pull.arm)) continue;
-        const double wide = whole + spare / field.voxels_per_mm().maxCoeff();
-        if (part == 1 && is_resident(field, pull.to, wide)) {
-            field.set_resident_ball({pull.to, wide});
-        }
-        return part;
+        if (is_resident(field, pull.from + part * way, part * length + pull.arm)) return part;
     }
     return 0;
 }
@@ -75,7 +70,7 @@ int level_at(const Field& field, const Vec3& physical) noexcept {
     for (int k = first[2]; k <= end[2]; ++k) {
         for (int j = first[1]; j <= end[1]; ++j) {
             for (int i = first[0]; i <= end[0]; ++i) {
-                const ResidentBrick* brick = resident->at({i, j, k});
+                const Brick* brick = resident->at({i, j, k});
                 if (brick) level = std::max<int>(level, brick->level);
             }
         }

@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "proxy/update.hpp"
+#include "reach.hpp"
+#include "tool_proxy/kept.hpp"
 
 namespace palpate {
 namespace {
@@ -49,31 +51,41 @@ struct Moved {
     std::optional<LayersUpdate> layers;
 };
 
-ForceInput force_input(const Renderer& renderer, const DeviceState& device, const Moved& moved) {
-    const ProxyUpdate& at = moved.proxy;
-    const DeviceTransform& transform = renderer.settings.transform;
-    const ForceSettings& force = renderer.settings.force;
+/// [N mm/rad] With this the tool's turn is rendered, and its proxy found.
+double turning_of(const RendererSettings& settings) {
+    const double gyration = settings.tool->gyration() / settings.transform.scale;
+    return rotational_stiffness(settings.force, settings.device, gyration);
+}
+
+/// What the force is made of, with a point, with layers or with a tool.
+ForceInput force_input(const Renderer& renderer, const DeviceState& device, const Tick& tick,
+                       const std::optional<LayersUpdate>& layers) {
+    const ProxyUpdate& at = tick.proxy;
+    const RendererSettings& settings = renderer.settings;
+    const DeviceTransform& transform = settings.transform;
     const Mat3 to_device = transform.rotation.transpose();
+    const bool waits = at.status == UpdateStatus::waiting;
     ForceInput input;
     input.time = device.time;
-    input.enabled = renderer.settings.forces_on && device.armed;
+    input.enabled = settings.forces_on && device.armed;
     input.released = device.released;
     input.valid = counts(at.status);
-    input.constrained = at.mode == Mode::constrained;
+    input.constrained = (layers ? layers->pulls : at.mode == Mode::constrained) && !waits;
     input.hand = device.position;
-    if (at.status == UpdateStatus::waiting) {
-        input.constrained = false;
-        return input;
+    if (settings.tool) {
+        input.rotational_stiffness = settings.tool->turns() ? turning_of(settings) : 0;
+        input.orientation = Quaternion(device.orientation);
+        input.turn = to_device * rotation_between(tick.tool.hand, tick.tool.proxy);
     }
-    input.pull = to_device * (at.scp - at.hip) / transform.scale;
-    if (moved.layers) {
-        input.constrained = moved.layers->pulls;
-        input.pull = to_device * moved.layers->pull;
-    }
+    if (waits) return input;
+    input.pull = layers ? Vec3(to_device * layers->pull)
+                        : Vec3(to_device * (at.scp - at.hip) / transform.scale);
+    if (settings.tool) return input;
+    const Magnet& magnet = settings.force.magnet;
     if (input.constrained) {
-        input.texture_slope = to_device * texture_slope(force.texture, at.scp);
-    } else if (force.magnet.distance > 0 && force.magnet.peak > 0) {
-        const double reach = force.magnet.distance * transform.scale;
+        input.texture_slope = to_device * texture_slope(settings.force.texture, at.scp);
+    } else if (magnet.distance > 0 && magnet.peak > 0) {
+        const double reach = magnet.distance * transform.scale;
         const Field& felt = felt_field(renderer);
         const Vec3 normal = normal_at(renderer.proxy, felt);
         const double distance = is_resident(renderer.field, at.scp, reach)
@@ -196,8 +208,8 @@ ToolUpdate move_tool(Renderer& renderer, const Pose& hand, const ToolSettings& a
         !is_resident(renderer.field, from.position, update.searched + proxy.tool().radius())) {
         proxy.pose = update.proxy = from;
         proxy.contact_count = 0;
-        proxy.kept.inside = true;
-        proxy.kept.search = 0;
+        proxy.kept().inside = true;
+        proxy.kept().recovery = {};
         update.status = UpdateStatus::waiting;
     }
     if (part < 1 && update.mode == Mode::free && counts(update.status)) {
@@ -206,16 +218,13 @@ ToolUpdate move_tool(Renderer& renderer, const Pose& hand, const ToolSettings& a
     return update;
 }
 
-/// A tick of a tool: six degrees of freedom.
-Tick render_with_tool(Renderer& renderer, const DeviceState& device, Clock clock,
-                      PoseObserver observer) {
+/// The proxy's part of a tick of a tool: six degrees of freedom.
+void feel_with_tool(Renderer& renderer, const DeviceState& device, Tick& tick,
+                    PoseObserver observer) {
     const RendererSettings& settings = renderer.settings;
     const DeviceTransform& transform = settings.transform;
-    const Mat3 to_device = transform.rotation.transpose();
     ToolProxy& proxy = *renderer.tool_proxy;
-    const double gyration = settings.tool->gyration() / transform.scale;
-    const double turning = rotational_stiffness(settings.force, settings.device, gyration);
-    const double stiffness = settings.force.stiffness;
+    const double turning = turning_of(settings), stiffness = settings.force.stiffness;
     ToolSettings asked{.friction = settings.proxy.friction,
                        .work_budget = settings.proxy.step_budget};
     // With this the proxy's pose is the equilibrium of the springs that are rendered.
@@ -226,43 +235,35 @@ Tick render_with_tool(Renderer& renderer, const DeviceState& device, Clock clock
     }
     const Pose hand{physical_from_device(transform, device.position),
                     Quaternion(transform.rotation * device.orientation).normalized()};
-    Tick tick;
-    tick.time = device.time;
-    const std::int64_t begin = clock ? clock() : 0;
     proxy.isovalue = renderer.proxy.isovalue;
     ToolUpdate update{
         .status = UpdateStatus::refused, .mode = proxy.mode, .hand = hand, .proxy = proxy.pose};
     // A pose that is not trusted moves nothing.
     if (device.valid) update = move_tool(renderer, hand, asked, observer);
-    tick.update_ns = clock ? clock() - begin : 0;
     tick.proxy.status = update.status;
     tick.proxy.mode = update.mode;
     tick.proxy.hip = update.hand.position;
     tick.proxy.scp = update.proxy.position;
     tick.proxy.isovalue = proxy.isovalue;
-    tick.proxy.tetrahedra = update.work;
+    tick.proxy.tetrahedra = tick.proxy.work = update.work;
     if (proxy.placed) tick.proxy.density = value_at(renderer.field, update.proxy.position);
-    tick.proxy.level = level_at(renderer.field, update.proxy.position);
     tick.tool = {update.hand.orientation, update.proxy.orientation, update.contacts};
+}
 
-    ForceInput input;
-    input.time = device.time;
-    input.enabled = settings.forces_on && device.armed;
-    input.released = device.released;
-    const bool waits = update.status == UpdateStatus::waiting;
-    input.valid = counts(update.status);
-    input.constrained = update.mode == Mode::constrained && !waits;
-    input.hand = device.position;
-    input.pull = to_device * (update.proxy.position - update.hand.position) / transform.scale;
-    input.rotational_stiffness = settings.tool->turns() ? turning : 0;
-    input.orientation = Quaternion(device.orientation);
-    input.turn = to_device * rotation_between(update.hand.orientation, update.proxy.orientation);
-    const ForceResult force = render_force(renderer.force, settings.force, settings.device, input);
-    if (waits) renderer.force.ramp_begin = device.time;
-    tick.force = force.force;
-    tick.torque = force.torque;
-    tick.force_flags = force.flags;
-    return tick;
+/// The same of a point, with layers or without.
+std::optional<LayersUpdate> feel_with_point(Renderer& renderer, const DeviceState& device,
+                                            Tick& tick, StepObserver observer) {
+    const RendererSettings& settings = renderer.settings;
+    const Vec3 hip = physical_from_device(settings.transform, device.position);
+    const Proxy before = renderer.proxy;
+    Moved moved = move_proxy(renderer, device, hip, before, observer);
+    if (!is_finite(renderer.proxy)) {
+        renderer.proxy = before;
+        forget_layers(renderer.layers, renderer.proxy, renderer.field);
+        moved = {refuse_update(renderer.proxy, renderer.field, hip, UpdateStatus::not_finite), {}};
+    }
+    tick.proxy = moved.proxy;
+    return moved.layers;
 }
 
 }  // namespace
@@ -394,7 +395,7 @@ void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
         point.scp_physical = proxy->pose.position;
         put_on_lattice(point, renderer.field);
         renderer.proxy = point;
-        proxy->kept.surroundings.samples.reset();  // nobody feels them
+        proxy->kept().surroundings.samples.reset();  // nobody feels them
     }
     settings.tool = std::move(tool);
     renderer.force.waiting = true;
@@ -419,38 +420,35 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
             PoseObserver pose_observer) {
     const RendererSettings& settings = renderer.settings;
     look_at_layers(renderer);
-    if (settings.tool) return render_with_tool(renderer, device, clock, pose_observer);
-    const Vec3 hip = physical_from_device(settings.transform, device.position);
     Tick tick;
     tick.time = device.time;
+    std::optional<LayersUpdate> layers;
     const std::int64_t begin = clock ? clock() : 0;
-    const Proxy before = renderer.proxy;
-    Moved moved = move_proxy(renderer, device, hip, before, observer);
-    if (!is_finite(renderer.proxy)) {
-        renderer.proxy = before;
-        forget_layers(renderer.layers, renderer.proxy, renderer.field);
-        moved = {refuse_update(renderer.proxy, renderer.field, hip, UpdateStatus::not_finite), {}};
+    if (settings.tool) {
+        feel_with_tool(renderer, device, tick, pose_observer);
+    } else {
+        layers = feel_with_point(renderer, device, tick, observer);
     }
     tick.update_ns = clock ? clock() - begin : 0;
-    const bool has_surfaces = have_surfaces(settings.layers);
-    if (!has_surfaces && moved.proxy.status != UpdateStatus::waiting) {
-        apply_penetrability(settings.penetrability, renderer.field, 1 / settings.transform.scale,
-                            renderer.proxy, moved.proxy, observer);
-    }
-    if (moved.layers && settings.penetrability.on && !has_surfaces) {
-        moved.layers->pulls = moved.proxy.mode == Mode::constrained;
-        moved.layers->pull = (moved.proxy.scp - moved.proxy.hip) / settings.transform.scale;
+    const bool waits = tick.proxy.status == UpdateStatus::waiting;
+    const Penetrability& penetrability = settings.penetrability;
+    if (penetrability.on && !settings.tool && !have_surfaces(settings.layers) && !waits) {
+        apply_penetrability(penetrability, renderer.field, 1 / settings.transform.scale,
+                            renderer.proxy, tick.proxy, observer);
+        if (layers) {
+            layers->pulls = tick.proxy.mode == Mode::constrained;
+            layers->pull = (tick.proxy.scp - tick.proxy.hip) / settings.transform.scale;
+        }
     }
     const ForceResult force =
-        render_force(renderer.force, moved.layers ? moved.layers->force : settings.force,
-                     settings.device, force_input(renderer, device, moved));
-    // The force comes back with the ramp.
-    if (moved.proxy.status == UpdateStatus::waiting) renderer.force.ramp_begin = device.time;
-    tick.proxy = moved.proxy;
-    if (renderer.layers.covered) tick.proxy.density = value_at(renderer.field, moved.proxy.scp);
-    tick.proxy.level = level_at(renderer.field, moved.proxy.scp);
-    if (moved.layers) tick.layers = moved.layers->felt;
+        render_force(renderer.force, layers ? layers->force : settings.force, settings.device,
+                     force_input(renderer, device, tick, layers));
+    if (waits) renderer.force.ramp_begin = device.time;  // the force comes back with the ramp
+    if (renderer.layers.covered) tick.proxy.density = value_at(renderer.field, tick.proxy.scp);
+    tick.proxy.level = level_at(renderer.field, tick.proxy.scp);
+    if (layers) tick.layers = layers->felt;
     tick.force = force.force;
+    tick.torque = force.torque;
     tick.force_flags = force.flags;
     if (tick.proxy.status == UpdateStatus::not_finite) tick.force_flags |= force_not_finite;
     return tick;

@@ -5,18 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <stdexcept>
-#include <tuple>
 
 namespace palpate {
 namespace {
-
-double sample_of(SampleType type, const void* data, std::size_t at) {
-    return with_type(type, [&](auto zero) {
-        return static_cast<double>(static_cast<const decltype(zero)*>(data)[at]);
-    });
-}
 
 void check_frames(const std::vector<Frame>& frames, double period) {
     if (frames.empty()) throw std::invalid_argument("a sequence needs at least one frame");
@@ -43,14 +35,14 @@ void check_frames(const std::vector<Frame>& frames, double period) {
 void copy_brick(const std::byte* brick, const Index3& low, const Geometry& geometry,
                 std::size_t bytes, std::byte* whole) {
     const Index3 last =
-        (low + Index3::Constant(Bricks::cells)).cwiseMin(geometry.size - Index3::Ones());
+        (low + Index3::Constant(Bricks::edge)).cwiseMin(geometry.size - Index3::Ones());
     const auto run = static_cast<std::size_t>(last[0] - low[0] + 1) * bytes;
     for (int k = low[2]; k <= last[2]; ++k) {
         for (int j = low[1]; j <= last[1]; ++j) {
-            const auto from = static_cast<std::size_t>((k - low[2]) * Bricks::samples + j - low[1]);
+            const auto from = static_cast<std::size_t>((k - low[2]) * Bricks::row + j - low[1]);
             const auto to =
                 (static_cast<std::size_t>(k) * geometry.size[1] + j) * geometry.size[0] + low[0];
-            std::memcpy(whole + to * bytes, brick + from * Bricks::samples * bytes, run);
+            std::memcpy(whole + to * bytes, brick + from * Bricks::row * bytes, run);
         }
     }
 }
@@ -67,69 +59,6 @@ void blend(const Volume& from, const Volume& to, double weight, std::byte* whole
 }
 
 }  // namespace
-
-// A grid of one sample has no cell inside; its samples still need a brick.
-Bricks::Bricks(const Index3& size)
-    : count_((size + Index3::Constant(cells - 1)) / cells),
-      blocks_((count_ + Index3::Constant(3)) / 4) {}
-
-Bricks Bricks::with(std::span<const Change> changes) const {
-    Bricks after = *this;
-    std::map<std::array<int, 3>, std::shared_ptr<Block>> changed;
-    for (const Change& change : changes) {
-        if ((change.brick.array() < 0).any() || (change.brick.array() >= count_.array()).any()) {
-            throw std::out_of_range("a brick outside the grid");
-        }
-        const Index3 at = change.brick / 4;
-        std::shared_ptr<Block>& block = changed[{at[0], at[1], at[2]}];
-        if (!block) {
-            const auto* before = blocks_.at(at);
-            block =
-                before && *before ? std::make_shared<Block>(**before) : std::make_shared<Block>();
-        }
-        Brick& brick = (*block)[place_in_block(change.brick)];
-        after.size_ += change.to ? 1 : 0;
-        after.size_ -= brick ? 1 : 0;
-        brick = change.to;
-    }
-    std::vector<Blocks::Change> blocks;
-    for (auto& [at, block] : changed) {
-        const bool empty = std::ranges::all_of(*block, [](const Brick& brick) { return !brick; });
-        blocks.push_back({{at[0], at[1], at[2]}, empty ? nullptr : std::move(block)});
-    }
-    after.blocks_ = blocks_.with(blocks);
-    return after;
-}
-
-void Bricks::for_each_apart(
-    const Bricks& other,
-    const std::function<void(const Index3&, const Brick&, const Brick&)>& visit) const {
-    const Brick none;
-    blocks_.for_each_apart(other.blocks_,
-                           [&](const Index3& at, const auto& mine, const auto& theirs) {
-                               if (mine == theirs) return;
-                               for (std::size_t i = 0; i < std::tuple_size_v<Block>; ++i) {
-                                   const Brick& a = mine ? (*mine)[i] : none;
-                                   const Brick& b = theirs ? (*theirs)[i] : none;
-                                   const auto in = static_cast<int>(i);
-                                   if (a != b)
-                                       visit(4 * at + Index3(in & 3, in >> 2 & 3, in >> 4), a, b);
-                               }
-                           });
-}
-
-void Bricks::for_each(const std::function<void(const Index3&, const Brick&)>& visit) const {
-    for_each_apart(Bricks(count_ * cells), [&](const Index3& brick, const Brick& samples,
-                                               const Brick&) { visit(brick, samples); });
-}
-
-std::size_t Bricks::table_bytes_apart(const Bricks& other) const {
-    std::size_t bytes = blocks_.bytes_apart(other.blocks_);
-    blocks_.for_each_apart(other.blocks_, [&](const Index3&, const auto& mine, const auto& theirs) {
-        bytes += mine && mine != theirs ? sizeof(Block) : 0;
-    });
-    return bytes;
-}
 
 Samples::Samples(Volume volume) : minimum_(volume.minimum()), maximum_(volume.maximum()) {
     frames_.push_back({0, std::move(volume), -1});
@@ -211,22 +140,8 @@ double Samples::within(double time) const noexcept {
     return period_ > 0 ? time : std::clamp(time, frames_.front().time, frames_.back().time);
 }
 
-double Samples::sample(const Index3& i, const Moment& moment) const {
-    if (bricks_) {
-        const std::byte* brick = bricks_->of_cell(i);
-        if (brick) {
-            const Index3 in(i[0] & 15, i[1] & 15, i[2] & 15);
-            const auto at = (in[2] * Bricks::samples + in[1]) * Bricks::samples + in[0];
-            return sample_of(type(), brick, static_cast<std::size_t>(at));
-        }
-    }
-    if (resident_) {
-        return sample_of(type(), resident_->of_sample(i)->samples.get(),
-                         static_cast<std::size_t>(ResidentBricks::place_of(i)));
-    }
-    const double from = frames_[moment.from].volume.sample(i);
-    if (!(moment.weight > 0)) return from;
-    return (1 - moment.weight) * from + moment.weight * frames_[moment.to].volume.sample(i);
+double Samples::sample(const Index3& index, const Moment& moment) const {
+    return with_type(type(), [&](auto zero) { return sample_as<decltype(zero)>(index, moment); });
 }
 
 Volume flattened(const Samples& samples, const Moment& moment) {
@@ -244,9 +159,9 @@ Volume flattened(const Samples& samples, const Moment& moment) {
     } else {
         std::memcpy(whole.get(), from.data(), from.bytes());
     }
-    const auto put = [&](const Index3& brick, const Bricks::Brick& edited) {
-        copy_brick(edited.get(), brick * Bricks::cells, from.geometry(), size_of(samples.type()),
-                   whole.get());
+    const auto put = [&](const Index3& brick, const Brick& edited) {
+        copy_brick(edited.samples.get(), brick * Bricks::edge, from.geometry(),
+                   size_of(samples.type()), whole.get());
     };
     if (bricks) bricks->for_each(put);
     return {from.geometry(), samples.type(), std::shared_ptr<const void>(whole, whole.get()),
@@ -258,10 +173,9 @@ std::size_t bytes_apart(const Samples& samples, const Samples& other) {
     if (!mine) return 0;
     const Bricks none(samples.geometry().size);
     std::size_t apart = 0;
-    mine->for_each_apart(other.bricks() ? *other.bricks() : none,
-                         [&](const Index3&, const Bricks::Brick& here, const Bricks::Brick&) {
-                             apart += here ? 1 : 0;
-                         });
+    mine->for_each_apart(
+        other.bricks() ? *other.bricks() : none,
+        [&](const Index3&, const Brick& here, const Brick&) { apart += here ? 1 : 0; });
     return apart * Bricks::per_brick * size_of(samples.type());
 }
 

@@ -1,6 +1,6 @@
 // Computes a tool's distances: unsigned ones to points or triangles, and on which side of a closed
 // shape each place lies by counting what a line through it crosses.
-#include "palpate/tool_body.hpp"
+#include "palpate/tool.hpp"
 
 #include <algorithm>
 #include <cmath>

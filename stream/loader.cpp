@@ -130,7 +130,7 @@ std::optional<BrickVersion> BrickLoader::take() {
     std::vector<ResidentBricks::Change> changes;
     for (const BrickEvent& event : events_) {
         const auto held = held_.find({array_of(event.brick)});
-        changes.push_back({event.brick, held == held_.end() ? ResidentBrick{} : held->second});
+        changes.push_back({event.brick, held == held_.end() ? Brick{} : held->second});
     }
     bricks_ = bricks_.with(changes);
     BrickVersion version{std::make_shared<const Samples>(overview_, geometry_, bricks_,
@@ -301,7 +301,7 @@ void BrickLoader::work(const std::stop_token& stop) {
         const bool is_kept = !blocks_->has_unread(settings_.level + job->coarser,
                                                   source_of(job->brick, job->coarser));
         const Clock::time_point begin = Clock::now();
-        std::optional<ResidentBrick> brick;
+        std::optional<Brick> brick;
         std::string problem;
         try {
             brick = read(job->brick, job->coarser, stop);
@@ -349,7 +349,7 @@ void BrickLoader::help(const Job& job, const std::stop_token& stop) const {
 }
 
 /// Needs the lock.
-void BrickLoader::put(const Job& job, const ResidentBrick& brick) {
+void BrickLoader::put(const Job& job, const Brick& brick) {
     const Place place{array_of(job.brick)};
     failed_.erase(place);
     if (failed_.empty()) problem_.clear();
@@ -393,14 +393,14 @@ std::uint64_t BrickLoader::bytes() const {
 
 void BrickLoader::read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
     const Index3 at = ResidentBricks::brick_of(box.low);
-    ResidentBrick held;
+    Brick held;
     {
         const std::scoped_lock lock(mutex_);
         if (const auto brick = held_.find({array_of(at)}); brick != held_.end()) {
             held = brick->second;
         }
     }
-    const SampleBox has = bricks_.box_of(at);
+    const SampleBox has = ResidentBricks::box_of(at, geometry_.size);
     if (!held || held.level != 0 || (box.high.array() > has.high.array()).any()) {
         blocks_->read(settings_.level, box, out, std::move(stop));
         return;

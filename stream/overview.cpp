@@ -134,7 +134,7 @@ Volume overview_of(const Store& store, std::int64_t samples, std::stop_token sto
 
 /// The samples of the store that a brick is made of.
 SampleBox BrickLoader::source_of(const Index3& brick, int coarser) const {
-    const SampleBox box = empty_->resident()->box_of(brick);
+    const SampleBox box = ResidentBricks::box_of(brick, geometry_.size);
     if (coarser == 0) return box;
     const Geometry& grid =
         store_->info().levels[static_cast<std::size_t>(settings_.level + coarser)].geometry;
@@ -149,10 +149,10 @@ SampleBox BrickLoader::source_of(const Index3& brick, int coarser) const {
     return {inside(a.cwiseMin(b).array().floor()), inside(a.cwiseMax(b).array().ceil())};
 }
 
-ResidentBrick BrickLoader::read(const Index3& brick, int coarser, std::stop_token stop) {
+Brick BrickLoader::read(const Index3& brick, int coarser, std::stop_token stop) {
     const SampleType type = overview_.type();
     const std::size_t each = size_of(type);
-    const SampleBox box = empty_->resident()->box_of(brick);
+    const SampleBox box = ResidentBricks::box_of(brick, geometry_.size);
     const Index3 origin = brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
     const SampleBox from = source_of(brick, coarser);
     const Geometry& grid =

@@ -65,9 +65,9 @@ class Saving {
         writer_.write_metadata(Range{edits_.minimum(), edits_.maximum()});
         written_ = open_zarr(folder_objects(folder_), folder_.string(), {});
         std::vector<SampleBox> changed;
-        edits_.bricks()->for_each([&](const Index3& brick, const Bricks::Brick&) {
-            const Index3 low = brick * Bricks::cells;
-            changed.push_back({low, (low + Index3::Constant(Bricks::cells - 1))
+        edits_.bricks()->for_each([&](const Index3& brick, const Brick&) {
+            const Index3 low = brick * Bricks::edge;
+            changed.push_back({low, (low + Index3::Constant(Bricks::edge - 1))
                                         .cwiseMin(edits_.geometry().size - Index3::Ones())});
         });
         for (std::size_t l = 0; l < writer_.levels().size(); ++l) {

@@ -10,7 +10,7 @@
 #include "apps/palpate/demo_run.hpp"
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
-#include "palpate/editor.hpp"
+#include "palpate/edit.hpp"
 #include "palpate/io/output.hpp"
 #include "palpate/run/brush.hpp"
 #include "pictures/animation.hpp"

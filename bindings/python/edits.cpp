@@ -1,5 +1,5 @@
 // Edits as values, and the editor with undo and redo.
-#include "palpate/editor.hpp"
+#include "palpate/edit.hpp"
 
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/record.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <thread>
 
-#include "palpate/reach.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/stream/loader.hpp"
 

@@ -50,12 +50,13 @@ double greatest_on_chord(const Field& field, double isovalue, const Vec3& from, 
 ToolUpdate judged_update(ToolProxy& proxy, const Field& field, const Pose& hand,
                          ToolVerdict& verdict) {
     const Pose before = proxy.pose;
-    const bool was_placed = proxy.placed && !proxy.kept.inside;
+    const bool was_placed = proxy.placed && !verdict.recovering;
     Poses poses;
     const PoseObserver observer{
         [](const Pose& pose, void* to) { static_cast<Poses*>(to)->all.push_back(pose); }, &poses};
     const ToolUpdate update = update_tool(proxy, field, hand, {}, observer);
     verdict.unfinished += update.status != UpdateStatus::done;
+    verdict.recovering = update.status == UpdateStatus::recovering;
     verdict.rounds += update.rounds;
     verdict.work += update.work;
     verdict.most_rounds = std::max(verdict.most_rounds, update.rounds);

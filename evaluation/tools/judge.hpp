@@ -12,6 +12,7 @@ struct ToolVerdict {
     std::int64_t unfinished = 0;  ///< updates that ended neither done nor refused
     std::int64_t rounds = 0, work = 0;
     int most_rounds = 0, most_work = 0;
+    bool recovering = false;  ///< in the last update
 };
 
 /// Makes an update and looks at every pose on its way. Of a tool with many points a part of the

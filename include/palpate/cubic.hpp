@@ -1,4 +1,4 @@
-// Stage 8, cubic: the smooth field. On the lattice's tetrahedra, moved so that a cube lies round
+// Stage 6, cubic: the smooth field. On the lattice's tetrahedra, moved so that a cube lies round
 // each sample, the field is a cubic in each tetrahedron, with a continuous gradient everywhere
 // (docs/smooth.md). Its samples are the same; nothing is stored per tetrahedron.
 //

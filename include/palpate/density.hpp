@@ -1,4 +1,4 @@
-// Stage 9, density: the field at a point, whichever way it continues between its samples. What
+// Stage 7, density: the field at a point, whichever way it continues between its samples. What
 // observes a field asks here; the proxy has its own, quicker ways.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Stage 4, field: samples continued over all of space, and which side of a level is solid.
+// Stage 3, field: samples continued over all of space, and which side of a level is solid.
 // All later stages read samples through Field::cell(), eight at a time, or Field::around(), 27 at a
 // time. They do not know how samples are stored, nor whether they were edited or interpolated
 // between two frames.
@@ -53,19 +53,6 @@ class Field {
     void use(const std::shared_ptr<const Samples>& samples) noexcept;
     /// Goes to a time of a sequence [s], see Samples::moment_at().
     void set_time(double time) noexcept;
-    /// From now on samples with a label above 0 are `solid` [data units] where it is one of these
-    /// bits, else `open`; with bit 0 samples without a label, and all outside the grid, are solid,
-    /// too. `labels`: one uint8 volume of labels up to 31 that is not edited, on any grid; a sample
-    /// of this field has the label that is nearest to it, 0 outside of them. Does not allocate. The
-    /// samples may be those of the labels: then `open` has to be 0.
-    void cover(const std::shared_ptr<const Field>& labels, std::uint32_t solid_labels, double open,
-               double solid) noexcept;
-    /// Null without cover().
-    const Field* covering_labels() const noexcept { return cover_.labels.get(); }
-    /// Of the sample `at`, from the labels that cover it.
-    int covering_label(const Index3& at) const noexcept;
-    /// Whether the sample `at` or one of its neighbours has such a label.
-    bool is_covered_around(const Index3& at) const noexcept;
     /// Feels the same samples in another way from now on.
     void set_interpolation(Interpolation to) noexcept { interpolation_ = to; }
 
@@ -99,8 +86,8 @@ class Field {
     const Vec3& voxels_per_mm() const { return voxels_per_mm_; }
 
     /// The samples of the cell whose lowest corner is `cell` (index space), less offset(); any cell
-    /// in space. Samples that are not in memory are as solid as any (ResidentBricks; reach.hpp says
-    /// why no proxy meets them).
+    /// in space. Samples that are not in memory are as solid as any; no proxy meets them
+    /// (docs/streaming.md).
     CellSamples cell(const Index3& cell) const {
         return with_type(type_, [&](auto zero) { return cell_of<decltype(zero)>(cell); });
     }
@@ -137,53 +124,32 @@ class Field {
         return beyond(0) || beyond(1) || beyond(2);
     }
 
-    /// A ball [mm, physical] whose samples are known to be in memory, with those that the field
-    /// needs round it; what reach.hpp found out last. None after the samples changed.
-    struct ResidentBall {
-        Vec3 centre = Vec3::Zero();
-        double radius = -1;  ///< below 0: none
-    };
-    const ResidentBall& resident_ball() const { return resident_ball_; }
-    void set_resident_ball(const ResidentBall& ball) { resident_ball_ = ball; }
-
   private:
+    friend struct LabelCover;
+
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
+    /// Samples that lie in one array as they are felt: the first of them, and how far apart
+    /// neighbours in y and z are. Null: they do not.
+    struct Run {
+        const void* first = nullptr;
+        std::ptrdiff_t row = 0, slice = 0;
+    };
+    /// Of a block of count^3 samples, 2 or 3 along each axis.
+    Run run_of(const Index3& low, int count) const;
+    /// One sample anywhere in space, less offset(). All that is not in one array comes from here.
     template <class T>
-    CellSamples resident_cell(const Index3& cell) const;
+    double sample_at(const Index3& at) const;
+    template <std::size_t count>
+    std::array<double, count * count * count> gathered(const Index3& low) const;
     CellSamples other_cell(const Index3& cell) const;
-    CellSamples uncovered_cell(const Index3& cell) const;
-    template <class T, std::size_t count>
-    std::array<double, count * count * count> clipped(const Index3& low) const;
-    /// True for one array of samples that do not change.
-    bool lies_as_read() const { return !bricks_ && !(moment_.weight > 0) && !resident_; }
-    Neighbours other_around(const Index3& at) const;
-    Neighbours uncovered_around(const Index3& at) const;
-    double covered(int label, double sample) const noexcept {
-        if (cover_.solid_labels >> label & 1U) return cover_.solid;
-        return label > 0 ? cover_.open : sample;
-    }
-    template <std::size_t count>
-    void cover_samples(const Index3& low, std::array<double, count * count * count>& samples) const;
-    template <std::size_t count>
-    std::array<double, count * count * count> plain_covered(const Index3& low) const;
-    CellSamples absolute_cell(const Index3& cell) const;
     bool has_sample(const Index3& at) const {
         return (at.array() >= 0).all() && (at.array() < size_.array()).all();
     }
-    /// True for a sample whose neighbours are in the grid, too.
-    bool is_inner(const Index3& at) const {
-        const auto inner = [&](int a) {
-            return static_cast<unsigned>(at[a] - 1) < static_cast<unsigned>(size_[a] - 2);
-        };
-        return size_.minCoeff() > 2 && inner(0) && inner(1) && inner(2);
-    }
-    bool is_edited_around(const Index3& at) const;
-    double most_solid() const;
-    double sample_at(const Index3& index) const;
-    CellSamples stored_cell(const Index3& cell) const;
-    template <class Visit>
-    auto visit_gathered(const Index3& at, Visit& visit, Gathered& gathered) const;
+    void cover(const std::shared_ptr<const Field>& labels, std::uint32_t solid_labels, double open,
+               double solid) noexcept;
+    int label_at(const Index3& at) const noexcept;
+    bool is_labelled(const Index3& low, int count) const noexcept;
     void look() noexcept;
 
     std::shared_ptr<const Samples> samples_;
@@ -191,7 +157,6 @@ class Field {
     Moment moment_;
     const void* data_ = nullptr;  // of the frame before the moment
     const ResidentBricks* resident_ = nullptr;
-    ResidentBall resident_ball_;
     const Bricks* bricks_ = nullptr;
     std::ptrdiff_t row_ = 0;    // samples between neighbours in y
     std::ptrdiff_t slice_ = 0;  // samples between neighbours in z
@@ -207,7 +172,6 @@ class Field {
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
     Interpolation interpolation_ = Interpolation::linear;
-    bool reads_bricks_ = false;  // of a large grid, as they lie there
 
     /// Labels over the samples.
     struct Cover {
@@ -216,8 +180,7 @@ class Field {
         double open = 0, solid = 0;  // [data units] less the field's offset
         double background = 0;       // where samples without a label are not solid
         bool same_grid = true;
-        Index3 plain = Index3::Zero();  // cells whose samples lie at data_ but for the labels
-        Mat3 turn = Mat3::Identity();   // index of a label = turn * index of a sample + shift
+        Mat3 turn = Mat3::Identity();  // index of a label = turn * index of a sample + shift
         Vec3 shift = Vec3::Zero();
     };
     Cover cover_;
@@ -229,7 +192,7 @@ inline CellSamples Field::cell_of(const Index3& cell) const {
     const bool plain = static_cast<unsigned>(cell[0]) < static_cast<unsigned>(plain_[0]) &&
                        static_cast<unsigned>(cell[1]) < static_cast<unsigned>(plain_[1]) &&
                        static_cast<unsigned>(cell[2]) < static_cast<unsigned>(plain_[2]);
-    if (!plain) return reads_bricks_ ? resident_cell<T>(cell) : other_cell(cell);
+    if (!plain) return other_cell(cell);
     const T* p = static_cast<const T*>(data_) + (cell[0] + cell[1] * row_ + cell[2] * slice_);
     const T* q = p + slice_;
     return {double(p[0]), double(p[1]), double(p[row_]), double(p[row_ + 1]),
@@ -237,23 +200,7 @@ inline CellSamples Field::cell_of(const Index3& cell) const {
 }
 
 template <class Visit>
-auto Field::visit_gathered(const Index3& at, Visit& visit, Gathered& gathered) const {
-    const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < cover_.plain[a]; };
-    const bool may_be_plain = cover_.labels && (cover_.solid_labels & 1U) == 0;
-    if (may_be_plain && is_plain(0) && is_plain(1) && is_plain(2) && !is_covered_around(at)) {
-        return with_type(type_, [&](auto zero) {
-            const auto* samples = static_cast<const decltype(zero)*>(data_);
-            return visit(samples + (at[0] + at[1] * row_ + at[2] * slice_), row_, slice_);
-        });
-    }
-    if (!gathered.done) gathered.samples = other_around(at);
-    gathered.done = true;
-    const double* const centre = gathered.samples.data() + 13;
-    return visit(centre, std::ptrdiff_t{3}, std::ptrdiff_t{9});
-}
-
-template <class Visit>
-inline auto Field::visit_around(const Index3& at, Visit&& visit, Gathered& gathered) const {
+inline auto Field::visit_around(const Index3& at, Visit&& visit, Gathered& kept) const {
     // The lowest and the highest of the eight cells that meet at the sample.
     const auto is_plain = [&](int a) { return at[a] > 0 && at[a] < plain_[a]; };
     if (is_plain(0) && is_plain(1) && is_plain(2)) {
@@ -262,16 +209,23 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit, Gathered& gathe
             return visit(static_cast<const decltype(zero)*>(data_) + offset, row_, slice_);
         });
     }
-    if (reads_bricks_ && is_inner(at) && !(bricks_ && is_edited_around(at))) {
-        if (const ResidentBrick* brick = resident_->of_sample(at)) {
-            return with_type(type_, [&](auto zero) {
-                const auto* samples = reinterpret_cast<const decltype(zero)*>(brick->samples.get());
-                return visit(samples + ResidentBricks::place_of(at), ResidentBricks::row,
-                             ResidentBricks::slice);
-            });
-        }
+    const Index3 low(at[0] - 1, at[1] - 1, at[2] - 1);
+    if (const Run run = kept.done ? Run{} : run_of(low, 3); run.first) {
+        return with_type(type_, [&](auto zero) {
+            const auto* first = static_cast<const decltype(zero)*>(run.first);
+            return visit(first + 1 + run.row + run.slice, run.row, run.slice);
+        });
     }
-    return visit_gathered(at, visit, gathered);
+    if (!kept.done) kept.samples = gathered<3>(low);
+    kept.done = true;
+    return visit(static_cast<const double*>(kept.samples.data()) + 13, std::ptrdiff_t{3},
+                 std::ptrdiff_t{9});
 }
+
+/// True if all samples within `radius` [mm] of a point [mm, physical], and those that the field
+/// needs between them, are in memory.
+bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept;
+/// The coarsest level of detail of the samples round a point [mm, physical]: 0 is the grid's own.
+int level_at(const Field& field, const Vec3& physical) noexcept;
 
 }  // namespace palpate

@@ -1,4 +1,4 @@
-// Stage 7, lattice: every cell is cut into 24 tetrahedra with a linear field in each (Corenthy et
+// Stage 5, lattice: every cell is cut into 24 tetrahedra with a linear field in each (Corenthy et
 // al. 2012, section 3). Nothing is stored per tetrahedron; a cell and a frame identify it.
 //
 // The corners of a tetrahedron are the cell's centre, the centre of one face, and the two ends of

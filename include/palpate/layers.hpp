@@ -1,4 +1,4 @@
-// Stage 13, layers: several surfaces in one stroke, each with its own character. A haptic transfer
+// Stage 11, layers: several surfaces in one stroke, each with its own character. A haptic transfer
 // function gives stiffness, friction and so on by density; surfaces are levels of it, from outside
 // in, and give way when they are pressed hard enough. (What Corenthy et al. 2012, section 7, leave
 // open: penetrability made for an application.) Model, energy and limits: docs/layers.md.
@@ -110,6 +110,10 @@ inline std::size_t level_count(const Layers& layers) {
 /// layers[k].level, else 0. Throws std::invalid_argument for more than 16 layers.
 std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers,
                                              std::size_t first = 0);
+
+/// The field that is 1 in all labels of these layers and 0 elsewhere, to show them. It needs
+/// labels.
+Field labelled_space(const Layers& layers);
 
 /// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, levels out of
 /// order or not finite (labels: not whole, below 1 or given twice), names missing or given twice,

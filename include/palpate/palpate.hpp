@@ -1,37 +1,34 @@
 // Includes the whole core, in the order of the flow of data. One tick:
 //
-//   volume -> samples -> field -> lattice --+
-//      edit, editor --^     penetrability --+--> proxy -> force, layers -> device
-//                                 renderer: one call for proxy..force, with a point or a tool
-//                         tool -> tool_proxy: the proxy of a rigid body
+//   volume -> samples -> field -> lattice, cubic, density --+
+//                edit --^                    penetrability --+--> proxy, layers -> force -> device
+//                                                    tool --+--> tool_proxy ---^
 //
-// surface (the whole isosurface as a mesh) observes volume, field and lattice.
+//   renderer: one call for all from proxy to force, with a point, with layers or with a tool
+//   session: a renderer with clutch, freeze and commands
+//   servo: the thread that runs a session with a device
+//   exchange: how other threads take part
+//
+// surface (the whole isosurface as a mesh) observes field and lattice.
 #pragma once
 
 // The order is the flow of data, not the alphabet.
 // clang-format off
 #include "palpate/volume.hpp"
 #include "palpate/tool.hpp"
-#include "palpate/tool_body.hpp"
-#include "palpate/pages.hpp"
-#include "palpate/resident.hpp"
 #include "palpate/samples.hpp"
 #include "palpate/field.hpp"
 #include "palpate/edit.hpp"
-#include "palpate/editor.hpp"
 #include "palpate/lattice.hpp"
 #include "palpate/cubic.hpp"
-#include "palpate/kept_piece.hpp"
 #include "palpate/density.hpp"
 #include "palpate/proxy.hpp"
 #include "palpate/tool_proxy.hpp"
 #include "palpate/penetrability.hpp"
 #include "palpate/force.hpp"
 #include "palpate/layers.hpp"
-#include "palpate/reach.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/exchange.hpp"
-#include "palpate/latency.hpp"
 #include "palpate/device.hpp"
 #include "palpate/session.hpp"
 #include "palpate/servo.hpp"

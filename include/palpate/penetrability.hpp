@@ -1,4 +1,4 @@
-// Stage 11, penetrability: pressing through surfaces (Corenthy et al. 2012, section 5, Eq. 5 and
+// Stage 9, penetrability: pressing through surfaces (Corenthy et al. 2012, section 5, Eq. 5 and
 // Fig. 7). Beyond a penetration threshold the proxy gives way and the felt isovalue follows the
 // hand inwards, and outwards again, so that one press explores all levels of a data set.
 #pragma once

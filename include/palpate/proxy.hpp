@@ -1,13 +1,15 @@
-// Stage 10, proxy: the point that stays on the free side of the isosurface while the hand presses
+// Stage 8, proxy: the point that stays on the free side of the isosurface while the hand presses
 // into it (Corenthy et al. 2012, section 4). A proxy is a small value that can be copied. Nothing
 // here allocates, locks or throws.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <optional>
 
+#include "palpate/cubic.hpp"
 #include "palpate/density.hpp"
-#include "palpate/kept_piece.hpp"
 
 namespace palpate {
 
@@ -28,6 +30,26 @@ enum class UpdateStatus : std::uint8_t {
 /// with its target's distance: up to here G1 and G2 hold (docs/proxy.md, "Domain").
 inline constexpr double farthest_hip = 1e5;
 
+/// The piece that an update made last, for the next one, which mostly begins in its tetrahedron. It
+/// is used only where all that it was made from is the same. Nobody else looks into it.
+class KeptPiece {
+    friend struct CubicSite;
+    friend struct Kept;
+    double isovalue = 0;  // less the field's offset [data units]
+    double sign = 0;
+    Tetrahedron tetrahedron;
+    cubic::Piece piece;  // of the excess, sign * (f - isovalue)
+    // Nothing in the tetrahedron's cube lies above: the greatest excess of the samples round it,
+    // once it was looked for, times cubic::scale.
+    double most = std::numeric_limits<double>::infinity();
+};
+/// A sample and its neighbours, to the bit, with their type. Nobody else looks into it, either.
+class KeptSamples {
+    friend struct Kept;
+    int type = 0;  // none
+    std::array<std::byte, 27 * sizeof(double)> bytes{};
+};
+
 /// The state between updates. Set `isovalue` freely between two updates.
 struct Proxy {
     LatticePoint scp;                  ///< surface contact point, of the lattice of `interpolation`
@@ -45,9 +67,9 @@ struct Proxy {
     double recovery_reach = 0;  ///< [voxel] how far recovery has searched for free space so far
     /// Unit normal of the surface felt before the field changed, physical axes. Zero: none
     Vec3 ahead = Vec3::Zero();
-    /// These save time on a cubic field and change no result.
-    cubic::KeptPiece kept;
-    cubic::KeptSamples kept_samples;  ///< that its piece was made from
+    // These save time on a cubic field and change no result.
+    KeptPiece kept;
+    KeptSamples kept_samples;  ///< that its piece was made from
 };
 
 /// Coulomb friction as a cone on the proxy's motion: it stays until the tangential pull exceeds
@@ -122,12 +144,6 @@ ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
 /// a needle. Keeps G1, G2, G4 and G5. No friction.
 ProxyUpdate update_straight(Proxy& proxy, const Field& field, const Vec3& hip,
                             const ProxySettings& settings = {}, StepObserver observer = {});
-
-/// The paper's method as published (Fig. 4): constraint planes of all tetrahedra at the SCP, one
-/// goal that satisfies all of them, walked to tetrahedron by tetrahedron. Keeps G1, G2 and G5;
-/// sticks on convex ridges, where it breaks G3. No friction. For comparison. Refuses cubic fields.
-ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
-                         const ProxySettings& settings = {}, StepObserver observer = {});
 
 /// Puts the proxy at `hip` if that point is free, else at the free point that recovery finds. Takes
 /// as long as that needs, so it is not for the servo thread. False if all of space is solid.

@@ -1,4 +1,4 @@
-// Stage 15, renderer: one call renders a tick, from the device's state to proxy and force. A
+// Stage 12, renderer: one call renders a tick, from the device's state to proxy and force. A
 // renderer is a value that can be copied. render() does not allocate, lock, do I/O, read clocks or
 // throw.
 #pragma once
@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "palpate/layers.hpp"
-#include "palpate/reach.hpp"
 #include "palpate/tool_proxy.hpp"
 
 namespace palpate {

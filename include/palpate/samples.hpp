@@ -1,4 +1,4 @@
-// Stage 3, samples: one version of the numbers on a grid, which is a volume with its edited
+// Stage 2, samples: one version of the numbers on a grid, which is a volume with its edited
 // bricks, the frames of a sequence, or the part of a large grid that is in memory, perhaps with
 // edited bricks. A version never changes. A change makes a new version, published by pointer, and
 // readers pick it up between two reads (copy on write). See docs/changing_data.md.
@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "palpate/resident.hpp"
+#include "palpate/volume.hpp"
 
 namespace palpate {
 
@@ -22,69 +22,128 @@ struct Frame {
     int number = -1;  ///< of the frame in its file or series, from 0; -1: in neither
 };
 
-/// Edited samples: bricks of 16 x 16 x 16 cells, each with the 17 x 17 x 17 samples at their
-/// corners, so that every cell lies in one brick. Two neighbours both hold the samples on their
-/// common face, with equal values. A brick that was not edited is null: there the grid's own
-/// samples count. Samples of a brick outside the grid are 0. A value; copies share their bricks.
-class Bricks {
+/// Samples of a cube of the grid.
+struct Brick {
+    std::shared_ptr<const std::byte[]> samples;  ///< of the volume's type, x fastest, or null
+    /// The level of detail that they come from: 0 is the grid's own, others are interpolated from
+    /// coarser ones.
+    std::uint8_t level = 0;
+
+    explicit operator bool() const { return samples != nullptr; }
+    bool operator==(const Brick&) const = default;
+};
+
+/// A table over a box of bricks most of which are empty: a tree whose nodes have 8 x 8 x 8 places.
+/// A value. Versions share the nodes that did not change (copy on write).
+class SparseBricks {
   public:
-    static constexpr int cells = 16;
-    static constexpr int samples = cells + 1;
-    static constexpr int per_brick = samples * samples * samples;
-    /// Samples of the volume's type, x fastest.
-    using Brick = std::shared_ptr<const std::byte[]>;
+    /// A brick that comes or, if it is empty, goes.
     struct Change {
-        Index3 brick;
+        Index3 at;
         Brick to;
     };
 
-    /// None of a grid of this size is edited.
-    explicit Bricks(const Index3& size);
-    /// The same but for these changes. A brick outside the grid throws std::out_of_range.
-    Bricks with(std::span<const Change> changes) const;
-
     /// Bricks along each axis.
     const Index3& count() const { return count_; }
-    /// How many are edited.
+    /// How many are not empty.
     std::size_t size() const { return size_; }
-    /// Null if it was not edited. The brick must be inside the grid.
-    Brick at(const Index3& brick) const {
-        const Brick* found = find(brick);
-        return found ? *found : nullptr;
+    /// Null if it is empty. The brick must be inside the grid.
+    const Brick* at(const Index3& brick) const {
+        const void* node = root_.get();
+        for (int level = depth_; level > 0 && node; --level) {
+            node = static_cast<const Fork*>(node)->at[place_in(brick, level)].get();
+        }
+        if (!node) return nullptr;
+        const Brick& found = static_cast<const Leaf*>(node)->at[place_in(brick, 0)];
+        return found ? &found : nullptr;
     }
-    /// The brick of a cell inside the grid; null if it was not edited.
-    const std::byte* of_cell(const Index3& cell) const {
-        const Brick* found = find({cell[0] >> 4, cell[1] >> 4, cell[2] >> 4});
-        return found ? found->get() : nullptr;
-    }
-    /// Calls visit(brick, mine, theirs) for each brick that `other`, of the same grid, does not
-    /// share: its place, and what is here and there.
-    void for_each_apart(const Bricks& other,
-                        const std::function<void(const Index3& brick, const Brick& mine,
+    /// Calls visit(at, mine, theirs) for each brick that `other`, of as many bricks, does not
+    /// share.
+    void for_each_apart(const SparseBricks& other,
+                        const std::function<void(const Index3& at, const Brick& mine,
                                                  const Brick& theirs)>& visit) const;
-    /// Calls visit(brick, samples) for each edited brick.
-    void for_each(
-        const std::function<void(const Index3& brick, const Brick& samples)>& visit) const;
+    /// Calls visit(at, brick) for each brick that is not empty.
+    void for_each(const std::function<void(const Index3& at, const Brick& brick)>& visit) const;
     /// Bytes that this takes, besides the bricks, for what `other` does not share.
-    std::size_t table_bytes_apart(const Bricks& other) const;
+    std::size_t table_bytes_apart(const SparseBricks& other) const;
+
+  protected:
+    explicit SparseBricks(const Index3& count);
+    /// Throws std::out_of_range for a brick outside the grid.
+    void change(std::span<const Change> changes);
 
   private:
-    /// 4 x 4 x 4 bricks.
-    using Block = std::array<Brick, 64>;
-    using Blocks = Pages<std::shared_ptr<const Block>, 3>;
+    using Node =
+        std::shared_ptr<const void>;  // a fork, or at level 0 a leaf, or null if all is empty
+    struct Fork {
+        std::array<Node, 512> at;
+    };
+    struct Leaf {
+        std::array<Brick, 512> at;
+    };
 
-    static std::size_t place_in_block(const Index3& brick) {
-        return std::size_t((brick[2] & 3) << 4 | (brick[1] & 3) << 2 | (brick[0] & 3));
+    static std::size_t place_in(const Index3& brick, int level) {
+        const int shift = 3 * level;
+        return std::size_t((brick[2] >> shift & 7) << 6 | (brick[1] >> shift & 7) << 3 |
+                           (brick[0] >> shift & 7));
     }
-    const Brick* find(const Index3& brick) const {
-        const auto* block = blocks_.at({brick[0] >> 2, brick[1] >> 2, brick[2] >> 2});
-        return block && *block ? &(**block)[place_in_block(brick)] : nullptr;
-    }
+    Node changed(const Node& node, int level, std::span<const Change> changes);
+    template <class Visit>
+    static void for_each_node_apart(const void* mine, const void* theirs, int level,
+                                    const Index3& first, Visit&& visit);
 
     Index3 count_;
+    int depth_ = 0;  // levels of forks
     std::size_t size_ = 0;
-    Blocks blocks_;
+    Node root_;
 };
+
+/// Bricks of 2^shift samples along each axis, with `before` samples on the side before them and one
+/// behind them. So the cell of a brick's sample lies in the brick whole. Samples of a brick outside
+/// the grid have any value.
+template <int shift, int before>
+class BrickTable : public SparseBricks {
+  public:
+    static constexpr int edge = 1 << shift;
+    static constexpr int margin = before;
+    static constexpr std::ptrdiff_t row = edge + before + 1;  ///< samples between neighbours in y
+    static constexpr std::ptrdiff_t slice = row * row;        ///< and in z
+    static constexpr std::size_t per_brick = std::size_t{slice} * row;
+
+    /// None of a grid of this size.
+    explicit BrickTable(const Index3& size)
+        : SparseBricks((size + Index3::Constant(edge - 1)) / edge) {}
+    /// The same but for these changes. A brick outside the grid throws std::out_of_range.
+    BrickTable with(std::span<const Change> changes) const {
+        BrickTable after = *this;
+        after.change(changes);
+        return after;
+    }
+    static Index3 brick_of(const Index3& sample) {
+        return {sample[0] >> shift, sample[1] >> shift, sample[2] >> shift};
+    }
+    /// The samples that a brick holds, clipped to a grid of this size.
+    static SampleBox box_of(const Index3& brick, const Index3& size) {
+        const Index3 low = brick * edge;
+        return {(low - Index3::Constant(before)).cwiseMax(Index3::Zero()),
+                (low + Index3::Constant(edge)).cwiseMin(size - Index3::Ones())};
+    }
+    /// The brick that a sample inside the grid, and its cell, belong to, or null.
+    const Brick* of_sample(const Index3& sample) const { return at(brick_of(sample)); }
+    /// Place of a sample among those of its brick.
+    static std::ptrdiff_t place_of(const Index3& sample) {
+        constexpr int mask = edge - 1;
+        return ((sample[0] & mask) + before) + ((sample[1] & mask) + before) * row +
+               ((sample[2] & mask) + before) * slice;
+    }
+};
+
+/// Edited samples. Two neighbours both hold the samples on their common face, with equal values.
+/// The grid's own samples count in place of empty bricks.
+using Bricks = BrickTable<4, 0>;
+/// The part of a large grid that is in memory (docs/streaming.md): a sample's neighbours lie in the
+/// brick of that sample.
+using ResidentBricks = BrickTable<6, 1>;
 
 /// A moment of a sequence, as a place between two frames.
 struct Moment {
@@ -144,6 +203,10 @@ class Samples {
     double sample(const Index3& index, const Moment& moment = {}) const;
 
   private:
+    friend class Field;
+    template <class T>
+    double sample_as(const Index3& at, const Moment& moment) const;
+
     std::vector<Frame> frames_;
     Geometry geometry_;
     double period_ = 0;
@@ -152,6 +215,25 @@ class Samples {
     double minimum_ = 0;
     double maximum_ = 0;
 };
+
+template <class T>
+double Samples::sample_as(const Index3& at, const Moment& moment) const {
+    const auto in = [](const void* samples, std::ptrdiff_t place) {
+        return double(static_cast<const T*>(samples)[place]);
+    };
+    if (const Brick* brick = bricks_ ? bricks_->of_sample(at) : nullptr) {
+        return in(brick->samples.get(), Bricks::place_of(at));
+    }
+    if (resident_) {
+        return in(resident_->of_sample(at)->samples.get(), ResidentBricks::place_of(at));
+    }
+    const Index3& size = geometry_.size;
+    const std::ptrdiff_t place =
+        (std::ptrdiff_t{at[2]} * size[1] + at[1]) * std::ptrdiff_t{size[0]} + at[0];
+    const double from = in(frames_[moment.from].volume.data(), place);
+    if (!(moment.weight > 0)) return from;
+    return (1 - moment.weight) * from + moment.weight * in(frames_[moment.to].volume.data(), place);
+}
 
 /// The samples at a moment as one volume of the same type (rounded to it between two frames), for
 /// files and for code that needs them in one piece. No copy is made where an existing volume is the
@@ -168,7 +250,7 @@ class ShownEdits {
     std::shared_ptr<const Samples> of(const Samples& edited);
 
   private:
-    Bricks::Brick brick_of(const Index3& brick, const Samples& edited) const;
+    Brick brick_of(const Index3& brick, const Samples& edited) const;
 
     std::shared_ptr<const Samples> plain_, with_edits_;
     Bricks bricks_;  // of with_edits_

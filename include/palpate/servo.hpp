@@ -1,4 +1,4 @@
-// Stage 20, servo: the real-time thread. It reads the device, advances the session and writes the
+// Stage 16, servo: the real-time thread. It reads the device, advances the session and writes the
 // force, usually a thousand times a second. Other threads observe snapshots and send commands.
 #pragma once
 
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "palpate/exchange.hpp"
-#include "palpate/latency.hpp"
 #include "palpate/session.hpp"
 
 namespace palpate {

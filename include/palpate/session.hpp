@@ -1,4 +1,4 @@
-// Stage 19, session: one tick of a live session, which is everything between reading a device and
+// Stage 15, session: one tick of a live session, which is everything between reading a device and
 // writing to it. A session is a value without clock or thread, so a recording of its input gives
 // the same ticks again.
 #pragma once
@@ -40,7 +40,7 @@ struct BricksOf {
     std::uint64_t version = 0;  ///< of the samples before
     struct Brick {
         Index3 at;
-        int level = 0;  ///< of detail, see ResidentBrick; -1: it went
+        int level = 0;  ///< of detail, see Brick; -1: it went
     };
     std::vector<Brick> bricks;
 };

@@ -1,10 +1,11 @@
-// Tool: a rigid body that touches with the points of its surface. A point is the simplest
-// tool. Plain values; nothing here knows of fields.
+// Tool: a rigid body that touches with the points of its surface, and its solid for edits that have
+// the tool's own shape. A point is the simplest tool. Plain values; nothing here knows of fields.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,7 +37,7 @@ struct ToolShape {
 };
 
 /// The points with which a tool touches, in its own axes, its reference point at their origin.
-/// What is thinner than the distance of neighbouring points passes between them. Immutable.
+/// Things thinner than the distance of neighbouring points pass between them. Immutable.
 class Tool {
   public:
     /// A single point at the reference point.
@@ -103,5 +104,42 @@ inline Vec3 physical_from_tool(const Pose& pose, const Vec3& point) {
 Vec3 rotation_between(const Quaternion& from, const Quaternion& to);
 /// Turned by a rotation vector (physical axes), unit again.
 Quaternion turned(const Quaternion& from, const Vec3& rotation);
+
+/// The solid of a rigid tool as distances from its skin. Immutable. Not for the servo thread, which
+/// feels a tool with its points alone.
+///
+/// If the tool's shape is closed (each edge has an even number of triangles, turned either way)
+/// the body is what it encloses. Otherwise the body is the tool's points, which has no inside:
+/// edits reach as far round them as their brush says.
+class ToolBody {
+  public:
+    /// Distances are computed at places `step` [mm] apart (farther where that would be more than
+    /// four million) and are known up to `reach` [mm] from the skin, on both sides. Throws
+    /// std::invalid_argument for a shape of more than 20,000 triangles, a step or reach that is not
+    /// from 1e-6 to 1e6 mm, and a reach of more than half a million steps.
+    ToolBody(std::shared_ptr<const Tool> tool, double step, double reach);
+
+    /// From the skin to a point in tool axes [mm], below 0 inside. Beyond the reach it is at least
+    /// that. Between the places it is interpolated linearly.
+    double distance(const Vec3& point) const;
+
+    const std::shared_ptr<const Tool>& tool() const { return tool_; }
+    bool is_closed() const { return closed_; }
+    double step() const { return asked_step_; }
+    double reach() const { return reach_; }
+    /// The corners of the box round the body [mm, tool axes], without its reach.
+    const Vec3& low() const { return low_; }
+    const Vec3& high() const { return high_; }
+
+  private:
+    std::shared_ptr<const Tool> tool_;
+    double asked_step_, reach_;
+    double step_;  // of the places
+    bool closed_ = false;
+    Vec3 low_, high_;
+    Vec3 first_;  // the first place
+    Index3 size_;
+    std::vector<float> distances_;  // x fastest
+};
 
 }  // namespace palpate

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "palpate/proxy.hpp"
 #include "palpate/tool.hpp"
@@ -20,9 +19,10 @@ struct ToolSettings {
     /// Most rounds of an update: each finds a direction and goes along it. An update that finds no
     /// way on before it is at rest ends as one that is out of budget.
     int most_rounds = 60;
-    /// Most work of an update, in cubes of the lattice looked at, 0.15 microseconds each; one for
-    /// each point of the tool comes on top. Later updates finish what is left. A thousand points
-    /// take 0.8 ms at most; faster loops need a smaller budget.
+    /// Most work of an update: cubes of the lattice looked at, 0.15 microseconds each, and all else
+    /// that takes as long. One for each point of the tool comes on top, two while it is brought out
+    /// of the solid. Later updates finish what is left. A thousand points take 0.8 ms at most;
+    /// faster loops need a smaller budget.
     int work_budget = 4096;
     /// [mm] in place of the tool's own; 0: that.
     double gyration = 0;
@@ -44,34 +44,26 @@ struct ToolUpdate {
     Pose proxy;        ///< the same to the bit where it was reached
     int contacts = 0;  ///< how many points hold the proxy
     int rounds = 0;
-    int work = 0;  ///< cubes looked at
+    int work = 0;  ///< of the work budget
     /// [mm] How far from its pose recovery has looked for free space for the reference point.
     double searched = 0;
 };
 
 namespace tool {
 
-/// What is known about the samples round the tool. Changes no result but saves time.
-struct Surroundings {
-    /// Bounds of the field, its sign turned where the solid is below.
-    struct Bounds {
-        double most = 0;            ///< greatest value
-        Vec3 slope = Vec3::Zero();  ///< greatest derivatives along the grid's axes [1/mm]
-    };
-    /// Four cubes along each axis.
-    struct Brick {
-        Index3 at = Index3::Zero();
-        std::uint32_t epoch = 0;
-        bool knows_wide = false;
-        Bounds own;
-        Bounds wide;  ///< with the 26 bricks round it
-    };
-    static constexpr std::size_t brick_count = 4096;
-    std::vector<Brick> bricks = std::vector<Brick>(brick_count);
-    std::uint32_t epoch = 1;
-    std::shared_ptr<const Samples> samples;  ///< that it is about
-    Moment moment;
-    double sign = 0, background = 0;
+struct Kept;
+/// What updates keep to save time: nobody else looks into it. Copies are independent.
+class Keeper {
+  public:
+    Keeper();
+    Keeper(const Keeper& other);
+    Keeper(Keeper&&) noexcept;
+    Keeper& operator=(Keeper other) noexcept;
+    ~Keeper();
+    Kept& operator*() const { return *kept_; }
+
+  private:
+    std::unique_ptr<Kept> kept_;
 };
 
 }  // namespace tool
@@ -97,26 +89,11 @@ class ToolProxy {
     int contact_count = 0;  ///< contacts known, those without pressure included
     bool sliding = false;   ///< dynamic friction applies
 
-    /// Of updates, to save time.
-    struct Kept {
-        // Of each point, with room for more.
-        std::vector<double> arms;    ///< distance from the reference point [mm]
-        std::vector<double> expiry;  ///< travel [mm] up to which it certainly meets nothing
-        double moved = 0;            ///< odometers: translation [mm] ...
-        double turned = 0;           ///< ... and rotation [rad] so far
-        double trust = 1;            ///< longest step in contact [voxel]
-        double stride = 64;          ///< longest motion with nothing near [voxel]
-        std::array<int, most_tool_contacts> idle{};
-        std::vector<int> suspects;  ///< room for one motion
-        tool::Surroundings surroundings;
-        double isovalue = 0;
-        bool renewed = true;  ///< the tool is another one
-        bool inside = false;  ///< recovery goes on
-        int search = 0;       ///< place that it looks at next; 0: it pushes
-    } kept;
+    tool::Kept& kept() const { return *kept_; }
 
   private:
     std::shared_ptr<const Tool> tool_;
+    tool::Keeper kept_;
 };
 
 /// Called with every pose that the proxy goes to: between two of them each point of the tool

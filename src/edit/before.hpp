@@ -44,7 +44,7 @@ class Before {
 
   private:
     bool is_edited(const Index3& at) const {
-        return samples_.bricks() && samples_.bricks()->of_cell(at);
+        return samples_.bricks() && samples_.bricks()->of_sample(at);
     }
     std::size_t place_of(const Index3& at) const {
         const Index3 in = at - box_.low;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <tuple>
 
+#include "layers/cover.hpp"
 #include "palpate/density.hpp"
 #include "proxy/update.hpp"
 
@@ -57,7 +58,8 @@ void restore_set(LayerState& state, const Layers* layers, const Field& density) 
     }
     state.set = layers;
     state.covered = to_cover(*layers, density);
-    if (state.covered) state.covered->cover(layers->labels, 0, 0, 0);  // until the next tick
+    // Until the next tick.
+    if (state.covered) LabelCover::put(*state.covered, layers->labels, 0, 0, 0);
 }
 
 Tissues::Tissues(const Layers& layers, LayerState& state, Proxy& proxy, const Field& density)
@@ -82,7 +84,7 @@ Tissues::Tissues(const Layers& layers, LayerState& state, Proxy& proxy, const Fi
 bool Tissues::is_stale() const {
     return state_.set != &layers_ || state_.layer_count != count_ ||
            state_.level_count != levels_ || state_.covered.has_value() != has_labels() ||
-           (state_.covered && state_.covered->covering_labels() != layers_.labels.get());
+           (state_.covered && LabelCover::of(*state_.covered) != layers_.labels.get());
 }
 
 /// Levels of the density where no label is near. Labels that the SCP may be in lie before the level
@@ -109,7 +111,7 @@ void Tissues::cover() {
     if (!state_.covered) return;
     const std::uint32_t all = (std::uint32_t{2} << count_) - 1;
     const Bounds now = bounds();
-    state_.covered->cover(layers_.labels, all & ~state_.open, now.open, now.solid);
+    LabelCover::put(*state_.covered, layers_.labels, all & ~state_.open, now.open, now.solid);
 }
 
 /// Whether an update would leave the SCP where it is, as far as solids go.
@@ -155,7 +157,8 @@ Tissues::Shares Tissues::shares_at(const Vec3& physical) const {
     for (int i = 0; i < 27; ++i) {
         const double weight = along(i % 3, 0) * along(i / 3 % 3, 1) * along(i / 9, 2);
         if (weight == 0) continue;
-        const int label = now.covering_label(nearest + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+        const int label =
+            LabelCover::label(now, nearest + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
         shares.of[static_cast<std::size_t>(label)] += weight;
         if (label > 0 || levels_ == 0) continue;
         const double density = density_.with_offset(densities[static_cast<std::size_t>(i)]);
@@ -238,8 +241,7 @@ void Tissues::look(const ProxyUpdate& update) {
     const bool meets_ahead = update.mode == Mode::constrained && !update.behind;
     here_ = 0;
     ahead_ = none;
-    if (!state_.covered ||
-        !state_.covered->is_covered_around(nearest_sample(field(), update.scp))) {
+    if (!state_.covered || !LabelCover::is_near(field(), nearest_sample(field(), update.scp))) {
         if (meets_ahead) ahead_ = !may_be_in(0) ? 0 : has_level_ahead() ? at_level : none;
         return;
     }

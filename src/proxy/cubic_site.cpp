@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "proxy/straight.hpp"
+#include "proxy/kept_samples.hpp"
 
 namespace palpate {
 namespace {
@@ -95,7 +96,7 @@ CubicSite::CubicSite(const Proxy& proxy, const Field& f, const LatticePoint& at)
     made = kept.isovalue == isovalue && kept.sign == sign &&
            same_frame(kept.tetrahedron, at.tetrahedron) &&
            visit_cube([&](const auto* centre, auto row, auto slice) {
-               return proxy.kept_samples.are(centre, row, slice);
+               return Kept::are(proxy.kept_samples, centre, row, slice);
            });
     if (!made || is_layer() || kept.most == std::numeric_limits<double>::infinity()) look_at_cube();
 }
@@ -123,7 +124,7 @@ void CubicSite::keep(Proxy& proxy) {
     if (!made || !kept_is_new) return;
     proxy.kept = kept;
     visit_cube([&](const auto* centre, auto row, auto slice) {
-        proxy.kept_samples.keep(centre, row, slice);
+        Kept::keep(proxy.kept_samples, centre, row, slice);
     });
 }
 
@@ -246,55 +247,54 @@ double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
     return advance_inlined(step, level, walls);
 }
 
+/// On the smooth field, for a point.
+struct CubicCourse {
+    Progress& progress;
+    double level;
+    bool outside;  // the point's cube is background, and so are those round it
+
+    bool spend() { return progress.budget-- > 0; }
+    bool is_enough(double left) const { return left < progress.least_left; }
+    double skip(const CubicSite& site, const Vec3& direction, double left) {
+        outside = outside && is_outside(site);
+        if (!outside) return 0;
+        const double t = stretch_outside(site.index(), unfold(site.point.tetrahedron, direction),
+                                         left, -2, site.field.geometry().size, 1);
+        progress.tetrahedra += t > 0;
+        return t;
+    }
+    std::optional<double> advance(CubicSite& site, const Exit& exit, const Vec3& direction) {
+        const Vec3 step = exit.t * direction;
+        const unsigned walls = exit.wall == no_wall ? 0 : 1U << exit.wall;
+        double t = 1;
+        if (site.reaches(level) || site.reaches_behind()) {
+            t = site.advance_inlined(step, level, walls);
+        } else {
+            site.jump(step, walls);
+        }
+        progress.tetrahedra += t * exit.t > 0;
+        if (t < 1) return t * exit.t;
+        return std::nullopt;
+    }
+    void crossed(CubicSite& site, unsigned wall) {
+        progress.report(StepKind::cross, site);
+        site.cross(wall);
+        if (wall == wall_face) outside = is_outside(site);
+    }
+    static bool is_outside(const CubicSite& site) {
+        return site.field.is_background_around(site.point.tetrahedron.cell);
+    }
+};
+
 WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& progress) {
     if (site.reaches(level)) {
         // Rounding must not hold a start, nor add up to more than what counts as inside.
         const double hair = site.excess() < 1.5e-11 * site.range ? 4e-14 * site.range : 0;
         level = std::max(level, site.excess() + hair);
     }
-    Vec3 direction = displacement;
-    double left = 1;
-    const auto is_outside = [&] {
-        return site.field.is_background_around(site.point.tetrahedron.cell);
-    };
     // Where something reaches the level there is more than background.
-    bool outside = !site.reaches(level) && is_outside();
-    while (progress.budget-- > 0) {
-        if (outside) {
-            const Vec3 along = unfold(site.point.tetrahedron, direction);
-            const Index3& size = site.field.geometry().size;
-            const double t = stretch_outside(site.index(), along, left, -2, size, 1);
-            if (t > 0) {
-                site.move_to(cubic::locate(site.index() + t * along));
-                outside = is_outside();
-                direction = fold(site.point.tetrahedron, along);
-                left -= t;
-                ++progress.tetrahedra;
-                if (left <= 0 || left < progress.least_left) return WalkEnd::target;
-                continue;
-            }
-        }
-        const Exit exit = first_exit(site.point.folded, direction, left, 0);
-        const Vec3 step = exit.t * direction;
-        const bool at_wall = exit.wall != no_wall;
-        const unsigned walls = at_wall ? 1U << exit.wall : 0;
-        if (site.reaches(level) || site.reaches_behind()) {
-            const double t = site.advance_inlined(step, level, walls);
-            progress.tetrahedra += t * exit.t > 0;
-            if (t < 1) return WalkEnd::surface;
-        } else {
-            site.jump(step, walls);
-            progress.tetrahedra += exit.t > 0;
-        }
-        if (!at_wall) return WalkEnd::target;
-        progress.report(StepKind::cross, site);
-        site.cross(exit.wall);
-        if (exit.wall == wall_face) outside = is_outside();
-        direction = reflect(direction, exit.wall);
-        left -= exit.t;
-        if (left < progress.least_left) return WalkEnd::target;
-    }
-    return WalkEnd::out_of_budget;
+    const bool outside = !site.reaches(level) && CubicCourse::is_outside(site);
+    return walk_straight(site, displacement, CubicCourse{progress, level, outside}).end;
 }
 
 }  // namespace palpate

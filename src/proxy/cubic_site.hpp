@@ -6,7 +6,6 @@
 #include <array>
 #include <limits>
 
-#include "palpate/kept_piece.hpp"
 #include "proxy/site.hpp"
 
 namespace palpate {
@@ -28,8 +27,8 @@ struct CubicSite {
     double behind = 0;
     double thickness = std::numeric_limits<double>::infinity();
     bool turned = false;
-    int frame = 0;          // another number for each tetrahedron that it comes to
-    cubic::KeptPiece kept;  // its `most` is that of the point's cube; its piece may be another's
+    int frame = 0;   // another number for each tetrahedron that it comes to
+    KeptPiece kept;  // its `most` is that of the point's cube; its piece may be another's
 
     static CubicSite of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
         return {proxy, f, at};
@@ -88,8 +87,7 @@ struct CubicSite {
     void cross(unsigned wall);
 
   private:
-    friend WalkEnd walk(CubicSite& site, const Vec3& displacement, double level,
-                        Progress& progress);
+    friend struct CubicCourse;
     /// advance(), for the one caller that spends its time there.
     double advance_inlined(const Vec3& step, double level, unsigned walls);
     void exchange_levels();

@@ -281,15 +281,11 @@ class CubicDescent {
     /// ends up trailing the hand at the friction angle. False if the SCP sticks.
     bool apply_friction(const Contact& c) {
         const Friction& friction = site_.turned ? settings_.behind : settings_.friction;
-        const double mu =
-            proxy_.sliding ? friction.dynamic_coefficient : friction.static_coefficient;
-        const double aside = std::sqrt(c.aside_squared);
-        const double depth = c.depth / std::sqrt(c.per_squared);
-        proxy_.sliding = aside > mu * depth;
-        if (!proxy_.sliding) return false;
-        const double back = std::min(aside, friction.dynamic_coefficient * depth);
-        set_target(progress_.target - unfold(site_.point.tetrahedron,
-                                             ((back / aside) * c.aside).cwiseProduct(per_mm())));
+        const auto share = held_share(friction, proxy_, std::sqrt(c.aside_squared),
+                                      c.depth / std::sqrt(c.per_squared));
+        if (!share) return false;
+        set_target(progress_.target -
+                   unfold(site_.point.tetrahedron, (*share * c.aside).cwiseProduct(per_mm())));
         return true;
     }
 
@@ -345,7 +341,7 @@ class CubicDescent {
 ProxyUpdate update_cubic(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings, StepObserver observer) {
     const Vec3 target = index_from_physical(field.geometry(), hip);
-    if (!accepts(proxy, field, target)) return refuse_update(proxy, field, hip);
+    if (!accepts(proxy.isovalue, field, target)) return refuse_update(proxy, field, hip);
     Update<CubicSite> update(proxy, field, target, settings, observer);
     if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
     const Rest rest = CubicDescent(update.site, update.progress, settings, proxy).run();

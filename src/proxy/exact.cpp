@@ -21,14 +21,10 @@ bool apply_friction(const Friction& friction, Proxy& proxy, const Site& site, co
     const Vec3 s = fold_lengths(move.tetrahedron, progress.geometry.spacing);
     const Vec3 tangential = unfold(move.tetrahedron, move.step.cwiseProduct(s));
     const Vec3 normal = h - tangential;
-    const double t = std::sqrt(dot(tangential, tangential));
-    const double n = std::sqrt(dot(normal, normal));
-    const double mu = proxy.sliding ? friction.dynamic_coefficient : friction.static_coefficient;
-    proxy.sliding = t > mu * n;
-    if (!proxy.sliding) return false;
-    const double back = friction.dynamic_coefficient * n / t;
-    progress.target -=
-        (tangential * (back < 1 ? back : 1)).cwiseQuotient(progress.geometry.spacing);
+    const auto share = held_share(friction, proxy, std::sqrt(dot(tangential, tangential)),
+                                  std::sqrt(dot(normal, normal)));
+    if (!share) return false;
+    progress.target -= (tangential * *share).cwiseQuotient(progress.geometry.spacing);
     return true;
 }
 
@@ -117,7 +113,7 @@ ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
         return update_cubic(proxy, field, hip, settings, observer);
     }
     const Vec3 target = index_from_physical(field.geometry(), hip);
-    if (!accepts(proxy, field, target)) return refuse_update(proxy, field, hip);
+    if (!accepts(proxy.isovalue, field, target)) return refuse_update(proxy, field, hip);
     Update<Site> update(proxy, field, target, settings, observer);
     if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
     const Rest rest = descend(update.site, update.progress, settings, proxy);

@@ -67,7 +67,7 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
     proxy = Proxy{};
     proxy.isovalue = isovalue;
     const Vec3 target = index_from_physical(field.geometry(), hip);
-    if (!accepts(proxy, field, target)) return false;
+    if (!accepts(proxy.isovalue, field, target)) return false;
     const auto place_here =
         field.interpolation() == Interpolation::cubic ? place_at<CubicSite> : place_at<Site>;
     return place_here(proxy, field, hip, target, observer);

@@ -2,10 +2,9 @@
 // leave the lattice.
 #include "proxy/site.hpp"
 
-#include "proxy/straight.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace palpate {
 
@@ -16,52 +15,49 @@ void Progress::report_to_observer(StepKind kind, const Vec3& index, const Tetrah
     observer.on_step(Step{kind, point, goal, tetrahedron}, observer.context);
 }
 
-WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress) {
-    Vec3 direction = displacement;
-    double left = 1;
-    while (progress.budget-- > 0) {
-        if (site.field.is_background(site.point.tetrahedron.cell)) {
-            const Vec3 along = unfold(site.point.tetrahedron, direction);
-            const double t = stretch_outside(index_of(site.point), along, left, -1.5,
-                                             site.field.geometry().size, 0.5);
-            if (t > 0) {
-                site.move_to(locate(index_of(site.point) + t * along));
-                direction = fold(site.point.tetrahedron, along);
-                left -= t;
-                ++progress.tetrahedra;
-                if (left <= 0 || left < progress.least_left) return WalkEnd::target;
-                continue;
-            }
-        }
-        const Exit exit = first_exit(site.point.folded, direction, left, 0);
+namespace {
+
+/// On the linear field, where the surface is met at a quotient.
+struct LinearCourse {
+    Progress& progress;
+
+    bool spend() { return progress.budget-- > 0; }
+    bool is_enough(double left) const { return left < progress.least_left; }
+    double skip(const Site& site, const Vec3& direction, double left) {
+        if (!site.field.is_background(site.point.tetrahedron.cell)) return 0;
+        const double t =
+            stretch_outside(index_of(site.point), unfold(site.point.tetrahedron, direction), left,
+                            -1.5, site.field.geometry().size, 0.5);
+        progress.tetrahedra += t > 0;
+        return t;
+    }
+    std::optional<double> advance(Site& site, const Exit& exit, const Vec3& direction) {
         const double slope = site.slope(direction);
         const double room = -site.excess();
-        if (slope > 0 && slope * exit.t > room) {
-            const double hit = std::max(0.0, room / slope);
+        const bool ahead = slope > 0 && slope * exit.t > room;
+        if (ahead || -slope * exit.t > site.thickness - room) {
+            const double hit =
+                std::max(0.0, ahead ? room / slope : (site.thickness - room) / -slope);
             site.point.folded = snap(site.point.folded + hit * direction, 0);
             progress.tetrahedra += hit > 0;
-            return WalkEnd::surface;
-        }
-        if (-slope * exit.t > site.thickness - room) {
-            const double hit = std::max(0.0, (site.thickness - room) / -slope);
-            site.point.folded = snap(site.point.folded + hit * direction, 0);
-            progress.tetrahedra += hit > 0;
-            site.turn();
-            return WalkEnd::surface;
+            if (!ahead) site.turn();
+            return hit;
         }
         progress.tetrahedra += exit.t > 0;
-        if (exit.wall == no_wall) {
-            site.point.folded = snap(site.point.folded + exit.t * direction, 0);
-            return WalkEnd::target;
-        }
-        site.point.folded = snap(site.point.folded + exit.t * direction, 1U << exit.wall);
-        progress.report(StepKind::cross, site);
-        site.cross(exit.wall);
-        direction = reflect(direction, exit.wall);
-        left -= exit.t;
-        if (left < progress.least_left) return WalkEnd::target;
+        const unsigned walls = exit.wall == no_wall ? 0 : 1U << exit.wall;
+        site.point.folded = snap(site.point.folded + exit.t * direction, walls);
+        return std::nullopt;
     }
-    return WalkEnd::out_of_budget;
+    void crossed(Site& site, unsigned wall) {
+        progress.report(StepKind::cross, site);
+        site.cross(wall);
+    }
+};
+
+}  // namespace
+
+WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress) {
+    return walk_straight(site, displacement, LinearCourse{progress}).end;
 }
 
 bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Progress& progress) {

@@ -9,6 +9,7 @@
 
 #include "palpate/proxy.hpp"
 #include "proxy/cone.hpp"
+#include "proxy/straight.hpp"
 
 namespace palpate {
 
@@ -183,8 +184,6 @@ void for_each_incident(const LatticePoint& point, Visit&& visit) {
         t = across(t, next);
     }
 }
-
-enum class WalkEnd { target, surface, out_of_budget };
 
 /// Walks straight along `displacement` (folded, voxel) through as many tetrahedra as needed,
 /// until its end or until the excess field would rise above zero.

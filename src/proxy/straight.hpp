@@ -52,4 +52,43 @@ inline double stretch_outside(const Vec3& from, const Vec3& displacement, double
     return enter < leave ? enter : left;
 }
 
+enum class WalkEnd { target, surface, out_of_budget };
+
+/// How a straight walk ended, and which part of it was left then.
+struct Walked {
+    WalkEnd end;
+    double left;
+};
+
+/// Goes straight along `direction` (folded, voxel) from tetrahedron to tetrahedron: the one walk of
+/// points and tools on either field. What it meets, counts and may pass over a course says:
+/// spend() is false without budget; skip() gives the part of the way ahead that needs no look;
+/// advance() goes to an exit, or gives the part of the way there at which the surface is met;
+/// crossed() is told of each wall, and is_enough() of what is left.
+template <class AnySite, class Course>
+inline Walked walk_straight(AnySite& site, Vec3 direction, Course&& course) {
+    double left = 1;
+    while (course.spend()) {
+        if (const double t = course.skip(site, direction, left); t > 0) {
+            const Vec3 along = unfold(site.point.tetrahedron, direction);
+            site.move_to(AnySite::located(site.index() + t * along));
+            direction = fold(site.point.tetrahedron, along);
+            left -= t;
+            if (left <= 0 || course.is_enough(left)) return {WalkEnd::target, 0};
+            continue;
+        }
+        const Exit exit = first_exit(site.point.folded, direction, left, 0);
+        const bool at_wall = exit.wall != no_wall;
+        if (const auto met = course.advance(site, exit, direction)) {
+            return {WalkEnd::surface, left - *met};
+        }
+        if (!at_wall) return {WalkEnd::target, 0};
+        course.crossed(site, exit.wall);
+        direction = reflect(direction, exit.wall);
+        left -= exit.t;
+        if (course.is_enough(left)) return {WalkEnd::target, 0};
+    }
+    return {WalkEnd::out_of_budget, left};
+}
+
 }  // namespace palpate

@@ -22,7 +22,7 @@ ProxyUpdate update_on(Proxy& proxy, const Field& field, const Vec3& hip, const V
 ProxyUpdate update_straight(Proxy& proxy, const Field& field, const Vec3& hip,
                             const ProxySettings& settings, StepObserver observer) {
     const Vec3 target = index_from_physical(field.geometry(), hip);
-    if (!accepts(proxy, field, target)) return refuse_update(proxy, field, hip);
+    if (!accepts(proxy.isovalue, field, target)) return refuse_update(proxy, field, hip);
     const auto update =
         field.interpolation() == Interpolation::cubic ? update_on<CubicSite> : update_on<Site>;
     return update(proxy, field, hip, target, settings, observer);

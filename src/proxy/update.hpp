@@ -5,21 +5,22 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "proxy/cubic_site.hpp"
 
 namespace palpate {
 
 /// False for a HIP (index space) that is not finite or too far from the grid (farthest_hip), and
-/// for an isovalue that is NaN or at which all of space is solid.
-inline bool accepts(const Proxy& proxy, const Field& field, const Vec3& hip_index) {
+/// for an isovalue that is NaN or at which all of space is solid. For a point and a tool.
+inline bool accepts(double isovalue, const Field& field, const Vec3& hip_index) {
     const auto near = [&](int a) {
         // Mostly the first comparison is enough: the grid begins at 0.
         return std::abs(hip_index[a]) <= farthest_hip ||
                (hip_index[a] > 0 && hip_index[a] <= field.geometry().size[a] + farthest_hip);
     };
     return near(0) && near(1) && near(2) &&
-           field.sign() * proxy.isovalue > -std::numeric_limits<double>::infinity();
+           field.sign() * isovalue > -std::numeric_limits<double>::infinity();
 }
 /// The result of an update that changed nothing.
 ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip,
@@ -54,6 +55,17 @@ struct Update {
 
 inline bool has_friction(const Friction& friction) {
     return friction.static_coefficient > 0 || friction.dynamic_coefficient > 0;
+}
+
+/// Coulomb's law for both fields: which share of the pull aside friction holds back, so that the
+/// SCP ends up trailing the hand at the friction angle. Nothing: the SCP sticks.
+inline std::optional<double> held_share(const Friction& friction, Proxy& proxy, double aside,
+                                        double pressing) {
+    const double mu = proxy.sliding ? friction.dynamic_coefficient : friction.static_coefficient;
+    proxy.sliding = aside > mu * pressing;
+    if (!proxy.sliding) return std::nullopt;
+    const double share = friction.dynamic_coefficient * pressing / aside;
+    return share < 1 ? share : 1;
 }
 
 /// How a method's own part ended.

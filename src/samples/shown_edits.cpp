@@ -26,7 +26,7 @@ class Nearest {
         if ((near.array() < 0).any() || (near.array() >= end.array()).any()) return std::nullopt;
         const Index3 sample = near.cast<int>();
         const Bricks* bricks = edited_.bricks();
-        if (!bricks || !bricks->of_cell(sample)) return std::nullopt;
+        if (!bricks || !bricks->of_sample(sample)) return std::nullopt;
         return edited_.sample(sample);
     }
 
@@ -40,8 +40,8 @@ class Nearest {
 SampleBox samples_near(const Geometry& shown, const Geometry& edited, const Index3& brick) {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
     for (int corner = 0; corner < 8; ++corner) {
-        Vec3 at = (brick * Bricks::cells).cast<double>() - Vec3::Constant(0.5);
-        for (int a = 0; a < 3; ++a) at[a] += (corner >> a & 1) ? Bricks::cells : 0;
+        Vec3 at = (brick * Bricks::edge).cast<double>() - Vec3::Constant(0.5);
+        for (int a = 0; a < 3; ++a) at[a] += (corner >> a & 1) ? Bricks::edge : 0;
         const Vec3 there = index_from_physical(shown, physical_from_index(edited, at));
         low = low.cwiseMin(there);
         high = high.cwiseMax(there);
@@ -70,8 +70,8 @@ std::shared_ptr<const Samples> ShownEdits::of(const Samples& edited) {
         const SampleBox box = samples_near(here, there, brick);
         if ((box.low.array() > box.high.array()).any()) return;
         // The first samples of a brick are the last of the one before, too.
-        const Index3 first = (box.low - Index3::Ones()).cwiseMax(0) / Bricks::cells;
-        const Index3 last = (box.high / Bricks::cells).cwiseMin(bricks_.count() - Index3::Ones());
+        const Index3 first = (box.low - Index3::Ones()).cwiseMax(0) / Bricks::edge;
+        const Index3 last = (box.high / Bricks::edge).cwiseMin(bricks_.count() - Index3::Ones());
         for (int k = first[2]; k <= last[2]; ++k) {
             for (int j = first[1]; j <= last[1]; ++j) {
                 for (int i = first[0]; i <= last[0]; ++i) touched.insert({i, j, k});
@@ -93,17 +93,17 @@ std::shared_ptr<const Samples> ShownEdits::of(const Samples& edited) {
 }
 
 /// Null if none of its samples shows an edit.
-Bricks::Brick ShownEdits::brick_of(const Index3& brick, const Samples& edited) const {
+Brick ShownEdits::brick_of(const Index3& brick, const Samples& edited) const {
     const Nearest nearest(plain_->geometry(), edited);
-    const Index3 low = brick * Bricks::cells, size = plain_->geometry().size;
-    return with_type(edited.type(), [&](auto zero) -> Bricks::Brick {
+    const Index3 low = brick * Bricks::edge, size = plain_->geometry().size;
+    return with_type(edited.type(), [&](auto zero) -> Brick {
         using T = decltype(zero);
         const std::shared_ptr<std::byte[]> made(new std::byte[Bricks::per_brick * sizeof(T)]{});
         T* out = reinterpret_cast<T*>(made.get());
         bool any = false;
-        for (int k = 0; k < Bricks::samples; ++k) {
-            for (int j = 0; j < Bricks::samples; ++j) {
-                for (int i = 0; i < Bricks::samples; ++i, ++out) {
+        for (int k = 0; k < Bricks::row; ++k) {
+            for (int j = 0; j < Bricks::row; ++j) {
+                for (int i = 0; i < Bricks::row; ++i, ++out) {
                     const Index3 at = low + Index3(i, j, k);
                     if ((at.array() >= size.array()).any()) continue;
                     const std::optional<double> edit = nearest(at);
@@ -112,7 +112,7 @@ Bricks::Brick ShownEdits::brick_of(const Index3& brick, const Samples& edited) c
                 }
             }
         }
-        return any ? Bricks::Brick(made) : nullptr;
+        return any ? Brick{made} : Brick{};
     });
 }
 

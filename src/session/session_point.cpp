@@ -8,6 +8,7 @@
 #include <string>
 
 #include "layers/tissues.hpp"
+#include "tool_proxy/kept.hpp"
 
 namespace palpate {
 namespace {
@@ -16,12 +17,12 @@ namespace {
 void forget_contacts(ToolProxy& proxy, const std::shared_ptr<const Tool>& tool) noexcept {
     proxy.use(tool);  // has room, as it is felt
     proxy.contacts = {};
-    ToolProxy::Kept& kept = proxy.kept;
+    tool::Kept& kept = proxy.kept();
     kept.trust = 1;
     kept.stride = 64;
     kept.idle = {};
     kept.inside = false;
-    kept.search = 0;
+    kept.recovery = {};
     kept.surroundings.samples.reset();  // others hold them
 }
 

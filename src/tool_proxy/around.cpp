@@ -3,8 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "proxy/straight.hpp"
+#include <optional>
 
 namespace palpate::tool {
 namespace {
@@ -126,40 +125,39 @@ double Around::free_part(const Vec3& from, const Vec3& to, double level) {
     return walk(at, to_index_ * (to - from), level);
 }
 
-/// Goes straight, tetrahedron by tetrahedron but for empty bricks; returns which part is free.
+/// On the smooth field, for a point of a tool: empty bricks are passed over.
+struct Around::Course {
+    Around& around;
+    double level;
+
+    bool spend() { return around.work_-- > 0; }
+    static bool is_enough(double /*left*/) { return false; }
+    double skip(const CubicSite& at, const Vec3& direction, double left) {
+        return around.empty_part(at, direction, left);
+    }
+    std::optional<double> advance(CubicSite& at, const Exit& exit, const Vec3& direction) {
+        const unsigned walls = exit.wall == no_wall ? 0 : 1U << exit.wall;
+        if (!at.reaches(level)) {
+            at.jump(exit.t * direction, walls);
+            return std::nullopt;
+        }
+        const double t = at.advance(exit.t * direction, level, walls);
+        if (t < 1) return t * exit.t;
+        return std::nullopt;
+    }
+    static void crossed(CubicSite& at, unsigned wall) { at.cross(wall); }
+};
+
+/// Which part of a way is free.
 double Around::walk(CubicSite& at, const Vec3& displacement, double level_in_ranges) {
     double level = level_in_ranges * at.range;
     // Rounding must not hold a start.
     if (at.reaches(level) && at.excess() > level - 1e-13 * at.range) {
         level = at.excess() + (at.excess() < verified * at.range ? 4e-14 * at.range : 0);
     }
-    Vec3 direction = fold(at.point.tetrahedron, displacement);
     walked_ = Index3::Constant(std::numeric_limits<int>::min());
-    double left = 1;
-    while (true) {
-        if (work_-- <= 0) return 1 - left;
-        if (const double t = empty_part(at, direction, left); t > 0) {
-            left -= t;
-            if (left <= 0) return 1;
-            const Vec3 along = unfold(at.point.tetrahedron, direction);
-            at.move_to(cubic::locate(at.index() + t * along));
-            direction = fold(at.point.tetrahedron, along);
-            continue;
-        }
-        const Exit exit = first_exit(at.point.folded, direction, left, 0);
-        const bool at_wall = exit.wall != no_wall;
-        const unsigned walls = at_wall ? 1U << exit.wall : 0;
-        if (at.reaches(level)) {
-            const double t = at.advance(exit.t * direction, level, walls);
-            if (t < 1) return 1 - (left - t * exit.t);
-        } else {
-            at.jump(exit.t * direction, walls);
-        }
-        if (!at_wall) return 1;
-        at.cross(exit.wall);
-        direction = reflect(direction, exit.wall);
-        left -= exit.t;
-    }
+    const Vec3 direction = fold(at.point.tetrahedron, displacement);
+    return 1 - walk_straight(at, direction, Course{*this, level}).left;
 }
 
 /// Which part of a way, of which a part is left, lies outside the grid or in a brick where nothing

@@ -2,8 +2,8 @@
 // certainly go.
 #pragma once
 
-#include "palpate/tool_proxy.hpp"
 #include "proxy/cubic_site.hpp"
+#include "tool_proxy/kept.hpp"
 
 namespace palpate::tool {
 
@@ -20,6 +20,7 @@ class Around {
     double shortest() const { return shortest_; }  ///< spacing [mm]
     int work_left() const { return work_; }
     bool is_exhausted() const { return work_ <= 0; }
+    void spend(int work) { work_ -= work; }
     Vec3 index(const Vec3& physical) const { return to_index_ * (physical - origin_); }
 
     /// Excess [data units], its gradient and its Hessian per mm, physical axes.
@@ -46,6 +47,8 @@ class Around {
     Probe probe(const Vec3& from, const Vec3& to);
 
   private:
+    struct Course;
+
     CubicSite site(const Vec3& index) const {
         return {field_, level_, field_.sign(), cubic::locate(index)};
     }

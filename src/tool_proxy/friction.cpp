@@ -26,8 +26,10 @@ Held held_by_friction(const Six& pull, const HalfSpace6* half_spaces, const Tang
     std::array<Force, most_half_spaces> held{};
     Six left = pull;
     double most_slip = 0;
+    int work = 0;
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
         const Nearest next = nearest(left, half_spaces, count, tolerance);
+        work += next.work + (count + 3) / 4;
         if (!next.found) break;
         Six motion = next.point;
         most_slip = 0;
@@ -55,7 +57,7 @@ Held held_by_friction(const Six& pull, const HalfSpace6* half_spaces, const Tang
         }
         if (most_change <= tolerance) break;
     }
-    return {left, most_slip > at_rest};
+    return {left, most_slip > at_rest, work};
 }
 
 }  // namespace palpate::tool

@@ -18,6 +18,7 @@ struct Tangents {
 struct Held {
     Six pull;
     bool slips;
+    int work = 0;  ///< in units of ToolSettings::work_budget
 };
 Held held_by_friction(const Six& pull, const HalfSpace6* half_spaces, const Tangents* tangents,
                       int count, double coefficient, double tolerance, double at_rest);

@@ -21,8 +21,9 @@ double Motion::free_part_of(int point, const Pose& to, double level) {
 
 double Motion::go(const Vec3& translation, const Vec3& rotation, const Pose* exact) {
     hit_count = 0;
-    ToolProxy::Kept& kept = proxy.kept;
+    Kept& kept = proxy.kept();
     const auto points = proxy.tool().points();
+    around.spend(1 + static_cast<int>(points.size()) / 64);  // to pass over those with clearance
     const double far = std::sqrt(dot(translation, translation));
     const double angle = std::sqrt(dot(rotation, rotation));
     const auto pose_at = [&](double part) {

@@ -10,6 +10,8 @@ namespace palpate::tool {
 namespace {
 
 constexpr int most_active = 6;
+/// Work of a step that adds or drops a half-space, and of finding eigenvectors.
+constexpr int work_of_step = 2, work_of_eigen = 16;
 
 /// The half-spaces on whose border the point is held, with their multipliers.
 struct Active {
@@ -62,11 +64,12 @@ std::array<double, most_active> share_of(const Active& active, const HalfSpace6*
 }
 
 /// Adds the half-space `p` to those active, dropping others on the way. False: none is left.
-bool add(int p, const HalfSpace6* half_spaces, Six& x, Active& active) {
+bool add(int p, const HalfSpace6* half_spaces, Six& x, Active& active, int& work) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const Six& row = half_spaces[p].row;
     double own = 0;
     while (true) {
+        work += work_of_step;
         Six rest;
         const auto share = share_of(active, half_spaces, row, rest);
         const double squared = dot(rest, rest);
@@ -141,6 +144,7 @@ Nearest nearest(const Six& to, const HalfSpace6* half_spaces, int count, double 
     Active active;
     constexpr int enough = 4 * most_half_spaces;
     for (int round = 0; round < enough; ++round) {
+        ++result.work;
         double worst = -tolerance;
         int missed = -1;
         for (int i = 0; i < count; ++i) {
@@ -159,7 +163,9 @@ Nearest nearest(const Six& to, const HalfSpace6* half_spaces, int count, double 
         for (int i = 0; i < active.count; ++i) {
             if (active.at[i] == missed) return result;  // rounding: no better point can be found
         }
-        if (!add(missed, half_spaces, result.point, active)) return result;
+        if (!add(missed, half_spaces, result.point, active, result.work)) {
+            return result;
+        }
     }
     return result;
 }
@@ -183,6 +189,7 @@ Nearest nearest(const Six& pull, const Mat6& m, double least, const HalfSpace6* 
     Six point = Six::Zero();
     for (int i = 0; i < 6; ++i) point += result.point[i] * axis[i];
     result.point = point;
+    result.work += work_of_eigen;
     return result;
 }
 

@@ -31,6 +31,7 @@ struct Nearest {
     bool found = false;  ///< false: no point is in all half-spaces
     Six point = Six::Zero();
     std::array<double, most_half_spaces> multiplier{};  ///< >= 0, of each half-space
+    int work = 0;                                       ///< in units of ToolSettings::work_budget
 };
 
 /// The point of the half-spaces nearest to `to` (Goldfarb and Idnani 1983, the dual method for a

@@ -29,6 +29,8 @@ class Inside {
     Inside(const ToolProxy& proxy, const Pose& pose, Around& around) {
         const auto points = proxy.tool().points();
         for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+            is_whole = !around.is_exhausted();
+            if (!is_whole) return;
             const Vec3 place = physical_from_tool(pose, points[i]);
             const double excess = around.excess(place);
             if (!(excess > Around::inside * around.range())) continue;
@@ -36,6 +38,7 @@ class Inside {
             add({i, excess});
         }
     }
+    bool is_whole = true;  ///< false: the budget did not allow to look at all points
     double sum = 0;
     int count = 0;
     std::array<Deep, most_half_spaces> deepest;
@@ -51,12 +54,14 @@ class Inside {
     }
 };
 
-/// True if pushing got all points out.
+/// True if pushing got all points out. Pushes go on in the next update where the budget ends.
 bool push_out(ToolProxy& proxy, Around& around, PoseObserver observer) {
     const double gyration = proxy.tool().gyration(), voxel = around.shortest();
-    double push = longest_push * voxel;
+    Kept::Recovery& kept = proxy.kept().recovery;
     Inside inside(proxy, proxy.pose, around);
-    for (int i = 0; i < most_pushes && inside.count > 0 && !around.is_exhausted(); ++i) {
+    if (inside.count > 0) proxy.contact_count = 0;
+    for (; kept.pushes < most_pushes && inside.count > 0 && inside.is_whole; ++kept.pushes) {
+        const double push = kept.push * longest_push * voxel;
         std::array<HalfSpace6, most_half_spaces> rows;
         int count = 0;
         for (int k = 0; k < inside.count; ++k) {
@@ -73,25 +78,28 @@ bool push_out(ToolProxy& proxy, Around& around, PoseObserver observer) {
         }
         if (count == 0) return false;
         const Nearest out = nearest(Six::Zero(), rows.data(), count, 1e-9 * voxel);
+        around.spend(out.work);
         if (!out.found) return false;
         const double length = std::sqrt(dot(out.point, out.point));
         const Six step = out.point * std::min(1.0, 2 * push / length);
         const Pose next = moved(proxy.pose, step.head<3>(), step.tail<3>() / gyration, 1);
         const Inside after(proxy, next, around);
+        if (!after.is_whole) return false;
         if (after.sum < inside.sum) {
             proxy.pose = next;
             inside = after;
             if (observer.on_pose) observer.on_pose(next, observer.context);
         } else {
-            push *= 0.5;
+            kept.push *= 0.5;
         }
     }
-    return inside.count == 0 && !around.is_exhausted();
+    return inside.count == 0 && inside.is_whole;
 }
 
 bool is_free(const ToolProxy& proxy, const Pose& pose, Around& around) {
     for (const Vec3& point : proxy.tool().points()) {
-        if (around.is_inside(physical_from_tool(pose, point))) return false;
+        if (around.is_exhausted() || around.is_inside(physical_from_tool(pose, point)))
+            return false;
     }
     return true;
 }
@@ -106,15 +114,13 @@ Vec3 place_of_search(int n, double voxel) {
 }  // namespace
 
 double searched_so_far(const ToolProxy& proxy, const Around& around) {
-    const int next = proxy.kept.search;
+    const int next = proxy.kept().recovery.search;
     return next > 0 ? place_of_search(next - 1, around.shortest()).norm() : 0;
 }
 
 bool recover(ToolProxy& proxy, Around& around, PoseObserver observer) {
-    int& search = proxy.kept.search;
+    int& search = proxy.kept().recovery.search;
     if (search == 0) {
-        if (is_free(proxy, proxy.pose, around)) return true;
-        proxy.contact_count = 0;
         if (push_out(proxy, around, observer)) return true;
         if (around.is_exhausted()) return false;
         search = 1;

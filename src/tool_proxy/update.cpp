@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "proxy/update.hpp"
 #include "tool_proxy/friction.hpp"
 #include "tool_proxy/motion.hpp"
 #include "tool_proxy/nearest.hpp"
@@ -84,10 +85,10 @@ class Rounds {
             const double least = 2e-9 * voxel_ * std::max(std::sqrt(before), 1e-9 * voxel_);
             if (before - after > least) {
                 failures = 0;
-                proxy_.kept.trust = std::min(1.0, 2 * proxy_.kept.trust);
+                proxy_.kept().trust = std::min(1.0, 2 * proxy_.kept().trust);
                 continue;
             }
-            proxy_.kept.trust = std::max(1e-4, 0.25 * proxy_.kept.trust);
+            proxy_.kept().trust = std::max(1e-4, 0.25 * proxy_.kept().trust);
             if (added_ > 0) {  // a new contact is news; it shares in the friction
                 is_at_hand();
                 continue;
@@ -95,8 +96,8 @@ class Rounds {
             if (++failures > most_failures) break;
         }
         if (around_.is_exhausted()) {
-            proxy_.kept.trust = std::max(1e-3, 0.5 * proxy_.kept.trust);
-            proxy_.kept.stride = std::max(1e-2, 0.25 * proxy_.kept.stride);
+            proxy_.kept().trust = std::max(1e-3, 0.5 * proxy_.kept().trust);
+            proxy_.kept().stride = std::max(1e-2, 0.25 * proxy_.kept().stride);
         }
         proxy_.mode = proxy_.contact_count > 0 ? Mode::constrained : Mode::free;
         return UpdateStatus::out_of_budget;
@@ -134,8 +135,11 @@ class Rounds {
             tangents[i] = {{row_of(touches_[i].arm, along), row_of(touches_[i].arm, across)}};
         }
         const auto held = [&](double coefficient) {
-            return held_by_friction(pull_, rows_.data(), tangents.data(), count, coefficient,
-                                    1e-9 * std::max(length, voxel_), at_rest);
+            const Held found =
+                held_by_friction(pull_, rows_.data(), tangents.data(), count, coefficient,
+                                 1e-9 * std::max(length, voxel_), at_rest);
+            around_.spend(found.work);
+            return found;
         };
         Held left =
             held(proxy_.sliding ? friction_.dynamic_coefficient : friction_.static_coefficient);
@@ -168,7 +172,7 @@ class Rounds {
         int kept = 0;
         for (int i = 0; i < proxy_.contact_count; ++i) {
             ToolContact contact = proxy_.contacts[i];
-            int idle = proxy_.kept.idle[i];
+            int idle = proxy_.kept().idle[i];
             contact.place = physical_from_tool(proxy_.pose, proxy_.tool().points()[contact.point]);
             const Around::Expansion at = around_.expand(contact.place);
             const double slope = std::sqrt(dot(at.gradient, at.gradient));
@@ -181,7 +185,7 @@ class Rounds {
                               at.hessian / slope, gap, gap > 0 ? -gap : -1.5 * gap};
             rows_[kept] = {row_of(touches_[kept].arm, contact.normal), touches_[kept].bound};
             proxy_.contacts[kept] = contact;
-            proxy_.kept.idle[kept] = idle;
+            proxy_.kept().idle[kept] = idle;
             ++kept;
         }
         proxy_.contact_count = kept;
@@ -202,7 +206,7 @@ class Rounds {
             else
                 ++proxy_.contact_count;
             proxy_.contacts[at] = {.point = point};
-            proxy_.kept.idle[at] = 0;
+            proxy_.kept().idle[at] = 0;
             ++added_;
         }
     }
@@ -210,7 +214,7 @@ class Rounds {
     int least_needed() const {
         int least = 0;
         for (int i = 1; i < most_tool_contacts; ++i) {
-            if (proxy_.kept.idle[i] > proxy_.kept.idle[least]) least = i;
+            if (proxy_.kept().idle[i] > proxy_.kept().idle[least]) least = i;
         }
         return least;
     }
@@ -228,21 +232,21 @@ class Rounds {
         added_ = 0;
         const Split s = split(pull_);
         const double angle = s.w.norm();
-        const double far = s.v.norm() + angle * reach_, stride = proxy_.kept.stride * voxel_;
+        const double far = s.v.norm() + angle * reach_, stride = proxy_.kept().stride * voxel_;
         double share = far > stride ? stride / far : 1;
         if (angle * share > most_angle_) share = most_angle_ / angle;
         Pose end = target_;
         if (!turns()) end.orientation = proxy_.pose.orientation;
         const bool whole = share == 1;
         const double part = go(pull_ * share, whole ? &end : nullptr);
-        if (part == 1) proxy_.kept.stride = std::min(longest_stride, 2 * proxy_.kept.stride);
+        if (part == 1) proxy_.kept().stride = std::min(longest_stride, 2 * proxy_.kept().stride);
         return part == 1 && whole;
     }
 
     /// No longer than the trust, in translation and at the farthest point, and no more of a turn
     /// than chords allow.
     double share_of(const Six& step) const {
-        const double trust = proxy_.kept.trust * voxel_;
+        const double trust = proxy_.kept().trust * voxel_;
         const Split s = split(step);
         const double v = s.v.norm(), w = s.w.norm();
         double share = 1;
@@ -264,7 +268,9 @@ class Rounds {
     }
 
     Nearest nearest_to(const Six& to) const {
-        return nearest(to, rows_.data(), proxy_.contact_count, 1e-13 * voxel_);
+        const Nearest found = nearest(to, rows_.data(), proxy_.contact_count, 1e-13 * voxel_);
+        around_.spend(found.work);
+        return found;
     }
 
     /// A round in contact. True at rest.
@@ -276,7 +282,7 @@ class Rounds {
         for (int i = 0; i < count; ++i) {
             proxy_.contacts[i].pressure = flat.multiplier[i];
             if (!(flat.multiplier[i] > 0)) continue;
-            proxy_.kept.idle[i] = 0;
+            proxy_.kept().idle[i] = 0;
             pressing = std::max(pressing, std::abs(touches_[i].gap));
         }
         const double pull = std::sqrt(dot(pull_, pull_));
@@ -288,6 +294,7 @@ class Rounds {
         }
         const Nearest bent =
             nearest(pull_, curvature(flat), least_curvature, rows_.data(), count, 1e-13 * voxel_);
+        around_.spend(bent.work);
         const Six aim = bent.found ? bent.point : flat.point;
         const Six step = aim * share_of(aim);
         lift(step, failures);
@@ -408,44 +415,14 @@ class Rounds {
 };
 
 bool accepts(const Tool& tool, const Field& field, double isovalue, const Pose& hand) {
-    if (field.interpolation() != Interpolation::cubic) return false;
-    if (!(tool.radius() <= farthest_hip * field.geometry().spacing.minCoeff())) return false;
-    if (!hand.position.allFinite() || !hand.orientation.coeffs().allFinite()) return false;
-    if (!(std::abs(hand.orientation.squaredNorm() - 1) < 1e-6)) return false;
-    const Vec3 index = index_from_physical(field.geometry(), hand.position);
-    for (int a = 0; a < 3; ++a) {
-        if (!(index[a] >= -farthest_hip) ||
-            !(index[a] <= field.geometry().size[a] + farthest_hip)) {
-            return false;
-        }
-    }
-    return field.sign() * isovalue > -std::numeric_limits<double>::infinity();
+    return field.interpolation() == Interpolation::cubic &&
+           tool.radius() <= farthest_hip * field.geometry().spacing.minCoeff() &&
+           std::abs(hand.orientation.squaredNorm() - 1) < 1e-6 &&
+           palpate::accepts(isovalue, field, index_from_physical(field.geometry(), hand.position));
 }
 
 }  // namespace
 }  // namespace tool
-
-ToolProxy::ToolProxy(std::shared_ptr<const Tool> tool) {
-    make_room(tool->points().size());
-    use(std::move(tool));
-}
-
-void ToolProxy::make_room(std::size_t points) {
-    const std::size_t room = std::max(points, kept.arms.size());
-    kept.arms.resize(room);
-    kept.expiry.resize(room);
-    kept.suspects.resize(room);
-}
-
-bool ToolProxy::use(std::shared_ptr<const Tool> tool) noexcept {
-    const auto points = tool->points();
-    if (points.size() > kept.arms.size()) return false;
-    std::ranges::transform(points, kept.arms.begin(), [](const Vec3& p) { return p.norm(); });
-    contact_count = 0;
-    kept.renewed = true;
-    tool_ = std::move(tool);
-    return true;
-}
 
 ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
                        const ToolSettings& settings, PoseObserver observer) {
@@ -457,11 +434,15 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
     }
     // What is unit to all digits stays as it is, to the bit.
     if (std::abs(turn.squaredNorm() - 1) > 1e-14) turn.normalize();
-    ToolProxy::Kept& kept = proxy.kept;
-    const int budget = settings.work_budget + static_cast<int>(proxy.tool().points().size());
-    tool::Around around(field, proxy.isovalue, kept.surroundings, budget);
+    tool::Kept& kept = proxy.kept();
     const bool others = tool::renew(kept.surroundings, field) || !proxy.placed ||
                         kept.isovalue != proxy.isovalue || kept.renewed;
+    // Each point is looked at once; where it is pushed out, before and after.
+    const int looks =
+        (others || kept.inside ? 2 : 1) * static_cast<int>(proxy.tool().points().size());
+    const int budget = settings.work_budget + looks;
+    tool::Around around(field, proxy.isovalue, kept.surroundings, budget);
+    if (others) kept.recovery = {};
     if (!proxy.placed) {
         proxy.pose = result.hand;
         proxy.contact_count = 0;

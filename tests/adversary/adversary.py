@@ -25,7 +25,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from program import Finding, Program  # noqa: E402
 
-ATTACKS = ("proxies", "readers", "texts", "recordings", "services", "signals", "outputs",
+ATTACKS = ("proxies", "lives", "readers", "texts", "recordings", "services", "signals", "outputs",
            "sessions")
 
 

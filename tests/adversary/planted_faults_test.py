@@ -19,6 +19,8 @@ def real(words):
 FAULTS = {
     ("proxies", "another level is felt than was asked for", "the SCP is"):
         "sys.exit(real(['--isovalue=60%' if w.startswith('--isovalue=') else w for w in words]))",
+    ("lives", "the other field is felt", "a density of|refused without a reason"):
+        "sys.exit(real([{'linear': 'cubic', 'cubic': 'linear'}.get(w, w) for w in words]))",
     ("readers", "damaged files are read in silence", "in place of one|without a word"):
         "subprocess.run([%(program)r, *words], stderr=subprocess.DEVNULL); sys.exit(3)",
     ("readers", "a library's source path is shown", "a message shows"):

@@ -1,5 +1,6 @@
 // The baselines must be what the literature says they are: weak in the published ways, no weaker.
 #include "baselines/gradient.hpp"
+#include "palpate/baselines/methods.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +43,7 @@ Drift round_the_cylinder(ProxyMethod method, int turns) {
 
 TEST(Gradient, loses_the_isosurface_where_exact_and_paper_hold_it) {
     const Drift exact = round_the_cylinder(&update_exact, 3);
-    const Drift paper = round_the_cylinder(&update_paper, 3);
+    const Drift paper = round_the_cylinder(&baselines::update_paper, 3);
     const Drift gradient = round_the_cylinder(&baselines::update_gradient, 3);
     const Drift improved = round_the_cylinder(&baselines::update_gradient_improved, 3);
     EXPECT_EQ(exact.constrained, 6000);

@@ -1,5 +1,5 @@
 // Editor: undo and redo against a list of whole copies.
-#include "palpate/editor.hpp"
+#include "palpate/edit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "layers/cover.hpp"
 #include "palpate/density.hpp"
 #include "support/fields.hpp"
 #include "support/paper_lattice.hpp"
@@ -148,7 +149,7 @@ TEST(Field, of_labels_that_cover_themselves_is_1_in_the_solid_ones_and_0_in_othe
     const auto itself = std::make_shared<const Field>(labels, Solid::above, 0.0);
     Field field = *itself;
     for (const std::uint32_t shown : {0x5a5a5a5bU, 0xa5a5a5a4U}) {
-        field.cover(itself, shown, 0, 1);
+        LabelCover::put(field, itself, shown, 0, 1);
         const auto label = [&](const Index3& at) {
             const bool in_grid =
                 (at.array() >= 0).all() && (at.array() < labels.geometry().size.array()).all();
@@ -168,7 +169,7 @@ TEST(Field, of_labels_that_cover_themselves_is_1_in_the_solid_ones_and_0_in_othe
                 ASSERT_EQ(around[n], shown >> of & 1U);
                 seen |= of;
             }
-            ASSERT_EQ(field.is_covered_around(at), seen > 0);
+            ASSERT_EQ(LabelCover::is_near(field, at), seen > 0);
         }
     }
 }

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "palpate/kept_piece.hpp"
+#include "proxy/kept_samples.hpp"
 
 namespace palpate::cubic {
 namespace {
@@ -40,16 +40,16 @@ TYPED_TEST(KeptSamplesOf, tell_a_change_of_each_of_the_27_and_of_no_other_sample
         Block<TypeParam> b = block;
         for (auto& sample : b.samples) sample = static_cast<TypeParam>(level(random));
         KeptSamples kept;
-        EXPECT_FALSE(kept.are(b.centre(), b.row(), b.slice()));
-        kept.keep(b.centre(), b.row(), b.slice());
-        EXPECT_TRUE(kept.are(b.centre(), b.row(), b.slice()));
+        EXPECT_FALSE(Kept::are(kept, b.centre(), b.row(), b.slice()));
+        Kept::keep(kept, b.centre(), b.row(), b.slice());
+        EXPECT_TRUE(Kept::are(kept, b.centre(), b.row(), b.slice()));
         for (std::ptrdiff_t k = 0; k < b.nz; ++k) {
             for (std::ptrdiff_t j = 0; j < b.ny; ++j) {
                 for (std::ptrdiff_t i = 0; i < b.nx; ++i) {
                     TypeParam& sample = b.samples[b.at(i, j, k)];
                     const TypeParam before = sample;
                     sample = static_cast<TypeParam>(sample + 1);
-                    EXPECT_EQ(kept.are(b.centre(), b.row(), b.slice()), !b.is_near(i, j, k))
+                    EXPECT_EQ(Kept::are(kept, b.centre(), b.row(), b.slice()), !b.is_near(i, j, k))
                         << i << ' ' << j << ' ' << k;
                     sample = before;
                 }
@@ -62,8 +62,8 @@ TEST(KeptSamples, of_one_type_are_not_those_of_another) {
     const std::vector<std::int16_t> samples(27, 0);
     const std::vector<std::uint16_t> others(27, 0);
     KeptSamples kept;
-    kept.keep(samples.data() + 13, 3, 9);
-    EXPECT_FALSE(kept.are(others.data() + 13, 3, 9));
+    Kept::keep(kept, samples.data() + 13, 3, 9);
+    EXPECT_FALSE(Kept::are(kept, others.data() + 13, 3, 9));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Percentiles of histograms of durations, compared with those of sorted durations.
-#include "palpate/latency.hpp"
+#include "palpate/exchange.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "layers/cover.hpp"
 #include "palpate/density.hpp"
 #include "palpate/renderer.hpp"
 #include "support/constants.hpp"
@@ -268,7 +269,7 @@ TEST(FieldCover, is_that_of_a_volume_with_these_samples) {
             // Label 2, and where `all` samples without one.
             const std::uint32_t solid = 4U | (all ? 1U : 0U);
             Field covered(data, Solid::above, -5.0);
-            covered.cover(labels, solid, 40, 160);
+            LabelCover::put(covered, labels, solid, 40, 160);
             const Field made(volume_of<float>(geometry,
                                               [&](const Index3& i) {
                                                   const int label = label_at(i);

@@ -1,4 +1,5 @@
-// Layers give back no more energy than they took, and their surfaces are passed in order.
+// Layers give back no more energy than they took, also in thin layers and where stiffness varies
+// along a surface. Every combination with other fields, tools and samples: energy_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,10 +7,8 @@
 
 #include "palpate/renderer.hpp"
 #include "support/cubic_guarantees.hpp"
-#include "support/edits.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
-#include "support/labelled.hpp"
 #include "support/press.hpp"
 
 using namespace palpate;
@@ -145,61 +144,4 @@ TEST(LayersEnergy, is_not_made_by_stiffness_that_varies_along_a_surface) {
     Layers layers = layers_of(test, {0}, {1}, no_puncture);
     layers[stiffness].gradient.knots = {{0, 0}, {0.3, 1}};
     expect_passive(test, layers, 54);
-}
-
-/// The same layers with labels beside them, or in place of them.
-Layers with_labels(const TestField& test, Layers layers, bool beside, std::uint64_t seed) {
-    if (!beside) layers.layers.clear();
-    layers.by_label = true;
-    layers.levels_beside_labels = layers.layers.size();
-    for (int i = 1; i <= 3; ++i) {
-        Layer layer;
-        layer.name = "label " + std::to_string(i);
-        layer.level = i;
-        layer[stiffness] = 0.4 * i;
-        layer[puncture_force] = i == 3 ? no_puncture : 0.4;
-        layers.layers.push_back(layer);
-    }
-    Geometry geometry = test.field.geometry();
-    geometry.size = cube(16);
-    geometry.spacing *= double(test.field.geometry().size[0]) / 16;
-    layers.labels = numbered_labels(random_labels(seed, 3, geometry), layers.layers,
-                                    layers.levels_beside_labels);
-    return layers;
-}
-
-/// Noise as it was read, edited, or between two frames.
-TestField noise_of_kind(int kind) {
-    TestField test = noise_field();
-    const Geometry& geometry = test.field.geometry();
-    Random random(64);
-    if (kind == 1) {
-        auto samples = test.field.shared_samples();
-        for (int i = 0; i < 5; ++i) {
-            samples = edited(samples, random_edit(random, geometry, SampleType::uint8)).samples;
-        }
-        test.field.use(samples);
-    }
-    if (kind == 2) {
-        test.field.use(std::make_shared<const Samples>(std::vector<Frame>{
-            {0, test.field.volume()}, {1, noise_volume<std::uint8_t>(geometry, 65, 0, 256)}}));
-        test.field.set_time(0.4);
-    }
-    return test;
-}
-
-TEST(LayersEnergy, is_not_made_by_labels_with_levels_or_without) {
-    for (const bool cubic : {false, true}) {
-        for (const bool beside : {true, false}) {
-            for (const int kind : {0, 1, 2}) {
-                const std::uint64_t seed = kind == 0 ? 62 : 65 + kind;
-                TestField test = noise_of_kind(kind);
-                if (cubic) test = smoothed(test);
-                const Layers levels = layers_of(test, {-0.2, 0, 0.2}, {0.4, 1.5, 0.8}, 0.5);
-                const Layers layers = with_labels(test, levels, beside, seed);
-                SCOPED_TRACE(testing::Message() << cubic << ' ' << beside << ' ' << kind);
-                expect_passive(test, layers, seed, scaled_or_asked(40));
-            }
-        }
-    }
 }

@@ -1,6 +1,7 @@
 // Session: layers come and go by command.
 #include <gtest/gtest.h>
 
+#include "palpate/baselines/methods.hpp"
 #include "palpate/session.hpp"
 #include "support/constants.hpp"
 #include "support/press.hpp"
@@ -62,7 +63,7 @@ TEST(LayersSession, layers_that_are_none_are_refused_and_change_nothing) {
     EXPECT_EQ(live.session.renderer.settings.layers, good);
     EXPECT_EQ(live.at(22).layers.touched, 0);
     live.use(nullptr);
-    live.session.renderer.settings.method = &update_paper;
+    live.session.renderer.settings.method = &baselines::update_paper;
     EXPECT_THROW(live.use(good), std::invalid_argument) << "a method that knows no layers";
     EXPECT_NO_THROW(live.use(sent_layers({})));
 }

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "palpate/baselines/methods.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/constants.hpp"
 #include "support/fields.hpp"
@@ -26,7 +27,7 @@ struct Method {
 };
 const std::array<Method, 2> methods{
     Method{"exact", update_exact, {}},
-    Method{"paper", update_paper, {.locally_optimal = false, .never_farther = false}}};
+    Method{"paper", baselines::update_paper, {.locally_optimal = false, .never_farther = false}}};
 
 ProxySettings with_budget(int budget) {
     ProxySettings settings;
@@ -166,7 +167,7 @@ TEST(Proxy, is_a_value_and_its_copy_goes_on_bit_for_bit_the_same) {
 
 TEST(Proxy, allocates_nothing_in_a_hundred_thousand_updates) {
     for (const TestField& test : {noise_field(), oblique_field(), marschner_lobb_field()}) {
-        for (const ProxyMethod method : {update_exact, update_paper}) {
+        for (const ProxyMethod method : {update_exact, baselines::update_paper}) {
             Hand hand(test.field.geometry(), 37);
             Proxy proxy;
             proxy.isovalue = test.isovalue;

@@ -1,6 +1,7 @@
 // The proxy on the smooth field: the guarantees G1-G5 on difficult fields, judged by the reference.
 #include <gtest/gtest.h>
 
+#include "proxy/kept_samples.hpp"
 #include "support/cubic_guarantees.hpp"
 #include "support/edits.hpp"
 #include "support/fields.hpp"
@@ -135,7 +136,7 @@ TEST(CubicProxy, what_an_update_keeps_for_the_next_changes_no_result) {
             default:
                 break;
         }
-        const cubic::Piece before = proxy.kept.piece;
+        const cubic::Piece before = Kept::piece(proxy.kept);
         forgetful.kept_samples = {};
         const Vec3 hip = hand.next();
         const ProxyUpdate a = update_exact(proxy, field, hip, {});
@@ -144,8 +145,8 @@ TEST(CubicProxy, what_an_update_keeps_for_the_next_changes_no_result) {
         ASSERT_EQ(a.density, b.density);
         ASSERT_EQ(a.status, b.status);
         ASSERT_EQ(a.tetrahedra, b.tetrahedra);
-        reused +=
-            proxy.kept.piece.value == before.value && proxy.kept.piece.gradient == before.gradient;
+        reused += Kept::piece(proxy.kept).value == before.value &&
+                  Kept::piece(proxy.kept).gradient == before.gradient;
     }
     EXPECT_GT(reused, count / 3);
     EXPECT_LT(reused, count - count / 20);

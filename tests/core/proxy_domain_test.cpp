@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "palpate/baselines/methods.hpp"
 #include "support/constants.hpp"
 #include "support/fields.hpp"
 #include "support/guarantees.hpp"
@@ -71,7 +72,7 @@ TEST(ProxyDomain, guarantees_hold_for_hands_100_000_voxels_outside_the_grid) {
 TEST(ProxyDomain, hands_farther_outside_are_refused_and_leave_the_proxy_as_it_is) {
     const TestField test = box_field();
     const Vec3 centre = Vec3::Constant(11.5);
-    for (const ProxyMethod method : {&update_exact, &update_paper}) {
+    for (const ProxyMethod method : {&update_exact, &baselines::update_paper}) {
         for (int face = 0; face < 6; ++face) {
             Proxy proxy;
             proxy.isovalue = test.isovalue;
@@ -152,7 +153,7 @@ TEST(ProxyDomain, guarantees_hold_for_data_however_far_from_zero) {
         block_at("1e8 +- 0.3", 1e8, Solid::above, -0.6, -0.1),
         block_at("-1e8 +- 0.3, solid below", -1e8, Solid::below, 0.6, 0.2)};
     for (const Pair& pair : pairs) {
-        for (const ProxyMethod method : {&update_exact, &update_paper}) {
+        for (const ProxyMethod method : {&update_exact, &baselines::update_paper}) {
             const Worst worst = worst_of(pair, method);
             EXPECT_LE(worst.g1, 1e-9) << pair.far.name;
             EXPECT_LE(worst.g2, 1e-9) << pair.far.name;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "palpate/baselines/methods.hpp"
 #include "support/fields.hpp"
 #include "support/guarantees.hpp"
 #include "support/hand.hpp"
@@ -187,7 +188,7 @@ TEST(Friction, does_not_hold_a_hand_that_leaves_the_surface) {
 
 TEST(ProxyPaper, keeps_the_proxy_on_the_free_side_and_on_the_surface) {
     for (const TestField& test : unkind_fields()) {
-        const Tally t = run(test, update_paper, {}, 45, scaled(30000));
+        const Tally t = run(test, baselines::update_paper, {}, 45, scaled(30000));
         EXPECT_GT(t.constrained, t.updates / 20);
         if (HasFailure()) return;
     }
@@ -198,13 +199,13 @@ TEST(ProxyPaper, shows_its_steps_goal_by_goal_along_a_plane) {
     const Field plane = plane_field();
     Proxy proxy;
     ASSERT_TRUE(place(proxy, plane, Vec3(8, 8, 16), 15.3));
-    update_paper(proxy, plane, Vec3(8.3, 8.1, 15));
+    baselines::update_paper(proxy, plane, Vec3(8.3, 8.1, 15));
     std::vector<Step> steps;
     const StepObserver observer{[](const Step& step, void* context) {
                                     static_cast<std::vector<Step>*>(context)->push_back(step);
                                 },
                                 &steps};
-    const Vec3 scp = update_paper(proxy, plane, Vec3(14, 11, 12), {}, observer).scp;
+    const Vec3 scp = baselines::update_paper(proxy, plane, Vec3(14, 11, 12), {}, observer).scp;
     int goals = 0;
     int slides = 0;
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -230,7 +231,7 @@ TEST(ProxyPaper, ends_where_exact_descent_does_on_a_plane_and_sticks_on_a_convex
         Proxy paper = exact;
         const Vec3 hip = random.point(4, 28);
         const Vec3 at = update_exact(exact, plane, hip).scp;
-        ASSERT_LE((update_paper(paper, plane, hip).scp - at).norm(), 1e-9);
+        ASSERT_LE((baselines::update_paper(paper, plane, hip).scp - at).norm(), 1e-9);
         const Vec3 expected(hip[0], hip[1], std::max(hip[2], 15.3));
         ASSERT_LE((at - expected).norm(), 1e-9);
     }
@@ -241,11 +242,11 @@ TEST(ProxyPaper, ends_where_exact_descent_does_on_a_plane_and_sticks_on_a_convex
         Proxy paper;
         const double y = random.uniform(8, 20);
         ASSERT_TRUE(place(paper, roof, Vec3(16, y, 25), 30));
-        update_paper(paper, roof, Vec3(16, y, 19));
+        baselines::update_paper(paper, roof, Vec3(16, y, 19));
         ASSERT_NEAR(paper.scp_physical[2], 20, 1e-9);
         Proxy exact = paper;
         const Vec3 hip(16 + random.uniform(-1, 1), y, 15);
-        EXPECT_LE((update_paper(paper, roof, hip).scp - Vec3(16, y, 20)).norm(), 1e-9);
+        EXPECT_LE((baselines::update_paper(paper, roof, hip).scp - Vec3(16, y, 20)).norm(), 1e-9);
         EXPECT_LT((update_exact(exact, roof, hip).scp - hip).norm(), 3);
     }
 }

@@ -5,6 +5,7 @@
 // changes the hashes: read the new ones off the failure, after the other proxy tests have passed.
 #include <gtest/gtest.h>
 
+#include "palpate/baselines/methods.hpp"
 #include "palpate/layers.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
@@ -136,7 +137,8 @@ TEST(Golden, trajectories_of_the_papers_method_are_the_same_bit_for_bit) {
                                             "bdb46d8b27496c97"};
     const std::vector<TestField> fields = golden_fields();
     for (std::size_t i = 0; i < fields.size(); ++i) {
-        EXPECT_EQ(hex(trajectory(fields[i], update_paper, {})), expected[i]) << fields[i].name;
+        EXPECT_EQ(hex(trajectory(fields[i], baselines::update_paper, {})), expected[i])
+            << fields[i].name;
     }
 }
 

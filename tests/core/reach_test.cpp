@@ -1,11 +1,11 @@
 // Reach: a proxy never looks at samples that are not in memory; it waits at their border without a
 // force, and goes on when they come, as if they had been there all the time.
-#include "palpate/reach.hpp"
 
 #include <gtest/gtest.h>
 
 #include "palpate/density.hpp"
 #include "palpate/session.hpp"
+#include "reach.hpp"
 #include "support/constants.hpp"
 #include "support/edits.hpp"
 #include "support/layer.hpp"
@@ -206,34 +206,6 @@ TEST_P(ReachOnFields,
 
 INSTANTIATE_TEST_SUITE_P(Fields, ReachOnFields,
                          testing::Values(Interpolation::linear, Interpolation::cubic));
-
-TEST(Reach, what_a_field_remembers_gives_the_parts_that_looking_again_gives) {
-    PartOf part(rough());
-    Field remembering(part.samples());
-    Random random(23);
-    Vec3 at(75, 70, 80);
-    int whole = 0, remembered = 0;
-    for (int n = 0; n < 4000; ++n) {
-        if (random.chance(0.02)) {
-            part.change(random, 0.85);
-            remembering.use(part.samples());
-        }
-        at += random.chance(0.02) ? random.direction() * 60 : random.direction() * 1.5;
-        at = at.cwiseMax(Vec3(-5, -5, -5)).cwiseMin(Vec3(155, 145, 175));
-        const Pull pull{at, at + random.uniform(0, 12) * random.direction(),
-                        random.chance(0.3) ? random.uniform(0, 5) : 0,
-                        random.chance(0.3) ? random.uniform(0, 5) : 0};
-        Field looking(part.samples());
-        const double expected = part_within_reach(looking, pull);
-        const double before = remembering.resident_ball().radius;
-        ASSERT_EQ(part_within_reach(remembering, pull), expected) << n;
-        whole += expected == 1;
-        remembered += expected == 1 && before > 0 && remembering.resident_ball().radius == before;
-    }
-    EXPECT_GT(whole, 300);
-    EXPECT_LT(whole, 3900);
-    EXPECT_GT(remembered, 20);
-}
 
 TEST(Reach, a_tool_waits_too_and_none_of_its_points_leaves_what_is_in_memory) {
     const Volume volume = rough();

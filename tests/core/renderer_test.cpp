@@ -1,5 +1,6 @@
 // Renderer: device state in, force and proxy out, spaces, broken input, changes while running.
 #include "palpate/renderer.hpp"
+#include "palpate/baselines/methods.hpp"
 
 #include <gtest/gtest.h>
 
@@ -116,7 +117,7 @@ TEST(Renderer, a_clock_times_the_proxy_update_and_changes_nothing_else) {
 
 TEST(Renderer, the_proxy_is_the_methods_own_for_every_method) {
     const TestField noise = noise_field();
-    for (const ProxyMethod method : {&update_exact, &update_paper}) {
+    for (const ProxyMethod method : {&update_exact, &baselines::update_paper}) {
         RendererSettings settings;
         settings.method = method;
         Renderer renderer = make_renderer(noise.field, noise.isovalue, settings);

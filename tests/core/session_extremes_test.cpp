@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "palpate/baselines/methods.hpp"
 #include "palpate/session.hpp"
 #include "support/constants.hpp"
 #include "support/fields.hpp"
@@ -381,7 +382,7 @@ TEST(SessionExtremes, updates_stay_finite_at_any_isovalue_on_any_data) {
                 }
                 const Field field(volume, solid, background);
                 for (const double isovalue : extremes) {
-                    for (const ProxyMethod method : {&update_exact, &update_paper}) {
+                    for (const ProxyMethod method : {&update_exact, &baselines::update_paper}) {
                         Random random(2);
                         Proxy proxy;
                         proxy.isovalue = sign * 30 * unit;

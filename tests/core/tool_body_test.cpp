@@ -1,5 +1,5 @@
 // Tool body: its distances against slow references, and what sweeps of it carve.
-#include "palpate/tool_body.hpp"
+#include "palpate/tool.hpp"
 
 #include <gtest/gtest.h>
 

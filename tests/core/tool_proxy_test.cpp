@@ -302,6 +302,50 @@ TEST(ToolProxy, has_the_friction_of_the_point_proxy_as_a_point) {
     EXPECT_GT(sliding, 50);
 }
 
+/// T5: whatever an update has to do, its work is bounded, and what it does not do is done later.
+TEST(ToolProxy, does_no_more_work_than_its_budget_in_noise_in_the_solid_and_with_friction) {
+    const Field field = support::smooth(support::noise_field().field);
+    const auto tool = std::make_shared<const Tool>(box_tool({6, 6, 3}, 0.25));
+    const int points = static_cast<int>(tool->points().size());
+    constexpr int most_at_once = 27 * 5 + 32 * 3 + 300;  // bounds of bricks, contacts, half-spaces
+    int most = 0, recovering = 0, out_of_budget = 0;
+    for (const double coefficient : {0.0, 0.5}) {
+        ToolProxy proxy(tool);
+        ToolSettings settings{.friction = {coefficient, coefficient}, .work_budget = 300};
+        Hand hand(field.geometry(), 5);
+        for (int i = 0; i < support::scaled(600); ++i) {
+            proxy.isovalue = i / 20 % 2 == 0 ? 170 : 150;
+            const Quaternion turn = turned(Quaternion::Identity(), {0, 0, 0.01 * (i % 300)});
+            const ToolUpdate r = update_tool(proxy, field, {hand.next(), turn}, settings);
+            most = std::max(most, r.work);
+            recovering += r.status == UpdateStatus::recovering;
+            out_of_budget += r.status == UpdateStatus::out_of_budget;
+        }
+    }
+    std::printf("[ evidence ] points %d  most work %d  recovering %d  out of budget %d\n", points,
+                most, recovering, out_of_budget);
+    EXPECT_LE(most, 300 + 2 * points + most_at_once);
+    EXPECT_GT(recovering, 0);
+    EXPECT_GT(out_of_budget, 0);
+}
+
+TEST(ToolProxy, counts_what_half_spaces_and_friction_cost_as_work) {
+    const Field field = plane_field();
+    const auto work_of = [&](double coefficient) {
+        ToolProxy proxy = proxy_of(box_tool({4, 3, 2}, 1));
+        ToolUpdate last;
+        for (int i = 0; i < 40; ++i) {
+            const Quaternion turn = turned(Quaternion::Identity(), {0, 0, 0.01 * i});
+            last = update_tool(proxy, field, {{12 + 0.05 * i, 12, i < 1 ? 18.0 : 10.0}, turn},
+                               {.friction = {coefficient, coefficient}});
+        }
+        EXPECT_GE(last.contacts, 3);
+        return last.work;
+    };
+    const int without = work_of(0), with = work_of(0.4);
+    EXPECT_GT(with, without + 50) << "sweeps over the contacts";
+}
+
 TEST(ToolProxy, feels_the_other_side_and_other_samples_at_once) {
     Field field = plane_field();
     ToolProxy proxy = proxy_of(box_tool({4, 3, 2}, 1));

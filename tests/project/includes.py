@@ -7,8 +7,8 @@ import re
 import repository
 
 # The flow. `surface` looks at the field from the side: no stage may include it.
-STAGES = ("volume tool mesh_tool tool_body pages resident samples field edit editor lattice cubic kept_piece density proxy "
-          "tool_proxy penetrability force layers reach renderer exchange latency device session servo").split()
+STAGES = ("volume tool mesh_tool tool_body samples field edit editor lattice cubic density proxy tool_proxy "
+          "penetrability force layers reach renderer exchange device session servo").split()
 OBSERVERS = {"surface": "density"}  # name -> last stage that it may include
 UMBRELLA = "palpate"                # include/palpate/palpate.hpp, for users of the library
 
@@ -21,7 +21,7 @@ WINDOW = ("apps/options", "apps/viewer/model", "apps/viewer/scene", "apps/viewer
 MAY_SEE = {
     "include": (),
     "src": ("include",),
-    "baselines": ("include",),
+    "baselines": ("include", "src"),
     "scenes": ("include",),
     "filters": ("include",),
     "io": ("include", "scenes", "io/helper"),

@@ -9,8 +9,8 @@
 #include <functional>
 #include <latch>
 
+#include "palpate/field.hpp"
 #include "palpate/io/error.hpp"
-#include "palpate/reach.hpp"
 #include "stream/interest.hpp"
 #include "stream/upsample.hpp"
 #include "stream/volumes_store.hpp"
@@ -49,8 +49,8 @@ TEST(BrickLoader, bricks_hold_the_samples_of_the_store_and_their_margins) {
             BrickLoader loader(store, overview_of(*store),
                                {.memory = least_memory * size_of(type), .threads = 1});
             for (const Index3& at : {Index3(0, 0, 0), Index3(1, 0, 1), Index3(2, 1, 1)}) {
-                const ResidentBrick brick = loader.read(at, 0);
-                const ResidentBrick expected = brick_of(volume, at, 0);
+                const Brick brick = loader.read(at, 0);
+                const Brick expected = brick_of(volume, at, 0);
                 ASSERT_EQ(std::memcmp(brick.samples.get(), expected.samples.get(),
                                       ResidentBricks::per_brick * size_of(type)),
                           0);
@@ -77,7 +77,7 @@ TEST(BrickLoader, a_coarser_level_is_interpolated_where_it_lies_in_space) {
     const auto store =
         std::make_shared<VolumesStore>(std::vector{ramp(fine), ramp(coarse)}, Index3(16, 16, 16));
     BrickLoader loader(store, overview_of(*store), {.memory = 4 * least_memory, .threads = 1});
-    const ResidentBrick exact = loader.read({0, 0, 0}, 0), between = loader.read({0, 0, 0}, 1);
+    const Brick exact = loader.read({0, 0, 0}, 0), between = loader.read({0, 0, 0}, 1);
     EXPECT_EQ(exact.level, 0);
     EXPECT_EQ(between.level, 1);
     const auto* a = reinterpret_cast<const float*>(exact.samples.get());
@@ -123,8 +123,7 @@ TEST(BrickLoader, a_hand_that_is_too_fast_gets_coarser_bricks_and_finer_ones_whe
     const auto level_at = [&](const Vec3& at) {
         loader.look({&hand, 1}, now += std::chrono::milliseconds(1));
         if (auto version = loader.take()) newest = std::move(version->samples);
-        const ResidentBrick* brick =
-            newest ? newest->resident()->of_sample(at.cast<int>()) : nullptr;
+        const Brick* brick = newest ? newest->resident()->of_sample(at.cast<int>()) : nullptr;
         return brick ? int(brick->level) : -1;
     };
     EXPECT_TRUE(comes_true([&] { return level_at(hand.hand) == 0; }));
@@ -206,9 +205,7 @@ TEST(BrickLoader, memory_is_bounded_and_what_the_hand_needs_arrives_wherever_it_
         const auto arrived = [&] {
             EXPECT_LE(loader.status().bytes, least_memory);
             if (const auto version = loader.take()) field.use(version->samples);
-            const SampleBox box{(at - Vec3::Constant(10)).cast<int>(),
-                                (at + Vec3::Constant(10)).cast<int>()};
-            return field.samples().resident()->has(box) && loader.status().missing == 0;
+            return is_resident(field, at, 7) && loader.status().missing == 0;
         };
         ASSERT_TRUE(comes_true(arrived)) << n;
         const Index3 index = at.cast<int>();

@@ -11,8 +11,8 @@
 namespace palpate::support {
 
 /// A brick of a volume, as a loader would make it. Samples outside the grid are `outside` bytes.
-inline ResidentBrick brick_of(const Volume& volume, const Index3& brick, int outside = 0x55,
-                              std::uint8_t level = 0) {
+inline Brick brick_of(const Volume& volume, const Index3& brick, int outside = 0x55,
+                      std::uint8_t level = 0) {
     const std::size_t bytes = size_of(volume.type());
     const std::shared_ptr<std::byte[]> samples(new std::byte[ResidentBricks::per_brick * bytes]);
     std::memset(samples.get(), outside, ResidentBricks::per_brick * bytes);
@@ -66,7 +66,7 @@ class PartOf {
     }
 
   private:
-    void set(const Index3& brick, const ResidentBrick& to) {
+    void set(const Index3& brick, const Brick& to) {
         const ResidentBricks::Change change{brick, to};
         bricks_ = bricks_.with({&change, 1});
     }

@@ -61,20 +61,20 @@ void copy_bricks(const Field& field, const Bricks& bricks, const Box& box, float
     const Index3 last = field.geometry().size - Index3::Ones();
     const Index3 from = box.low.cwiseMax(0);
     const Index3 to = (box.low + box.size - Index3::Ones()).cwiseMin(last);
-    constexpr int n = Bricks::cells;
+    constexpr int n = Bricks::edge;
     for (int k = from[2] / n; k <= to[2] / n && to[2] >= 0; ++k) {
         for (int j = from[1] / n; j <= to[1] / n && to[1] >= 0; ++j) {
             for (int i = from[0] / n; i <= to[0] / n && to[0] >= 0; ++i) {
                 const Index3 low = n * Index3(i, j, k);
-                const T* const brick = reinterpret_cast<const T*>(bricks.of_cell(low));
-                if (!brick) continue;
+                const Brick* const found = bricks.of_sample(low);
+                if (!found) continue;
+                const T* const brick = reinterpret_cast<const T*>(found->samples.get());
                 // Its last layer is the first of the next, which holds the same there.
                 const SampleBox part =
                     cut(box, low, Index3((low + Index3::Constant(n - 1)).cwiseMin(last)));
                 for_rows(box, part, [&](std::size_t place, const Index3& at, int count) {
                     const Index3 in = at - low;
-                    const T* const row =
-                        brick + (in[2] * Bricks::samples + in[1]) * Bricks::samples + in[0];
+                    const T* const row = brick + Bricks::place_of(in);
                     for (int s = 0; s < count; ++s) {
                         out[place + static_cast<std::size_t>(s)] = static_cast<float>(row[s]);
                     }
@@ -131,8 +131,8 @@ SampleBox edited_between(const Samples& a, const Samples& b) {
     const Bricks none(old && now ? Index3(Index3::Ones()) : b.geometry().size);
     (now ? *now : none)
         .for_each_apart(old ? *old : none, [&](const Index3& brick, const auto&, const auto&) {
-            const Index3 low = Bricks::cells * brick;
-            changed = united(changed, {low, low + Index3::Constant(Bricks::cells)});
+            const Index3 low = Bricks::edge * brick;
+            changed = united(changed, {low, low + Index3::Constant(Bricks::edge)});
         });
     return changed;
 }

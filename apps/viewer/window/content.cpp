@@ -80,9 +80,7 @@ Content::OuterSurface Content::outer_surface() {
     const SharedLayers now = layers();
     if (levels_in(now) > 0) return {seen(felt()), now->layers.front().level};
     if (!have_surfaces(now)) return {seen(felt()), live_->isovalue()};
-    OuterSurface labels{*now->labels, 0.5};
-    labels.field.cover(now->labels, ~1U, 0, 1);  // all but what is in no layer
-    return labels;
+    return {labelled_space(*now), 0.5};
 }
 
 std::optional<Snapshot> Content::snapshot() const {
@@ -110,16 +108,7 @@ Field Content::seen(Field felt) {
 
 std::optional<Field> Content::felt_round(const Snapshot& snapshot, const Vec3& point) {
     Field field = felt_at(snapshot);
-    const ResidentBricks* const resident = field.samples().resident();
-    if (!resident) return field;
-    constexpr double most = 1e9;
-    const Vec3 index = index_from_physical(field.geometry(), point);
-    if (!(index.cwiseAbs().maxCoeff() < most)) return std::nullopt;
-    const Index3 at = index.array().round().cast<int>();
-    constexpr int near = 2;
-    if (!resident->has({at - Index3::Constant(near), at + Index3::Constant(near)})) {
-        return std::nullopt;
-    }
+    if (!is_resident(field, point, 0)) return std::nullopt;
     return field;
 }
 

@@ -1,4 +1,5 @@
-// All proxy methods by the names that command line, tables and figures give them.
+// All proxy methods by the names that command line, tables and figures give them, and that of the
+// paper.
 #pragma once
 
 #include <span>
@@ -9,6 +10,13 @@
 #include "palpate/proxy.hpp"
 
 namespace palpate::baselines {
+
+/// The paper's method as published (Fig. 4): constraint planes of all tetrahedra at the SCP, one
+/// goal that satisfies all of them, walked to tetrahedron by tetrahedron. Keeps G1, G2 and G5,
+/// but sticks on convex ridges, where it breaks G3. No friction. For comparison. Refuses cubic
+/// fields.
+ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
+                         const ProxySettings& settings = {}, StepObserver observer = {});
 
 struct NamedMethod {
     const char* name;

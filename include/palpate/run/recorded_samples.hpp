@@ -17,7 +17,7 @@ std::function<Volume(int)> frames_of(const LoadedVolume& loaded);
 
 /// Reads a large grid. Both null for other data.
 struct GridReader {
-    std::function<ResidentBrick(const Index3& brick, int level)> brick;  ///< of a level of detail
+    std::function<Brick(const Index3& brick, int level)> brick;  ///< of a level of detail
     ReadSamples box;  ///< of the level felt, before all edits
 };
 /// `tell` is called all the time while it reads, and may throw to stop.

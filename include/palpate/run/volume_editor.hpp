@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "palpate/editor.hpp"
+#include "palpate/edit.hpp"
 #include "palpate/run/brush.hpp"
 #include "palpate/servo.hpp"
 

@@ -1,5 +1,5 @@
 // Brings bricks of a store into memory round the hands that feel it, within a memory bound, with
-// threads of its own. What is in memory is published as versions of samples (resident.hpp).
+// threads of its own. What is in memory is published as versions of samples (samples.hpp).
 #pragma once
 
 #include <array>
@@ -122,7 +122,7 @@ class BrickLoader {
     void leave_room(std::uint64_t bytes);
 
     /// One brick as it is loaded; of a coarser level interpolated. Throws as Store::read().
-    ResidentBrick read(const Index3& brick, int coarser, std::stop_token stop = {});
+    Brick read(const Index3& brick, int coarser, std::stop_token stop = {});
 
   private:
     struct Place {
@@ -151,7 +151,7 @@ class BrickLoader {
     bool is_behind() const;
     void want(std::vector<Index3> bricks);
     void wake();
-    void put(const Job& job, const ResidentBrick& brick);
+    void put(const Job& job, const Brick& brick);
     void fail(const Place& place, const std::string& problem, std::uint64_t begun);
     void make_room();
     void choose_levels(std::span<const Interest> hands, Clock::time_point now);
@@ -170,7 +170,7 @@ class BrickLoader {
     mutable std::mutex mutex_;
     std::condition_variable_any changed_;
     ResidentBricks bricks_;                      // as taken last
-    std::map<Place, ResidentBrick> held_;        // in memory now
+    std::map<Place, Brick> held_;                // in memory now
     Clock::time_point newest_{};                 // when the last of those came
     std::map<Place, int> in_flight_;             // level that is being read
     std::map<Place, Clock::time_point> failed_;  // not tried again before

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/quiet/system_watch.hpp"
-#include "palpate/editor.hpp"
+#include "palpate/edit.hpp"
 #include "palpate/scenes/motions.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "palpate/servo.hpp"

@@ -7,7 +7,7 @@
 #include <map>
 #include <thread>
 
-#include "palpate/editor.hpp"
+#include "palpate/edit.hpp"
 #include "palpate/servo.hpp"
 #include "support/edits.hpp"
 #include "support/scripted_device.hpp"

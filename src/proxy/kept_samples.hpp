@@ -1,5 +1,5 @@
-// Stage 8, cubic: the piece of the smooth field that a proxy keeps from one update to the next, and
-// the samples that it was made from, by which the next update knows whether it still holds.
+// The samples that a proxy's kept piece was made from: whether they are still the same, to the bit,
+// in a few instructions.
 #pragma once
 
 #include <array>
@@ -7,20 +7,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <type_traits>
 
-#include "palpate/cubic.hpp"
+#include "palpate/proxy.hpp"
 
-namespace palpate::cubic {
+namespace palpate {
 
-/// A sample and its neighbours, to the bit.
-class KeptSamples {
-  public:
+/// What a proxy keeps, for those who may look into it.
+struct Kept {
+    static const cubic::Piece& piece(const KeptPiece& kept) { return kept.piece; }
+
     template <class T>
-    void keep(const T* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
-        type_ = type_of<T>;
-        std::byte* to = bytes_.data();
+    static void keep(KeptSamples& samples, const T* centre, std::ptrdiff_t row,
+                     std::ptrdiff_t slice) {
+        samples.type = type_of<T>;
+        std::byte* to = samples.bytes.data();
         if constexpr (sizeof(T) <= 2) {
             for_each_word(centre, row, slice, [&](Word<T> word, bool) {
                 std::memcpy(to, &word, sizeof word);
@@ -36,9 +37,10 @@ class KeptSamples {
         }
     }
     template <class T>
-    bool are(const T* centre, std::ptrdiff_t row, std::ptrdiff_t slice) const {
-        if (type_ != type_of<T>) return false;
-        const std::byte* kept = bytes_.data();
+    static bool are(const KeptSamples& samples, const T* centre, std::ptrdiff_t row,
+                    std::ptrdiff_t slice) {
+        if (samples.type != type_of<T>) return false;
+        const std::byte* kept = samples.bytes.data();
         if constexpr (sizeof(T) <= 2) {
             Word<T> apart = 0, apart_in_last = 0;
             for_each_word(centre, row, slice, [&](Word<T> word, bool is_last) {
@@ -111,21 +113,6 @@ class KeptSamples {
                     difference_at<std::uint64_t>(a + 16, b + 16)) == 0;
         }
     }
-
-    int type_ = 0;  // none
-    std::array<std::byte, 27 * sizeof(double)> bytes_{};
 };
 
-/// The piece that an update made last, for the next one, which mostly begins in its tetrahedron. It
-/// is used only where all that it was made from is the same, so results do not depend on it.
-struct KeptPiece {
-    double isovalue = 0;  ///< less the field's offset [data units]
-    double sign = 0;
-    Tetrahedron tetrahedron;
-    Piece piece;  ///< of the excess, sign * (f - isovalue)
-    /// Nothing in the tetrahedron's cube lies above: the greatest excess of the samples round it,
-    /// once it was looked for, times `scale`.
-    double most = std::numeric_limits<double>::infinity();
-};
-
-}  // namespace palpate::cubic
+}  // namespace palpate

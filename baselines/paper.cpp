@@ -3,10 +3,11 @@
 // Ruspini et al. 1997): the intersection of their free sides, where the free space is the union.
 #include <cmath>
 
+#include "palpate/baselines/methods.hpp"
 #include "proxy/cone.hpp"
 #include "proxy/update.hpp"
 
-namespace palpate {
+namespace palpate::baselines {
 namespace {
 
 /// The constraint planes of every tetrahedron that contains the SCP, normals in mm, index axes.
@@ -67,7 +68,8 @@ ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings, StepObserver observer) {
     const Vec3 target = index_from_physical(field.geometry(), hip);
     const bool is_linear = field.interpolation() == Interpolation::linear;
-    if (!is_linear || !accepts(proxy, field, target)) return refuse_update(proxy, field, hip);
+    if (!is_linear || !accepts(proxy.isovalue, field, target))
+        return refuse_update(proxy, field, hip);
     Update<Site> update(proxy, field, target, settings, observer);
     Site& site = update.site;
     Progress& progress = update.progress;
@@ -91,4 +93,4 @@ ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
     return finish_update(proxy, update, hip, Rest::out_of_budget);
 }
 
-}  // namespace palpate
+}  // namespace palpate::baselines

@@ -1,0 +1,28 @@
+// Labels that cover a field: the way in for layers.
+#pragma once
+
+#include "palpate/field.hpp"
+
+namespace palpate {
+
+struct LabelCover {
+    /// From now on samples with a label above 0 are `solid` [data units] where it is one of these
+    /// bits, else `open`; with bit 0 samples without a label, and all outside the grid, are solid,
+    /// too. `labels`: one uint8 volume of labels up to 31 that is not edited, on any grid; a sample
+    /// of this field has the label that is nearest to it, 0 outside of them. Does not allocate. The
+    /// samples may be those of the labels: then `open` has to be 0.
+    static void put(Field& field, const std::shared_ptr<const Field>& labels,
+                    std::uint32_t solid_labels, double open, double solid) noexcept {
+        field.cover(labels, solid_labels, open, solid);
+    }
+    /// Null without put().
+    static const Field* of(const Field& field) noexcept { return field.cover_.labels.get(); }
+    /// Of the sample `at`, from the labels that cover it.
+    static int label(const Field& field, const Index3& at) noexcept { return field.label_at(at); }
+    /// Whether the sample `at` or one of its neighbours has such a label.
+    static bool is_near(const Field& field, const Index3& at) noexcept {
+        return field.is_labelled(at - Index3::Ones(), 3);
+    }
+};
+
+}  // namespace palpate
