@@ -11,11 +11,13 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "palpate/device.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/io/level.hpp"
 #include "palpate/layers.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::python {
 
@@ -117,13 +119,13 @@ const char* text_of(E value) {
 /// Throws std::invalid_argument, listing the names.
 template <IsNamed E>
 E named(const std::string& text) {
-    std::string names;
+    std::vector<std::string> names;
     for (const auto& [name, value] : Named<E>::values) {
         if (text == name) return value;
-        names += (names.empty() ? "" : ", ") + std::string(name);
+        names.emplace_back(name);
     }
-    throw std::invalid_argument(std::string(Named<E>::kind) + " '" + text + "': it is one of " +
-                                names);
+    throw std::invalid_argument(std::string(Named<E>::kind) + " '" + text +
+                                "': " + use_one_of(names, text));
 }
 
 }  // namespace palpate::python

@@ -157,7 +157,7 @@ def test_bad_input_is_a_value_error_that_says_what_is_wrong(change, words):
 
 def test_a_setting_that_there_is_not_is_a_type_error():
     scene = palpate.scene("torus:16x16x16")
-    with pytest.raises(TypeError, match="no field stifness"):
+    with pytest.raises(TypeError, match="no argument stifness .did you mean stiffness"):
         palpate.replay(palpate.Field(scene.volume), 0.5, [0.0], [[0, 0, 0]], stifness=1)
 
 

@@ -42,7 +42,7 @@ def test_settings_survive_pickling_and_copying_bit_for_bit(kind):
 @pytest.mark.parametrize("kind", RECORDS, ids=lambda kind: kind.__name__)
 def test_settings_name_their_fields_in_repr_and_refuse_others(kind):
     assert all(f"{name}=" in repr(kind()) for name in kind._fields)
-    with pytest.raises(TypeError, match="no field colour_of_hat"):
+    with pytest.raises(TypeError, match="no argument colour_of_hat"):
         kind(colour_of_hat=1)
     with pytest.raises(AttributeError):
         kind().colour_of_hat = 1

@@ -460,8 +460,6 @@ class Setup:
     loop: bool
     memory_bytes: int
     real_time: bool
-    @staticmethod
-    def live() -> Setup: ...
 
 class Snapshot:
     @property
