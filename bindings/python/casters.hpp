@@ -147,7 +147,7 @@ struct type_caster<E> {
     }
 };
 
-/// Numbers w, x, y, z.
+/// Numbers x, y, z, w, as in C, C# and scipy. What has them says so in its name: orientation_xyzw.
 template <>
 struct type_caster<palpate::Quaternion> {
     PYBIND11_TYPE_CASTER(palpate::Quaternion, const_name("numpy.ndarray[float64[4]]"));
@@ -156,12 +156,11 @@ struct type_caster<palpate::Quaternion> {
         make_caster<Eigen::Vector4d> numbers;
         if (!numbers.load(source, convert)) return false;
         const auto& q = cast_op<const Eigen::Vector4d&>(numbers);
-        value = palpate::Quaternion(q[0], q[1], q[2], q[3]);
+        value = palpate::Quaternion(q);
         return true;
     }
     static handle cast(const palpate::Quaternion& q, return_value_policy, handle parent) {
-        return make_caster<Eigen::Vector4d>::cast(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()),
-                                                  return_value_policy::move, parent);
+        return make_caster<Eigen::Vector4d>::cast(q.coeffs(), return_value_policy::move, parent);
     }
 };
 

@@ -35,7 +35,7 @@ def motion():
 def same(trace, other):
     return all(numpy.array_equal(getattr(trace, name), getattr(other, name))
                for name in ("t", "hip", "scp", "force", "torque", "density", "constrained", "contacts",
-                            "proxy_orientation"))
+                            "proxy_orientation_xyzw"))
 
 
 def on_one_machine(setup, motion, field):

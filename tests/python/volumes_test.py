@@ -215,3 +215,20 @@ def test_default_settings_are_equal():
     for kind in vars(palpate).values():
         if isinstance(kind, type) and hasattr(kind, "_fields"):
             assert kind() == kind() and not kind() != kind(), kind
+
+
+def test_an_orientation_has_its_order_in_its_name_and_is_the_same_everywhere():
+    half = numpy.sqrt(0.5)
+    reading = palpate.DeviceReading(orientation_xyzw=[half, 0, 0, half])
+    assert numpy.allclose(reading.orientation_xyzw, [half, 0, 0, half])
+    with pytest.raises(ValueError, match="length 1"):
+        reading.orientation_xyzw = [2, 0, 0, 0]
+    scene = palpate.scene("sphere:16x16x16")
+    field = palpate.Field(scene.volume)
+    turn = [0.5, -0.5, 0.5, 0.5]
+    renderer = palpate.Renderer(field, scene.isovalue, palpate.RenderSetup(tool="rod:3"))
+    tick = renderer.render(0.001, [20, 0, 0], orientation_xyzw=turn)
+    assert numpy.allclose(tick.hand_orientation_xyzw, turn)
+    trace = palpate.replay(field, scene.isovalue, [0.0, 0.001], [[20, 0, 0], [19, 0, 0]],
+                           orientation_xyzw=[turn, turn], tool="rod:3")
+    assert numpy.allclose(trace.hand_orientation_xyzw, [turn, turn])

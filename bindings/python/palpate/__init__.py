@@ -2,7 +2,7 @@
 
 Lengths are mm, forces N, torques N mm, times s. Points are in the volume's physical space (LPS) or,
 where it is said, in the device's axes (device mm). Arrays of samples are indexed [z, y, x],
-points are x, y, z, orientations are unit quaternions w, x, y, z.
+points are x, y, z, orientations are unit quaternions x, y, z, w.
 """
 
 from . import _palpate, arguments
