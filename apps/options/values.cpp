@@ -18,6 +18,7 @@ constexpr const char* empty_value = "the value is empty";
 /// Why a text is no T; empty if it is one.
 template <class T>
 std::string flaw_in(const std::string& text) {
+    if (text.empty()) return empty_value;
     const auto number = io::number_from<T>(text);
     if constexpr (std::floating_point<T>) {
         if (number && !std::isnan(*number)) return {};
@@ -117,6 +118,7 @@ CLI::Validator one_of(std::vector<std::string> names) {
     const std::string shown = fmt::format("{{{}}}", fmt::join(names, ","));
     return {[names = std::move(names)](const std::string& word) {
                 if (std::ranges::find(names, word) != names.end()) return std::string();
+                if (word.empty()) return std::string(empty_value);
                 return "there is no '" + word + "': " + use_one_of(names, word);
             },
             shown};
@@ -143,10 +145,10 @@ CLI::Validator from_zero() {
 
 CLI::Validator count(std::uint64_t most) {
     return {[most](const std::string& text) {
+                if (text.empty()) return std::string(empty_value);
                 const auto number = io::number_from<std::uint64_t>(text);
                 if (number && *number <= most) return std::string();
-                const bool digits =
-                    !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+                const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
                 return text + " is not a whole number from 0" +
                        (digits ? fmt::format(" to {}", most) : "");
             },
@@ -155,6 +157,7 @@ CLI::Validator count(std::uint64_t most) {
 
 CLI::Validator size_in_bytes() {
     return {[](std::string& text) {
+                if (text.empty()) return std::string(empty_value);
                 const auto end = text.find_last_of("0123456789.") + 1;
                 const auto number = io::number_from<double>(text.substr(0, end));
                 const auto factor = factor_of(text.substr(end));

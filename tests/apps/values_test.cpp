@@ -59,6 +59,8 @@ TEST(Values, that_are_no_numbers_are_refused_in_one_short_line) {
             const bool acceptable = value == "-3" || value == "inf";
             EXPECT_TRUE(refused || (acceptable && value != "")) << line << ": " << outcome.err;
             EXPECT_TRUE(!refused || contains(outcome.err, name)) << line << ": " << outcome.err;
+            EXPECT_TRUE(!value.empty() || contains(outcome.err, "the value is empty"))
+                << outcome.err;
         }
         const Outcome missing = palpate(folder, words_of(option.command) + Words{name});
         EXPECT_TRUE(is_one_line(missing.err) && contains(missing.err, name + " needs a value"))

@@ -8,7 +8,8 @@
 namespace palpate {
 namespace {
 
-const std::vector<std::string> names{"cubic", "linear", "gradient", "gradient-improved", "--isovalue"};
+const std::vector<std::string> names{"cubic", "linear", "gradient", "gradient-improved",
+                                     "--isovalue"};
 
 TEST(Names, a_letter_missing_added_wrong_or_swapped_still_finds_the_name) {
     for (const char* word : {"linar", "lineear", "lineax", "linaer", "LINEAR"}) {
@@ -23,8 +24,8 @@ TEST(Names, the_beginning_of_a_name_finds_it) {
 }
 
 TEST(Names, a_word_that_is_like_none_finds_none) {
-    for (const std::string& word : {std::string("quartz"), std::string("x"), std::string(),
-                                    std::string(100'000, 'c')}) {
+    for (const std::string& word :
+         {std::string("quartz"), std::string("x"), std::string(), std::string(100'000, 'c')}) {
         EXPECT_EQ(nearest_name(word, names), "") << word.substr(0, 9);
     }
     EXPECT_EQ(nearest_name("cubic", {}), "");
