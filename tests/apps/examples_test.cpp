@@ -61,7 +61,7 @@ void put_named_files(const ScratchFolder& folder, const std::string& example) {
     std::filesystem::resize_file(folder / "samples.raw", 2 * 256 * 256 * 113);
 }
 
-/// With a stand-in for hardware, a patient's scan, a person and long measurements.
+/// With a stand-in for hardware, a patient's scan and a person, and shortened where it takes long.
 Words runnable(std::string example) {
     const auto replace = [&](const std::string& what, const std::string& by) {
         const auto at = example.find(what);
@@ -71,6 +71,11 @@ Words runnable(std::string example) {
     replace("dicom-folder", "head.nrrd");
     if (example.starts_with("touch") || example.starts_with("record")) {
         example += " --unpaced --seconds 0.1";
+    }
+    if (example.starts_with("demo")) {
+        example += " --picture 64";
+        example += example.starts_with("demo beating") ? " --pictures 2" : " --duration 0.2";
+        if (example.starts_with("demo sculpt")) example += " --pictures 2";
     }
     if (example.starts_with("doctor")) example += " --seconds 0.1";
     if (example.starts_with("evaluate") && !contains(example, "--quick")) example += " --quick";
