@@ -6,6 +6,7 @@
 #include <string>
 
 #include "baselines/gradient.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::baselines {
 
@@ -25,12 +26,11 @@ std::vector<std::string> method_names() {
 }
 
 ProxyMethod method_named(std::string_view name) {
-    std::string names;
     for (const NamedMethod& entry : methods()) {
         if (name == entry.name) return entry.method;
-        names += names.empty() ? entry.name : std::string(", ") + entry.name;
     }
-    throw std::invalid_argument("no method '" + std::string(name) + "': there are " + names);
+    throw std::invalid_argument("there is no method '" + std::string(name) +
+                                "': " + use_one_of(method_names(), name));
 }
 
 }  // namespace palpate::baselines

@@ -68,20 +68,98 @@ def page(name, lines, version):
     return "\n".join(line for line in out if line) + "\n.fi\n"
 
 
-def completion(options, commands):
-    """`options`: those of each command by its name, of palpate itself under ''."""
-    cases = "\n".join(f'        {name}) words="{" ".join(found)}" ;;'
-                      for name, found in options.items() if name)
-    return f"""# Completion for bash: palpate's commands, their options, files.
-_palpate() {{
-    local words
-    case "${{COMP_WORDS[1]}}" in
-{cases}
-        *) words="{' '.join([*commands, *options[''], ])}" ;;
+class Values:
+    """What may follow an option, or stand for a positional, as its type in --help says."""
+
+    def __init__(self, kind, about):
+        files = re.findall(r"FILE(?:\.(\{[^}]*\}|\w+))?", kind)
+        rest = re.sub(r"FILE\.(\{[^}]*\}|\w+)", "", kind)
+        found = re.search(r"\{([^}]*)\}", rest)
+        self.words = found.group(1).split(",") if found else []
+        volumes = re.search(r"synthetic:\{([^}]*)\}", about)
+        if volumes:
+            self.words += [f"synthetic:{name}" for name in volumes.group(1).split(",")]
+        self.endings = [ending for file in files for ending in file.strip("{}").split(",") if ending]
+        self.action = "folder" if "FOLDER" in kind else "file" if files or "VOLUME" in kind else ""
+
+    def as_shell(self):
+        words, endings = " ".join(self.words), " ".join(self.endings)
+        return f"words='{words}' action='{self.action}' endings='{endings}'"
+
+
+def values_of(lines):
+    """The values by name, of options that have some and of positionals."""
+    values, section = {}, ""
+    entries = []
+    for line in lines:
+        heading = SECTION.match(line)
+        section = heading.group(1) if heading else section if line.strip() else ""
+        if section in ("Options", "Positionals") and line[:2] == "  ":
+            if line[2:3].strip():
+                entries.append(line.strip())
+            else:
+                entries[-1] += "  " + line.strip()
+    for entry in entries:
+        head, _, about = entry.partition("  ")
+        names, _, kind = head.partition(" ")
+        names = [re.sub(r"\{.*", "", name) for name in names.split(",")]
+        if kind and not any("{" in name for name in head.split(" ")[0].split(",")):
+            values.update({name: Values(kind, about) for name in names})
+    return values
+
+
+def completion(options, values, commands):
+    """`options`: those of each command by its name, of palpate itself under ''; `values` too."""
+    cases = []
+    for command in commands:
+        positional = [each for name, each in values[command].items() if name[:1] != "-"]
+        more = positional[0].as_shell() if positional else f"words='{' '.join(options[command])}'"
+        after = {}
+        for name, each in values[command].items():
+            if name[:1] == "-":
+                after.setdefault(each.as_shell(), []).append(name)
+        after = [f"                {'|'.join(names)}) {shell} ;;" for shell, names in after.items()]
+        cases += [f"        {command})", f"            options='{' '.join(options[command])}'",
+                  '            case "$before" in', *after, f"                *) {more} ;;",
+                  "            esac ;;"]
+    return COMPLETION.replace("CASES", "\n".join(cases)).replace(
+        "COMMANDS", " ".join([*commands, *options[""]]))
+
+
+COMPLETION = r"""# Completion for bash: palpate's commands, their options, and the values of these.
+_palpate() {
+    local line=${COMP_LINE:0:COMP_POINT} typed current before words='' action='' endings='' options=''
+    read -ra typed <<< "$line"
+    [[ $line == *[[:space:]] ]] && typed+=('')
+    current=${typed[-1]} before=${typed[-2]}
+    if [[ $current == --*=* ]]; then
+        before=${current%%=*} current=${current#*=}
+    fi
+    case "${typed[1]}" in
+CASES
     esac
-    COMPREPLY=($(compgen -W "$words" -- "${{COMP_WORDS[COMP_CWORD]}}"))
-}}
-complete -o default -F _palpate palpate
+    if ((${#typed[@]} < 3)); then
+        words='COMMANDS' action='' endings=''
+    elif [[ $current == -* ]]; then
+        words=$options action='' endings=''
+    fi
+    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current")
+    if [[ $action ]]; then
+        compopt -o filenames 2> /dev/null
+        [[ $action == file && ! $endings ]] && mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$current")
+        for ending in $endings; do
+            mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -X "!*.$ending" -- "$current")
+        done
+        [[ $action == folder || $endings ]] && mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -d -- "$current")
+    fi
+    # Bash takes what follows a colon for a word of its own.
+    if [[ $current == *:* && $COMP_WORDBREAKS == *:* ]]; then
+        COMPREPLY=("${COMPREPLY[@]#"${current%"${current##*:}"}"}")
+    fi
+    [[ ${COMPREPLY[*]} == *: ]] && compopt -o nospace 2> /dev/null
+    return 0
+}
+complete -F _palpate palpate
 """
 
 
@@ -93,13 +171,13 @@ def main():
     pages.mkdir(parents=True, exist_ok=True)
     lines = help_of(program)
     commands = commands_of(lines)
-    options = {"": options_of(lines)}
+    options, values = {"": options_of(lines)}, {}
     (pages / "palpate.1").write_text(page("palpate", lines, version))
     for command in commands:
         lines = help_of(program, command)
-        options[command] = options_of(lines)
+        options[command], values[command] = options_of(lines), values_of(lines)
         (pages / f"palpate-{command}.1").write_text(page(f"palpate-{command}", lines, version))
-    (folder / "palpate").write_text(completion(options, commands))
+    (folder / "palpate").write_text(completion(options, values, commands))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@
 #include "devices/simulated/simulated.hpp"
 #include "devices/spacenav/spacenav.hpp"
 #include "palpate/devices/mouse.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -39,14 +40,19 @@ std::vector<DeviceFinding> find_devices() {
     return findings;
 }
 
+std::vector<std::string> device_names() {
+    std::vector<std::string> names;
+    for (const Backend& backend : backends) names.emplace_back(backend.name);
+    return names;
+}
+
 std::unique_ptr<Device> open_device(const DeviceChoice& choice, const DeviceScene& scene) {
-    std::string names;
     for (const Backend& backend : backends) {
         if (choice.name == backend.name) return backend.open(choice, scene);
-        names += (names.empty() ? "" : ", ") + std::string(backend.name);
     }
-    throw std::invalid_argument("there is no device '" + choice.name + "'; there are: " + names +
-                                " (palpate devices tells which can be had)");
+    throw std::invalid_argument("there is no device '" + choice.name +
+                                "': " + use_one_of(device_names(), choice.name) +
+                                "; palpate devices tells which can be had");
 }
 
 }  // namespace palpate::devices

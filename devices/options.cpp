@@ -5,17 +5,9 @@
 #include <stdexcept>
 
 #include "io/system/number.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::devices {
-namespace {
-
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-    return text;
-}
-
-}  // namespace
 
 DeviceChoice parse_device(std::string_view text) {
     DeviceChoice choice;
@@ -81,8 +73,8 @@ std::string DeviceOptions::one_of(const std::string& key, const std::string& oth
                                   const std::vector<std::string>& accepted) {
     const std::string value = text(key, otherwise);
     if (std::ranges::find(accepted, value) != accepted.end()) return value;
-    throw std::invalid_argument("device " + device_ + ": " + key + "=" + value +
-                                ": must be one of " + joined(accepted));
+    throw std::invalid_argument("device " + device_ + ": " + key + "=" + value + ": " +
+                                use_one_of(accepted, value));
 }
 
 void DeviceOptions::finish() const {
@@ -90,8 +82,8 @@ void DeviceOptions::finish() const {
     const std::string& key = rest_.begin()->first;
     const std::string what =
         key.empty() ? "'" + rest_.begin()->second + "' is no KEY=VALUE" : "no option '" + key + "'";
-    throw std::invalid_argument("device " + device_ + ": " + what + "; there " +
-                                (known_.empty() ? "are none" : "are: " + joined(known_)));
+    throw std::invalid_argument("device " + device_ + ": " + what + ": " +
+                                (known_.empty() ? "it has none" : use_one_of(known_, key)));
 }
 
 }  // namespace palpate::devices

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <ctime>
@@ -17,6 +18,7 @@
 #include "palpate/devices/devices.hpp"
 #include "palpate/io/sample_volume.hpp"
 #include "palpate/io/volume_file.hpp"
+#include "palpate/names.hpp"
 #include "pictures/picture.hpp"
 
 namespace palpate::doctor {
@@ -152,15 +154,10 @@ Facts survey(const std::string& wanted_device) {
     facts.account = read_account();
     facts.wanted_device = wanted_device;
     facts.devices = devices::find_devices();
-    std::string names;
-    bool known = wanted_device.empty();
-    for (const devices::DeviceFinding& device : facts.devices) {
-        known = known || device.name == wanted_device;
-        names += (names.empty() ? "" : ", ") + device.name;
-    }
-    if (!known) {
+    const std::vector<std::string> names = devices::device_names();
+    if (!wanted_device.empty() && std::ranges::find(names, wanted_device) == names.end()) {
         throw std::invalid_argument("there is no device '" + wanted_device +
-                                    "'; there are: " + names);
+                                    "': " + use_one_of(names, wanted_device));
     }
     facts.programs = {reader(), program_named("palpate-picture-helper", "PALPATE_PICTURE_HELPER"),
                       program_named("palpate-explicit-helper", "PALPATE_EXPLICIT_HELPER"),

@@ -9,6 +9,7 @@
 #include "io/layers_json.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/output.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::io {
 namespace {
@@ -98,13 +99,23 @@ Layers layers_for(const LayersFile& file, const Volume& volume) {
     return layers;
 }
 
-std::vector<LayersPreset> layers_presets() {
-    std::vector<LayersPreset> presets;
-    for (const auto& entry : fs::directory_iterator(preset_folder())) {
-        if (entry.path().extension() != ".json") continue;
-        presets.push_back({entry.path().stem().string(), read_layers(entry.path())});
+std::vector<std::string> layers_names() {
+    std::vector<std::string> names;
+    const auto folder = bundled("layers");
+    if (!folder) return names;
+    for (const auto& entry : fs::directory_iterator(*folder)) {
+        if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
     }
-    std::ranges::sort(presets, {}, &LayersPreset::name);
+    std::ranges::sort(names);
+    return names;
+}
+
+std::vector<LayersPreset> layers_presets() {
+    const fs::path folder = preset_folder();
+    std::vector<LayersPreset> presets;
+    for (const std::string& name : layers_names()) {
+        presets.push_back({name, read_layers(folder / (name + ".json"))});
+    }
     return presets;
 }
 
@@ -113,13 +124,11 @@ LayersFile layers_named(const std::string& file_or_name) {
     if (file_or_name.find_first_of("./") != std::string::npos || fs::exists(file_or_name, error)) {
         return read_layers(file_or_name);
     }
-    std::string names;
     for (LayersPreset& preset : layers_presets()) {
         if (preset.name == file_or_name) return std::move(preset.file);
-        names += (names.empty() ? "" : ", ") + preset.name;
     }
-    throw InputError(io::quoted(file_or_name) +
-                     ": no layers of this name, and no such file; built in are " + names);
+    throw InputError(io::quoted(file_or_name) + ": no layers of this name, and no such file: " +
+                     use_one_of(layers_names(), file_or_name));
 }
 
 }  // namespace palpate::io

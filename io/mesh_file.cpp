@@ -13,6 +13,7 @@
 
 #include "io/system/number.hpp"
 #include "palpate/io/output.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::io {
 namespace {
@@ -173,8 +174,9 @@ std::optional<MeshFormat> format_of(const std::filesystem::path& path) {
 
 MeshFormat mesh_format_from(const std::filesystem::path& path) {
     if (const auto format = format_of(path)) return *format;
-    throw std::invalid_argument(
-        path.string() + ": its extension names no mesh format: use .ply, .stl, .obj or .vtp");
+    const std::string names[] = {".ply", ".stl", ".obj", ".vtp"};
+    throw std::invalid_argument(path.string() + ": its extension names no mesh format: " +
+                                use_one_of(names, path.extension().string()));
 }
 
 bool names_a_mesh(const std::filesystem::path& path) {

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "palpate/names.hpp"
+
 namespace palpate::pictures {
 namespace {
 
@@ -50,12 +52,11 @@ std::vector<std::string> view_names() {
 }
 
 View view_named(std::string_view name) {
-    std::string all;
     for (const NamedView& v : named_views()) {
         if (name == v.name) return v.view;
-        all += (all.empty() ? "" : ", ") + std::string(v.name);
     }
-    throw std::invalid_argument("there is no view '" + std::string(name) + "'; one of " + all);
+    throw std::invalid_argument("there is no view '" + std::string(name) +
+                                "': " + use_one_of(view_names(), name));
 }
 
 View view_from(double azimuth, double elevation) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "palpate/names.hpp"
 #include "scenes/contact.hpp"
 #include "scenes/track.hpp"
 
@@ -442,12 +443,8 @@ std::vector<std::string> motion_names() {
 std::vector<HandSample> make_motion(std::string_view name, const Field& field, double isovalue,
                                     const MotionSettings& settings,
                                     const std::function<void(double)>& progress) {
-    std::string names;
     for (const Motion& motion : motions) {
-        if (name != motion.name) {
-            names += (names.empty() ? "" : ", ") + std::string(motion.name);
-            continue;
-        }
+        if (name != motion.name) continue;
         std::vector<HandSample> samples = clock(settings);
         Random random(settings.seed);
         if (motion.plan == nullptr) {
@@ -457,8 +454,8 @@ std::vector<HandSample> make_motion(std::string_view name, const Field& field, d
         Hand hand{field, isovalue, settings, random, contact};
         return travelled(motion.plan(hand), settings, std::move(samples), progress);
     }
-    throw std::invalid_argument("there is no motion '" + std::string(name) + "': use one of " +
-                                names);
+    throw std::invalid_argument("there is no motion '" + std::string(name) +
+                                "': " + use_one_of(motion_names(), name));
 }
 
 }  // namespace palpate::scenes

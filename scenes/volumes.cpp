@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "palpate/names.hpp"
 #include "palpate/scenes/beating.hpp"
 #include "scenes/fill.hpp"
 #include "scenes/head_phantom.hpp"
@@ -166,13 +167,11 @@ const std::array<Recipe, 9>& recipes() {
 }
 
 const Recipe& recipe_of(std::string_view name) {
-    std::string names;
     for (const Recipe& recipe : recipes()) {
         if (name == recipe.name) return recipe;
-        names += (names.empty() ? "" : ", ") + std::string(recipe.name);
     }
     throw std::invalid_argument("there is no synthetic volume '" + std::string(name) +
-                                "': use one of " + names +
+                                "': " + use_one_of(volume_names(), name) +
                                 ", alone or with a size as in sphere:64x64x64");
 }
 

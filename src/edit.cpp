@@ -10,6 +10,7 @@
 
 #include "edit/before.hpp"
 #include "edit/reach.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate {
 namespace {
@@ -288,8 +289,9 @@ BrushKind brush_kind_from(std::string_view name) {
          {BrushKind::carve, BrushKind::add, BrushKind::smooth, BrushKind::paint}) {
         if (name == name_of(kind)) return kind;
     }
-    throw std::invalid_argument("unknown brush '" + std::string(name) +
-                                "': use carve, add, smooth or paint");
+    const std::string names[] = {"carve", "add", "smooth", "paint"};
+    throw std::invalid_argument("there is no brush '" + std::string(name) +
+                                "': " + use_one_of(names, name));
 }
 
 void check(const Edit& edit, const Samples& samples) {

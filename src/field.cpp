@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "palpate/names.hpp"
+
 namespace palpate {
 namespace {
 
@@ -25,7 +27,9 @@ Interpolation interpolation_from(std::string_view name) {
     for (const Interpolation known : {Interpolation::linear, Interpolation::cubic}) {
         if (name == name_of(known)) return known;
     }
-    throw std::invalid_argument("no field '" + std::string(name) + "': there are linear, cubic");
+    const std::string names[] = {"linear", "cubic"};
+    throw std::invalid_argument("there is no field '" + std::string(name) +
+                                "': " + use_one_of(names, name));
 }
 
 Field::Field(Volume volume, Solid solid, std::optional<double> background,

@@ -8,6 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "palpate/names.hpp"
+
 namespace palpate {
 namespace {
 
@@ -63,8 +65,9 @@ SampleType sample_type_from(std::string_view name) {
          {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
         if (name == name_of(type)) return type;
     }
-    throw std::invalid_argument("unknown sample type '" + std::string(name) +
-                                "': use uint8, int16, uint16 or float32");
+    const std::string names[] = {"uint8", "int16", "uint16", "float32"};
+    throw std::invalid_argument("there is no sample type '" + std::string(name) +
+                                "': " + use_one_of(names, name));
 }
 
 SampleBox united(const SampleBox& a, const SampleBox& b) {

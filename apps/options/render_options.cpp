@@ -6,6 +6,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "apps/options/no_effect.hpp"
+#include "apps/options/values.hpp"
 #include "io/system/number.hpp"
 #include "palpate/run/labels.hpp"
 
@@ -44,16 +46,17 @@ run::LevelRange range_from(const std::string& text) {
 }
 
 void RenderOptions::add_to(CLI::App& command) {
+    command_ = &command;
     const auto choose = [this](const std::string& name) { given.method = run::named_method(name); };
     command.add_option_function<std::string>("--method", choose, "Proxy method")
-        ->check(CLI::IsMember(baselines::method_names()))
+        ->check(one_of(baselines::method_names()))
         ->default_str(given.method.name);
     add_penetrability_to(command);
     command
         .add_option_function<std::string>(
             "--layers", [this](const std::string& text) { given.layers = io::layers_named(text); },
             "Several surfaces, each with its own feel: a file, or the name of a built-in set")
-        ->type_name("FILE|NAME");
+        ->type_name(fmt::format("{{{}}}|FILE.json", fmt::join(io::layers_names(), ",")));
     command
         .add_option("--labels", labels,
                     "Layers by place: a label volume (a segmentation) on its own grid")
@@ -63,12 +66,12 @@ void RenderOptions::add_to(CLI::App& command) {
             "--tool", [this](const std::string& text) { given.tool = io::tool_spec_from(text); },
             "Feel with a rigid tool: sphere:R, rod:L, needle[:L,R], burr:R, box:X,Y,Z, fingertip "
             "[mm], or a file: points (.csv) or a mesh (.stl, .ply, .obj, .vtp)")
-        ->type_name("TOOL")
+        ->type_name("{point,sphere:,rod:,needle,burr:,box:,fingertip}|FILE.{csv,stl,ply,obj,vtp}")
         ->default_str("point");
     command
         .add_option("--tool-spacing", given.tool_spacing,
                     "Distance of the tool's points [mm] (default: half a voxel)")
-        ->check(CLI::PositiveNumber);
+        ->check(above_zero());
     add_force_to(command);
     command
         .add_option(
@@ -90,7 +93,7 @@ void RenderOptions::add_penetrability_to(CLI::App& command) {
     command
         .add_option_function<std::string>("--penetrability", choose,
                                           "Where the surface gives way to pressing")
-        ->check(CLI::IsMember({"off", "threshold", "ranges"}))
+        ->check(one_of({"off", "threshold", "ranges"}))
         ->default_str("off");
     command.add_option("--threshold", threshold, "Penetration threshold PT [device mm] (1)");
     command.add_option_function<std::string>(
@@ -147,6 +150,24 @@ void RenderOptions::add_force_to(CLI::App& command) {
         ->capture_default_str();
 }
 
+void RenderOptions::warn_of_no_effect() const {
+    if (std::holds_alternative<io::PointSpec>(given.tool)) {
+        app::warn_of_no_effect(
+            *command_,
+            {"--tool-spacing", "--rotational-stiffness", "--rotational-damping", "--torque-limit"},
+            "a point has no size and does not turn, another --tool has");
+    }
+    if (std::holds_alternative<io::PointsSpec>(given.tool)) {
+        app::warn_of_no_effect(*command_, {"--tool-spacing"}, "the tool's file gives its points");
+    }
+    if (penetrability == Penetrability::ranges || minimum) {
+        app::warn_of_no_effect(*command_, {"--isovalue"},
+                               penetrability == Penetrability::ranges
+                                   ? "each --range is felt at its own levels"
+                                   : "what is felt begins at --minimum");
+    }
+}
+
 run::RenderSetup RenderOptions::setup() const {
     const auto refuse = [](const std::string& option, const std::string& mode) {
         throw std::invalid_argument(option + " does nothing without --penetrability " + mode);
@@ -161,6 +182,7 @@ run::RenderSetup RenderOptions::setup() const {
         throw std::invalid_argument(
             "--penetrability does nothing with --layers, whose surfaces give way by themselves");
     }
+    warn_of_no_effect();
     run::RenderSetup setup = given;
     if (!labels.empty()) {
         setup.layers = run::layers_by_label(run::load(run::source_named(labels)), setup.layers);

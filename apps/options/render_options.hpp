@@ -21,12 +21,16 @@ struct RenderOptions {
 
     void add_to(CLI::App& command);
     /// Once the command line has been read; reads the label volume. Throws std::invalid_argument
-    /// for an option that would do nothing, io::InputError for a volume that cannot be read.
+    /// for an option that makes no sense without another, io::InputError for a volume that cannot
+    /// be read. Warns on standard error of options that do nothing.
     run::RenderSetup setup() const;
 
   private:
+    void warn_of_no_effect() const;
     void add_penetrability_to(CLI::App& command);
     void add_force_to(CLI::App& command);
+
+    const CLI::App* command_ = nullptr;
 };
 
 /// "0.5,0.3" as static and dynamic coefficient; "0.5": both. Throws std::invalid_argument, naming

@@ -1,10 +1,15 @@
 // Options of device, scripts and data for a live run.
 #include "apps/options/run_options.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <stdexcept>
 
+#include "apps/options/values.hpp"
 #include "io/system/number.hpp"
+#include "palpate/devices/devices.hpp"
+#include "palpate/io/written_formats.hpp"
 
 namespace palpate::app {
 namespace {
@@ -26,9 +31,10 @@ run::ButtonSetup button_from(const std::string& option, const std::string& text)
 void RunOptions::add_to(CLI::App& command, For purpose) {
     source.add_to(command, purpose == For::view);
     add_device_options(command);
-    CLI::Option* file =
-        command.add_option(purpose == For::record ? "-o,--output" : "--record", record,
-                           "Recording to write (CSV; never replaces a file)");
+    CLI::Option* file = command
+                            .add_option(purpose == For::record ? "-o,--output" : "--record", record,
+                                        "Recording to write (never replaces a file)")
+                            ->type_name("FILE.csv");
     if (purpose == For::record) file->required();
     if (purpose != For::view) add_script_options(command);
     add_data_options(command);
@@ -49,7 +55,8 @@ void RunOptions::add_device_options(CLI::App& command) {
         .add_option_function<std::string>(
             "-d,--device",
             [this](const std::string& text) { device = devices::parse_device(text); },
-            "Device and its options, NAME[:KEY=VALUE,...]; palpate devices lists them")
+            "Device and its options; palpate devices lists them")
+        ->type_name(fmt::format("{{{}}}[:KEY=VALUE,...]", fmt::join(devices::device_names(), ",")))
         ->default_str(run::text_of(given.device));
     command
         .add_option_function<std::string>(
@@ -59,7 +66,7 @@ void RunOptions::add_device_options(CLI::App& command) {
                     static_cast<Facing>(std::ranges::find(facings, name) - facings.begin());
             },
             "Side of the body that faces you")
-        ->check(CLI::IsMember(std::vector<std::string>(facings.begin(), facings.end())))
+        ->check(one_of(std::vector<std::string>(facings.begin(), facings.end())))
         ->default_str(facings.front());
     command.add_option_function<std::string>(
         "--clutch",
@@ -72,12 +79,14 @@ void RunOptions::add_device_options(CLI::App& command) {
 }
 
 void RunOptions::add_script_options(CLI::App& command) {
-    command.add_option("--commands", commands,
-                       "File of commands, a line each: SECONDS COMMAND, as in 1.5 isovalue 300");
+    command
+        .add_option("--commands", commands,
+                    "File of commands, a line each: SECONDS COMMAND, as in 1.5 isovalue 300")
+        ->type_name("FILE.txt");
     command
         .add_option("--seconds", seconds,
                     "End after this time [s] (default: when the hand has finished)")
-        ->check(CLI::PositiveNumber);
+        ->check(above_zero());
     command.add_flag("--unpaced", unpaced,
                      "Do not wait for the clock, with a simulated or recorded hand: the session is "
                      "computed as fast as possible, in the same way each time");
@@ -86,7 +95,10 @@ void RunOptions::add_script_options(CLI::App& command) {
         "Brush that follows the proxy from the start: 'KIND RADIUS [RATE [VALUE]]', "
         "KIND carve, add, smooth or paint, RADIUS [mm] of a ball, or tool[:BEYOND] for "
         "the tool's own shape and so much round it [mm], RATE [1/s] or inf");
-    command.add_option("--save", save, "File for the volume as it is at the end, edits included");
+    command
+        .add_option("--save", save,
+                    "File for the volume as it is at the end, edits included; or a folder *.zarr")
+        ->type_name(file_of(io::written_extensions()));
     command.add_flag("--json", json, "Print the report as JSON");
 }
 
@@ -94,7 +106,7 @@ void RunOptions::add_data_options(CLI::App& command) {
     command
         .add_option("--playback", given.playback.speed,
                     "Speed at which a sequence is played from the start; 0: paused")
-        ->check(CLI::Range(-1000.0, 1000.0))
+        ->check(from_to(-1000.0, 1000.0))
         ->capture_default_str();
     command.add_flag(
         "--once", [this](std::int64_t) { given.playback.loader.loop = false; },
@@ -106,7 +118,7 @@ void RunOptions::add_data_options(CLI::App& command) {
                 given.playback.loader.memory_bytes = std::uint64_t(megabytes) << 20;
             },
             "Most memory that frames of a sequence may take [MB]")
-        ->check(CLI::Range(1, 1 << 20))
+        ->check(from_to(1, 1 << 20))
         ->default_str(std::to_string(given.playback.loader.memory_bytes >> 20));
 }
 

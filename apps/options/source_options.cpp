@@ -6,56 +6,57 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "io/system/number.hpp"
+#include "apps/options/no_effect.hpp"
+#include "apps/options/values.hpp"
 #include "palpate/filters/dequantize.hpp"
 #include "palpate/renderer.hpp"
+#include "palpate/scenes/volumes.hpp"
 
 namespace palpate::app {
 
-std::string flaw_in_count(const std::string& text) {
-    const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-    return digits ? "" : text + " is not a whole number from 0";
-}
-
 void SourceOptions::add_to(CLI::App& command, bool optional) {
-    auto* positional =
-        command.add_option("VOLUME", volume(),
-                           "File, folder, series (heart_%03d.nrrd), web address of a store, "
-                           "synthetic:NAME[:WxHxD], or live:FILE");
-    if (!optional) positional->required();
+    command_ = &command;
+    command
+        .add_option("VOLUME", volume(),
+                    fmt::format("File, folder, series (heart_%03d.nrrd), web address of a store, "
+                                "synthetic:{{{}}}[:WxHxD], or live:FILE",
+                                fmt::join(scenes::volume_names(), ",")))
+        ->type_name("FILE")
+        ->required(!optional);
     const auto text = [&](const char* name, const char* help) {
         return command.add_option(std::string("--") + name, texts[name], help);
     };
     text("dims", "Size of a raw file in samples: WxHxD")->type_name("WxHxD");
-    text("type",
-         "Sample type of a raw file (or a synthetic volume): uint8, int16, uint16, float32");
+    text("type", "Sample type of a raw file (or a synthetic volume)")
+        ->check(one_of({"uint8", "int16", "uint16", "float32"}));
     text("spacing", "Spacing [mm] instead of what the file gives or lacks: X,Y,Z")
         ->type_name("X,Y,Z");
-    text("skip", "Bytes of header to skip in a raw file")->type_name("UINT")->check(flaw_in_count);
-    text("byte-order", "Byte order of a raw file: little (default), big")
-        ->type_name("ORDER")
-        ->check(CLI::IsMember({"little", "big"}));
+    text("skip", "Bytes of header to skip in a raw file")
+        ->type_name("UINT")
+        ->check(count(largest_count));
+    text("byte-order", "Byte order of a raw file (default: little)")
+        ->check(one_of({"little", "big"}));
     text("series", "DICOM series: its number in the list, or its UID");
     command
         .add_option("--time-step", frame,
                     "This frame alone of a 4-D file or a numbered series (heart_%d.nrrd), from 0")
-        ->check(flaw_in_count);
+        ->check(count());
     command
         .add_option("--frame-interval", frame_interval,
                     "Time from frame to frame [s] instead of what the file gives or lacks")
-        ->check(CLI::PositiveNumber);
+        ->check(above_zero());
     command
         .add_option("--smooth", smooth,
                     "Smooth the samples so many times (3x3x3 binomial), against the steps of 8-bit "
                     "data; they become float32")
-        ->check(CLI::Range(0, 64));
+        ->check(from_to(0, 64));
     // A flag, so that the word after it stays the volume.
     command
         .add_flag("--dequantize{" + std::to_string(filters::DequantizeOptions{}.rounds) + "}",
                   dequantize,
                   "Give back what rounding to levels took, against terraces and the stair steps of "
                   "masks: --dequantize or --dequantize=ROUNDS; samples become float32")
-        ->check(CLI::Range(0, filters::most_rounds));
+        ->check(from_to(0, filters::most_rounds));
     command.add_flag("--prefilter", prefilter,
                      "Sharpen the samples so that thin structures keep their height in the smooth "
                      "field; they become float32");
@@ -70,23 +71,26 @@ void SourceOptions::add_streaming_to(CLI::App& command) {
             "Level of detail to feel of a store with several, 0 the finest; a plain file is "
             "then read as it is felt")
         ->type_name("UINT")
-        ->check(flaw_in_count);
+        ->check(count());
     command.add_option("--channel", texts["channel"], "Channel of a store, from 0")
         ->type_name("UINT")
-        ->check(flaw_in_count);
+        ->check(count());
     command
         .add_option("--memory", memory,
                     "Most memory that the program may take while it feels (512MB for what is "
                     "felt); a plain file is then read as "
                     "it is felt")
-        ->transform(CLI::AsSizeValue(false));
+        ->type_name("SIZE")
+        ->transform(size_in_bytes());
     command.add_flag("--coarse-first", coarse_first,
                      "Feel a coarser level where the one that is felt has not come yet");
     command.add_flag("--all-times", all_times,
                      "A store's times as a sequence, each read whole at the level");
-    command.add_option("--cache", cache_folder, "Folder that keeps what came over the network");
+    command.add_option("--cache", cache_folder, "Folder that keeps what came over the network")
+        ->type_name("FOLDER");
     command.add_option("--cache-size", cache_bytes, "Most that this folder keeps (4GB)")
-        ->transform(CLI::AsSizeValue(false));
+        ->type_name("SIZE")
+        ->transform(size_in_bytes());
     command.add_flag("--forbidden-is-missing", forbidden_is_missing,
                      "Chunks for which the server answers 403 are not stored, as with S3");
 }
@@ -94,9 +98,6 @@ void SourceOptions::add_streaming_to(CLI::App& command) {
 run::Source SourceOptions::source() const {
     std::map<std::string, std::string> given = texts;
     std::erase_if(given, [](const auto& entry) { return entry.second.empty(); });
-    if (given.contains("skip") && !io::number_from<std::uint64_t>(given["skip"])) {
-        throw std::invalid_argument("--skip " + given["skip"] + ": no file is that long");
-    }
     if (memory) given["memory"] = std::to_string(*memory);
     if (coarse_first) given["coarse-first"] = "yes";
     if (all_times) given["all-times"] = "yes";
@@ -114,6 +115,37 @@ run::Source SourceOptions::source() const {
     return source;
 }
 
+void SourceOptions::warn_of_no_effect(const run::Source& source) const {
+    const auto warn = [&](std::initializer_list<const char*> options, const std::string& why) {
+        app::warn_of_no_effect(*command_, options, io::without_secrets(name_of(source)) + why);
+    };
+    const auto* file = std::get_if<run::FileSource>(&source.from);
+    const auto* store = std::get_if<run::StoreSource>(&source.from);
+    if (store == nullptr) {
+        warn({"--level", "--channel", "--memory", "--coarse-first", "--all-times", "--cache",
+              "--cache-size", "--forbidden-is-missing"},
+             " is read as a whole");
+    } else if (!run::is_web_address(store->address)) {
+        warn({"--cache", "--cache-size", "--forbidden-is-missing"}, " is on this machine");
+    } else if (cache_folder.empty()) {
+        warn({"--cache-size"}, " has no --cache to go to");
+    }
+    const bool described = file ? !file->raw : store && !store->options.raw;
+    if (described) warn({"--skip", "--byte-order"}, " is read as its header describes it");
+}
+
+void SourceOptions::warn_of_no_effect(const run::LoadedVolume& loaded) const {
+    const auto warn = [&](std::initializer_list<const char*> options, const std::string& why) {
+        app::warn_of_no_effect(*command_, options, io::without_secrets(loaded.name) + why);
+    };
+    if (loaded.sequence.count() < 2) {
+        warn({"--frame-interval", "--playback", "--once", "--sequence-memory"},
+             " is not a sequence");
+    }
+    if (loaded.time_steps < 2) warn({"--time-step"}, " has a single frame");
+    if (!loaded.format.starts_with("DICOM")) warn({"--series"}, " is not a DICOM series");
+}
+
 void add_field_options(CLI::App& command, run::FieldSetup& field) {
     command.add_option_function<std::string>(
         "-i,--isovalue",
@@ -129,8 +161,8 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
             [&field](const std::string& text) {
                 field.solid = text == "below" ? Solid::below : Solid::above;
             },
-            "Which side of the level is solid: above, below")
-        ->check(CLI::IsMember({"above", "below"}))
+            "Which side of the level is solid")
+        ->check(one_of({"above", "below"}))
         ->default_str("above");
     command
         .add_option_function<std::string>(
@@ -138,7 +170,7 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
             [&field](const std::string& text) { field.interpolation = interpolation_from(text); },
             "How densities continue between samples: cubic (smooth), linear (with facets, the "
             "paper's)")
-        ->check(CLI::IsMember({"cubic", "linear"}))
+        ->check(one_of({"cubic", "linear"}))
         ->default_str("cubic; linear for the methods paper and gradient");
     command.add_option_function<std::string>(
         "--background",
@@ -174,7 +206,14 @@ double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
 double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
                          const run::FieldSetup& setup, const run::RenderSetup& render) {
     const auto& layers = render.layers;
-    if (!layers || layers->layers.layers.empty()) return required_isovalue(loaded, field, setup);
+    if (!layers || layers->layers.layers.empty()) {
+        const auto* wanted = std::get_if<run::RangesSetup>(&render.penetrability);
+        if (!wanted || setup.isovalue || loaded.isovalue) {
+            return required_isovalue(loaded, field, setup);
+        }
+        const run::LevelRange& range = wanted->ranges.front();
+        return io::level_in(loaded.volume, field.solid() == Solid::above ? range.low : range.high);
+    }
     warn_of_layers(*layers, loaded);
     run::Setup all;
     all.field = setup;

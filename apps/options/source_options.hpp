@@ -36,6 +36,13 @@ struct SourceOptions {
     const std::string& name() const { return texts.at("volume"); }
     /// Once the command line has been read. Throws std::invalid_argument.
     run::Source source() const;
+    /// Warn on standard error of options that do nothing for this source or volume. The latter
+    /// also knows the options of playback (RunOptions).
+    void warn_of_no_effect(const run::Source& source) const;
+    void warn_of_no_effect(const run::LoadedVolume& loaded) const;
+
+  private:
+    const CLI::App* command_ = nullptr;
 };
 
 /// --isovalue, --solid, --field and --background.
@@ -43,15 +50,12 @@ void add_field_options(CLI::App& command, run::FieldSetup& field);
 /// All but --isovalue, for a command that takes several.
 void add_side_options(CLI::App& command, run::FieldSetup& field);
 
-/// Empty for a whole number from 0, else what is wrong: a check for CLI11, which reads -1 as
-/// 2^64-1.
-std::string flaw_in_count(const std::string& text);
-
 /// The isovalue asked for, else the synthetic volume's own; std::invalid_argument if there is none.
 /// Prints a warning on standard error where there is nothing to feel at it.
 double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
                          const run::FieldSetup& setup);
-/// With layers, their outermost level; warns where their numbers are not in the data's unit.
+/// With layers, their outermost level; warns where their numbers are not in the data's unit. With
+/// ranges of interest no isovalue is required: they set the level.
 double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
                          const run::FieldSetup& setup, const run::RenderSetup& render);
 /// The same, but of a file without --isovalue the first level that its histogram suggests.

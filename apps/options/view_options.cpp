@@ -1,5 +1,7 @@
 // Options of the viewer.
 #include "apps/options/view_options.hpp"
+#include "apps/options/no_effect.hpp"
+#include "apps/options/values.hpp"
 
 #include <cstdio>
 #include <stdexcept>
@@ -7,17 +9,22 @@
 namespace palpate::app {
 
 void ViewOptions::add_to(CLI::App& command) {
+    command_ = &command;
     run.given.device = {"mouse", {}};
     run.add_to(command, RunOptions::For::view);
-    command.add_option("--session", session, "Session file to open: volume, view and settings");
-    command.add_option("--play", play, "Recording to play, with a time line, in place of feeling");
+    command.add_option("--session", session, "Session file to open: volume, view and settings")
+        ->type_name("FILE.json");
+    command.add_option("--play", play, "Recording to play, with a time line, in place of feeling")
+        ->type_name("FILE.csv");
     command.add_option("--window", size, "Size of the window [pixels]: WIDTHxHEIGHT")
         ->type_name("WxH");
-    command.add_option("--screenshot", screenshot,
-                       "Write a picture of the window (PNG) once all is drawn, and end");
+    command
+        .add_option("--screenshot", screenshot,
+                    "Write a picture of the window once all is drawn, and end")
+        ->type_name("FILE.png");
     command
         .add_option("--after", after, "Second of the session or recording for the screenshot (0)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(from_zero());
 }
 
 void ViewOptions::check() const {
@@ -31,6 +38,17 @@ void ViewOptions::check() const {
         throw std::invalid_argument("--play and --session: give only one of them");
     }
     (void)window_size();
+    if (screenshot.empty()) warn_of_no_effect(*command_, {"--after"}, "there is no --screenshot");
+    if (session.empty() && play.empty()) return;
+    warn_of_no_effect(
+        *command_, {"VOLUME",           "--dims",       "--type",       "--spacing",
+                    "--skip",           "--byte-order", "--series",     "--time-step",
+                    "--frame-interval", "--smooth",     "--dequantize", "--prefilter",
+                    "--level",          "--channel",    "--memory",     "--coarse-first",
+                    "--all-times",      "--cache",      "--cache-size", "--forbidden-is-missing",
+                    "--isovalue",       "--solid",      "--field",      "--background",
+                    "--method",         "--layers",     "--labels"},
+        "the " + std::string(play.empty() ? "session" : "recording") + " says what is felt");
 }
 
 std::optional<std::array<int, 2>> ViewOptions::window_size() const {

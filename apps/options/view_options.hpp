@@ -21,12 +21,15 @@ struct ViewOptions {
     /// For `palpate view` and for the viewer itself.
     void add_to(CLI::App& command);
     /// Once the command line has been read. Throws std::invalid_argument for options that exclude
-    /// each other.
+    /// each other. Warns on standard error of options that do nothing.
     void check() const;
     /// Width and height of the window [pixels]; nothing: not given. Throws std::invalid_argument
     /// for a size that is none.
     std::optional<std::array<int, 2>> window_size() const;
     bool has_volume() const { return !run.source.name().empty(); }
+
+  private:
+    const CLI::App* command_ = nullptr;
 };
 
 }  // namespace palpate::app

@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/options/no_effect.hpp"
 #include "apps/options/source_options.hpp"
+#include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
@@ -55,6 +57,7 @@ std::optional<run::StoreSource> store_of(const run::Source& source) {
 Taken opened(const ConvertWords& words) {
     const run::Source source = words.source.source();
     if (auto from = store_of(source)) {
+        words.source.warn_of_no_effect(source);
         from->options.time = source.frame.value_or(0);
         std::shared_ptr<const stream::Store> store;
         {
@@ -116,10 +119,19 @@ void to_file(const ConvertWords& words, const Taken& taken) {
     }
 }
 
-void convert(const ConvertWords& words) {
+void convert(const CLI::App& command, const ConvertWords& words) {
+    const std::string flaw = flaw_in_volume_name(words.output);
+    if (!flaw.empty()) throw io::OutputError(flaw);
     check_outputs({words.source.name()}, {words.output});
     const bool zarr = io::without_slash(words.output).extension() == ".zarr";
-    if (zarr) stream::check_zarr_place(words.output);
+    if (zarr) {
+        stream::check_zarr_place(words.output);
+        warn_of_no_effect(command, {"--compress"}, "--compression is for the chunks of OME-Zarr");
+    } else {
+        warn_of_no_effect(command, {"--ome-version", "--chunk", "--compression", "--threads"},
+                          words.output + " is not OME-Zarr");
+    }
+    warn_of_no_effect(command, {"--memory", "--coarse-first"}, "each part is read once");
     const Taken taken = opened(words);
     const auto levels = static_cast<int>(taken.store->info().levels.size());
     if (taken.level >= levels) {
@@ -144,13 +156,15 @@ void add_convert(CLI::App& app) {
         "continues after an interruption.\n\n"
         "Example:\n  palpate convert head.nrrd head.zarr --ome-version 0.4");
     words->source.add_to(*command);
-    command->add_option("OUT", words->output, "Folder *.zarr, or file to write")->required();
+    command->add_option("OUT", words->output, "Folder *.zarr, or file to write")
+        ->type_name(file_of(io::written_extensions()))
+        ->required();
     command
         ->add_option("--ome-version", words->ome_version, "Of OME-Zarr: 0.4 (Zarr 2), 0.5 (Zarr 3)")
-        ->check(CLI::IsMember({"0.4", "0.5"}))
+        ->check(one_of({"0.4", "0.5"}))
         ->capture_default_str();
     command->add_option("--chunk", words->zarr.chunk, "Samples of a chunk along each axis")
-        ->check(CLI::Range(8, 512))
+        ->check(from_to(8, 512))
         ->capture_default_str();
     command
         ->add_option_function<std::string>(
@@ -162,14 +176,14 @@ void add_convert(CLI::App& app) {
                                                            : stream::Compression::blosc;
             },
             "Of chunks: none, gzip, zstd, blosc")
-        ->check(CLI::IsMember({"none", "gzip", "zstd", "blosc"}))
+        ->check(one_of({"none", "gzip", "zstd", "blosc"}))
         ->default_str("zstd");
     command->add_flag("--compress", words->compress, "Compress the samples of another file");
     command->add_option("--threads", words->zarr.threads, "That read, pack and write chunks")
-        ->check(CLI::Range(1, 256))
+        ->check(from_to(1, 256))
         ->capture_default_str();
     command->add_flag("--json", words->json, "Print the summary as JSON");
-    command->callback([words] { convert(*words); });
+    command->callback([words, command] { convert(*command, *words); });
 }
 
 }  // namespace palpate::app

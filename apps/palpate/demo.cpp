@@ -5,6 +5,8 @@
 #include <array>
 #include <memory>
 
+#include "apps/options/no_effect.hpp"
+#include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/demo_run.hpp"
 #include "apps/palpate/picture.hpp"
@@ -74,16 +76,23 @@ void add_demo(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("demo", "A simulated hand explores a volume; pictures and a report");
     command->footer(
-        "Examples:\n  palpate demo\n  palpate demo lobster.nrrd --isovalue 35 --motion circle");
+        "Examples:\n  palpate demo\n  palpate demo head.nrrd --isovalue 34.5 --motion circle");
     add_demo_sculpt(*command);
     add_demo_beating(*command);
     add_demo_options(*command, *options);
     add_motion_options(*command, *options);
     command->add_option("--speed", options->hand.speed_mm_s, "Speed of the hand [mm/s]");
     command->add_option("--seed", options->hand.seed, "Seed of the hand's motion")
-        ->check(flaw_in_count);
+        ->check(count(largest_count));
     command->callback([options, command] {
-        if (!command->get_subcommands().empty()) return;  // it has done its own
+        if (!command->get_subcommands().empty()) {  // it has done its own
+            for (const CLI::Option* option : command->get_options()) {
+                warn_of_no_effect(*command, {option->get_name().c_str()},
+                                  "options of " + command->get_subcommands().front()->get_name() +
+                                      " stand behind its name");
+            }
+            return;
+        }
         options->hand.rate_hz = options->render.given.rate.value_or(run::usual_rate);
         if (options->source.name().empty()) {
             options->source.volume() = io::sample_volume_path().string();

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 
+#include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/demo_run.hpp"
 #include "apps/palpate/picture.hpp"
@@ -199,7 +200,7 @@ CLI::App* add_changing(CLI::App& demo, const char* name, const char* what,
     CLI::App* command = demo.add_subcommand(name, what);
     add_demo_options(*command, *options);
     command->add_option("--pictures", options->pictures, "How many pictures the animation has")
-        ->check(CLI::Range(2, 240));
+        ->check(from_to(2, 240));
     command->callback([options, run] {
         options->hand.rate_hz = options->render.given.rate.value_or(run::usual_rate);
         run(*options);
@@ -220,7 +221,7 @@ void add_demo_sculpt(CLI::App& demo) {
     options->hand.depth_mm = 4;
     CLI::App* command = add_changing(
         demo, "sculpt", "A simulated hand carves what it feels; an animation", options, sculpt);
-    command->footer("Example:\n  palpate demo sculpt lobster.nrrd --isovalue 35 --radius 4");
+    command->footer("Example:\n  palpate demo sculpt head.nrrd --isovalue 34.5 --radius 4");
     add_motion_options(*command, *options);
     command->add_option("--radius", options->brush.radius, "Radius of the brush [mm]");
     command->add_option("--brush-rate", options->brush.rate, "How fast the brush works [1/s]");
@@ -234,9 +235,9 @@ void add_demo_beating(CLI::App& demo) {
     CLI::App* command = add_changing(
         demo, "beating", "A hand rests on a surface that moves, of a sequence; an animation",
         options, beating);
-    command->footer("Example:\n  palpate demo beating heart.nii.gz --isovalue 120");
+    command->footer("Example:\n  palpate demo beating synthetic:beating:48x48x48 --beats 2");
     command->add_option("--beats", options->beats, "How often the sequence is played")
-        ->check(CLI::Range(1, 1000));
+        ->check(from_to(1, 1000));
 }
 
 }  // namespace palpate::app

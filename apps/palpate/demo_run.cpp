@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/offline_summary.hpp"
 #include "apps/palpate/picture.hpp"
@@ -132,13 +133,14 @@ void add_demo_options(CLI::App& command, DemoOptions& options) {
     command.option_defaults()->always_capture_default();  // of all that follow
     command.add_option("--depth", options.hand.depth_mm, "How deep the hand presses [mm]");
     command.add_option("--picture", options.picture_width, "Width of the picture [pixels]")
-        ->check(CLI::Range(16, 8192));
-    command.add_option("-o,--output", options.output, "Folder for the results");
+        ->check(from_to(16, 8192));
+    command.add_option("-o,--output", options.output, "Folder for the results")
+        ->type_name("FOLDER");
 }
 
 void add_motion_options(CLI::App& command, DemoOptions& options) {
     command.add_option("--motion", options.motion, "Motion of the hand")
-        ->check(CLI::IsMember(scenes::motion_names()));
+        ->check(one_of(scenes::motion_names()));
     command.add_option("--duration", options.hand.duration_s, "Length [s]");
 }
 

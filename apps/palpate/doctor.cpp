@@ -9,10 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
 #include "doctor/report.hpp"
+#include "palpate/devices/devices.hpp"
 #include "palpate/devices/error.hpp"
 #include "palpate/io/output.hpp"
 
@@ -80,13 +82,13 @@ void add_doctor(CLI::App& app) {
     command
         ->add_option("--seconds", options->seconds,
                      "Duration of the measurement: 10, with --report 600; 0: none")
-        ->check(CLI::Range(0.0, 86400.0))
-        ->type_name("S");
-    command->add_option("--device", options->device, "This device has to work")->type_name("NAME");
+        ->check(from_to(0.0, 86400.0));
+    command->add_option("--device", options->device, "This device has to work")
+        ->type_name(fmt::format("{{{}}}", fmt::join(devices::device_names(), ",")));
     command
         ->add_option("--report", options->report,
                      "Write a report with a real-time certificate, as Markdown")
-        ->type_name("FILE");
+        ->type_name("FILE.md");
     command->add_flag("--json", options->json, "Print everything that was found as JSON");
     command->add_flag("--quiet", options->quiet, "Print nothing; the exit status says it");
     command->callback([options] { examine(*options); });

@@ -2,6 +2,8 @@
 #include "apps/palpate/ends.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <initializer_list>
@@ -20,6 +22,11 @@ void occupy_closed_streams() {
         if (::fcntl(number, F_GETFD) >= 0) continue;
         (void)::open("/dev/null", number == 0 ? O_WRONLY : O_RDONLY);  // takes the lowest number
     }
+}
+
+bool reader_has_gone() {
+    pollfd output{STDOUT_FILENO, POLLOUT, 0};
+    return ::poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
 }
 
 }  // namespace palpate::app

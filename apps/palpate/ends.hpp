@@ -12,4 +12,7 @@ void handle_ends(void (*on_signal)(int));
 /// is opened. In its place: one that cannot be written, so that this is an error and no damage.
 void occupy_closed_streams();
 
+/// Whether standard output is a pipe whose reader has ended, as in `palpate ... | head`.
+bool reader_has_gone();
+
 }  // namespace palpate::app

@@ -4,7 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/options/no_effect.hpp"
 #include "apps/options/source_options.hpp"
+#include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/progress.hpp"
@@ -22,11 +24,14 @@ struct ExtractOptions {
     bool json = false;
 };
 
-void extract(const ExtractOptions& options) {
+void extract(const CLI::App& command, const ExtractOptions& options) {
     (void)io::mesh_format_from(options.output);  // refuse before the work, not after it
     check_outputs({options.source.name()}, {options.output});
     const run::LoadedVolume loaded = load_for_terminal(options.source);
     const Field field = run::make_field(loaded.volume, options.field);
+    if (field.interpolation() == Interpolation::linear) {
+        warn_of_no_effect(command, {"--tolerance"}, "the facets of the linear field are exact");
+    }
     const double isovalue = required_isovalue(loaded, field, options.field);
     SurfaceMesh mesh;
     {
@@ -62,18 +67,19 @@ void add_extract(CLI::App& app) {
         app.add_subcommand("extract", "Write the whole isosurface as a watertight mesh");
     command->footer(
         "Marching tetrahedra over the lattice that the proxy walks; coordinates are LPS, mm.\n\n"
-        "Example:\n  palpate extract head.nrrd --isovalue 1200 --output skull.ply");
+        "Example:\n  palpate extract head.nrrd --isovalue 99.5 --output skull.ply");
     options->source.add_to(*command);
     add_field_options(*command, options->field);
-    command->add_option("-o,--output", options->output, "Mesh to write: .ply, .stl, .obj or .vtp")
+    command->add_option("-o,--output", options->output, "Mesh to write")
+        ->type_name("FILE.{ply,stl,obj,vtp}")
         ->required();
     command
         ->add_option("--tolerance", options->tolerance,
                      "Split facets of the smooth surface until they are as near to it [voxel] (0: "
                      "not at all)")
-        ->check(CLI::Range(1e-6, 1.0));
+        ->check(from_to(1e-6, 1.0));
     command->add_flag("--json", options->json, "Print the summary as JSON");
-    command->callback([options] { extract(*options); });
+    command->callback([options, command] { extract(*command, *options); });
 }
 
 }  // namespace palpate::app

@@ -9,13 +9,15 @@
 #include <string>
 
 #include "apps/options/exit_status.hpp"
-#include "apps/options/impossible_values.hpp"
+#include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/ends.hpp"
 
 namespace {
 
 using namespace palpate::app;
+
+constexpr int broken_pipe = 13;  // SIGPIPE, which Windows lacks
 
 volatile std::sig_atomic_t stop_signal = 0;
 
@@ -25,30 +27,8 @@ void on_signal(int number) {
 
 int finish_output() {
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return done;
+    if (reader_has_gone()) return done;  // it has all that it wanted
     return fail("standard output: could not be written", bad_output);
-}
-
-/// What is wrong with the command line. CLI11 calls a misspelt command or option a missing one.
-std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
-    const auto chosen = app.get_subcommands();
-    const auto left = app.remaining(true);
-    std::string text = error.what();
-    const bool misnamed = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
-                          dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-    if (misnamed && !left.empty()) {
-        const std::string& word = left.front();
-        if (word.size() > 1 && word[0] == '-') {
-            text = "there is no option " + word;
-        } else if (chosen.empty()) {
-            text = "there is no command '" + word + "'";
-        } else {
-            text = "'" + word + "' is one argument too many";
-        }
-    } else if (chosen.empty() && misnamed) {
-        text = "a command is needed, as in palpate demo";
-    }
-    return text + " (see palpate " + (chosen.empty() ? "" : chosen.front()->get_name() + " ") +
-           "--help)";
 }
 
 int run(int argc, char** argv, const std::function<void(CLI::App&)>& add_commands) {
@@ -110,6 +90,9 @@ int run_program(int argc, char** argv, const std::function<void(CLI::App&)>& add
         // Ctrl-C reaches the helper process as well, and its end may be seen first.
         if (failure.status == bad_input && interrupted())
             return fail("interrupted", status_of_signal(stop_signal));
+        const bool to_stdout =
+            std::ferror(stdout) != 0 || failure.text.starts_with("standard output:");
+        if (to_stdout && reader_has_gone()) return status_of_signal(broken_pipe);
         if (std::ferror(stdout) != 0) return finish_output();
         return fail(failure.text, failure.status);
     }

@@ -43,7 +43,11 @@ void ProgressBar::at(double fraction) {
 }
 
 run::LoadedVolume load_for_terminal(const SourceOptions& options) {
-    return load_for_terminal(options.source(), options.quiet);
+    const run::Source source = options.source();
+    options.warn_of_no_effect(source);
+    run::LoadedVolume loaded = load_for_terminal(source, options.quiet);
+    options.warn_of_no_effect(loaded);
+    return loaded;
 }
 
 run::LoadedVolume load_for_terminal(const run::Source& source, bool quiet) {

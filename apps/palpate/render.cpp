@@ -7,7 +7,9 @@
 #include <memory>
 #include <optional>
 
+#include "apps/options/no_effect.hpp"
 #include "apps/options/source_options.hpp"
+#include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/picture.hpp"
@@ -178,10 +180,15 @@ Drawing drawing_of(const RenderPictureOptions& options) {
     return drawing;
 }
 
-void render(const RenderPictureOptions& options) {
+void render(const CLI::App& command, const RenderPictureOptions& options) {
     require_png("--output", options.output);
     check_outputs({options.source.name(), options.path}, {options.output});
     (void)size_from(options.size);
+    if (!options.force.empty()) {
+        warn_of_no_effect(command, {"--stiffness"}, "--force gives the force");
+    } else if (options.hip.empty()) {
+        warn_of_no_effect(command, {"--stiffness"}, "there is no force without --hip");
+    }
     io::PendingFile file(options.output);
     const Drawing drawing = drawing_of(options);
     file.write(draw(drawing.scene));
@@ -201,7 +208,7 @@ void add_render(CLI::App& app) {
     command->footer(
         "Points are physical (LPS, mm). With --hip alone, the proxy is computed at the first "
         "--isovalue.\n\nExamples:\n"
-        "  palpate render head.nrrd --isovalue 500 --isovalue 1200 --output head.png\n"
+        "  palpate render head.nrrd --isovalue 34.5 --isovalue 99.5 --output head.png\n"
         "  palpate render synthetic:torus --hip 0,-20,8 --zoom 3 --output contact.png");
     options->source.add_to(*command);
     command
@@ -217,14 +224,14 @@ void add_render(CLI::App& app) {
                      "Force on the hand [N] (default: stiffness (SCP - HIP))")
         ->type_name("X,Y,Z");
     command->add_option("-k,--stiffness", options->stiffness, "Stiffness of the spring [N/mm]")
-        ->check(CLI::NonNegativeNumber)
+        ->check(from_zero())
         ->capture_default_str();
     command->add_option("--path", options->path, "Path to draw: a trace or a path of replay")
-        ->type_name("FILE");
+        ->type_name("FILE.csv");
     auto* view = command
                      ->add_option("--view", options->view,
                                   "Side of the body to look at (default: one that shows most)")
-                     ->check(CLI::IsMember(pictures::view_names()));
+                     ->check(one_of(pictures::view_names()));
     command
         ->add_option("--azimuth", options->azimuth,
                      "Look from [degrees]: 0 the front, 90 the body's left side")
@@ -232,16 +239,18 @@ void add_render(CLI::App& app) {
     command->add_option("--elevation", options->elevation, "Look from above [degrees], -90 to 90")
         ->excludes(view);
     command->add_option("--roll", options->roll, "Turn the picture clockwise [degrees]")
-        ->check(CLI::Range(-360.0, 360.0))
+        ->check(from_to(-360.0, 360.0))
         ->capture_default_str();
     command->add_option("--zoom", options->zoom, "Magnification, about the proxy if there is one")
-        ->check(CLI::Range(0.1, 1000.0))
+        ->check(from_to(0.1, 1000.0))
         ->capture_default_str();
     command->add_option("--size", options->size, "Size of the picture [pixels]")
         ->type_name("WxH")
         ->capture_default_str();
-    command->add_option("-o,--output", options->output, "Picture to write: .png")->required();
-    command->callback([options] { render(*options); });
+    command->add_option("-o,--output", options->output, "Picture to write")
+        ->type_name("FILE.png")
+        ->required();
+    command->callback([options, command] { render(*command, *options); });
 }
 
 }  // namespace palpate::app

@@ -176,21 +176,26 @@ void add_replay(CLI::App& app) {
         "for a tool its orientation qw,qx,qy,qz; a trace serves too.\nThe ramp and the limit on "
         "the change of force, which a live session has, are "
         "off unless asked for.\n\n"
-        "Example:\n  palpate replay head.nrrd --trajectory hand.csv --isovalue 500 --output "
+        "Example:\n  palpate replay head.nrrd --trajectory hand.csv --isovalue 34.5 --output "
         "trace.csv --path path.csv\n  palpate replay session.csv --validate");
     options->render.given.force.ramp = 0;
     options->render.given.force.rate_limit = std::numeric_limits<double>::infinity();
     options->source.add_to(*command);
-    command->add_option("--trajectory", options->trajectory, "Motion of the hand (CSV)");
-    command->add_option("-o,--output", options->output, "Trace to write (CSV; - for standard out)");
-    command->add_option("--path", options->path, "Path of the SCP to write (CSV)");
-    command->add_option("--poses", options->poses, "Poses of a tool's proxy to write (CSV)");
+    const auto table = [&](const char* name, std::string& file, const char* help) {
+        command->add_option(name, file, help)->type_name("FILE.csv");
+    };
+    table("--trajectory", options->trajectory, "Motion of the hand");
+    table("-o,--output", options->output, "Trace to write; - for standard output");
+    table("--path", options->path, "Path of the SCP to write");
+    table("--poses", options->poses, "Poses of a tool's proxy to write");
     add_field_options(*command, options->field);
     options->render.add_to(*command);
     command->add_flag("--validate", options->validate,
                       "Render the recording that is given as VOLUME again and compare every tick");
-    command->add_option("--volume", options->recorded_volume,
-                        "The volume of the recording, if it is no longer where it was");
+    command
+        ->add_option("--volume", options->recorded_volume,
+                     "The volume of the recording, if it is no longer where it was")
+        ->type_name("VOLUME");
     command->add_flag("--json", options->json, "Print the summary as JSON");
     command->callback([options, command] {
         if (options->validate) refuse_other_options(*command);

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "apps/options/no_effect.hpp"
+#include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
 #include "apps/palpate/picture.hpp"
@@ -92,7 +94,7 @@ pictures::PictureScene picture_of(const ToolOptions& options, const Tool& tool) 
     return scene;
 }
 
-void describe(const ToolOptions& options) {
+void describe(const CLI::App& command, const ToolOptions& options) {
     check_outputs({options.spec}, {options.points, options.picture});
     if (!options.picture.empty()) require_png("--picture", options.picture);
     const bool table = is_standard_output(options.points);
@@ -101,7 +103,12 @@ void describe(const ToolOptions& options) {
         throw std::invalid_argument(
             "--json, a table and a picture cannot share standard output: give them files");
     }
-    const auto made = io::make_tool(io::tool_spec_from(options.spec), options.spacing);
+    const io::ToolSpec spec = io::tool_spec_from(options.spec);
+    if (std::holds_alternative<io::PointSpec>(spec) ||
+        std::holds_alternative<io::PointsSpec>(spec)) {
+        warn_of_no_effect(command, {"--spacing"}, "the points of this tool are given");
+    }
+    const auto made = io::make_tool(spec, options.spacing);
     const Tool tool = made ? *made : point_tool();
     if (!options.points.empty()) {
         io::PendingFile file(options.points);
@@ -145,19 +152,23 @@ void add_tool(CLI::App& app) {
         "mm), a file of points (CSV with columns x,y,z), or a mesh (.stl, .ply, .obj, .vtp; mm, "
         "its origin is the reference point).\n\nExample:\n  palpate tool burr:2 "
         "--spacing 0.25 --points burr.csv --picture burr.png");
-    command->add_option("TOOL", options->spec, "The tool")->required();
+    command->add_option("TOOL", options->spec, "The tool")
+        ->type_name("{point,sphere:,rod:,needle,burr:,box:,fingertip}|FILE.{csv,stl,ply,obj,vtp}")
+        ->required();
     command
         ->add_option("--spacing", options->spacing,
                      "Distance of neighbouring points [mm]; when felt: half a voxel")
-        ->check(CLI::PositiveNumber)
+        ->check(above_zero())
         ->capture_default_str();
-    command->add_option("--points", options->points,
-                        "Table of the points to write (CSV: x,y,z; mm, tool axes)");
-    command->add_option("--picture", options->picture,
-                        "Picture of the points on the tool to write (PNG)");
+    command
+        ->add_option("--points", options->points,
+                     "Table of the points to write (x,y,z; mm, tool axes)")
+        ->type_name("FILE.csv");
+    command->add_option("--picture", options->picture, "Picture of the points on the tool to write")
+        ->type_name("FILE.png");
     command->add_flag("--json", options->json, "Print the summary as JSON");
     command->add_flag("-q,--quiet", options->quiet, "Print nothing");
-    command->callback([options] { describe(*options); });
+    command->callback([options, command] { describe(*command, *options); });
 }
 
 }  // namespace palpate::app

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "apps/options/no_effect.hpp"
 #include "apps/options/run_options.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/live_commands.hpp"
@@ -368,11 +369,16 @@ LiveCommands commands_for(const run::Run& run) {
     return {run.field(), run.isovalue(), run.settings()};
 }
 
-void touch(const TouchOptions& options) {
+void touch(const CLI::App& command, const TouchOptions& options) {
     const run::Setup setup = options.setup();
+    const std::string flaw = flaw_in_volume_name(options.save);
+    if (!flaw.empty()) throw std::invalid_argument(flaw);
     check_outputs({options.source.name(), options.commands}, {options.record, options.save});
     require_no_mouse(setup);
     require_own_time(options, setup);
+    if (options.unpaced) {
+        warn_of_no_effect(command, {"--normal-priority"}, "--unpaced has no thread of its own");
+    }
     const auto remote = make_remote(options.igtl, options.igtl_connect, options.source.quiet);
     auto data = std::make_shared<run::Data>(load_for_terminal(options.source), setup.playback,
                                             options.unpaced ? Pace::by_steps : Pace::own_thread);
@@ -456,9 +462,9 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
         ->add_option("--igtl-connect", options->igtl_connect,
                      "The same, but connect to a server, again and again")
         ->type_name("[HOST:]PORT");
-    command->callback([options, words, is_record] {
+    command->callback([options, words, is_record, command] {
         if (!is_record && wants_window(*options)) become_viewer(words);
-        touch(*options);
+        touch(*command, *options);
     });
 }
 
@@ -466,12 +472,12 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
 
 void add_touch(CLI::App& app, const Words& words) {
     add_session(app, "touch", "Feel a volume live, through a haptic device", false, words,
-                "palpate touch head.nrrd --isovalue 500 --device haply --record session.csv");
+                "palpate touch head.nrrd --isovalue 34.5 --device haply --record session.csv");
 }
 
 void add_record(CLI::App& app) {
     add_session(app, "record", "Feel a volume live and record the session", true, {},
-                "palpate record head.nrrd --isovalue 500 --device haply --output session.csv");
+                "palpate record head.nrrd --isovalue 34.5 --device haply --output session.csv");
 }
 
 }  // namespace palpate::app

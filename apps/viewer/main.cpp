@@ -9,7 +9,7 @@
 #include <csignal>
 
 #include "apps/options/exit_status.hpp"
-#include "apps/options/impossible_values.hpp"
+#include "apps/options/values.hpp"
 #include "apps/options/view_options.hpp"
 #include "apps/viewer/model/raw_preview.hpp"
 #include "apps/viewer/window/appearance.hpp"
@@ -34,6 +34,7 @@ void open(viewer::MainWindow& window, const app::ViewOptions& options) {
         window.files().open_recording(QString::fromStdString(options.play));
     } else if (options.has_volume()) {
         const run::Source source = options.run.source.source();
+        options.run.source.warn_of_no_effect(source);
         const bool ask = options.screenshot.empty() && viewer::lacks_layout(source);
         ask ? window.files().ask_layout(source) : window.files().open_volume(source);
     }
@@ -75,7 +76,7 @@ int main(int argc, char** argv) {
     } catch (const CLI::Success& e) {
         return command.exit(e);
     } catch (const CLI::ParseError& e) {
-        return app::fail(std::string(e.what()) + " (see palpate view --help)", app::wrong_use);
+        return app::fail(app::complaint(command, e), app::wrong_use);
     } catch (const std::exception& e) {
         return app::fail(e.what(), app::wrong_use);
     }

@@ -91,11 +91,15 @@ TAIL = """
         /// One of Constants.TextProblem, TextPrivileges and TextDevice.
         public static string RunText(IntPtr run, int which)
         {
-            UIntPtr needed;
-            Check(palpate_run_text(run, which, null, UIntPtr.Zero, out needed));
-            var buffer = new byte[(int)needed];
-            Check(palpate_run_text(run, which, buffer, needed, out needed));
-            return Encoding.UTF8.GetString(buffer, 0, buffer.Length - 1);
+            var needed = (UIntPtr)256;
+            byte[] buffer;
+            do  // the text may have become longer meanwhile
+            {
+                buffer = new byte[(int)needed];
+                Check(palpate_run_text(run, which, buffer, (UIntPtr)buffer.Length, out needed));
+            }
+            while ((int)needed > buffer.Length);
+            return Encoding.UTF8.GetString(buffer, 0, (int)needed - 1);
         }
 
         public static string Version { get { return Text(palpate_version()); } }

@@ -59,9 +59,8 @@ auto column(const std::vector<Row>& rows, const Of& of) {
         return array;
     }
 }
-/// w, x, y, z.
-inline Eigen::Vector4d wxyz(const Quaternion& q) {
-    return {q.w(), q.x(), q.y(), q.z()};
+inline Eigen::Vector4d xyzw(const Quaternion& q) {
+    return q.coeffs();
 }
 
 }  // namespace palpate::python

@@ -11,11 +11,13 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "palpate/device.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/io/level.hpp"
 #include "palpate/layers.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::python {
 
@@ -117,13 +119,13 @@ const char* text_of(E value) {
 /// Throws std::invalid_argument, listing the names.
 template <IsNamed E>
 E named(const std::string& text) {
-    std::string names;
+    std::vector<std::string> names;
     for (const auto& [name, value] : Named<E>::values) {
         if (text == name) return value;
-        names += (names.empty() ? "" : ", ") + std::string(name);
+        names.emplace_back(name);
     }
-    throw std::invalid_argument(std::string(Named<E>::kind) + " '" + text + "': it is one of " +
-                                names);
+    throw std::invalid_argument(std::string(Named<E>::kind) + " '" + text +
+                                "': " + use_one_of(names, text));
 }
 
 }  // namespace palpate::python
@@ -145,7 +147,7 @@ struct type_caster<E> {
     }
 };
 
-/// Numbers w, x, y, z.
+/// Numbers x, y, z, w, as in C, C# and scipy. What has them says so in its name: orientation_xyzw.
 template <>
 struct type_caster<palpate::Quaternion> {
     PYBIND11_TYPE_CASTER(palpate::Quaternion, const_name("numpy.ndarray[float64[4]]"));
@@ -154,12 +156,11 @@ struct type_caster<palpate::Quaternion> {
         make_caster<Eigen::Vector4d> numbers;
         if (!numbers.load(source, convert)) return false;
         const auto& q = cast_op<const Eigen::Vector4d&>(numbers);
-        value = palpate::Quaternion(q[0], q[1], q[2], q[3]);
+        value = palpate::Quaternion(q);
         return true;
     }
     static handle cast(const palpate::Quaternion& q, return_value_policy, handle parent) {
-        return make_caster<Eigen::Vector4d>::cast(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()),
-                                                  return_value_policy::move, parent);
+        return make_caster<Eigen::Vector4d>::cast(q.coeffs(), return_value_policy::move, parent);
     }
 };
 

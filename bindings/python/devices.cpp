@@ -1,6 +1,8 @@
 // Devices: which there are, their readings, and those that are written in Python.
 #include "palpate/devices/devices.hpp"
 
+#include <cmath>
+
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/record.hpp"
 
@@ -20,6 +22,16 @@ py::list found_devices() {
                              py::arg("options") = f.options));
     }
     return list;
+}
+
+/// Throws std::invalid_argument. What is not finite is refused where it is read.
+void turn(DeviceReading& reading, const Quaternion& to) {
+    const double length = to.norm();
+    if (std::abs(length - 1) > 1e-3) {
+        throw std::invalid_argument("orientation_xyzw must have length 1, not " +
+                                    std::to_string(length));
+    }
+    reading.orientation = to.normalized().toRotationMatrix();
 }
 
 }  // namespace
@@ -42,7 +54,9 @@ void bind_devices(py::module_& module) {
     using R = DeviceReading;
     Record<R>(module, "DeviceReading", "The newest measurement of a device.")
         .field("position", &R::position, "[device mm]")
-        .field("orientation", &R::orientation, "Tool axes to device axes, shape (3, 3).")
+        .property(
+            "orientation_xyzw", [](const R& r) { return Quaternion(r.orientation); }, &turn,
+            "Unit quaternion, tool axes to device axes.")
         .field("buttons", &R::buttons, "Bit b is set while button b is held.")
         .field("age", &R::age, "[s] since it was measured")
         .field("status", &R::status,

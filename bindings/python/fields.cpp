@@ -3,6 +3,7 @@
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/record.hpp"
 #include "palpate/density.hpp"
 #include "palpate/field.hpp"
 #include "palpate/proxy.hpp"
@@ -38,18 +39,35 @@ py::object ray(const Field& field, const io::Level& level, const Vec3& from, con
     return hit.hit ? py::object(py::make_tuple(hit.point, hit.normal)) : py::none();
 }
 
+using Moments = std::vector<std::pair<double, Volume>>;
+
+std::shared_ptr<Samples> samples_from(const Moments& moments, double period) {
+    std::vector<Frame> frames;
+    for (const auto& [time, volume] : moments) frames.push_back({time, volume});
+    return std::make_shared<Samples>(std::move(frames), period);
+}
+
+/// For pickling: times and volumes, with all edits.
+Moments moments_of(const Samples& samples) {
+    if (samples.resident()) {
+        throw py::type_error(
+            "samples that are read while they are felt cannot be pickled: pickle the address of "
+            "the store");
+    }
+    if (samples.bricks()) return {{0, flattened(samples, samples.moment_at(0))}};
+    Moments moments;
+    for (const Frame& frame : samples.frames()) moments.emplace_back(frame.time, frame.volume);
+    return moments;
+}
+
 void bind_samples(py::module_& module) {
-    py::class_<Samples, std::shared_ptr<Samples>>(
+    py::class_<Samples, std::shared_ptr<Samples>> samples(
         module, "Samples",
         "One version of the numbers on a grid: a volume with its edits, or the frames of a\n"
-        "sequence. Versions do not change and share what is equal.")
+        "sequence. Versions do not change and share what is equal.");
+    copied_as_itself(samples)
         .def(py::init<Volume>(), py::arg("volume"))
-        .def(py::init([](const std::vector<std::pair<double, Volume>>& frames, double period) {
-                 std::vector<Frame> made;
-                 for (const auto& [time, volume] : frames) made.push_back({time, volume});
-                 return std::make_shared<Samples>(std::move(made), period);
-             }),
-             py::arg("frames"), py::arg("period") = 0.0,
+        .def(py::init(&samples_from), py::arg("frames"), py::arg("period") = 0.0,
              "Frames as pairs (time [s], Volume), times rising. With a period [s] they repeat.")
         .def_property_readonly("geometry", &Samples::geometry, py::return_value_policy::copy)
         .def_property_readonly("minimum", &Samples::minimum, "[data units]")
@@ -67,15 +85,24 @@ void bind_samples(py::module_& module) {
             "volume",
             [](const Samples& self, double time) { return flattened(self, self.moment_at(time)); },
             py::arg("time") = 0.0, py::call_guard<py::gil_scoped_release>(),
-            "As one Volume, with all edits, at a time of a sequence [s].");
+            "As one Volume, with all edits, at a time of a sequence [s].")
+        .def(py::pickle(
+            [](const Samples& self) { return py::make_tuple(moments_of(self), self.period()); },
+            [](const py::tuple& state) {
+                const auto moments = state[0].cast<Moments>();
+                return moments.size() == 1 ? std::make_shared<Samples>(moments.front().second)
+                                           : samples_from(moments, state[1].cast<double>());
+            }));
 }
 
 }  // namespace
 
 void bind_fields(py::module_& module) {
     bind_samples(module);
-    py::class_<Field>(module, "Field",
-                      "What is felt: samples continued over all of space, and which side is solid.")
+    py::class_<Field> field(
+        module, "Field",
+        "What is felt: samples continued over all of space, and which side is solid.");
+    copied_as_itself(field)
         .def(py::init([](const Volume& volume, Solid solid, std::optional<double> background,
                          Interpolation interpolation) {
                  return Field(volume, solid, background, interpolation);
@@ -108,6 +135,17 @@ void bind_fields(py::module_& module) {
         .def("cast_ray", &ray, py::arg("isovalue"), py::arg("start"), py::arg("end"),
              "Where a straight segment [mm, physical] first meets the isosurface: (point [mm],\n"
              "unit normal out of the solid), or None.")
+        .def(py::pickle(
+            [](const Field& f) {
+                return py::make_tuple(std::const_pointer_cast<Samples>(f.shared_samples()),
+                                      f.solid(), f.background(), f.interpolation(), f.time());
+            },
+            [](const py::tuple& state) {
+                Field f(state[0].cast<std::shared_ptr<Samples>>(), state[1].cast<Solid>(),
+                        state[2].cast<double>(), state[3].cast<Interpolation>());
+                f.set_time(state[4].cast<double>());
+                return f;
+            }))
         .def("__repr__", [](const Field& f) {
             return py::str("Field({!r}, solid={!r}, background={:g}, interpolation={!r})")
                 .format(py::cast(f.volume()), text_of(f.solid()), f.background(),

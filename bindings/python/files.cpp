@@ -86,9 +86,54 @@ run::LoadedVolume loaded_as(const Volume& volume, const fs::path& name,
     return loaded;
 }
 
+using Label = std::tuple<int, std::string, std::array<double, 3>>;
+
+/// For pickling: the volume and what is known about it; of a sequence, a store or a live source
+/// only its names, under which it is opened again.
+py::tuple state_of(const run::LoadedVolume& loaded) {
+    const auto names = run::to_names(loaded.source);
+    if (loaded.streamed || loaded.live || loaded.sequence.count() > 1) {
+        return py::make_tuple(py::none(), names);
+    }
+    const io::ValueInfo& v = loaded.values;
+    std::optional<std::pair<double, double>> window;
+    if (v.window) window.emplace(v.window->centre, v.window->width);
+    std::vector<Label> labels;
+    for (const io::LabelName& l : v.labels) labels.emplace_back(l.value, l.name, l.colour);
+    return py::make_tuple(loaded.volume, names, loaded.name, loaded.format, loaded.notes,
+                          loaded.isovalue, loaded.time_steps, v.modality, v.units, window,
+                          v.padding, labels);
+}
+
+run::LoadedVolume loaded_again(const py::tuple& state) {
+    const auto source = run::source_from(state[1].cast<std::map<std::string, std::string>>());
+    if (state[0].is_none()) {
+        const py::gil_scoped_release unlocked;
+        run::LoadedVolume loaded = run::load(source);
+        if (loaded.streamed) loaded.streamed->store = destroyed_here_only(loaded.streamed->store);
+        return loaded;
+    }
+    run::LoadedVolume loaded{state[0].cast<Volume>(), source, state[2].cast<std::string>()};
+    loaded.format = state[3].cast<std::string>();
+    loaded.notes = state[4].cast<std::vector<std::string>>();
+    loaded.isovalue = state[5].cast<std::optional<double>>();
+    loaded.time_steps = state[6].cast<int>();
+    loaded.values.modality = state[7].cast<std::string>();
+    loaded.values.units = state[8].cast<std::string>();
+    if (const auto window = state[9].cast<std::optional<std::pair<double, double>>>()) {
+        loaded.values.window = {window->first, window->second};
+    }
+    loaded.values.padding = state[10].cast<std::optional<double>>();
+    for (const auto& [value, name, colour] : state[11].cast<std::vector<Label>>()) {
+        loaded.values.labels.push_back({value, name, colour});
+    }
+    return loaded;
+}
+
 void bind_loaded(py::module_& module) {
-    py::class_<run::LoadedVolume>(module, "LoadedVolume",
-                                  "A volume and what is known about it: from load().")
+    py::class_<run::LoadedVolume> loaded(module, "LoadedVolume",
+                                         "A volume and what is known about it: from load().");
+    copied_as_itself(loaded)
         .def(py::init(&loaded_as), py::arg("volume"), py::arg("name") = "array",
              py::arg("isovalue") = py::none(),
              "A volume of yours, for Run. name: what recordings call it; to validate them, write "
@@ -109,6 +154,7 @@ void bind_loaded(py::module_& module) {
                                "width), padding, labels (number to name).")
         .def_property_readonly("suggested_isovalues", &suggested,
                                "Levels that are likely worth feeling [data units], the best first.")
+        .def(py::pickle(&state_of, &loaded_again))
         .def("__repr__", [](const run::LoadedVolume& l) {
             return py::str("LoadedVolume({!r}, {!r})").format(l.name, py::cast(l.volume));
         });

@@ -24,8 +24,8 @@ py::dict columns_of(const std::vector<io::TraceRow>& rows) {
     table["layer"] = column(rows, [](const Row& r) { return int{r.layers.touched}; });
     table["inside"] = column(rows, [](const Row& r) { return int{r.layers.inside}; });
     table["torque"] = column(rows, [](const Row& r) { return r.torque; });
-    table["hand_orientation"] = column(rows, [](const Row& r) { return wxyz(r.tool.hand); });
-    table["proxy_orientation"] = column(rows, [](const Row& r) { return wxyz(r.tool.proxy); });
+    table["hand_orientation_xyzw"] = column(rows, [](const Row& r) { return xyzw(r.tool.hand); });
+    table["proxy_orientation_xyzw"] = column(rows, [](const Row& r) { return xyzw(r.tool.proxy); });
     table["contacts"] = column(rows, [](const Row& r) { return r.tool.contacts; });
     return table;
 }
@@ -38,12 +38,11 @@ io::Trajectory trajectory_from(const Doubles& time, const Doubles& position,
     std::vector<Quaternion> turns;
     if (orientation) {
         if (orientation->ndim() != 2 || orientation->shape(1) != 4) {
-            throw std::invalid_argument(
-                "orientation: an array of shape (n, 4) is needed: w, x, y, z");
+            throw std::invalid_argument("orientation_xyzw: an array of shape (n, 4) is needed");
         }
         for (py::ssize_t i = 0; i < orientation->shape(0); ++i) {
             const double* q = orientation->data(i, 0);
-            turns.emplace_back(q[0], q[1], q[2], q[3]);
+            turns.emplace_back(q[3], q[0], q[1], q[2]);
         }
     }
     return io::checked_trajectory({time.data(), time.data() + time.size()},
@@ -87,7 +86,7 @@ void write_trace(const std::filesystem::path& path, const py::dict& columns,
     const auto turns = [&](const char* name) {
         return [array = table.column(name, 4)](py::ssize_t i) {
             const double* q = array.data() + 4 * i;
-            return Quaternion(q[0], q[1], q[2], q[3]);
+            return Quaternion(q[3], q[0], q[1], q[2]);
         };
     };
     const auto t = numbers("t"), density = numbers("density"), isovalue = numbers("isovalue"),
@@ -96,7 +95,7 @@ void write_trace(const std::filesystem::path& path, const py::dict& columns,
                inside = numbers("inside"), contacts = numbers("contacts");
     const auto hip = vectors("hip"), scp = vectors("scp"), force = vectors("force"),
                torque = vectors("torque");
-    const auto hand = turns("hand_orientation"), proxy = turns("proxy_orientation");
+    const auto hand = turns("hand_orientation_xyzw"), proxy = turns("proxy_orientation_xyzw");
     io::TraceWriter writer(path, {}, {layer_names, nested_layers, tool});
     for (py::ssize_t i = 0; i < table.rows(); ++i) {
         io::TraceRow row{t(i), hip(i), scp(i), force(i), density(i), isovalue(i)};
@@ -179,7 +178,7 @@ py::dict replay(const Field& field, const io::Level& isovalue, const Doubles& ti
         table["poses"] = py::make_tuple(
             array_from(std::move(ways.ticks)),
             column(ways.values, [](const Pose& pose) { return pose.position; }),
-            column(ways.values, [](const Pose& pose) { return wxyz(pose.orientation); }));
+            column(ways.values, [](const Pose& pose) { return xyzw(pose.orientation); }));
     }
     return table;
 }
@@ -188,7 +187,7 @@ py::dict replay(const Field& field, const io::Level& isovalue, const Doubles& ti
 
 void bind_offline(py::module_& module) {
     module.def("_replay", &replay, py::arg("field"), py::arg("isovalue"), py::arg("time"),
-               py::arg("position"), py::arg("orientation"), py::arg("setup"), py::arg("path"),
+               py::arg("position"), py::arg("orientation_xyzw"), py::arg("setup"), py::arg("path"),
                py::arg("poses"), py::arg("progress"));
     module.def(
         "_read_trajectory",
@@ -196,7 +195,7 @@ void bind_offline(py::module_& module) {
             const io::Trajectory t = io::read_trajectory(file);
             py::object turns = py::none();
             if (!t.orientation.empty()) {
-                turns = column(t.orientation, [](const Quaternion& q) { return wxyz(q); });
+                turns = column(t.orientation, [](const Quaternion& q) { return xyzw(q); });
             }
             return py::make_tuple(column(t.time, [](double s) { return s; }),
                                   column(t.position, [](const Vec3& p) { return p; }), turns);

@@ -11,7 +11,7 @@ constexpr std::int64_t rest = 50'000'000;  // [ns]
 /// Throws std::invalid_argument for what is no reading.
 DeviceReading reading_from(const py::object& returned) {
     const auto reading = returned_by<DeviceReading>("read()", returned);
-    for (const char* part : {"position", "orientation"}) {
+    for (const char* part : {"position", "orientation_xyzw"}) {
         const py::object numbers = returned.attr(part);
         if (numbers.cast<Eigen::MatrixXd>().allFinite()) continue;
         throw std::invalid_argument(std::string(part) + " is not finite: " +

@@ -45,4 +45,11 @@ class Record {
     py::list names_;
 };
 
+/// Copies of what never changes are the object itself.
+template <class Class>
+Class& copied_as_itself(Class& kind) {
+    return kind.def("__copy__", [](const py::object& self) { return self; })
+        .def("__deepcopy__", [](const py::object& self, const py::dict&) { return self; });
+}
+
 }  // namespace palpate::python

@@ -77,10 +77,10 @@ void bind_tick(py::module_& module) {
             "[N mm], device axes, about the tool's reference point.")
         .def_readonly("force_flags", &Tick::force_flags, "Bits of FORCE_FLAGS.")
         .def_property_readonly(
-            "hand_orientation", [](const Tick& t) { return t.tool.hand; },
-            "w, x, y, z; tool axes to physical axes.")
+            "hand_orientation_xyzw", [](const Tick& t) { return t.tool.hand; },
+            "Unit quaternion, tool axes to physical axes.")
         .def_property_readonly(
-            "proxy_orientation", [](const Tick& t) { return t.tool.proxy; },
+            "proxy_orientation_xyzw", [](const Tick& t) { return t.tool.proxy; },
             "The same of the proxy.")
         .def_property_readonly(
             "contacts", [](const Tick& t) { return t.tool.contacts; },
@@ -159,10 +159,12 @@ void bind_renderer(py::module_& module) {
              "isovalue: a number [data units] or '53%'. transform: where the device's workspace\n"
              "lies; by default device axes are physical axes.")
         .def("render", &tick, py::arg("time"), py::arg("position"), py::kw_only(),
-             py::arg("orientation") = py::none(), py::arg("valid") = true, py::arg("armed") = true,
-             py::arg("released") = false, py::arg("pointing") = Vec3(0, 0, 0),
-             "One tick: `time` [s], strictly increasing; `position` [device mm]; `orientation`\n"
-             "(w, x, y, z), tool axes to device axes. valid=False: broken input, no force;\n"
+             py::arg("orientation_xyzw") = py::none(), py::arg("valid") = true,
+             py::arg("armed") = true, py::arg("released") = false,
+             py::arg("pointing") = Vec3(0, 0, 0),
+             "One tick: `time` [s], strictly increasing; `position` [device mm];\n"
+             "`orientation_xyzw`, a quaternion, tool axes to device axes. valid=False: broken "
+             "input, no force;\n"
              "armed=False: a dead-man switch is open; released: no force, within the rate limit.\n"
              "pointing: unit, to a needle's tip. Takes microseconds and keeps the GIL, so threads "
              "may\n"

@@ -63,9 +63,7 @@ void bind_setup(py::module_& module) {
         .field("loop", &S::loop, "A sequence begins again.")
         .field("memory_bytes", &S::memory_bytes, "For frames of a sequence.")
         .field("real_time", &S::real_time, "Ask for real-time priority.")
-        .done()
-        .def_static(
-            "live", [] { return Setup{}; }, "The same as Setup().");
+        .done();
 }
 
 struct LiveRun : run::Run {
@@ -77,9 +75,13 @@ struct LiveRun : run::Run {
 /// raises would be lost.
 std::shared_ptr<LiveRun> make(const py::object& what, const std::optional<Setup>& given) {
     const py::module_ module = py::module_::import("palpate._palpate");
-    const auto loaded = py::isinstance(what, module.attr("Store"))
-                            ? module.attr("LoadedVolume")(what).cast<run::LoadedVolume>()
-                            : what.cast<run::LoadedVolume>();
+    const bool is_store = py::isinstance(what, module.attr("Store"));
+    if (!is_store && !py::isinstance<Volume>(what) && !py::isinstance<run::LoadedVolume>(what)) {
+        throw py::type_error("Run(): volume must be Volume, LoadedVolume or Store, not " +
+                             std::string(py::str(py::type::of(what).attr("__name__"))));
+    }
+    const auto loaded = is_store ? module.attr("LoadedVolume")(what).cast<run::LoadedVolume>()
+                                 : what.cast<run::LoadedVolume>();
     const run::Setup setup = live_setup(given.value_or(Setup{}));
     std::shared_ptr<run::Data> data = made_without_gil<run::Data>(loaded, setup.playback);
     return made_without_gil<LiveRun>(std::move(data), setup);

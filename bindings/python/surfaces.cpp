@@ -4,6 +4,7 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/progress.hpp"
+#include "bindings/python/record.hpp"
 #include "palpate/io/mesh_file.hpp"
 
 namespace palpate::python {
@@ -58,7 +59,8 @@ py::array_t<T> view(const py::object& mesh, const Rows& rows) {
 }  // namespace
 
 void bind_surfaces(py::module_& module) {
-    py::class_<SurfaceMesh>(module, "Mesh", "An oriented triangle mesh.")
+    py::class_<SurfaceMesh> mesh(module, "Mesh", "An oriented triangle mesh.");
+    copied_as_itself(mesh)
         .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"),
              "vertices [mm], shape (n, 3); triangles: their indices, shape (m, 3).")
         .def_property_readonly(
@@ -84,6 +86,16 @@ void bind_surfaces(py::module_& module) {
              py::overload_cast<const SurfaceMesh&, const std::filesystem::path&>(&io::write_mesh),
              py::arg("path"), py::call_guard<py::gil_scoped_release>(),
              "As .ply, .stl, .obj or .vtp, whole or not at all. Raises OutputError.")
+        .def(py::pickle(
+            [](const py::object& self) {
+                return py::make_tuple(self.attr("vertices"), self.attr("triangles"),
+                                      self.attr("normals"));
+            },
+            [](const py::tuple& state) {
+                SurfaceMesh made = mesh_from(state[0].cast<Doubles>(), state[1].cast<Indices>());
+                made.normals = points_from(state[2].cast<Doubles>(), "normals");
+                return made;
+            }))
         .def("__repr__", [](const SurfaceMesh& m) {
             return py::str("Mesh({} vertices, {} triangles)")
                 .format(m.vertices.size(), m.triangles.size());

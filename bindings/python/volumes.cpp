@@ -48,7 +48,7 @@ void bind_volumes(py::module_& module) {
     py::class_<Volume> volume(
         module, "Volume",
         "Samples on a regular grid. They do not change: edits make new versions (Editor).");
-    volume
+    copied_as_itself(volume)
         .def(py::init([](const py::array& array, const Vec3& spacing, const Vec3& origin,
                          const Mat3& direction, bool copy) {
                  return volume_from(array, geometry_of(spacing, origin, direction), copy);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "devices/models.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -129,10 +130,8 @@ const std::vector<std::pair<std::string, HandGrip>>& grips() {
 
 [[noreturn]] void unknown(const char* what, std::string_view name,
                           const std::vector<std::string>& accepted) {
-    std::string message =
-        "there is no " + std::string(what) + " '" + std::string(name) + "'; there are:";
-    for (const std::string& one : accepted) message += " " + one;
-    throw std::invalid_argument(message);
+    throw std::invalid_argument("there is no " + std::string(what) + " '" + std::string(name) +
+                                "': " + use_one_of(accepted, name));
 }
 
 }  // namespace

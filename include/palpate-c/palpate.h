@@ -203,7 +203,7 @@ typedef struct palpate_hand {
     int32_t invalid;       /* not 0: no force, the proxy stays */
     double time;           /* [s], rising */
     double position[3];    /* [device mm] */
-    double orientation[4]; /* tool to device axes; all 0: identity */
+    double orientation[4]; /* x, y, z, w; tool to device axes; all 0: identity */
 } palpate_hand;
 
 enum { PALPATE_FREE = 0, PALPATE_CONSTRAINED = 1 };
@@ -225,7 +225,7 @@ typedef struct palpate_felt {
     double scp[3];         /* the proxy [mm, physical]: draw the tool here */
     double force[3];       /* [N, device axes] */
     double torque[3];      /* [N mm, device axes] */
-    double hand[4];        /* orientations, tool to physical axes */
+    double hand[4];        /* orientations x, y, z, w, tool to physical axes */
     double proxy[4];
     double density, isovalue;
     int32_t layer, inside; /* layer touched (-1: none), and how many the proxy is inside of */
@@ -277,7 +277,7 @@ typedef struct palpate_reading {
     uint32_t size_of;
     int32_t status;        /* force only while READY */
     double position[3];    /* [device mm] */
-    double orientation[4]; /* tool to device axes; all 0: identity */
+    double orientation[4]; /* x, y, z, w; tool to device axes; all 0: identity */
     double age;            /* [s] since it was measured; beyond 0.02 it counts as stale */
     uint32_t buttons;      /* bit b: button b is held */
     uint32_t unused;

@@ -85,7 +85,7 @@ TEST(LayersOption, refuses_what_does_not_fit) {
         EXPECT_TRUE(contains(done.err, words)) << options << ": " << done.err;
         EXPECT_FALSE(std::filesystem::exists(folder / "a.csv"));
     };
-    expect("--layers none-such", 3, "built in are ct-bone-drilling");
+    expect("--layers none-such", 3, "use one of ct-bone-drilling");
     expect("--layers bad.json", 3, "bad.json");
     expect("--layers two.json --isovalue 0.5", 2, "an isovalue does nothing with layers");
     expect("--layers two.json --penetrability threshold", 2, "--penetrability does nothing");

@@ -257,7 +257,7 @@ TEST(Touch, refuses_options_that_make_no_sense) {
     const auto wrong = [&](const std::string& options, const std::string& reason) {
         expect_failure(palpate(folder, "touch " + sphere + " " + options), 2, reason);
     };
-    wrong("--device nothing", "there are: simulated");
+    wrong("--device nothing", "use one of simulated");
     wrong("--device simulated:profile=magic", "magic");
     wrong("--device simulated:colour=red", "no option 'colour'");
     wrong("--rate 100", "250 to 8000 Hz");

@@ -60,7 +60,7 @@ TEST(DeviceOptions, what_cannot_be_meant_is_refused_with_the_accepted_range) {
 TEST(DeviceOptions, an_option_that_nobody_asked_for_is_refused_with_those_there_are) {
     DeviceOptions options(parse_device("a:z=1"), "");
     options.text("x", "");
-    EXPECT_EQ(refusal([&] { options.finish(); }), "device a: no option 'z'; there are: x");
+    EXPECT_EQ(refusal([&] { options.finish(); }), "device a: no option 'z': use one of x");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@ import configparser
 import re
 import subprocess
 import sys
+import tempfile
 import xml.etree.ElementTree
 from pathlib import Path
 
@@ -19,18 +20,25 @@ def options_of(*command):
             for option in re.findall(r"--[a-z][a-z-]*", line.split("  ")[1])}
 
 
-def completed(*words):
-    """What bash offers for the last word."""
-    script = (f"source {manual}/palpate; COMP_WORDS=({' '.join(words)} ''); "
-              f"COMP_CWORD={len(words)}; _palpate; echo ${{COMPREPLY[@]}}")
-    return set(subprocess.run(["bash", "-c", script], check=True, capture_output=True,
-                              text=True).stdout.split())
+def completed(line):
+    """What bash offers at the end of the line."""
+    script = (f"source {manual.resolve()}/palpate; COMP_LINE='{line}'; COMP_POINT={len(line)}; _palpate; "
+              'printf "%s\\n" "${COMPREPLY[@]}"')
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("a.ply", "a.csv", "a.png", "head.nrrd"):
+            (Path(folder) / name).touch()
+        (Path(folder) / "scans").mkdir()
+        out = subprocess.run(["bash", "-c", script], check=True, capture_output=True, text=True,
+                             cwd=folder)
+    assert out.stderr == "", out.stderr
+    return set(out.stdout.split())
 
 
 page = (manual / "man1/palpate.1").read_text()
 commands = re.findall(r"^\.B ([a-z]+)$", page, re.MULTILINE)
 assert {"info", "touch", "view"} <= set(commands), commands
-assert set(commands) <= completed("palpate"), completed("palpate")
+assert set(commands) <= completed("palpate "), completed("palpate ")
+assert completed("palpate ex") == {"extract"}
 for command in commands:
     page = (manual / f"man1/palpate-{command}.1").read_text()
     assert page.startswith(f".TH PALPATE-{command.upper()} 1"), page[:60]
@@ -41,7 +49,29 @@ for command in commands:
     missing = [option for option in found
                if not re.search(rf"^\.B .*{option}", entries, re.MULTILINE)]
     assert not missing, f"{command}: {missing} are not in the manual"
-    assert found == completed("palpate", command), f"{command}: {found ^ completed('palpate', command)}"
+    offered = completed(f"palpate {command} -")
+    assert found == offered, f"{command}: {found ^ offered}"
+
+VALUES = {  # line: what is offered, and nothing else
+    "extract head.nrrd --field ": {"cubic", "linear"},
+    "extract head.nrrd --field=l": {"linear"},
+    "extract head.nrrd --solid a": {"above"},
+    "extract head.nrrd -o ": {"a.ply", "scans"},
+    "render head.nrrd --output ": {"a.png", "scans"},
+    "replay head.nrrd --trajectory ": {"a.csv", "scans"},
+    "replay head.nrrd --method gradient-": {"gradient-improved"},
+    "touch head.nrrd --device sim": {"simulated"},
+    "demo -o ": {"scans"},
+    "info synthetic:tor": {"torus"},
+    "info he": {"head.nrrd"},
+    "info head.nrrd --smooth ": set(),
+    "touch head.nrrd --facing l": {"left"},
+    "tool burr": {"burr:"},
+}
+for line, values in VALUES.items():
+    assert completed(f"palpate {line}") == values, (line, completed(f"palpate {line}"))
+assert "ct-bone-drilling" in completed("palpate replay head.nrrd --layers ct-b")
+assert {"synthetic:sphere", "head.nrrd", "scans"} <= completed("palpate info ")
 
 for file in ("palpate.svg", "palpate.metainfo.xml", "palpate-mime.xml"):
     xml.etree.ElementTree.parse(desktop / file)

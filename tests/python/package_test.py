@@ -1,10 +1,10 @@
-"""`pip install .` makes a package that is whole by itself, without a network."""
+"""`pip install` makes a package that is whole by itself, without a network, from an sdist too."""
 
 import os
 import pathlib
-import shutil
 import subprocess
 import sys
+import tarfile
 
 import pytest
 
@@ -21,19 +21,39 @@ assert "ct-needle" in palpate.layers_presets()
 
 
 @pytest.fixture(scope="module")
-def installed(tmp_path_factory):
-    """The folder that pip installed into, from a copy of what pip reads; built already."""
-    folder = tmp_path_factory.mktemp("package")
-    for name in ("pyproject.toml", "setup.py", "CMakeLists.txt"):
-        shutil.copy(SOURCE / name, folder)
-    shutil.copytree(SOURCE / "bindings" / "python" / "palpate",
-                    folder / "bindings" / "python" / "palpate")
-    target = folder / "target"
+def sdist(tmp_path_factory):
+    """The archive that pip can install from, made without writing into the sources."""
+    folder = tmp_path_factory.mktemp("sdist")
+    subprocess.run([sys.executable, "setup.py", "-q", "egg_info", "--egg-base", folder, "sdist",
+                    "--formats=gztar", "--dist-dir", folder], check=True, cwd=SOURCE)
+    return next(folder.glob("*.tar.gz"))
+
+
+@pytest.fixture(scope="module")
+def installed(sdist, tmp_path_factory):
+    """The folder of packages of a virtual environment, made and used as docs/python.md says, with the
+    archive of the sources; CMake has built it already."""
+    venv = tmp_path_factory.mktemp("package") / "palpate-venv"
+    subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", venv], check=True)
     environment = {**os.environ, "PALPATE_BUILD_DIR": os.environ["PALPATE_BUILD"]}
-    subprocess.run([sys.executable, "-m", "pip", "install", "--quiet", "--no-build-isolation",
-                    "--no-deps", "--no-index", "--target", target, folder],
-                   check=True, env=environment)
-    return target
+    environment.pop("PYTHONPATH")
+    subprocess.run([venv / "bin" / "pip", "install", "--quiet", "--no-build-isolation", "--no-deps",
+                    "--no-index", sdist], check=True, env=environment)
+    return next(venv.glob("lib/*/site-packages"))
+
+
+def test_the_archive_of_sources_has_all_that_cmake_needs(sdist, tmp_path):
+    with tarfile.open(sdist) as archive:
+        archive.extractall(tmp_path)
+    root = next(tmp_path.glob("palpate-*"))
+    for folder in ("apps", "bindings", "data", "devices", "include", "io", "run", "src", "stream"):
+        there = {path.relative_to(SOURCE) for path in (SOURCE / folder).rglob("*")
+                 if path.is_file() and "__pycache__" not in path.parts and ".egg-info" not in str(path)}
+        packed = {path.relative_to(root) for path in (root / folder).rglob("*") if path.is_file()}
+        assert there and there == packed, there ^ packed
+    subprocess.run(["cmake", "-S", root, "-B", tmp_path / "build", "-DPALPATE_TESTS=OFF",
+                    "-DPALPATE_VIEWER=OFF", "-DPALPATE_PYTHON=ON",
+                    f"-DPYTHON_EXECUTABLE={sys.executable}"], check=True, stdout=subprocess.DEVNULL)
 
 
 def run_with(installed, folder, prefix=None):

@@ -64,7 +64,7 @@ def test_replay_is_bit_identical_to_the_command_line(tmp_path, case):
     for column in ("t", "hip", "scp", "force", "density", "isovalue", "constrained", "tetrahedra"):
         assert numpy.array_equal(getattr(told, column), getattr(ours, column)), column
     if "tool" in settings:
-        for column in ("torque", "proxy_orientation"):
+        for column in ("torque", "proxy_orientation_xyzw"):
             assert numpy.array_equal(getattr(told, column), getattr(ours, column)), column
         with open(tmp_path / "trace.csv", encoding="ascii") as file:
             contacts = [int(row["contacts"]) for row in csv.DictReader(file)]
@@ -142,7 +142,7 @@ def test_layers_and_penetrability_are_felt():
     ({"position": numpy.zeros((2, 2))}, r"shape \(n, 3\)"),
     ({"position": numpy.full((2, 3), numpy.inf)}, "row 0.*finite"),
     ({"time": [], "position": numpy.zeros((0, 3))}, "at least one"),
-    ({"orientation": [[0, 0, 0, 0], [1, 0, 0, 0]]}, "row 0.*length 1"),
+    ({"orientation_xyzw": [[0, 0, 0, 0], [0, 0, 0, 1]]}, "row 0.*length 1"),
     ({"isovalue": numpy.nan}, "isovalue"),
     ({"poses": True}, "tool"),
     ({"method": "best"}, "exact"),
@@ -157,7 +157,7 @@ def test_bad_input_is_a_value_error_that_says_what_is_wrong(change, words):
 
 def test_a_setting_that_there_is_not_is_a_type_error():
     scene = palpate.scene("torus:16x16x16")
-    with pytest.raises(TypeError, match="no field stifness"):
+    with pytest.raises(TypeError, match="no argument stifness .did you mean stiffness"):
         palpate.replay(palpate.Field(scene.volume), 0.5, [0.0], [[0, 0, 0]], stifness=1)
 
 
@@ -199,7 +199,7 @@ def test_a_trace_is_written_and_read_back_bit_for_bit(settings, tmp_path):
         assert numpy.array_equal(getattr(again, name), getattr(trace, name)), name
     assert again.has_tool == trace.has_tool == ("tool" in settings)
     if again.has_tool:
-        assert numpy.array_equal(again.proxy_orientation, trace.proxy_orientation)
+        assert numpy.array_equal(again.proxy_orientation_xyzw, trace.proxy_orientation_xyzw)
         assert numpy.array_equal(again.torque, trace.torque)
     text = (tmp_path / "trace.csv").read_text()
     assert ("outer_ soft" in text) == ("layers" in settings)

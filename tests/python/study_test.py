@@ -35,7 +35,7 @@ def motion():
 def same(trace, other):
     return all(numpy.array_equal(getattr(trace, name), getattr(other, name))
                for name in ("t", "hip", "scp", "force", "torque", "density", "constrained", "contacts",
-                            "proxy_orientation"))
+                            "proxy_orientation_xyzw"))
 
 
 def on_one_machine(setup, motion, field):
@@ -82,7 +82,7 @@ def test_what_is_there_and_whole_is_kept_and_a_setup_is_added(client, motion, tm
 def test_wrong_names_and_fields_are_refused_before_anything_runs(client, motion, tmp_path):
     with pytest.raises(ValueError, match="names of files"):
         study(client, SOURCE, *motion, {"../up": {}}, str(tmp_path / "out"))
-    with pytest.raises(TypeError, match="no field colour"):
+    with pytest.raises(TypeError, match="no argument colour"):
         study(client, SOURCE, *motion, {"a": {"colour": 1}}, str(tmp_path / "out"))
     with pytest.raises(palpate.InputError, match="gone.nrrd"):
         study(client, str(tmp_path / "gone.nrrd"), *motion, {"a": {}}, str(tmp_path / "out"))

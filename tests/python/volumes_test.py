@@ -1,5 +1,6 @@
 """Volumes and fields of the Python module: shared memory, other kinds of arrays, files, bad input."""
 
+import copy
 import pickle
 
 import nibabel
@@ -176,3 +177,58 @@ def test_a_surface_is_closed_and_its_vertices_lie_on_the_level(tmp_path):
     assert len(palpate.read_mesh(tmp_path / "sphere.ply").triangles) == len(mesh.triangles)
     with pytest.raises(ValueError, match="vertex that there is not"):
         palpate.Mesh(numpy.zeros((2, 3)), [[0, 1, 2]])
+
+
+def same(one, other):
+    """The public, plain members of two objects."""
+    names = [name for name, value in vars(type(one)).items() if isinstance(value, property)]
+    assert names
+    for name in names:
+        a, b = getattr(one, name), getattr(other, name)
+        assert a.array.tobytes() == b.array.tobytes() if isinstance(a, palpate.Volume) else (
+            numpy.array_equal(a, b) if isinstance(a, numpy.ndarray) else a == b), name
+
+
+def test_fields_meshes_samples_and_loaded_volumes_can_be_pickled_and_copied(tmp_path):
+    scene = palpate.scene("torus:16x16x16")
+    path = tmp_path / "torus.nrrd"
+    palpate.write(scene.volume, path)
+    field = palpate.Field(scene.volume, solid="below", background=300, interpolation="linear")
+    editor = palpate.Editor(scene.volume)
+    editor.apply(palpate.Fill((2, 2, 2), (5, 5, 5), 250))
+    pushed = palpate.Samples([(0.0, scene.volume), (0.5, scene.volume)], period=1)
+    for one in (field, palpate.Field(pushed), pushed,
+                palpate.extract(field, 90, normals=True), palpate.load(path),
+                palpate.load("synthetic:torus:16x16x16"), palpate.load("synthetic:beating:8x8x8"),
+                palpate.LoadedVolume(scene.volume, "mine", 40)):
+        again = pickle.loads(pickle.dumps(one))
+        assert type(again) is type(one)
+        same(one, again)
+        same(one, copy.copy(one))
+        same(one, copy.deepcopy(one))
+    points = numpy.random.default_rng(1).uniform(-9, 9, (500, 3))
+    assert numpy.array_equal(palpate.Field(editor.samples).value(points),
+                             pickle.loads(pickle.dumps(palpate.Field(editor.samples))).value(points))
+
+
+def test_default_settings_are_equal():
+    for kind in vars(palpate).values():
+        if isinstance(kind, type) and hasattr(kind, "_fields"):
+            assert kind() == kind() and not kind() != kind(), kind
+
+
+def test_an_orientation_has_its_order_in_its_name_and_is_the_same_everywhere():
+    half = numpy.sqrt(0.5)
+    reading = palpate.DeviceReading(orientation_xyzw=[half, 0, 0, half])
+    assert numpy.allclose(reading.orientation_xyzw, [half, 0, 0, half])
+    with pytest.raises(ValueError, match="length 1"):
+        reading.orientation_xyzw = [2, 0, 0, 0]
+    scene = palpate.scene("sphere:16x16x16")
+    field = palpate.Field(scene.volume)
+    turn = [0.5, -0.5, 0.5, 0.5]
+    renderer = palpate.Renderer(field, scene.isovalue, palpate.RenderSetup(tool="rod:3"))
+    tick = renderer.render(0.001, [20, 0, 0], orientation_xyzw=turn)
+    assert numpy.allclose(tick.hand_orientation_xyzw, turn)
+    trace = palpate.replay(field, scene.isovalue, [0.0, 0.001], [[20, 0, 0], [19, 0, 0]],
+                           orientation_xyzw=[turn, turn], tool="rod:3")
+    assert numpy.allclose(trace.hand_orientation_xyzw, [turn, turn])

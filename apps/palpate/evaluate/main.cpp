@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/options/source_options.hpp"
+#include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/evaluation.hpp"
 #include "apps/palpate/outputs.hpp"
@@ -155,12 +156,13 @@ static void add_evaluate(CLI::App& app) {
         "all runs every experiment and adds report.html, which needs no other file.\n"
         "Exit status 1: a claim does not hold.\n\n"
         "Examples:\n  palpate evaluate drift --output results\n"
-        "  palpate evaluate fall-through --volume head.nrrd@500 --volume synthetic:torus\n"
+        "  palpate evaluate fall-through --volume head.nrrd@34.5 --volume synthetic:torus\n"
         "  palpate evaluate all --quick");
     command->add_option("EXPERIMENT", options->name, "Which experiment, or all")
         ->required()
-        ->check(CLI::IsMember(experiment_names()));
+        ->check(one_of(experiment_names()));
     command->add_option("-o,--output", options->output, "Folder for the results")
+        ->type_name("FOLDER")
         ->capture_default_str();
     command
         ->add_option("--volume", options->volumes,
@@ -175,10 +177,10 @@ static void add_evaluate(CLI::App& app) {
     command
         ->add_option("--method", options->experiment.method,
                      "Proxy method, for experiments that show one")
-        ->check(CLI::IsMember(baselines::method_names()))
+        ->check(one_of(baselines::method_names()))
         ->capture_default_str();
     command->add_option("--seed", options->experiment.seed, "Seed of everything random")
-        ->check(flaw_in_count)
+        ->check(count(largest_count))
         ->capture_default_str();
     command->add_flag("--quick", options->experiment.quick,
                       "Seconds instead of minutes; every claim is checked all the same");

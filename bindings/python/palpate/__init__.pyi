@@ -60,11 +60,11 @@ class DeviceLimits:
 
 class DeviceReading:
     _fields: ClassVar[tuple[str, ...]]
-    def __init__(self, *, position: ArrayLike = ..., orientation: ArrayLike = ..., buttons: int = 0,
+    def __init__(self, *, position: ArrayLike = ..., orientation_xyzw: ArrayLike = ..., buttons: int = 0,
                  age: float = 0.0, status: str = 'starting') -> None: ...
     def __copy__(self) -> Self: ...
     position: NDArray[numpy.float64]
-    orientation: NDArray[numpy.float64]
+    orientation_xyzw: NDArray[numpy.float64]
     buttons: int
     age: float
     status: str
@@ -326,7 +326,7 @@ class Renderer:
     def __init__(self, field: Field, isovalue: Union[float, str], setup: RenderSetup = ...,
                  limits: DeviceLimits = ...,
                  transform: Optional[DeviceTransform] = None) -> None: ...
-    def render(self, time: float, position: ArrayLike, *, orientation: Optional[ArrayLike] = None,
+    def render(self, time: float, position: ArrayLike, *, orientation_xyzw: Optional[ArrayLike] = None,
                valid: bool = True, armed: bool = True, released: bool = False,
                pointing: ArrayLike = ...) -> Tick: ...
     @property
@@ -460,8 +460,6 @@ class Setup:
     loop: bool
     memory_bytes: int
     real_time: bool
-    @staticmethod
-    def live() -> Setup: ...
 
 class Snapshot:
     @property
@@ -570,9 +568,9 @@ class Tick:
     @property
     def force_flags(self) -> int: ...
     @property
-    def hand_orientation(self) -> NDArray[numpy.float64]: ...
+    def hand_orientation_xyzw(self) -> NDArray[numpy.float64]: ...
     @property
-    def proxy_orientation(self) -> NDArray[numpy.float64]: ...
+    def proxy_orientation_xyzw(self) -> NDArray[numpy.float64]: ...
     @property
     def contacts(self) -> int: ...
     @property
@@ -751,8 +749,8 @@ class Trace:
     layer: NDArray[numpy.int32]
     inside: NDArray[numpy.int32]
     torque: NDArray[numpy.float64]
-    hand_orientation: NDArray[numpy.float64]
-    proxy_orientation: NDArray[numpy.float64]
+    hand_orientation_xyzw: NDArray[numpy.float64]
+    proxy_orientation_xyzw: NDArray[numpy.float64]
     contacts: NDArray[numpy.int32]
     summary: dict[str, Any] = ...
     layer_names: tuple[str, ...] = ()
@@ -776,7 +774,7 @@ class Recording:
 def as_volume(data: Any, spacing: Optional[ArrayLike] = None, origin: Optional[ArrayLike] = None,
               direction: Optional[ArrayLike] = None, frame: Optional[int] = None) -> Volume: ...
 def replay(field: Field, isovalue: Union[float, str], time: ArrayLike, position: ArrayLike,
-           orientation: Optional[ArrayLike] = None, *, setup: Optional[RenderSetup] = None,
+           *, orientation_xyzw: Optional[ArrayLike] = None, setup: Optional[RenderSetup] = None,
            path: bool = False, poses: bool = False,
            progress: Optional[Callable[[float], Any]] = None, **settings: Any) -> Trace: ...
 def read_trace(path: _Path) -> Trace: ...

@@ -13,6 +13,8 @@ import weakref
 
 import numpy
 
+from .arguments import unknown
+
 
 def _refuse(self, *args, **keywords):
     raise TypeError("this is a copy, changing it would have no effect: assign a whole new "
@@ -162,12 +164,14 @@ def _made(kind, fields):
     return kind(**fields)
 
 
-def _initializer(raw, fields):
-    def __init__(self, **given):
+def _initializer(raw, kind, fields):
+    def __init__(self, *unnamed, **given):
+        if unnamed:
+            raise TypeError(f"{kind}(): arguments have names here, as in {kind}({fields[0]}=...)")
         raw(self)
         for name in given:
             if name not in fields:
-                raise TypeError(f"no field {name}; there are {', '.join(fields)}")
+                raise TypeError(f"{kind}(): {unknown(name, fields)}")
         for name in fields:
             if name in given:
                 setattr(self, name, given[name])
@@ -206,6 +210,6 @@ def complete(module):
             for name in ("__repr__", "__eq__", "__hash__", "__reduce__"):
                 if name != "__reduce__" or "__getstate__" not in own:
                     setattr(kind, name, vars(_Settings)[name])
-            kind.__init__ = _initializer(kind.__init__, kind._fields)
+            kind.__init__ = _initializer(kind.__init__, kind.__name__, kind._fields)
     for name in ("limit", "stiffness"):
         setattr(module.RenderSetup, name, _alias("force", name, f"The same as force.{name}."))

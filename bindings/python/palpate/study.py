@@ -57,19 +57,22 @@ def _replay(source, options, isovalue, motion, folder, work):
     before = _read(path)
     if before and before[0] == key:
         return True
-    _write(path, key, replay(_field(source, options), isovalue, *motion, setup=setup))
+    time, position, orientation = motion
+    trace = replay(_field(source, options), isovalue, time, position, orientation_xyzw=orientation,
+                   setup=setup)
+    _write(path, key, trace)
     return False
 
 
 def study(client: Client, source: str, isovalue: Union[float, str], time: Any, position: Any,
           setups: Mapping[str, Union[RenderSetup, Mapping[str, Any]]], out: str, *,
-          orientation: Any = None, field: Optional[dict] = None, loading: Optional[dict] = None,
+          orientation_xyzw: Any = None, field: Optional[dict] = None, loading: Optional[dict] = None,
           progress: Progress = None) -> dict[str, Trace]:
     """replay() of one motion under each of the setups, on the workers of a Dask client: a Trace for
     each name, with the bits of one machine (but for update_ns and the times in the summary).
 
     source: what load() reads, with `loading` for it (smooth=1, dequantize=40, ...); field: of Field
-    (solid, background, interpolation). isovalue, time, position, orientation: as for replay().
+    (solid, background, interpolation). isovalue, time, position, orientation_xyzw: as for replay().
     setups: a RenderSetup or its fields by name. out: a folder that gets NAME.npz for each; traces that
     are there already, whole and of the same work, are kept. progress('study', done, all) may raise to
     stop. Raises ValueError, InputError.
@@ -82,9 +85,9 @@ def study(client: Client, source: str, isovalue: Union[float, str], time: Any, p
     made = {name: setup if isinstance(setup, RenderSetup) else RenderSetup(**setup)
             for name, setup in setups.items()}
     motion = [numpy.ascontiguousarray(a, dtype=float) if a is not None else None
-              for a in (time, position, orientation)]
+              for a in (time, position, orientation_xyzw)]
     options = pickle.dumps((loading or {}, field or {}))
-    same = hashlib.sha256(pickle.dumps((__version__, source, seen(source), isovalue, options)))
+    same = hashlib.sha256(pickle.dumps(("xyzw", __version__, source, seen(source), isovalue, options)))
     for array in motion:
         same.update(b"none" if array is None else array.tobytes())
     work = []

@@ -15,11 +15,11 @@ class Trace:
     t [s]; hip and scp: hand and proxy [mm, physical], shape (n, 3); force [N], (n, 3);
     density at the SCP and isovalue [data units]; constrained: bool; tetrahedra: how many the SCP
     moved through; update_ns: time of the proxy update; layer: number of the layer touched, -1:
-    none; inside: layers that the SCP is in; torque [N mm], (n, 3); hand_orientation and
-    proxy_orientation: w, x, y, z, (n, 4); contacts: points of a tool that hold it.
+    none; inside: layers that the SCP is in; torque [N mm], (n, 3); hand_orientation_xyzw and
+    proxy_orientation_xyzw, (n, 4); contacts: points of a tool that hold it.
 
     summary: numbers about all ticks, of a replay. path: (tick, corner [mm]) of the SCP's polyline. poses: (tick,
-    position [mm], orientation) of a tool's proxy. The last two are None unless asked for. nested_layers: so
+    position [mm], orientation x, y, z, w) of a tool's proxy. The last two are None unless asked for. nested_layers: so
     many of the layers, the first ones, are levels; the others are labels.
     """
     t: numpy.ndarray
@@ -34,8 +34,8 @@ class Trace:
     layer: numpy.ndarray
     inside: numpy.ndarray
     torque: numpy.ndarray
-    hand_orientation: numpy.ndarray
-    proxy_orientation: numpy.ndarray
+    hand_orientation_xyzw: numpy.ndarray
+    proxy_orientation_xyzw: numpy.ndarray
     contacts: numpy.ndarray
     summary: dict = dataclasses.field(default_factory=dict)
     layer_names: tuple = ()
@@ -80,12 +80,12 @@ class Trace:
 COLUMNS = [field.name for field in dataclasses.fields(Trace) if field.type is numpy.ndarray]
 
 
-def replay(field, isovalue, time, position, orientation=None, *, setup=None, path=False,
+def replay(field, isovalue, time, position, *, orientation_xyzw=None, setup=None, path=False,
            poses=False, progress=None, **settings):
     """Renders a motion of the hand offline: the same bits as `palpate replay`.
 
     field: Field. isovalue: a number [data units] or '53%'. time [s], rising, shape (n,). position
-    [mm, physical], shape (n, 3). orientation: w, x, y, z, shape (n, 4), of a tool. setup: a
+    [mm, physical], shape (n, 3). orientation_xyzw: shape (n, 4), of a tool. setup: a
     RenderSetup; or its fields as keywords: method='paper', tool='sphere:2', friction=Friction(...), stiffness=0.5. progress(fraction) may raise to stop.
     Runs without the GIL. Returns a Trace.
     """
@@ -93,7 +93,7 @@ def replay(field, isovalue, time, position, orientation=None, *, setup=None, pat
         raise TypeError("give a setup or its fields, not both")
     if setup is None:
         setup = RenderSetup(**settings)
-    return Trace(**_palpate._replay(field, isovalue, time, position, orientation, setup, path,
+    return Trace(**_palpate._replay(field, isovalue, time, position, orientation_xyzw, setup, path,
                                     poses, progress))
 
 
@@ -106,8 +106,8 @@ def read_trace(path):
 
 
 def read_trajectory(path):
-    """A motion of the hand from CSV: (time [s], position [mm], orientation or None). Raises
-    InputError."""
+    """A motion of the hand from CSV: (time [s], position [mm], orientation x, y, z, w or
+    None). Raises InputError."""
     return _palpate._read_trajectory(path)
 
 

@@ -39,6 +39,8 @@ struct LayersPreset {
 };
 /// All of them, by name. Throws InputError if their folder is not found.
 std::vector<LayersPreset> layers_presets();
+/// Their names alone. Empty if their folder is not found.
+std::vector<std::string> layers_names();
 /// A file, or the name of a built-in set. Throws InputError.
 LayersFile layers_named(const std::string& file_or_name);
 

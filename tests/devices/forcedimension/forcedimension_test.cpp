@@ -51,10 +51,10 @@ TEST_F(ForceDimension, options_that_cannot_be_meant_are_refused) {
         return message_of<std::invalid_argument>([&] { open(options); });
     };
     EXPECT_TRUE(
-        contains(wrong(",gripper=yes"), "there are: index, autoinit, centre, simulator, library"));
+        contains(wrong(",gripper=yes"), "use one of index, autoinit, centre, simulator, library"));
     EXPECT_TRUE(contains(wrong(",index=1.5"), "a whole number is needed"));
     EXPECT_TRUE(contains(wrong(",index=-1"), "a number from 0 to 100"));
-    EXPECT_TRUE(contains(wrong(",autoinit=perhaps"), "must be one of yes, no"));
+    EXPECT_TRUE(contains(wrong(",autoinit=perhaps"), "use one of yes, no"));
 }
 
 TEST_F(ForceDimension, the_vendors_simulator_is_a_device_when_asked_for) {

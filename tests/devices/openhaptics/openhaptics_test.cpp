@@ -49,7 +49,7 @@ TEST_F(OpenHaptics, a_library_without_a_function_that_is_needed_is_refused_by_it
 
 TEST_F(OpenHaptics, an_option_that_it_has_not_is_refused) {
     const std::string message = message_of<std::invalid_argument>([] { open(",speed=1"); });
-    EXPECT_TRUE(contains(message, "no option 'speed'; there are: name, reset, library")) << message;
+    EXPECT_TRUE(contains(message, "no option 'speed': use one of name, reset, library")) << message;
 }
 
 TEST_F(OpenHaptics, a_driver_without_a_device_is_told_with_its_words_and_can_be_asked_again) {

@@ -236,10 +236,10 @@ TEST(Profiles, are_found_by_name_and_make_sense) {
     for (const std::string& name : grip_names()) EXPECT_GT(grip(name).damping, 0);
     EXPECT_EQ(
         support::message_of<std::invalid_argument>([] { profile("novint"); }),
-        "there is no device profile 'novint'; there are: omni touch touchx omega3 omega6 omega7 "
-        "sigma7 premium6dof falcon inverse3 inverse3_versegrip");
+        "there is no device profile 'novint': use one of omni, touch, touchx, omega3, omega6, "
+        "omega7, sigma7, premium6dof, falcon, inverse3, inverse3_versegrip");
     EXPECT_EQ(support::message_of<std::invalid_argument>([] { grip("tight"); }),
-              "there is no grip 'tight'; there are: light normal firm");
+              "there is no grip 'tight': use one of light, normal, firm (did you mean light?)");
 }
 
 }  // namespace

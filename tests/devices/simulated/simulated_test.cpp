@@ -357,8 +357,8 @@ TEST(Simulated, options_that_cannot_be_meant_are_refused_in_one_line) {
     const auto refusal = [](const std::string& options) {
         return message_of<std::invalid_argument>([&] { body().open(options); });
     };
-    EXPECT_TRUE(contains(refusal("phantom"), "profile=phantom: must be one of omni, touch"));
-    EXPECT_TRUE(contains(refusal("hand=random"), "must be one of"));
+    EXPECT_TRUE(contains(refusal("phantom"), "profile=phantom: use one of omni, touch"));
+    EXPECT_TRUE(contains(refusal("hand=random"), "use one of"));
     EXPECT_TRUE(contains(refusal("hand=approach"), "hold"));
     EXPECT_TRUE(contains(refusal("grip=tight"), "light, normal, firm"));
     EXPECT_TRUE(contains(refusal("delay=1000"), "from 0 to 100"));

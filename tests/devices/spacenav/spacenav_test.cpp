@@ -71,7 +71,7 @@ TEST_F(Spacenav, options_that_cannot_be_meant_are_refused) {
     const auto wrong = [&](const std::string& options) {
         return message_of<std::invalid_argument>([&] { open(options); });
     };
-    EXPECT_TRUE(contains(wrong(",force=1"), "there are: socket, speed, turn, full"));
+    EXPECT_TRUE(contains(wrong(",force=1"), "use one of socket, speed, turn, full"));
     EXPECT_TRUE(contains(wrong(",speed=0"), "from 1 to 1000 "));
     EXPECT_TRUE(contains(wrong(",full=0"), "from 1 to 10000"));
 }

@@ -1,0 +1,228 @@
+"""Errors about arguments in one line: "Volume(): spacing must be 3 numbers, not 2".
+
+pybind11 lists all that a function accepts, and everything that it was called with. Here the first
+argument that does not fit the function's signature is named instead.
+"""
+
+import difflib
+import functools
+import numbers
+import os
+import re
+
+import numpy
+
+_MARK = re.compile(r"incompatible (function|constructor) arguments")
+_ARRAY = re.compile(r"numpy\.ndarray\[(?:numpy\.)?(\w+)(?:\[(.*)\])?\]")
+
+
+def _split(text):
+    """At commas outside of brackets and quotes."""
+    parts, depth, quote, last = [], 0, "", 0
+    for at, char in enumerate(text):
+        if quote:
+            quote = "" if char == quote else quote
+        elif char in "'\"":
+            quote = char
+        else:
+            depth += (char in "([{<") - (char in ")]}>")
+            if char == "," and depth == 0:
+                parts.append(text[last:at].strip())
+                last = at + 1
+    return [part for part in (*parts, text[last:].strip()) if part]
+
+
+class _Parameter:
+    def __init__(self, text, named_only):
+        head, _, default = text.partition(" = ")
+        self.name, _, self.type = head.partition(": ")
+        self.required, self.named_only = not default, named_only
+
+    def words(self):
+        unnamed = re.fullmatch(r"arg(\d+)", self.name)
+        return f"argument {int(unnamed[1]) + 1}" if unnamed else self.name
+
+
+def _signatures(function):
+    """The parameters of each overload, without self."""
+    found = []
+    for text in re.findall(r"^(?:\d+\. )?\w*\((.*?)\)(?: -> [^\n]*)?$", function.__doc__ or "",
+                           re.MULTILINE | re.DOTALL):
+        parameters, named_only = [], False
+        for part in _split(text):
+            if part == "*":
+                named_only = True
+            elif not part.startswith(("self:", "*args", "**kwargs")):
+                parameters.append(_Parameter(part, named_only))
+        if text != "*args, **kwargs":
+            found.append(parameters)
+    return found
+
+
+def _inside(kind):
+    return _split(kind[kind.index("[") + 1:-1])
+
+
+def _fits(value, kind):
+    if kind.startswith("Optional["):
+        return value is None or _fits(value, _inside(kind)[0])
+    if kind.startswith("Union["):
+        return any(_fits(value, one) for one in _inside(kind))
+    if kind.startswith(("List[", "Sequence[")):
+        return (isinstance(value, (list, tuple, numpy.ndarray))
+                and all(_fits(one, _inside(kind)[0]) for one in value))
+    if kind.startswith("Tuple["):
+        kinds = _inside(kind)
+        return (isinstance(value, (list, tuple)) and len(value) == len(kinds)
+                and all(map(_fits, value, kinds)))
+    if array := _ARRAY.fullmatch(kind):
+        try:
+            got = numpy.asarray(value, dtype=array[1])
+        except (TypeError, ValueError):
+            return False
+        shape = [side.strip() for side in (array[2] or "").split(",") if side.strip()]
+        shape = shape[:1] if shape[1:] == ["1"] else shape
+        return not shape or (len(shape) == got.ndim and all(
+            not side.isdigit() or int(side) == size for side, size in zip(shape, got.shape)))
+    plain = {"numpy.ndarray": numpy.ndarray, "str": str, "bool": bool, "float": numbers.Real,
+             "int": numbers.Integral, "os.PathLike": (str, bytes, os.PathLike), "None": type(None),
+             "dict": dict, "list": list, "tuple": tuple}
+    if kind in plain:
+        return isinstance(value, plain[kind])
+    if kind in ("function", "Callable") or kind.startswith("Callable["):
+        return callable(value)
+    if kind.startswith("palpate::"):  # unknown to Python
+        return False
+    if kind.startswith("palpate."):
+        return kind.rpartition(".")[2] in (one.__name__ for one in type(value).__mro__)
+    return True
+
+
+def _expected(kind):
+    if kind.startswith("Optional["):
+        return f"{_expected(_inside(kind)[0])} or None"
+    if kind.startswith("Union["):
+        return " or ".join(_expected(one) for one in _inside(kind) if not one.startswith("palpate::"))
+    if kind.startswith(("List[", "Sequence[")):
+        return f"a list, each {_expected(_inside(kind)[0])}"
+    if kind.startswith("Tuple["):
+        return f"({', '.join(map(_expected, _inside(kind)))})"
+    if array := _ARRAY.fullmatch(kind):
+        sides = [side.strip() for side in (array[2] or "").split(",") if side.strip()]
+        if not sides:
+            return "an array of numbers"
+        if len(sides) == 1 or sides[1] == "1":
+            return f"{sides[0]} numbers"
+        return f"an array of shape ({', '.join(sides)})"
+    return {"numpy.ndarray": "an array", "str": "text", "bool": "True or False", "float": "a number",
+            "int": "a whole number", "os.PathLike": "a path", "function": "a function"}.get(
+                kind, kind.rpartition(".")[2] if kind.startswith("palpate.") else kind)
+
+
+def _given(value):
+    if isinstance(value, (str, int, float, type(None))):
+        text = repr(value)
+        return text if len(text) <= 40 else text[:37] + "..."
+    shape = f" of shape {value.shape}" if isinstance(value, numpy.ndarray) else ""
+    return type(value).__name__ + shape
+
+
+def unknown(name, names):
+    """What to say about a name that is none of these."""
+    near = difflib.get_close_matches(name, names, 1)
+    return (f"there is no argument {name}" + (f" (did you mean {near[0]}?)" if near else "")
+            + f"; there are: {', '.join(names) or 'none'}")
+
+
+def _names(parameters):
+    return ", ".join(one.words() for one in parameters) or "none"
+
+
+def _flaw(parameters, args, keywords):
+    """How far the arguments fit, and what is wrong then."""
+    named = {one.name for one in parameters}
+    positional = [one for one in parameters if not one.named_only]
+    for name in keywords:
+        if name not in named:
+            return -1, unknown(name, [one.words() for one in parameters])
+    if len(args) > len(positional):
+        return -1, f"{len(args)} arguments are too many; there are: {_names(parameters)}"
+    given = dict(zip((one.name for one in positional), args))
+    for at, one in enumerate(parameters):
+        if one.name in given and one.name in keywords:
+            return at, f"{one.words()} is given twice"
+        if one.name in given or one.name in keywords:
+            value = given.get(one.name, keywords.get(one.name))
+            if not _fits(value, one.type):
+                return at, (one.words(), _expected(one.type), _given(value))
+        elif one.required:
+            return at, f"{one.words()} is missing: {_expected(one.type)}"
+    return len(parameters), None
+
+
+def _problem(function, args, keywords):
+    flaws = [_flaw(parameters, args, keywords) for parameters in _signatures(function)]
+    furthest = max((at for at, flaw in flaws), default=-1)
+    flaws = [flaw for at, flaw in flaws if at == furthest]
+    wrong = [flaw for flaw in flaws if isinstance(flaw, tuple)]
+    if wrong:
+        expected = {}
+        for name, what, _ in wrong:
+            expected.setdefault(name, []).append(what)
+        return (" or ".join(f"{name} must be {' or '.join(dict.fromkeys(kinds))}"
+                            for name, kinds in expected.items()) + f", not {wrong[0][2]}")
+    told = [flaw for flaw in flaws if flaw]
+    if told:
+        return told[0]
+    values = [*map(_given, args), *(f"{name}={_given(value)}" for name, value in keywords.items())]
+    return f"it does not take ({', '.join(values)})"
+
+
+def _told(function, name, is_method):
+    """The function, with errors about its arguments in one line."""
+    @functools.wraps(function)
+    def call(*args, **keywords):
+        try:
+            return function(*args, **keywords)
+        except TypeError as error:
+            if not _MARK.search(str(error)):
+                raise
+        raise TypeError(f"{name}(): " + _problem(function, args[1:] if is_method else args, keywords))
+    return call
+
+
+def _told_setter(setter, name):
+    @functools.wraps(setter)
+    def change(self, value):
+        try:
+            return setter(self, value)
+        except TypeError as error:
+            if not _MARK.search(str(error)):
+                raise
+        kinds = dict.fromkeys(_expected(one[0].type) for one in _signatures(setter))
+        raise TypeError(f"{name} must be {' or '.join(kinds)}, not {_given(value)}")
+    return change
+
+
+def _complete_class(kind):
+    for name, raw in list(vars(kind).items()):
+        if name.startswith("_") and name != "__init__":
+            continue
+        title = kind.__name__ if name == "__init__" else f"{kind.__name__}.{name}"
+        if isinstance(raw, property):
+            if raw.fset:
+                setattr(kind, name, property(raw.fget, _told_setter(raw.fset, title), doc=raw.__doc__))
+        elif isinstance(raw, staticmethod):
+            setattr(kind, name, staticmethod(_told(raw.__func__, title, False)))
+        elif type(raw).__name__ == "instancemethod":
+            setattr(kind, name, _told(raw.__func__, title, True))
+
+
+def complete(module):
+    for name, one in list(vars(module).items()):
+        if isinstance(one, type):
+            _complete_class(one)
+        elif type(one).__name__ == "builtin_function_or_method":
+            setattr(module, name, _told(one, name.lstrip("_"), False))
+        elif type(one).__name__ == "module":
+            complete(one)

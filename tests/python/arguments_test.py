@@ -1,0 +1,113 @@
+"""Wrong arguments: every constructor, function, method and setter names the wrong one and the expected
+type, in one line."""
+
+import inspect
+
+import numpy
+import palpate
+import pytest
+from palpate import arguments
+
+
+class Wrong:
+    """Fits nothing."""
+
+
+def wrapped(owner, title):
+    """(title, function with the signature, what calls it) of all that the module binds there."""
+    for name, one in list(vars(owner).items()):
+        if inspect.ismodule(one):
+            yield from wrapped(one, f"{title}{name}.")
+        elif isinstance(one, type) and one.__module__.startswith("palpate._palpate"):
+            yield from wrapped(one, f"{title}{one.__name__}.")
+        elif isinstance(one, staticmethod) or inspect.isfunction(one):
+            function = one.__func__ if isinstance(one, staticmethod) else one
+            if hasattr(function, "__wrapped__"):
+                yield f"{title}{name}", owner, function, isinstance(one, staticmethod)
+
+
+ALL = list(wrapped(palpate._palpate, ""))
+ACCEPTS_ALL = ("object", "function", "handle", "args", "kwargs")
+
+
+def complaint(call):
+    with pytest.raises((TypeError, ValueError)) as raised:
+        call()
+    return str(raised.value)
+
+
+@pytest.mark.parametrize("title, owner, function, is_static", ALL, ids=[one[0] for one in ALL])
+def test_a_wrong_argument_is_named_in_one_line(title, owner, function, is_static):
+    is_method = isinstance(owner, type) and not is_static
+    for parameters in arguments._signatures(function.__wrapped__):
+        checked = [one for one in parameters if one.type not in ACCEPTS_ALL]
+        required = [one for one in parameters if one.required]
+        for one in checked:
+            if one in required and one is not required[0]:
+                continue  # the first one is named
+            given = {other.name: Wrong() for other in {*required, one} if not other.name.startswith("arg")}
+            if one.name.startswith("arg") or (required and not one.required and required[0] in checked):
+                continue
+            made = owner.__new__(owner) if title.endswith("__init__") else Wrong()
+            self = [made] if is_method else []
+            text = complaint(lambda: function(*self, **given))
+            assert "\n" not in text and len(text) < 400, text
+            assert one.name in text and " must be " in text and "Wrong" in text, text
+
+
+def test_the_walk_sees_the_whole_module():
+    titles = {one[0] for one in ALL}
+    assert {"load", "extract", "Volume.__init__", "Field.value", "command.Isovalue.__init__"} <= titles
+    assert len(titles) > 100
+
+
+SETTERS = [(kind, name) for kind in vars(palpate).values()
+           if isinstance(kind, type) and hasattr(kind, "_fields") for name in kind._fields]
+
+
+@pytest.mark.parametrize("kind, name", SETTERS, ids=[f"{k.__name__}.{n}" for k, n in SETTERS])
+def test_a_wrong_value_of_a_setting_is_named_in_one_line(kind, name):
+    text = complaint(lambda: setattr(kind(), name, Wrong()))
+    assert "\n" not in text and len(text) < 400, text
+    assert name in text and " must be " in text and text.endswith(", not Wrong"), text
+    text = complaint(lambda: kind(**{name: Wrong()}))
+    assert name in text and "\n" not in text
+
+
+def volume():
+    return palpate.Volume(numpy.zeros((2, 2, 2), "f4"))
+
+
+@pytest.mark.parametrize("call, text", [
+    (lambda: palpate.Volume(numpy.zeros((2, 2, 2), "f4"), spacing=2),
+     "Volume(): spacing must be 3 numbers, not 2"),
+    (lambda: palpate.Volume([1]), "Volume(): array must be an array, not list"),
+    (lambda: palpate.RenderSetup(penetrability="threshold"),
+     "RenderSetup.penetrability must be Penetrability or None, not 'threshold'"),
+    (lambda: palpate.Field(3), "Field(): volume must be Volume or samples must be Samples, not 3"),
+    (lambda: palpate.Field(volume(), soild="above"),
+     "Field(): there is no argument soild (did you mean solid?); there are: volume, solid, background, "
+     "interpolation"),
+    (lambda: palpate.Field(), "Field(): volume is missing: Volume"),
+    (lambda: palpate.extract(palpate.Field(volume()), None),
+     "extract(): isovalue must be a number or text, not None"),
+    (lambda: palpate.extract(palpate.Field(volume()), 1, 2),
+     "extract(): 3 arguments are too many; there are: field, isovalue, tolerance, normals, progress"),
+    (lambda: palpate.ForceSettings(limit="x"), "ForceSettings.limit must be a number or None, not 'x'"),
+    (lambda: palpate.Friction(1, 2),
+     "Friction(): arguments have names here, as in Friction(static_coefficient=...)"),
+    (lambda: palpate.replay(3, 1, [0.0], [[0, 0, 0]]), "replay(): field must be Field, not 3"),
+    (lambda: palpate.read_trace(3), "read_trace(): path must be a path, not 3"),
+    (lambda: palpate.Run(3), "Run(): volume must be Volume, LoadedVolume or Store, not int"),
+    (lambda: palpate.Field(volume(), solid="abve"),
+     "solid 'abve': use one of above, below (did you mean above?)"),
+])
+def test_messages_say_what_to_write(call, text):
+    assert complaint(call) == text
+
+
+def test_an_error_inside_a_callback_stays_as_it_is():
+    def progress(fraction):
+        raise TypeError("mine,\nin two lines")
+    with pytest.raises(TypeError, match="mine,\nin two lines"):
+        palpate.extract(palpate.Field(palpate.scene("sphere").volume), 1, progress=progress)
