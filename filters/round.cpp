@@ -3,6 +3,7 @@
 #include "filters/round.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
