@@ -3,14 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdlib>
+#include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "filters/parallel.hpp"
 #include "filters/round.hpp"
-#include "filters/rows.hpp"
 #include "filters/sites.hpp"
+#include "filters/sweep.hpp"
 #include "palpate/filters/dequantize_parts.hpp"
 
 namespace palpate::filters {
@@ -46,8 +49,8 @@ int coarsest_for(double level, const std::function<std::vector<SurfaceSite>(int)
 
 /// Coarse rounds take long waves out of the rounding, and a few too many flatten what is curved.
 int rounds_of(int step, int finest, bool mask) {
-    if (step == 1) return finest;
-    if (step == 2) return 20;
+    if (step == 1) return mask ? finest : (finest + 9) / 10;
+    if (step == 2) return mask ? 20 : 16;
     if (step == 4) return mask ? 10 : 6;
     return 2;
 }
@@ -69,14 +72,111 @@ void check(const DequantizeOptions& options) {
     if (options.threads < 0) throw std::invalid_argument("a number of threads is 0 or more");
 }
 
-std::vector<float> float_samples(const Volume& volume) {
-    std::vector<float> samples(std::size_t(sample_count(volume.geometry())));
-    with_type(volume.type(), [&](auto zero) {
-        const auto own = volume.samples<decltype(zero)>();
-        std::transform(own.begin(), own.end(), samples.begin(),
-                       [](auto value) { return static_cast<float>(value); });
-    });
-    return samples;
+LevelScale scale_of(const DequantizePlan& plan) {
+    return {float(plan.minimum), float(1 / plan.level),
+            float((plan.maximum - plan.minimum) / plan.level)};
+}
+
+/// Whole numbers above the least one.
+template <class T>
+void copy_whole(const T* from, std::size_t count, T least, std::uint16_t* to) {
+    for (std::size_t i = 0; i < count; ++i) to[i] = static_cast<std::uint16_t>(from[i] - least);
+}
+
+/// Samples where they were moved to. `own` are the volume's, or above its least one.
+template <class T>
+void restore(const T* own, double least_own, const std::int16_t* moved, std::size_t count,
+             const DequantizePlan& plan, float* to) {
+    const auto unit = float(plan.level / 65536), offset = float(least_own);
+    const auto least = float(plan.minimum), greatest = float(plan.maximum);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float sample =
+            (static_cast<float>(own[i]) + offset) + static_cast<float>(moved[i]) * unit;
+        to[i] = std::min(std::max(sample, least), greatest);
+    }
+}
+
+/// 4 bytes for each sample of a volume: at first its own value and how far it is moved, slice by
+/// slice, at last the result. So the volume itself is not needed meanwhile.
+class Workspace {
+  public:
+    Workspace(Volume volume, const Parallel& parallel)
+        : geometry_(volume.geometry()),
+          parallel_(parallel),
+          slice_(std::size_t(geometry_.size[0]) * std::size_t(geometry_.size[1])),
+          memory_(static_cast<float*>(
+                      std::calloc(std::size_t(geometry_.size[2]) * slice_, sizeof(float))),
+                  &std::free) {
+        if (!memory_) throw std::bad_alloc();
+        with_type(volume.type(), [&](auto zero) {
+            using T = decltype(zero);
+            if constexpr (std::is_integral_v<T>) {
+                const T* from = volume.samples<T>().data();
+                const T least = static_cast<T>(volume.minimum());
+                parallel_(geometry_.size[2], [&](int z) {
+                    const std::size_t at = std::size_t(z) * slice_;
+                    copy_whole(from + at, slice_, least, whole(z));
+                });
+            } else {
+                floats_ = std::move(volume);
+            }
+        });
+    }
+
+    MovedSamples samples() const {
+        const auto slice = std::ptrdiff_t(slice_);
+        MovedSamples samples{geometry_.size, nullptr, nullptr, 2 * slice, moved(0), 2 * slice};
+        if (floats_) {
+            samples.floats = floats_->samples<float>().data();
+            samples.own_slice = slice;
+        } else {
+            samples.whole = whole(0);
+        }
+        return samples;
+    }
+
+    Volume result(const DequantizePlan& plan) && {
+        parallel_(geometry_.size[2], [&](int z) {
+            std::vector<float> slice(slice_);
+            if (floats_) {
+                const float* own = floats_->samples<float>().data() + std::size_t(z) * slice_;
+                restore(own, 0, moved(z), slice_, plan, slice.data());
+            } else {
+                restore(whole(z), plan.minimum, moved(z), slice_, plan, slice.data());
+            }
+            std::copy(slice.begin(), slice.end(), at(z));
+        });
+        floats_.reset();
+        return {geometry_, SampleType::float32, std::move(memory_),
+                sizeof(float) * slice_ * std::size_t(geometry_.size[2])};
+    }
+
+  private:
+    float* at(int z) const { return memory_.get() + std::size_t(z) * slice_; }
+    std::uint16_t* whole(int z) const { return reinterpret_cast<std::uint16_t*>(at(z)); }
+    std::int16_t* moved(int z) const { return reinterpret_cast<std::int16_t*>(at(z)) + slice_; }
+
+    Geometry geometry_;
+    const Parallel& parallel_;
+    std::size_t slice_;  ///< samples
+    std::shared_ptr<float> memory_;
+    std::optional<Volume> floats_;  ///< they take all of the 4 bytes
+};
+
+/// The samples of a volume without levels.
+Volume as_float32(const Volume& volume) {
+    if (volume.type() == SampleType::float32) return volume;
+    const std::vector<std::int16_t> moved(std::size_t(sample_count(volume.geometry())));
+    return moved_samples(volume, moved, {1, volume.minimum(), volume.maximum(), false, {}});
+}
+
+RoundSettings settings_of(const DequantizePlan& plan, int step) {
+    const double bend = plan.mask ? most_bend_of_mask : most_bend;
+    RoundSettings settings;
+    settings.step = step;
+    settings.half = float(plan.mask ? half_level_of_mask : half_level);
+    if (step > 1) settings.straight = float(bend);
+    return settings;
 }
 
 }  // namespace
@@ -107,31 +207,49 @@ DequantizePlan plan_of(double level, double minimum, double maximum,
     return plan;
 }
 
-void run_rounds(const Volume& volume, std::span<float> state, const DequantizePlan& plan,
+void run_rounds(const VolumePart& part, std::span<std::int16_t> moved, const DequantizePlan& plan,
                 const DequantizePlan::Rounds& rounds, int threads,
-                const std::function<void()>& at_slice) {
-    const double bend = plan.mask ? most_bend_of_mask : most_bend;
-    const double half = plan.mask ? half_level_of_mask : half_level;
-    const RoundSettings settings{.step = rounds.step,
-                                 .half = float(half * plan.level),
-                                 .straight = rounds.step == 1
-                                                 ? std::numeric_limits<float>::infinity()
-                                                 : float(bend * plan.level),
-                                 .least = float(plan.minimum),
-                                 .greatest = float(plan.maximum)};
-    const ForRows rows = rows_in_parallel(threads, volume.geometry().size[0]);
+                const std::function<void(int)>& at_slab) {
+    const Index3& size = part.samples.geometry().size;
+    const std::ptrdiff_t slice = std::ptrdiff_t{size[0]} * size[1];
+    MovedSamples samples{size, nullptr, nullptr, slice, moved.data(), slice};
+    std::vector<std::uint16_t> whole;
+    with_type(part.samples.type(), [&](auto zero) {
+        using T = decltype(zero);
+        const auto own = part.samples.samples<T>();
+        if constexpr (std::is_integral_v<T>) {
+            whole.resize(own.size());
+            copy_whole(own.data(), own.size(), static_cast<T>(plan.minimum), whole.data());
+            samples.whole = whole.data();
+        } else {
+            samples.floats = own.data();
+        }
+    });
+    const Parallel parallel = in_parallel(threads);
+    const LevelScale scale = scale_of(plan);
+    const TerracedBricks bricks = terraced_bricks(samples, scale, plan.mask, part.low, parallel);
     for (int round = 0; round < rounds.count; ++round) {
-        run_round(volume, state, settings, rows, at_slice);
+        run_round(samples, scale, settings_of(plan, rounds.step), bricks, parallel, at_slab);
     }
 }
 
-Volume dequantized(const Volume& volume, const DequantizeOptions& options) {
+Volume moved_samples(const Volume& volume, std::span<const std::int16_t> moved,
+                     const DequantizePlan& plan) {
+    std::vector<float> samples(std::size_t(sample_count(volume.geometry())));
+    if (moved.size() != samples.size()) {
+        throw std::invalid_argument("samples and how far they were moved are of one box");
+    }
+    with_type(volume.type(), [&](auto zero) {
+        const auto own = volume.samples<decltype(zero)>();
+        restore(own.data(), 0, moved.data(), samples.size(), plan, samples.data());
+    });
+    return {volume.geometry(), std::move(samples)};
+}
+
+Volume dequantized(Volume volume, const DequantizeOptions& options) {
     check(options);
     const std::optional<double> level = options.level ? options.level : level_of(volume);
-    if (!level) {
-        if (volume.type() == SampleType::float32) return volume;
-        return {volume.geometry(), float_samples(volume)};
-    }
+    if (!level) return as_float32(volume);
     const VolumePart all_of_it{volume, Index3::Zero(), volume.geometry().size};
     const DequantizePlan plan =
         plan_of(*level, volume.minimum(), volume.maximum(), options,
@@ -140,14 +258,22 @@ Volume dequantized(const Volume& volume, const DequantizeOptions& options) {
     for (const auto& rounds : plan.rounds) all += rounds.count;
     all *= volume.geometry().size[2];
 
-    std::vector<float> state = float_samples(volume);
+    const Parallel parallel = in_parallel(options.threads);
+    Workspace workspace(std::move(volume), parallel);
+    const MovedSamples samples = workspace.samples();
+    const LevelScale scale = scale_of(plan);
+    const TerracedBricks bricks =
+        terraced_bricks(samples, scale, plan.mask, Index3::Zero(), parallel);
     for (const auto& rounds : plan.rounds) {
-        run_rounds(volume, state, plan, rounds, options.threads, [&] {
-            done += 1;
-            if (options.progress) options.progress(done / all);
-        });
+        for (int round = 0; round < rounds.count; ++round) {
+            run_round(samples, scale, settings_of(plan, rounds.step), bricks, parallel,
+                      [&](int slices) {
+                          done += slices;
+                          if (options.progress) options.progress(done / all);
+                      });
+        }
     }
-    return {volume.geometry(), std::move(state)};
+    return std::move(workspace).result(plan);
 }
 
 }  // namespace palpate::filters

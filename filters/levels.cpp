@@ -23,10 +23,10 @@ std::vector<double> values_in(std::span<const T> samples) {
     std::vector<double> values;
     if constexpr (std::is_integral_v<T>) {
         constexpr int lowest = std::numeric_limits<T>::lowest();
-        std::vector<bool> occurs(std::size_t(std::numeric_limits<T>::max() - lowest) + 1);
-        for (const T s : samples) occurs[std::size_t(s - lowest)] = true;
+        std::vector<std::uint8_t> occurs(std::size_t(std::numeric_limits<T>::max() - lowest) + 1);
+        for (const T s : samples) occurs[std::size_t(s - lowest)] = 1;
         for (std::size_t i = 0; i < occurs.size(); ++i) {
-            if (occurs[i]) values.push_back(double(i) + lowest);
+            if (occurs[i] != 0) values.push_back(double(i) + lowest);
         }
     } else {
         std::unordered_set<T> found;

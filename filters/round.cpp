@@ -1,6 +1,5 @@
-// One round of dequantization. Slices a step apart form a chain that no other slice enters, except
-// for the first and the last of the volume, which stand for all beyond them. So a chain needs three
-// slices of what is between its samples and the result, and the volume one copy.
+// One round of dequantization. Slices a step apart form a chain that no other slice enters. A chain
+// is done in slabs, and a slab's result waits beside the samples until the next slab has read them.
 #include "filters/round.hpp"
 
 #include <algorithm>
@@ -8,164 +7,220 @@
 #include <cmath>
 #include <vector>
 
+#include "filters/sweep.hpp"
+
 namespace palpate::filters {
 namespace {
 
-using Slice = std::vector<float>;
+constexpr int strip_rows = 32, most_slices = 32, fewest_slices = 8;
 
-/// out = (a + 2b + c) / 4.
-void binomial(const float* a, const float* b, const float* c, float* out, int count) {
-    for (int i = 0; i < count; ++i) out[i] = 0.25F * (a[i] + 2 * b[i] + c[i]);
+using Result = std::vector<std::int16_t>;
+
+/// u = 2b - Bb, kept within half a level of the volume's sample and inside its range.
+template <class T, bool is_coarse>
+struct MoveRow {
+    const MovedSamples& samples;
+    const LevelScale& scale;
+    const RoundSettings& settings;
+    const TerracedBricks& bricks;
+    const Strip& strip;
+    Result& result;
+
+    PALPATE_INLINE void operator()(const SweptRow& row) const {
+        const int count = strip.end_x - strip.begin_x;
+        const T* own = own_row<T>(samples, row.y, row.z) + strip.begin_x;
+        const std::int16_t* moved = moved_row(samples, row.y, row.z) + strip.begin_x;
+        std::int16_t* __restrict out = result.data() + place(row.y, row.z) + strip.begin_x;
+        const float half = settings.half;
+        const float per_straight = 1 / settings.straight;
+        for (int i = 0; i < count; ++i) {
+            const float sample = in_levels(own[i], scale);
+            const float mean = row.mean[i];
+            const float bend = mean - binomial(row.before[i], row.here[i], row.after[i]);
+            const float low = std::max(-half, -sample), high = std::min(half, scale.top - sample);
+            const float from = static_cast<float>(moved[i]) * moved_unit;
+            float to = mean + bend - sample;
+            if constexpr (is_coarse) {
+                const float part =
+                    std::min(std::max(2 - std::abs(bend) * per_straight, 0.0F), 1.0F);
+                to = from + part * (to - from);
+            }
+            // Adding and taking this rounds to the nearest whole number.
+            constexpr float round = 3 << 22;
+            const float units = std::min(std::max(to, low), high) * (1 / moved_unit);
+            out[i] = static_cast<std::int16_t>(static_cast<int>(units + round - round));
+        }
+        keep_others(row, out);
+    }
+
+    std::ptrdiff_t place(int y, int z) const {
+        const int k = (z - strip.z.at(strip.begin_z)) / strip.z.step;
+        return (std::ptrdiff_t{k} * samples.size[1] + y) * samples.size[0];
+    }
+    /// What is in no terraced brick does not move.
+    void keep_others(const SweptRow& row, std::int16_t* out) const {
+        const std::uint8_t* is_terraced =
+            bricks.row(bricks.brick_of(1, row.y), bricks.brick_of(2, row.z));
+        const int last = bricks.brick_of(0, strip.end_x - 1);
+        for (int brick = bricks.brick_of(0, strip.begin_x); brick <= last; ++brick) {
+            if (is_terraced[brick]) continue;
+            const int from = std::max(bricks.first_of(0, brick), strip.begin_x);
+            const int to = std::min(bricks.first_of(0, brick + 1), strip.end_x);
+            std::fill(out + (from - strip.begin_x), out + (to - strip.begin_x), std::int16_t{0});
+        }
+    }
+};
+
+template <class T, bool is_coarse>
+void move_strip(const MoveRow<T, is_coarse>& move) {
+    sweep<T>(move.samples, move.scale, move.strip, move);
 }
+#ifdef PALPATE_FOR_AVX2
+template <class T, bool is_coarse>
+PALPATE_FOR_AVX2 void move_strip_avx2(const MoveRow<T, is_coarse>& move) {
+    sweep<T>(move.samples, move.scale, move.strip, move);
+}
+#endif
 
-/// The same along a row, over neighbours `step` apart; those beyond its ends count as the ends.
-void binomial_along(const float* row, float* out, int count, int step) {
-    const int inner = std::max(step, count - step);  // from here on the right neighbour is the end
-    const int outer = std::min(step, count);         // up to here the left one
-    const auto near = [&](int i) {
-        const float a = row[std::max(i - step, 0)], c = row[std::min(i + step, count - 1)];
-        out[i] = 0.25F * (a + 2 * row[i] + c);
+/// The strips of this slab that have terraced bricks in them, without long stretches that have not.
+void add_strips(const TerracedBricks& bricks, const Index3& size, Strip slab,
+                std::vector<Strip>& strips) {
+    const auto first = [&](int axis, const Chain& chain, int at) {
+        return bricks.brick_of(axis, chain.at(at));
     };
-    for (int i = 0; i < outer; ++i) near(i);
-    if (inner > step) binomial(row, row + step, row + 2 * step, out + step, inner - step);
-    for (int i = std::min(inner, count); i < count; ++i) near(i);
+    std::vector<std::uint8_t> any(std::size_t(bricks.count()[0]));
+    int before = -1;
+    for (int k = slab.begin_z; k < slab.end_z; ++k) {
+        const int z = first(2, slab.z, k);
+        if (z == before) continue;
+        before = z;
+        int below = -1;
+        for (int j = slab.begin_y; j < slab.end_y; ++j) {
+            const int y = first(1, slab.y, j);
+            if (y == below) continue;
+            below = y;
+            const std::uint8_t* row = bricks.row(y, z);
+            for (std::size_t i = 0; i < any.size(); ++i) any[i] |= row[i];
+        }
+    }
+    const int gap = 1 + slab.y.step / 4;  // [bricks] what a strip smooths beyond its ends
+    for (int brick = 0, count = int(any.size()); brick < count; ++brick) {
+        if (!any[std::size_t(brick)]) continue;
+        int end = brick + 1;
+        for (int i = end; i < std::min(end + gap, count); ++i) {
+            if (any[std::size_t(i)]) end = i + 1;
+        }
+        slab.begin_x = std::max(bricks.first_of(0, brick), 0);
+        slab.end_x = std::min(bricks.first_of(0, end), size[0]);
+        strips.push_back(slab);
+        brick = end;
+    }
 }
 
 class Round {
   public:
-    Round(const Volume& volume, std::span<float> state, const RoundSettings& settings,
-          const ForRows& rows)
-        : volume_(volume),
-          state_(state),
+    Round(const MovedSamples& samples, const LevelScale& scale, const RoundSettings& settings,
+          const TerracedBricks& bricks, const Parallel& parallel)
+        : samples_(samples),
+          scale_(scale),
           settings_(settings),
-          rows_(rows),
-          nx_(volume.geometry().size[0]),
-          ny_(volume.geometry().size[1]),
-          nz_(volume.geometry().size[2]) {
-        for (Slice* slice :
-             {&flat_[0], &flat_[1], &flat_[2], &mean_[0], &mean_[1], &twice_[0], &twice_[1],
-              &twice_[2], &flat_first_, &flat_last_, &twice_first_, &twice_last_}) {
-            slice->resize(std::size_t(nx_) * std::size_t(ny_));
-        }
-    }
+          bricks_(bricks),
+          parallel_(parallel) {}
 
-    void run(const std::function<void()>& at_slice) {
-        keep_border(0, std::min(settings_.step, nz_ - 1), flat_first_, twice_first_);
-        keep_border(nz_ - 1, std::max(nz_ - 1 - settings_.step, 0), flat_last_, twice_last_);
-        for (int first = 0; first < std::min(settings_.step, nz_); ++first) {
-            run_chain(first, at_slice);
+    void run_chain(const Chain& chain, const std::function<void(int)>& at_slab) {
+        const int slices =
+            std::min(chain.size, std::clamp(samples_.size[2] / 8, fewest_slices, most_slices));
+        for (Slab& slab : slabs_) {
+            slab.result.resize(std::size_t(slices) * std::size_t(samples_.size[0]) *
+                               std::size_t(samples_.size[1]));
+            slab.strips.clear();
         }
+        for (int begin = 0; begin < chain.size; begin += slices) {
+            const int end = std::min(begin + slices, chain.size);
+            std::swap(slabs_[0], slabs_[1]);
+            slabs_[0].strips = strips_of(chain, begin, end);
+            for_strips(slabs_[0], [&](const Strip& strip) { move(strip, slabs_[0].result); });
+            for_strips(slabs_[1], [&](const Strip& strip) { put(strip, slabs_[1].result); });
+            at_slab(end - begin);
+        }
+        for_strips(slabs_[0], [&](const Strip& strip) { put(strip, slabs_[0].result); });
     }
 
   private:
-    std::size_t row(int y) const { return std::size_t(y) * std::size_t(nx_); }
-    std::size_t slice(int z) const { return std::size_t(z) * row(ny_); }
+    struct Slab {
+        std::vector<Strip> strips;
+        Result result;
+    };
 
-    /// Row y of `from`, smoothed along y and x, into `to`. `scratch` holds a row.
-    void flatten(const float* from, float* to, int y, float* scratch) const {
-        const int below = std::max(y - settings_.step, 0);
-        const int above = std::min(y + settings_.step, ny_ - 1);
-        binomial(from + row(below), from + row(y), from + row(above), scratch, nx_);
-        binomial_along(scratch, to + row(y), nx_, settings_.step);
+    template <class Work>
+    void for_strips(const Slab& slab, const Work& work) const {
+        parallel_(int(slab.strips.size()),
+                  [&](int i) { work(slab.strips[static_cast<std::size_t>(i)]); });
     }
 
-    void flatten_slice(const float* from, float* to) const {
-        rows_(ny_, [&](int begin, int end) {
-            Slice scratch(std::size_t(nx_), 0.0F);
-            for (int y = begin; y < end; ++y) flatten(from, to, y, scratch.data());
-        });
-    }
-
-    /// What stands for all slices beyond the border at z: smoothed once and twice. `inside` is the
-    /// slice a step inside.
-    void keep_border(int z, int inside, Slice& flat, Slice& twice) {
-        flatten_slice(state_.data() + slice(z), flat.data());
-        flatten_slice(state_.data() + slice(inside), flat_[0].data());
-        binomial(flat.data(), flat.data(), flat_[0].data(), mean_[0].data(), int(row(ny_)));
-        flatten_slice(mean_[0].data(), twice.data());
-    }
-
-    void run_chain(int first, const std::function<void()>& at_slice) {
-        const int count = (nz_ - 1 - first) / settings_.step + 1;
-        const auto state_of = [&](int k) {
-            return state_.data() + slice(first + k * settings_.step);
-        };
-        const auto flat_of = [&](int k) -> Slice& {
-            return k < 0 ? flat_first_ : k == count ? flat_last_ : flat_[std::size_t(k % 3)];
-        };
-        const auto twice_of = [&](int k) -> Slice& {
-            return k < 0 ? twice_first_ : k == count ? twice_last_ : twice_[std::size_t(k % 3)];
-        };
-        const auto mean_of = [&](int k) -> Slice& { return mean_[std::size_t(k % 2)]; };
-        flatten_slice(state_of(0), flat_of(0).data());
-        for (int k = 0; k <= count; ++k) {
-            if (k < count) {
-                rows_(ny_, [&](int begin, int end) {
-                    Slice scratch(std::size_t(nx_), 0.0F);
-                    for (int y = begin; y < end; ++y) {
-                        const std::size_t at = row(y);
-                        if (k + 1 < count) {
-                            flatten(state_of(k + 1), flat_of(k + 1).data(), y, scratch.data());
-                        }
-                        binomial(&flat_of(k - 1)[at], &flat_of(k)[at], &flat_of(k + 1)[at],
-                                 &mean_of(k)[at], nx_);
-                    }
-                });
+    std::vector<Strip> strips_of(const Chain& chain, int begin, int end) const {
+        std::vector<Strip> strips;
+        const int height = samples_.size[1];
+        for (int first = 0; first < std::min(settings_.step, height); ++first) {
+            const Chain rows = chain_of(first, settings_.step, height);
+            for (int y = 0; y < rows.size; y += strip_rows) {
+                const int end_y = std::min(y + strip_rows, rows.size);
+                add_strips(bricks_, samples_.size, {rows, chain, 0, 0, y, end_y, begin, end},
+                           strips);
             }
-            rows_(ny_, [&](int begin, int end) {
-                Slice scratch(std::size_t(nx_), 0.0F);
-                for (int y = begin; y < end; ++y) {
-                    if (k < count)
-                        flatten(mean_of(k).data(), twice_of(k).data(), y, scratch.data());
-                    if (k == 0) continue;
-                    const std::size_t at = row(y);
-                    binomial(&twice_of(k - 2)[at], &twice_of(k - 1)[at], &twice_of(k)[at],
-                             scratch.data(), nx_);
-                    move_row(first + (k - 1) * settings_.step, y, &mean_of(k - 1)[at],
-                             scratch.data());
-                }
-            });
-            if (k > 0) at_slice();
+        }
+        return strips;
+    }
+
+    void move(const Strip& strip, Result& result) const {
+        const bool is_coarse = settings_.step > 1;
+        if (samples_.floats) {
+            is_coarse ? move_as<float, true>(strip, result) : move_as<float, false>(strip, result);
+        } else {
+            is_coarse ? move_as<std::uint16_t, true>(strip, result)
+                      : move_as<std::uint16_t, false>(strip, result);
         }
     }
 
-    /// u = 2b - Bb, kept within half a level of the volume's sample and inside its range.
-    void move_row(int z, int y, const float* mean, const float* twice) const {
-        const std::size_t at = slice(z) + row(y);
-        float* state = state_.data() + at;
-        const float half = settings_.half, per_straight = 1 / settings_.straight;
-        const float least = settings_.least, greatest = settings_.greatest;
-        with_type(volume_.type(), [&](auto zero) {
-            const auto* own = static_cast<const decltype(zero)*>(volume_.data()) + at;
-            for (int i = 0; i < nx_; ++i) {
-                const auto sample = static_cast<float>(own[i]);
-                const float bend = mean[i] - twice[i];
-                const float low = std::max(sample - half, least);
-                const float high = std::min(sample + half, greatest);
-                const float moved = std::min(std::max(mean[i] + bend, low), high);
-                const float part =
-                    std::min(std::max(2 - std::abs(bend) * per_straight, 0.0F), 1.0F);
-                state[i] += part * (moved - state[i]);
-            }
-        });
+    template <class T, bool is_coarse>
+    void move_as(const Strip& strip, Result& result) const {
+        const MoveRow<T, is_coarse> move{samples_, scale_, settings_, bricks_, strip, result};
+#ifdef PALPATE_FOR_AVX2
+        if (__builtin_cpu_supports("avx2")) return move_strip_avx2(move);
+#endif
+        move_strip(move);
     }
 
-    const Volume& volume_;
-    std::span<float> state_;
+    void put(const Strip& strip, const Result& result) const {
+        for (int k = strip.begin_z; k < strip.end_z; ++k) {
+            for (int j = strip.begin_y; j < strip.end_y; ++j) {
+                const int y = strip.y.at(j);
+                const std::ptrdiff_t place =
+                    (std::ptrdiff_t{k - strip.begin_z} * samples_.size[1] + y) * samples_.size[0];
+                std::copy(result.begin() + place + strip.begin_x,
+                          result.begin() + place + strip.end_x,
+                          moved_row(samples_, y, strip.z.at(k)) + strip.begin_x);
+            }
+        }
+    }
+
+    const MovedSamples& samples_;
+    const LevelScale& scale_;
     const RoundSettings& settings_;
-    const ForRows& rows_;
-    int nx_, ny_, nz_;
-    std::array<Slice, 3> flat_;   ///< of the chain's slices k - 1 to k + 1: smoothed in the slice
-    std::array<Slice, 2> mean_;   ///< k - 1, k: smoothed in space
-    std::array<Slice, 3> twice_;  ///< k - 2 to k: that, smoothed in the slice once more
-    Slice flat_first_, flat_last_, twice_first_, twice_last_;
+    const TerracedBricks& bricks_;
+    const Parallel& parallel_;
+    std::array<Slab, 2> slabs_;  ///< the one that is computed, and the one before
 };
 
 }  // namespace
 
-void run_round(const Volume& volume, std::span<float> state, const RoundSettings& settings,
-               const ForRows& rows, const std::function<void()>& at_slice) {
-    Round(volume, state, settings, rows).run(at_slice);
+void run_round(const MovedSamples& samples, const LevelScale& scale, const RoundSettings& settings,
+               const TerracedBricks& bricks, const Parallel& parallel,
+               const std::function<void(int)>& at_slab) {
+    Round round(samples, scale, settings, bricks, parallel);
+    for (int first = 0; first < std::min(settings.step, samples.size[2]); ++first) {
+        round.run_chain(chain_of(first, settings.step, samples.size[2]), at_slab);
+    }
 }
 
 }  // namespace palpate::filters

@@ -4,32 +4,42 @@
 
 #include <functional>
 #include <limits>
-#include <span>
 
-#include "palpate/volume.hpp"
+#include "filters/parallel.hpp"
+#include "filters/terraced_bricks.hpp"
 
 namespace palpate::filters {
 
-/// Calls work(begin, end) for ranges that cover the rows 0 to count - 1, several at the same time.
-/// Returns when all are done.
-using ForRows = std::function<void(int count, const std::function<void(int, int)>& work)>;
-
-struct RoundSettings {
-    int step = 1;  ///< distance of the neighbours that count [samples]
-    /// How far a sample may be from the volume's own [data units].
-    float half = 0.5F;
-    /// A sample keeps its value where one smoothing more would change it by more than this [data
-    /// units]: there the data are not straight over the distance `step`.
-    float straight = 0;
-    /// Bounds of the samples [data units].
-    float least = -std::numeric_limits<float>::infinity();
-    float greatest = std::numeric_limits<float>::infinity();
+/// How samples become numbers that rounds compute with: levels above the least one.
+struct LevelScale {
+    float least = 0;                                     ///< the volume's least sample [data units]
+    float per_level = 1;                                 ///< 1 / the distance between levels
+    float top = std::numeric_limits<float>::infinity();  ///< the greatest sample [levels]
 };
 
-/// Takes `state` (x fastest, as many as the volume's samples) through one round; the formula is in
-/// palpate/filters/dequantize.hpp. `at_slice` is called after every slice, from the calling thread.
-/// The samples are the same, bit for bit, whatever ranges `rows` chooses. Allocates twelve slices.
-void run_round(const Volume& volume, std::span<float> state, const RoundSettings& settings,
-               const ForRows& rows, const std::function<void()>& at_slice);
+struct RoundSettings {
+    int step = 1;       ///< distance of the neighbours that count [samples]
+    float half = 0.5F;  ///< how far a sample may be from the volume's own [levels]
+    /// A sample moves less where one smoothing more would change it by more than this [levels], and
+    /// not at all from twice of it on: there the data are not straight over the distance `step`.
+    float straight = std::numeric_limits<float>::infinity();
+};
+
+/// Takes all samples of terraced bricks through one round; the formula is in
+/// palpate/filters/dequantize.hpp. `at_slab` is called from the calling thread with the number of
+/// slices that were done since the last call. The result is the same, bit for bit, on any number of
+/// threads. Allocates an eighth of `samples.moved`, and 1 MB per thread.
+void run_round(const MovedSamples& samples, const LevelScale& scale, const RoundSettings& settings,
+               const TerracedBricks& bricks, const Parallel& parallel,
+               const std::function<void(int slices)>& at_slab);
+
+/// The bricks of a part of a volume that have terraces: on at least half of the surfaces in them,
+/// rounding alone explains how far the samples (not yet moved) are from smooth ones. In a mask all
+/// bricks that are not constant have terraces. Constant bricks belong to terraces that touch them.
+/// `low`: the part's first sample in the whole volume,
+/// whose bricks begin at 0. Right for bricks that lie in the part with two samples around
+/// them, or end at the volume's border.
+TerracedBricks terraced_bricks(const MovedSamples& samples, const LevelScale& scale, bool mask,
+                               const Index3& low, const Parallel& parallel);
 
 }  // namespace palpate::filters

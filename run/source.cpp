@@ -240,13 +240,13 @@ class Preparation {
 
     bool any() const { return dequantize_ != 0 || smooth_ != 0 || prefilter_; }
 
-    Volume operator()(const Volume& volume, const io::Progress& progress) const {
-        Volume prepared = volume;
+    /// The volume is not kept while it is dequantized, to save memory.
+    Volume operator()(Volume prepared, const io::Progress& progress) const {
         if (dequantize_ != 0) {
             filters::DequantizeOptions options;
             options.rounds = dequantize_;
             options.progress = progress;
-            prepared = filters::dequantized(prepared, options);
+            prepared = filters::dequantized(std::move(prepared), options);
         }
         prepared = smoothed(prepared, smooth_);
         return prefilter_ ? sharpened(prepared) : prepared;
@@ -287,7 +287,7 @@ LoadedVolume load(const Source& source, const io::Progress& progress) {
         loaded.notes.emplace_back(
             "its samples do not lie on levels, so there is no rounding to undo");
     }
-    loaded.volume = prepare(loaded.volume, prepare.preparing(progress));
+    loaded.volume = prepare(std::move(loaded.volume), prepare.preparing(progress));
     if (loaded.sequence.count() == 0) return loaded;
     loaded.sequence.type = loaded.volume.type();
     loaded.sequence.reader = [read = std::move(loaded.sequence.reader), prepare](

@@ -48,17 +48,9 @@ std::string size_text(std::size_t bytes) {
     return b < 1e10 ? fmt::format("{:.1f} MB", b / 1e6) : fmt::format("{:.1f} GB", b / 1e9);
 }
 
-/// "--dequantize: why"; empty where it is not worth it.
-std::string suggestion_of(const std::optional<filters::Terraces>& terraces) {
-    if (!terraces || !terraces->wide()) return {};
-    const bool is_usual = terraces->rounds() == filters::DequantizeOptions{}.rounds;
-    return fmt::format("--dequantize{}: {}", is_usual ? "" : fmt::format("={}", terraces->rounds()),
-                       filters::reason_to_dequantize(*terraces));
-}
-
 nlohmann::ordered_json json_of(const std::optional<filters::Terraces>& terraces) {
     if (!terraces) return nullptr;
-    const std::string suggestion = suggestion_of(terraces);
+    const std::string suggestion = dequantize_suggestion(terraces);
     nlohmann::ordered_json json{{"level", terraces->level},
                                 {"mask", terraces->mask},
                                 {"share", terraces->share},
@@ -228,7 +220,7 @@ void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram
     }
     fmt::print("isovalues    {}\n",
                levels.empty() ? "none: the data are constant" : "try " + levels);
-    const std::string suggestion = suggestion_of(terraces);
+    const std::string suggestion = dequantize_suggestion(terraces);
     if (!suggestion.empty()) fmt::print("terraces     try {}\n", suggestion);
     print_histogram(histogram);
 }

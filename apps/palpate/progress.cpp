@@ -61,4 +61,19 @@ run::LoadedVolume load_for_terminal(const run::Source& source, bool quiet) {
     return loaded;
 }
 
+std::string dequantize_suggestion(const std::optional<filters::Terraces>& terraces) {
+    if (!terraces || !terraces->wide()) return {};
+    const bool is_usual = terraces->rounds() == filters::DequantizeOptions{}.rounds;
+    return fmt::format("--dequantize{}: {}", is_usual ? "" : fmt::format("={}", terraces->rounds()),
+                       filters::reason_to_dequantize(*terraces));
+}
+
+void note_terraces(const run::LoadedVolume& loaded) {
+    const run::Source& source = loaded.source;
+    if (source.dequantize > 0 || source.smooth > 0 || loaded.streamed || loaded.live) return;
+    const std::string suggestion = dequantize_suggestion(filters::terraces_of(loaded.volume));
+    if (suggestion.empty()) return;
+    fmt::print(stderr, "palpate: note: {}: try {}\n", io::without_secrets(loaded.name), suggestion);
+}
+
 }  // namespace palpate::app

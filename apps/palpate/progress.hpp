@@ -2,9 +2,11 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "apps/options/source_options.hpp"
+#include "palpate/filters/dequantize.hpp"
 
 namespace palpate::app {
 
@@ -32,5 +34,11 @@ class ProgressBar {
 /// quiet. Throws as run::load(), and Interrupted.
 run::LoadedVolume load_for_terminal(const run::Source& source, bool quiet);
 run::LoadedVolume load_for_terminal(const SourceOptions& options);
+
+/// "--dequantize: why"; empty where it is not worth it.
+std::string dequantize_suggestion(const std::optional<filters::Terraces>& terraces);
+/// Says on standard error, in a line, that wide terraces will be felt and which option removes
+/// them. Silent for volumes that were dequantized or smoothed, for stores and for live sources.
+void note_terraces(const run::LoadedVolume& loaded);
 
 }  // namespace palpate::app

@@ -380,7 +380,9 @@ void touch(const CLI::App& command, const TouchOptions& options) {
         warn_of_no_effect(command, {"--normal-priority"}, "--unpaced has no thread of its own");
     }
     const auto remote = make_remote(options.igtl, options.igtl_connect, options.source.quiet);
-    auto data = std::make_shared<run::Data>(load_for_terminal(options.source), setup.playback,
+    run::LoadedVolume loaded = load_for_terminal(options.source);
+    if (!options.source.quiet) note_terraces(loaded);
+    auto data = std::make_shared<run::Data>(std::move(loaded), setup.playback,
                                             options.unpaced ? Pace::by_steps : Pace::own_thread);
     auto run = std::make_unique<run::Run>(data, setup);
     warn_of_isovalue(run->field(), run->isovalue());

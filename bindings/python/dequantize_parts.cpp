@@ -4,6 +4,8 @@
 
 #include <pybind11/functional.h>
 
+#include <algorithm>
+
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 
@@ -39,27 +41,32 @@ filters::DequantizePlan plan_of(double level, double minimum, double maximum, in
     });
 }
 
-/// `state` after rounds (step, count); without a state, of the samples themselves.
-Volume rounds_of(const Volume& samples, const std::optional<Volume>& state,
-                 const filters::DequantizePlan& plan,
-                 const std::vector<std::pair<int, int>>& rounds) {
-    std::vector<float> values;
-    if (state) {
-        const auto own = state->samples<float>();
-        values.assign(own.begin(), own.end());
-    } else {
-        with_type(samples.type(), [&](auto zero) {
-            const auto own = samples.samples<decltype(zero)>();
-            values.assign(own.begin(), own.end());
-        });
-    }
-    if (static_cast<std::int64_t>(values.size()) != sample_count(samples.geometry())) {
+/// How far the samples of a part have been moved: of a state, which is what such a call returned.
+std::vector<std::int16_t> moved_of(const Volume& samples, const std::optional<Volume>& state) {
+    std::vector<std::int16_t> moved(static_cast<std::size_t>(sample_count(samples.geometry())));
+    if (!state) return moved;
+    const auto own = state->samples<std::int16_t>();
+    if (own.size() != moved.size()) {
         throw std::invalid_argument("state and samples are of one box");
     }
+    std::ranges::copy(own, moved.begin());
+    return moved;
+}
+
+/// The state after rounds (step, count); without one, of samples that were not moved.
+Volume rounds_of(const Volume& samples, const std::optional<Volume>& state, const Index3& low,
+                 const Index3& whole, const filters::DequantizePlan& plan,
+                 const std::vector<std::pair<int, int>>& rounds) {
+    std::vector<std::int16_t> moved = moved_of(samples, state);
     for (const auto& [step, count] : rounds) {
-        filters::run_rounds(samples, values, plan, {step, count}, 1, [] {});
+        filters::run_rounds({samples, low, whole}, moved, plan, {step, count}, 1, [](int) {});
     }
-    return {samples.geometry(), std::move(values)};
+    return {samples.geometry(), std::move(moved)};
+}
+
+Volume moved_samples(const Volume& samples, const Volume& state,
+                     const filters::DequantizePlan& plan) {
+    return filters::moved_samples(samples, state.samples<std::int16_t>(), plan);
 }
 
 }  // namespace
@@ -99,6 +106,8 @@ void bind_dequantize_parts(py::module_& module) {
     });
     module.def("_sites_of", &sites_of);
     module.def("_rounds_of", &rounds_of, py::call_guard<py::gil_scoped_release>());
+    module.def("_moved_samples", &moved_samples, py::call_guard<py::gil_scoped_release>());
+    module.attr("_TERRACE_REACH") = filters::terrace_reach;
 }
 
 }  // namespace palpate::python

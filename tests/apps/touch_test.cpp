@@ -117,6 +117,24 @@ TEST(Touch, starts_when_the_force_is_small_and_bounds_its_work_by_the_rate) {
     }
 }
 
+TEST(Touch, says_in_a_line_that_wide_terraces_are_felt_unless_they_are_gone) {
+    const ScratchFolder folder;
+    const std::string line =
+        "touch synthetic:cylinder:100x100x30 --type uint8 --headless "
+        "--unpaced --seconds 0.05 --device simulated:hand=tap";
+    const std::string said = "try --dequantize: rounding to levels of 1 makes terraces";
+    const Outcome told = palpate(folder, line);
+    EXPECT_EQ(told.status, 0) << told.err;
+    EXPECT_TRUE(contains(told.err, "palpate: note: synthetic:cylinder")) << told.err;
+    EXPECT_TRUE(contains(told.err, said)) << told.err;
+    for (const std::string other : {" --dequantize", " --smooth 1", " --quiet"}) {
+        const Outcome silent = palpate(folder, line + other);
+        EXPECT_EQ(silent.status, 0) << silent.err;
+        EXPECT_FALSE(contains(silent.err, said)) << silent.err;
+    }
+    EXPECT_FALSE(contains(palpate(folder, "touch " + unpaced + " --seconds 0.05").err, said));
+}
+
 TEST(Touch, ends_when_the_hand_has_finished) {
     const ScratchFolder folder;
     const Outcome done = palpate(

@@ -190,6 +190,41 @@ TEST(Dequantize, changes_next_to_nothing_in_a_scan_with_steep_slopes) {
     EXPECT_LT(turned / area * 180 / std::numbers::pi, 1);
 }
 
+TEST(Dequantize, leaves_what_has_no_terraces_exactly_as_it_is) {
+    support::Random random(3);
+    const auto value = [&](const Index3& at) {
+        const double r = (at.cast<double>() - Vec3(24, 23, 25)).norm();
+        return std::uint8_t(at[0] < 64 ? std::lround(150 - 0.7 * std::min(r, 60.0))
+                                       : 100 + random.below(60));
+    };
+    const Volume before = support::volume_of<std::uint8_t>(scenes::centred({128, 48, 48}), value);
+    const Volume after = dequantized(before);
+    std::int64_t moved = 0, same = 0;
+    for (int k = 0; k < 48; ++k) {
+        for (int j = 0; j < 48; ++j) {
+            for (int i = 0; i < 128; ++i) {
+                const bool stays = after.sample({i, j, k}) == before.sample({i, j, k});
+                if (i < 48) moved += !stays;
+                if (i >= 80) same += stays;
+            }
+        }
+    }
+    EXPECT_GT(moved, 100000);
+    EXPECT_EQ(same, 48 * 48 * 48);
+}
+
+TEST(Dequantize, gives_16_bits_the_same_surface_as_8_bits) {
+    const Volume narrow = ball(48, 15, 1.5, off_grid(48));
+    const Volume wide = support::volume_of<std::uint16_t>(narrow.geometry(), [&](const Index3& at) {
+        return std::uint16_t(40000 + 16 * narrow.sample(at));
+    });
+    const Volume from_8 = dequantized(narrow), from_16 = dequantized(wide);
+    for (int i = 0; i < 48; ++i) {
+        const Index3 at(i, 20, 30);
+        EXPECT_NEAR((from_16.sample(at) - 40000) / 16, from_8.sample(at), 1e-3) << i;
+    }
+}
+
 TEST(Dequantize, gives_the_same_bits_on_any_number_of_threads) {
     const Volume before = scenes::noise(scenes::centred({200, 300, 7}), SampleType::uint8, 9, 4);
     DequantizeOptions options;

@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <tuple>
 
 #include "palpate/filters/dequantize_parts.hpp"
 #include "palpate/scenes/volumes.hpp"
+#include "support/fields.hpp"
+#include "support/random.hpp"
 
 namespace palpate::filters {
 namespace {
@@ -80,23 +83,23 @@ Volume by_parts(const Volume& volume, int edge, const DequantizeOptions& options
     const auto plan = plan_of(level_of(volume).value(), volume.minimum(), volume.maximum(), options,
                               [&](int step) { return sites_by_parts(volume, edge, step); });
     const SampleBox whole{Index3::Zero(), size - Index3::Ones()};
-    std::vector<float> state = floats_of(volume);
+    std::vector<std::int16_t> state(std::size_t(sample_count(volume.geometry())));
     for (const auto& rounds : plan.rounds) {
-        std::vector<float> next(state.size());
+        std::vector<std::int16_t> next(state.size());
         for (const SampleBox& box : boxes(size, edge)) {
-            const SampleBox around = grown(box, rounds.reach(), size);
+            const SampleBox around = grown(box, rounds.reach() + terrace_reach, size);
             const Volume part = part_of(volume, around);
-            std::vector<float> here(std::size_t(sample_count(part.geometry())));
+            std::vector<std::int16_t> here(std::size_t(sample_count(part.geometry())));
             for_each(around, [&](const Index3& at) {
                 here[offset(around, at)] = state[offset(whole, at)];
             });
-            run_rounds(part, here, plan, rounds, 1, [] {});
+            run_rounds({part, around.low, size}, here, plan, rounds, 1, [](int) {});
             for_each(box,
                      [&](const Index3& at) { next[offset(whole, at)] = here[offset(around, at)]; });
         }
         state = std::move(next);
     }
-    return {volume.geometry(), std::move(state)};
+    return moved_samples(volume, state, plan);
 }
 
 void expect_same(const Volume& volume, int edge, const DequantizeOptions& options) {
@@ -113,14 +116,30 @@ TEST(Parts, a_gentle_ball_in_boxes_of_any_size_has_the_bits_of_the_whole) {
     for (const int edge : {8, 13, 64}) expect_same(ball, edge, {.rounds = 5});
 }
 
-TEST(Parts, noise_of_every_type_and_every_coarsest_step_has_the_bits_of_the_whole) {
-    std::uint64_t seed = 5;
-    for (const SampleType type : {SampleType::uint8, SampleType::int16, SampleType::uint16}) {
-        const Volume noise = scenes::noise(scenes::centred({29, 18, 23}), type, seed++, 7);
+TEST(Parts, a_slope_of_every_type_and_every_coarsest_step_has_the_bits_of_the_whole) {
+    const auto sample = [](const Index3& at) { return 20 + (3 * at[0] + 2 * at[1] + at[2]) / 7; };
+    const auto expect_slope = [&](auto zero) {
+        const Volume slope =
+            support::volume_of<decltype(zero)>(scenes::centred({29, 18, 23}), sample);
         for (const int coarsest : {1, 4, 16}) {
-            expect_same(noise, 9, {.rounds = 2, .coarsest = coarsest});
+            expect_same(slope, 9, {.rounds = 12, .coarsest = coarsest});
         }
-    }
+    };
+    expect_slope(std::uint8_t{});
+    expect_slope(std::int16_t{});
+    expect_slope(std::uint16_t{});
+    expect_slope(float{});
+}
+
+TEST(Parts, bricks_with_and_without_terraces_have_the_bits_of_the_whole) {
+    support::Random random(4);
+    const auto sample = [&](const Index3& at) {
+        const double x = at[0] - 40, y = at[1] - 30, z = at[2] - 35;
+        const double r = std::sqrt(x * x + y * y + z * z);
+        return std::uint8_t(r < 30 ? 120 - r : at[0] > 90 ? random.below(60) : 90);
+    };
+    expect_same(support::volume_of<std::uint8_t>(scenes::centred({130, 60, 70}), sample), 37,
+                {.rounds = 10, .coarsest = 2});
 }
 
 TEST(Parts, a_mask_has_the_bits_of_the_whole) {

@@ -1,52 +1,111 @@
-// A round of dequantization against the slow reference, on grids of all shapes and types.
+// A round of dequantization against the slow reference, on grids of all shapes and types, and the
+// choice of bricks.
 #include "filters/round.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "palpate/scenes/volumes.hpp"
 #include "support/dequantize.hpp"
+#include "support/fields.hpp"
+#include "support/random.hpp"
 
 namespace palpate::filters {
 namespace {
 
-/// Ranges of one row, backwards.
-void row_by_row(int count, const std::function<void(int, int)>& work) {
-    for (int row = count; row-- > 0;) work(row, row + 1);
+void backwards(int count, const std::function<void(int)>& work) {
+    for (int i = count; i-- > 0;) work(i);
 }
 
-void expect_round(const Volume& volume, RoundSettings settings) {
-    settings.least = float(volume.minimum());
-    settings.greatest = float(volume.maximum());
-    support::Grid slow = support::grid_of(volume);
-    std::vector<float> fast(slow.samples.begin(), slow.samples.end());
-    int slices = 0;
-    for (int round = 0; round < 3; ++round) {
-        support::dequantize_once(slow, volume, settings.step, settings.half, settings.straight);
-        run_round(volume, fast, settings, &row_by_row, [&] { ++slices; });
+/// The samples of a volume, not moved yet.
+struct Moved {
+    Moved(const Volume& volume, double level)
+        : scale{float(volume.minimum()), float(1 / level), float(volume.range() / level)},
+          moved(std::size_t(sample_count(volume.geometry()))) {
+        const Index3& size = volume.geometry().size;
+        const std::ptrdiff_t slice = std::ptrdiff_t{size[0]} * size[1];
+        samples = {size, nullptr, nullptr, slice, moved.data(), slice};
+        if (volume.type() == SampleType::float32) {
+            samples.floats = volume.samples<float>().data();
+            return;
+        }
+        support::Grid grid = support::grid_of(volume);
+        for (const double s : grid.samples) whole.push_back(std::uint16_t(s - volume.minimum()));
+        samples.whole = whole.data();
     }
-    EXPECT_EQ(slices, 3 * volume.geometry().size[2]);
-    double worst = 0;
-    for (std::size_t i = 0; i < fast.size(); ++i) {
-        worst = std::max(worst, std::abs(fast[i] - slow.samples[i]));
+
+    LevelScale scale;
+    std::vector<std::uint16_t> whole;
+    std::vector<std::int16_t> moved;
+    MovedSamples samples{};
+};
+
+TerracedBricks some_bricks(const Index3& size, const Index3& low, std::uint64_t seed) {
+    TerracedBricks bricks(size, low);
+    support::Random random(seed);
+    const Index3& count = bricks.count();
+    for (int z = 0; z < count[2]; ++z) {
+        for (int y = 0; y < count[1]; ++y) {
+            for (int x = 0; x < count[0]; ++x) bricks.row(y, z)[x] = random.below(3) > 0;
+        }
     }
-    EXPECT_LT(worst, 2e-5 * volume.range()) << volume.geometry().size.transpose() << " "
-                                            << name_of(volume.type()) << " step " << settings.step;
+    return bricks;
 }
+
+/// `settings` in levels of `level`. Whether some samples moved and some, in other bricks, did not.
+void expect_round(const Volume& volume, const RoundSettings& settings, double level,
+                  const Index3& low = Index3::Zero(), int rounds = 2) {
+    Moved fast(volume, level);
+    const Index3& size = volume.geometry().size;
+    const TerracedBricks bricks = some_bricks(size, low, 5);
+    const auto moves = [&](const Index3& at) {
+        return bricks.row(bricks.brick_of(1, at[1]),
+                          bricks.brick_of(2, at[2]))[bricks.brick_of(0, at[0])] != 0;
+    };
+    support::Grid slow = support::grid_of(volume);
+    int slices = 0;
+    for (int round = 0; round < rounds; ++round) {
+        support::dequantize_once(slow, volume, settings.step, settings.half * level,
+                                 settings.straight * level, moves);
+        run_round(fast.samples, fast.scale, settings, bricks, &backwards,
+                  [&](int done) { slices += done; });
+    }
+    EXPECT_EQ(slices, rounds * size[2]);
+    double worst = 0;
+    std::size_t at = 0;
+    slow.for_each([&](const Index3& index) {
+        const double expected = (slow.samples[at] - volume.sample(index)) / level;
+        worst = std::max(worst, std::abs(fast.moved[at] / 65536.0 - expected));
+        if (!moves(index)) {
+            ASSERT_EQ(fast.moved[at], 0) << index.transpose();
+        }
+        ++at;
+    });
+    EXPECT_LT(worst, 2e-4) << size.transpose() << " " << name_of(volume.type()) << " step "
+                           << settings.step;
+}
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
 
 TEST(Round, is_the_formula_on_every_shape_of_grid_and_for_every_step) {
-    constexpr float infinity = std::numeric_limits<float>::infinity();
     std::uint64_t seed = 1;
-    for (const Index3& size : {Index3(1, 1, 1), Index3(2, 1, 3), Index3(1, 9, 2), Index3(7, 5, 9),
-                               Index3(16, 3, 4), Index3(5, 17, 6), Index3(4, 4, 33)}) {
+    for (const Index3& size :
+         {Index3(1, 1, 1), Index3(2, 1, 3), Index3(1, 9, 2), Index3(7, 5, 9), Index3(16, 3, 4),
+          Index3(5, 17, 6), Index3(4, 4, 33), Index3(35, 4, 3), Index3(3, 66, 2)}) {
         for (const int step : {1, 2, 4, 16, 32}) {
             const Volume volume =
                 scenes::noise(scenes::centred(size), SampleType::uint8, seed++, 9);
-            expect_round(volume, {step, 0.5F, infinity});
-            expect_round(volume, {step, 3.0F, 0.7F});
+            expect_round(volume, {step, 0.499F, step == 1 ? infinity : 0.7F}, 1);
         }
     }
+}
+
+TEST(Round, moves_nothing_outside_of_terraced_bricks_wherever_these_begin) {
+    const Volume volume = scenes::noise(scenes::centred({50, 20, 36}), SampleType::uint8, 7, 9);
+    expect_round(volume, {1, 0.4F}, 1, {3, 15, 8}, 1);
+    expect_round(volume, {2, 0.4F, 0.7F}, 1, {16, 1, 31}, 1);
 }
 
 TEST(Round, is_the_formula_for_every_type_of_sample) {
@@ -54,7 +113,39 @@ TEST(Round, is_the_formula_for_every_type_of_sample) {
          {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
         const double amplitude = type == SampleType::uint8 ? 255 : 30000;
         const Volume volume = scenes::noise(scenes::centred({9, 8, 7}), type, 3, amplitude);
-        expect_round(volume, {2, 60.0F, 40.0F});
+        expect_round(volume, {2, 0.5F, 0.7F}, amplitude / 20);
+    }
+}
+
+/// A gentle ramp, then a constant, then noise, each of 48 samples.
+Volume ramp_and_noise() {
+    support::Random random(3);
+    return support::volume_of<std::uint8_t>(scenes::centred({144, 40, 40}), [&](const Index3& at) {
+        if (at[0] >= 96) return std::uint8_t(100 + random.below(40));
+        return std::uint8_t(100 - std::max(0, 48 - at[0]) / 3);
+    });
+}
+
+TEST(TerracedBricks, are_those_of_gentle_slopes_and_of_what_is_constant_beside_them) {
+    const Volume volume = ramp_and_noise();
+    Moved given(volume, 1);
+    const auto bricks = terraced_bricks(given.samples, given.scale, false, {0, 0, 0}, &backwards);
+    for (int z = 0; z < 3; ++z) {
+        for (int y = 0; y < 3; ++y) {
+            const std::vector<int> row(bricks.row(y, z), bricks.row(y, z) + 9);
+            EXPECT_EQ(row, (std::vector{1, 1, 1, 1, 0, 0, 0, 0, 0})) << y << " " << z;
+        }
+    }
+}
+
+TEST(TerracedBricks, are_all_that_a_masks_surface_crosses) {
+    const Volume volume = scenes::box({48, 48, 80}, {20, 20, 20}, {27, 27, 27});
+    Moved given(volume, 255);
+    const auto bricks = terraced_bricks(given.samples, given.scale, true, {0, 0, 0}, &backwards);
+    for (int z = 0; z < 5; ++z) {
+        for (int y = 0; y < 3; ++y) {
+            for (int x = 0; x < 3; ++x) EXPECT_EQ(bricks.row(y, z)[x], z < 3) << y << " " << z;
+        }
     }
 }
 

@@ -9,16 +9,15 @@
 
 namespace palpate::support {
 
-/// A grid of doubles; samples beyond the border count as those on it.
+/// A grid of doubles.
 struct Grid {
     Index3 size;
     std::vector<double> samples;
 
     double& at(const Index3& index) {
-        const Index3 near = index.cwiseMax(0).cwiseMin(size - Index3::Ones());
-        return samples[(std::size_t(near[2]) * std::size_t(size[1]) + std::size_t(near[1])) *
+        return samples[(std::size_t(index[2]) * std::size_t(size[1]) + std::size_t(index[1])) *
                            std::size_t(size[0]) +
-                       std::size_t(near[0])];
+                       std::size_t(index[0])];
     }
     template <class Work>
     void for_each(Work&& work) {
@@ -30,19 +29,35 @@ struct Grid {
     }
 };
 
-/// The 27 neighbours `step` apart, weighted (1 2 1)/4 along each axis.
-inline Grid binomial(Grid grid, int step) {
-    Grid result = grid;
-    grid.for_each([&](const Index3& index) {
-        double sum = 0;
-        for (int n = 0; n < 27; ++n) {
-            const Index3 offset(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-            const Index3 weight = 2 * Index3::Ones() - offset.cwiseAbs();
-            sum += grid.at(index + step * offset) * weight.prod() / 64;
-        }
-        result.at(index) = sum;
-    });
-    return result;
+/// A sample, or what stands for it beyond the border: along each axis the samples `step` apart go
+/// on as a straight line, 2 v(0) - v(k) at -k.
+inline double sample_of(Grid& grid, const Index3& index, int step) {
+    for (int axis = 0; axis < 3; ++axis) {
+        int end = index[axis];
+        while (end < 0) end += step;
+        while (end >= grid.size[axis]) end -= step;
+        if (end == index[axis]) continue;
+        int mirrored = 2 * end - index[axis];
+        while (mirrored >= grid.size[axis]) mirrored -= step;
+        while (mirrored < 0) mirrored += step;
+        Index3 at_end = index, there = index;
+        at_end[axis] = end;
+        there[axis] = mirrored;
+        return 2 * sample_of(grid, at_end, step) - sample_of(grid, there, step);
+    }
+    return grid.at(index);
+}
+
+/// The 27 neighbours `step` apart, weighted (1 2 1)/4 along each axis, of `times` such means.
+inline double binomial(Grid& grid, const Index3& index, int step, int times) {
+    if (times == 0) return sample_of(grid, index, step);
+    double sum = 0;
+    for (int n = 0; n < 27; ++n) {
+        const Index3 offset(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+        const Index3 weight = 2 * Index3::Ones() - offset.cwiseAbs();
+        sum += binomial(grid, index + step * offset, step, times - 1) * weight.prod() / 64;
+    }
+    return sum;
 }
 
 inline Grid grid_of(const Volume& volume) {
@@ -51,19 +66,22 @@ inline Grid grid_of(const Volume& volume) {
     return grid;
 }
 
-/// One round: u = 2b - Bb, within `half` of the volume's samples and within its range. Where b and
-/// Bb differ by more than `straight` it counts less, from twice of it on not at all.
-inline void dequantize_once(Grid& state, const Volume& volume, int step, double half,
-                            double straight) {
-    Grid mean = binomial(state, step);
-    Grid twice = binomial(mean, step);
+/// One round: u = 2b - Bb, within `half` of the volume's samples and within its range, where
+/// moves(index) says so. Where b and Bb differ by more than `straight` it counts less, from twice
+/// of it on not at all.
+template <class Moves>
+void dequantize_once(Grid& state, const Volume& volume, int step, double half, double straight,
+                     const Moves& moves) {
+    Grid before = state;
     state.for_each([&](const Index3& index) {
-        const double own = volume.sample(index), bend = mean.at(index) - twice.at(index);
+        if (!moves(index)) return;
+        const double own = volume.sample(index), mean = binomial(before, index, step, 1);
+        const double bend = mean - binomial(before, index, step, 2);
         const double low = std::max(own - half, volume.minimum());
         const double high = std::min(own + half, volume.maximum());
         const double part = std::clamp(2 - std::abs(bend) / straight, 0.0, 1.0);
         double& value = state.at(index);
-        value += part * (std::clamp(mean.at(index) + bend, low, high) - value);
+        value = std::clamp(value + part * (mean + bend - value), low, high);
     });
 }
 

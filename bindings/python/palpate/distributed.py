@@ -80,7 +80,7 @@ class _Job:
         if stage.startswith("level"):
             return _palpate._GrowingImage(self.folder, self.type, grid, self.ome_version, self.chunk,
                                           self.compression, mark)
-        return _palpate._GrowingImage(self.state(stage), "float32", grid, "0.5", self.chunk, "none", mark)
+        return _palpate._GrowingImage(self.state(stage), "int16", grid, "0.5", self.chunk, "none", mark)
 
     def state(self, stage):
         return str(Path(self.work) / f"{stage}.zarr")
@@ -149,19 +149,23 @@ def _survey(job, block):
 def _dequantize(job, block, number, plan, rounds):
     """A stage of dequantizing: `rounds` of a block, from the stage before."""
     store = job.store()
-    reach = sum(2 * step * count for step, count in rounds)
+    reach = sum(2 * step * count for step, count in rounds) + _palpate._TERRACE_REACH
     around = _grown(block, reach, store.levels[job.level].size)
     samples = store.read(*around, level=job.level)
     state = open_store(job.state(f"state-{number - 1}")).read(*around) if number > 0 else None
-    return _cut(_palpate._rounds_of(samples, state, plan, rounds), around, block)
+    state = _palpate._rounds_of(samples, state, around[0], store.levels[job.level].size, plan, rounds)
+    return _cut(state, around, block)
 
 
 def _finest(job, block, state):
     """A block of the finest level: of the last stage or of the source, smoothed and sharpened."""
-    source = open_store(job.state(state)) if state else job.store()
-    level = 0 if state else job.level
-    around = _grown(block, job.smooth + job.prefilter, source.levels[level].size)
-    volume = smoothed(source.read(*around, level=level), job.smooth)
+    store = job.store()
+    around = _grown(block, job.smooth + job.prefilter, store.levels[job.level].size)
+    volume = store.read(*around, level=job.level)
+    if state:
+        stage, plan = state
+        volume = _palpate._moved_samples(volume, open_store(job.state(stage)).read(*around), plan)
+    volume = smoothed(volume, job.smooth)
     if job.prefilter:
         volume = sharpened(volume)
     own = _cut(volume, around, block)
@@ -284,7 +288,8 @@ class _Conversion:
         return results
 
     def dequantize(self, rounds):
-        """Brings the volume through all stages; the name of the last one, None if there is none."""
+        """Brings the volume through all stages; the name of the last one and the plan, None if there is
+        none."""
         surveys = each_piece(self.client, "survey", functools.partial(_survey, self.job),
                              _blocks(self.grid.size, self.edge), self.progress)
         self.count(surveys)
@@ -299,7 +304,7 @@ class _Conversion:
             self.each(stage, 0, compute)
             if number > 0:
                 self.forget(f"state-{number - 1}")
-        return f"state-{len(stages) - 1}"
+        return f"state-{len(stages) - 1}", plan
 
     def first_stage(self, count):
         """The first stage that is not whole but whose forerunner is."""

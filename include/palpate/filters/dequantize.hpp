@@ -44,8 +44,8 @@ std::optional<Terraces> terraces_of(const Volume& volume);
 std::string reason_to_dequantize(const Terraces& terraces);
 
 struct DequantizeOptions {
-    /// Rounds of step 1, 1 to most_rounds. Coarser steps have their own number. More rounds flatten
-    /// the stair steps of masks further, and change little else.
+    /// Rounds of step 1 for masks, 1 to most_rounds. Other data take a tenth of them, and coarser
+    /// steps have their own number. More rounds flatten the stair steps of masks further.
     int rounds = 40;
     /// The coarsest step [samples], a power of two up to greatest_step. Without it, the largest up
     /// to 16 over which half of the surfaces are straight to within the rounding; for masks 4.
@@ -61,17 +61,19 @@ struct DequantizeOptions {
 };
 
 /// The smoothest samples from which rounding makes the volume's own, as float32: no sample moves by
-/// more than half a level, or beyond the volume's range. Samples beyond the border count as those
-/// on it. If data has no levels (level_of()), the samples do not change.
+/// more than half a level, or beyond the volume's range. Samples in bricks without terraces, and
+/// data without levels (level_of()), keep their values.
 ///
 /// A round of step s, from the coarsest to 1: b = B u, with B the binomial (1 2 1)/4 along each
-/// axis over neighbours s apart; u = 2b - Bb, kept within half a level of the volume's sample. 2B -
+/// axis over neighbours s apart; u = 2b - Bb, kept within half a level of the volume's sample.
+/// Beyond the border, samples s apart go on as a straight line. 2B -
 /// B^2 (Kaiser and Hamming 1977, "twicing" after Tukey) keeps quadratics, so curved surfaces stay
 /// where they are. The box is that of Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces
 /// of binary volumes", for any number of levels.
 ///
-/// Takes 4 bytes a sample besides the volume, and twelve slices. Throws std::invalid_argument for
-/// options out of range, std::bad_alloc.
-Volume dequantized(const Volume& volume, const DequantizeOptions& options = {});
+/// Takes 4 bytes per sample, the result's own, and an eighth of that. The volume is released at the
+/// beginning if the caller has moved it here (not if its samples are floats). Throws
+/// std::invalid_argument for options out of range, std::bad_alloc.
+Volume dequantized(Volume volume, const DequantizeOptions& options = {});
 
 }  // namespace palpate::filters

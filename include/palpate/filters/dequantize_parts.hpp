@@ -3,6 +3,7 @@
 // docs/dequantize.md.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -54,11 +55,20 @@ DequantizePlan plan_of(double level, double minimum, double maximum,
                        const DequantizeOptions& options,
                        const std::function<std::vector<SurfaceSite>(int step)>& sites);
 
-/// Takes `state` (x fastest) through some rounds, on `threads` threads (0: all cores). It begins as
-/// the volume's own samples. In a part of a volume, samples nearer than Rounds::reach() to a border
-/// that is not the volume's are wrong afterwards. `at_slice` is called after each slice.
-void run_rounds(const Volume& volume, std::span<float> state, const DequantizePlan& plan,
+/// Which samples are dequantized depends on others as far away as this, along each axis.
+inline constexpr int terrace_reach = 2 * 16 + 2;
+
+/// Takes the samples of a part through some rounds, on `threads` threads (0: all cores). `moved`
+/// (x fastest, [1/65536 level]) is the distance of each sample from its own value, before and
+/// afterwards. It begins as zeros. Samples nearer than Rounds::reach() + terrace_reach to a border
+/// of the part that is not the volume's are wrong afterwards. `at_slab` is called from the calling
+/// thread, with the number of slices that were done since the last call.
+void run_rounds(const VolumePart& part, std::span<std::int16_t> moved, const DequantizePlan& plan,
                 const DequantizePlan::Rounds& rounds, int threads,
-                const std::function<void()>& at_slice);
+                const std::function<void(int slices)>& at_slab);
+
+/// The moved samples, as float32, as dequantized() returns them.
+Volume moved_samples(const Volume& volume, std::span<const std::int16_t> moved,
+                     const DequantizePlan& plan);
 
 }  // namespace palpate::filters

@@ -1,5 +1,5 @@
-// Rows of slices on several threads, by oneTBB.
-#include "filters/rows.hpp"
+// Pieces of work on several threads, by oneTBB.
+#include "filters/parallel.hpp"
 
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
@@ -11,17 +11,17 @@
 
 namespace palpate::filters {
 
-ForRows rows_in_parallel(int threads, int width) {
+Parallel in_parallel(int threads) {
     const int cores = tbb::info::default_concurrency();  // of more, oneTBB would complain
     const auto arena =
         std::make_shared<tbb::task_arena>(threads == 0 ? cores : std::min(threads, cores));
-    const int rows = std::max(1, grain / width);
-    return [arena, rows](int count, const std::function<void(int, int)>& work) {
-        if (count <= rows || arena->max_concurrency() == 1) return work(0, count);
+    return [arena](int count, const std::function<void(int)>& work) {
         arena->execute([&] {
             tbb::parallel_for(
-                tbb::blocked_range<int>(0, count, std::size_t(rows)),
-                [&](const tbb::blocked_range<int>& range) { work(range.begin(), range.end()); },
+                tbb::blocked_range<int>(0, count),
+                [&](const tbb::blocked_range<int>& range) {
+                    for (int i = range.begin(); i < range.end(); ++i) work(i);
+                },
                 tbb::simple_partitioner());
         });
     };

@@ -1,0 +1,202 @@
+// A sweep along z through a strip of samples: smooths them once and twice, row by row. Intermediate
+// rows stay in the processor's second-level cache.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+
+#include "filters/round.hpp"
+
+// Loops over rows are compiled twice, the second time for processors with AVX2 (without FMA, so
+// both have the same bits). What is called in them has to be part of them. MinGW does not align
+// what it spills.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(_WIN32)
+#define PALPATE_FOR_AVX2 [[gnu::target("avx2")]]
+#endif
+#ifdef __GNUC__
+#define PALPATE_INLINE [[gnu::always_inline]] inline
+#else
+#define PALPATE_INLINE inline
+#endif
+
+namespace palpate::filters {
+
+/// Samples along one axis that are `step` apart: first, first + step, ...
+struct Chain {
+    int first, step, size;
+
+    int at(int i) const { return first + step * std::clamp(i, 0, size - 1); }
+};
+inline Chain chain_of(int first, int step, int size) {
+    return {first, step, (size - 1 - first) / step + 1};
+}
+
+/// What is swept: rows begin_y to end_y - 1 of slices begin_z to end_z - 1, counted along their
+/// chains, and of each row the samples begin_x to end_x - 1.
+struct Strip {
+    Chain y, z;
+    int begin_x, end_x, begin_y, end_y, begin_z, end_z;
+};
+
+/// A row in the result of a sweep. Pointers point to the sample begin_x.
+struct SweptRow {
+    int y, z;                 ///< of the box, not of the chain
+    const float* mean;        ///< b [levels], with a step more at both ends
+    std::ptrdiff_t mean_row;  ///< to the mean of the next row of the chain
+    const float* before;      ///< Bb but for its smoothing along z: of the slice before,
+    const float* here;        ///< of this one,
+    const float* after;       ///< and of the next one
+};
+
+/// (a + 2b + c) / 4
+PALPATE_INLINE float binomial(float a, float b, float c) {
+    return 0.25F * (a + 2 * b + c);
+}
+PALPATE_INLINE void binomial(const float* a, const float* b, const float* c, float* __restrict out,
+                             int count) {
+    for (int i = 0; i < count; ++i) out[i] = binomial(a[i], b[i], c[i]);
+}
+
+/// How far a sample lies above the least one [levels].
+PALPATE_INLINE float in_levels(float own, const LevelScale& scale) {
+    return (own - scale.least) * scale.per_level;
+}
+PALPATE_INLINE float in_levels(std::uint16_t own, const LevelScale& scale) {
+    return static_cast<float>(own) * scale.per_level;
+}
+/// What `moved` of 1 means [levels].
+inline constexpr float moved_unit = 1.0F / 65536;
+
+template <class T>
+const T* own_row(const MovedSamples& samples, int y, int z) {
+    const std::ptrdiff_t at = z * samples.own_slice + std::ptrdiff_t{y} * samples.size[0];
+    if constexpr (std::is_same_v<T, float>)
+        return samples.floats + at;
+    else
+        return samples.whole + at;
+}
+inline std::int16_t* moved_row(const MovedSamples& samples, int y, int z) {
+    return samples.moved + z * samples.moved_slice + std::ptrdiff_t{y} * samples.size[0];
+}
+
+/// The samples begin to end - 1 of a row, as they are moved [levels]. Beyond its ends each chain
+/// goes on as a straight line would: v(-k) = 2 v(0) - v(k).
+template <class T>
+PALPATE_INLINE void load_row(const MovedSamples& samples, const LevelScale& scale, int y, int z,
+                             int step, int begin, int end, float* __restrict out) {
+    const T* own = own_row<T>(samples, y, z);
+    const std::int16_t* moved = samples.moved ? moved_row(samples, y, z) : nullptr;
+    const int size = samples.size[0], from = std::max(begin, 0), to = std::min(end, size);
+    if (moved) {
+        for (int x = from; x < to; ++x) {
+            out[x - begin] = in_levels(own[x], scale) + static_cast<float>(moved[x]) * moved_unit;
+        }
+    } else {
+        for (int x = from; x < to; ++x) out[x - begin] = in_levels(own[x], scale);
+    }
+    const auto value = [&](int x) {
+        return in_levels(own[x], scale) +
+               (moved ? static_cast<float>(moved[x]) * moved_unit : 0.0F);
+    };
+    const auto beyond = [&](int x) {
+        const int first = (x % step + step) % step;
+        if (first >= size) return value(0);  // a chain without samples: of no use
+        const int last = size - 1 - (size - 1 - first) % step, end = x < 0 ? first : last;
+        return 2 * value(end) - value(std::clamp(2 * end - x, first, last));
+    };
+    for (int x = begin; x < from; ++x) out[x - begin] = beyond(x);
+    for (int x = to; x < end; ++x) out[x - begin] = beyond(x);
+}
+
+/// Smooths the rows of a strip: once (b) and, but for z, twice. Rows of each kind follow each other
+/// at the same distance and begin 2 steps before begin_x.
+struct SweepBuffers {
+    explicit SweepBuffers(const Strip& strip, int step)
+        : rows(strip.end_y - strip.begin_y),
+          row(strip.end_x - strip.begin_x + 4 * step),
+          kept(std::size_t(row) * std::size_t(9 * rows + 15)),
+          memory(std::make_unique_for_overwrite<float[]>(kept)) {}
+
+    float* at(int i) { return memory.get() + std::ptrdiff_t{i} * row; }
+    float* loaded(int y) { return at(y + 2); }  // -2 to rows + 1
+    float* flat(int z, int y) { return at(rows + 4 + z % 3 * (rows + 2) + y + 1); }  // -1 to rows
+    float* mean(int z, int y) { return at(4 * rows + 10 + z % 2 * (rows + 2) + y + 1); }
+    float* twice(int z, int y) { return at(6 * rows + 14 + z % 3 * rows + y); }
+    float* scratch() { return at(9 * rows + 14); }
+
+    int rows;
+    std::ptrdiff_t row;
+    std::size_t kept;
+    std::unique_ptr<float[]> memory;
+};
+
+/// A row of a strip, or what stands for it beyond the ends of the chains along y and z.
+template <class T>
+PALPATE_INLINE void load(const MovedSamples& samples, const LevelScale& scale, const Strip& strip,
+                         int y, int z, float* __restrict out, float* __restrict scratch) {
+    const int begin = strip.begin_x - 2 * strip.y.step, end = strip.end_x + 2 * strip.y.step;
+    // out = (2 at the end - mirrored) along y of the same along z
+    const int end_y = std::clamp(y, 0, strip.y.size - 1),
+              end_z = std::clamp(z, 0, strip.z.size - 1);
+    load_row<T>(samples, scale, strip.y.at(end_y), strip.z.at(end_z), strip.y.step, begin, end,
+                out);
+    if (end_y == y && end_z == z) return;
+    const auto add = [&](int at_y, int at_z, float weight) {
+        load_row<T>(samples, scale, strip.y.at(at_y), strip.z.at(at_z), strip.y.step, begin, end,
+                    scratch);
+        for (int i = 0; i < end - begin; ++i) out[i] += weight * scratch[i];
+    };
+    const int mirrored_y = 2 * end_y - y, mirrored_z = 2 * end_z - z;
+    if (end_y != y && end_z != z) {
+        add(end_y, end_z, 3);
+        add(mirrored_y, end_z, -2);
+        add(end_y, mirrored_z, -2);
+        add(mirrored_y, mirrored_z, 1);
+    } else {
+        add(end_y, end_z, 1);
+        add(mirrored_y, mirrored_z, -1);
+    }
+}
+
+/// Calls each(SweptRow) for the rows of a strip, slice by slice.
+template <class T, class Each>
+PALPATE_INLINE void sweep(const MovedSamples& samples, const LevelScale& scale, const Strip& strip,
+                          const Each& each) {
+    const int step = strip.y.step, width = strip.end_x - strip.begin_x;
+    SweepBuffers buffers(strip, step);
+    const int rows = buffers.rows;
+    const auto number = [&](int z) { return z - strip.begin_z + 6; };  // above 0
+    for (int z = strip.begin_z - 2; z < strip.end_z + 2; ++z) {
+        float* const scratch = buffers.scratch();
+        for (int y = -2; y < rows + 2; ++y) {
+            load<T>(samples, scale, strip, strip.begin_y + y, z, buffers.loaded(y), scratch);
+        }
+        const bool has_mean = z >= strip.begin_z;  // of the slice before
+        for (int y = -1; y < rows + 1; ++y) {
+            binomial(buffers.loaded(y - 1), buffers.loaded(y), buffers.loaded(y + 1), scratch,
+                     width + 4 * step);
+            float* const flat = buffers.flat(number(z), y) + step;
+            binomial(scratch, scratch + step, scratch + 2 * step, flat, width + 2 * step);
+            if (!has_mean) continue;
+            binomial(buffers.flat(number(z - 2), y) + step, buffers.flat(number(z - 1), y) + step,
+                     flat, buffers.mean(number(z - 1), y) + step, width + 2 * step);
+        }
+        if (!has_mean) continue;
+        for (int y = 0; y < rows; ++y) {
+            const auto mean = [&](int at) { return buffers.mean(number(z - 1), at) + step; };
+            binomial(mean(y - 1), mean(y), mean(y + 1), scratch, width + 2 * step);
+            binomial(scratch, scratch + step, scratch + 2 * step, buffers.twice(number(z - 1), y),
+                     width);
+            if (z < strip.begin_z + 2) continue;
+            each(SweptRow{strip.y.at(strip.begin_y + y), strip.z.at(z - 2),
+                          buffers.mean(number(z - 2), y) + 2 * step, buffers.row,
+                          buffers.twice(number(z - 3), y), buffers.twice(number(z - 2), y),
+                          buffers.twice(number(z - 1), y)});
+        }
+    }
+}
+
+}  // namespace palpate::filters
