@@ -369,6 +369,11 @@ LiveCommands commands_for(const run::Run& run) {
     return {run.field(), run.isovalue(), run.settings()};
 }
 
+void take_up_brush(run::Run& run, LiveCommands& commands, const std::string& words) {
+    const Request brush = commands.from_words("brush " + words);
+    std::get<DataRequest>(brush)(run.data(), run.field(), run.isovalue());
+}
+
 void touch(const CLI::App& command, const TouchOptions& options) {
     const run::Setup setup = options.setup();
     const std::string flaw = flaw_in_volume_name(options.save);
@@ -390,10 +395,7 @@ void touch(const CLI::App& command, const TouchOptions& options) {
     LiveCommands commands = commands_for(*run);
     std::vector<TimedRequest> requests;
     if (!options.commands.empty()) requests = read_commands(options.commands, commands);
-    if (!options.brush.empty()) {
-        const Request brush = commands.from_words("brush " + options.brush);
-        std::get<DataRequest>(brush)(*data, run->field(), run->isovalue());
-    }
+    if (!options.brush.empty()) take_up_brush(*run, commands, options.brush);
     start_recording(*run, options);
     const DeviceInfo device = run->device();
     stay_awake();
