@@ -12,8 +12,8 @@
 
 #include "io/chunked_image.hpp"
 #include "palpate/io/error.hpp"
-#include "stream/located_file.hpp"
-#include "stream/stores.hpp"
+#include "stream/formats/located_file.hpp"
+#include "stream/formats/stores.hpp"
 
 namespace {
 

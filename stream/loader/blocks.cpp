@@ -1,0 +1,191 @@
+// Decoded pieces of a store; see the header.
+#include "stream/loader/blocks.hpp"
+
+#include <algorithm>
+#include <atomic>
+
+#include "stream/box_bytes.hpp"
+#include "stream/loader/small_threads.hpp"
+
+namespace palpate::stream {
+namespace {
+
+/// Calls `work(place, box)` for each piece of a level that holds samples of `box`.
+template <class Work>
+void for_each_piece(const Level& grid, const SampleBox& box, Work&& work) {
+    const Index3 last = grid.geometry.size - Index3::Ones();
+    const Index3 first = box.low.cwiseQuotient(grid.chunk);
+    const Index3 end = box.high.cwiseQuotient(grid.chunk);
+    for (int k = first[2]; k <= end[2]; ++k) {
+        for (int j = first[1]; j <= end[1]; ++j) {
+            for (int i = first[0]; i <= end[0]; ++i) {
+                const Index3 low = Index3(i, j, k).cwiseProduct(grid.chunk);
+                work(Index3(i, j, k),
+                     SampleBox{low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)});
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void for_all_at_once(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
+    std::atomic<std::size_t> next{0};
+    std::mutex mutex;
+    std::exception_ptr problem;
+    const auto run = [&] {
+        try {
+            for (std::size_t i = next++; i < count; i = next++) work(i);
+        } catch (...) {
+            next = count;
+            const std::scoped_lock lock(mutex);
+            if (!problem) problem = std::current_exception();
+        }
+    };
+    {
+        SmallThreads others;
+        for (int i = 1; i < threads && std::size_t(i) < count; ++i) {
+            others.start([&](const std::stop_token&) { run(); });
+        }
+        run();
+    }
+    if (problem) std::rethrow_exception(problem);
+}
+
+void read_by_pieces(const Store& store, int level, const SampleBox& box, std::span<std::byte> out,
+                    int threads, const std::stop_token& stop,
+                    const std::function<void(double)>& made) {
+    const StoreInfo& info = store.info();
+    std::vector<SampleBox> pieces;
+    for_each_piece(
+        info.levels[static_cast<std::size_t>(level)], box,
+        [&](const Index3&, const SampleBox& piece) {
+            pieces.push_back({piece.low.cwiseMax(box.low), piece.high.cwiseMin(box.high)});
+        });
+    std::atomic<std::size_t> done{0};
+    for_all_at_once(pieces.size(), threads, [&](std::size_t i) {
+        std::vector<std::byte> bytes(bytes_of(pieces[i], info.type));
+        store.read(level, pieces[i], bytes, stop);
+        copy_box(pieces[i], bytes.data(), box, out.data(), size_of(info.type));
+        if (made) made(static_cast<double>(++done) / static_cast<double>(pieces.size()));
+    });
+}
+
+void Blocks::read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
+    if (!keeps(level)) return store_.read(level, box, out, stop);
+    const StoreInfo& info = store_.info();
+    const Level& grid = grid_of(level);
+    for_each_piece(grid, box, [&](const Index3& at, const SampleBox& own) {
+        if (!has(level, at)) block(level, at, own, stop);
+    });
+    for_each_piece(grid, box, [&](const Index3& at, const SampleBox& own) {
+        const Bytes bytes = block(level, at, own, stop);
+        copy_box(own, bytes->data(), box, out.data(), size_of(info.type));
+    });
+}
+
+const Level& Blocks::grid_of(int level) const {
+    return store_.info().levels[static_cast<std::size_t>(level)];
+}
+
+/// False for pieces that are too large, and for rows, which cost nothing to read in parts.
+bool Blocks::keeps(int level) const {
+    const Index3& chunk = grid_of(level).chunk;
+    const SampleBox piece{Index3::Zero(), chunk - Index3::Ones()};
+    const bool is_row = chunk[1] == 1 && chunk[2] == 1;
+    return !is_row && bytes_of(piece, store_.info().type) <= most_bytes_ / 4;
+}
+
+bool Blocks::has_unread(int level, const SampleBox& box) const {
+    bool unread = false;
+    if (!keeps(level)) return unread;
+    for_each_piece(grid_of(level), box,
+                   [&](const Index3& at, const SampleBox&) { unread = unread || !has(level, at); });
+    return unread;
+}
+
+void Blocks::read_one(int level, const SampleBox& box, std::stop_token stop) {
+    bool found = false;
+    for_each_piece(grid_of(level), box, [&](const Index3& at, const SampleBox& own) {
+        if (found || has(level, at)) return;
+        found = true;
+        block(level, at, own, stop);
+    });
+}
+
+/// True for a piece that is kept or that a thread reads now.
+bool Blocks::has(int level, const Index3& at) const {
+    const std::scoped_lock lock(mutex_);
+    return kept_.contains({level, at[0], at[1], at[2]});
+}
+
+Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
+                            std::stop_token stop) {
+    const Key key{level, at[0], at[1], at[2]};
+    std::promise<Bytes> promise;
+    std::shared_future<Bytes> others;
+    {
+        const std::scoped_lock lock(mutex_);
+        const auto found = kept_.find(key);
+        if (found != kept_.end()) {
+            ages_.splice(ages_.begin(), ages_, found->second.age);
+            others = found->second.bytes;
+        } else {
+            ages_.push_front(key);
+            const std::uint64_t size = bytes_of(box, store_.info().type);
+            kept_[key] = {promise.get_future().share(), ages_.begin(), size};
+            bytes_ += size;
+            forget_old(key);
+        }
+    }
+    const auto read = [&] {
+        auto bytes = std::make_shared<std::vector<std::byte>>(bytes_of(box, store_.info().type));
+        store_.read(level, box, *bytes, stop);
+        return bytes;
+    };
+    if (others.valid()) {
+        constexpr std::chrono::milliseconds between{20};
+        while (others.wait_for(between) != std::future_status::ready) {
+            if (stop.stop_requested()) throw Cancelled{};  // the other one may go on for long
+        }
+        if (Bytes bytes = others.get()) return bytes;
+        // It failed; but another caller may have cancelled it, or it began before its cause was
+        // mended.
+        return read();
+    }
+    try {
+        const Bytes bytes = read();
+        promise.set_value(bytes);
+        return bytes;
+    } catch (...) {
+        forget(key);
+        promise.set_value(nullptr);  // an error is the reader's own, never shared by threads
+        throw;
+    }
+}
+
+void Blocks::forget(const Key& key) {
+    const std::scoped_lock lock(mutex_);
+    const auto found = kept_.find(key);
+    if (found == kept_.end()) return;
+    bytes_ -= found->second.size;
+    ages_.erase(found->second.age);
+    kept_.erase(found);
+}
+
+/// Drops the pieces that were not used for longest. Who reads one has its own share of it.
+void Blocks::forget_old(const Key& but) {
+    while (bytes_ > most_bytes_ && ages_.back() != but) {
+        const auto oldest = kept_.find(ages_.back());
+        bytes_ -= oldest->second.size;
+        kept_.erase(oldest);
+        ages_.pop_back();
+    }
+}
+
+std::uint64_t Blocks::bytes() const {
+    const std::scoped_lock lock(mutex_);
+    return bytes_;
+}
+
+}  // namespace palpate::stream
