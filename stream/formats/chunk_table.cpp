@@ -24,11 +24,11 @@ std::optional<io::ChunkPlace> ChunkTable::find(std::span<const std::int64_t> chu
         at =
             at * static_cast<std::size_t>(count[a]) + static_cast<std::size_t>(chunk[a] - first[a]);
     }
-    const std::lock_guard lock(mutex_);
+    const UnpackingRoom::Share own(turn_, 1, stop);
     auto found = pages_.find(page);
     if (found == pages_.end()) {
-        if (stop.stop_requested()) throw Cancelled{};
-        found = pages_.emplace(page, io::locate_chunks(file_, id_, first, count, stop)).first;
+        const UnpackingRoom::Share turn(file_->turn, 1, stop);
+        found = pages_.emplace(page, file_->file.locate(id_, first, count, stop)).first;
         order_.push_back(page);
         if (order_.size() > most_pages) {
             pages_.erase(order_.front());

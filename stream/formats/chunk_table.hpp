@@ -6,7 +6,6 @@
 #include <list>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -14,14 +13,23 @@
 #include <vector>
 
 #include "io/process/located_chunks.hpp"
+#include "stream/formats/unpacking_room.hpp"
 
 namespace palpate::stream {
+
+/// A file that its tables ask about, one thread at a time. Others wait, or are stopped.
+struct LocatedFile {
+    explicit LocatedFile(io::ChunkFile of) : file(std::move(of)) {}
+    io::ChunkFile file;
+    UnpackingRoom turn{1};
+};
 
 /// Safe to use from several threads at a time. Keeps the last pages, at most 24 MiB.
 class ChunkTable {
   public:
     /// `id`: of an array with three axes, the slowest first; `chunks`: so many along each.
-    ChunkTable(io::ChunkFile file, std::string id, std::array<std::int64_t, 3> chunks)
+    ChunkTable(std::shared_ptr<LocatedFile> file, std::string id,
+               std::array<std::int64_t, 3> chunks)
         : file_(std::move(file)), id_(std::move(id)), chunks_(chunks) {}
 
     /// Nothing: the chunk is not stored. The place is what the file says and may be impossible.
@@ -33,11 +41,10 @@ class ChunkTable {
     using PageIndex = std::array<std::int64_t, 3>;
     using Page = std::vector<io::ChunkPlace>;
 
-    io::ChunkFile file_;
+    std::shared_ptr<LocatedFile> file_;
     std::string id_;
     std::array<std::int64_t, 3> chunks_;
-    mutable std::mutex
-        mutex_;  ///< also while the helper looks: the next thread wants the same page
+    mutable UnpackingRoom turn_{1};  ///< of the next thread, for the same page
     mutable std::map<PageIndex, Page> pages_;
     mutable std::list<PageIndex> order_;  ///< of pages_, the oldest first
 };

@@ -15,9 +15,9 @@ namespace {
 /// Of HDF5 and TIFF: with these they say where everything else lies.
 constexpr std::uint64_t bytes_of_head = 64;
 
-ChunkedArray located_array(const io::ImageArray& level, const io::ChunkFile& file) {
+ChunkedArray located_array(const io::ImageArray& level, const std::shared_ptr<LocatedFile>& file) {
     ChunkedArray array;
-    array.folder = file.path.filename().string();
+    array.folder = file->file.path().filename().string();
     array.bytes.stored = level.stored;
     array.bytes.swapped = level.swapped;
     array.bytes.values = level.values;
@@ -41,12 +41,23 @@ ChunkedArray located_array(const io::ImageArray& level, const io::ChunkFile& fil
     return array;
 }
 
+std::shared_ptr<const Store> store_in(std::shared_ptr<const Objects> folder, io::ChunkFile in,
+                                      const StoreOptions& options, const std::stop_token& stop) {
+    const auto file = std::make_shared<LocatedFile>(std::move(in));
+    const io::ChunkedImage image = file->file.describe(options.channel, options.time, stop);
+    return about(file->file.path().string(), [&] {
+        return chunked_store(std::move(folder), located_volume(image, file, options),
+                             options.unpacking);
+    });
+}
+
 }  // namespace
 
-ChunkedVolume located_volume(const io::ChunkedImage& found, const io::ChunkFile& file,
+ChunkedVolume located_volume(const io::ChunkedImage& found,
+                             const std::shared_ptr<LocatedFile>& file,
                              const StoreOptions& options) {
     ChunkedVolume volume;
-    volume.info.address = file.path.string();
+    volume.info.address = file->file.path().string();
     volume.info.format = found.format;
     volume.info.channels = found.channels;
     volume.info.times = found.times;
@@ -69,16 +80,15 @@ ChunkedVolume located_volume(const io::ChunkedImage& found, const io::ChunkFile&
     return volume_of(image, std::move(volume), options);
 }
 
-std::shared_ptr<const Store> open_located(const std::string& path, const StoreOptions& options) {
-    const io::ChunkFile file{path};
-    const io::ChunkedImage image = io::describe_image(file, options.channel, options.time);
-    return about(path, [&] {
-        return chunked_store(folder_objects(file.path.parent_path()),
-                             located_volume(image, file, options), options.unpacking);
-    });
+std::shared_ptr<const Store> open_located(const std::stop_token& stop, const std::string& path,
+                                          const StoreOptions& options) {
+    io::ChunkFile file{path};
+    auto folder = folder_objects(file.path().parent_path());
+    return store_in(std::move(folder), std::move(file), options, stop);
 }
 
-std::shared_ptr<const Store> open_located(std::shared_ptr<const Objects> folder,
+std::shared_ptr<const Store> open_located(const std::stop_token& stop,
+                                          std::shared_ptr<const Objects> folder,
                                           const std::string& name, const StoreOptions& options) {
     const std::string address = folder->name_of(name);
     const auto size = folder->size_of(name);
@@ -86,22 +96,17 @@ std::shared_ptr<const Store> open_located(std::shared_ptr<const Objects> folder,
         throw io::InputError(address + ": is not there, or the server does not tell its size");
     }
     // The first bytes are read each time: a file that was written anew is another one (the cache).
-    const auto head =
-        folder->get({.key = name, .range = ByteRange{0, std::min(*size, bytes_of_head)}}, {});
-    const auto read = [folder, name](std::uint64_t offset, std::span<std::byte> to,
-                                     const std::stop_token& stop) {
-        const auto part = folder->get(
-            {.key = name, .range = ByteRange{offset, to.size()}, .lasting = true}, stop);
-        if (!part || part->size() != to.size()) {
+    (void)folder->get({.key = name, .range = ByteRange{0, std::min(*size, bytes_of_head)}}, stop);
+    const auto read = [folder, name](std::uint64_t offset, std::uint64_t length,
+                                     const std::stop_token& until) {
+        auto part =
+            folder->get({.key = name, .range = ByteRange{offset, length}, .lasting = true}, until);
+        if (!part || part->size() != length) {
             throw io::InputError(folder->name_of(name) + ": is gone, or shorter than it was");
         }
-        std::ranges::copy(*part, to.begin());
+        return *std::move(part);
     };
-    const io::ChunkFile file{address, std::make_shared<io::Mirror>(address, *size, read)};
-    const io::ChunkedImage image = io::describe_image(file, options.channel, options.time);
-    return about(address, [&] {
-        return chunked_store(folder, located_volume(image, file, options), options.unpacking);
-    });
+    return store_in(folder, io::ChunkFile(address, *size, read), options, stop);
 }
 
 }  // namespace palpate::stream

@@ -10,7 +10,7 @@
 namespace palpate::stream {
 
 /// Throws BadMetadata, io::InputError about a choice that there is not.
-ChunkedVolume located_volume(const io::ChunkedImage& found, const io::ChunkFile& file,
-                             const StoreOptions& options);
+ChunkedVolume located_volume(const io::ChunkedImage& found,
+                             const std::shared_ptr<LocatedFile>& file, const StoreOptions& options);
 
 }  // namespace palpate::stream

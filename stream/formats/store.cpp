@@ -127,7 +127,8 @@ std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::
                                         const StoreOptions& options) {
     if (is_remote(address)) {
         if (const auto file = remote_file(address)) {
-            return open_located(remote_objects(file->folder, options, stop), file->name, options);
+            return open_located(stop, remote_objects(file->folder, options, stop), file->name,
+                                options);
         }
         return open_chunked(remote_objects(address, options, stop), address, options);
     }
@@ -135,7 +136,7 @@ std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::
     if (is_chunked_folder(address)) {
         return open_chunked(folder_objects(address), address, options);
     }
-    if (is_located(address, options)) return open_located(address, options);
+    if (is_located(address, options)) return open_located(stop, address, options);
     return open_plain_file(address, options);
 }
 

@@ -18,9 +18,11 @@ std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::
 std::shared_ptr<const Store> open_plain_file(const std::string& path, const StoreOptions& options);
 
 /// HDF5 and tiled TIFF, whose chunks the helper process locates.
-std::shared_ptr<const Store> open_located(const std::string& path, const StoreOptions& options);
+std::shared_ptr<const Store> open_located(const std::stop_token& stop, const std::string& path,
+                                          const StoreOptions& options);
 /// The same for a file `name` of a folder elsewhere.
-std::shared_ptr<const Store> open_located(std::shared_ptr<const Objects> folder,
+std::shared_ptr<const Store> open_located(const std::stop_token& stop,
+                                          std::shared_ptr<const Objects> folder,
                                           const std::string& name, const StoreOptions& options);
 
 /// Zarr or N5 below the objects' root; null if there are no metadata of the format. `address` is
