@@ -79,21 +79,19 @@ class ChunkedStore : public Store {
     void copy_chunk(int level, const Index3& chunk, const SampleBox& box, std::span<std::byte> out,
                     const std::stop_token& stop) const {
         const Index3 size = box.high - box.low + Index3::Ones();
-        for_each_row(level, chunk, box, stop,
-                     [&](const Index3& first, std::span<const std::byte> row) {
-                         const Index3 at = first - box.low;
-                         const std::size_t before =
-                             (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size[1]) +
-                              static_cast<std::size_t>(at[1])) *
-                                 static_cast<std::size_t>(size[0]) +
-                             static_cast<std::size_t>(at[0]);
-                         std::memcpy(out.data() + before * size_of(volume_.info.type), row.data(),
-                                     row.size());
-                     });
+        for_each_row(level, chunk, box, stop, [&](const Index3& first, const auto& put) {
+            const Index3 at = first - box.low;
+            const std::size_t before =
+                (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size[1]) +
+                 static_cast<std::size_t>(at[1])) *
+                    static_cast<std::size_t>(size[0]) +
+                static_cast<std::size_t>(at[0]);
+            put(out.data() + before * size_of(volume_.info.type));
+        });
     }
 
-    /// Calls take(index of the first sample, samples) for each row of a chunk inside `box`. Samples
-    /// that are not finite stay.
+    /// Calls take(index of the first sample, put) for each row of a chunk inside `box`. put(to)
+    /// puts the samples of the row there. Those that are not finite stay.
     template <class Take>
     void for_each_row(int level, const Index3& chunk, const SampleBox& box,
                       const std::stop_token& stop, const Take& take) const {
@@ -108,25 +106,27 @@ class ChunkedStore : public Store {
         const std::uint64_t needed = array.bytes_to_read_chunk();
         if (needed > room_.most()) refuse(level, needed);
         const UnpackingRoom::Share share(room_, needed, stop);
-        const auto bytes = reader.chunk(index_of(array, chunk), stop);
+        auto bytes = reader.chunk(index_of(array, chunk), stop);
         const auto count = static_cast<std::size_t>(high[0] - low[0] + 1);
-        std::vector<std::byte> raw(count * array.bytes.size());
-        std::vector<std::byte> row =
-            bytes ? std::vector<std::byte>(count * size_of(volume_.info.type)) : fill_row(count);
+        const std::size_t each = array.bytes.size(), stride = layout.stride[0];
+        std::vector<std::byte> scattered(stride == 1 ? 0 : count * each);
         for (int z = low[2]; z <= high[2]; ++z) {
             for (int y = low[1]; y <= high[1]; ++y) {
                 const Index3 first(low[0], y, z);
-                if (bytes) {
+                take(first, [&](std::byte* to) {
+                    if (!bytes) return put_fill(count, to);
                     std::size_t from = layout.base;
                     for (std::size_t i = 0; i < 3; ++i) {
                         const auto a = static_cast<Eigen::Index>(i);
                         from += layout.stride[i] * static_cast<std::size_t>(first[a] - corner[a]);
                     }
-                    gather(bytes->data() + from * array.bytes.size(), layout.stride[0],
-                           array.bytes.size(), raw);
-                    array.bytes.unpack(raw, row.data());
-                }
-                take(first, row);
+                    std::byte* const begin = bytes->data() + from * each;
+                    for (std::size_t at = 0; at < scattered.size(); at += each) {
+                        std::memcpy(scattered.data() + at, begin + at * stride, each);
+                    }
+                    array.bytes.unpack(stride == 1 ? std::span(begin, count * each) : scattered,
+                                       to);
+                });
             }
         }
     }
@@ -148,17 +148,6 @@ class ChunkedStore : public Store {
             index[static_cast<std::size_t>(volume_.space[i])] = chunk[static_cast<Eigen::Index>(i)];
         }
         return index;
-    }
-
-    static void gather(const std::byte* from, std::size_t stride, std::size_t each,
-                       std::span<std::byte> row) {
-        if (stride == 1) {
-            std::memcpy(row.data(), from, row.size());
-            return;
-        }
-        for (std::size_t at = 0; at < row.size(); at += each, from += stride * each) {
-            std::memcpy(row.data() + at, from, each);
-        }
     }
 
     /// What takes the place of samples that are not finite. Searched when it is first needed.
@@ -192,7 +181,11 @@ class ChunkedStore : public Store {
         while (!all && taken() > 1 && taken() * in_chunk > most_searched) ++step;
         double least = std::numeric_limits<double>::infinity();
         bool damaged = false;
-        const auto look = [&](const Index3&, std::span<const std::byte> row) {
+        std::vector<std::byte> row;
+        const auto look = [&](const Index3& first, const auto& put) {
+            const int count = std::min(grid.chunk[0], grid.geometry.size[0] - first[0]);
+            row.resize(static_cast<std::size_t>(count) * size_of(volume_.info.type));
+            put(row.data());
             least = std::min<double>(least, finite_samples(volume_.info.type, row).least);
         };
         for (int z = 0; z < chunks[2]; z += step) {
@@ -214,15 +207,13 @@ class ChunkedStore : public Store {
     }
 
     /// Of samples that are not stored. NaN where the fill value is not finite.
-    std::vector<std::byte> fill_row(std::size_t count) const {
-        std::vector<std::byte> row(count * size_of(volume_.info.type));
+    void put_fill(std::size_t count, std::byte* to) const {
         with_type(volume_.info.type, [&](auto zero) {
             const auto value = static_cast<decltype(zero)>(volume_.arrays[0].bytes.fill);
             for (std::size_t i = 0; i < count; ++i) {
-                std::memcpy(row.data() + i * sizeof value, &value, sizeof value);
+                std::memcpy(to + i * sizeof value, &value, sizeof value);
             }
         });
-        return row;
     }
 
     std::shared_ptr<const Objects> objects_;

@@ -71,6 +71,22 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
     });
 }
 
+std::shared_ptr<Pieces> shared_pieces() {
+    return std::make_shared<Pieces>();
+}
+
+Blocks::Blocks(const Store& store, std::uint64_t most_bytes, std::shared_ptr<Pieces> pieces,
+               For whom)
+    : store_(store),
+      most_bytes_(most_bytes),
+      pieces_(pieces ? std::move(pieces) : shared_pieces()),
+      whom_(whom) {}
+
+Blocks::~Blocks() {
+    const std::scoped_lock lock(pieces_->mutex_);
+    for (const Key& key : ages_) pieces_->kept_.erase(key);
+}
+
 void Blocks::read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
     if (!keeps(level)) return store_.read(level, box, out, stop);
     const StoreInfo& info = store_.info();
@@ -115,8 +131,8 @@ void Blocks::read_one(int level, const SampleBox& box, std::stop_token stop) {
 
 /// True for a piece that is kept or that a thread reads now.
 bool Blocks::has(int level, const Index3& at) const {
-    const std::scoped_lock lock(mutex_);
-    return kept_.contains({level, at[0], at[1], at[2]});
+    const std::scoped_lock lock(pieces_->mutex_);
+    return pieces_->kept_.contains({level, at[0], at[1], at[2]});
 }
 
 Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
@@ -125,18 +141,18 @@ Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
     std::promise<Bytes> promise;
     std::shared_future<Bytes> others;
     {
-        const std::scoped_lock lock(mutex_);
-        const auto found = kept_.find(key);
-        if (found != kept_.end()) {
-            ages_.splice(ages_.begin(), ages_, found->second.age);
+        const std::scoped_lock lock(pieces_->mutex_);
+        const auto found = pieces_->kept_.find(key);
+        if (found != pieces_->kept_.end()) {
+            use(found->second);
             others = found->second.bytes;
         } else {
             ages_.push_front(key);
             const std::uint64_t size = bytes_of(box, store_.info().type);
-            kept_[key] = {promise.get_future().share(), ages_.begin(), size};
+            pieces_->kept_[key] = {promise.get_future().share(), ages_.begin(), size, this};
             bytes_ += size;
-            forget_old(key);
         }
+        forget_old(key);
     }
     const auto read = [&] {
         auto bytes = std::make_shared<std::vector<std::byte>>(bytes_of(box, store_.info().type));
@@ -164,27 +180,37 @@ Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
     }
 }
 
-void Blocks::forget(const Key& key) {
-    const std::scoped_lock lock(mutex_);
-    const auto found = kept_.find(key);
-    if (found == kept_.end()) return;
-    bytes_ -= found->second.size;
-    ages_.erase(found->second.age);
-    kept_.erase(found);
+/// Needs the lock. Makes a piece the newest, and a hand's own.
+void Blocks::use(Kept& kept) {
+    if (kept.owner != this && (whom_ == For::eyes || kept.owner->whom_ == For::hands)) return;
+    ages_.splice(ages_.begin(), kept.owner->ages_, kept.age);
+    kept.owner->bytes_ -= kept.size;
+    kept.owner = this;
+    bytes_ += kept.size;
 }
 
-/// Drops the pieces that were not used for longest. Who reads one has its own share of it.
+void Blocks::forget(const Key& key) {
+    const std::scoped_lock lock(pieces_->mutex_);
+    const auto found = pieces_->kept_.find(key);
+    if (found == pieces_->kept_.end()) return;
+    found->second.owner->bytes_ -= found->second.size;
+    found->second.owner->ages_.erase(found->second.age);
+    pieces_->kept_.erase(found);
+}
+
+/// Needs the lock. Drops the own pieces that were not used for longest. Who reads one has its own
+/// share of it.
 void Blocks::forget_old(const Key& but) {
     while (bytes_ > most_bytes_ && ages_.back() != but) {
-        const auto oldest = kept_.find(ages_.back());
+        const auto oldest = pieces_->kept_.find(ages_.back());
         bytes_ -= oldest->second.size;
-        kept_.erase(oldest);
+        pieces_->kept_.erase(oldest);
         ages_.pop_back();
     }
 }
 
 std::uint64_t Blocks::bytes() const {
-    const std::scoped_lock lock(mutex_);
+    const std::scoped_lock lock(pieces_->mutex_);
     return bytes_;
 }
 

@@ -136,7 +136,7 @@ DetailReader::DetailReader(std::shared_ptr<const Store> store, Volume overview,
       overview_(std::move(overview)),
       settings_(std::move(settings)),
       made_(std::move(made)),
-      blocks_(std::make_unique<Blocks>(*store_, settings_.memory)) {
+      blocks_(std::make_unique<Blocks>(*store_, settings_.memory, settings_.pieces, For::eyes)) {
     for (int i = 0; i < std::max(1, settings_.threads); ++i) {
         threads_.emplace_back([this](const std::stop_token& stop) { run(stop); });
     }

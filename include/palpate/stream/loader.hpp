@@ -21,7 +21,12 @@ namespace palpate::stream {
 
 class Blocks;
 class BrickMemory;
+class Pieces;
 class SmallThreads;
+
+/// For the decoded pieces of one store. Its readers for hands and for eyes share them, so that each
+/// piece is fetched once.
+std::shared_ptr<Pieces> shared_pieces();
 
 inline constexpr std::int64_t overview_samples = std::int64_t{1} << 21;
 
@@ -41,6 +46,7 @@ struct BrickLoaderSettings {
     /// `memory` bounds all that the process takes, the program itself included; but a hand always
     /// has 64 bricks.
     bool whole_process = false;
+    std::shared_ptr<Pieces> pieces = {};  ///< of this store. Empty: its own
 };
 
 /// The samples of a level before any of it is in memory. Throws std::invalid_argument for a level
