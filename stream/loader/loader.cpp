@@ -1,5 +1,5 @@
 // The loader's threads: which brick comes next, which one goes, and what is published.
-#include "palpate/stream/loader.hpp"
+#include "stream/loader/brick_loader.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,7 @@
 
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
-#include "stream/loader/blocks.hpp"
-#include "stream/loader/brick_memory.hpp"
 #include "stream/loader/interest.hpp"
-#include "stream/loader/small_threads.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -84,8 +81,8 @@ std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& o
                                            range.minimum, range.maximum);
 }
 
-BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
-                         const BrickLoaderSettings& settings)
+BrickLoader::Parts::Parts(std::shared_ptr<const Store> store, Volume overview,
+                          const BrickLoaderSettings& settings)
     : store_(std::move(store)),
       settings_(settings),
       overview_(std::move(overview)),
@@ -102,9 +99,7 @@ BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
     }
 }
 
-BrickLoader::~BrickLoader() = default;
-
-void BrickLoader::look(std::span<const Interest> hands, Clock::time_point now) {
+void BrickLoader::Parts::look(std::span<const Interest> hands, Clock::time_point now) {
     double seconds = 0;
     {
         const std::scoped_lock lock(mutex_);
@@ -120,12 +115,12 @@ void BrickLoader::look(std::span<const Interest> hands, Clock::time_point now) {
 }
 
 /// Needs the lock. Threads without a job look again.
-void BrickLoader::wake() {
+void BrickLoader::Parts::wake() {
     ++changes_;
     changed_.notify_all();
 }
 
-std::optional<BrickVersion> BrickLoader::take() {
+std::optional<BrickVersion> BrickLoader::Parts::take() {
     const std::scoped_lock lock(mutex_);
     if (events_.empty()) return std::nullopt;
     std::vector<ResidentBricks::Change> changes;
@@ -141,7 +136,7 @@ std::optional<BrickVersion> BrickLoader::take() {
     return version;
 }
 
-void BrickLoader::wait_for(const Vec3& centre, double radius, std::stop_token stop) {
+void BrickLoader::Parts::wait_for(const Vec3& centre, double radius, const std::stop_token& stop) {
     std::vector<Index3> needed = bricks_round(geometry_, centre, radius);
     const std::size_t room = most_bricks_ - most_bricks_ / 8;
     if (needed.size() > room) {
@@ -172,7 +167,7 @@ void BrickLoader::wait_for(const Vec3& centre, double radius, std::stop_token st
     if (!problem.empty()) throw io::InputError(problem);
 }
 
-BrickLoaderStatus BrickLoader::status() const {
+BrickLoaderStatus BrickLoader::Parts::status() const {
     BrickLoaderStatus status;
     status.traffic = store_->traffic();
     const std::scoped_lock lock(mutex_);
@@ -192,7 +187,7 @@ BrickLoaderStatus BrickLoader::status() const {
 }
 
 /// Needs the lock.
-void BrickLoader::choose_levels(std::span<const Interest> hands, Clock::time_point now) {
+void BrickLoader::Parts::choose_levels(std::span<const Interest> hands, Clock::time_point now) {
     if (!settings_.coarse_first) return;
     double speed = 0;
     for (const Interest& hand : hands) {
@@ -212,7 +207,7 @@ void BrickLoader::choose_levels(std::span<const Interest> hands, Clock::time_poi
 
 /// Needs the lock. The most urgent brick of which something is to be read: all threads work for the
 /// first, so that it is there soon.
-std::optional<BrickLoader::Job> BrickLoader::next_job() {
+std::optional<BrickLoader::Parts::Job> BrickLoader::Parts::next_job() {
     const bool exact = !waiting_.empty();
     const int first = exact ? 0 : first_, finest = exact ? 0 : finest_;
     // First something everywhere near, then the level that is felt; where the hands are soon, both
@@ -238,8 +233,8 @@ std::optional<BrickLoader::Job> BrickLoader::next_job() {
 }
 
 /// Needs the lock. What is to be done for a brick, if anything.
-std::optional<BrickLoader::Job> BrickLoader::job_for(const Index3& brick, int level,
-                                                     Clock::time_point now) const {
+std::optional<BrickLoader::Parts::Job> BrickLoader::Parts::job_for(const Index3& brick, int level,
+                                                                   Clock::time_point now) const {
     if (has(brick, level)) return std::nullopt;
     const Place place{array_of(brick)};
     const auto failed = failed_.find(place);
@@ -253,13 +248,13 @@ std::optional<BrickLoader::Job> BrickLoader::job_for(const Index3& brick, int le
 }
 
 /// Needs the lock. Whether a brick is in memory at a level, or at a finer one.
-bool BrickLoader::has(const Index3& brick, int level) const {
+bool BrickLoader::Parts::has(const Index3& brick, int level) const {
     const auto held = held_.find({array_of(brick)});
     return held != held_.end() && held->second.level <= level;
 }
 
 /// Needs the lock. What somebody waits for comes first, whatever the hands need.
-void BrickLoader::want(std::vector<Index3> bricks) {
+void BrickLoader::Parts::want(std::vector<Index3> bricks) {
     wanted_.clear();
     for (const Waiting& waiting : waiting_) {
         wanted_.insert(wanted_.end(), waiting.needed.begin(), waiting.needed.end());
@@ -270,12 +265,12 @@ void BrickLoader::want(std::vector<Index3> bricks) {
 
 /// Needs the lock. Older versions are let go when the next one comes, so it never waits for long.
 /// Who waits for bricks gets them first.
-bool BrickLoader::is_behind() const {
+bool BrickLoader::Parts::is_behind() const {
     return waiting_.empty() && memory_->used() > held_.size() + most_left_bricks &&
            Clock::now() - newest_ < time_to_let_go;
 }
 
-void BrickLoader::work(const std::stop_token& stop) {
+void BrickLoader::Parts::work(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!stop.stop_requested()) {
         if (is_behind()) {
@@ -327,7 +322,7 @@ void BrickLoader::work(const std::stop_token& stop) {
 
 /// Needs the lock. Tells those who waited for the brick when its read began, after `begun` calls of
 /// wait_for(). For those who came later it is tried again at once.
-void BrickLoader::fail(const Place& place, const std::string& problem, std::uint64_t begun) {
+void BrickLoader::Parts::fail(const Place& place, const std::string& problem, std::uint64_t begun) {
     bool again = false;
     for (Waiting& waiting : waiting_) {
         const auto is_it = [&](const Index3& brick) { return array_of(brick) == place.at; };
@@ -341,7 +336,7 @@ void BrickLoader::fail(const Place& place, const std::string& problem, std::uint
 }
 
 /// What fails here fails for the thread that makes the brick, too, which says so.
-void BrickLoader::help(const Job& job, const std::stop_token& stop) const {
+void BrickLoader::Parts::help(const Job& job, const std::stop_token& stop) const {
     try {
         blocks_->read_one(settings_.level + job.coarser, source_of(job.brick, job.coarser), stop);
     } catch (const Cancelled&) {
@@ -350,7 +345,7 @@ void BrickLoader::help(const Job& job, const std::stop_token& stop) const {
 }
 
 /// Needs the lock.
-void BrickLoader::put(const Job& job, const ResidentBrick& brick) {
+void BrickLoader::Parts::put(const Job& job, const ResidentBrick& brick) {
     const Place place{array_of(job.brick)};
     failed_.erase(place);
     if (failed_.empty()) problem_.clear();
@@ -363,7 +358,7 @@ void BrickLoader::put(const Job& job, const ResidentBrick& brick) {
 }
 
 /// Needs the lock. Drops bricks that nobody wants, the farthest from what is wanted most first.
-void BrickLoader::make_room() {
+void BrickLoader::Parts::make_room() {
     count_process();
     if (held_.size() <= most_bricks_) return;
     std::map<Place, int> wanted;
@@ -388,11 +383,12 @@ void BrickLoader::make_room() {
 }
 
 /// Needs the lock.
-std::uint64_t BrickLoader::bytes() const {
+std::uint64_t BrickLoader::Parts::bytes() const {
     return blocks_->bytes() + other_bytes_ + held_.size() * bytes_of_brick(overview_.type());
 }
 
-void BrickLoader::read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
+void BrickLoader::Parts::read(const SampleBox& box, std::span<std::byte> out,
+                              std::stop_token stop) {
     const Index3 at = ResidentBricks::brick_of(box.low);
     ResidentBrick held;
     {
@@ -419,14 +415,14 @@ void BrickLoader::read(const SampleBox& box, std::span<std::byte> out, std::stop
     }
 }
 
-void BrickLoader::leave_room(std::uint64_t bytes) {
+void BrickLoader::Parts::leave_room(std::uint64_t bytes) {
     const std::scoped_lock lock(mutex_);
     other_bytes_ = bytes;
     make_room();
 }
 
 /// Needs the lock. What else the process holds, and how many bricks that leaves room for.
-void BrickLoader::count_process() {
+void BrickLoader::Parts::count_process() {
     const Clock::time_point now = Clock::now();
     if (settings_.whole_process && now - counted_ > between_counts) {
         counted_ = now;
@@ -439,6 +435,46 @@ void BrickLoader::count_process() {
     const auto less = static_cast<std::size_t>(others / bytes_of_brick(overview_.type()));
     const std::size_t all = most_bricks(*store_, settings_.memory);
     most_bricks_ = all - std::min(less, all - fewest_bricks);
+}
+
+BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
+                         const BrickLoaderSettings& settings)
+    : parts_(std::make_unique<Parts>(std::move(store), std::move(overview), settings)) {}
+
+BrickLoader::~BrickLoader() = default;
+
+const Store& BrickLoader::store() const {
+    return *parts_->store_;
+}
+const BrickLoaderSettings& BrickLoader::settings() const {
+    return parts_->settings_;
+}
+const Geometry& BrickLoader::geometry() const {
+    return parts_->geometry_;
+}
+const std::shared_ptr<const Samples>& BrickLoader::empty() const {
+    return parts_->empty_;
+}
+void BrickLoader::look(std::span<const Interest> hands, std::chrono::steady_clock::time_point now) {
+    parts_->look(hands, now);
+}
+std::optional<BrickVersion> BrickLoader::take() {
+    return parts_->take();
+}
+void BrickLoader::wait_for(const Vec3& centre, double radius, std::stop_token stop) {
+    parts_->wait_for(centre, radius, stop);
+}
+BrickLoaderStatus BrickLoader::status() const {
+    return parts_->status();
+}
+void BrickLoader::read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
+    parts_->read(box, out, std::move(stop));
+}
+void BrickLoader::leave_room(std::uint64_t bytes) {
+    parts_->leave_room(bytes);
+}
+ResidentBrick BrickLoader::read(const Index3& brick, int coarser, std::stop_token stop) {
+    return parts_->read(brick, coarser, std::move(stop));
 }
 
 }  // namespace palpate::stream

@@ -10,8 +10,7 @@
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/stream/loader.hpp"
-#include "stream/loader/blocks.hpp"
-#include "stream/loader/brick_memory.hpp"
+#include "stream/loader/brick_loader.hpp"
 #include "stream/loader/upsample.hpp"
 #include "stream/sample_bytes.hpp"
 #include "stream/while_telling.hpp"
@@ -133,7 +132,7 @@ Volume overview_of(const Store& store, std::int64_t samples, std::stop_token sto
 }
 
 /// The samples of the store that a brick is made of.
-SampleBox BrickLoader::source_of(const Index3& brick, int coarser) const {
+SampleBox BrickLoader::Parts::source_of(const Index3& brick, int coarser) const {
     const SampleBox box = empty_->resident()->box_of(brick);
     if (coarser == 0) return box;
     const Geometry& grid =
@@ -149,7 +148,7 @@ SampleBox BrickLoader::source_of(const Index3& brick, int coarser) const {
     return {inside(a.cwiseMin(b).array().floor()), inside(a.cwiseMax(b).array().ceil())};
 }
 
-ResidentBrick BrickLoader::read(const Index3& brick, int coarser, std::stop_token stop) {
+ResidentBrick BrickLoader::Parts::read(const Index3& brick, int coarser, std::stop_token stop) {
     const SampleType type = overview_.type();
     const std::size_t each = size_of(type);
     const SampleBox box = empty_->resident()->box_of(brick);
