@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "palpate/io/error.hpp"
+#include "stream/box_bytes.hpp"
 #include "stream/formats/unpacking_room.hpp"
 
 namespace palpate::stream {
@@ -57,18 +58,9 @@ class ChunkedStore : public Store {
               std::stop_token stop) const override {
         const Level& grid = volume_.info.levels.at(static_cast<std::size_t>(level));
         check_request(grid.geometry, box, volume_.info.type, out.size());
-        Index3 first, last;
-        for (int a = 0; a < 3; ++a) {
-            first[a] = box.low[a] / grid.chunk[a];
-            last[a] = box.high[a] / grid.chunk[a];
-        }
-        for (int z = first[2]; z <= last[2]; ++z) {
-            for (int y = first[1]; y <= last[1]; ++y) {
-                for (int x = first[0]; x <= last[0]; ++x) {
-                    copy_chunk(level, {x, y, z}, box, out, stop);
-                }
-            }
-        }
+        for_each_piece(grid.chunk, box, [&](const Index3& chunk, const SampleBox&) {
+            copy_chunk(level, chunk, box, out, stop);
+        });
         if (!finite_samples(volume_.info.type, out).all) {
             make_finite(volume_.info.type, out, least_finite(stop));
         }
@@ -188,18 +180,14 @@ class ChunkedStore : public Store {
             put(row.data());
             least = std::min<double>(least, finite_samples(volume_.info.type, row).least);
         };
-        for (int z = 0; z < chunks[2]; z += step) {
-            for (int y = 0; y < chunks[1]; y += step) {
-                for (int x = 0; x < chunks[0]; x += step) {
-                    try {
-                        for_each_row(static_cast<int>(level), {x, y, z}, whole_box(grid.geometry),
-                                     stop, look);
-                    } catch (const io::InputError&) {
-                        damaged = true;
-                    }
-                }
+        for_each_index({Index3::Zero(), (chunks - Index3::Ones()) / step}, [&](const Index3& at) {
+            try {
+                for_each_row(static_cast<int>(level), at * step, whole_box(grid.geometry), stop,
+                             look);
+            } catch (const io::InputError&) {
+                damaged = true;
             }
-        }
+        });
         if (std::isfinite(least)) return least;
         if (!all || damaged) return volume_.info.fill;
         throw io::InputError(volume_.info.address +

@@ -8,7 +8,6 @@
 #include "io/system/own_names.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
-#include "stream/box_bytes.hpp"
 #include "stream/formats/content.hpp"
 #include "stream/formats/stores.hpp"
 #include "stream/objects/held_folder.hpp"

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "palpate/stream/edits.hpp"
+#include "stream/box_bytes.hpp"
 
 namespace palpate::stream {
 
@@ -29,17 +30,10 @@ SampleBox chunk_box(const std::array<int, 3>& chunk, const Geometry& grid);
 /// Calls visit(chunk, box) for each chunk that holds samples of `box`, with those that it holds.
 template <class Visit>
 void for_each_chunk(const SampleBox& box, Visit&& visit) {
-    const Index3 first = box.low / EditsNote::chunk, last = box.high / EditsNote::chunk;
-    for (int k = first[2]; k <= last[2]; ++k) {
-        for (int j = first[1]; j <= last[1]; ++j) {
-            for (int i = first[0]; i <= last[0]; ++i) {
-                const Index3 low = Index3(i, j, k) * EditsNote::chunk;
-                visit(std::array{i, j, k},
-                      SampleBox{box.low.cwiseMax(low),
-                                box.high.cwiseMin(low + Index3::Constant(EditsNote::chunk - 1))});
-            }
-        }
-    }
+    for_each_piece(Index3::Constant(EditsNote::chunk), box,
+                   [&](const Index3& at, const SampleBox& part) {
+                       visit(std::array{at[0], at[1], at[2]}, part);
+                   });
 }
 
 /// The levels of the original from the edited one on.

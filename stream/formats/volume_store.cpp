@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "palpate/stream/convert.hpp"
+#include "stream/box_bytes.hpp"
 #include "stream/sample_bytes.hpp"
 
 namespace palpate::stream {
@@ -24,22 +25,9 @@ class VolumeStore : public Store {
               std::stop_token stop) const override {
         if (level != 0) throw std::invalid_argument("a volume has one level, number 0");
         check_request(volume_.geometry(), box, info_.type, out.size());
-        const auto* const all = static_cast<const std::byte*>(volume_.data());
-        const Index3& size = volume_.geometry().size;
-        const std::size_t each = size_of(info_.type);
-        const std::size_t row = static_cast<std::size_t>(box.high[0] - box.low[0] + 1) * each;
-        std::byte* to = out.data();
-        for (int z = box.low[2]; z <= box.high[2]; ++z) {
-            if (stop.stop_requested()) throw Cancelled{};
-            for (int y = box.low[1]; y <= box.high[1]; ++y, to += row) {
-                const std::size_t from =
-                    (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
-                     static_cast<std::size_t>(y)) *
-                        static_cast<std::size_t>(size[0]) +
-                    static_cast<std::size_t>(box.low[0]);
-                std::memcpy(to, all + from * each, row);
-            }
-        }
+        if (stop.stop_requested()) throw Cancelled{};
+        copy_box(whole_box(volume_.geometry()), static_cast<const std::byte*>(volume_.data()), box,
+                 out.data(), size_of(info_.type));
     }
 
   private:

@@ -12,19 +12,12 @@ namespace {
 
 /// Calls `work(place, box)` for each piece of a level that holds samples of `box`.
 template <class Work>
-void for_each_piece(const Level& grid, const SampleBox& box, Work&& work) {
+void for_each_whole(const Level& grid, const SampleBox& box, Work&& work) {
     const Index3 last = grid.geometry.size - Index3::Ones();
-    const Index3 first = box.low.cwiseQuotient(grid.chunk);
-    const Index3 end = box.high.cwiseQuotient(grid.chunk);
-    for (int k = first[2]; k <= end[2]; ++k) {
-        for (int j = first[1]; j <= end[1]; ++j) {
-            for (int i = first[0]; i <= end[0]; ++i) {
-                const Index3 low = Index3(i, j, k).cwiseProduct(grid.chunk);
-                work(Index3(i, j, k),
-                     SampleBox{low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)});
-            }
-        }
-    }
+    for_each_piece(grid.chunk, box, [&](const Index3& at, const SampleBox&) {
+        const Index3 low = at.cwiseProduct(grid.chunk);
+        work(at, SampleBox{low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)});
+    });
 }
 
 }  // namespace
@@ -57,11 +50,8 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
                     const std::function<void(double)>& made) {
     const StoreInfo& info = store.info();
     std::vector<SampleBox> pieces;
-    for_each_piece(
-        info.levels[static_cast<std::size_t>(level)], box,
-        [&](const Index3&, const SampleBox& piece) {
-            pieces.push_back({piece.low.cwiseMax(box.low), piece.high.cwiseMin(box.high)});
-        });
+    for_each_piece(info.levels[static_cast<std::size_t>(level)].chunk, box,
+                   [&](const Index3&, const SampleBox& piece) { pieces.push_back(piece); });
     std::atomic<std::size_t> done{0};
     for_all_at_once(pieces.size(), threads, [&](std::size_t i) {
         std::vector<std::byte> bytes(bytes_of(pieces[i], info.type));
@@ -87,16 +77,30 @@ Blocks::~Blocks() {
     for (const Key& key : ages_) pieces_->kept_.erase(key);
 }
 
-void Blocks::read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
-    if (!keeps(level)) return store_.read(level, box, out, stop);
-    const StoreInfo& info = store_.info();
-    const Level& grid = grid_of(level);
-    for_each_piece(grid, box, [&](const Index3& at, const SampleBox& own) {
+void Blocks::read(int level, const SampleBox& box, const SampleBox& room, std::span<std::byte> out,
+                  std::stop_token stop) {
+    const SampleType type = store_.info().type;
+    const auto put = [&](const SampleBox& own, const std::vector<std::byte>& bytes) {
+        copy_box(own, bytes.data(), room, out.data(), size_of(type));
+    };
+    if (keeps(level)) {
+        load(level, box, stop);
+        for_each_whole(grid_of(level), box, [&](const Index3& at, const SampleBox& own) {
+            put(own, *block(level, at, own, stop));
+        });
+    } else if (box == room) {
+        store_.read(level, box, out, stop);
+    } else {
+        std::vector<std::byte> bytes(bytes_of(box, type));
+        store_.read(level, box, bytes, stop);
+        put(box, bytes);
+    }
+}
+
+void Blocks::load(int level, const SampleBox& box, const std::stop_token& stop) {
+    if (!keeps(level)) return;
+    for_each_whole(grid_of(level), box, [&](const Index3& at, const SampleBox& own) {
         if (!has(level, at)) block(level, at, own, stop);
-    });
-    for_each_piece(grid, box, [&](const Index3& at, const SampleBox& own) {
-        const Bytes bytes = block(level, at, own, stop);
-        copy_box(own, bytes->data(), box, out.data(), size_of(info.type));
     });
 }
 
@@ -115,14 +119,14 @@ bool Blocks::keeps(int level) const {
 bool Blocks::has_unread(int level, const SampleBox& box) const {
     bool unread = false;
     if (!keeps(level)) return unread;
-    for_each_piece(grid_of(level), box,
+    for_each_whole(grid_of(level), box,
                    [&](const Index3& at, const SampleBox&) { unread = unread || !has(level, at); });
     return unread;
 }
 
 void Blocks::read_one(int level, const SampleBox& box, std::stop_token stop) {
     bool found = false;
-    for_each_piece(grid_of(level), box, [&](const Index3& at, const SampleBox& own) {
+    for_each_whole(grid_of(level), box, [&](const Index3& at, const SampleBox& own) {
         if (found || has(level, at)) return;
         found = true;
         block(level, at, own, stop);

@@ -42,7 +42,14 @@ class Blocks {
 
     /// As Store::read(). Pieces small enough to keep are read whole, and each by one thread; first
     /// those that no other thread reads, so that threads with neighbouring boxes share the work.
-    void read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop);
+    void read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
+        read(level, box, box, out, std::move(stop));
+    }
+    /// The same to their places in a box `room`, whose samples `out` holds.
+    void read(int level, const SampleBox& box, const SampleBox& room, std::span<std::byte> out,
+              std::stop_token stop);
+    /// So that read() finds them, unless they are dropped meanwhile.
+    void load(int level, const SampleBox& box, const std::stop_token& stop);
     /// True if some piece of a box is neither kept nor being read.
     bool has_unread(int level, const SampleBox& box) const;
     /// Reads one such piece, if there is one.

@@ -58,6 +58,13 @@ struct BrickLoader::Parts {
     std::uint64_t bytes() const;
     void count_process();
 
+    /// All samples of a brick's memory, also those beyond the grid.
+    static SampleBox room_of(const Index3& brick) {
+        const Index3 low =
+            brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
+        return {low, low + Index3::Constant(ResidentBricks::row - 1)};
+    }
+
     const std::shared_ptr<const Store> store_;
     const BrickLoaderSettings settings_;
     const Volume overview_;

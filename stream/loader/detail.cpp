@@ -49,17 +49,9 @@ void check(const Store& store, const DetailBox& of) {
 std::vector<SampleBox> parts_of(const Level& level, const SampleBox& box) {
     const bool is_row = level.chunk[1] == 1 && level.chunk[2] == 1;
     const Index3 chunk = is_row ? Index3::Constant(piece_of_rows) : level.chunk;
-    const Index3 first = box.low.cwiseQuotient(chunk), last = box.high.cwiseQuotient(chunk);
     std::vector<SampleBox> parts;
-    for (int k = first[2]; k <= last[2]; ++k) {
-        for (int j = first[1]; j <= last[1]; ++j) {
-            for (int i = first[0]; i <= last[0]; ++i) {
-                const Index3 low = Index3(i, j, k).cwiseProduct(chunk);
-                parts.push_back(
-                    {low.cwiseMax(box.low), (low + chunk - Index3::Ones()).cwiseMin(box.high)});
-            }
-        }
-    }
+    for_each_piece(chunk, box,
+                   [&](const Index3&, const SampleBox& part) { parts.push_back(part); });
     const auto away = [&](const SampleBox& part) {
         return (part.low + part.high - box.low - box.high).cast<std::int64_t>().squaredNorm();
     };

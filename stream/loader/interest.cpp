@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stream/box_bytes.hpp"
+
 namespace palpate::stream {
 namespace {
 
@@ -68,22 +70,17 @@ std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
         const Vec3 last = (count - Index3::Ones()).cast<double>();
         const Index3 first = low.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
         const Index3 end = high.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
-        for (int k = first[2]; k <= end[2]; ++k) {
-            for (int j = first[1]; j <= end[1]; ++j) {
-                for (int i = first[0]; i <= end[0]; ++i) {
-                    const Vec3 centre = Vec3(i, j, k) + Vec3::Constant(0.5);
-                    const double to_proxy = (centre - proxy).norm();
-                    const double to_pull = distance(pull, centre);
-                    const double to_path = distance(path, centre);
-                    if (std::min(to_pull, to_path) > radius + 1) continue;
-                    const double near =
-                        to_pull + pull_factor * to_proxy + (is_fast ? late_penalty : 0);
-                    const double ahead =
-                        is_fast ? to_path : to_path + ahead_factor * std::min(1.0, to_proxy);
-                    scored.push_back({std::min(near, ahead), {i, j, k}});
-                }
-            }
-        }
+        for_each_index({first, end}, [&](const Index3& brick) {
+            const Vec3 centre = brick.cast<double>() + Vec3::Constant(0.5);
+            const double to_proxy = (centre - proxy).norm();
+            const double to_pull = distance(pull, centre);
+            const double to_path = distance(path, centre);
+            if (std::min(to_pull, to_path) > radius + 1) return;
+            const double near = to_pull + pull_factor * to_proxy + (is_fast ? late_penalty : 0);
+            const double ahead =
+                is_fast ? to_path : to_path + ahead_factor * std::min(1.0, to_proxy);
+            scored.push_back({std::min(near, ahead), brick});
+        });
     }
     // Ties by place, so that the order does not depend on the library.
     std::ranges::sort(scored, [](const Scored& a, const Scored& b) {
@@ -110,11 +107,7 @@ std::vector<Index3> bricks_round(const Geometry& geometry, const Vec3& centre, d
     };
     const Index3 first = brick_at(low), end = brick_at(high);
     std::vector<Index3> bricks;
-    for (int k = first[2]; k <= end[2]; ++k) {
-        for (int j = first[1]; j <= end[1]; ++j) {
-            for (int i = first[0]; i <= end[0]; ++i) bricks.push_back({i, j, k});
-        }
-    }
+    for_each_index({first, end}, [&](const Index3& brick) { bricks.push_back(brick); });
     return bricks;
 }
 

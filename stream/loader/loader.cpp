@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
+#include "stream/box_bytes.hpp"
 #include "stream/loader/interest.hpp"
 
 namespace palpate::stream {
@@ -402,17 +402,7 @@ void BrickLoader::Parts::read(const SampleBox& box, std::span<std::byte> out,
         blocks_->read(settings_.level, box, out, std::move(stop));
         return;
     }
-    const std::size_t each = size_of(overview_.type());
-    const std::size_t row = static_cast<std::size_t>(box.high[0] - box.low[0] + 1) * each;
-    const Index3 first = box.low - at * ResidentBricks::edge;
-    std::byte* to = out.data();
-    for (int z = 0; z <= box.high[2] - box.low[2]; ++z) {
-        for (int y = 0; y <= box.high[1] - box.low[1]; ++y, to += row) {
-            const Index3 in = first + Index3(0, y, z) + Index3::Constant(ResidentBricks::margin);
-            const auto from = in[0] + in[1] * ResidentBricks::row + in[2] * ResidentBricks::slice;
-            std::memcpy(to, held.samples.get() + static_cast<std::size_t>(from) * each, row);
-        }
-    }
+    copy_box(room_of(at), held.samples.get(), box, out.data(), size_of(overview_.type()));
 }
 
 void BrickLoader::Parts::leave_room(std::uint64_t bytes) {

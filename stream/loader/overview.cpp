@@ -10,6 +10,7 @@
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/stream/loader.hpp"
+#include "stream/box_bytes.hpp"
 #include "stream/loader/brick_loader.hpp"
 #include "stream/loader/upsample.hpp"
 #include "stream/sample_bytes.hpp"
@@ -152,34 +153,29 @@ ResidentBrick BrickLoader::Parts::read(const Index3& brick, int coarser, std::st
     const SampleType type = overview_.type();
     const std::size_t each = size_of(type);
     const SampleBox box = empty_->resident()->box_of(brick);
-    const Index3 origin = brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
     const SampleBox from = source_of(brick, coarser);
     const Geometry& grid =
         store_->info().levels[static_cast<std::size_t>(settings_.level + coarser)].geometry;
-    const Index3 size = from.high - from.low + Index3::Ones();
-    std::vector<std::byte> bytes(static_cast<std::size_t>(size.cast<std::int64_t>().prod()) * each);
-    blocks_->read(settings_.level + coarser, from, bytes, stop);
+    const int level = settings_.level + coarser;
+    if (coarser == 0) {
+        blocks_->load(level, from, stop);  // before it takes memory
+        const std::shared_ptr<std::byte[]> samples = memory_->take();
+        const std::span<std::byte> all(samples.get(), ResidentBricks::per_brick * each);
+        blocks_->read(level, from, room_of(brick), all, stop);
+        make_finite(type, all, empty_->minimum());
+        return {samples, 0};
+    }
+    std::vector<std::byte> bytes(bytes_of(from, type));
+    blocks_->read(level, from, bytes, stop);
     make_finite(type, bytes, empty_->minimum());
     const std::shared_ptr<std::byte[]> samples = memory_->take();
-    if (coarser > 0) {
-        const Index3 place = box.low - origin;
-        const std::ptrdiff_t first =
-            place[0] + place[1] * ResidentBricks::row + place[2] * ResidentBricks::slice;
-        upsample(geometry_of(grid, from), bytes.data(), type, geometry_, box,
-                 {samples.get() + static_cast<std::size_t>(first) * each, ResidentBricks::row,
-                  ResidentBricks::slice});
-        return {samples, static_cast<std::uint8_t>(coarser)};
-    }
-    const auto row = static_cast<std::size_t>(size[0]) * each;
-    const std::byte* next = bytes.data();
-    for (int k = box.low[2]; k <= box.high[2]; ++k) {
-        for (int j = box.low[1]; j <= box.high[1]; ++j, next += row) {
-            const Index3 at = Index3(box.low[0], j, k) - origin;
-            const auto to = at[0] + at[1] * ResidentBricks::row + at[2] * ResidentBricks::slice;
-            std::memcpy(samples.get() + static_cast<std::size_t>(to) * each, next, row);
-        }
-    }
-    return {samples, 0};
+    const Index3 place = box.low - room_of(brick).low;
+    const std::ptrdiff_t first =
+        place[0] + place[1] * ResidentBricks::row + place[2] * ResidentBricks::slice;
+    upsample(geometry_of(grid, from), bytes.data(), type, geometry_, box,
+             {samples.get() + static_cast<std::size_t>(first) * each, ResidentBricks::row,
+              ResidentBricks::slice});
+    return {samples, static_cast<std::uint8_t>(coarser)};
 }
 
 }  // namespace palpate::stream

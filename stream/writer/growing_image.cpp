@@ -2,7 +2,6 @@
 #include "palpate/stream/growing_image.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <mutex>
 #include <stdexcept>
 
@@ -11,24 +10,6 @@
 #include "stream/writer/zarr_writer.hpp"
 
 namespace palpate::stream {
-namespace {
-
-/// The part of a chunk that lies in the grid, out of the whole one or into it.
-template <class Copy>
-void for_rows(const SampleBox& box, int chunk, std::size_t each, Copy&& copy) {
-    const Index3 size = box.high - box.low + Index3::Ones();
-    const std::size_t row = static_cast<std::size_t>(size[0]) * each;
-    const std::size_t edge = static_cast<std::size_t>(chunk);
-    std::size_t at = 0;
-    for (int z = 0; z < size[2]; ++z) {
-        for (int y = 0; y < size[1]; ++y, at += row) {
-            copy((static_cast<std::size_t>(z) * edge + static_cast<std::size_t>(y)) * edge * each,
-                 at, row);
-        }
-    }
-}
-
-}  // namespace
 
 struct GrowingImage::Parts {
     std::filesystem::path folder;
@@ -45,6 +26,10 @@ struct GrowingImage::Parts {
             if (!store) fail_without(folder);
         });
         return *store;
+    }
+    /// A chunk with what lies outside the grid.
+    SampleBox whole(const Index3& at) const {
+        return {at * chunk, at * chunk + Index3::Constant(chunk - 1)};
     }
     const CoarserGrid& grid(int level) const {
         return writer.levels().at(static_cast<std::size_t>(level));
@@ -91,12 +76,9 @@ bool GrowingImage::write(int level, const Index3& chunk, std::span<const std::by
     if (part.empty() || samples.size() != bytes_of(part, parts_->type)) {
         throw std::invalid_argument("these are not the samples of this chunk");
     }
-    const auto edge = static_cast<std::size_t>(parts_->chunk);
-    const std::size_t each = size_of(parts_->type);
-    Bytes whole_chunk(edge * edge * edge * each);
-    for_rows(part, parts_->chunk, each, [&](std::size_t whole, std::size_t at, std::size_t row) {
-        std::memcpy(whole_chunk.data() + whole, samples.data() + at, row);
-    });
+    const SampleBox whole = parts_->whole(chunk);
+    Bytes whole_chunk(bytes_of(whole, parts_->type));
+    copy_box(part, samples.data(), whole, whole_chunk.data(), size_of(parts_->type));
     return parts_->writer.write_chunk(level, chunk, whole_chunk);
 }
 
@@ -105,10 +87,7 @@ std::optional<Bytes> GrowingImage::written(int level, const Index3& chunk) const
     if (!before) return std::nullopt;
     const SampleBox part = box(level, chunk);
     Bytes samples(bytes_of(part, parts_->type));
-    for_rows(part, parts_->chunk, size_of(parts_->type),
-             [&](std::size_t whole, std::size_t at, std::size_t row) {
-                 std::memcpy(samples.data() + at, before->data() + whole, row);
-             });
+    copy_box(parts_->whole(chunk), before->data(), part, samples.data(), size_of(parts_->type));
     return samples;
 }
 

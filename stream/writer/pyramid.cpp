@@ -7,6 +7,8 @@
 #include <limits>
 #include <type_traits>
 
+#include "stream/box_bytes.hpp"
+
 namespace palpate::stream {
 
 CoarserGrid coarser(const Geometry& finer) {
@@ -73,26 +75,18 @@ void take_means(SampleType type, std::span<const std::byte> finer, const SampleB
                 const Index3& factor, const SampleBox& box, std::span<std::byte> out) {
     with_type(type, [&](auto zero) {
         using T = decltype(zero);
-        std::size_t at = 0;
-        for (int z = box.low[2]; z <= box.high[2]; ++z) {
-            for (int y = box.low[1]; y <= box.high[1]; ++y) {
-                for (int x = box.low[0]; x <= box.high[0]; ++x, at += sizeof(T)) {
-                    const Index3 low = Index3(x, y, z).cwiseProduct(factor);
-                    const Index3 high = (low + factor - Index3::Ones()).cwiseMin(finer_box.high);
-                    double sum = 0;
-                    for (int k = low[2]; k <= high[2]; ++k) {
-                        for (int j = low[1]; j <= high[1]; ++j) {
-                            for (int i = low[0]; i <= high[0]; ++i) {
-                                sum +=
-                                    static_cast<double>(sample_at<T>(finer, finer_box, {i, j, k}));
-                            }
-                        }
-                    }
-                    const T value = mean_of<T>(sum, (high - low + Index3::Ones()).prod());
-                    std::memcpy(out.data() + at, &value, sizeof value);
-                }
-            }
-        }
+        std::byte* to = out.data();
+        for_each_index(box, [&](const Index3& at) {
+            const Index3 low = at.cwiseProduct(factor);
+            const Index3 high = (low + factor - Index3::Ones()).cwiseMin(finer_box.high);
+            double sum = 0;
+            for_each_index({low, high}, [&](const Index3& one) {
+                sum += static_cast<double>(sample_at<T>(finer, finer_box, one));
+            });
+            const T value = mean_of<T>(sum, (high - low + Index3::Ones()).prod());
+            std::memcpy(to, &value, sizeof value);
+            to += sizeof value;
+        });
     });
 }
 

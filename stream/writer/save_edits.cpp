@@ -118,15 +118,11 @@ class Saving {
         Bytes samples(bytes_of(box, type()));
         with_type(type(), [&](auto zero) {
             std::byte* to = samples.data();
-            for (int k = box.low[2]; k <= box.high[2]; ++k) {
-                for (int j = box.low[1]; j <= box.high[1]; ++j) {
-                    for (int i = box.low[0]; i <= box.high[0]; ++i, to += sizeof zero) {
-                        const auto sample =
-                            static_cast<decltype(zero)>(edits_.sample(Index3(i, j, k)));
-                        std::memcpy(to, &sample, sizeof sample);
-                    }
-                }
-            }
+            for_each_index(box, [&](const Index3& at) {
+                const auto sample = static_cast<decltype(zero)>(edits_.sample(at));
+                std::memcpy(to, &sample, sizeof sample);
+                to += sizeof sample;
+            });
         });
         return samples;
     }

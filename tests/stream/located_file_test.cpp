@@ -143,14 +143,18 @@ TEST(LocatedFile, what_a_helper_must_not_do_is_one_line) {
     EXPECT_TRUE(contains(refusal_of_far("kill -SEGV $$"), "crashed"));
     EXPECT_TRUE(contains(refusal_of_far("exec 1>&- 2>&- 4>&-\nexec sleep 1000000"), "killed"));
     EXPECT_TRUE(contains(refusal_of_far("read -u 3 question; exit 0"), "without an answer"));
-    EXPECT_TRUE(contains(refusal_of_far("echo '{\"error\":\"is odd\"}' >&4; exec sleep 1000000"), "is odd"));
-    EXPECT_TRUE(contains(refusal_of_far("echo '{\"done\":{}}' >&4; exec sleep 1000000"), "sensible"));
-    for (const char* part : {"[0,0]", "[0,262145]", "[999999999999,1]", "[-1,5]",
-                             "[18446744073709551615,2]"}) {
-        const std::string asks = "echo '{\"read\":" + std::string(part) + "}' >&4; exec sleep 1000000";
+    EXPECT_TRUE(contains(refusal_of_far("echo '{\"error\":\"is odd\"}' >&4; exec sleep 1000000"),
+                         "is odd"));
+    EXPECT_TRUE(
+        contains(refusal_of_far("echo '{\"done\":{}}' >&4; exec sleep 1000000"), "sensible"));
+    for (const char* part :
+         {"[0,0]", "[0,262145]", "[999999999999,1]", "[-1,5]", "[18446744073709551615,2]"}) {
+        const std::string asks =
+            "echo '{\"read\":" + std::string(part) + "}' >&4; exec sleep 1000000";
         EXPECT_TRUE(contains(refusal_of_far(asks), "outside the file")) << part;
     }
-    EXPECT_TRUE(contains(refusal_of_far("echo '{\"read\":\"much\"}' >&4; exec sleep 1000000"), "sensible"));
+    EXPECT_TRUE(
+        contains(refusal_of_far("echo '{\"read\":\"much\"}' >&4; exec sleep 1000000"), "sensible"));
     // It never ends to ask, for the whole of what it may have.
     FarFile far;
     far.bytes.resize(1 << 18);
@@ -163,9 +167,9 @@ TEST(LocatedFile, what_a_helper_must_not_do_is_one_line) {
 }
 
 TEST(LocatedFile, a_helper_that_hangs_and_one_that_does_not_listen_are_left_when_asked_to) {
-    for (const char* commands :
-         {"exec sleep 1000000",
-          "for i in 1 2 3 4 5 6 7 8; do echo '{\"read\":[0,262144]}' >&4; done\nexec sleep 1000000"}) {
+    for (const char* commands : {"exec sleep 1000000",
+                                 "for i in 1 2 3 4 5 6 7 8; do echo '{\"read\":[0,262144]}' >&4; "
+                                 "done\nexec sleep 1000000"}) {
         const HelperScript helper(commands);
         FarFile far;
         far.bytes.resize(1 << 18);
