@@ -60,8 +60,7 @@ struct BrickLoader::Parts {
 
     /// All samples of a brick's memory, also those beyond the grid.
     static SampleBox room_of(const Index3& brick) {
-        const Index3 low =
-            brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
+        const Index3 low = brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
         return {low, low + Index3::Constant(ResidentBricks::row - 1)};
     }
 

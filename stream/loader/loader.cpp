@@ -433,15 +433,6 @@ BrickLoader::BrickLoader(std::shared_ptr<const Store> store, Volume overview,
 
 BrickLoader::~BrickLoader() = default;
 
-const Store& BrickLoader::store() const {
-    return *parts_->store_;
-}
-const BrickLoaderSettings& BrickLoader::settings() const {
-    return parts_->settings_;
-}
-const Geometry& BrickLoader::geometry() const {
-    return parts_->geometry_;
-}
 const std::shared_ptr<const Samples>& BrickLoader::empty() const {
     return parts_->empty_;
 }

@@ -1,10 +1,8 @@
 // Overviews and whole levels of stores, and single bricks as they are loaded.
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <stdexcept>
 
 #include "io/system/system.hpp"
@@ -19,17 +17,6 @@
 namespace palpate::stream {
 namespace {
 
-/// The least finite sample; 0 if there is none, or none of floats.
-double least_finite(SampleType type, std::span<const std::byte> bytes) {
-    if (type != SampleType::float32) return 0;
-    double least = std::numeric_limits<double>::infinity();
-    const auto* samples = reinterpret_cast<const float*>(bytes.data());
-    for (std::size_t i = 0; i < bytes.size() / sizeof(float); ++i) {
-        if (std::isfinite(samples[i])) least = std::min(least, double(samples[i]));
-    }
-    return std::isfinite(least) ? least : 0;
-}
-
 /// That read an overview at a time.
 constexpr int threads = 32;
 /// Most reads for an overview of a level that is too large to be read whole: of rows, or of pieces.
@@ -37,7 +24,8 @@ constexpr std::int64_t most_rows = 4096;
 constexpr std::int64_t most_pieces = 512;
 
 Volume volume_from(const Geometry& geometry, SampleType type, std::vector<std::byte> bytes) {
-    make_finite(type, bytes, least_finite(type, bytes));
+    const float least = finite_samples(type, bytes).least;
+    make_finite(type, bytes, std::isfinite(least) ? least : 0);
     const auto held = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
     return {geometry, type, std::shared_ptr<const void>(held, held->data()), held->size()};
 }

@@ -81,7 +81,6 @@ class DetailReader {
     /// Nothing any more.
     void forget(int viewer);
     DetailStatus status() const;
-    const Store& store() const { return *store_; }
 
   private:
     using Clock = std::chrono::steady_clock;

@@ -92,9 +92,6 @@ class BrickLoader {
     BrickLoader(const BrickLoader&) = delete;
     BrickLoader& operator=(const BrickLoader&) = delete;
 
-    const Store& store() const;
-    const BrickLoaderSettings& settings() const;
-    const Geometry& geometry() const;
     /// Samples without any brick, for a field to begin with.
     const std::shared_ptr<const Samples>& empty() const;
     /// What the hands need from `now` on; never waits for a read. Their speed is smoothed over
