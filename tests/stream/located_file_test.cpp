@@ -1,13 +1,19 @@
 // The helper process that looks into a file of chunks: one for all questions, it gets no more of a
 // file elsewhere than it may, and whatever it does is one line.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <latch>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -167,16 +173,19 @@ TEST(LocatedFile, what_a_helper_must_not_do_is_one_line) {
 }
 
 TEST(LocatedFile, a_helper_that_hangs_and_one_that_does_not_listen_are_left_when_asked_to) {
-    for (const char* commands : {"exec sleep 1000000",
-                                 "for i in 1 2 3 4 5 6 7 8; do echo '{\"read\":[0,262144]}' >&4; "
-                                 "done\nexec sleep 1000000"}) {
-        const HelperScript helper(commands);
+    for (const bool asks : {false, true}) {
+        const std::string line = "{\"read\":[0,262144]}\n";  // three of them at once
+        const std::string question = "cat >&4 <<E\n" + line + line + line + "E\n";
+        const HelperScript helper((asks ? question : "") + "exec sleep 1000000");
         FarFile far;
         far.bytes.resize(1 << 18);
+        std::atomic<int> reads{0};
+        far.before = [&] { ++reads; };
         io::ChunkFile file = far.file();
         std::stop_source stop;
         std::jthread stopper([&] {
-            EXPECT_TRUE(support::comes_true([] { return !children().empty(); }));
+            EXPECT_TRUE(
+                support::comes_true([&] { return asks ? reads.load() > 0 : !children().empty(); }));
             stop.request_stop();
         });
         EXPECT_THROW((void)file.describe(0, 0, stop.get_token()), Cancelled);
