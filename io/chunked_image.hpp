@@ -22,7 +22,7 @@ struct ImageArray {
     ValueMap values = {};
     double fill = 0;  ///< of chunks that are not stored [data units]
     std::vector<std::string>
-        codecs;  ///< in the order of decoding, by the names of stream/codecs.hpp
+        codecs;  ///< in the order of decoding, by the names of stream/formats/codecs.hpp
     std::array<double, 3> scale = {1, 1, 1}, translation = {0, 0, 0};  ///< [unit]
 };
 

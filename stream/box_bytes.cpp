@@ -1,4 +1,4 @@
-// The bytes of boxes of samples; see the header.
+// The bytes of boxes of samples. See the header.
 #include "stream/box_bytes.hpp"
 
 #include <cstring>

@@ -1,4 +1,4 @@
-// The bytes of boxes of samples, x fastest. Private to stream/.
+// Boxes of samples: their bytes, x fastest, and the pieces that they lie in. Private to stream/.
 #pragma once
 
 #include "palpate/samples.hpp"
@@ -6,6 +6,27 @@
 namespace palpate::stream {
 
 std::uint64_t bytes_of(const SampleBox& box, SampleType type);
+
+/// Calls visit(index) for each index in a box, x fastest.
+template <class Visit>
+void for_each_index(const SampleBox& box, Visit&& visit) {
+    for (int k = box.low[2]; k <= box.high[2]; ++k) {
+        for (int j = box.low[1]; j <= box.high[1]; ++j) {
+            for (int i = box.low[0]; i <= box.high[0]; ++i) visit(Index3(i, j, k));
+        }
+    }
+}
+
+/// Calls visit(place, part) for each piece of `size` samples that a box has samples of, with these.
+template <class Visit>
+void for_each_piece(const Index3& size, const SampleBox& box, Visit&& visit) {
+    for_each_index({box.low.cwiseQuotient(size), box.high.cwiseQuotient(size)},
+                   [&](const Index3& place) {
+                       const Index3 low = place.cwiseProduct(size);
+                       const Index3 high = low + size - Index3::Ones();
+                       visit(place, SampleBox{low.cwiseMax(box.low), high.cwiseMin(box.high)});
+                   });
+}
 
 /// Copies the part of `from` that lies in `to`; `sample` bytes each.
 void copy_box(const SampleBox& from, const std::byte* source, const SampleBox& to,

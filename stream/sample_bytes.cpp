@@ -1,4 +1,4 @@
-// How the bytes of stored pieces become samples of a store; see the header.
+// How the bytes of stored pieces become samples of a store. See the header.
 #include "stream/sample_bytes.hpp"
 
 #include <algorithm>

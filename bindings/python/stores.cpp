@@ -6,7 +6,7 @@
 #include "palpate/io/error.hpp"
 #include "palpate/run/source.hpp"
 #include "palpate/stream/store.hpp"
-#include "stream/content.hpp"
+#include "stream/formats/content.hpp"
 #include "stream/while_telling.hpp"
 
 namespace palpate::python {

@@ -8,8 +8,7 @@
 #include <string_view>
 
 #include "io/helper/decode.hpp"
-#include "io/helper/hdf5_mirror.hpp"
-#include "io/helper/mirrored.hpp"
+#include "io/helper/far_file.hpp"
 #include "io/system/number.hpp"
 
 namespace palpate::io {
@@ -71,15 +70,15 @@ double fill_of(hid_t properties) {
 }
 
 bool is_hdf5(const std::filesystem::path& path) {
-    if (!uses_mirror()) return H5Fis_hdf5(path.c_str()) > 0;
+    if (!is_far()) return H5Fis_hdf5(path.c_str()) > 0;
     constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
     std::array<std::byte, signature.size()> begin{};
-    return read_mirror(0, begin) && std::memcmp(begin.data(), signature.data(), begin.size()) == 0;
+    return read_far(0, begin) && std::memcmp(begin.data(), signature.data(), begin.size()) == 0;
 }
 
 hid_t opened(const std::filesystem::path& path) {
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    if (uses_mirror() && !read_from_mirror(access)) return -1;
+    if (is_far() && !use_far_driver(access)) return -1;
     return H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
 }
 

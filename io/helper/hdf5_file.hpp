@@ -36,6 +36,10 @@ class Hdf5Handle {
     Close close_;
 };
 
+/// Makes files that are opened with this access list the one that lies elsewhere (far_file.hpp),
+/// whatever their name. False if libhdf5 refuses.
+bool use_far_driver(hid_t access);
+
 /// Functions throw Failure.
 class Hdf5File {
   public:

@@ -1,4 +1,5 @@
 // palpate-io-images: reads and writes TIFF, reads images in chunks of HDF5.
+#include "io/helper/images.hpp"
 #include "io/helper/jobs.hpp"
 
 namespace palpate::io {
@@ -9,13 +10,24 @@ Result read_tiff(const Request& request) {
                                                        : read_tiff_file(request);
 }
 
-ChunkedImage describe(const std::filesystem::path& path, int channel, int time) {
-    return looks_like_tiff(path) ? tiff_image(path, channel, time)
-                                 : hdf5_image(path, channel, time);
-}
-
-void places(const std::filesystem::path& path, const ChunkBox& box, std::span<ChunkPlace> places) {
-    looks_like_tiff(path) ? tiff_places(path, box, places) : hdf5_places(path, box, places);
+nlohmann::json explore(const std::filesystem::path& path, const nlohmann::json& question) {
+    const bool tiff = looks_like_tiff(path);
+    if (!question.contains("array")) {
+        const int channel = question.at("channel").get<int>(),
+                  time = question.at("time").get<int>();
+        return json_from((tiff ? tiff_image : hdf5_image)(path, channel, time));
+    }
+    const ChunkBox box{question["array"].get<std::string>(),
+                       question.at("first").get<std::array<std::int64_t, 3>>(),
+                       question.at("count").get<std::array<std::int64_t, 3>>()};
+    std::vector<ChunkPlace> places(
+        static_cast<std::size_t>(box.count[0] * box.count[1] * box.count[2]));
+    (tiff ? tiff_places : hdf5_places)(path, box, places);
+    nlohmann::json numbers = nlohmann::json::array();
+    for (const auto& [offset, length, skipped] : places) {
+        for (const std::uint64_t number : {offset, length, skipped}) numbers.push_back(number);
+    }
+    return {{"places", std::move(numbers)}};
 }
 
 void write(const std::filesystem::path& path, const std::string&, const WrittenVolume& volume) {
@@ -27,7 +39,6 @@ void write(const std::filesystem::path& path, const std::string&, const WrittenV
 
 int main(int argc, char** argv) {
     using namespace palpate::io;
-    serve("palpate-io-images",
-          {.read = &read_tiff, .describe = &describe, .places = &places, .write = &write}, argc,
+    serve("palpate-io-images", {.read = &read_tiff, .explore = &explore, .write = &write}, argc,
           argv);
 }

@@ -15,8 +15,8 @@
 #include <new>
 
 #include "io/helper/child.hpp"
+#include "io/helper/far_file.hpp"
 #include "io/helper/library_words.hpp"
-#include "io/helper/mirrored.hpp"
 #include "io/helper/report.hpp"
 #include "io/system/leftovers.hpp"
 #include "io/system/system.hpp"
@@ -118,44 +118,23 @@ nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked, Loc
             {"notes", plain.about.notes}};
 }
 
-/// What `work` gives; of a mirror of which something is missing, what that is. Libraries may take a
-/// part that they cannot read for one that is not there, and go on.
-template <class Work>
-nlohmann::json with_mirror(const nlohmann::json& asked, Work&& work) {
-    if (!asked.contains("mirror")) return work();
-    use_mirror();
-    const auto missing = [] {
-        return nlohmann::json{{"missing", {missing_part()->offset, missing_part()->length}}};
-    };
-    try {
-        nlohmann::json result = work();
-        return missing_part() ? missing() : result;
-    } catch (const std::exception&) {
-        if (!missing_part()) throw;
-        return missing();
+/// The next question; nothing if the caller has closed the socket.
+std::optional<nlohmann::json> next_question() {
+    std::string line;
+    for (char c = 0; read(samples_descriptor, &c, 1) == 1; line += c) {
+        if (c == '\n') return nlohmann::json::parse(line);
     }
+    return std::nullopt;
 }
 
-nlohmann::json run_describe(const fs::path& path, const nlohmann::json& asked, Describe* describe) {
-    limit_this_process(asked, 1 << 30);
-    return with_mirror(asked, [&] {
-        return json_from(
-            describe(path, asked.at("channel").get<int>(), asked.at("time").get<int>()));
-    });
-}
-
-nlohmann::json run_chunks(const fs::path& path, const nlohmann::json& asked, Places* places) {
-    limit_this_process(asked, 1 << 30);
-    ChunkBox box;
-    box.array = asked.at("array").get<std::string>();
-    box.first = asked.at("first").get<std::array<std::int64_t, 3>>();
-    box.count = asked.at("count").get<std::array<std::int64_t, 3>>();
-    const auto count = static_cast<std::size_t>(box.count[0] * box.count[1] * box.count[2]);
-    const std::span<std::byte> memory = shared_samples(count * sizeof(ChunkPlace));
-    return with_mirror(asked, [&] {
-        places(path, box, {reinterpret_cast<ChunkPlace*>(memory.data()), count});
-        return nlohmann::json::object();
-    });
+nlohmann::json run_explore(const fs::path& path, const nlohmann::json& asked, Explore* explore) {
+    go_with_socket(samples_descriptor);
+    limit_memory(1 << 30);
+    if (asked.contains("size")) use_far_file(asked["size"].get<std::uint64_t>());
+    while (const auto question = next_question()) {
+        report({{"done", explore(path, *question)}});
+    }
+    return nlohmann::json::object();
 }
 
 /// The folder in which a file is written: under its own name, because headers name their
@@ -260,11 +239,8 @@ nlohmann::json run(Job job, char** argv, const Formats& formats) {
         case Job::locate:
             if (formats.locate) return run_locate(path, asked, formats.locate);
             break;
-        case Job::describe:
-            if (formats.describe) return run_describe(path, asked, formats.describe);
-            break;
-        case Job::chunks:
-            if (formats.places) return run_chunks(path, asked, formats.places);
+        case Job::explore:
+            if (formats.explore) return run_explore(path, asked, formats.explore);
             break;
         case Job::read_mesh:
             if (formats.read_mesh) return run_read_mesh(path, asked, formats.read_mesh);
@@ -281,9 +257,11 @@ nlohmann::json run(Job job, char** argv, const Formats& formats) {
 }  // namespace
 
 Job job_of(int argc, char** argv) {
-    static constexpr std::pair<std::string_view, Job> jobs[] = {
-        {"read", Job::read},     {"locate", Job::locate},       {"describe", Job::describe},
-        {"chunks", Job::chunks}, {"read-mesh", Job::read_mesh}, {"write", Job::write}};
+    static constexpr std::pair<std::string_view, Job> jobs[] = {{"read", Job::read},
+                                                                {"locate", Job::locate},
+                                                                {"explore", Job::explore},
+                                                                {"read-mesh", Job::read_mesh},
+                                                                {"write", Job::write}};
     for (const auto& [name, job] : jobs) {
         if (argc > 1 && name == argv[1] && argc == (job == Job::write ? 5 : 4)) return job;
     }

@@ -3,19 +3,17 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "io/helper/headers.hpp"
-#include "io/helper/images.hpp"
 #include "io/helper/readers.hpp"
 
 namespace palpate::io {
 
 using Read = Result(const Request& request);
 using Locate = PlainLayout(const Request& request);
-using Describe = ChunkedImage(const std::filesystem::path& path, int channel, int time);
-using Places = void(const std::filesystem::path& path, const ChunkBox& box,
-                    std::span<ChunkPlace> places);
+using Explore = nlohmann::json(const std::filesystem::path& path, const nlohmann::json& question);
 using ReadMesh = MeshSize(const std::filesystem::path& path, const std::string& extension,
                           const MeshMemory& memory_of);
 using Write = void(const std::filesystem::path& path, const std::string& extension,
@@ -25,14 +23,13 @@ using Write = void(const std::filesystem::path& path, const std::string& extensi
 struct Formats {
     Read* read = nullptr;
     Locate* locate = nullptr;
-    Describe* describe = nullptr;
-    Places* places = nullptr;
+    Explore* explore = nullptr;
     ReadMesh* read_mesh = nullptr;
     Write* write = nullptr;
 };
 
 /// The first word of the command line (protocol.hpp).
-enum class Job { none, read, locate, describe, chunks, read_mesh, write };
+enum class Job { none, read, locate, explore, read_mesh, write };
 Job job_of(int argc, char** argv);
 
 /// In lower case; of a.nii.gz both.

@@ -99,8 +99,7 @@ const char* program_for(Job job, const fs::path& path) {
     switch (job) {
         case Job::read:
             return program_for_file(path);
-        case Job::describe:
-        case Job::chunks:
+        case Job::explore:
             return images;
         case Job::read_mesh:
             return vtk;

@@ -2,15 +2,17 @@
 // library (own_program.cpp).
 //   palpate-io-helper read PATH REQUEST       samples come back in descriptor 3
 //   palpate-io-helper locate PATH REQUEST     says where the samples lie in their file
-//   palpate-io-helper describe PATH REQUEST   says what image is in a file of chunks
-//   palpate-io-helper chunks PATH REQUEST     places of some chunks come back in descriptor 3
+//   palpate-io-helper explore PATH REQUEST    answers questions about a file of chunks
 //   palpate-io-helper read-mesh PATH REQUEST  vertices and triangles come back in descriptor 3
 //   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside
 //                                             PATH, is created for the unfinished file and removed
-// With "mirror" in the REQUEST of describe and chunks, descriptor 5 has the parts of the file that
-// were fetched so far (io/process/mirror.hpp); {"done":{"missing":[offset, length]}} asks for
-// another. REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a
-// file"}, and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
+// REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},
+// and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
+// Who explores lives until descriptor 3, a socket, is closed. From there it reads lines of JSON:
+// {"channel":0,"time":0} asks what image is in the file,
+// {"array":"...","first":[...],"count":[...]} where chunks lie. With "size" in the REQUEST the file
+// lies elsewhere: {"read":[offset,length]} asks for at most a page of it, whose bytes then come
+// from descriptor 3.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +26,7 @@ namespace palpate::io {
 
 constexpr int samples_descriptor = 3;
 constexpr int report_descriptor = 4;
-constexpr int mirror_descriptor = 5;
+constexpr std::uint64_t far_page = std::uint64_t{256} << 10;  // [bytes]
 
 inline nlohmann::json json_from(const Vec3& v) {
     return {v[0], v[1], v[2]};

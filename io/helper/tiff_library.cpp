@@ -5,7 +5,7 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "io/helper/mirrored.hpp"
+#include "io/helper/far_file.hpp"
 
 namespace palpate::io {
 namespace {
@@ -26,9 +26,9 @@ struct Reading {
 
 tmsize_t read_part(thandle_t of, void* to, tmsize_t size) {
     auto& at = static_cast<Reading*>(of)->at;
-    const std::uint64_t rest = mirror_size() - std::min(at, mirror_size());
+    const std::uint64_t rest = far_size() - std::min(at, far_size());
     const std::uint64_t count = std::min(static_cast<std::uint64_t>(size), rest);
-    if (!read_mirror(at, {static_cast<std::byte*>(to), count})) return 0;
+    if (!read_far(at, {static_cast<std::byte*>(to), count})) return 0;
     at += count;
     return static_cast<tmsize_t>(count);
 }
@@ -37,21 +37,21 @@ tmsize_t refuse_to_write(thandle_t, void*, tmsize_t) {
 }
 toff_t go_to(thandle_t of, toff_t offset, int from) {
     auto& at = static_cast<Reading*>(of)->at;
-    at = offset + (from == SEEK_SET ? 0 : from == SEEK_CUR ? at : mirror_size());
+    at = offset + (from == SEEK_SET ? 0 : from == SEEK_CUR ? at : far_size());
     return at;
 }
 int end_reading(thandle_t of) {
     delete static_cast<Reading*>(of);
     return 0;
 }
-toff_t size_of_mirror(thandle_t) {
-    return mirror_size();
+toff_t size_of_far(thandle_t) {
+    return far_size();
 }
 
-Tiff open_mirror(const std::filesystem::path& file, const char* mode) {
+Tiff open_far(const std::filesystem::path& file, const char* mode) {
     auto reading = std::make_unique<Reading>();
     Tiff tiff(TIFFClientOpen(file.c_str(), mode, reading.get(), read_part, refuse_to_write, go_to,
-                             end_reading, size_of_mirror, nullptr, nullptr),
+                             end_reading, size_of_far, nullptr, nullptr),
               &TIFFClose);
     if (tiff) (void)reading.release();
     return tiff;
@@ -63,7 +63,7 @@ Tiff open_tiff(const std::filesystem::path& file, const char* mode) {
     first_error.clear();
     TIFFSetErrorHandler(keep_error);
     TIFFSetWarningHandler(nullptr);
-    if (uses_mirror()) return open_mirror(file, mode);
+    if (is_far()) return open_far(file, mode);
     return {TIFFOpen(file.c_str(), mode), &TIFFClose};
 }
 

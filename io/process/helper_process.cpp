@@ -6,16 +6,20 @@
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
+#include <span>
 #include <system_error>
 
 #include "io/helper/library_words.hpp"
@@ -83,7 +87,7 @@ std::string list_of(const std::vector<fs::path>& folders) {
 /// A child process that is dead and reaped when this object is gone.
 class Child {
   public:
-    explicit Child(pid_t pid) : pid_(pid) {}
+    Child() = default;
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
     ~Child() {
@@ -93,6 +97,7 @@ class Child {
         while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
         }
     }
+    void begin(pid_t pid) { pid_ = pid; }
     /// Waits for the end of a child that has closed its pipes, two seconds at most before it is
     /// killed. The status is waitpid's; 0 if the caller's program ignores SIGCHLD.
     int wait() {
@@ -108,7 +113,7 @@ class Child {
     }
 
   private:
-    pid_t pid_;
+    pid_t pid_ = -1;
 };
 
 struct SpawnActions {
@@ -138,11 +143,7 @@ pid_t spawn(const fs::path& program, const HelperJob& job, const Descriptor& rep
         posix_spawn_file_actions_addopen(files, samples_descriptor, "/dev/null", O_RDONLY, 0);
     }
     posix_spawn_file_actions_adddup2(files, report.number(), report_descriptor);
-    if (job.mirror) {
-        posix_spawn_file_actions_adddup2(files, job.mirror->number(), mirror_descriptor);
-    }
-    posix_spawn_file_actions_addclosefrom_np(
-        files, job.mirror ? mirror_descriptor + 1 : report_descriptor + 1);
+    posix_spawn_file_actions_addclosefrom_np(files, report_descriptor + 1);
     // The caller may block or ignore Ctrl-C; the helper must not.
     sigset_t signals;
     sigemptyset(&signals);
@@ -169,74 +170,6 @@ void limit_processor_time(pid_t pid, double seconds) {
     prlimit(pid, RLIMIT_CPU, &limit, nullptr);
 }
 
-/// Reads the helper's messages until it closes both pipes.
-class Listener {
-  public:
-    Listener(const HelperJob& job, const Descriptor& report, const Descriptor& errors)
-        : job_(job), report_(report), errors_(errors) {}
-
-    /// False if the time limit came first.
-    bool listen() {
-        const auto start = Clock::now();
-        bool report_open = true, errors_open = true;
-        while (report_open || errors_open) {
-            pollfd fds[2] = {{report_open ? report_.number() : -1, POLLIN, 0},
-                             {errors_open ? errors_.number() : -1, POLLIN, 0}};
-            poll(fds, 2, 100);  // whatever it returns, the reads below do not block
-            if (report_open) report_open = drain(report_, pending_);
-            if (errors_open) errors_open = drain(errors_, error_text_);
-            if (error_text_.size() > 8192) error_text_.erase(0, error_text_.size() - 4096);
-            take_lines();
-            if (job_.progress) job_.progress(fraction_);
-            const std::chrono::duration<double> elapsed = Clock::now() - start;
-            if (elapsed.count() > job_.time_limit_s) return false;
-        }
-        return true;
-    }
-
-    const nlohmann::json& done() const { return done_; }
-    const std::string& error() const { return error_; }
-    const std::string& doing() const { return doing_; }
-    const std::string& error_text() const { return error_text_; }
-
-  private:
-    /// Reads what is there; false at the end of the stream.
-    static bool drain(const Descriptor& from, std::string& to) {
-        char buffer[4096];
-        for (int i = 0; i < 64; ++i) {
-            const ssize_t got = read(from.number(), buffer, sizeof buffer);
-            if (got == 0) return false;
-            if (got < 0) return errno == EAGAIN || errno == EINTR;
-            to.append(buffer, static_cast<std::size_t>(got));
-        }
-        return true;
-    }
-
-    void take_lines() {
-        std::size_t begin = 0;
-        for (std::size_t end; (end = pending_.find('\n', begin)) != std::string::npos;) {
-            const auto line =
-                nlohmann::json::parse(pending_.begin() + static_cast<long>(begin),
-                                      pending_.begin() + static_cast<long>(end), nullptr, false);
-            begin = end + 1;
-            if (!line.is_object()) continue;
-            fraction_ = line.value("progress", fraction_);
-            doing_ = line.value("doing", doing_);
-            error_ = line.value("error", error_);
-            if (line.contains("done")) done_ = line["done"];
-        }
-        pending_.erase(0, begin);
-        if (pending_.size() > 1 << 20) pending_.clear();  // not our helper
-    }
-
-    const HelperJob& job_;
-    const Descriptor& report_;
-    const Descriptor& errors_;
-    std::string pending_, error_text_, error_, doing_;
-    nlohmann::json done_;
-    double fraction_ = 0;
-};
-
 /// The last line of a library's error output, short enough for a message.
 std::string last_words(const std::string& text) {
     const auto end = text.find_last_not_of(" \t\r\n");
@@ -251,32 +184,179 @@ std::string seconds_text(double seconds) {
     return std::to_string(std::lround(std::ceil(seconds))) + " s";
 }
 
-std::string failure_of(const HelperJob& job, const Listener& said, int status) {
-    const HelperProgram& program = job.program;
-    if (!said.error().empty()) return said.error();
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && said.done().is_object()) return {};
-    const std::string where = said.doing().empty() ? "" : " at " + said.doing();
-    if (WIFSIGNALED(status)) {
-        const int s = WTERMSIG(status);
-        if (s == SIGINT || s == SIGTERM || s == SIGHUP) return "interrupted";
-        if (s == SIGXCPU) {
-            return "it took more than " + seconds_text(job.processor_limit_s) +
-                   " of processor time" + where + ": " + program.too_slow;
+/// A helper that runs, and all that it says. In a talk it has an input.
+class Running {
+  public:
+    explicit Running(const HelperJob& job, const Descriptor* input = nullptr)
+        : job_(job), input_(input) {
+        const std::vector<fs::path> folders = helper_folders();
+        const fs::path path = find_program(job, folders);
+        const std::string remedy = "; reinstall Palpate, or set " + variable_of(job.program);
+        if (path.empty()) {
+            failure_ = job.program.name + (" was not found in " + list_of(folders) + remedy);
+            return;
         }
-        if (s == SIGKILL) {
-            return "the helper process was killed" + where + ": most likely out of memory; " +
-                   program.out_of_memory;
+        const pid_t pid = spawn(path, job, report_.write_end, errors_.write_end);
+        if (pid == 0) {
+            failure_ = "cannot run '" + path.string() + "' (" + std::strerror(errno) + ")" + remedy;
+            return;
         }
-        return program.who_crashes + std::string(" crashed") + where + " (" + strsignal(s) +
-               "): " + program.after_crash + last_words(said.error_text());
+        child_.begin(pid);
+        limit_processor_time(pid, job.processor_limit_s);
+        // Only the helper may hold write ends; otherwise the end of its output would not be seen.
+        report_.write_end.close_now();
+        errors_.write_end.close_now();
     }
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {  // the loader's
-        return std::string("a library that it needs is missing: install what ") +
-               "scripts/install_packages.sh names for io" + last_words(said.error_text());
+
+    void tell(const std::string& line) {
+        const auto bytes = std::as_bytes(std::span(line));
+        sending_.assign(bytes.begin(), bytes.end());
+        done_ = {};
     }
-    return "the helper process ended without an answer" + where + ": check that " + program.name +
-           " belongs to this version of Palpate" + last_words(said.error_text());
+
+    /// Listens until it has ended or, in a talk, has answered. `give`: of a talk.
+    HelperResult result(const std::function<void(double)>& progress, const GiveBytes& give = {}) {
+        if (!failure_.empty()) return {{}, failure_};
+        if (!listen(progress, give)) {
+            return {{},
+                    "no answer after " + seconds_text(job_.time_limit_s) + ": " +
+                        job_.program.too_slow};
+        }
+        if (has_answered(give)) return {done_, error_};
+        return {done_, failure_of(child_.wait())};
+    }
+
+  private:
+    bool has_answered(const GiveBytes& give) const {
+        return give && (done_.is_object() || !error_.empty());
+    }
+
+    /// False if the time limit came first. What it asks for is sent before it is heard again, so
+    /// that it cannot ask for more than one part at a time.
+    bool listen(const std::function<void(double)>& progress, const GiveBytes& give) {
+        auto start = Clock::now();
+        while ((report_open_ || errors_open_) && !has_answered(give)) {
+            const bool sends = !sending_.empty();
+            const int report = report_.read_end.number(), errors = errors_.read_end.number();
+            pollfd fds[3] = {{report_open_ && !sends ? report : -1, POLLIN, 0},
+                             {errors_open_ ? errors : -1, POLLIN, 0},
+                             {sends ? input_->number() : -1, POLLOUT, 0}};
+            poll(fds, 3, 100);  // whatever it returns, what follows does not block
+            if (sends) send_some();
+            if (report_open_ && !sends) report_open_ = drain(report, pending_);
+            if (errors_open_) errors_open_ = drain(errors, error_text_);
+            if (error_text_.size() > 8192) error_text_.erase(0, error_text_.size() - 4096);
+            take_lines(give, start);
+            if (progress) progress(fraction_);
+            const std::chrono::duration<double> elapsed = Clock::now() - start;
+            if (elapsed.count() > job_.time_limit_s) return false;
+        }
+        return true;
+    }
+
+    void send_some() {
+        const ssize_t sent = send(input_->number(), sending_.data() + sent_,
+                                  sending_.size() - sent_, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (sent < 0 && (errno == EAGAIN || errno == EINTR)) return;
+        sent_ += static_cast<std::size_t>(std::max<ssize_t>(sent, 0));
+        if (sent >= 0 && sent_ < sending_.size()) return;
+        sending_.clear();  // all, or nobody listens any more
+        sent_ = 0;
+    }
+
+    /// Reads what is there; false at the end of the stream.
+    static bool drain(int from, std::string& to) {
+        char buffer[4096];
+        for (int i = 0; i < 64; ++i) {
+            const ssize_t got = read(from, buffer, sizeof buffer);
+            if (got == 0) return false;
+            if (got < 0) return errno == EAGAIN || errno == EINTR;
+            to.append(buffer, static_cast<std::size_t>(got));
+        }
+        return true;
+    }
+
+    void take_lines(const GiveBytes& give, Clock::time_point& start) {
+        std::size_t begin = 0;
+        for (std::size_t end;
+             sending_.empty() && (end = pending_.find('\n', begin)) != std::string::npos;) {
+            const auto line =
+                nlohmann::json::parse(pending_.begin() + static_cast<long>(begin),
+                                      pending_.begin() + static_cast<long>(end), nullptr, false);
+            begin = end + 1;
+            if (!line.is_object()) continue;
+            fraction_ = line.value("progress", fraction_);
+            doing_ = line.value("doing", doing_);
+            error_ = line.value("error", error_);
+            if (line.contains("done")) done_ = line["done"];
+            if (!give || !line.contains("read")) continue;
+            const auto part = line["read"].get<std::array<std::uint64_t, 2>>();
+            const auto before = Clock::now();
+            sending_ = give(part[0], part[1]);
+            start += Clock::now() - before;
+        }
+        pending_.erase(0, begin);
+        if (pending_.size() > 1 << 20) pending_.clear();  // not our helper
+    }
+
+    std::string failure_of(int status) const {
+        const HelperProgram& program = job_.program;
+        if (!error_.empty()) return error_;
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && done_.is_object()) return {};
+        const std::string where = doing_.empty() ? "" : " at " + doing_;
+        if (WIFSIGNALED(status)) {
+            const int s = WTERMSIG(status);
+            if (s == SIGINT || s == SIGTERM || s == SIGHUP) return "interrupted";
+            if (s == SIGXCPU) {
+                return "it took more than " + seconds_text(job_.processor_limit_s) +
+                       " of processor time" + where + ": " + program.too_slow;
+            }
+            if (s == SIGKILL) {
+                return "the helper process was killed" + where + ": most likely out of memory; " +
+                       program.out_of_memory;
+            }
+            return program.who_crashes + std::string(" crashed") + where + " (" + strsignal(s) +
+                   "): " + program.after_crash + last_words(error_text_);
+        }
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {  // the loader's
+            return std::string("a library that it needs is missing: install what ") +
+                   "scripts/install_packages.sh names for io" + last_words(error_text_);
+        }
+        return "the helper process ended without an answer" + where + ": check that " +
+               program.name + " belongs to this version of Palpate" + last_words(error_text_);
+    }
+
+    const HelperJob& job_;
+    const Descriptor* const input_;
+    Pipe errors_ = open_pipe(), report_ = open_pipe();
+    Child child_;
+    bool report_open_ = true, errors_open_ = true;
+    std::string failure_;  // to run
+    std::string pending_, error_text_, error_, doing_;
+    nlohmann::json done_;
+    double fraction_ = 0;
+    std::vector<std::byte> sending_;  // of which `sent_` bytes have gone
+    std::size_t sent_ = 0;
+};
+
+/// The two ends of what a helper is told. Not a pipe: writing to a dead one would raise SIGPIPE.
+Pipe open_input() {
+    int ends[2];
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail("no socket");
+    Descriptor own(ends[0]);
+    return {moved_up(ends[1]), std::move(own)};
 }
+
+struct Talk {
+    explicit Talk(HelperJob of) : job(std::move(of)) {
+        job.memory = &input.read_end;
+        running.emplace(job, &input.write_end);
+        input.read_end.close_now();
+    }
+    HelperJob job;
+    Pipe input = open_input();
+    std::optional<Running> running;
+};
 
 }  // namespace
 
@@ -308,29 +388,16 @@ std::shared_ptr<void> map_shared(const Descriptor& memory, std::size_t bytes) {
 }
 
 HelperResult run_helper(const HelperJob& job) {
-    const HelperProgram& helper = job.program;
-    const std::vector<fs::path> folders = helper_folders();
-    const fs::path path = find_program(job, folders);
-    const std::string remedy = "; reinstall Palpate, or set " + variable_of(helper);
-    if (path.empty()) {
-        return {{}, helper.name + (" was not found in " + list_of(folders) + remedy)};
-    }
-    Pipe errors = open_pipe();
-    Pipe report = open_pipe();
-    const pid_t pid = spawn(path, job, report.write_end, errors.write_end);
-    if (pid == 0) {
-        return {{}, "cannot run '" + path.string() + "' (" + std::strerror(errno) + ")" + remedy};
-    }
-    Child child(pid);
-    limit_processor_time(pid, job.processor_limit_s);
-    // Only the helper may hold write ends; otherwise the end of its output would not be seen.
-    report.write_end.close_now();
-    errors.write_end.close_now();
-    Listener listener(job, report.read_end, errors.read_end);
-    if (!listener.listen()) {
-        return {{}, "no answer after " + seconds_text(job.time_limit_s) + ": " + helper.too_slow};
-    }
-    return {listener.done(), failure_of(job, listener, child.wait())};
+    return Running(job).result(job.progress);
+}
+
+HelperTalk talk_to_helper(HelperJob job) {
+    const auto talk = std::make_shared<Talk>(std::move(job));
+    return [talk](const nlohmann::json& question, const GiveBytes& give,
+                  const std::function<void(double)>& progress) {
+        talk->running->tell(line_from(question));
+        return talk->running->result(progress, give);
+    };
 }
 
 }  // namespace palpate::io

@@ -3,6 +3,8 @@
 // Linux: posix_spawn, memfd. For the libraries that have such a program, not for the apps.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -55,8 +57,7 @@ struct HelperJob {
     const Descriptor* memory = nullptr;
     std::function<void(double)> progress;
     double time_limit_s = 0;
-    double processor_limit_s = 0;        ///< [s] of its processor time, rounded up; 0: no limit
-    const Descriptor* mirror = nullptr;  ///< its descriptor 5 (io/process/mirror.hpp); may be null
+    double processor_limit_s = 0;  ///< [s] of its processor time, rounded up; 0: no limit
 };
 
 struct HelperResult {
@@ -67,5 +68,19 @@ struct HelperResult {
 /// Blocks until the helper has ended; safe from several threads. An exception of `progress` ends
 /// the helper and passes through.
 HelperResult run_helper(const HelperJob& job);
+
+/// The bytes that a helper asks for. May throw.
+using GiveBytes = std::function<std::vector<std::byte>(std::uint64_t offset, std::uint64_t length)>;
+
+/// Asks a helper that answers one question after the other, and asks for bytes of a file meanwhile
+/// (helper/protocol.hpp). What `give` or `progress` throws passes through. After that, and after a
+/// failure, it has no more answers. One thread at a time.
+using HelperTalk = std::function<HelperResult(const nlohmann::json& question, const GiveBytes& give,
+                                              const std::function<void(double)>& progress)>;
+
+/// Starts one, which is killed when the last copy of this is gone. The job's time limit is that of
+/// a question, without the time that `give` takes. Its memory is not used. Throws
+/// std::system_error.
+HelperTalk talk_to_helper(HelperJob job);
 
 }  // namespace palpate::io

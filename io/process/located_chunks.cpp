@@ -1,15 +1,11 @@
-// What image is in a file of chunks, and where they lie; see the header.
+// What image is in a file of chunks, and where its chunks lie. See the header.
 #include "io/process/located_chunks.hpp"
-
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cstring>
+#include <utility>
 
 #include "io/helper/protocol.hpp"
-#include "io/process/helper_process.hpp"
 #include "io/process/io_helper.hpp"
 #include "palpate/io/error.hpp"
 
@@ -18,36 +14,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How often the helper may ask for more of a mirror: metadata of a terabyte lie in some hundred
-/// places.
-constexpr int most_rounds = 10000;
+/// Of a file elsewhere, what the helper gets for one question [bytes].
+constexpr std::uint64_t most_given = std::uint64_t{512} << 20;
 
-nlohmann::json answer_of(const ChunkFile& file, const char* job_name, nlohmann::json request,
-                         const Descriptor* memory, const std::stop_token& stop) {
-    request["caller"] = getpid();
-    if (file.mirror) request["mirror"] = true;
-    constexpr double seconds = 60;  // for metadata
-    const HelperJob job{
-        io_helper, {},      {job_name, file.path.string(), line_from(request)}, memory, {},
-        seconds,   seconds, file.mirror ? &file.mirror->memory() : nullptr};
-    if (!file.mirror) return result_of(file.path, job).done;
-    const std::scoped_lock lock(file.mirror->mutex());
-    file.mirror->tidy();
-    for (int round = 0; round < most_rounds; ++round) {
-        nlohmann::json done = result_of(file.path, job).done;
-        if (!done.contains("missing")) return done;
-        const auto part = done["missing"].get<std::array<std::uint64_t, 2>>();
-        file.mirror->fetch(part[0], part[1], stop);
+std::vector<ChunkPlace> places_from(const nlohmann::json& numbers, std::size_t count) {
+    if (!numbers.is_array() || numbers.size() != 3 * count) {
+        throw std::invalid_argument("the helper process gave too few places");
     }
-    throw std::invalid_argument("its metadata lie in too many places to be read from there");
-}
-
-/// What take(answer) makes of the helper's answer.
-template <class Take>
-auto asked(const ChunkFile& file, const char* job_name, const nlohmann::json& request,
-           const Descriptor* memory, const std::stop_token& stop, Take&& take) {
-    return asked_of_helper(file.path,
-                           [&] { return take(answer_of(file, job_name, request, memory, stop)); });
+    std::vector<ChunkPlace> places(count);
+    for (std::size_t i = 0; i < 3 * count; ++i) {
+        if (!numbers[i].is_number_unsigned()) throw std::invalid_argument("a place is no number");
+        ChunkPlace& place = places[i / 3];
+        const auto number = numbers[i].get<std::uint64_t>();
+        (i % 3 == 0 ? place.offset : i % 3 == 1 ? place.length : place.skipped) = number;
+    }
+    return places;
 }
 
 }  // namespace
@@ -59,30 +40,57 @@ bool is_hdf5_name(const fs::path& path) {
     return extension == ".ims" || extension == ".h5" || extension == ".hdf5";
 }
 
-ChunkedImage describe_image(const ChunkFile& file, int channel, int time) {
-    if (!file.mirror) check_readable(file.path);
-    return asked(file, "describe", {{"channel", channel}, {"time", time}}, nullptr, {},
-                 chunked_image_from);
+ChunkedImage ChunkFile::describe(int channel, int time, const std::stop_token& stop) {
+    if (!read_) check_readable(path_);
+    return asked_of_helper(path_, [&] {
+        return chunked_image_from(answer({{"channel", channel}, {"time", time}}, stop));
+    });
 }
 
-std::vector<ChunkPlace> locate_chunks(const ChunkFile& file, const std::string& array,
-                                      const std::array<std::int64_t, 3>& first,
-                                      const std::array<std::int64_t, 3>& count,
-                                      const std::stop_token& stop) {
+std::vector<ChunkPlace> ChunkFile::locate(const std::string& array,
+                                          const std::array<std::int64_t, 3>& first,
+                                          const std::array<std::int64_t, 3>& count,
+                                          const std::stop_token& stop) {
     const auto chunks = static_cast<std::size_t>(count[0] * count[1] * count[2]);
-    const std::size_t bytes = chunks * sizeof(ChunkPlace);
-    const Descriptor memory = shared_memory();
-    return asked(file, "chunks", {{"array", array}, {"first", first}, {"count", count}}, &memory,
-                 stop, [&](const nlohmann::json&) {
-                     struct stat status {};
-                     if (fstat(memory.number(), &status) != 0 ||
-                         status.st_size != static_cast<off_t>(bytes)) {
-                         throw std::invalid_argument("the helper process gave too few places");
-                     }
-                     std::vector<ChunkPlace> places(chunks);
-                     std::memcpy(places.data(), map_shared(memory, bytes).get(), bytes);
-                     return places;
-                 });
+    return asked_of_helper(path_, [&] {
+        const nlohmann::json done =
+            answer({{"array", array}, {"first", first}, {"count", count}}, stop);
+        return places_from(done.at("places"), chunks);
+    });
+}
+
+nlohmann::json ChunkFile::answer(const nlohmann::json& question, const std::stop_token& stop) {
+    std::uint64_t given = 0;
+    const auto give = [&](std::uint64_t offset, std::uint64_t length) {
+        if (length == 0 || length > far_page || offset >= size_ || length > size_ - offset) {
+            throw std::invalid_argument("the helper process asks for bytes outside the file");
+        }
+        given += length;
+        if (given > most_given) {
+            throw std::invalid_argument("its metadata are too large to be read from there");
+        }
+        return read_(offset, length, stop);
+    };
+    const auto check = [&](double) {
+        if (stop.stop_requested()) throw Cancelled{};
+    };
+    HelperTalk talk = std::exchange(talk_, nullptr);  // kept only if it answers
+    const bool is_new = !talk;
+    if (is_new) {
+        nlohmann::json request = nlohmann::json::object();
+        if (read_) request["size"] = size_;
+        constexpr double seconds = 60;  // for metadata
+        talk = talk_to_helper(
+            {io_helper, {}, {"explore", path_.string(), line_from(request)}, nullptr, {}, seconds});
+    }
+    HelperResult result = talk(question, give, check);
+    if (result.failure.empty()) {
+        talk_ = std::move(talk);
+        return std::move(result.done);
+    }
+    // An earlier question may have harmed it, or the system has ended it meanwhile.
+    if (!is_new) return answer(question, stop);
+    throw InputError(path_.string() + ": " + result.failure);
 }
 
 }  // namespace palpate::io

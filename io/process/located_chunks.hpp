@@ -6,34 +6,52 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <functional>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "io/chunked_image.hpp"
-#include "io/process/mirror.hpp"
+#include "io/process/helper_process.hpp"
 
 namespace palpate::io {
 
 /// True for names that no other function reads: .ims, .h5, .hdf5.
 bool is_hdf5_name(const std::filesystem::path& path);
 
-/// A file on this machine or, with a mirror, elsewhere.
-struct ChunkFile {
-    std::filesystem::path path;
-    std::shared_ptr<Mirror> mirror = {};
+/// A file on this machine or elsewhere, and the helper that looks into it. It starts with the first
+/// question. One thread at a time.
+class ChunkFile {
+  public:
+    /// Reads a part of the file that lies within it. May throw.
+    using Read = std::function<std::vector<std::byte>(std::uint64_t offset, std::uint64_t length,
+                                                      const std::stop_token& stop)>;
+
+    explicit ChunkFile(std::filesystem::path path) : path_(std::move(path)) {}
+    /// Elsewhere. `name`: in messages, and its extension tells the format. `size` in bytes.
+    ChunkFile(std::filesystem::path name, std::uint64_t size, Read read)
+        : path_(std::move(name)), size_(size), read_(std::move(read)) {}
+
+    const std::filesystem::path& path() const { return path_; }
+
+    /// Of HDF5 and of tiled TIFF: the levels of one channel and time; none if there is no such
+    /// channel or time. Throws InputError, what reading throws, and Cancelled.
+    ChunkedImage describe(int channel, int time, const std::stop_token& stop = {});
+
+    /// Where `count` chunks along z, y, x lie, from `first` on, x fastest. Nothing is known of the
+    /// places but that they are what the file says. Throws as describe().
+    std::vector<ChunkPlace> locate(const std::string& array,
+                                   const std::array<std::int64_t, 3>& first,
+                                   const std::array<std::int64_t, 3>& count,
+                                   const std::stop_token& stop = {});
+
+  private:
+    nlohmann::json answer(const nlohmann::json& question, const std::stop_token& stop);
+
+    std::filesystem::path path_;
+    std::uint64_t size_ = 0;
+    Read read_;
+    HelperTalk talk_;
 };
-
-/// Of HDF5 and of tiled TIFF: the levels of one channel and time; none if there is no such channel
-/// or time. Throws InputError, and what a mirror throws.
-ChunkedImage describe_image(const ChunkFile& file, int channel, int time);
-
-/// Where `count` chunks along z, y, x lie, from `first` on, x fastest. Nothing is known of the
-/// places but that they are what the file says. Throws as describe_image().
-std::vector<ChunkPlace> locate_chunks(const ChunkFile& file, const std::string& array,
-                                      const std::array<std::int64_t, 3>& first,
-                                      const std::array<std::int64_t, 3>& count,
-                                      const std::stop_token& stop = {});
 
 }  // namespace palpate::io

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "io/tiff_peek.hpp"
-#include "stream/chunked_array.hpp"
+#include "stream/formats/chunked_array.hpp"
 
 namespace {
 

@@ -12,8 +12,8 @@
 
 #include "io/chunked_image.hpp"
 #include "palpate/io/error.hpp"
-#include "stream/located_file.hpp"
-#include "stream/stores.hpp"
+#include "stream/formats/located_file.hpp"
+#include "stream/formats/stores.hpp"
 
 namespace {
 
@@ -126,7 +126,9 @@ void try_store(Open&& open) {
 void try_located(const Json& json) {
     try {
         const auto image = palpate::io::chunked_image_from(json);
-        check_info(located_volume(image, {"file.ims"}, {}).info);
+        check_info(located_volume(
+                       image, std::make_shared<LocatedFile>(palpate::io::ChunkFile("file.ims")), {})
+                       .info);
     } catch (const Json::exception&) {  // the caller says that the helper gave no sensible answer
     } catch (const std::bad_optional_access&) {
     } catch (const std::exception& error) {

@@ -84,12 +84,10 @@ TEST_F(HelperProcess, an_answer_that_makes_no_sense_is_refused) {
 }
 
 TEST_F(HelperProcess, a_hang_ends_at_the_time_limit) {
-    for (const char* commands : {"exec sleep 100", "exec 1>&- 2>&- 4>&-\nexec sleep 100"}) {
+    for (const char* commands : {"exec sleep 1000000", "exec 1>&- 2>&- 4>&-\nexec sleep 1000000"}) {
         ReadOptions options = with_script(folder_, commands);
         options.time_limit_s = 0.3;
-        const auto start = std::chrono::steady_clock::now();
         refusal(file_, options);
-        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
         EXPECT_FALSE(has_children());
     }
 }

@@ -6,8 +6,8 @@
 
 #include "io/json_text.hpp"
 #include "palpate/stream/loader.hpp"
+#include "stream/formats/unpacking_room.hpp"
 #include "stream/store_support.hpp"
-#include "stream/unpacking_room.hpp"
 #include "support/random.hpp"
 #include "support/traced_process.hpp"
 

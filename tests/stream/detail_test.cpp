@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <map>
 #include <set>
+#include <thread>
 
 #include "palpate/io/error.hpp"
 #include "palpate/stream/loader.hpp"
@@ -259,6 +262,126 @@ TEST(DetailReader, ends_at_once_while_reads_wait) {
         ASSERT_TRUE(comes_true([&] { return reader.status().coming == 4; }));
     }
     EXPECT_TRUE(seen.of(0).empty());
+}
+
+/// A store that notes how often each of its pieces is read.
+class CountedStore {
+  public:
+    explicit CountedStore(Volume volume) : store_(store_in_pieces(std::move(volume))) {
+        store_->before_read = [this](int, const SampleBox& box, const std::stop_token&) {
+            const std::scoped_lock lock(mutex_);
+            ++reads_[{box.low[0], box.low[1], box.low[2]}];
+        };
+    }
+    std::shared_ptr<const Store> store() const { return store_; }
+    void forget() {
+        const std::scoped_lock lock(mutex_);
+        reads_.clear();
+    }
+    int most() const {
+        const std::scoped_lock lock(mutex_);
+        int most = 0;
+        for (const auto& [piece, reads] : reads_) most = std::max(most, reads);
+        return most;
+    }
+    std::size_t pieces() const {
+        const std::scoped_lock lock(mutex_);
+        return reads_.size();
+    }
+
+  private:
+    std::shared_ptr<VolumesStore> store_;
+    mutable std::mutex mutex_;
+    std::map<std::array<int, 3>, int> reads_;
+};
+
+constexpr std::uint64_t hand_memory = std::uint64_t{1} << 26;
+
+TEST(SharedPieces, hands_and_eyes_together_read_each_piece_once) {
+    const Volume volume = noise_of(SampleType::uint8, grid({200, 150, 130}), 5);
+    for (int round = 0; round < 4; ++round) {
+        CountedStore counted(volume);
+        const Volume overview = overview_of(*counted.store(), 1000);
+        counted.forget();
+        const auto pieces = shared_pieces();
+        BrickLoader loader(counted.store(), overview,
+                           {.memory = hand_memory, .threads = 4, .pieces = pieces});
+        Seen seen;
+        DetailSettings settings = settings_of(3);
+        settings.pieces = pieces;
+        DetailReader reader(counted.store(), overview, settings, seen.made());
+        reader.want(0, {{0, whole_box(volume.geometry())}});
+        const Interest hand{Vec3(100, 75, 65), Vec3(100, 75, 65)};
+        loader.look({&hand, 1});
+        loader.wait_for(hand.hand, 20);
+        ASSERT_TRUE(comes_true([&] { return seen.complete(0); }));
+        EXPECT_EQ(bytes_of(seen.of(0).back().volume), bytes_of(volume));
+        EXPECT_EQ(counted.pieces(), 7U * 5 * 5);
+        EXPECT_EQ(counted.most(), 1);
+        std::vector<std::byte> felt(20 * 20 * 20);
+        const SampleBox box{{90, 65, 55}, {109, 84, 74}};
+        loader.read(box, felt);
+        EXPECT_EQ(felt, test::box_of(volume, box));
+    }
+}
+
+TEST(SharedPieces, eyes_do_not_drop_what_the_hand_uses_and_go_without_taking_it) {
+    const Volume volume = noise_of(SampleType::uint8, grid({200, 150, 130}), 6);
+    CountedStore counted(volume);
+    const Volume overview = overview_of(*counted.store(), 1000);
+    const auto pieces = shared_pieces();
+    BrickLoader loader(counted.store(), overview,
+                       {.memory = hand_memory, .threads = 1, .pieces = pieces});
+    const SampleBox felt{{0, 0, 0}, {63, 63, 63}};
+    const std::uint64_t hand_bytes = 64 * 64 * 64;
+    std::vector<std::byte> samples(hand_bytes);
+    {
+        Seen seen;
+        DetailSettings settings = settings_of(1);
+        settings.memory = 3 * hand_bytes / 2;
+        settings.pieces = pieces;
+        DetailReader reader(counted.store(), overview, settings, seen.made());
+        reader.want(0, {{0, felt}});
+        ASSERT_TRUE(comes_true([&] { return seen.complete(0); }));
+        counted.forget();
+        loader.read(felt, samples);  // takes over what the eyes have read
+        EXPECT_EQ(counted.pieces(), 0U);
+        EXPECT_EQ(loader.status().bytes, hand_bytes);
+        EXPECT_EQ(reader.status().bytes, 0U);
+        reader.want(1, {{0, whole_box(volume.geometry())}});
+        ASSERT_TRUE(comes_true([&] { return seen.complete(1); }));
+        EXPECT_LE(reader.status().bytes, settings.memory);
+    }
+    counted.forget();
+    loader.read(felt, samples);
+    EXPECT_EQ(counted.pieces(), 0U);
+    EXPECT_EQ(samples, test::box_of(volume, felt));
+}
+
+TEST(SharedPieces, a_read_of_the_eyes_that_is_cancelled_is_begun_anew_for_the_hand) {
+    const Volume volume = noise_of(SampleType::uint8, grid(cube(40)), 7);
+    const auto store = store_in_pieces(volume);
+    std::atomic<bool> eyes_read{false}, hangs{true};
+    store->before_read = [&](int, const SampleBox&, const std::stop_token& stop) {
+        eyes_read = true;
+        while (hangs && !stop.stop_requested()) std::this_thread::yield();
+        if (stop.stop_requested()) throw Cancelled{};
+    };
+    const Volume overview = noise_of(SampleType::uint8, grid(cube(8)), 1);
+    const auto pieces = shared_pieces();
+    BrickLoader loader(store, overview, {.memory = hand_memory, .threads = 2, .pieces = pieces});
+    Seen seen;
+    DetailSettings settings = settings_of(1);
+    settings.pieces = pieces;
+    auto reader = std::make_unique<DetailReader>(store, overview, settings, seen.made());
+    reader->want(0, {{0, {{0, 0, 0}, {9, 9, 9}}}});
+    ASSERT_TRUE(comes_true([&] { return eyes_read.load(); }));
+    std::vector<std::byte> samples(10 * 10 * 10);
+    std::jthread hand([&] { loader.read({{0, 0, 0}, {9, 9, 9}}, samples); });
+    reader.reset();
+    hangs = false;
+    hand.join();
+    EXPECT_EQ(samples, test::box_of(volume, {{0, 0, 0}, {9, 9, 9}}));
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include "palpate/io/error.hpp"
 #include "palpate/stream/convert.hpp"
 #include "palpate/stream/loader.hpp"
-#include "stream/pyramid.hpp"
 #include "stream/store_support.hpp"
+#include "stream/writer/pyramid.hpp"
 #include "support/constants.hpp"
 #include "support/edits.hpp"
 

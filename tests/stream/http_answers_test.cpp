@@ -184,13 +184,12 @@ TEST(HttpAnswers, opening_a_store_of_a_silent_server_stops_when_asked_to) {
     for (const std::string& address :
          {served.server.address("c.zarr"), served.server.address("c.ims"), edits.string()}) {
         int calls = 0;
-        const auto begin = std::chrono::steady_clock::now();
         const auto tell = [&](double) {
             if (++calls == 3) throw Impatient{};
         };
-        EXPECT_THROW((void)open_store(address, patient_once(), tell), Impatient);
-        // It would wait for 60 s.
-        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+        StoreOptions options = patient_once();
+        options.timeout_s = 1e6;  // it would wait for days
+        EXPECT_THROW((void)open_store(address, options, tell), Impatient);
     }
 }
 

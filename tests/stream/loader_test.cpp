@@ -11,8 +11,8 @@
 
 #include "palpate/field.hpp"
 #include "palpate/io/error.hpp"
-#include "stream/interest.hpp"
-#include "stream/upsample.hpp"
+#include "stream/loader/interest.hpp"
+#include "stream/loader/upsample.hpp"
 #include "stream/volumes_store.hpp"
 #include "support/constants.hpp"
 #include "support/edits.hpp"

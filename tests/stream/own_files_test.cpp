@@ -9,8 +9,8 @@
 #include "palpate/stream/convert.hpp"
 #include "palpate/stream/edits.hpp"
 #include "palpate/stream/loader.hpp"
-#include "stream/content.hpp"
-#include "stream/disk_cache.hpp"
+#include "stream/formats/content.hpp"
+#include "stream/objects/disk_cache.hpp"
 #include "stream/store_support.hpp"
 #include "support/edits.hpp"
 

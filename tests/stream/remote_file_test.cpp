@@ -1,9 +1,6 @@
-// HDF5 and TIFF behind a server: read as those on the disk, through a mirror of their metadata.
+// HDF5 and TIFF behind a server: read as those on the disk.
 #include <gtest/gtest.h>
 
-#include <numeric>
-
-#include "io/process/mirror.hpp"
 #include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
 #include "stream/written_files.hpp"
@@ -114,34 +111,6 @@ TEST(RemoteFile, what_cannot_be_read_is_one_line) {
         EXPECT_TRUE(message.starts_with(address)) << message;
         EXPECT_TRUE(contains(message, what)) << message;
         EXPECT_FALSE(contains(message, "\n")) << message;
-    }
-}
-
-TEST(RemoteFile, a_mirror_reads_each_page_once_and_nothing_outside_the_file) {
-    std::vector<std::byte> file(700'000);
-    for (std::size_t i = 0; i < file.size(); ++i) file[i] = static_cast<std::byte>(i * 7 >> 3);
-    std::vector<std::uint64_t> read;
-    io::Mirror mirror("a", file.size(),
-                      [&](std::uint64_t offset, std::span<std::byte> to, const std::stop_token&) {
-                          read.push_back(offset);
-                          ASSERT_LE(offset + to.size(), file.size());
-                          std::copy_n(file.begin() + static_cast<std::ptrdiff_t>(offset), to.size(),
-                                      to.begin());
-                      });
-    mirror.fetch(300'000, 10, {});
-    mirror.fetch(262'144, 262'144, {});
-    EXPECT_EQ(read, (std::vector<std::uint64_t>{262'144}));
-    mirror.fetch(699'999, 1, {});
-    mirror.fetch(0, 700'000, {});
-    EXPECT_EQ(read, (std::vector<std::uint64_t>{262'144, 524'288, 0}));
-    const auto held = io::map_shared(mirror.memory(), file.size());
-    EXPECT_EQ(std::memcmp(held.get(), file.data(), file.size()), 0);
-    mirror.tidy();
-    mirror.fetch(1, 1, {});
-    EXPECT_EQ(read.size(), 3U) << "few pages are kept";
-    for (const auto& [offset, length] : std::vector<std::pair<std::uint64_t, std::uint64_t>>{
-             {0, 0}, {0, 700'001}, {700'000, 1}, {UINT64_MAX, 2}, {5, UINT64_MAX}}) {
-        EXPECT_THROW(mirror.fetch(offset, length, {}), std::invalid_argument);
     }
 }
 

@@ -4,9 +4,9 @@
 
 #include "io/volume_support.hpp"
 #include "palpate/io/volume_file.hpp"
-#include "stream/codecs.hpp"
+#include "stream/formats/codecs.hpp"
+#include "stream/formats/tiff_codecs.hpp"
 #include "stream/store_support.hpp"
-#include "stream/tiff_codecs.hpp"
 #include "stream/written_files.hpp"
 
 namespace palpate::stream::test {

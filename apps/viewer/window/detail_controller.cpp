@@ -86,6 +86,7 @@ void DetailController::begin() {
     settings.memory = memory_;
     settings.threads = std::clamp(loaded.streamed->loader.threads / 2, 1, most_reads);
     settings.begin_thread = lower_thread_priority;
+    settings.pieces = loaded.streamed->loader.pieces;
     if (content_.live()) {
         settings.most_at_a_time = [data = content_.data()] {
             const stream::BrickLoaderStatus hand = data->streaming();

@@ -55,6 +55,9 @@ class OutputError : public std::runtime_error {
         : std::runtime_error(one_line(without_secrets(message))) {}
 };
 
+/// Thrown by work that was asked to stop.
+struct Cancelled {};
+
 /// The system's description of an errno.
 inline std::string reason(int error) {
     return std::generic_category().message(error);

@@ -18,6 +18,7 @@
 namespace palpate::stream {
 
 class Blocks;
+class Pieces;
 
 /// A part of a level of a store.
 struct DetailBox {
@@ -45,6 +46,7 @@ struct DetailSettings {
     std::function<int()> most_at_a_time = {};
     /// What each thread does first, for example to lower its priority.
     std::function<void()> begin_thread = {};
+    std::shared_ptr<Pieces> pieces = {};  ///< as those of a loader
 };
 
 struct DetailStatus {
@@ -79,7 +81,6 @@ class DetailReader {
     /// Nothing any more.
     void forget(int viewer);
     DetailStatus status() const;
-    const Store& store() const { return *store_; }
 
   private:
     using Clock = std::chrono::steady_clock;

@@ -2,14 +2,9 @@
 // threads of its own. What is in memory is published as versions of samples (samples.hpp).
 #pragma once
 
-#include <array>
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <list>
-#include <map>
+#include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,9 +14,11 @@
 
 namespace palpate::stream {
 
-class Blocks;
-class BrickMemory;
-class SmallThreads;
+class Pieces;
+
+/// For the decoded pieces of one store. Its readers for hands and for eyes share them, so that each
+/// piece is fetched once.
+std::shared_ptr<Pieces> shared_pieces();
 
 inline constexpr std::int64_t overview_samples = std::int64_t{1} << 21;
 
@@ -41,6 +38,7 @@ struct BrickLoaderSettings {
     /// `memory` bounds all that the process takes, the program itself included; but a hand always
     /// has 64 bricks.
     bool whole_process = false;
+    std::shared_ptr<Pieces> pieces = {};  ///< of this store. Empty: its own
 };
 
 /// The samples of a level before any of it is in memory. Throws std::invalid_argument for a level
@@ -94,11 +92,8 @@ class BrickLoader {
     BrickLoader(const BrickLoader&) = delete;
     BrickLoader& operator=(const BrickLoader&) = delete;
 
-    const Store& store() const { return *store_; }
-    const BrickLoaderSettings& settings() const { return settings_; }
-    const Geometry& geometry() const { return geometry_; }
     /// Samples without any brick, for a field to begin with.
-    const std::shared_ptr<const Samples>& empty() const { return empty_; }
+    const std::shared_ptr<const Samples>& empty() const;
     /// What the hands need from `now` on; never waits for a read. Their speed is smoothed over
     /// time.
     void look(std::span<const Interest> hands,
@@ -125,71 +120,8 @@ class BrickLoader {
     Brick read(const Index3& brick, int coarser, std::stop_token stop = {});
 
   private:
-    struct Place {
-        std::array<int, 3> at;
-        auto operator<=>(const Place&) const = default;
-    };
-    struct Job {
-        Index3 brick;
-        int coarser;
-        bool helps;  ///< another thread makes the brick; this one reads a piece of it
-    };
-    /// A wait_for() that has not ended.
-    struct Waiting {
-        std::vector<Index3> needed;
-        std::uint64_t number;  ///< in the order in which they began, from 1
-        std::string problem;   ///< why one of them cannot be had
-    };
-    using Clock = std::chrono::steady_clock;
-
-    void work(const std::stop_token& stop);
-    void help(const Job& job, const std::stop_token& stop) const;
-    SampleBox source_of(const Index3& brick, int coarser) const;
-    std::optional<Job> next_job();
-    std::optional<Job> job_for(const Index3& brick, int level, Clock::time_point now) const;
-    bool has(const Index3& brick, int level) const;
-    bool is_behind() const;
-    void want(std::vector<Index3> bricks);
-    void wake();
-    void put(const Job& job, const Brick& brick);
-    void fail(const Place& place, const std::string& problem, std::uint64_t begun);
-    void make_room();
-    void choose_levels(std::span<const Interest> hands, Clock::time_point now);
-    std::uint64_t bytes() const;
-    void count_process();
-
-    const std::shared_ptr<const Store> store_;
-    const BrickLoaderSettings settings_;
-    const Volume overview_;
-    const std::shared_ptr<const Samples> empty_;
-    const Geometry geometry_;
-    std::atomic<std::size_t> most_bricks_;
-    const std::unique_ptr<Blocks> blocks_;
-    const std::unique_ptr<BrickMemory> memory_;
-
-    mutable std::mutex mutex_;
-    std::condition_variable_any changed_;
-    ResidentBricks bricks_;                      // as taken last
-    std::map<Place, Brick> held_;                // in memory now
-    Clock::time_point newest_{};                 // when the last of those came
-    std::map<Place, int> in_flight_;             // level that is being read
-    std::map<Place, Clock::time_point> failed_;  // not tried again before
-    std::vector<Index3> wanted_;                 // most urgent first
-    std::array<std::size_t, 4> begun_{};  // of each of next_job()'s rounds: all before is there
-    std::list<Waiting> waiting_;
-    std::uint64_t waits_ = 0;     // calls of wait_for() so far
-    int first_ = 0, finest_ = 0;  // steps coarser that are read, coarse_first
-    double brick_s_ = 0;          // that a brick lately took to come, 0: none yet
-    double speed_ = 0;            // of the fastest hand [bricks/s]
-    Clock::time_point looked_{};  // when that was
-    std::uint64_t changes_ = 0;   // that may have made a job
-    std::vector<BrickEvent> events_;
-    std::uint64_t other_bytes_ = 0;    // leave_room()
-    std::uint64_t process_bytes_ = 0;  // of the process, beyond bricks, pieces and edits
-    Clock::time_point counted_{};      // when those were
-    std::uint64_t most_bytes_ = 0, loaded_ = 0, dropped_ = 0;
-    std::string problem_;
-    const std::unique_ptr<SmallThreads> threads_;  // last: they use all of the above
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace palpate::stream

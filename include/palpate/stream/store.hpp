@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/io/error.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "palpate/samples.hpp"
 
@@ -81,8 +82,7 @@ class Store {
     virtual Traffic traffic() const = 0;
 };
 
-/// What read() throws when it was asked to stop.
-struct Cancelled {};
+using io::Cancelled;  ///< What read() throws when it was asked to stop.
 
 /// Throws std::invalid_argument for a level that the store does not have.
 const Level& level_of(const Store& store, int level);

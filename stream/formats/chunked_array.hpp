@@ -1,0 +1,97 @@
+// An array in chunks, as Zarr, N5 and HDF5 describe it: where each chunk lies and how its bytes
+// become samples. Private to stream/.
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "stream/formats/chunk_table.hpp"
+#include "stream/formats/codecs.hpp"
+#include "stream/objects/objects.hpp"
+#include "stream/sample_bytes.hpp"
+
+namespace palpate::stream {
+
+/// Several chunks in one object, with an index of where each lies in it.
+struct Shards {
+    std::vector<std::int64_t> chunks;  ///< along each axis of a shard
+    std::vector<Codec> index_codecs;   ///< in the order of decoding
+    bool index_at_start = false;
+};
+
+struct ChunkedArray {
+    std::vector<std::int64_t> shape, chunk;  ///< samples along each axis, the slowest first
+    std::vector<int> stored_axes;  ///< which axis of the array each axis of a stored chunk is
+    SampleBytes bytes;
+    std::vector<Codec> codecs;  ///< in the order of decoding
+    std::optional<Shards> shards;
+    std::string folder;  ///< the key of the array
+    std::string prefix;  ///< of a chunk's name: "c/", "c." or none
+    char separator = '.';
+    /// Chunks are blocks of N5: named with the fastest axis first, with a header, those at the end
+    /// of the array cut.
+    bool n5_blocks = false;
+    /// Where the chunks lie in the object `folder`; null: each chunk or shard is an object.
+    std::shared_ptr<const ChunkTable> table;
+
+    std::size_t axes() const { return shape.size(); }
+    std::size_t samples_in_chunk() const;
+    std::size_t bytes_in_chunk() const { return samples_in_chunk() * bytes.size(); }
+    /// [bytes] That reading a chunk takes: packed and unpacked, and the index of its shard.
+    std::uint64_t bytes_to_read_chunk() const;
+};
+
+/// The key of the object with a chunk, or with its shard if there are shards.
+std::string key_of(const ChunkedArray& array, std::span<const std::int64_t> object);
+
+/// Throws std::invalid_argument, without a file's name, for what cannot be or is beyond our limits:
+/// 1 to 8 axes, at least one sample along each, chunks of at most 1 GiB, shards of at most 2^20
+/// chunks.
+void check(const ChunkedArray& array);
+
+/// The bytes of a chunk's samples out of what is stored. Bit i of `skipped`: codec i was not used.
+/// Throws DamagedChunk.
+Bytes unpacked_chunk(const ChunkedArray& array, Bytes packed, std::uint64_t skipped = 0);
+
+/// Reads chunks of one array; keeps the last indices of shards. Safe from several threads.
+class ChunkReader {
+  public:
+    ChunkReader(std::shared_ptr<const Objects> objects, ChunkedArray array);
+
+    const ChunkedArray& array() const { return array_; }
+    /// The bytes of a chunk's samples as they are stored, unpacked; nothing if it is not stored.
+    /// Throws io::InputError, Cancelled.
+    std::optional<Bytes> chunk(std::span<const std::int64_t> index, std::stop_token stop) const;
+
+  private:
+    /// Offset and length of each chunk of a shard; null: there is no such shard.
+    using Index = std::shared_ptr<const std::vector<std::uint64_t>>;
+    Index index_of(const std::string& shard, std::stop_token stop) const;
+    Index fetched_index(const std::string& shard, std::stop_token stop) const;
+    /// What is stored of a chunk.
+    struct Packed {
+        std::string key;  ///< of the object
+        std::optional<Bytes> bytes;
+        std::uint64_t skipped = 0;  ///< as in io::ChunkPlace
+    };
+    Packed packed(std::span<const std::int64_t> index, bool again, std::stop_token stop) const;
+    Packed packed_in_shard(std::span<const std::int64_t> index, bool again,
+                           std::stop_token stop) const;
+    Packed packed_in_file(std::span<const std::int64_t> index, bool again,
+                          std::stop_token stop) const;
+
+    std::shared_ptr<const Objects> objects_;
+    ChunkedArray array_;
+    mutable std::mutex mutex_;
+    mutable std::map<std::string, Index> indices_;
+    mutable std::list<std::string> order_;  ///< of indices_, the oldest first
+    mutable std::size_t held_ = 0;          ///< numbers in indices_
+};
+
+}  // namespace palpate::stream

@@ -1,0 +1,232 @@
+// The compressions of stored chunks. See the header.
+#include "stream/formats/codecs.hpp"
+
+#include <blosc.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <array>
+#include <boost/crc.hpp>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "stream/formats/hdf5_codecs.hpp"
+#include "stream/formats/lz4_codecs.hpp"
+#include "stream/formats/tiff_codecs.hpp"
+
+namespace palpate::stream {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+/// The end of a zlib stream, however it is left.
+struct Inflating {
+    z_stream stream{};
+    Inflating() {
+        constexpr int either_header = 15 + 32;
+        if (inflateInit2(&stream, either_header) != Z_OK) throw std::bad_alloc();
+    }
+    ~Inflating() { inflateEnd(&stream); }
+    Inflating(const Inflating&) = delete;
+    Inflating& operator=(const Inflating&) = delete;
+};
+
+Bytes gunzip(std::span<const std::byte> packed, std::size_t most) {
+    Bytes out(most + 1);  // one more, to see that there is more
+    Inflating job;
+    z_stream& z = job.stream;
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(packed.data()));
+    z.avail_in = static_cast<uInt>(packed.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = static_cast<uInt>(out.size());
+    while (true) {
+        const int status = inflate(&z, Z_FINISH);
+        if (status == Z_STREAM_END && z.avail_in > 0 && z.avail_out > 0) {  // another member
+            if (inflateReset(&z) != Z_OK) throw DamagedChunk("is no gzip stream");
+            continue;
+        }
+        if (status == Z_STREAM_END) break;
+        if (z.avail_out == 0) unpacks_too_long(most);
+        throw DamagedChunk(z.avail_in == 0 ? "ends within its gzip stream"
+                                           : "is a damaged gzip stream");
+    }
+    if (z.avail_out == 0) unpacks_too_long(most);
+    out.resize(out.size() - z.avail_out);
+    return out;
+}
+
+Bytes unzstd(std::span<const std::byte> packed, std::size_t most) {
+    Bytes out(most);
+    const std::size_t size = ZSTD_decompress(out.data(), most, packed.data(), packed.size());
+    if (ZSTD_isError(size) != 0) {
+        throw DamagedChunk(std::string("is a damaged zstd stream (") + ZSTD_getErrorName(size) +
+                           ")");
+    }
+    out.resize(size);
+    return out;
+}
+
+Bytes unblosc(std::span<const std::byte> packed, std::size_t most) {
+    std::size_t size = 0;
+    if (blosc_cbuffer_validate(packed.data(), packed.size(), &size) != 0) {
+        throw DamagedChunk("is no whole blosc buffer");
+    }
+    if (size > most) unpacks_too_long(most);
+    Bytes out(size);
+    const int got = size == 0 ? 0 : blosc_decompress_ctx(packed.data(), out.data(), size, 1);
+    if (got < 0 || static_cast<std::size_t>(got) != size) {
+        throw DamagedChunk("is a damaged blosc buffer");
+    }
+    return out;
+}
+
+Bytes checked_crc32c(Bytes bytes) {
+    if (bytes.size() < 4) throw DamagedChunk("is too short for its checksum");
+    const std::size_t size = bytes.size() - 4;
+    if (crc32c_of({bytes.data(), size}) != little_endian_at(bytes, size)) {
+        throw DamagedChunk("does not have its checksum");
+    }
+    bytes.resize(size);
+    return bytes;
+}
+
+Bytes undone(Codec codec, Bytes bytes, std::size_t most, const SampleRows& rows) {
+    switch (codec) {
+        case Codec::gzip:
+            return gunzip(bytes, most);
+        case Codec::zstd:
+            return unzstd(bytes, most);
+        case Codec::blosc:
+            return unblosc(bytes, most);
+        case Codec::lz4:
+            return unlz4(bytes, most);
+        case Codec::lz4_blocks:
+            return unlz4_blocks(bytes, most);
+        case Codec::hdf5_lz4:
+            return unhdf5_lz4(bytes, most);
+        case Codec::shuffle:
+            return unshuffled(bytes, rows.each);
+        case Codec::lzw:
+            return unlzw(bytes, most);
+        case Codec::difference:
+            undo_differences(bytes, rows.each, rows.row, rows.swapped);
+            return bytes;
+        case Codec::fletcher32:
+            return checked_fletcher32(std::move(bytes));
+        case Codec::crc32c:
+            break;
+    }
+    return checked_crc32c(std::move(bytes));
+}
+
+}  // namespace
+
+void unpacks_too_long(std::size_t most) {
+    throw DamagedChunk("unpacks to more than the " + std::to_string(most) +
+                       " bytes that its metadata declare");
+}
+
+std::uint32_t little_endian_at(std::span<const std::byte> bytes, std::size_t at) {
+    std::uint32_t number = 0;
+    for (std::size_t i = 4; i-- > 0;) {
+        number = number << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+    }
+    return number;
+}
+
+std::optional<Codec> codec_named(std::string_view name) {
+    constexpr std::string_view prefix = "numcodecs.";
+    if (name.starts_with(prefix)) name.remove_prefix(prefix.size());
+    static constexpr std::array<std::pair<std::string_view, Codec>, 6> codecs = {
+        {{"gzip", Codec::gzip},
+         {"zlib", Codec::gzip},
+         {"zstd", Codec::zstd},
+         {"blosc", Codec::blosc},
+         {"lz4", Codec::lz4},
+         {"crc32c", Codec::crc32c}}};
+    for (const auto& [known, codec] : codecs) {
+        if (name == known) return codec;
+    }
+    return std::nullopt;
+}
+
+std::optional<Codec> codec_in_file(std::string_view name) {
+    static constexpr std::array<std::pair<std::string_view, Codec>, 8> codecs = {
+        {{"gzip", Codec::gzip},
+         {"zstd", Codec::zstd},
+         {"blosc", Codec::blosc},
+         {"lzw", Codec::lzw},
+         {"difference", Codec::difference},
+         {"shuffle", Codec::shuffle},
+         {"fletcher32", Codec::fletcher32},
+         {"hdf5_lz4", Codec::hdf5_lz4}}};
+    for (const auto& [known, codec] : codecs) {
+        if (name == known) return codec;
+    }
+    return std::nullopt;
+}
+
+Bytes decoded(std::span<const Codec> codecs, Bytes packed, std::size_t size,
+              const SampleRows& rows) {
+    for (std::size_t i = 0; i < codecs.size(); ++i) {
+        const bool last = i + 1 == codecs.size();
+        packed = undone(codecs[i], std::move(packed), last ? size : packed_at_most(size), rows);
+    }
+    if (packed.size() != size) {
+        throw DamagedChunk("has " + std::to_string(packed.size()) + " bytes instead of the " +
+                           std::to_string(size) + " that its metadata declare");
+    }
+    return packed;
+}
+
+Bytes packed_gzip(std::span<const std::byte> bytes, int level) {
+    z_stream z{};
+    constexpr int gzip_header = 15 + 16, memory = 8;
+    if (deflateInit2(&z, level, Z_DEFLATED, gzip_header, memory, Z_DEFAULT_STRATEGY) != Z_OK) {
+        throw std::bad_alloc();
+    }
+    Bytes out(deflateBound(&z, static_cast<uLong>(bytes.size())));
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(bytes.data()));
+    z.avail_in = static_cast<uInt>(bytes.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = static_cast<uInt>(out.size());
+    deflate(&z, Z_FINISH);
+    out.resize(z.total_out);
+    deflateEnd(&z);
+    return out;
+}
+
+Bytes packed_zstd(std::span<const std::byte> bytes, int level) {
+    const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> job(ZSTD_createCCtx(),
+                                                                   &ZSTD_freeCCtx);
+    if (!job) throw std::bad_alloc();
+    ZSTD_CCtx_setParameter(job.get(), ZSTD_c_compressionLevel, level);
+    ZSTD_CCtx_setParameter(job.get(), ZSTD_c_checksumFlag, 1);
+    Bytes out(ZSTD_compressBound(bytes.size()));
+    const std::size_t size =
+        ZSTD_compress2(job.get(), out.data(), out.size(), bytes.data(), bytes.size());
+    if (ZSTD_isError(size) != 0) throw std::runtime_error(ZSTD_getErrorName(size));
+    out.resize(size);
+    return out;
+}
+
+Bytes packed_blosc(std::span<const std::byte> bytes, std::size_t each, int level) {
+    Bytes out(bytes.size() + BLOSC_MAX_OVERHEAD);
+    const int size =
+        blosc_compress_ctx(level, each > 1 ? BLOSC_SHUFFLE : BLOSC_NOSHUFFLE, each, bytes.size(),
+                           bytes.data(), out.data(), out.size(), BLOSC_ZSTD_COMPNAME, 0, 1);
+    if (size <= 0) throw std::runtime_error("blosc cannot pack a chunk");
+    out.resize(static_cast<std::size_t>(size));
+    return out;
+}
+
+std::uint32_t crc32c_of(std::span<const std::byte> bytes) {
+    boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true> crc;
+    crc.process_bytes(bytes.data(), bytes.size());
+    return crc.checksum();
+}
+
+}  // namespace palpate::stream

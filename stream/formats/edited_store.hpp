@@ -1,0 +1,68 @@
+// A store with edits on top: chunks of an OME-Zarr in place of the original's. Private to stream/.
+#pragma once
+
+#include <array>
+#include <set>
+
+#include "palpate/stream/edits.hpp"
+#include "stream/box_bytes.hpp"
+
+namespace palpate::stream {
+
+/// Chunks of one level, cubes of EditsNote::chunk samples.
+using ChunkSet = std::set<std::array<int, 3>>;
+
+/// What a folder of edits says beside its chunks.
+struct EditsNote {
+    static constexpr int chunk = 64;  ///< samples along each axis
+
+    Opened of;                     ///< the original
+    int level = 0;                 ///< of the original that was edited
+    Range bounds;                  ///< of the edited samples
+    std::vector<ChunkSet> chunks;  ///< for that level and the coarser ones
+    std::string content = {};      ///< of the original from that level on: content_of()
+    std::string beside = {};       ///< where the original is if it was moved with the edits
+    bool lacks_secrets = false;    ///< its address was saved without password and query
+};
+
+/// The samples of a chunk that lie in the grid.
+SampleBox chunk_box(const std::array<int, 3>& chunk, const Geometry& grid);
+/// Calls visit(chunk, box) for each chunk that holds samples of `box`, with those that it holds.
+template <class Visit>
+void for_each_chunk(const SampleBox& box, Visit&& visit) {
+    for_each_piece(Index3::Constant(EditsNote::chunk), box,
+                   [&](const Index3& at, const SampleBox& part) {
+                       visit(std::array{at[0], at[1], at[2]}, part);
+                   });
+}
+
+/// The levels of the original from the edited one on.
+class EditedStore : public Store {
+  public:
+    /// `chunks`: a store with those levels. Throws std::invalid_argument if they do not fit.
+    EditedStore(std::shared_ptr<const Store> original, std::shared_ptr<const Store> chunks,
+                EditsNote note);
+
+    const EditsNote& note() const { return note_; }
+    const Store& original() const { return *original_; }
+    const StoreInfo& info() const override { return info_; }
+    void read(int level, const SampleBox& box, std::span<std::byte> out,
+              std::stop_token stop) const override;
+    Traffic traffic() const override { return original_->traffic(); }
+
+  private:
+    std::shared_ptr<const Store> original_, chunks_;
+    EditsNote note_;
+    StoreInfo info_;
+};
+
+/// True for a folder that save_edits() wrote.
+bool holds_edits(const std::filesystem::path& folder);
+/// Opens one with its original. Throws io::InputError, and Cancelled as open_until().
+std::shared_ptr<const Store> open_edits(const std::stop_token& stop, const std::string& folder,
+                                        const StoreOptions& options);
+/// Of a folder that is being made and will be `out`. Throws io::OutputError.
+void write_note(const std::filesystem::path& folder, const std::filesystem::path& out,
+                const EditsNote& note);
+
+}  // namespace palpate::stream

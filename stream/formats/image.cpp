@@ -1,0 +1,191 @@
+// The volume of a store that an image's metadata describe. See the header.
+#include "stream/formats/image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "io/units.hpp"
+#include "palpate/io/error.hpp"
+#include "stream/formats/stores.hpp"
+
+namespace palpate::stream {
+namespace {
+
+constexpr double longest_grid = 1 << 30;  // [samples] along an axis
+
+/// Which axis is which. Throws BadMetadata for one that is neither space, time nor channel.
+struct Roles {
+    std::array<int, 3> space = {-1, -1, -1};
+    int time = -1, channel = -1;
+};
+
+Roles roles_of(const std::vector<ImageAxis>& axes) {
+    Roles roles;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+        const std::string& name = axes[a].name;
+        int* const role = name == "x"   ? &roles.space[0]
+                          : name == "y" ? &roles.space[1]
+                          : name == "z" ? &roles.space[2]
+                          : name == "t" ? &roles.time
+                          : name == "c" ? &roles.channel
+                                        : nullptr;
+        if (!role || *role >= 0) {
+            throw BadMetadata("its axis '" + name + "' is not one of t, c, z, y, x, once each");
+        }
+        *role = static_cast<int>(a);
+    }
+    if (roles.space[0] < 0 || roles.space[1] < 0) throw BadMetadata("it has no axes x and y");
+    return roles;
+}
+
+double millimetres_of(const ImageAxis& axis, std::vector<std::string>& notes) {
+    if (const auto millimetres = io::millimetres_in(axis.unit)) return *millimetres;
+    const std::string note = axis.unit.empty()
+                                 ? "its metadata give no unit of length: mm were taken"
+                                 : "its unit of length '" + io::one_line(axis.unit.substr(0, 40)) +
+                                       "' is not known: mm were taken";
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+    return 1;
+}
+
+class Taking {
+  public:
+    Taking(const Image& image, ChunkedVolume begun, const StoreOptions& options)
+        : image_(image), options_(options), volume_(std::move(begun)) {}
+
+    ChunkedVolume volume() {
+        const Image& image = image_;
+        const Roles roles = roles_of(image.axes);
+        StoreInfo& info = volume_.info;
+        const ChunkedArray& finest = volume_.arrays[0];
+        for (const ChunkedArray& array : volume_.arrays) {
+            if (array.axes() != image.axes.size() || array.bytes.stored != finest.bytes.stored) {
+                throw BadMetadata(
+                    "its levels have different types, or other axes than its metadata say");
+            }
+        }
+        info.type = finest.bytes.type();
+        info.fill = std::isfinite(finest.bytes.fill) ? finest.bytes.fill : 0;
+        info.range = image.range;
+        if (!image.range) note_finite(finest.bytes, info.notes);
+        io::note_conversion(finest.bytes.stored, finest.bytes.values, info.notes);
+        take_choice(image, roles);
+        volume_.space = roles.space;
+        for (std::size_t i = 0; i < volume_.arrays.size(); ++i) {
+            info.levels.push_back(level_of(volume_.arrays[i], image, image.levels[i], roles));
+        }
+        use_spacing();
+        return std::move(volume_);
+    }
+
+  private:
+    void take_choice(const Image& image, const Roles& roles) {
+        StoreInfo& info = volume_.info;
+        const ChunkedArray& finest = volume_.arrays[0];
+        volume_.fixed.assign(finest.axes(), 0);
+        if (roles.time >= 0) {
+            const auto t = static_cast<std::size_t>(roles.time);
+            info.times = static_cast<int>(std::min<std::int64_t>(finest.shape[t], 1 << 30));
+            const double unit = io::seconds_in(image.axes[t].unit).value_or(0);
+            const double interval = unit * image.levels[0].scale[t];
+            if (info.times > 1 && interval > 0) info.frame_interval = interval;
+            volume_.fixed[t] = options_.time;
+        }
+        if (roles.channel >= 0) {
+            const auto c = static_cast<std::size_t>(roles.channel);
+            constexpr std::int64_t most = 1024;
+            const auto count = static_cast<std::size_t>(std::min(finest.shape[c], most));
+            for (std::size_t i = 0; count > 1 && i < count; ++i) {
+                const bool named = i < image.channels.size() && !image.channels[i].empty();
+                info.channels.push_back(named ? image.channels[i] : "channel " + std::to_string(i));
+            }
+            volume_.fixed[c] = options_.channel;
+        }
+        check_choice(info, options_);
+        info.channel = options_.channel;
+        info.time = options_.time;
+        for (const ChunkedArray& array : volume_.arrays) {
+            for (std::size_t a = 0; a < array.axes(); ++a) {
+                if (volume_.fixed[a] >= array.shape[a]) {
+                    throw BadMetadata("its levels have different numbers of channels or times");
+                }
+            }
+        }
+    }
+
+    Level level_of(const ChunkedArray& array, const Image& image, const ImageLevel& place,
+                   const Roles& roles) {
+        Level level;
+        level.chunk = Index3::Ones();
+        level.geometry.size = Index3::Ones();
+        for (Eigen::Index i = 0; i < 3; ++i) {
+            if (roles.space[static_cast<std::size_t>(i)] < 0) continue;
+            const auto a = static_cast<std::size_t>(roles.space[static_cast<std::size_t>(i)]);
+            if (static_cast<double>(array.shape[a]) > longest_grid) {
+                throw BadMetadata("it has more than 2^30 samples along an axis");
+            }
+            level.geometry.size[i] = static_cast<int>(array.shape[a]);
+            level.chunk[i] = static_cast<int>(array.chunk[a]);
+            const double unit = millimetres_of(image.axes[a], volume_.info.notes);
+            level.geometry.spacing[i] = place.scale[a] * unit;
+            level.geometry.origin[i] = place.translation[a] * unit;
+        }
+        if (image.direction) level.geometry.direction = *image.direction;
+        try {
+            check(level.geometry);
+        } catch (const std::invalid_argument& e) {
+            throw BadMetadata(std::string("its place in space is not possible (") + e.what() + ")");
+        }
+        level.geometry = orthonormal(level.geometry);
+        return level;
+    }
+
+    /// The spacing that the caller gives is that of the finest level.
+    void use_spacing() {
+        if (!options_.spacing) return;
+        const Geometry finest = volume_.info.levels[0].geometry;
+        const Vec3 factor = options_.spacing->cwiseQuotient(finest.spacing);
+        for (Level& level : volume_.info.levels) {
+            Geometry& grid = level.geometry;
+            grid.spacing = grid.spacing.cwiseProduct(factor);
+            const Vec3 apart = grid_axes_from_physical(finest, grid.origin - finest.origin);
+            grid.origin = finest.origin + finest.direction * apart.cwiseProduct(factor);
+        }
+    }
+
+    const Image& image_;
+    const StoreOptions& options_;
+    ChunkedVolume volume_;
+};
+
+}  // namespace
+
+std::vector<ImageAxis> usual_axes(std::size_t count) {
+    static constexpr std::array names = {"t", "c", "z", "y", "x"};
+    if (count < 2 || count > names.size()) {
+        throw BadMetadata("it has " + std::to_string(count) + " axes; 2 to 5 can be read");
+    }
+    std::vector<ImageAxis> axes;
+    for (std::size_t a = 0; a < count; ++a) axes.push_back({names[names.size() - count + a], ""});
+    return axes;
+}
+
+void check_axes(const std::vector<ImageAxis>& axes) {
+    (void)roles_of(axes);
+}
+
+ChunkedVolume volume_of(const Image& image, ChunkedVolume begun, const StoreOptions& options) {
+    return Taking(image, std::move(begun), options).volume();
+}
+
+void check_array(const ChunkedArray& array) {
+    try {
+        check(array);
+    } catch (const std::invalid_argument& e) {
+        throw BadMetadata(e.what());
+    }
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,54 @@
+// An image as the metadata of chunked formats describe it: axes, levels, channels; and the volume
+// that a choice of channel and time makes of it. What is read here is not trusted. Private to
+// stream/.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "stream/formats/chunked_store.hpp"
+
+namespace palpate::stream {
+
+/// Metadata that cannot be used; what() says why and what to do, without a file's name.
+class BadMetadata : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+struct ImageAxis {
+    std::string name;  ///< "t", "c", "z", "y", "x"
+    std::string unit;  ///< empty: none
+};
+struct ImageLevel {
+    std::string path;                        ///< of its array
+    std::vector<double> scale, translation;  ///< along each axis
+};
+/// One multiscale image, the finest level first.
+struct Image {
+    std::vector<ImageAxis> axes;  ///< the slowest first
+    std::vector<ImageLevel> levels;
+    std::vector<std::string> channels = {};     ///< names, as far as they are given
+    std::optional<Range> range = std::nullopt;  ///< of the finest level
+    std::optional<Mat3> direction =
+        std::nullopt;  ///< of the grid's axes; translations are then LPS
+};
+
+/// The axes of an array that does not name them: its last three are z, y, x, before them c and t.
+/// Throws BadMetadata unless there are 2 to 5.
+std::vector<ImageAxis> usual_axes(std::size_t count);
+
+/// Throws BadMetadata unless each axis is one of t, c, z, y, x, once, with x and y.
+void check_axes(const std::vector<ImageAxis>& axes);
+
+/// Completes a volume whose info has address, format and perhaps notes, channels and times, and
+/// whose arrays are those of the levels: type, range, levels, the choice of channel and time.
+/// Throws BadMetadata, io::InputError about a choice that there is not.
+ChunkedVolume volume_of(const Image& image, ChunkedVolume begun, const StoreOptions& options);
+
+/// Throws BadMetadata instead of std::invalid_argument.
+void check_array(const ChunkedArray& array);
+
+}  // namespace palpate::stream

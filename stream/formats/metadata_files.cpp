@@ -1,0 +1,32 @@
+// Files of metadata in JSON. See the header.
+#include "stream/formats/metadata_files.hpp"
+
+#include "io/json_text.hpp"
+
+namespace palpate::stream {
+
+using Json = nlohmann::json;
+
+Wanted metadata_file(const std::string& folder, const std::string& name) {
+    constexpr std::uint64_t most_bytes = 8 << 20;
+    return {key_below(folder, name), std::nullopt, most_bytes, false, false, true};
+}
+
+Json parsed(const std::optional<Bytes>& bytes, const std::string& name) {
+    if (!bytes) return nullptr;
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    try {
+        return io::parsed_json(text);
+    } catch (const Json::exception&) {
+        // A server's page about a login or an error, although its status says that all is well.
+        const std::size_t begin = text.find_first_not_of(" \t\r\n");
+        if (begin != text.npos && text[begin] == '<') {
+            throw io::InputError(name +
+                                 ": the server gives a web page in its place, perhaps one that "
+                                 "asks for a login; check the address");
+        }
+        throw io::InputError(name + ": is not JSON; the metadata are damaged: copy them again");
+    }
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,35 @@
+// Files of metadata in JSON, which chunked formats keep beside their chunks. What is read here is
+// not trusted. Private to stream/.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "palpate/io/error.hpp"
+#include "stream/formats/image.hpp"
+#include "stream/objects/objects.hpp"
+
+namespace palpate::stream {
+
+/// A request for one that may not be there, of at most 8 MiB.
+Wanted metadata_file(const std::string& folder, const std::string& name);
+
+/// Null if the file is not there. Throws io::InputError, which names it, if it is not JSON.
+nlohmann::json parsed(const std::optional<Bytes>& bytes, const std::string& name);
+
+/// What `open` returns; whatever is wrong with metadata becomes an io::InputError about `address`.
+template <class F>
+auto about(const std::string& address, F&& open) {
+    try {
+        return open();
+    } catch (const BadMetadata& e) {
+        throw io::InputError(address + ": " + e.what());
+    } catch (const std::invalid_argument& e) {
+        throw io::InputError(address + ": " + e.what() + "; its metadata are damaged");
+    } catch (const nlohmann::json::exception&) {
+        throw io::InputError(
+            address + ": its metadata lack what they need; they are damaged: copy them again");
+    }
+}
+
+}  // namespace palpate::stream

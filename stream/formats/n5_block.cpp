@@ -1,0 +1,77 @@
+// The blocks of N5. See the header.
+#include "stream/formats/n5_block.hpp"
+
+#include <cstring>
+
+namespace palpate::stream {
+namespace {
+
+std::uint32_t big_endian_at(std::span<const std::byte> bytes, std::size_t at, std::size_t length) {
+    std::uint32_t number = 0;
+    for (std::size_t i = 0; i < length; ++i) {
+        number = number << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+    }
+    return number;
+}
+
+/// Mode, number of axes, and the size along each, the fastest first.
+struct N5Header {
+    std::size_t bytes;
+    std::vector<std::int64_t> size;  ///< the slowest axis first, as in ChunkedArray
+};
+
+N5Header header_of(const ChunkedArray& array, std::span<const std::byte> block) {
+    const std::size_t axes = array.axes();
+    N5Header header{4 + 4 * axes, std::vector<std::int64_t>(axes)};
+    if (block.size() < header.bytes) throw DamagedChunk("is too short for the header of a block");
+    const std::uint32_t mode = big_endian_at(block, 0, 2);
+    if (mode != 0) {
+        throw DamagedChunk("has a block of mode " + std::to_string(mode) +
+                           " instead of 0: of varying length or of objects");
+    }
+    if (big_endian_at(block, 2, 2) != axes) {
+        throw DamagedChunk("has a block with another number of axes than its array");
+    }
+    for (std::size_t i = 0; i < axes; ++i) {
+        const std::size_t a = axes - 1 - i;
+        header.size[a] = big_endian_at(block, 4 + 4 * i, 4);
+        if (header.size[a] < 1 || header.size[a] > array.chunk[a]) {
+            throw DamagedChunk("has a block of a size that is not possible");
+        }
+    }
+    return header;
+}
+
+/// Puts the rows of a cut block to their places in a whole one.
+Bytes filled_up(const ChunkedArray& array, const std::vector<std::int64_t>& size,
+                const Bytes& cut) {
+    const std::size_t axes = array.axes();
+    const std::size_t row = static_cast<std::size_t>(size[axes - 1]) * array.bytes.size();
+    Bytes whole(array.bytes_in_chunk());
+    std::vector<std::int64_t> at(axes, 0);  // of the row
+    for (std::size_t from = 0; from < cut.size(); from += row) {
+        std::size_t to = 0;
+        for (std::size_t a = 0; a < axes; ++a) {
+            to = to * static_cast<std::size_t>(array.chunk[a]) + static_cast<std::size_t>(at[a]);
+        }
+        std::memcpy(whole.data() + to * array.bytes.size(), cut.data() + from, row);
+        for (std::size_t a = axes - 1; a-- > 0;) {
+            if (++at[a] < size[a]) break;
+            at[a] = 0;
+        }
+    }
+    return whole;
+}
+
+}  // namespace
+
+Bytes unpacked_n5_block(const ChunkedArray& array, std::span<const std::byte> block) {
+    const N5Header header = header_of(array, block);
+    std::size_t size = array.bytes.size();
+    for (const std::int64_t along : header.size) size *= static_cast<std::size_t>(along);
+    const auto packed = block.subspan(header.bytes);
+    Bytes samples = decoded(array.codecs, Bytes(packed.begin(), packed.end()), size);
+    return header.size == array.chunk ? samples : filled_up(array, header.size, samples);
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,224 @@
+// Attributes of N5 datasets and groups. Formats: https://github.com/saalfeldlab/n5 and n5-viewer,
+// https://github.com/bigdataviewer/bigdataviewer-core (BDV N5 format), Neuroglancer's n5 data
+// source.
+#include "stream/formats/n5_metadata.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <cmath>
+
+#include "palpate/io/error.hpp"
+
+namespace palpate::stream {
+namespace {
+
+using Json = nlohmann::json;
+using Numbers = std::vector<double>;
+
+/// Sizes of N5, the fastest axis first, turned round.
+std::vector<std::int64_t> n5_sizes(const Json& list, const char* what) {
+    std::vector<std::int64_t> sizes;
+    if (!list.is_array() || list.empty() || list.size() > 8) {
+        throw BadMetadata(std::string("its attributes have no sensible '") + what + "'");
+    }
+    for (const Json& size : list) {
+        if (!size.is_number_integer()) {
+            throw BadMetadata(std::string("its '") + what + "' is no list of whole numbers");
+        }
+        sizes.push_back(size.get<std::int64_t>());
+    }
+    std::ranges::reverse(sizes);
+    return sizes;
+}
+
+std::string compression_of(const Json& attributes) {
+    if (attributes.contains("compression")) {
+        return attributes["compression"].at("type").get<std::string>();
+    }
+    return attributes.at("compressionType").get<std::string>();  // N5 1.0
+}
+
+std::vector<Codec> n5_codecs(const std::string& compression) {
+    if (compression == "raw") return {};
+    if (compression == "gzip" || compression == "zlib") return {Codec::gzip};
+    if (compression == "lz4") return {Codec::lz4_blocks};
+    if (compression == "blosc") return {Codec::blosc};
+    if (compression == "zstd") return {Codec::zstd};
+    throw BadMetadata("its compression '" + compression +
+                      "' is not read; store it with gzip, zstd, lz4 or blosc");
+}
+
+/// The innermost attribute of a name; null if there is none.
+const Json& attribute(std::span<const Json> groups, const char* name) {
+    static const Json none;
+    for (const Json& group : groups) {
+        if (group.is_object() && group.contains(name)) return group[name];
+    }
+    return none;
+}
+
+/// A number for each axis, the slowest first. Lists of three numbers are of x, y and z, whatever
+/// other axes there are, which have `otherwise`. Nothing if it is no such list.
+std::optional<Numbers> along_axes(const Json& list, std::size_t axes, double otherwise) {
+    if (!list.is_array() || (list.size() != axes && (list.size() != 3 || axes < 3))) {
+        return std::nullopt;
+    }
+    Numbers numbers(axes, otherwise);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        if (!list[i].is_number()) return std::nullopt;
+        numbers[axes - 1 - i] = list[i].get<double>();
+    }
+    return numbers;
+}
+
+struct Resolution {
+    Numbers spacing;
+    std::vector<std::string> units;  ///< of each axis
+};
+
+/// {"pixelResolution": {"dimensions": [..], "unit": ".."}}, or lists with units beside them.
+std::optional<Resolution> resolution_of(std::span<const Json> groups, std::size_t axes) {
+    for (const char* name : {"pixelResolution", "resolution"}) {
+        const Json& given = attribute(groups, name);
+        const auto spacing =
+            along_axes(given.is_object() ? given.value("dimensions", Json()) : given, axes, 1);
+        if (!spacing) continue;
+        const Json unit =
+            given.is_object() ? given.value("unit", Json()) : attribute(groups, "unit");
+        std::vector<std::string> units(axes, unit.is_string() ? unit.get<std::string>() : "");
+        const Json& all = attribute(groups, "units");
+        for (std::size_t i = 0; !unit.is_string() && all.is_array() && i < axes; ++i) {
+            const Json& one = i < all.size() ? all[i] : all.empty() ? unit : all.back();
+            if (one.is_string()) units[axes - 1 - i] = one.get<std::string>();
+        }
+        return Resolution{*spacing, units};
+    }
+    return std::nullopt;
+}
+
+/// How many samples of the finest level one of level `at` has along each axis.
+std::optional<Numbers> factors_of(std::span<const Json> groups, const Json& level, std::size_t at,
+                                  std::size_t axes) {
+    if (level.contains("downsamplingFactors")) {
+        if (auto own = along_axes(level["downsamplingFactors"], axes, 1)) return own;
+    }
+    for (const char* name : {"downsamplingFactors", "scales"}) {
+        const Json& all = attribute(groups, name);
+        if (!all.is_array() || at >= all.size()) continue;
+        if (auto factors = along_axes(all[at], axes, 1)) return factors;
+    }
+    return at == 0 ? std::optional(Numbers(axes, 1)) : std::nullopt;
+}
+
+/// Those of the first `at` levels, each to the next one: halves of odd sizes are rounded either
+/// way.
+Numbers factors_by_size(std::span<const ChunkedArray> arrays, std::size_t at) {
+    Numbers factors(arrays[0].axes(), 1);
+    for (std::size_t i = 0; i < at; ++i) {
+        for (std::size_t a = 0; a < factors.size(); ++a) {
+            const auto fine = static_cast<double>(arrays[i].shape[a]);
+            const auto coarse = static_cast<double>(arrays[i + 1].shape[a]);
+            factors[a] *= std::max(1.0, std::round(fine / coarse));
+        }
+    }
+    return factors;
+}
+
+/// Janelia's: {"axes": ["z", "y", "x"], "scale": [..], "translate": [..], "units": [..]}, in any
+/// order of the axes. True if it names every axis of the image.
+bool take_transform(const Json& transform, Image& image, ImageLevel& level) {
+    if (!transform.is_object() || !transform.contains("axes")) return false;
+    const Json& names = transform["axes"];
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < names.size() && names.is_array(); ++i) {
+        for (std::size_t a = 0; a < image.axes.size(); ++a) {
+            if (names[i] != image.axes[a].name) continue;
+            level.scale[a] = transform.at("scale").at(i).get<double>();
+            level.translation[a] = transform.at("translate").at(i).get<double>();
+            image.axes[a].unit = transform.at("units").at(i).get<std::string>();
+            ++found;
+        }
+    }
+    return found == image.axes.size();
+}
+
+/// The names in `axes`, the fastest first, or the usual ones.
+std::vector<ImageAxis> n5_axes(std::span<const Json> groups, const Json& finest,
+                               std::size_t count) {
+    std::vector<ImageAxis> axes = usual_axes(count);
+    const Json& names = finest.contains("axes") ? finest["axes"] : attribute(groups, "axes");
+    if (!names.is_array() || names.size() != count) return axes;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::string name = names[i].is_string() ? names[i].get<std::string>() : "";
+        std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+        axes[count - 1 - i].name = io::one_line(name.substr(0, 40));
+    }
+    return axes;
+}
+
+void note_once(std::vector<std::string>& notes, const char* note) {
+    if (std::ranges::find(notes, note) == notes.end()) notes.emplace_back(note);
+}
+
+}  // namespace
+
+ChunkedArray n5_array(const Json& attributes, const std::string& folder) {
+    ChunkedArray array;
+    array.folder = folder;
+    array.separator = '/';
+    array.n5_blocks = true;
+    array.shape = n5_sizes(attributes.at("dimensions"), "dimensions");
+    array.chunk = n5_sizes(attributes.at("blockSize"), "blockSize");
+    const std::string type = attributes.at("dataType").get<std::string>();
+    const auto stored = io::stored_named(type);
+    if (!stored) {
+        throw BadMetadata("its samples are of type '" + io::one_line(type.substr(0, 40)) +
+                          "', which cannot be felt; store it as integers or floats");
+    }
+    array.bytes.stored = *stored;
+    array.bytes.swapped = std::endian::native == std::endian::little && array.bytes.size() > 1;
+    for (std::size_t a = 0; a < array.axes(); ++a) array.stored_axes.push_back(static_cast<int>(a));
+    array.codecs = n5_codecs(compression_of(attributes));
+    check_array(array);
+    return array;
+}
+
+Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
+               std::span<const ChunkedArray> arrays, std::vector<std::string>& notes) {
+    const std::size_t axes = arrays[0].axes();
+    Image image;
+    image.axes = n5_axes(groups, levels[0], axes);
+    auto resolution = resolution_of(groups, axes);
+    if (!resolution) resolution = resolution_of(levels.first(1), axes);
+    if (!attribute(groups, "affineTransform").is_null()) {
+        note_once(notes, "its affineTransform is not applied");
+    }
+    for (const ChunkedArray& array : arrays) {
+        if (array.axes() != axes) throw BadMetadata("its levels have different axes");
+    }
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        ImageLevel level{"", Numbers(axes, 1), Numbers(axes, 0)};
+        if (take_transform(levels[i].value("transform", Json()), image, level)) {
+            image.levels.push_back(level);
+            continue;
+        }
+        auto factors = factors_of(groups, levels[i], i, axes);
+        if (!factors) {
+            factors = factors_by_size(arrays, i);
+            note_once(notes,
+                      "it does not tell the scales of its levels: their sizes were compared");
+        }
+        for (std::size_t a = 0; a < axes; ++a) {
+            const double spacing = resolution ? resolution->spacing[a] : 1;
+            level.scale[a] = spacing * (*factors)[a];
+            level.translation[a] = spacing * ((*factors)[a] - 1) / 2;
+            image.axes[a].unit = resolution ? resolution->units[a] : "millimeter";
+        }
+        if (!resolution) note_once(notes, "it does not tell its spacing: 1 mm was taken");
+        image.levels.push_back(level);
+    }
+    return image;
+}
+
+}  // namespace palpate::stream

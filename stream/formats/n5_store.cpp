@@ -1,0 +1,146 @@
+// Opens N5: single datasets, multiscale groups (s0, s1, ...), and the channels and times of
+// BigDataViewer (setup0/timepoint0/s0) and N5 Viewer (c0/s0).
+#include <algorithm>
+
+#include "stream/formats/metadata_files.hpp"
+#include "stream/formats/n5_metadata.hpp"
+#include "stream/formats/stores.hpp"
+
+namespace palpate::stream {
+namespace {
+
+using Json = nlohmann::json;
+constexpr std::size_t most_n5_levels = 16;
+
+bool is_dataset(const Json& attributes) {
+    return attributes.is_object() && attributes.contains("dimensions");
+}
+
+class N5Opening {
+  public:
+    N5Opening(const Objects& objects, const StoreOptions& options)
+        : objects_(objects), options_(options) {}
+
+    /// Nothing if there is no N5.
+    std::optional<ChunkedVolume> volume(const std::string& address) {
+        volume_.info.address = address;
+        volume_.info.format = "N5";
+        const auto first = attributes_of({"", "s0", "timepoint0/s0", "setup0", "c0/s0"});
+        if (is_dataset(first[0])) {
+            take_levels({}, {first[0]}, {""});
+        } else if (is_dataset(first[1])) {
+            take_group("", {first[0]});
+        } else if (is_dataset(first[2])) {
+            take_moment("", {first[0]});
+        } else if (!first[3].is_null()) {
+            const std::string setup = chosen_channel("setup", "", "setup ");
+            take_moment(setup, {attributes_of({setup})[0], first[0]});
+        } else if (is_dataset(first[4])) {
+            const std::string channel = chosen_channel("c", "/s0", "channel ");
+            take_group(channel, {attributes_of({channel})[0], first[0]});
+        } else if (!first[0].is_null()) {
+            throw BadMetadata(
+                "is a group of N5 without samples of its own; give the folder of a dataset or of "
+                "levels s0, s1, ... below it");
+        } else {
+            return std::nullopt;
+        }
+        return std::move(volume_);
+    }
+
+  private:
+    /// Of several folders at once; null where there are none.
+    std::vector<Json> attributes_of(const std::vector<std::string>& folders) const {
+        std::vector<Wanted> wanted;
+        for (const std::string& folder : folders) {
+            wanted.push_back(metadata_file(folder, "attributes.json"));
+        }
+        const auto all = objects_.get_all(wanted, {});
+        std::vector<Json> attributes;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            attributes.push_back(parsed(all[i], objects_.name_of(wanted[i].key)));
+        }
+        return attributes;
+    }
+
+    /// How many folders PREFIX0, PREFIX1, ... have attributes in PREFIXnSUFFIX: asks for a few,
+    /// then for more and more at once.
+    int count_of(const std::string& prefix, const std::string& suffix) const {
+        constexpr int most = 1 << 16;
+        int known = 0;
+        for (int batch = 16; known < most; known += batch, batch *= 4) {
+            std::vector<Wanted> wanted;
+            for (int i = 0; i < batch; ++i) {
+                const std::string folder = prefix + std::to_string(known + i) + suffix;
+                wanted.push_back(metadata_file(folder, "attributes.json"));
+            }
+            const auto all = objects_.get_all(wanted, {});
+            const auto missing = std::ranges::find(all, std::optional<Bytes>());
+            if (missing != all.end()) return known + static_cast<int>(missing - all.begin());
+        }
+        return known;
+    }
+
+    /// The folder of the channel that is asked for.
+    std::string chosen_channel(const std::string& prefix, const std::string& suffix,
+                               const std::string& name) {
+        const int count = count_of(prefix, suffix);
+        for (int i = 0; count > 1 && i < count; ++i) {
+            volume_.info.channels.push_back(name + std::to_string(i));
+        }
+        StoreOptions chosen;  // the times are not known yet
+        chosen.channel = options_.channel;
+        check_choice(volume_.info, chosen);
+        return prefix + std::to_string(options_.channel);
+    }
+
+    /// The time that is asked for, of a setup of BigDataViewer.
+    void take_moment(const std::string& setup, std::vector<Json> groups) {
+        const std::string prefix = key_below(setup, "timepoint");
+        volume_.info.times = std::max(1, count_of(prefix, "/s0"));
+        check_choice(volume_.info, options_);
+        const std::string folder = prefix + std::to_string(options_.time);
+        groups.insert(groups.begin(), attributes_of({folder})[0]);
+        take_group(folder, groups);
+    }
+
+    void take_group(const std::string& group, const std::vector<Json>& groups) {
+        std::vector<std::string> folders;
+        for (std::size_t i = 0; i < most_n5_levels; ++i) {
+            folders.push_back(key_below(group, "s" + std::to_string(i)));
+        }
+        std::vector<Json> levels = attributes_of(folders);
+        const auto missing = std::ranges::find_if_not(levels, is_dataset);
+        levels.erase(missing, levels.end());
+        if (levels.empty()) {
+            throw BadMetadata("its level '" + folders[0] + "' is not there; copy it again");
+        }
+        folders.resize(levels.size());
+        take_levels(groups, levels, folders);
+    }
+
+    void take_levels(const std::vector<Json>& groups, const std::vector<Json>& levels,
+                     const std::vector<std::string>& folders) {
+        for (std::size_t i = 0; i < levels.size(); ++i) {
+            volume_.arrays.push_back(n5_array(levels[i], folders[i]));
+        }
+        const Image image = n5_image(groups, levels, volume_.arrays, volume_.info.notes);
+        volume_ = volume_of(image, std::move(volume_), options_);
+    }
+
+    const Objects& objects_;
+    const StoreOptions& options_;
+    ChunkedVolume volume_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Store> open_n5(std::shared_ptr<const Objects> objects,
+                                     const std::string& address, const StoreOptions& options) {
+    return about(address, [&]() -> std::shared_ptr<const Store> {
+        auto volume = N5Opening(*objects, options).volume(address);
+        return volume ? chunked_store(objects, *std::move(volume), options.unpacking) : nullptr;
+    });
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,136 @@
+// Metadata of OME-Zarr images, versions 0.4 and 0.5: https://ngff.openmicroscopy.org.
+#include <cmath>
+
+#include "palpate/io/error.hpp"
+#include "stream/formats/zarr_metadata.hpp"
+
+namespace palpate::stream {
+namespace {
+
+using Json = nlohmann::json;
+constexpr std::size_t most_levels = 64;
+constexpr std::size_t most_channels = 1024;
+
+struct Placement {
+    std::vector<double> scale, translation;
+};
+
+std::vector<double> numbers_of(const Json& list, std::size_t axes, const char* what) {
+    if (!list.is_array() || list.size() != axes) {
+        throw BadMetadata(std::string("a ") + what +
+                          " of its image has not as many numbers as axes");
+    }
+    std::vector<double> numbers;
+    for (const Json& number : list) {
+        numbers.push_back(number.is_number() ? number.get<double>() : std::nan(""));
+        if (!std::isfinite(numbers.back())) {
+            throw BadMetadata(std::string("a ") + what + " of its image is no list of numbers");
+        }
+    }
+    return numbers;
+}
+
+/// A scale and perhaps a translation, in either order of the list: the scale comes first.
+Placement placement_of(const Json& object, std::size_t axes) {
+    Placement place{std::vector<double>(axes, 1), std::vector<double>(axes, 0)};
+    const Json list = object.value("coordinateTransformations", Json::array());
+    if (!list.is_array() || list.size() > 8)
+        throw BadMetadata("its transformations are not sensible");
+    for (const Json& one : list) {
+        const std::string type = one.at("type").get<std::string>();
+        if (type == "scale" && one.contains("scale")) {
+            place.scale = numbers_of(one["scale"], axes, "scale");
+        } else if (type == "translation" && one.contains("translation")) {
+            place.translation = numbers_of(one["translation"], axes, "translation");
+        } else if (type != "identity") {
+            throw BadMetadata("its transformation '" + type +
+                              "' is not read; use scale and translation");
+        }
+    }
+    return place;
+}
+
+/// Version 0.4 and later give objects, earlier ones names or nothing (then t, c, z, y, x).
+std::vector<ImageAxis> axes_of(const Json& image) {
+    std::vector<ImageAxis> axes;
+    const Json list = image.value("axes", Json({"t", "c", "z", "y", "x"}));
+    if (!list.is_array() || list.empty() || list.size() > 8) {
+        throw BadMetadata("its axes are not sensible");
+    }
+    for (const Json& axis : list) {
+        if (axis.is_string()) {
+            axes.push_back({axis.get<std::string>(), ""});
+            continue;
+        }
+        const Json unit = axis.value("unit", Json(""));
+        std::string name = axis.at("name").get<std::string>();
+        if (axis.value("type", std::string()) == "time") name = "t";
+        if (axis.value("type", std::string()) == "channel") name = "c";
+        axes.push_back({name, unit.is_string() ? unit.get<std::string>() : ""});
+    }
+    return axes;
+}
+
+std::vector<std::string> channel_names(const Json& attributes) {
+    std::vector<std::string> names;
+    const Json omero = attributes.value("omero", Json::object());
+    if (!omero.is_object() || !omero.contains("channels") || !omero["channels"].is_array())
+        return names;
+    for (const Json& channel : omero["channels"]) {
+        if (names.size() == most_channels) break;
+        const Json label = channel.is_object() ? channel.value("label", Json("")) : Json("");
+        names.push_back(label.is_string() ? io::one_line(label.get<std::string>().substr(0, 64))
+                                          : "");
+    }
+    return names;
+}
+
+std::optional<Range> range_of(const Json& attributes) {
+    const Json ours = attributes.value("palpate", Json::object());
+    if (!ours.is_object() || !ours.contains("range")) return std::nullopt;
+    const std::vector<double> range = numbers_of(ours["range"], 2, "range");
+    if (range[0] > range[1]) return std::nullopt;
+    return Range{range[0], range[1]};
+}
+
+std::optional<Mat3> direction_of(const Json& attributes) {
+    const Json ours = attributes.value("palpate", Json::object());
+    if (!ours.is_object() || !ours.contains("direction")) return std::nullopt;
+    const std::vector<double> columns = numbers_of(ours["direction"], 9, "direction");
+    return Mat3(Eigen::Map<const Mat3>(columns.data()));
+}
+
+}  // namespace
+
+std::optional<Image> ome_image(const Json& given) {
+    if (!given.is_object()) return std::nullopt;
+    const Json& attributes =
+        given.contains("ome") && given["ome"].is_object() ? given["ome"] : given;
+    if (!attributes.contains("multiscales")) return std::nullopt;
+    const Json& all = attributes["multiscales"];
+    if (!all.is_array() || all.empty()) throw BadMetadata("its list of images is empty");
+    const Json& image = all[0];
+    Image found;
+    found.axes = axes_of(image);
+    const std::size_t axes = found.axes.size();
+    const Placement whole = placement_of(image, axes);
+    const Json& datasets = image.at("datasets");
+    if (!datasets.is_array() || datasets.empty() || datasets.size() > most_levels) {
+        throw BadMetadata("it has no levels, or more than 64");
+    }
+    for (const Json& dataset : datasets) {
+        Placement place = placement_of(dataset, axes);
+        for (std::size_t a = 0; a < axes; ++a) {
+            place.translation[a] = whole.scale[a] * place.translation[a] + whole.translation[a];
+            place.scale[a] *= whole.scale[a];
+        }
+        found.levels.push_back(
+            {dataset.at("path").get<std::string>(), place.scale, place.translation});
+    }
+    found.channels = channel_names(attributes);
+    found.range = range_of(given);
+    found.direction = direction_of(given);
+    return found;
+}
+
+}  // namespace palpate::stream

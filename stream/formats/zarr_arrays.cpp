@@ -1,0 +1,257 @@
+// Metadata of Zarr 2 and 3 arrays. Formats: https://zarr-specs.readthedocs.io/en/latest, v2/v2.0
+// and v3/core, with the codecs of v3.
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+
+#include "palpate/io/error.hpp"
+#include "stream/formats/zarr_metadata.hpp"
+
+namespace palpate::stream {
+namespace {
+
+using Json = nlohmann::json;
+
+std::vector<std::int64_t> sizes_of(const Json& list, const char* what) {
+    std::vector<std::int64_t> sizes;
+    if (!list.is_array() || list.size() > 32) {
+        throw BadMetadata(std::string("its metadata have no sensible '") + what + "'");
+    }
+    for (const Json& size : list) {
+        if (!size.is_number_integer()) {
+            throw BadMetadata(std::string("its '") + what + "' is no list of whole numbers");
+        }
+        sizes.push_back(size.get<std::int64_t>());
+    }
+    return sizes;
+}
+
+[[noreturn]] void refuse_type(const std::string& type) {
+    throw BadMetadata("its samples are of type '" + type +
+                      "', which cannot be felt; store it as integers or floats");
+}
+
+/// "<u2", "|i1", ">f4"
+void take_dtype(const Json& json, SampleBytes& bytes) {
+    if (!json.is_string()) refuse_type("(several fields)");
+    const std::string type = json.get<std::string>();
+    if (type.size() != 3) refuse_type(type);
+    const std::string kind = type[1] == 'u' || type[1] == 'b' ? "uint"
+                             : type[1] == 'i'                 ? "int"
+                             : type[1] == 'f'                 ? "float"
+                                                              : "";
+    const auto stored = io::stored_named(kind + std::to_string(8 * (type[2] - '0')));
+    if (!stored || (type[1] == 'b' && *stored != io::Stored::uint8)) refuse_type(type);
+    bytes.stored = *stored;
+    bytes.swapped =
+        (type[0] == '>') == (std::endian::native == std::endian::little) && bytes.size() > 1;
+}
+
+/// A number, "NaN", "Infinity", or the bits of a float in hexadecimal digits.
+double fill_of(const Json& json, io::Stored stored) {
+    if (json.is_boolean()) return json.get<bool>() ? 1 : 0;
+    if (json.is_number()) return json.get<double>();
+    if (json.is_null()) return 0;
+    const std::string text = json.is_string() ? json.get<std::string>() : "";
+    if (text == "NaN" || text == "Infinity" || text == "-Infinity") return std::nan("");
+    std::uint64_t bits = 0;
+    const char* const end = text.data() + text.size();
+    if (text.starts_with("0x") && std::from_chars(text.data() + 2, end, bits, 16).ptr == end) {
+        if (stored == io::Stored::float32) {
+            return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+        }
+        if (stored == io::Stored::float64) return std::bit_cast<double>(bits);
+    }
+    throw BadMetadata("its fill_value '" + io::one_line(text.substr(0, 40)) + "' is not read");
+}
+
+char separator_of(const std::string& text) {
+    if (text != "." && text != "/") {
+        throw BadMetadata("the separator of its chunks is '" + text + "'; it is '.' or '/'");
+    }
+    return text[0];
+}
+
+[[noreturn]] void refuse_codec(const std::string& name) {
+    throw BadMetadata("its codec '" + name +
+                      "' is not read; store it with zstd, gzip, lz4 or blosc");
+}
+
+}  // namespace
+
+ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
+    if (zarray.at("zarr_format") != 2) throw BadMetadata("its .zarray is not of Zarr 2");
+    ChunkedArray array;
+    array.folder = folder;
+    array.shape = sizes_of(zarray.at("shape"), "shape");
+    array.chunk = sizes_of(zarray.at("chunks"), "chunks");
+    take_dtype(zarray.at("dtype"), array.bytes);
+    array.bytes.fill =
+        fitting_fill(fill_of(zarray.value("fill_value", Json()), array.bytes.stored), array.bytes);
+    array.separator = separator_of(zarray.value("dimension_separator", std::string(".")));
+    const std::string order = zarray.value("order", std::string("C"));
+    if (order != "C" && order != "F")
+        throw BadMetadata("its order is '" + order + "'; it is C or F");
+    for (std::size_t a = 0; a < array.axes(); ++a) array.stored_axes.push_back(static_cast<int>(a));
+    if (order == "F") std::ranges::reverse(array.stored_axes);
+    const Json filters = zarray.value("filters", Json());
+    if (filters.is_array() && !filters.empty()) {
+        refuse_codec(filters[0].at("id").get<std::string>());
+    }
+    const Json compressor = zarray.value("compressor", Json());
+    if (!compressor.is_null()) {
+        const std::string name = compressor.at("id").get<std::string>();
+        const auto codec = codec_named(name);
+        if (!codec) refuse_codec(name);
+        array.codecs = {*codec};
+    }
+    check_array(array);
+    return array;
+}
+
+namespace {
+
+bool is_little(const Json& codec) {
+    const Json configuration = codec.value("configuration", Json::object());
+    const std::string endian = configuration.value("endian", std::string("little"));
+    if (endian != "little" && endian != "big") {
+        throw BadMetadata("its byte order is '" + endian + "'; it is little or big");
+    }
+    return endian == "little";
+}
+
+void transpose(const Json& codec, ChunkedArray& array) {
+    const Json order = codec.at("configuration").at("order");
+    std::vector<std::int64_t> axes;
+    if (order == "C" || order == "F") {
+        for (std::size_t a = 0; a < array.axes(); ++a) axes.push_back(static_cast<std::int64_t>(a));
+        if (order == "F") std::ranges::reverse(axes);
+    } else {
+        axes = sizes_of(order, "order");
+    }
+    std::vector<std::int64_t> sorted = axes;
+    std::ranges::sort(sorted);
+    bool permutes = sorted.size() == array.axes();
+    for (std::size_t a = 0; permutes && a < sorted.size(); ++a) {
+        permutes = sorted[a] == static_cast<std::int64_t>(a);
+    }
+    if (!permutes) throw BadMetadata("the order of its axes is no permutation of them");
+    std::vector<int> stored;
+    for (const std::int64_t axis : axes) {
+        stored.push_back(array.stored_axes[static_cast<std::size_t>(axis)]);
+    }
+    array.stored_axes = stored;
+}
+
+/// Takes the codecs of an array, or those within its shards.
+void take_codecs(const Json& codecs, ChunkedArray& array);
+
+void take_index_codecs(const Json& codecs, Shards& shards) {
+    for (const Json& codec : codecs) {
+        const std::string name = codec.at("name").get<std::string>();
+        if (name == "crc32c") {
+            shards.index_codecs.insert(shards.index_codecs.begin(), Codec::crc32c);
+        } else if (name != "bytes" || !is_little(codec)) {
+            throw BadMetadata("the index of its shards is packed with '" + name +
+                              "', which is not read; write it with bytes and crc32c");
+        }
+    }
+}
+
+void take_shards(const Json& configuration, ChunkedArray& array) {
+    if (array.shards) throw BadMetadata("it has shards within shards; store it with one kind");
+    Shards shards;
+    const std::vector<std::int64_t> shard = array.chunk;
+    array.chunk = sizes_of(configuration.at("chunk_shape"), "chunk_shape");
+    for (std::size_t a = 0; a < shard.size(); ++a) {
+        if (array.chunk.size() != shard.size() || array.chunk[a] < 1 ||
+            shard[a] % array.chunk[a] != 0) {
+            throw BadMetadata("its shards are no whole number of chunks");
+        }
+        shards.chunks.push_back(shard[a] / array.chunk[a]);
+    }
+    const std::string place = configuration.value("index_location", std::string("end"));
+    if (place != "start" && place != "end") {
+        throw BadMetadata("the index of its shards lies at '" + place + "'; it is start or end");
+    }
+    shards.index_at_start = place == "start";
+    take_index_codecs(configuration.at("index_codecs"), shards);
+    array.shards = std::move(shards);
+    take_codecs(configuration.at("codecs"), array);
+}
+
+void take_codecs(const Json& codecs, ChunkedArray& array) {
+    bool as_bytes = false;
+    if (!codecs.is_array() || codecs.size() > 16)
+        throw BadMetadata("its list of codecs is not sensible");
+    for (const Json& codec : codecs) {
+        const std::string name = codec.at("name").get<std::string>();
+        if (name == "transpose" && !as_bytes) {
+            transpose(codec, array);
+        } else if (name == "bytes" && !as_bytes) {
+            array.bytes.swapped =
+                is_little(codec) != (std::endian::native == std::endian::little) &&
+                array.bytes.size() > 1;
+            as_bytes = true;
+        } else if (name == "sharding_indexed" && !as_bytes) {
+            if (codecs.size() > 1) {
+                throw BadMetadata(
+                    "its shards are packed as a whole; store them with codecs inside");
+            }
+            take_shards(codec.at("configuration"), array);
+            as_bytes = true;
+        } else if (const auto known = codec_named(name); known && as_bytes) {
+            array.codecs.insert(array.codecs.begin(), *known);
+        } else {
+            refuse_codec(name);
+        }
+    }
+    if (!as_bytes) throw BadMetadata("its codecs have no 'bytes'; its metadata are damaged");
+}
+
+void take_key_encoding(const Json& encoding, ChunkedArray& array) {
+    const std::string name = encoding.at("name").get<std::string>();
+    const Json configuration = encoding.value("configuration", Json::object());
+    if (name == "default") {
+        array.separator = separator_of(configuration.value("separator", std::string("/")));
+        array.prefix = std::string("c") + array.separator;
+    } else if (name == "v2") {
+        array.separator = separator_of(configuration.value("separator", std::string(".")));
+    } else {
+        throw BadMetadata("the names of its chunks follow '" + name + "', which is not known");
+    }
+}
+
+}  // namespace
+
+ChunkedArray zarr3_array(const Json& zarr, const std::string& folder) {
+    if (zarr.at("zarr_format") != 3 || zarr.at("node_type") != "array") {
+        throw BadMetadata("its zarr.json is not that of a Zarr 3 array");
+    }
+    ChunkedArray array;
+    array.folder = folder;
+    array.shape = sizes_of(zarr.at("shape"), "shape");
+    const Json& grid = zarr.at("chunk_grid");
+    if (grid.at("name") != "regular") {
+        throw BadMetadata("its chunks have different sizes, which is not read; store it with one");
+    }
+    array.chunk = sizes_of(grid.at("configuration").at("chunk_shape"), "chunk_shape");
+    const Json& type = zarr.at("data_type");
+    const std::string name = type.is_string() ? type.get<std::string>() : "(an extension)";
+    const auto stored = io::stored_named(name == "bool" ? "uint8" : name);
+    if (!stored) refuse_type(name);
+    array.bytes.stored = *stored;
+    array.bytes.fill =
+        fitting_fill(fill_of(zarr.value("fill_value", Json()), array.bytes.stored), array.bytes);
+    for (std::size_t a = 0; a < array.axes(); ++a) array.stored_axes.push_back(static_cast<int>(a));
+    take_key_encoding(zarr.at("chunk_key_encoding"), array);
+    for (const Json& transformer : zarr.value("storage_transformers", Json::array())) {
+        refuse_codec(transformer.value("name", std::string("storage transformer")));
+    }
+    take_codecs(zarr.at("codecs"), array);
+    check_array(array);
+    return array;
+}
+
+}  // namespace palpate::stream

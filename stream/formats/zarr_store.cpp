@@ -1,0 +1,181 @@
+// Opens OME-Zarr images of versions 0.4 (Zarr 2) and 0.5 (Zarr 3), single Zarr arrays, and the
+// first series of what bioformats2raw writes.
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "palpate/io/error.hpp"
+#include "stream/formats/metadata_files.hpp"
+#include "stream/formats/stores.hpp"
+#include "stream/formats/zarr_metadata.hpp"
+
+namespace palpate::stream {
+namespace {
+
+using Json = nlohmann::json;
+constexpr std::size_t most_series = 16;  // that are looked for
+
+/// What the metadata of a folder say, of either version.
+struct Node {
+    Json array;       ///< null unless it is one
+    Json attributes;  ///< null if there are none
+    int version = 0;  ///< of Zarr; 0: there is nothing
+};
+
+/// Looks into several folders at once.
+std::vector<Node> nodes_in(const Objects& objects, std::span<const std::string> folders) {
+    std::vector<Wanted> wanted;
+    constexpr std::array names = {"zarr.json", ".zattrs", ".zarray", ".zgroup"};
+    for (const std::string& folder : folders) {
+        for (const char* name : names) wanted.push_back(metadata_file(folder, name));
+    }
+    const auto all = objects.get_all(wanted, {});
+    std::vector<Node> nodes;
+    for (std::size_t i = 0; i < folders.size(); ++i) {
+        const auto json = [&](std::size_t n) {
+            const std::size_t at = i * names.size() + n;
+            return parsed(all[at], objects.name_of(wanted[at].key));
+        };
+        Node node;
+        if (Json zarr = json(0); zarr.is_object()) {
+            node.version = 3;
+            node.attributes = zarr.value("attributes", Json());
+            if (zarr.value("node_type", Json()) == "array") node.array = std::move(zarr);
+        } else if (Json attributes = json(1), array = json(2);
+                   !attributes.is_null() || !array.is_null() || all[i * names.size() + 3]) {
+            node = {std::move(array), std::move(attributes), 2};
+        }
+        nodes.push_back(std::move(node));
+    }
+    return nodes;
+}
+
+ChunkedArray array_from(const Json& array, int version, const std::string& folder) {
+    return version == 3 ? zarr3_array(array, folder) : zarr2_array(array, folder);
+}
+
+class Opening {
+  public:
+    Opening(const Objects& objects, std::string folder, const StoreOptions& options)
+        : objects_(objects), folder_(std::move(folder)), options_(options) {}
+
+    /// Nothing if there is no Zarr.
+    std::optional<ChunkedVolume> volume(const std::string& address) {
+        volume_.info.address = address;
+        Node root = nodes_in(objects_, std::array{folder_})[0];
+        if (root.version == 0) return std::nullopt;
+        if (!root.array.is_null()) return of_array(root);
+        auto image = ome_image(root.attributes);
+        if (!image) {
+            root = first_series();
+            image = ome_image(root.attributes);
+        }
+        if (!image) {
+            throw BadMetadata(
+                "has neither an image nor an array of its own; give one in a folder below it");
+        }
+        take_levels(*image, root.version);
+        return volume_of(*image, std::move(volume_), options_);
+    }
+
+  private:
+    ChunkedVolume of_array(const Node& root) {
+        const ChunkedArray array = array_from(root.array, root.version, folder_);
+        volume_.info.format = "Zarr " + std::to_string(root.version);
+        volume_.info.notes.push_back("it is an array without a place in space: 1 mm was taken");
+        Image image;
+        image.axes = usual_axes(array.axes());
+        take_names(root, image.axes);
+        for (ImageAxis& axis : image.axes) axis.unit = "millimeter";
+        for (const char* name : {"scale_factor", "add_offset"}) {
+            if (!root.attributes.is_object() || !root.attributes.contains(name)) continue;
+            volume_.info.notes.push_back("its attribute '" + std::string(name) +
+                                         "' was not applied: the samples are as they are stored");
+        }
+        image.levels = {
+            {"", std::vector<double>(array.axes(), 1), std::vector<double>(array.axes(), 0)}};
+        volume_.arrays = {array};
+        return volume_of(image, std::move(volume_), options_);
+    }
+
+    /// The names of its dimensions: Zarr 3 has a place for them, xarray an attribute.
+    void take_names(const Node& root, std::vector<ImageAxis>& axes) {
+        Json names = root.array.value("dimension_names", Json());
+        if (!names.is_array() && root.attributes.is_object()) {
+            names = root.attributes.value("_ARRAY_DIMENSIONS", Json());
+        }
+        if (!names.is_array() || names.size() != axes.size()) return;
+        std::vector<ImageAxis> named;
+        std::string text;
+        for (const Json& name : names) {
+            std::string one = name.is_string() ? name.get<std::string>() : "";
+            text += (text.empty() ? "" : ", ") + io::one_line(one.substr(0, 20));
+            std::ranges::transform(one, one.begin(),
+                                   [](unsigned char c) { return std::tolower(c); });
+            named.push_back({one, ""});
+        }
+        try {
+            check_axes(named);
+            axes = std::move(named);
+        } catch (const BadMetadata&) {
+            volume_.info.notes.push_back("its dimensions have the names " + text +
+                                         ": the last were taken as z, y, x");
+        }
+    }
+
+    /// The series of a bioformats2raw folder are images named 0, 1, ...
+    Node first_series() {
+        std::vector<std::string> folders;
+        for (std::size_t i = 0; i < most_series; ++i)
+            folders.push_back(key_below(folder_, std::to_string(i)));
+        const auto nodes = nodes_in(objects_, folders);
+        if (!ome_image(nodes[0].attributes)) return {};
+        std::string others;
+        for (std::size_t i = 1; i < nodes.size(); ++i) {
+            if (nodes[i].version > 0) others += (others.empty() ? "" : ", ") + std::to_string(i);
+        }
+        if (!others.empty()) {
+            volume_.info.notes.push_back("series 0 was taken; others are " + others +
+                                         ": give the folder of one to choose it");
+        }
+        folder_ = folders[0];
+        return nodes[0];
+    }
+
+    void take_levels(const Image& image, int version) {
+        volume_.info.format = version == 3 ? "OME-Zarr 0.5" : "OME-Zarr 0.4";
+        // Over a network each file that is asked for in vain costs as much as one that is there.
+        std::vector<Wanted> wanted;
+        for (const ImageLevel& level : image.levels) {
+            wanted.push_back(metadata_file(key_below(folder_, level.path),
+                                           version == 3 ? "zarr.json" : ".zarray"));
+        }
+        const auto all = objects_.get_all(wanted, {});
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const Json array = parsed(all[i], objects_.name_of(wanted[i].key));
+            const std::string folder = key_below(folder_, image.levels[i].path);
+            const bool is_array =
+                array.is_object() && (version == 2 || array.value("node_type", Json()) == "array");
+            if (!is_array)
+                throw BadMetadata("its level '" + folder + "' is not there; copy it again");
+            volume_.arrays.push_back(array_from(array, version, folder));
+        }
+    }
+
+    const Objects& objects_;
+    std::string folder_;
+    const StoreOptions& options_;
+    ChunkedVolume volume_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Store> open_zarr(std::shared_ptr<const Objects> objects,
+                                       const std::string& address, const StoreOptions& options) {
+    return about(address, [&]() -> std::shared_ptr<const Store> {
+        auto volume = Opening(*objects, "", options).volume(address);
+        return volume ? chunked_store(objects, *std::move(volume), options.unpacking) : nullptr;
+    });
+}
+
+}  // namespace palpate::stream

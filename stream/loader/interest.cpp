@@ -1,0 +1,122 @@
+// Which bricks the hands need: by their distance from the way of each hand.
+#include "stream/loader/interest.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stream/box_bytes.hpp"
+
+namespace palpate::stream {
+namespace {
+
+/// A hand is followed this far ahead [s], and no farther than this [bricks].
+constexpr double look_ahead = 0.5;
+constexpr double farthest = 16;
+/// Bricks ahead of a moving hand count as this much farther than those it is in.
+constexpr double ahead_factor = 0.5;
+/// And those on a long way from proxy to hand by this: where the proxy waits, all round it is
+/// needed before it can go on.
+constexpr double pull_factor = 0.2;
+/// A hand that goes farther than this while a brick comes [bricks] has left what it is in before
+/// that can come: then what it reaches comes first, and what it is in counts as this much farther
+/// [bricks].
+constexpr double fast = 1, late_penalty = 1;
+/// Samples round a ball that an update may look at, more than reach.cpp's [voxel].
+constexpr double margin = 5;
+
+struct Segment {
+    Vec3 from, to;  // [bricks]
+};
+
+Vec3 shortened(const Vec3& way) {
+    const double length = way.norm();
+    return length > farthest ? Vec3(way * (farthest / length)) : way;
+}
+
+double distance(const Segment& s, const Vec3& p) {
+    const Vec3 along = s.to - s.from;
+    const double squared = along.squaredNorm();
+    const double t = squared > 0 ? std::clamp((p - s.from).dot(along) / squared, 0.0, 1.0) : 0;
+    return (p - s.from - t * along).norm();
+}
+
+}  // namespace
+
+std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
+                                  std::span<const Interest> hands, std::size_t most,
+                                  double seconds) {
+    struct Scored {
+        double score;
+        Index3 brick;
+    };
+    if (hands.empty()) return {};
+    const double each = static_cast<double>(most) / static_cast<double>(hands.size());
+    const double radius = std::clamp(0.5 * (std::cbrt(each) - 1), 1.0, 6.0);
+    std::vector<Scored> scored;
+    for (const Interest& hand : hands) {
+        if (!hand.proxy.allFinite() || !hand.hand.allFinite()) continue;
+        const auto in_bricks = [&](const Vec3& physical) {
+            return Vec3(index_from_physical(geometry, physical) / ResidentBricks::edge);
+        };
+        const Vec3 proxy = in_bricks(hand.proxy);
+        const Segment pull{proxy, proxy + shortened(in_bricks(hand.hand) - proxy)};
+        const Vec3 velocity = hand.velocity.allFinite() ? hand.velocity : Vec3::Zero();
+        const Vec3 soon = in_bricks(hand.proxy + look_ahead * velocity) - proxy;
+        const bool is_fast = soon.norm() * seconds > fast * look_ahead;
+        const Vec3 begin = is_fast ? Vec3(pull.to + 0.5 * shortened(soon)) : proxy;
+        const Segment path{begin, begin + shortened(soon)};
+        const Vec3 low = proxy.cwiseMin(pull.to).cwiseMin(path.to) - Vec3::Constant(radius);
+        const Vec3 high = proxy.cwiseMax(pull.to).cwiseMax(path.to) + Vec3::Constant(radius);
+        const Vec3 last = (count - Index3::Ones()).cast<double>();
+        const Index3 first = low.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
+        const Index3 end = high.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
+        for_each_index({first, end}, [&](const Index3& brick) {
+            const Vec3 centre = brick.cast<double>() + Vec3::Constant(0.5);
+            const double to_proxy = (centre - proxy).norm();
+            const double to_pull = distance(pull, centre);
+            const double to_path = distance(path, centre);
+            if (std::min(to_pull, to_path) > radius + 1) return;
+            const double near = to_pull + pull_factor * to_proxy + (is_fast ? late_penalty : 0);
+            const double ahead =
+                is_fast ? to_path : to_path + ahead_factor * std::min(1.0, to_proxy);
+            scored.push_back({std::min(near, ahead), brick});
+        });
+    }
+    // Ties by place, so that the order does not depend on the library.
+    std::ranges::sort(scored, [](const Scored& a, const Scored& b) {
+        if (a.score != b.score) return a.score < b.score;
+        return std::ranges::lexicographical_compare(a.brick, b.brick);
+    });
+    std::vector<Index3> wanted;
+    for (const Scored& s : scored) {
+        if (wanted.size() >= most) break;
+        wanted.push_back(s.brick);
+    }
+    return wanted;
+}
+
+std::vector<Index3> bricks_round(const Geometry& geometry, const Vec3& centre, double radius) {
+    const Vec3 at = index_from_physical(geometry, centre);
+    const Vec3 last = (geometry.size - Index3::Ones()).cast<double>();
+    const Vec3 reach = (geometry.spacing.cwiseInverse() * radius).array() + margin;
+    const Vec3 low = at - reach, high = at + reach;
+    if (!((low.array() <= last.array()).all() && (high.array() >= 0).all())) return {};
+    const auto brick_at = [&](const Vec3& index) {
+        const Vec3 inside = index.cwiseMax(Vec3::Zero()).cwiseMin(last);
+        return ResidentBricks::brick_of(inside.array().floor().cast<int>());
+    };
+    const Index3 first = brick_at(low), end = brick_at(high);
+    std::vector<Index3> bricks;
+    for_each_index({first, end}, [&](const Index3& brick) { bricks.push_back(brick); });
+    return bricks;
+}
+
+LevelChoice levels_for(double speed, double seconds, int coarsest) {
+    constexpr int coarser_first = 2;
+    const double passed = speed * seconds;
+    const int finest =
+        passed > 1 ? static_cast<int>(std::min(std::ceil(std::log2(passed)), 30.0)) : 0;
+    return {std::min(finest + coarser_first, coarsest), std::min(finest, coarsest)};
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,75 @@
+// Remote objects with a cache on the disk.
+#include <atomic>
+
+#include "stream/objects/disk_cache.hpp"
+#include "stream/objects/remote_objects.hpp"
+
+namespace palpate::stream {
+namespace {
+
+class CachedObjects : public Objects {
+  public:
+    CachedObjects(std::shared_ptr<const Objects> objects, const std::filesystem::path& folder,
+                  std::uint64_t most_bytes)
+        : objects_(std::move(objects)), cache_(folder, most_bytes) {}
+
+    std::string name_of(const std::string& key) const override { return objects_->name_of(key); }
+    std::optional<std::uint64_t> size_of(const std::string& key) const override {
+        return objects_->size_of(key);
+    }
+    Traffic traffic() const override {
+        Traffic traffic = objects_->traffic();
+        traffic.cached = found_.load();
+        return traffic;
+    }
+
+    std::string version() const override { return objects_->version(); }
+
+    std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
+        if (!wanted.lasting) return objects_->get(wanted, std::move(stop));
+        const std::string name = entry_name(wanted);
+        if (!wanted.again) {
+            if (auto bytes = cache_.find(name); bytes && bytes->size() <= wanted.most) {
+                found_.fetch_add(1, std::memory_order_relaxed);
+                return bytes;
+            }
+        }
+        auto bytes = objects_->get(wanted, std::move(stop));
+        // That an object is not there is not kept: it may be written any time.
+        if (bytes) cache_.put(name, *bytes);
+        return bytes;
+    }
+
+    std::vector<std::optional<Bytes>> get_all(std::span<const Wanted> wanted,
+                                              std::stop_token stop) const override {
+        for (const Wanted& one : wanted) {
+            if (one.lasting) return Objects::get_all(wanted, std::move(stop));
+        }
+        return objects_->get_all(wanted, std::move(stop));
+    }
+
+  private:
+    /// A store that is written anew does not meet the entries of the old one.
+    std::string entry_name(const Wanted& wanted) const {
+        std::string name = objects_->name_of(wanted.key) + '\n' + objects_->version();
+        if (wanted.range) {
+            name += '\n' + std::to_string(wanted.range->offset) +
+                    (wanted.range->from_end ? "e" : "+") + std::to_string(wanted.range->length);
+        }
+        return name;
+    }
+
+    std::shared_ptr<const Objects> objects_;
+    DiskCache cache_;
+    mutable std::atomic<std::uint64_t> found_ = 0;
+};
+
+}  // namespace
+
+std::shared_ptr<const Objects> cached_objects(std::shared_ptr<const Objects> objects,
+                                              const std::filesystem::path& folder,
+                                              std::uint64_t most_bytes) {
+    return std::make_shared<CachedObjects>(std::move(objects), folder, most_bytes);
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,219 @@
+// A folder with pieces of remote stores. See the header.
+#include "stream/objects/disk_cache.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <vector>
+
+#include "io/process/helper_process.hpp"
+#include "io/system/leftovers.hpp"
+#include "io/system/open_file.hpp"
+
+namespace palpate::stream {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t name_digits = 32, folder_digits = 2;  // of FOLDER/NAME
+
+/// What an entry begins with; its name and bytes follow.
+struct EntryHead {
+    std::array<char, 8> magic = {'p', 'a', 'l', 'p', 'c', 'a', 'c', '1'};
+    std::uint64_t bytes = 0;
+    std::uint32_t name_bytes = 0;
+    std::uint32_t checksum = 0;  ///< of name and bytes
+};
+
+std::uint32_t checksum_of(const std::string& name, const Bytes& bytes) {
+    uLong sum = crc32_z(0, reinterpret_cast<const Bytef*>(name.data()), name.size());
+    sum = crc32_z(sum, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+    return static_cast<std::uint32_t>(sum);
+}
+
+/// FNV-1a; two of them name a file.
+std::uint64_t hash_of(const std::string& text, std::uint64_t hash) {
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+    return hash;
+}
+
+std::string hex(std::uint64_t number) {
+    std::string text;
+    for (int shift = 60; shift >= 0; shift -= 4) text += "0123456789abcdef"[number >> shift & 15];
+    return text;
+}
+
+bool read_all(int file, void* to, std::size_t bytes) {
+    for (std::size_t at = 0; at < bytes;) {
+        const ssize_t got = ::read(file, static_cast<char*>(to) + at, bytes - at);
+        if (got <= 0) return false;
+        at += static_cast<std::size_t>(got);
+    }
+    return true;
+}
+
+bool write_all(int file, const void* from, std::size_t bytes) {
+    for (std::size_t at = 0; at < bytes;) {
+        const ssize_t put = ::write(file, static_cast<const char*>(from) + at, bytes - at);
+        if (put <= 0) return false;
+        at += static_cast<std::size_t>(put);
+    }
+    return true;
+}
+
+/// The bytes of an open entry, or nothing if it is not whole or another's.
+std::optional<Bytes> entry_of(int file, const std::string& name) {
+    struct stat status {};
+    EntryHead head;
+    const EntryHead right;
+    if (fstat(file, &status) != 0 || !read_all(file, &head, sizeof head)) return std::nullopt;
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    if (head.magic != right.magic || head.name_bytes != name.size() || head.bytes > size ||
+        size != sizeof head + head.name_bytes + head.bytes) {
+        return std::nullopt;
+    }
+    std::string stored(head.name_bytes, '\0');
+    Bytes bytes(head.bytes);
+    if (!read_all(file, stored.data(), stored.size()) ||
+        !read_all(file, bytes.data(), bytes.size()) || stored != name ||
+        checksum_of(name, bytes) != head.checksum) {
+        return std::nullopt;
+    }
+    return bytes;
+}
+
+struct Entry {
+    fs::path path;
+    fs::file_time_type used;
+    std::uint64_t bytes;
+};
+
+bool is_hexadecimal(const std::string& name, std::size_t digits) {
+    return name.size() == digits && name.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// Files that lie and are called as entries are: other files in the folder are not ours.
+std::vector<Entry> entries_in(const fs::path& folder) {
+    std::vector<Entry> entries;
+    std::error_code error;
+    for (fs::directory_iterator inner(folder, error), end; inner != end && !error;
+         inner.increment(error)) {
+        std::error_code of_inner;
+        if (!is_hexadecimal(inner->path().filename().string(), folder_digits) ||
+            !fs::is_directory(inner->symlink_status(of_inner))) {
+            continue;
+        }
+        for (fs::directory_iterator file(inner->path(), of_inner), last; file != last && !of_inner;
+             file.increment(of_inner)) {
+            std::error_code of_entry;
+            if (!is_hexadecimal(file->path().filename().string(), name_digits - folder_digits) ||
+                !fs::is_regular_file(file->symlink_status(of_entry))) {
+                continue;
+            }
+            const auto used = file->last_write_time(of_entry);
+            const auto bytes = file->file_size(of_entry);
+            if (!of_entry) entries.push_back({file->path(), used, bytes});
+        }
+    }
+    return entries;
+}
+
+/// Removes an entry, unless it does not begin as one does.
+void remove_entry(const fs::path& path) {
+    const io::Descriptor file(io::open_file_in(AT_FDCWD, path.string()));
+    EntryHead head;
+    if (read_all(file.number(), &head.magic, sizeof head.magic) &&
+        head.magic == EntryHead{}.magic) {
+        ::unlink(path.c_str());
+    }
+}
+
+}  // namespace
+
+DiskCache::DiskCache(fs::path folder, std::uint64_t most_bytes)
+    : folder_(std::move(folder)), most_(most_bytes) {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (!error) io::remove_leftovers(folder_);
+}
+
+fs::path DiskCache::path_of(const std::string& name) const {
+    const std::string text =
+        hex(hash_of(name, 0xcbf29ce484222325U)) + hex(hash_of(name, 0x9e3779b97f4a7c15U));
+    return folder_ / text.substr(0, folder_digits) / text.substr(folder_digits);
+}
+
+std::optional<Bytes> DiskCache::find(const std::string& name) const noexcept {
+    try {
+        const fs::path path = path_of(name);
+        const io::Descriptor file(io::open_file_in(AT_FDCWD, path.string()));
+        if (file.number() < 0) return std::nullopt;
+        auto bytes = entry_of(file.number(), name);
+        if (bytes) {
+            futimens(file.number(), nullptr);  // used now
+        } else {
+            remove_entry(path);
+        }
+        return bytes;
+    } catch (const std::exception&) {
+        return std::nullopt;
+    }
+}
+
+void DiskCache::put(const std::string& name, const Bytes& bytes) const noexcept {
+    if (bytes.size() > most_ / 8) return;
+    try {
+        make_room(bytes.size());
+        write(name, bytes);
+    } catch (const std::exception&) {  // then it is not kept
+    }
+}
+
+void DiskCache::write(const std::string& name, const Bytes& bytes) const {
+    const fs::path path = path_of(name);
+    std::error_code error;
+    fs::create_directories(path.parent_path(), error);
+    const fs::path temporary = io::temporary_in(folder_);
+    io::Descriptor file(
+        ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
+    if (file.number() < 0) return;
+    EntryHead head;
+    head.bytes = bytes.size();
+    head.name_bytes = static_cast<std::uint32_t>(name.size());
+    head.checksum = checksum_of(name, bytes);
+    const bool whole = write_all(file.number(), &head, sizeof head) &&
+                       write_all(file.number(), name.data(), name.size()) &&
+                       write_all(file.number(), bytes.data(), bytes.size());
+    if (whole) fs::rename(temporary, path, error);
+    if (!whole || error) ::unlink(temporary.c_str());
+}
+
+/// Another process may add a sixteenth of the limit before this one sees it, so two stay below it.
+void DiskCache::make_room(std::uint64_t bytes) const {
+    const std::lock_guard lock(mutex_);
+    const std::uint64_t full = most_ - most_ / 16, after = most_ - most_ / 8;
+    const bool count_again = !known_ || added_ > most_ / 16 || counted_ + added_ + bytes > full;
+    if (count_again) {
+        std::vector<Entry> entries = entries_in(folder_);
+        counted_ = 0;
+        for (const Entry& entry : entries) counted_ += entry.bytes;
+        if (counted_ + bytes > full) {
+            std::ranges::sort(entries, {}, &Entry::used);
+            for (const Entry& entry : entries) {
+                if (counted_ + bytes <= after) break;
+                remove_entry(entry.path);
+                counted_ -= entry.bytes;
+            }
+        }
+        added_ = 0;
+        known_ = true;
+    }
+    added_ += bytes + sizeof(EntryHead) + 256;
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,37 @@
+// A folder with pieces of remote stores: bounded, safe for several processes and for kills at any
+// time. Nothing here throws: a cache that does not work is empty. Private to stream/.
+#pragma once
+
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "stream/objects/objects.hpp"
+
+namespace palpate::stream {
+
+/// An entry is a file with its name, its bytes and their checksum, written under another name and
+/// then renamed. A damaged one is removed when it is met. When the folder is nearly full, those
+/// that were not used for the longest time go. Other files in the folder are left alone.
+class DiskCache {
+  public:
+    DiskCache(std::filesystem::path folder, std::uint64_t most_bytes);
+
+    std::optional<Bytes> find(const std::string& name) const noexcept;
+    void put(const std::string& name, const Bytes& bytes) const noexcept;
+
+  private:
+    std::filesystem::path path_of(const std::string& name) const;
+    void write(const std::string& name, const Bytes& bytes) const;
+    void make_room(std::uint64_t bytes) const;
+
+    std::filesystem::path folder_;
+    std::uint64_t most_;
+    mutable std::mutex mutex_;
+    mutable std::uint64_t counted_ = 0;  ///< bytes when last counted
+    mutable std::uint64_t added_ = 0;    ///< bytes since then, by this process
+    mutable bool known_ = false;         ///< false: not yet counted
+};
+
+}  // namespace palpate::stream

@@ -1,0 +1,109 @@
+// Objects that are files in a folder.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+
+#include "io/process/helper_process.hpp"
+#include "io/system/system.hpp"
+#include "palpate/io/error.hpp"
+#include "stream/objects/objects.hpp"
+
+namespace palpate::stream {
+namespace {
+
+class FolderObjects : public Objects {
+  public:
+    FolderObjects(std::filesystem::path folder, std::filesystem::path name)
+        : folder_(std::move(folder)), name_(std::move(name)) {}
+
+    std::string name_of(const std::string& key) const override {
+        return (key.empty() ? name_ : name_ / key).string();
+    }
+    Traffic traffic() const override { return traffic_.now(); }
+    std::optional<std::uint64_t> size_of(const std::string& key) const override {
+        std::error_code error;
+        const std::uintmax_t size = std::filesystem::file_size(folder_ / key, error);
+        return error ? std::nullopt : std::optional<std::uint64_t>(size);
+    }
+
+    std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
+        if (stop.stop_requested()) throw Cancelled{};
+        const io::Descriptor file(io::open_to_read(folder_ / wanted.key));
+        if (file.number() < 0) {
+            if (errno == ENOENT || errno == ENOTDIR || errno == EISDIR) return std::nullopt;
+            if (errno == ENXIO) fail(wanted.key, "is no file; make the folder again");
+            fail(wanted.key, io::reason(errno) + "; check its permissions");
+        }
+        struct stat status {};
+        if (fstat(file.number(), &status) != 0) fail(wanted.key, io::reason(errno));
+        const auto size = static_cast<std::uint64_t>(status.st_size);
+        ByteRange range{0, size};
+        if (wanted.range) range = *wanted.range;
+        if (range.length > size || (!range.from_end && range.offset > size - range.length)) {
+            fail(wanted.key, "is shorter than its metadata say; copy it again");
+        }
+        if (range.from_end) range.offset = size - range.length;
+        if (range.length > wanted.most) {
+            fail(wanted.key, "has " + std::to_string(range.length) +
+                                 " bytes, more than its metadata allow; copy it again");
+        }
+        return read(wanted.key, file.number(), range);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& key, const std::string& what) const {
+        throw io::InputError(name_of(key) + ": " + what);
+    }
+
+    Bytes read(const std::string& key, int file, const ByteRange& range) const {
+        Bytes bytes(range.length);
+        for (std::size_t at = 0; at < bytes.size();) {
+            const ssize_t got = ::pread(file, bytes.data() + at, bytes.size() - at,
+                                        static_cast<off_t>(range.offset + at));
+            if (got < 0 && errno == EINTR) continue;
+            if (got < 0) fail(key, io::reason(errno) + "; check the disk");
+            if (got == 0) fail(key, "became shorter while it was read; try again");
+            at += static_cast<std::size_t>(got);
+        }
+        traffic_.request(bytes.size());
+        return bytes;
+    }
+
+    std::filesystem::path folder_, name_;
+    mutable TrafficCount traffic_;
+};
+
+}  // namespace
+
+std::vector<std::optional<Bytes>> Objects::get_all(std::span<const Wanted> wanted,
+                                                   std::stop_token stop) const {
+    std::vector<std::optional<Bytes>> all;
+    for (const Wanted& one : wanted) all.push_back(get(one, stop));
+    return all;
+}
+
+std::shared_ptr<const Objects> folder_objects(const std::filesystem::path& folder) {
+    // Absolute, so that it is found when the working folder has gone.
+    std::error_code error;
+    const std::filesystem::path whole = std::filesystem::absolute(folder, error);
+    return std::make_shared<FolderObjects>(error ? folder : whole, folder);
+}
+
+std::string key_below(const std::string& folder, const std::string& name) {
+    std::string key = folder;
+    for (std::size_t at = 0; at <= name.size();) {
+        const std::size_t end = std::min(name.find('/', at), name.size());
+        const std::string part = name.substr(at, end - at);
+        at = end + 1;
+        if (part.empty() || part == ".") continue;
+        if (part == ".." || part.find('\0') != std::string::npos) {
+            throw std::invalid_argument("the path '" + name + "' leads out of it");
+        }
+        key += (key.empty() ? "" : "/") + part;
+    }
+    return key;
+}
+
+}  // namespace palpate::stream

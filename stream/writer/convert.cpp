@@ -1,0 +1,220 @@
+// Writes a level of a store as multiscale OME-Zarr. See the header.
+#include "palpate/stream/convert.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "io/path_json.hpp"
+#include "io/system/growing_folder.hpp"
+#include "palpate/io/address.hpp"
+#include "palpate/io/error.hpp"
+#include "palpate/stream/growing_image.hpp"
+#include "stream/formats/content.hpp"
+#include "stream/formats/edited_store.hpp"
+#include "stream/writer/zarr_writer.hpp"
+
+namespace palpate::stream {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Calls work(i, stop) for i from 0 to below `count`, on several threads, and `tell` with how many
+/// are done, on this one. The first exception, of either, stops all and is thrown.
+template <class Work, class Tell>
+void in_parallel(std::int64_t count, int threads, Work&& work, Tell&& tell) {
+    std::atomic<std::int64_t> next = 0, done = 0;
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::exception_ptr failure;
+    int running = threads;
+    {
+        std::stop_source stop;
+        std::vector<std::jthread> team;
+        const auto one = [&] {
+            try {
+                for (std::int64_t i = next++; i < count && !stop.stop_requested(); i = next++) {
+                    work(i, stop.get_token());
+                    ++done;
+                }
+            } catch (const Cancelled&) {
+            } catch (...) {
+                const std::lock_guard lock(mutex);
+                if (!failure) failure = std::current_exception();
+                stop.request_stop();
+            }
+            const std::lock_guard lock(mutex);
+            --running;
+            changed.notify_one();
+        };
+        for (int t = 0; t < threads; ++t) team.emplace_back(one);
+        constexpr auto between = std::chrono::milliseconds(50);
+        std::unique_lock lock(mutex);
+        while (!changed.wait_for(lock, between, [&] { return running == 0; })) {
+            lock.unlock();
+            try {
+                tell(done.load());
+            } catch (...) {
+                stop.request_stop();
+                lock.lock();
+                failure = std::current_exception();
+                lock.unlock();
+            }
+            lock.lock();
+            if (stop.stop_requested()) changed.wait(lock, [&] { return running == 0; });
+        }
+    }
+    if (failure) std::rethrow_exception(failure);
+}
+
+/// All that decides what is written: a run is continued by one of the same job only. The content
+/// covers the source and everything that says how it is read (raw layout, spacing, series,
+/// filters).
+nlohmann::json job_of(const Store& from, int level, const ConvertOptions& options) {
+    nlohmann::json job = {{"version", 1},  // of what is computed and how it is written
+                          {"source", io::json_of_path(io::address_to_keep(from.info().address))},
+                          {"content", content_of(from, level)},
+                          {"level", level},
+                          {"zarr", options.zarr_version},
+                          {"chunk", options.chunk},
+                          {"compression", static_cast<int>(options.compression)}};
+    // Of what is not read whole, files that were written anew show what its samples may not.
+    if (from.info().format == "memory") return job;
+    job["files"] = files_at(from.info().address);
+    if (const auto* edits = dynamic_cast<const EditedStore*>(&from)) {
+        job["original"] = files_at(edits->note().of.address);
+    }
+    return job;
+}
+
+/// Least and greatest sample that several threads have seen.
+class SeenRange {
+  public:
+    void take(SampleType type, std::span<const std::byte> samples) {
+        with_type(type, [&](auto zero) {
+            using T = decltype(zero);
+            T low = std::numeric_limits<T>::max(), high = std::numeric_limits<T>::lowest();
+            for (std::size_t at = 0; at < samples.size(); at += sizeof(T)) {
+                T value;
+                std::memcpy(&value, samples.data() + at, sizeof value);
+                low = std::min(low, value);
+                high = std::max(high, value);
+            }
+            const std::lock_guard lock(mutex_);
+            range_.minimum = std::min(range_.minimum, static_cast<double>(low));
+            range_.maximum = std::max(range_.maximum, static_cast<double>(high));
+        });
+    }
+    Range range() const { return range_; }
+
+  private:
+    std::mutex mutex_;
+    Range range_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+};
+
+class Conversion {
+  public:
+    Conversion(const Store& from, int level, const ConvertOptions& options,
+               const io::GrowingFolder& partial)
+        : from_(from),
+          level_(level),
+          options_(options),
+          partial_(partial),
+          image_(partial.result(), from.info().type,
+                 from.info().levels.at(static_cast<std::size_t>(level)).geometry, options) {
+        for (int l = 0; l < image_.levels(); ++l) total_ += chunks(l);
+    }
+
+    Converted run() {
+        partial_.check();  // that the image holds the same folder
+        image_.write_metadata({});
+        std::int64_t before = 0;
+        for (int l = 0; l < image_.levels(); ++l) {
+            in_parallel(
+                chunks(l), options_.threads,
+                [&](std::int64_t i, const std::stop_token& stop) { convert(l, i, stop); },
+                [&](std::int64_t done) { tell(before + done); });
+            before += chunks(l);
+        }
+        tell(total_);
+        if (image_.stored_chunks() + empty_ != static_cast<std::uint64_t>(total_)) {
+            throw io::OutputError(partial_.result().string() +
+                                  ": chunks were removed while it was written; run it again");
+        }
+        image_.write_metadata(seen_.range());
+        return {image_.levels(), static_cast<std::uint64_t>(total_), kept_, empty_, seen_.range()};
+    }
+
+  private:
+    std::int64_t chunks(int level) const {
+        return image_.chunks(level).cast<std::int64_t>().prod();
+    }
+    void tell(std::int64_t done) const {
+        if (options_.progress) {
+            options_.progress(static_cast<double>(done) / static_cast<double>(total_));
+        }
+    }
+
+    void convert(int level, std::int64_t number, const std::stop_token& stop) {
+        const Index3 count = image_.chunks(level);
+        const Index3 chunk(static_cast<int>(number % count[0]),
+                           static_cast<int>(number / count[0] % count[1]),
+                           static_cast<int>(number / count[0] / count[1]));
+        auto samples = image_.written(level, chunk);
+        if (samples) {
+            ++kept_;
+        } else {
+            samples =
+                level == 0 ? read(image_.box(0, chunk), stop) : image_.means(level, chunk, stop);
+            if (!image_.write(level, chunk, *samples)) ++empty_;
+        }
+        if (level == 0) seen_.take(from_.info().type, *samples);
+    }
+
+    Bytes read(const SampleBox& box, const std::stop_token& stop) const {
+        const Index3 size = box.high - box.low + Index3::Ones();
+        Bytes samples(static_cast<std::size_t>(size.cast<std::int64_t>().prod()) *
+                      size_of(from_.info().type));
+        from_.read(level_, box, samples, stop);
+        return samples;
+    }
+
+    const Store& from_;
+    int level_;
+    const ConvertOptions& options_;
+    const io::GrowingFolder& partial_;
+    GrowingImage image_;
+    SeenRange seen_;
+    std::int64_t total_ = 0;
+    std::atomic<std::uint64_t> kept_ = 0, empty_ = 0;
+};
+
+}  // namespace
+
+void check_zarr_place(const fs::path& out) {
+    io::check_new_folder(out);
+}
+
+Converted convert_to_zarr(const Store& from, int level, const fs::path& out,
+                          const ConvertOptions& options) {
+    check_format(options);
+    if (options.threads < 1 || options.threads > 256) {
+        throw std::invalid_argument("there are 1 to 256 threads");
+    }
+    check_zarr_place(out);
+    io::GrowingFolder folder =
+        options.resumable ? io::GrowingFolder::resumable(out, job_of(from, level, options).dump(1))
+                          : io::GrowingFolder::alone(out);
+    Converted converted = Conversion(from, level, options, folder).run();
+    folder.put_in_place();
+    converted.note = folder.note();
+    return converted;
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,241 @@
+// Saves the edits of a store. See palpate/stream/edits.hpp.
+#include "palpate/stream/edits.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "io/system/growing_folder.hpp"
+#include "io/system/own_names.hpp"
+#include "palpate/io/output.hpp"
+#include "stream/box_bytes.hpp"
+#include "stream/formats/content.hpp"
+#include "stream/formats/edited_store.hpp"
+#include "stream/formats/stores.hpp"
+#include "stream/writer/zarr_writer.hpp"
+
+namespace palpate::stream {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The levels from one on, each with how many samples of the one before make one of it; zeros where
+/// that is not a whole number.
+std::vector<CoarserGrid> levels_from(const StoreInfo& info, int level) {
+    std::vector<CoarserGrid> levels;
+    for (std::size_t l = static_cast<std::size_t>(level); l < info.levels.size(); ++l) {
+        const Geometry& grid = info.levels[l].geometry;
+        CoarserGrid coarser{grid, Index3::Ones()};
+        if (!levels.empty()) {
+            const Geometry& finer = levels.back().geometry;
+            for (int a = 0; a < 3; ++a) {
+                const double ratio = grid.spacing[a] / finer.spacing[a];
+                const int factor = static_cast<int>(std::lround(std::min(ratio, 1e6)));
+                const bool whole = factor > 0 && std::abs(ratio - factor) < 1e-3 * factor &&
+                                   std::int64_t{grid.size[a] - 1} * factor < finer.size[a];
+                coarser.factor[a] = whole ? factor : 0;
+            }
+        }
+        levels.push_back(coarser);
+    }
+    return levels;
+}
+
+/// The place of a box of the finer level in the coarser one.
+SampleBox coarser_box(const SampleBox& box, const CoarserGrid& coarser) {
+    return {
+        box.low.cwiseQuotient(coarser.factor),
+        box.high.cwiseQuotient(coarser.factor).cwiseMin(coarser.geometry.size - Index3::Ones())};
+}
+
+class Saving {
+  public:
+    Saving(const Store& from, int level, const Samples& edits, fs::path folder, EditsNote note,
+           const io::Progress& progress)
+        : from_(from),
+          level_(level),
+          edits_(edits),
+          folder_(std::move(folder)),
+          note_(std::move(note)),
+          writer_(folder_, from.info().type, levels_from(from.info(), level),
+                  {.chunk = EditsNote::chunk, .progress = {}}),
+          progress_(progress) {}
+
+    EditsNote run() {
+        writer_.write_metadata(Range{edits_.minimum(), edits_.maximum()});
+        written_ = open_zarr(folder_objects(folder_), folder_.string(), {});
+        std::vector<SampleBox> changed;
+        edits_.bricks()->for_each([&](const Index3& brick, const Brick&) {
+            const Index3 low = brick * Bricks::edge;
+            changed.push_back({low, (low + Index3::Constant(Bricks::edge - 1))
+                                        .cwiseMin(edits_.geometry().size - Index3::Ones())});
+        });
+        for (std::size_t l = 0; l < writer_.levels().size(); ++l) {
+            const CoarserGrid& grid = writer_.levels()[l];
+            if (l > 0 && grid.factor.minCoeff() == 0) changed.clear();  // stays as it was
+            if (l > 0) {
+                for (SampleBox& box : changed) box = coarser_box(box, grid);
+                std::erase_if(changed, [](const SampleBox& box) { return box.empty(); });
+            }
+            write_level(l, changed);
+        }
+        return std::move(note_);
+    }
+
+  private:
+    void write_level(std::size_t level, const std::vector<SampleBox>& changed) {
+        std::map<std::array<int, 3>, std::vector<SampleBox>> parts;
+        for (const auto& chunk : note_.chunks[level]) parts[chunk];
+        for (const SampleBox& box : changed) {
+            for_each_chunk(box, [&](const auto& chunk, const SampleBox& part) {
+                parts[chunk].push_back(part);
+            });
+        }
+        const Geometry& grid = writer_.levels()[level].geometry;
+        std::size_t done = 0;
+        for (const auto& [chunk, boxes] : parts) {
+            const SampleBox box = chunk_box(chunk, grid);
+            Bytes samples(bytes_of(box, type()));
+            from_.read(level_ + static_cast<int>(level), box, samples, {});
+            for (const SampleBox& part : boxes) {
+                const Bytes now = level == 0 ? edited(part) : means(level, part);
+                copy_box(part, now.data(), box, samples.data(), size_of(type()));
+            }
+            const Index3 edge = Index3::Constant(EditsNote::chunk);
+            const SampleBox all{box.low, box.low + edge - Index3::Ones()};
+            Bytes whole(bytes_of(all, type()));
+            copy_box(box, samples.data(), all, whole.data(), size_of(type()));
+            const Index3 at(chunk[0], chunk[1], chunk[2]);
+            writer_.write_chunk(static_cast<int>(level), at, whole);
+            note_.chunks[level].insert(chunk);
+            ++done;
+            if (progress_ && level == 0) progress_(double(done) / double(parts.size()));
+        }
+    }
+
+    /// Of an edited brick.
+    Bytes edited(const SampleBox& box) const {
+        Bytes samples(bytes_of(box, type()));
+        with_type(type(), [&](auto zero) {
+            std::byte* to = samples.data();
+            for_each_index(box, [&](const Index3& at) {
+                const auto sample = static_cast<decltype(zero)>(edits_.sample(at));
+                std::memcpy(to, &sample, sizeof sample);
+                to += sizeof sample;
+            });
+        });
+        return samples;
+    }
+
+    /// Of the finer level, of which all that changed is written.
+    Bytes means(std::size_t level, const SampleBox& box) const {
+        const CoarserGrid& grid = writer_.levels()[level];
+        const Geometry& finer = writer_.levels()[level - 1].geometry;
+        const SampleBox wanted = finer_box(box, grid.factor, finer);
+        Bytes below(bytes_of(wanted, type()));
+        const int fine = static_cast<int>(level) - 1;
+        from_.read(level_ + fine, wanted, below, {});
+        for_each_chunk(wanted, [&](const auto& chunk, const SampleBox& part) {
+            if (!note_.chunks[level - 1].contains(chunk)) return;
+            Bytes now(bytes_of(part, type()));
+            written_->read(fine, part, now, {});
+            copy_box(part, now.data(), wanted, below.data(), size_of(type()));
+        });
+        Bytes samples(bytes_of(box, type()));
+        take_means(type(), below, wanted, grid.factor, box, samples);
+        return samples;
+    }
+
+    SampleType type() const { return from_.info().type; }
+
+    const Store& from_;
+    int level_;
+    const Samples& edits_;
+    fs::path folder_;
+    EditsNote note_;
+    ZarrWriter writer_;
+    std::shared_ptr<const Store> written_;
+    const io::Progress& progress_;
+};
+
+/// Of the original, which must be the one that was opened.
+std::string checked_content(const Store& from, const Opened& opened, int level) {
+    if (opened.is_rescue && !opened.content.empty()) return opened.content;
+    std::string content = content_below_edits(from, level);
+    if (opened.content.empty() || content == opened.content) return content;
+    throw io::OutputError(opened.address +
+                          ": was replaced since it was opened, so that these edits do not fit it; "
+                          "put it back and save them again");
+}
+
+/// What the note says before anything is written: with what the store has of edits itself.
+EditsNote note_for(const Store& from, const Opened& opened, int level, const Samples& edits) {
+    const auto* edited = dynamic_cast<const EditedStore*>(&from);
+    EditsNote note{opened, level, {edits.minimum(), edits.maximum()}, {}, {}};
+    note.chunks.resize(from.info().levels.size() - static_cast<std::size_t>(level));
+    note.content = checked_content(from, opened, level);
+    if (!edited) return note;
+    const EditsNote& before = edited->note();
+    note.of = before.of;
+    note.level += before.level;
+    note.bounds.minimum = std::min(note.bounds.minimum, before.bounds.minimum);
+    note.bounds.maximum = std::max(note.bounds.maximum, before.bounds.maximum);
+    for (std::size_t l = 0; l < note.chunks.size(); ++l) {
+        note.chunks[l] = before.chunks[l + static_cast<std::size_t>(level)];
+    }
+    return note;
+}
+
+/// Edits that save_edits() wrote, and nothing else, may be replaced.
+void check_replaceable(const fs::path& out) {
+    const auto refuse = [&](const std::string& why) {
+        throw io::OutputError(out.string() + ": " + why + "; give another name");
+    };
+    std::error_code error;
+    if (!fs::is_directory(fs::symlink_status(out, error)) || !holds_edits(out)) {
+        refuse("is there already and is no folder of edits");
+    }
+    const std::string unknown = io::unknown_below(out, io::OwnFolder::image);
+    if (!unknown.empty()) refuse("holds " + unknown + ", which Palpate did not write");
+}
+
+}  // namespace
+
+std::string content_below_edits(const Store& from, int level, const std::stop_token& stop) {
+    const auto* edited = dynamic_cast<const EditedStore*>(&from);
+    return edited ? content_of(edited->original(), edited->note().level + level, stop)
+                  : content_of(from, level, stop);
+}
+
+void check_edits_name(const fs::path& out) {
+    const fs::path name = io::without_slash(out);
+    if (name.extension() == ".zarr" && !name.stem().empty()) return;
+    throw std::invalid_argument(out.string() +
+                                ": edits of a volume that is read as it is felt are saved as a "
+                                "folder: give a name that ends with .zarr");
+}
+
+void check_edits_place(const fs::path& out, const Opened& opened) {
+    check_edits_name(out);
+    std::error_code error;
+    if (fs::equivalent(out, opened.address, error)) {
+        throw io::OutputError(out.string() + ": is felt; save under another name");
+    }
+    fs::exists(fs::symlink_status(out, error)) ? check_replaceable(out) : io::check_new_folder(out);
+}
+
+void save_edits(const Store& from, const Opened& opened, int level, const Samples& edits,
+                const fs::path& name, const io::Progress& progress) {
+    const fs::path out = io::without_slash(name);
+    if (!edits.bricks() || edits.bricks()->size() == 0) {
+        throw std::invalid_argument("nothing was edited, so there is nothing to save");
+    }
+    check_edits_place(out, opened);
+    io::GrowingFolder folder = io::GrowingFolder::alone(out);
+    Saving saving(from, level, edits, folder.result(), note_for(from, opened, level, edits),
+                  progress);
+    write_note(folder.result(), out, saving.run());
+    folder.put_in_place(check_replaceable);
+}
+
+}  // namespace palpate::stream

@@ -1,0 +1,87 @@
+// Writes a level of a store as one file. See convert.hpp.
+#include <algorithm>
+#include <charconv>
+#include <memory>
+
+#include "palpate/io/output.hpp"
+#include "palpate/io/written_formats.hpp"
+#include "palpate/stream/convert.hpp"
+#include "stream/objects/objects.hpp"
+
+namespace palpate::stream {
+namespace {
+
+/// A number with the digits that read back the same.
+std::string exact(double number) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+    return {text.data(), end};
+}
+
+std::string in_brackets(const Vec3& v) {
+    return "(" + exact(v[0]) + "," + exact(v[1]) + "," + exact(v[2]) + ")";
+}
+
+std::string nrrd_head(const Geometry& grid, SampleType type) {
+    std::string directions;
+    for (int a = 0; a < 3; ++a) {
+        directions += " " + in_brackets(grid.direction.col(a) * grid.spacing[a]);
+    }
+    const std::string name = type == SampleType::float32 ? "float" : std::string(name_of(type));
+    return "NRRD0004\ntype: " + name + "\ndimension: 3\nspace: left-posterior-superior\nsizes: " +
+           std::to_string(grid.size[0]) + " " + std::to_string(grid.size[1]) + " " +
+           std::to_string(grid.size[2]) + "\nspace directions:" + directions +
+           "\nkinds: domain domain domain\nendian: little\nencoding: raw\nspace origin: " +
+           in_brackets(grid.origin) + "\n\n";
+}
+
+/// Slabs as thick as a stored chunk, so that each chunk is read once, but of at most 64 MiB.
+int slab_of(const Level& level, SampleType type) {
+    const double row = static_cast<double>(level.geometry.size[0]) * level.geometry.size[1] *
+                       static_cast<double>(size_of(type));
+    constexpr double most = 64 << 20;
+    return std::clamp(static_cast<int>(most / row), 1, std::max(1, level.chunk[2]));
+}
+
+void write_slabs(const Store& from, int level, io::PendingFile& file,
+                 const io::Progress& progress) {
+    const Level& grid = from.info().levels.at(static_cast<std::size_t>(level));
+    const Index3& size = grid.geometry.size;
+    const int slab = slab_of(grid, from.info().type);
+    Bytes samples;
+    for (int z = 0; z < size[2]; z += slab) {
+        const SampleBox box{Index3(0, 0, z),
+                            Index3(size[0] - 1, size[1] - 1, std::min(z + slab, size[2]) - 1)};
+        samples.resize(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
+                       static_cast<std::size_t>(box.high[2] - z + 1) * size_of(from.info().type));
+        from.read(level, box, samples, {});
+        file.write({reinterpret_cast<const char*>(samples.data()), samples.size()});
+        if (progress) progress(static_cast<double>(box.high[2] + 1) / size[2]);
+    }
+}
+
+}  // namespace
+
+void write_plain(const Store& from, int level, const std::filesystem::path& out,
+                 const io::WriteOptions& options) {
+    const Geometry& grid = from.info().levels.at(static_cast<std::size_t>(level)).geometry;
+    const std::string problem = io::why_not_written(out, grid);
+    if (!problem.empty()) throw io::OutputError(problem);
+    const std::string_view extension = io::written_extension_of(out);
+    const bool raw = extension == ".raw";
+    if (raw || (extension == ".nrrd" && !options.compress)) {
+        io::PendingFile file(out);
+        if (!raw) file.write(nrrd_head(grid, from.info().type));
+        write_slabs(from, level, file, options.progress);
+        file.commit();
+        return;
+    }
+    const auto bytes = static_cast<std::size_t>(sample_count(grid)) * size_of(from.info().type);
+    const auto samples = std::make_shared<Bytes>(bytes);
+    from.read(level, whole_box(grid), *samples, {});
+    io::write_volume(Volume(grid, from.info().type,
+                            std::shared_ptr<const void>(samples, samples->data()), bytes),
+                     out, options);
+}
+
+}  // namespace palpate::stream
