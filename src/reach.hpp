@@ -16,7 +16,7 @@ struct Pull {
 
 /// The part of the pull, 1, 1/2, ... 1/64 or 0, that needs only samples that are in memory. An
 /// update never comes farther from its goal than it was (G4, T4), so all that it looks at lies in a
-/// ball round the goal. Where the proxy rests on a surface, a part of the pull finds the same
+/// ball round the goal. If the proxy rests on a surface, a part of the pull finds the same
 /// place. 1 where all samples are in memory. Neither allocates nor throws.
 double part_within_reach(const Field& field, const Pull& pull) noexcept;
 

@@ -135,7 +135,7 @@ class Field {
         const void* first = nullptr;
         std::ptrdiff_t row = 0, slice = 0;
     };
-    /// Of a block of count^3 samples, 2 or 3 along each axis.
+    /// For a block of count^3 samples, 2 or 3 along each axis.
     Run run_of(const Index3& low, int count) const;
     /// One sample anywhere in space, less offset(). All that is not in one array comes from here.
     template <class T>

@@ -17,7 +17,7 @@ struct LabelCover {
     }
     /// Null without put().
     static const Field* of(const Field& field) noexcept { return field.cover_.labels.get(); }
-    /// Of the sample `at`, from the labels that cover it.
+    /// The label of the sample `at`, from the labels that cover it.
     static int label(const Field& field, const Index3& at) noexcept { return field.label_at(at); }
     /// Whether the sample `at` or one of its neighbours has such a label.
     static bool is_near(const Field& field, const Index3& at) noexcept {

@@ -35,7 +35,7 @@ struct Surroundings {
 
 /// Of one proxy.
 struct Kept {
-    // Of each point, with room for more.
+    // One per point, with room for more.
     std::vector<double> arms;    ///< distance from the reference point [mm]
     std::vector<double> expiry;  ///< travel [mm] up to which it certainly meets nothing
     double moved = 0;            ///< odometers: translation [mm] ...

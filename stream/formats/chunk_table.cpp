@@ -1,4 +1,4 @@
-// Where the chunks of an array lie in its one file. See the header.
+// Finds the chunks of an array in its one file. See the header.
 #include "stream/formats/chunk_table.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Where the chunks of an array lie in its one file (HDF5, TIFF): the helper process looks them up,
+// Finds the chunks of an array in its one file (HDF5, TIFF). The helper process looks them up,
 // a page of 16 x 16 x 16 chunks at a time, when the first of them is wanted. Private to stream/.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The compressions of stored chunks. None unpacks more than it is told: what is declared is checked
+// The compressions of stored chunks. None unpacks more than it is told: declared sizes are checked
 // before anything is unpacked. Private to stream/.
 #pragma once
 

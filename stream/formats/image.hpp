@@ -1,6 +1,6 @@
-// An image as the metadata of chunked formats describe it: axes, levels, channels; and the volume
-// that a choice of channel and time makes of it. What is read here is not trusted. Private to
-// stream/.
+// An image as the metadata of chunked formats describe it: axes, levels and channels. And the
+// volume that a choice of channel and time makes of it. None of the text that it reads is trusted.
+// Private to stream/.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// The volume of a file of chunks, out of what the helper process says of it, which is not trusted.
+// The volume of a file of chunks, from the words of the helper process, which are not trusted.
 // Private to stream/.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The ways in which formats put lz4 blocks into chunks. None unpacks more than `most` bytes; all
+// The ways in which formats put lz4 blocks into chunks. None unpacks more than `most` bytes. All
 // throw DamagedChunk. Private to stream/.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Attributes of N5 datasets and of multiscale groups. What is read here is not trusted. Private to
-// stream/.
+// Attributes of N5 datasets and of multiscale groups. None of the text that it reads is trusted.
+// Private to stream/.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
-// Metadata of Zarr 2 and 3 arrays and of OME-Zarr images. What is read here is not trusted. Private
-// to stream/.
+// Metadata of Zarr 2 and 3 arrays and of OME-Zarr images. None of the text that it reads is
+// trusted. Private to stream/.
 #pragma once
 
 #include <nlohmann/json.hpp>

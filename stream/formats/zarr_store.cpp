@@ -1,5 +1,5 @@
 // Opens OME-Zarr images of versions 0.4 (Zarr 2) and 0.5 (Zarr 3), single Zarr arrays, and the
-// first series of what bioformats2raw writes.
+// first series of the output of bioformats2raw.
 #include <algorithm>
 #include <array>
 #include <cctype>

@@ -1,6 +1,6 @@
-// Memory of bricks, used again and again: a fast hand goes through thousands of them a second, and
-// what is freed so often is neither given back to the system soon nor missing from what the process
-// takes. Private to stream/.
+// Memory of bricks, used again and again. A fast hand goes through thousands of them per second.
+// The system would get memory that is freed so often back late, and the process would seem larger.
+// Private to stream/.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The loader's threads: which brick comes next, which one goes, and what is published.
+// The loader's threads: choose the next brick and the one that goes, and publish versions.
 #include "stream/loader/brick_loader.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Threads with small stacks: what locks its memory, as a servo's process does, holds all of each
-// stack. Private to stream/.
+// Threads with small stacks: a process that locks its memory, like that of a servo, holds all of
+// each stack. Private to stream/.
 #pragma once
 
 #include <pthread.h>
