@@ -53,7 +53,5 @@ double quantile(std::vector<double> numbers, double share);
 /// RFC 4180 with line feeds; numbers with the digits that read back as the same double, and an
 /// empty cell for NaN (not measured).
 std::string csv_from(const Table& table);
-/// A table of HTML, numbers to four digits; empty for an empty table.
-std::string html_from(const Table& table);
 
 }  // namespace palpate::evaluation

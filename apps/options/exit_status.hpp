@@ -9,7 +9,6 @@ namespace palpate::app {
 /// See docs/command_line.md.
 enum ExitStatus {
     done = 0,
-    claims_broken = 1,
     wrong_use = 2,
     bad_input = 3,
     no_device = 4,
