@@ -5,8 +5,9 @@ namespace palpate::evaluation {
 
 std::span<const Experiment> experiments() {
     static constexpr Experiment all[] = {
-        {"performance", &performance}, {"scaling", &scaling}, {"fidelity", &fidelity},
-        {"stability", &stability},     {"layers", &layers},   {"tools", &tools},
+        {"stability", &stability},
+        {"layers", &layers},
+        {"tools", &tools},
         {"streaming", &streaming},
     };
     return all;

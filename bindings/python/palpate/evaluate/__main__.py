@@ -16,7 +16,7 @@ if not __package__:  # run as a folder, by the program palpate: this folder's mo
 
 EXPERIMENTS = ("drift", "fall-through", "performance", "scaling", "fidelity", "stability", "walk-through",
                "penetration", "layers", "tools", "streaming")  # in the order of docs/evaluation.md
-IN_PYTHON = ("drift", "fall-through", "walk-through", "penetration")
+IN_PYTHON = ("drift", "fall-through", "walk-through", "penetration", "fidelity")
 METHODS = ("exact", "paper", "gradient", "gradient-improved")
 PACKAGES = ("numpy", "scipy", "matplotlib")  # Debian: python3-NAME
 CLAIMS_BROKEN, WRONG_USE, BAD_INPUT, BAD_OUTPUT = 1, 2, 3, 5  # exit status, docs/command_line.md

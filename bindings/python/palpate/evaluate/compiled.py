@@ -13,7 +13,6 @@ from .experiment import Claim, Figure, Result, Table
 
 TITLES = {"performance": "What does an update cost?",
           "scaling": "What does the cost grow with, and what does the explicit approach cost?",
-          "fidelity": "How near is the force to the true surface's?",
           "stability": "How stiff may a surface be before it buzzes?",
           "layers": "What is felt of several surfaces in one stroke?",
           "tools": "Does any point of a tool go through?",
