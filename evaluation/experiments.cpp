@@ -5,10 +5,8 @@ namespace palpate::evaluation {
 
 std::span<const Experiment> experiments() {
     static constexpr Experiment all[] = {
-        {"stability", &stability},
-        {"layers", &layers},
-        {"tools", &tools},
-        {"streaming", &streaming},
+        {"performance", &performance}, {"scaling", &scaling}, {"stability", &stability},
+        {"layers", &layers},           {"tools", &tools},     {"streaming", &streaming},
     };
     return all;
 }

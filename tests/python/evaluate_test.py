@@ -165,9 +165,10 @@ def test_nearest_points_agree_with_a_fine_search():
         assert least - 0.1 < distance <= least + 1e-12
 
 
-@pytest.mark.parametrize("level", [0.2, 0.28, 0.36])
-def test_what_is_outside_is_what_walking_along_the_edges_of_the_lattice_reaches(level):
-    noise = numpy.random.default_rng(5).integers(0, 256, (9, 8, 7), dtype=numpy.uint8)
+# In the last three, the centre of a cell joins samples that no face joins.
+@pytest.mark.parametrize("level, seed", [(0.2, 5), (0.24, 8), (0.3, 0), (0.32, 6)])
+def test_what_is_outside_is_what_walking_along_the_edges_of_the_lattice_reaches(level, seed):
+    noise = numpy.random.default_rng(seed).integers(0, 256, (9, 8, 7), dtype=numpy.uint8)
     subject = Subject("noise", palpate.Field(palpate.Volume(noise), background=0.0, interpolation="linear"), 255 * level)
     outside, reached = Outside(subject), reached_by_walking(subject)
     corners = numpy.array(list(numpy.ndindex(7, 8, 9)))
@@ -177,7 +178,7 @@ def test_what_is_outside_is_what_walking_along_the_edges_of_the_lattice_reaches(
     near = free + 1e-9 * numpy.random.default_rng(1).standard_normal(free.shape)
     wanted = [tuple(2 * (corner + 1)) in reached for corner in free]
     assert list(outside.holds(near)) == wanted
-    assert 5 < sum(wanted) < len(wanted) or level == 0.36
+    assert 5 < sum(wanted) < len(wanted)
 
 
 def test_walls_are_closed_and_have_the_thickness_that_is_asked_for():

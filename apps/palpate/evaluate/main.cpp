@@ -2,8 +2,10 @@
 // evaluate`) starts this program and makes pages from its results.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/evaluation.hpp"
@@ -32,14 +34,16 @@ void evaluate(EvaluateOptions& options) {
     chosen.data = options.data;
     chosen.progress = [](double) { stop_if_interrupted(); };
     chosen.note = [](const std::string& text) { fmt::print(stderr, "palpate: note: {}\n", text); };
-    for (const auto& experiment : evaluation::experiments()) {
-        if (options.name != experiment.name) continue;
-        try {
-            write_files(experiment.name, experiment.run(chosen), options.output);
-        } catch (const io::OutputError&) {
-            stop_if_interrupted();  // Ctrl-C reaches gnuplot as well, and its end may be seen first
-            throw;
-        }
+    const auto found =
+        std::ranges::find(evaluation::experiments(), options.name, &evaluation::Experiment::name);
+    if (found == evaluation::experiments().end()) {
+        throw std::invalid_argument("no experiment in C++ is named " + options.name);
+    }
+    try {
+        write_files(options.name, found->run(chosen), options.output);
+    } catch (const io::OutputError&) {
+        stop_if_interrupted();  // Ctrl-C reaches gnuplot as well, and its end may be seen first
+        throw;
     }
 }
 

@@ -226,6 +226,10 @@ def main(words):
         print(HELP)
         return 0
     try:
+        if "--version" in words:
+            import palpate
+            print(f"palpate {palpate.__version__}")
+            return 0
         chosen = arguments(words)
         import palpate
         try:

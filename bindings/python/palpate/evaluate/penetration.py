@@ -225,11 +225,11 @@ def figure_of(lines, presses):
     for name, place in zip(FUNCTIONS, (0.97, 0.86, 0.75)):
         axes[2, 0].text(0.98, place, name, color=FUNCTIONS[name], transform=axes[2, 0].transAxes, ha="right", va="top",
                         fontsize=7.5)
-    return Figure("", "What the hand feels going straight in (solid lines) and out again (dashed), against its depth past the "
-                  "first surface. From above: the data in a plane through the line of the hand (dotted), with the "
-                  "surfaces at the levels and the proxy while pressing with ranges (red dots); the level felt, where there "
-                  "is contact, and in grey the data at the hand; the force of the spring, at most k PT where the surface "
-                  "gives way; where the proxy is in contact. With penetrability off, the force leaves the panel.", drawn)
+    return Figure("", "The hand goes straight in (solid lines) and out again (dashed). First row: the data in a plane through "
+                  "the line of the hand (dotted), with the surfaces at the levels, and the proxy while the hand presses with "
+                  "ranges (red dots). Second row: the level felt in contact, and in grey the data at the hand. Third row: the "
+                  "force of the spring, at most k PT where the surface gives way. With penetrability off, it leaves the panel. "
+                  "Last row: where the proxy is in contact.", drawn)
 
 
 def run(options):
