@@ -1,6 +1,9 @@
 """How figures look: for print at the width of one or two columns, in colours that color-blind readers
 can tell apart (Okabe and Ito), with labels at the curves. The same numbers give the same file."""
 
+import io
+import re
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -20,7 +23,7 @@ matplotlib.rcParams.update({
     "axes.spines.right": False, "axes.grid": True, "grid.color": "#e4e4e4", "grid.linewidth": 0.6,
     "axes.axisbelow": True, "xtick.labelsize": 7.5, "ytick.labelsize": 7.5, "lines.linewidth": 1.4,
     "lines.markersize": 4, "figure.constrained_layout.use": True, "savefig.dpi": 200,
-    "svg.hashsalt": "palpate", "pdf.fonttype": 42, "figure.titlesize": 9,
+    "svg.hashsalt": "palpate", "svg.fonttype": "none", "pdf.fonttype": 42, "figure.titlesize": 9,
     "figure.titleweight": "bold"})
 
 
@@ -62,7 +65,10 @@ def label_ends(axes, apart=0.075):
 
 
 def save(figure, path):
-    """As SVG and PDF, without a date; `path` has no ending."""
-    figure.savefig(path.with_name(path.name + ".svg"), metadata={"Date": None})
+    """As SVG, with a line for each path, and PDF, without a date; `path` has no ending."""
+    drawn = io.StringIO()
+    figure.savefig(drawn, format="svg", metadata={"Date": None})
+    one_line = re.sub(r' d="[^"]*"', lambda path: path.group().replace("\n", ""), drawn.getvalue())
+    path.with_name(path.name + ".svg").write_text(one_line, encoding="utf-8")
     figure.savefig(path.with_name(path.name + ".pdf"), metadata={"CreationDate": None})
     matplotlib.pyplot.close(figure)

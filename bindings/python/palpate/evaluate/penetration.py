@@ -185,7 +185,7 @@ def draw_slice(axes, line, ranges):
     axes.contour(x, y, values, levels, colors=[figures.SKY, figures.ORANGE, figures.GREEN][:len(levels)], linewidths=1)
     axes.plot([low, line.depth], [0, 0], color=figures.VERMILION, lw=0.8, ls=":")
     scp = (ranges.trace.scp - line.entry)[ranges.inwards & ranges.trace.constrained]
-    axes.plot(scp @ line.inward, scp @ across, ".", color=figures.VERMILION, ms=2)
+    axes.plot(scp @ line.inward, scp @ across, ".", color=figures.VERMILION, ms=2, rasterized=True)
     axes.grid(False)
     names = ", ".join(f"{name} at {level:g}" for level, name in line.levels.items())
     axes.set_title(f"{line.subject.name}: {names}", fontsize=8)
