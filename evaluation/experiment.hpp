@@ -58,7 +58,6 @@ std::span<const Experiment> experiments();
 // sense.
 Result performance(const Options& options);
 Result scaling(const Options& options);
-Result fidelity(const Options& options);
 Result stability(const Options& options);
 Result layers(const Options& options);
 Result tools(const Options& options);

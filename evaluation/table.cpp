@@ -89,17 +89,6 @@ std::vector<std::string> Table::distinct(const std::string& column) const {
     return found;
 }
 
-std::vector<double> Table::distinct_numbers(const std::string& column) const {
-    std::vector<double> found;
-    for (const double value : numbers(column)) {
-        if (std::isnan(value) || std::find(found.begin(), found.end(), value) != found.end()) {
-            continue;
-        }
-        found.push_back(value);
-    }
-    return found;
-}
-
 std::vector<std::vector<double>> Table::rows_of(const std::vector<std::string>& columns) const {
     std::vector<std::vector<double>> found(rows_.size());
     for (const std::string& column : columns) {

@@ -32,7 +32,6 @@ class Table {
     std::vector<double> numbers(const std::string& column) const;
     /// What a column holds, each once, in the order of the rows.
     std::vector<std::string> distinct(const std::string& column) const;
-    std::vector<double> distinct_numbers(const std::string& column) const;  ///< without NaN
     /// Rows of several columns, as a figure's series has them.
     std::vector<std::vector<double>> rows_of(const std::vector<std::string>& columns) const;
 

@@ -42,7 +42,6 @@ TEST(Table, rows_and_columns_are_selected_by_name) {
     EXPECT_EQ(exact.where("x", 1.0).rows_of({"y", "x"}),
               (std::vector<std::vector<double>>{{2, 1}}));
     EXPECT_EQ(table.distinct("method"), (std::vector<std::string>{"exact", "paper"}));
-    EXPECT_EQ(table.distinct_numbers("x"), (std::vector<double>{1, 4}));
     EXPECT_EQ(largest(table.numbers("y")), 3);  // NaN is passed over
     EXPECT_EQ(smallest(table.numbers("y"), 9), 2);
 }
