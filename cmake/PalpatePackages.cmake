@@ -46,7 +46,8 @@ devices, and limits for real-time priority."
   palpate-program palpate-viewer)
 # The picture helper opens EGL at run time.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "palpate-io-helper (= ${version}), libegl1")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)  # figures of reports
+# palpate evaluate, figures of reports
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3-palpate, python3-scipy, python3-matplotlib, gnuplot-nox")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS spacenavd)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA ${palpate_debian}/conffiles)
 
@@ -90,6 +91,7 @@ This package has the Python module."
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${palpate_debian}/python/postinst
                                                 ${palpate_debian}/python/prerm)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-scipy, python3-matplotlib")  # palpate.evaluate
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-distributed)  # palpate.distributed, palpate.study
 endif()
 

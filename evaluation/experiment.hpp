@@ -38,41 +38,27 @@ struct Claim {
     std::string measured;  ///< the number behind it: "largest 3.1e-15 over 5,000,000 updates"
 };
 
-/// A rendering, beside the plotted figures.
-struct Picture {
-    std::string suffix;  ///< file name: EXPERIMENT-SUFFIX.png
-    std::string caption;
-    std::string png;  ///< the file's bytes
-};
-
 struct Result {
     Table table;
     Table summary;  ///< the main numbers side by side, shown in the page; may be empty
     std::vector<Figure> figures;  ///< the first is the experiment's figure
-    std::vector<Picture> pictures;
-    std::string paragraph;  ///< what was done and what came out, with the figures' numbers
+    std::string paragraph;        ///< what was done and what came out, with the figures' numbers
     std::vector<Claim> claims;
 };
 
 struct Experiment {
     const char* name;
-    const char* title;
     Result (*run)(const Options& options);
 };
 
-/// In the order of docs/evaluation.md.
+/// Those that are not in Python yet (bindings/python/palpate/evaluate).
 std::span<const Experiment> experiments();
 
 // Each is in the folder of its name. They throw std::invalid_argument for options that make no
 // sense.
-Result drift(const Options& options);
-Result fall_through(const Options& options);
 Result performance(const Options& options);
 Result scaling(const Options& options);
-Result fidelity(const Options& options);
 Result stability(const Options& options);
-Result walk_through(const Options& options);
-Result penetration(const Options& options);
 Result layers(const Options& options);
 Result tools(const Options& options);
 Result streaming(const Options& options);

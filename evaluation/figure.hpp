@@ -56,7 +56,6 @@ enum class Draw : std::uint8_t {
     line_points,  ///< x, y
     level,        ///< y of a horizontal line through the whole panel
     area,         ///< x, y; filled down to the low end of the y axis, which has to be given
-    polygons,     ///< x, y; filled; an empty row between two of them
     boxes,        ///< low x, high x, low y, high y; filled
     segments,     ///< x, y, x, y
     cells,        ///< x, y, value on a regular grid, in the colours of the panel's scale
@@ -68,8 +67,7 @@ enum class Align : std::uint8_t { left, centre, right };
 struct TextLook {
     int size = 12;  ///< [points]
     Align align = Align::centre;
-    double right = 0, up = 0;     ///< offset [characters]
-    bool has_background = false;  ///< white, so that lines below do not disturb it
+    double right = 0, up = 0;  ///< offset [characters]
 };
 
 struct Series {
@@ -111,8 +109,7 @@ struct Panel {
     std::vector<Series> series;  ///< later ones on top, text above all
     std::optional<ColourScale> scale;
     bool has_grid = true;
-    bool is_to_scale = false;  ///< x and y have the same unit length
-    double height = 1;         ///< of its row, relative to the others
+    double height = 1;  ///< of its row, relative to the others
 
     /// Adds a series on top of the others.
     Series& add(Draw draw, std::string title, const Look& look, Rows rows);

@@ -197,7 +197,6 @@ std::string plot_of(const Series& series, const std::string& data, const Axis& y
             return number(series.rows.at(0).at(0)) + axes + "with lines " + style;
         case Draw::area:
             return data + " with filledcurves y=" + number(y.low) + " " + filled(series.look);
-        case Draw::polygons:
             return data + " with filledcurves closed " + filled(series.look);
         case Draw::boxes:
             return data + " using (($1+$2)/2):(($3+$4)/2):1:2:3:4 with boxxyerror " +
@@ -217,11 +216,11 @@ std::string labels_of(const Series& series) {
     std::string script;
     for (std::size_t i = 0; i < series.rows.size(); ++i) {
         script += fmt::format(
-            "set label {} at {}, {} {} offset {},{} front font ',{}' tc rgb {} noenhanced {}\n",
+            "set label {} at {}, {} {} offset {},{} front font ',{}' tc rgb {} noenhanced\n",
             in_quotes(series.labels.at(i)), number(series.rows[i].at(0)),
             number(series.rows[i].at(1)),
             std::array{"left", "center", "right"}[std::size_t(text.align)], text.right, text.up,
-            text.size, in_quotes(series.look.colour), text.has_background ? "boxed" : "");
+            text.size, in_quotes(series.look.colour));
     }
     return script;
 }
@@ -244,8 +243,7 @@ std::string script_of(const Panel& panel, const std::string& name) {
         script_of(panel.y, "y") +
         (panel.right ? "set ytics nomirror\n" + script_of(*panel.right, "y2")
                      : "set ytics mirror\nunset y2tics\nset y2label ''\n") +
-        (panel.has_grid ? "set grid lc rgb '#d8d8d8' lw 1 lt 1\n" : "unset grid\n") +
-        (panel.is_to_scale ? "set size ratio -1\n" : "set size noratio\n");
+        (panel.has_grid ? "set grid lc rgb '#d8d8d8' lw 1 lt 1\n" : "unset grid\n");
     if (panel.scale) {
         script += fmt::format("{} logscale cb\nset cbrange [{}:{}]\nset cblabel {} noenhanced\n",
                               panel.scale->is_logarithmic ? "set" : "unset", panel.scale->low,
@@ -271,7 +269,7 @@ std::string key_entry(const Series& series) {
         style = "lines " + style_of(series.look);
     } else if (draw == Draw::line_points) {
         style = "linespoints " + style_of(series.look);
-    } else if (draw == Draw::area || draw == Draw::polygons || draw == Draw::boxes) {
+    } else if (draw == Draw::area || draw == Draw::boxes) {
         style = "boxes " + filled(series.look);
     }
     return "keyentry with " + style + " title " + in_quotes(series.title);

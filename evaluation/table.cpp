@@ -1,7 +1,5 @@
-// Selecting from tables, and writing them as CSV and HTML.
+// Selecting from tables, and writing them as CSV.
 #include "evaluation/table.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +7,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "evaluation/html.hpp"
 #include "io/system/number.hpp"
 
 namespace palpate::evaluation {
@@ -25,13 +22,6 @@ std::string csv_cell(const Cell& cell) {
     if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
     for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
     return '"' + out + '"';
-}
-
-std::string html_cell(const Cell& cell) {
-    if (const double* number = std::get_if<double>(&cell)) {
-        return std::isnan(*number) ? "<td></td>" : fmt::format("<td class=n>{:.4g}</td>", *number);
-    }
-    return "<td>" + html_text(std::get<std::string>(cell)) + "</td>";
 }
 
 }  // namespace
@@ -99,17 +89,6 @@ std::vector<std::string> Table::distinct(const std::string& column) const {
     return found;
 }
 
-std::vector<double> Table::distinct_numbers(const std::string& column) const {
-    std::vector<double> found;
-    for (const double value : numbers(column)) {
-        if (std::isnan(value) || std::find(found.begin(), found.end(), value) != found.end()) {
-            continue;
-        }
-        found.push_back(value);
-    }
-    return found;
-}
-
 std::vector<std::vector<double>> Table::rows_of(const std::vector<std::string>& columns) const {
     std::vector<std::vector<double>> found(rows_.size());
     for (const std::string& column : columns) {
@@ -147,19 +126,6 @@ std::string csv_from(const Table& table) {
     line(table.columns(), [](const std::string& name) { return csv_cell(name); });
     for (const auto& row : table.rows()) line(row, csv_cell);
     return csv;
-}
-
-std::string html_from(const Table& table) {
-    if (table.rows().empty()) return {};
-    std::string html = "<table>\n<tr>";
-    for (const std::string& name : table.columns()) html += "<th>" + html_text(name) + "</th>";
-    html += "</tr>\n";
-    for (const auto& row : table.rows()) {
-        html += "<tr>";
-        for (const Cell& cell : row) html += html_cell(cell);
-        html += "</tr>\n";
-    }
-    return html + "</table>\n";
 }
 
 }  // namespace palpate::evaluation

@@ -32,7 +32,6 @@ class Table {
     std::vector<double> numbers(const std::string& column) const;
     /// What a column holds, each once, in the order of the rows.
     std::vector<std::string> distinct(const std::string& column) const;
-    std::vector<double> distinct_numbers(const std::string& column) const;  ///< without NaN
     /// Rows of several columns, as a figure's series has them.
     std::vector<std::vector<double>> rows_of(const std::vector<std::string>& columns) const;
 
@@ -53,7 +52,5 @@ double quantile(std::vector<double> numbers, double share);
 /// RFC 4180 with line feeds; numbers with the digits that read back as the same double, and an
 /// empty cell for NaN (not measured).
 std::string csv_from(const Table& table);
-/// A table of HTML, numbers to four digits; empty for an empty table.
-std::string html_from(const Table& table);
 
 }  // namespace palpate::evaluation

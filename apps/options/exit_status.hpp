@@ -7,14 +7,7 @@
 namespace palpate::app {
 
 /// See docs/command_line.md.
-enum ExitStatus {
-    done = 0,
-    claims_broken = 1,
-    wrong_use = 2,
-    bad_input = 3,
-    no_device = 4,
-    bad_output = 5
-};
+enum ExitStatus { done = 0, wrong_use = 2, bad_input = 3, no_device = 4, bad_output = 5 };
 /// Exit status after a signal that ended the program, as shells report it: 130 for SIGINT, 143 for
 /// SIGTERM.
 constexpr int status_of_signal(int signal) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <cstddef>
 
 namespace palpate::app {
 
@@ -23,10 +22,6 @@ void add_demo(CLI::App& app);
 void add_demo_sculpt(CLI::App& demo);
 void add_demo_beating(CLI::App& demo);
 
-/// Thrown by evaluate when all results are written: exit status 1.
-struct ClaimsDoNotHold {
-    std::size_t count;
-};
 /// Thrown where a signal such as that of Ctrl-C was seen: open files are dropped by unwinding (exit
 /// status 128 + the signal's number).
 struct Interrupted {};

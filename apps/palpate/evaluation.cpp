@@ -1,18 +1,26 @@
-// Finds the program of the experiments.
+// Finds Python's part of Palpate, and goes on as its experiments.
 #include "apps/palpate/evaluation.hpp"
 
 #include <unistd.h>
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "io/process/helper_folders.hpp"
 
 namespace palpate::app {
 
 void become_evaluation(char** argv) {
-    for (const auto& folder : io::helper_folders()) {
-        ::execv((folder / "palpate-evaluate").c_str(), argv);
+    for (const auto& helpers : io::helper_folders()) {
+        std::string experiments = (helpers / PALPATE_EXPERIMENTS_FROM_LIBEXEC).lexically_normal();
+        if (!std::filesystem::exists(experiments + "/__main__.py")) continue;
+        std::string python = PALPATE_PYTHON_EXECUTABLE, without_files = "-B";
+        std::vector<char*> words{python.data(), without_files.data(), experiments.data()};
+        for (char** word = argv + 2; *word; ++word) words.push_back(*word);
+        words.push_back(nullptr);
+        ::execv(python.c_str(), words.data());
     }
 }
 
@@ -21,8 +29,9 @@ void add_missing_evaluation(CLI::App& app) {
     command->prefix_command();
     command->callback([] {
         throw std::invalid_argument(
-            "palpate evaluate needs the program palpate-evaluate, which is not beside this one: "
-            "build all targets, or install Palpate again");
+            "palpate evaluate needs " PALPATE_PYTHON_EXECUTABLE
+            " and the Python module: build all targets, or apt install python3-palpate "
+            "python3-scipy python3-matplotlib");
     });
 }
 

@@ -1,5 +1,4 @@
-// palpate evaluate is a program of its own, palpate-evaluate: the other commands are built sooner
-// without its experiments.
+// palpate evaluate is the Python package palpate.evaluate.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,10 +10,11 @@ inline constexpr std::string_view evaluation_command = "evaluate";
 inline constexpr const char* evaluation_description =
     "Run experiments; each gives a table, figures and checked claims";
 
-/// Goes on as that program, with the same words. Returns if it is not there.
+/// Goes on as Python, with the words behind the command. Returns if Python or the package is not
+/// there.
 void become_evaluation(char** argv);
 
-/// Stands for the command in the list of all, and says that it is missing where it is called.
+/// Stands for the command in the list of all, and says what is missing where it is called.
 void add_missing_evaluation(CLI::App& app);
 
 }  // namespace palpate::app

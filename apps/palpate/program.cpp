@@ -80,9 +80,6 @@ int run_program(int argc, char** argv, const std::function<void(CLI::App&)>& add
     handle_ends(on_signal);
     try {
         return run(argc, argv, add_commands);
-    } catch (const ClaimsDoNotHold& broken) {
-        return fail(std::to_string(broken.count) + " of the claims do not hold (see above)",
-                    claims_broken);
     } catch (const Interrupted&) {
         return fail("interrupted", status_of_signal(stop_signal));
     } catch (const std::exception& e) {

@@ -29,6 +29,7 @@ void bind_edits(py::module_& module);
 void bind_run(py::module_& module);
 void bind_recordings(py::module_& module);
 void bind_evaluation(py::module_& module);
+void bind_proxies(py::module_& module);
 void bind_scenes(py::module_& module);
 
 }  // namespace palpate::python

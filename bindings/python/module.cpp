@@ -59,5 +59,6 @@ PYBIND11_MODULE(_palpate, module) {
     bind_run(module);
     bind_recordings(module);
     bind_evaluation(module);
+    bind_proxies(module);
     bind_scenes(module);
 }

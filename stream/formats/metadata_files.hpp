@@ -1,5 +1,5 @@
-// Files of metadata in JSON, which chunked formats keep beside their chunks. What is read here is
-// not trusted. Private to stream/.
+// Files of metadata in JSON, which chunked formats keep beside their chunks. None of it is
+// trusted. Private to stream/.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -26,7 +26,6 @@ TEST(Figure, every_way_to_draw_a_series_is_drawn_with_its_title_in_the_key) {
     for (Panel& panel : figure.panels) {
         panel.y.low = 0;
         panel.series = {{Draw::area, "an area", {}, points},
-                        {Draw::polygons, "polygons", {}, points},
                         {Draw::boxes, "boxes", {}, boxes},
                         {Draw::segments, "segments", {}, boxes},
                         {Draw::line, "a line", {.dash = Dash::dashed}, points},
@@ -44,8 +43,8 @@ TEST(Figure, every_way_to_draw_a_series_is_drawn_with_its_title_in_the_key) {
         }
         return found;
     };
-    for (const char* text : {"an area", "polygons", "boxes", "segments", "a line", "points", "both",
-                             "a level", "some text", "to the right"}) {
+    for (const char* text : {"an area", "boxes", "segments", "a line", "points", "both", "a level",
+                             "some text", "to the right"}) {
         EXPECT_TRUE(contains(svg, text)) << text;
     }
     figure.panels.pop_back();

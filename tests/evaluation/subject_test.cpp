@@ -5,7 +5,6 @@
 
 #include <stdexcept>
 
-#include "evaluation/ring.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::evaluation {
@@ -35,19 +34,6 @@ TEST(Subject, the_lobster_is_felt_at_its_shell) {
     if (!lobster) GTEST_SKIP() << "the real volumes are not there";
     EXPECT_EQ(lobster->isovalue, 35);
     EXPECT_EQ(lobster->field.geometry().size, Index3(301, 324, 56));
-}
-
-TEST(Ring, goes_round_below_the_surface_and_closes) {
-    const Subject sphere = synthetic("sphere:40x40x40");
-    const Ring ring = ring_round(sphere, 1);
-    EXPECT_LT((ring.at(0) - ring.at(ring.length())).norm(), 1e-9);
-    const double radius = ring.at(0).norm();
-    for (int i = 0; i < 50; ++i) {
-        const double arc = 0.02 * i * ring.length();
-        EXPECT_NEAR(ring.at(arc).norm(), radius, 0.2) << i;
-        EXPECT_LE((ring.at(arc + 0.5) - ring.at(arc)).norm(), 0.5 + 1e-9) << i;
-    }
-    EXPECT_THROW(ring_round(synthetic("sphere:40x40x40", 1e9), 1), std::invalid_argument);
 }
 
 }  // namespace

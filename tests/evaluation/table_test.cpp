@@ -1,12 +1,10 @@
-// Tables as CSV and HTML.
+// Tables as CSV.
 #include "evaluation/table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
-
-#include "evaluation/html.hpp"
 
 namespace palpate::evaluation {
 namespace {
@@ -21,15 +19,6 @@ TEST(Table, csv_quotes_what_would_be_taken_apart_and_leaves_out_what_was_not_mea
     Table table;
     table.add({{"name", "a, \"b\""}, {"value", std::nan("")}});
     EXPECT_EQ(csv_from(table), "name,value\n\"a, \"\"b\"\"\",\n");
-}
-
-TEST(Table, html_has_no_markup_of_somebody_else) {
-    Table table;
-    table.add({{"<script>", "a & b"}});
-    const std::string html = html_from(table);
-    EXPECT_EQ(html.find("<script>"), std::string::npos);
-    EXPECT_NE(html.find("&lt;script&gt;"), std::string::npos);
-    EXPECT_NE(html.find("a &amp; b"), std::string::npos);
 }
 
 TEST(Table, a_cell_that_a_row_does_not_name_is_empty) {
@@ -53,7 +42,6 @@ TEST(Table, rows_and_columns_are_selected_by_name) {
     EXPECT_EQ(exact.where("x", 1.0).rows_of({"y", "x"}),
               (std::vector<std::vector<double>>{{2, 1}}));
     EXPECT_EQ(table.distinct("method"), (std::vector<std::string>{"exact", "paper"}));
-    EXPECT_EQ(table.distinct_numbers("x"), (std::vector<double>{1, 4}));
     EXPECT_EQ(largest(table.numbers("y")), 3);  // NaN is passed over
     EXPECT_EQ(smallest(table.numbers("y"), 9), 2);
 }

@@ -1,0 +1,79 @@
+"""The interface of an experiment: from options it makes a table, figures and checked claims."""
+
+import dataclasses
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy
+
+GRANTED = 1e-9  # of the data's range: what G1 and G2 allow (docs/proxy.md)
+
+
+@dataclasses.dataclass
+class Options:
+    """What the user chose."""
+
+    quick: bool = False  # seconds instead of minutes: fewer and smaller cases, every claim checked
+    seed: int = 1
+    seeds: int = 3  # how many are used where lines or hands are drawn at random, from `seed` on
+    method: str = "exact"  # for an experiment that shows one
+    subjects: tuple = ()  # instead of the experiment's own volumes
+    ranges: tuple = ()  # (low, high) of interest, for penetration
+    data: Optional[Path] = None  # folder of the real volumes
+    progress: Callable[[float], Any] = lambda part: None
+    note: Callable[[str], Any] = lambda text: None
+
+
+@dataclasses.dataclass
+class Claim:
+    """A statement that the run checks. It never depends on how fast the machine is."""
+
+    statement: str
+    held: bool
+    measured: str
+
+
+@dataclasses.dataclass
+class Figure:
+    """suffix: its file is EXPERIMENT-SUFFIX. drawn: of Matplotlib; None where the files are there."""
+
+    suffix: str
+    caption: str
+    drawn: Any = None
+    file: str = ""
+
+
+class Table(list):
+    """Rows, each a dict of cells by column; an absent cell was not measured."""
+
+    def where(self, **cells):
+        return Table(row for row in self if all(row.get(name) == cell for name, cell in cells.items()))
+
+    def __getitem__(self, column):
+        """A column as an array, NaN where nothing was measured; or a row by its number."""
+        if not isinstance(column, str):
+            return super().__getitem__(column)
+        return numpy.array([row.get(column, numpy.nan) for row in self])
+
+    def distinct(self, column):
+        return list(dict.fromkeys(row[column] for row in self if column in row))
+
+    @property
+    def columns(self):
+        return list(dict.fromkeys(name for row in self for name in row))
+
+
+@dataclasses.dataclass
+class Result:
+    table: Table
+    figures: list
+    claims: list
+    paragraphs: list  # of text
+    summary: Table = dataclasses.field(default_factory=Table)
+    data: list = dataclasses.field(default_factory=list)  # (file, SHA-256, where to get it)
+
+
+def largest(values):
+    """0 for none; NaN is left out."""
+    return float(numpy.nanmax(values, initial=0)) if len(values) else 0.0

@@ -1,0 +1,74 @@
+"""How figures look: for print at the width of one or two columns, in colours that color-blind readers
+can tell apart (Okabe and Ito), with labels at the curves. The same numbers give the same file."""
+
+import io
+import re
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot  # noqa: E402
+import numpy  # noqa: E402
+
+COLUMN, PAGE = 3.5, 7.1  # widths [inch]
+BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#009E73"
+PURPLE, ORANGE, SKY, BLACK, GREY = "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#707070"
+# A method looks the same in all figures: colour and marker.
+LOOKS = {"exact": (BLUE, "o"), "paper": (GREEN, "s"), "gradient": (VERMILION, "^"),
+         "gradient-improved": (ORANGE, "v"), "smooth": (PURPLE, "D")}
+
+matplotlib.rcParams.update({
+    "font.size": 8, "font.family": "DejaVu Sans", "axes.titlesize": 8.5, "axes.labelsize": 8,
+    "axes.titleweight": "bold", "axes.titlelocation": "left", "axes.spines.top": False,
+    "axes.spines.right": False, "axes.grid": True, "grid.color": "#e4e4e4", "grid.linewidth": 0.6,
+    "axes.axisbelow": True, "xtick.labelsize": 7.5, "ytick.labelsize": 7.5, "lines.linewidth": 1.4,
+    "lines.markersize": 4, "figure.constrained_layout.use": True, "savefig.dpi": 200,
+    "svg.hashsalt": "palpate", "svg.fonttype": "none", "pdf.fonttype": 42, "figure.titlesize": 9,
+    "figure.titleweight": "bold"})
+
+
+def panels(rows=1, columns=1, height=2.6, width=None, **settings):
+    """A figure and its axes, as wide as a column of a page, or a page for several panels."""
+    return matplotlib.pyplot.subplots(
+        rows, columns, figsize=(width or (COLUMN if columns == 1 else PAGE), height), **settings)
+
+
+def curve(axes, name, x, y, **look):
+    """A contestant's curve in its colour and marker."""
+    colour, marker = LOOKS[name]
+    axes.plot(x, y, **{"color": colour, "marker": marker, "label": name, **look})
+
+
+def label_ends(axes, apart=0.075):
+    """Writes each curve's label at its right end, in its colour, pushed apart where ends meet, and a
+    thin line to it where it was pushed away."""
+    ends = []
+    for line in axes.get_lines():
+        x, y = (numpy.asarray(values, dtype=float) for values in line.get_data())
+        shown = numpy.isfinite(x) & numpy.isfinite(y)
+        if line.get_label().startswith("_") or not shown.any():
+            continue
+        at = axes.transAxes.inverted().transform(
+            axes.transData.transform((x[shown][-1], y[shown][-1])))
+        ends.append([at[1], at, line])
+    ends.sort(key=lambda end: end[0])
+    for lower, upper in zip(ends, ends[1:]):
+        upper[0] = max(upper[0], lower[0] + apart)
+    over = max(0.0, ends[-1][0] - 1) if ends else 0
+    for below, (height, at, line) in enumerate(ends):
+        moved = max(height - over, below * apart)
+        axes.annotate(line.get_label(), xy=at, xytext=(1.05, moved), xycoords="axes fraction",
+                      textcoords="axes fraction", va="center", color=line.get_color(), fontsize=7.5,
+                      annotation_clip=False,
+                      arrowprops={"arrowstyle": "-", "color": line.get_color(), "lw": 0.5,
+                                  "shrinkA": 0, "shrinkB": 2, "relpos": (0, 0.5)})
+
+
+def save(figure, path):
+    """As SVG, with a line for each path, and PDF, without a date; `path` has no ending."""
+    drawn = io.StringIO()
+    figure.savefig(drawn, format="svg", metadata={"Date": None})
+    one_line = re.sub(r' d="[^"]*"', lambda path: path.group().replace("\n", ""), drawn.getvalue())
+    path.with_name(path.name + ".svg").write_text(one_line, encoding="utf-8")
+    figure.savefig(path.with_name(path.name + ".pdf"), metadata={"CreationDate": None})
+    matplotlib.pyplot.close(figure)

@@ -1,0 +1,123 @@
+"""Writes results as files: NAME.csv, NAME.md and figures, and one HTML page of several experiments."""
+
+import base64
+import csv
+import dataclasses
+import html
+import math
+
+from . import figures
+from .experiment import Result, Table
+
+
+@dataclasses.dataclass
+class Report:
+    name: str
+    title: str
+    result: Result
+    circumstances: str
+
+    @property
+    def claims(self):
+        return self.result.claims
+
+
+def number(cell):
+    """Digits that read back as the same double; nothing for NaN."""
+    if isinstance(cell, str):
+        return cell
+    if math.isnan(cell):
+        return ""
+    text = repr(float(cell))
+    return text[:-2] if text.endswith(".0") else text
+
+
+def short(cell):
+    return cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.4g}"
+
+
+def write_csv(table, path):
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(table.columns)
+        writer.writerows([number(row.get(name, math.nan)) for name in table.columns] for row in table)
+
+
+def claims_of(result):
+    return Table({"claim": c.statement, "holds": "yes" if c.held else "**no**", "measured": c.measured}
+                 for c in result.claims)
+
+
+def files_of(report):
+    """(file, caption) of each figure."""
+    for figure in report.result.figures:
+        name = f"{report.name}-{figure.suffix}" if figure.suffix else report.name
+        yield figure.file or name + ".svg", figure.caption
+
+
+def markdown_table(table):
+    if not table:
+        return ""
+    lines = [table.columns, ["---"] * len(table.columns),
+             *([short(row.get(name, math.nan)) for name in table.columns] for row in table)]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines) + "\n"
+
+
+def markdown(report):
+    result = report.result
+    text = f"# {report.name}: {report.title}\n\n" + "".join(f"{p}\n\n" for p in result.paragraphs)
+    text += markdown_table(result.summary)
+    text += "".join(f"![{caption}]({file})\n\n{caption}\n\n" for file, caption in files_of(report))
+    text += markdown_table(claims_of(result))
+    text += "".join(f"Data: `{file}` from the {origin}, SHA-256 `{sha256}`.\n\n"
+                    for file, sha256, origin in result.data)
+    return text + f"All numbers: [{report.name}.csv]({report.name}.csv). {report.circumstances}\n"
+
+
+def write_files(report, folder):
+    write_csv(report.result.table, folder / f"{report.name}.csv")
+    for figure, (file, _) in zip(report.result.figures, files_of(report)):
+        if figure.drawn is not None:
+            figures.save(figure.drawn, (folder / file).with_suffix(""))
+    (folder / f"{report.name}.md").write_text(markdown(report), encoding="utf-8")
+
+
+def html_table(table):
+    if not table:
+        return ""
+    rows = ["".join(f"<th>{html.escape(name)}</th>" for name in table.columns)]
+    for row in table:
+        cells = [row.get(name, math.nan) for name in table.columns]
+        rows.append("".join(f"<td>{html.escape(short(cell)).replace('**no**', '<b>NO</b>')}</td>" for cell in cells))
+    return "<table>\n" + "".join(f"<tr>{row}</tr>\n" for row in rows) + "</table>\n"
+
+
+def section(report, folder):
+    parts = [f'<h2 id="{report.name}">{report.name}: {html.escape(report.title)}</h2>\n',
+             *(f"<p>{html.escape(text)}</p>\n" for text in report.result.paragraphs),
+             html_table(report.result.summary)]
+    for file, caption in files_of(report):
+        kind = "svg+xml" if file.endswith(".svg") else "png"
+        data = base64.b64encode((folder / file).read_bytes()).decode()
+        caption = html.escape(caption)
+        parts.append(f'<figure><img src="data:image/{kind};base64,{data}" alt="{caption}">'
+                     f"<figcaption>{caption}</figcaption></figure>\n")
+    parts += [html_table(claims_of(report.result)),
+              f"<details><summary>All numbers ({len(report.result.table)} rows)</summary>\n"
+              f"{html_table(report.result.table)}</details>\n"
+              f"<p class=c>{html.escape(report.circumstances)}</p>\n"]
+    return "".join(parts)
+
+
+def write_html(reports, folder, page):
+    """`folder` holds the figures, which are embedded."""
+    style = ("body{font-family:sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
+             "img{max-width:100%}figure{margin:1em 0}figcaption,.c{color:#444;font-size:90%}"
+             "table{border-collapse:collapse;font-size:85%}td,th{border:1px solid #ccc;"
+             "padding:.2em .5em;text-align:left}details{overflow-x:auto}")
+    entries = [f'<li><a href="#{r.name}">{r.name}</a>: {html.escape(r.title)} '
+               f"({sum(c.held for c in r.claims)} of {len(r.claims)} claims hold)</li>\n" for r in reports]
+    page.write_text('<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8">'
+                    f"<title>Palpate: the evidence</title>\n<style>{style}</style>\n"
+                    f"<h1>Palpate: the evidence</h1>\n<ul>\n{''.join(entries)}</ul>\n"
+                    f"{''.join(section(report, folder) for report in reports)}</html>\n", encoding="utf-8")

@@ -1,0 +1,32 @@
+"""Intervals and bounds at 95 % from samples."""
+
+import numpy
+import scipy.stats
+
+
+def bound_of_none(count):
+    """The largest share that is compatible at 95 % with none in `count` independent trials (one-sided,
+    exact): about 3 / count."""
+    return 1 - 0.05 ** (1 / count)
+
+
+def none_of(count, what):
+    """'0 of 1,000 crossings, so fewer than 0.3 % at 95 % confidence'."""
+    return f"0 of {count:,} {what}, so a share below {bound_of_none(count):.2g} at 95 % confidence"
+
+
+def bootstrap(values, statistic=numpy.median, seed=1):
+    """(statistic, low, high): percentiles of 2000 resamples with replacement."""
+    values = numpy.asarray(values)[~numpy.isnan(values)]
+    if len(values) < 2 or numpy.ptp(values) == 0:
+        found = float(statistic(values)) if len(values) else numpy.nan
+        return found, found, found
+    interval = scipy.stats.bootstrap((values,), statistic, n_resamples=2000, method="percentile",
+                                     random_state=numpy.random.default_rng(seed),
+                                     vectorized=False).confidence_interval
+    return float(statistic(values)), float(interval.low), float(interval.high)
+
+
+def in_words(values, form="{:.3g}", statistic=numpy.median):
+    """'0.31 [0.28, 0.35]'."""
+    return "{0} [{1}, {2}]".format(*map(form.format, bootstrap(values, statistic)))

@@ -1,0 +1,105 @@
+"""Volumes that experiments are made on, and the methods that they compare."""
+
+import dataclasses
+import hashlib
+from pathlib import Path
+from typing import Callable, Optional
+
+import numpy
+import palpate
+
+
+@dataclasses.dataclass(frozen=True)
+class Subject:
+    """A volume with the level that is felt. exact: the analytic density [data units] at points [mm]."""
+
+    name: str
+    field: palpate.Field
+    isovalue: float
+    exact: Optional[Callable] = None
+
+    @property
+    def sign(self):
+        return 1 if self.field.solid == "above" else -1
+
+    @property
+    def voxel(self):
+        """The smallest spacing [mm]."""
+        return float(min(self.field.geometry.spacing))
+
+    @property
+    def diagonal(self):
+        geometry = self.field.geometry
+        return float(numpy.linalg.norm(geometry.size * geometry.spacing))
+
+    def physical(self, index):
+        """Points [mm] of places [index], (n, 3)."""
+        geometry = self.field.geometry
+        return geometry.origin + (index * geometry.spacing) @ numpy.asarray(geometry.direction).T
+
+    def index(self, physical):
+        geometry = self.field.geometry
+        return (physical - geometry.origin) @ numpy.asarray(geometry.direction) / geometry.spacing
+
+    def excess(self, density):
+        """How far densities are in the solid, as a part of the data's range."""
+        return self.sign * (density - self.isovalue) / self.field.range
+
+
+@dataclasses.dataclass(frozen=True)
+class Contestant:
+    """A proxy method on a field of one interpolation."""
+
+    name: str
+    method: str
+    interpolation: str = "linear"
+
+    def felt(self, subject):
+        """The subject with the field that this contestant feels."""
+        field = subject.field
+        return dataclasses.replace(subject, field=palpate.Field(
+            field.volume, field.solid, field.background, self.interpolation))
+
+
+CONTESTANTS = {c.name: c for c in (*(Contestant(name, name) for name in palpate.methods()),
+                                   Contestant("smooth", "exact", "cubic"))}
+
+# Real volumes by name: file, level that is felt, SHA-256 of the file, where it comes from.
+UNC = "Stanford volume data archive (University of North Carolina), CThead"
+VOLVIS = "volume library of S. Roettger, from the VolVis distribution (SUNY Stony Brook)"
+REAL = {"lobster": ("lobster.nrrd", 35, "a23e66d340a0727aa5b7cc8cb92d903840186f5ec7128add667218fe3af681c2", VOLVIS),
+        "ct-head": ("cthead_unc.nrrd", 500, "555e214a972cf414c5f071a981a1c32e7414d143986045d70671d55ca6782035", UNC)}
+
+
+def synthetic(specification, isovalue=None, type=None):
+    scene = palpate.scene(specification, type)
+    try:
+        scene.exact([[0.0, 0.0, 0.0]])
+        exact = scene.exact
+    except ValueError:
+        exact = None
+    return Subject(scene.name, palpate.Field(scene.volume, interpolation="linear"),
+                   scene.isovalue if isovalue is None else isovalue, exact)
+
+
+def real(name, options, result_data=None):
+    """A real volume, or None with a note where the data folder lacks it."""
+    file, isovalue, sha256, origin = REAL[name]
+    path = Path(options.data or "") / file
+    if not options.data or not path.exists():
+        options.note(f"without the volume {name} (no data folder with {file})")
+        return None
+    found = hashlib.sha256(path.read_bytes()).hexdigest()
+    if found != sha256:
+        options.note(f"{file} is not the file that the results in docs/results were made with")
+    if result_data is not None:
+        result_data.append((file, found, origin))
+    return Subject(name, palpate.Field(palpate.load(path).volume, interpolation="linear"), isovalue)
+
+
+def of_text(text):
+    """A user's volume: 'head.nrrd@500', 'synthetic:torus'. Raises ValueError, palpate.InputError."""
+    found = palpate.subject(text)
+    if text.startswith("synthetic:"):
+        return synthetic(text.rpartition("@")[0] or text, found.isovalue)
+    return Subject(found.name, found.field, found.isovalue)

@@ -1,0 +1,122 @@
+"""Closed walls of any thickness, and straight lines of a hand through them."""
+
+import itertools
+
+import numpy
+import palpate
+
+from .subjects import Subject
+
+SAMPLES = 28  # along an axis
+HALF_WIDTH = 10.5  # [voxel] of the body, the outer layer of samples included
+FULL = 255
+# In voxels of the shortest side.
+THINNEST_WALL, THICKEST_WALL, END_IN_BODY, END_BEHIND_WALL, OFF_SURFACE = 1e-3, 16, 4, 3, 1e-6
+FLATTEST = 0.2588190451025208  # cosine of 75 degrees
+
+
+def corners_of(cells):
+    """Samples at the corners of marked cells; both [x, y, z]."""
+    found = numpy.zeros(numpy.array(cells.shape) + 1, dtype=bool)
+    for corner in itertools.product((0, 1), repeat=3):
+        found[tuple(slice(o, o + n) for o, n in zip(corner, cells.shape))] |= cells
+    return found
+
+
+def full_samples(body, layers):
+    """The four samples of each face between a cell of the body and one that is not, then layer by layer
+    the corners of every cell of the body that has a full one."""
+    full = numpy.zeros([SAMPLES] * 3, dtype=bool)
+    for axis in range(3):
+        flat = numpy.moveaxis(body, axis, 0)
+        faces = numpy.pad(flat, ((1, 1), (0, 0), (0, 0)))
+        faces = faces[1:] != faces[:-1]
+        samples = numpy.moveaxis(full, axis, 0)  # a view
+        for u, v in itertools.product((0, 1), repeat=2):
+            samples[:, u:u + SAMPLES - 1, v:v + SAMPLES - 1] |= faces
+    for _ in range(1, layers):
+        touched = numpy.zeros_like(body)
+        for corner in itertools.product((0, 1), repeat=3):
+            touched |= full[tuple(slice(o, o + SAMPLES - 1) for o in corner)]
+        full |= corners_of(touched & body)
+    return full
+
+
+def across_layers(layers, x):
+    """A smooth field across a flat wall of full layers, `x` [voxel] from its middle: a quadratic spline."""
+    off = abs(x - (numpy.arange(layers) - 0.5 * (layers - 1)))
+    return float(numpy.where(off <= 0.5, 0.75 - off**2, 0.5 * numpy.maximum(0, 1.5 - off)**2).sum())
+
+
+def closed_shell(shape, thickness, interpolation):
+    """A wall around a hollow 'box' (flat, with corners) or 'ball' of voxels (stepped), `thickness` [voxel]
+    on every flat face; spacing 1 mm.
+
+    Every face of the body has its four samples full, so a linear field is full all over the face, and the
+    wall is closed at any level below: the level sets its thickness. A ramp sampled thinner than a voxel
+    would have real holes. A smooth field needs two full layers, between which it is full.
+    """
+    if not 0 < thickness <= 4:
+        raise ValueError(f"a shell of {thickness} voxels: it can be above 0 and up to 4 thick")
+    smooth = interpolation == "cubic"
+    layers = max(2 if smooth else 1, int(numpy.floor(thickness + 0.5)))
+    centre = numpy.indices([SAMPLES - 1] * 3) + 0.5 - 0.5 * (SAMPLES - 1)
+    size = abs(centre).max(axis=0) if shape == "box" else numpy.sqrt((centre**2).sum(axis=0))
+    full = full_samples(size <= HALF_WIDTH, layers).transpose(2, 1, 0)
+    volume = palpate.Volume(numpy.ascontiguousarray(full * numpy.uint8(FULL)),
+                            origin=[-0.5 * (SAMPLES - 1)] * 3)
+    level = across_layers(layers, 0.5 * thickness) if smooth else 1 - 0.5 * (thickness - layers + 1)
+    return Subject(shape, palpate.Field(volume, interpolation=interpolation), FULL * level)
+
+
+def candidates(random, count, size):
+    """Places in the grid [index] and directions of `count` lines, (n, 3) each."""
+    along = random.standard_normal((count, 3))
+    return random.random((count, 3)) * (size - 1), along / numpy.linalg.norm(along, axis=1, keepdims=True)
+
+
+class Lines:
+    """Lines from outside into the solid: where they first meet the surface (entry [mm]), unit directions
+    (along), their way in the wall and the hand's way, both from the entry [mm].
+
+    At most 75 degrees off the normal where they meet the surface. A line goes through the first wall to 3
+    voxels behind it, or half the distance to the next wall, if no free path from outside leads there. With
+    `anywhere`, lines into a body thicker than 16 voxels, or one that a proxy may go around, end 4 voxels
+    deep or half way through. Raises ValueError if hardly a line meets such a wall or body.
+    """
+
+    def __init__(self, subject, outside, anywhere, count, random, draw=candidates):
+        kept, tried = [], 0
+        while sum(len(part[0]) for part in kept) < count:
+            if tried > 1000 + 100 * count:
+                raise ValueError(f"{subject.name}: hardly a straight line through it meets anything solid; choose "
+                                 "another level or volume")
+            places, along = draw(random, 2 * count + 100, numpy.asarray(subject.field.geometry.size))
+            kept.append(self._through(subject, outside, anywhere, places, along))
+            tried += len(places)
+        self.entry, self.along, self.wall, self.end = (numpy.concatenate(parts)[:count] for parts in zip(*kept))
+
+    @staticmethod
+    def _through(subject, outside, anywhere, places, along):
+        field, isovalue, voxel = subject.field, subject.isovalue, subject.voxel
+        through = subject.physical(places)
+        far = 2 * subject.diagonal * along
+        entry, normal = palpate.cast_rays(field, isovalue, through - far, through + far)
+        steep = -(normal * along).sum(axis=1) >= FLATTEST  # false for NaN
+        entry, along = entry[steep], along[steep]
+        inverse = palpate.Field(field.volume, "below" if field.solid == "above" else "above", field.background,
+                                field.interpolation)
+        hair = OFF_SURFACE * voxel
+        begin, farthest = entry + hair * along, entry + (hair + THICKEST_WALL * voxel) * along
+        out, _ = palpate.cast_rays(inverse, isovalue, begin, farthest)
+        leaves = ~numpy.isnan(out[:, 0])
+        wall = numpy.linalg.norm(numpy.where(leaves[:, None], out, farthest) - entry, axis=1)
+        behind = entry + (wall + hair)[:, None] * along
+        reach = behind + 2 * END_BEHIND_WALL * voxel * along
+        following, _ = palpate.cast_rays(field, isovalue, behind, reach)
+        following = numpy.where(numpy.isnan(following), reach, following)
+        end = wall + hair + 0.5 * numpy.linalg.norm(following - behind, axis=1)
+        closed = leaves & ~outside.holds(entry + end[:, None] * along)
+        kept = (wall >= THINNEST_WALL * voxel) & (closed | anywhere)  # the others graze, or lead to free space
+        end = numpy.where(closed, end, numpy.minimum(END_IN_BODY * voxel, 0.5 * wall))
+        return entry[kept], along[kept], numpy.where(closed, wall, numpy.inf)[kept], end[kept]

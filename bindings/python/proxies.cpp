@@ -1,0 +1,279 @@
+// The proxy alone, without forces: whole trajectories in, arrays out, without the GIL. Experiments
+// are made of it.
+#include "palpate/proxy.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/bindings.hpp"
+#include "bindings/python/setup.hpp"
+#include "palpate/baselines/methods.hpp"
+#include "palpate/penetrability.hpp"
+
+namespace palpate::python {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Firsts = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+
+/// Arrays with a row per tick.
+struct ProxyTrace {
+    explicit ProxyTrace(py::ssize_t ticks)
+        : scp({ticks, py::ssize_t{3}}),
+          density(ticks),
+          isovalue(ticks),
+          constrained(ticks),
+          unfinished(ticks),
+          tetrahedra(ticks),
+          update_ns(ticks) {}
+
+    py::array_t<double> scp, density, isovalue;
+    py::array_t<bool> constrained, unfinished;
+    py::array_t<int> tetrahedra;
+    py::array_t<std::int64_t> update_ns;
+    py::object steps = py::none();
+};
+
+/// Where the rows of a ProxyTrace are written; usable without the GIL.
+struct Rows {
+    explicit Rows(ProxyTrace& trace)
+        : scp(trace.scp.mutable_data()),
+          density(trace.density.mutable_data()),
+          isovalue(trace.isovalue.mutable_data()),
+          constrained(trace.constrained.mutable_data()),
+          unfinished(trace.unfinished.mutable_data()),
+          tetrahedra(trace.tetrahedra.mutable_data()),
+          update_ns(trace.update_ns.mutable_data()) {}
+
+    void put(std::size_t i, const ProxyUpdate& update, Clock::duration took) const {
+        std::copy_n(update.scp.data(), 3, scp + 3 * i);
+        density[i] = update.density;
+        isovalue[i] = update.isovalue;
+        constrained[i] = update.mode == Mode::constrained;
+        unfinished[i] =
+            update.status != UpdateStatus::done && update.status != UpdateStatus::refused;
+        tetrahedra[i] = update.tetrahedra;
+        update_ns[i] = std::chrono::duration_cast<std::chrono::nanoseconds>(took).count();
+    }
+
+    double *scp, *density, *isovalue;
+    bool *constrained, *unfinished;
+    int* tetrahedra;
+    std::int64_t* update_ns;
+};
+
+struct NumberedStep {
+    std::int64_t tick;
+    Step step;
+};
+
+py::dict dict_of(const std::vector<NumberedStep>& steps) {
+    const auto of = [&](const auto& value) {
+        return column(steps, [&](const NumberedStep& s) { return value(s.step); });
+    };
+    const auto three = [&](const auto& value) {
+        return of([&](const Step& s) {
+            const auto v = value(s.tetrahedron);
+            return Vec3(v[0], v[1], v[2]);
+        });
+    };
+    return py::dict(py::arg("tick") = column(steps, [](const NumberedStep& s) { return s.tick; }),
+                    py::arg("kind") = of([](const Step& s) { return static_cast<int>(s.kind); }),
+                    py::arg("point") = of([](const Step& s) { return s.point; }),
+                    py::arg("goal") = of([](const Step& s) { return s.goal; }),
+                    py::arg("cell") = three([](const Tetrahedron& t) { return t.cell; }),
+                    py::arg("axis") = three([](const Tetrahedron& t) { return t.axis; }),
+                    py::arg("sign") = three([](const Tetrahedron& t) { return t.sign; }));
+}
+
+/// What a proxy moves in, and how.
+struct Way {
+    Field field;
+    double isovalue;
+    ProxyMethod method;
+    Penetrability penetrability = no_penetrability();
+    double scale = 1;  ///< [mm of volume per mm of hand]
+
+    /// Throws std::invalid_argument where there is no free space.
+    Proxy placed(const Vec3& start) const {
+        Proxy proxy;
+        if (!place(proxy, field, start, isovalue)) {
+            throw std::invalid_argument("all of space is solid at this isovalue");
+        }
+        return proxy;
+    }
+
+    ProxyUpdate update(Proxy& proxy, const Vec3& hip, const StepObserver& observer,
+                       Clock::duration& took) const {
+        const auto begin = Clock::now();
+        ProxyUpdate made = method(proxy, field, hip, {}, observer);
+        took = Clock::now() - begin;
+        apply_penetrability(penetrability, field, 1 / scale, proxy, made);
+        return made;
+    }
+};
+
+Way way_of(const Field& field, const io::Level& level, const std::string& method) {
+    return {field, io::level_in(field.volume(), level), baselines::method_named(method)};
+}
+
+/// A proxy and what it moves in.
+struct PlacedProxy {
+    Way way;
+    Proxy proxy;
+};
+
+ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
+                  const std::optional<PressThrough>& press, double scale, bool with_steps) {
+    const std::vector<Vec3> points = points_from(hips, "hips");
+    if (!(scale > 0)) throw std::invalid_argument("scale: a number above 0 is needed");
+    Way way = placed.way;
+    way.scale = scale;
+    if (press) way.penetrability = penetrability_for(*press, way.field, placed.proxy.isovalue);
+    ProxyTrace trace(static_cast<py::ssize_t>(points.size()));
+    const Rows rows(trace);
+    std::vector<NumberedStep> steps;
+    std::pair<std::int64_t, std::vector<NumberedStep>*> context{0, &steps};
+    StepObserver observer;
+    if (with_steps) {
+        observer = {[](const Step& step, void* to) {
+                        const auto& [tick, all] = *static_cast<decltype(context)*>(to);
+                        all->push_back({tick, step});
+                    },
+                    &context};
+    }
+    {
+        const py::gil_scoped_release unlocked;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            context.first = static_cast<std::int64_t>(i);
+            Clock::duration took{};
+            const ProxyUpdate update = way.update(placed.proxy, points[i], observer, took);
+            rows.put(i, update, took);
+        }
+    }
+    if (with_steps) trace.steps = dict_of(steps);
+    return trace;
+}
+
+/// One trajectory, whose first place is where the proxy is put.
+void follow_one(const Way& way, const std::vector<Vec3>& hips, std::size_t from, std::size_t to,
+                const Rows& rows) {
+    Proxy proxy = way.placed(hips[from]);
+    ProxyUpdate start;
+    start.scp = proxy.scp_physical;
+    start.density = value_at(way.field, proxy.scp_physical);
+    start.isovalue = proxy.isovalue;
+    rows.put(from, start, {});
+    for (std::size_t i = from + 1; i < to; ++i) {
+        Clock::duration took{};
+        const ProxyUpdate update = way.update(proxy, hips[i], {}, took);
+        rows.put(i, update, took);
+    }
+}
+
+ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles& hips,
+                       const Firsts& firsts, const std::string& method, int threads) {
+    const Way way = way_of(field, level, method);
+    const std::vector<Vec3> points = points_from(hips, "hips");
+    std::vector<std::size_t> begins(firsts.data(), firsts.data() + firsts.size());
+    begins.push_back(points.size());
+    if (begins.front() != 0 ||
+        std::ranges::adjacent_find(begins, std::greater_equal<>{}) != begins.end()) {
+        throw std::invalid_argument("first: rows of hips, rising, from 0, are needed");
+    }
+    (void)way.placed(points.front());  // throws here, not in a thread
+    ProxyTrace trace(static_cast<py::ssize_t>(points.size()));
+    const Rows rows(trace);
+    std::atomic<std::size_t> next{0};
+    const py::gil_scoped_release unlocked;
+    std::vector<std::jthread> running;
+    const unsigned usual = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);
+    for (unsigned t = 0; t < (threads > 0 ? static_cast<unsigned>(threads) : usual); ++t) {
+        running.emplace_back([&] {
+            for (std::size_t i; (i = next++) + 1 < begins.size();) {
+                follow_one(way, points, begins[i], begins[i + 1], rows);
+            }
+        });
+    }
+    running.clear();
+    return trace;
+}
+
+py::tuple cast_rays(const Field& field, const io::Level& level, const Doubles& starts,
+                    const Doubles& ends) {
+    const std::vector<Vec3> from = points_from(starts, "starts"), to = points_from(ends, "ends");
+    if (from.size() != to.size()) throw std::invalid_argument("as many starts as ends are needed");
+    const double isovalue = io::level_in(field.volume(), level);
+    const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+    std::vector<Vec3> points(from.size(), none), normals(from.size(), none);
+    {
+        const py::gil_scoped_release unlocked;
+        for (std::size_t i = 0; i < from.size(); ++i) {
+            const RayHit hit = cast_ray(field, isovalue, from[i], to[i]);
+            if (!hit.hit) continue;
+            points[i] = hit.point;
+            normals[i] = hit.normal;
+        }
+    }
+    return py::make_tuple(array_from(std::move(points)), array_from(std::move(normals)));
+}
+
+void bind_trace(py::module_& module) {
+    py::class_<ProxyTrace>(module, "ProxyTrace",
+                           "Where a proxy went, in arrays with a row per tick.")
+        .def_readonly("scp", &ProxyTrace::scp, "Surface contact point [mm, physical], (n, 3).")
+        .def_readonly("density", &ProxyTrace::density, "At the SCP [data units].")
+        .def_readonly("isovalue", &ProxyTrace::isovalue, "Of the surface felt [data units].")
+        .def_readonly("constrained", &ProxyTrace::constrained, "Whether it is on the surface.")
+        .def_readonly("unfinished", &ProxyTrace::unfinished,
+                      "Whether the next update continues, as after recovery or a used-up budget.")
+        .def_readonly("tetrahedra", &ProxyTrace::tetrahedra, "How many the SCP moved through.")
+        .def_readonly("update_ns", &ProxyTrace::update_ns,
+                      "Time of the update [ns], reading the clock included.")
+        .def_readonly("steps", &ProxyTrace::steps,
+                      "None, or all steps of all updates, as arrays by name: tick, kind (index in\n"
+                      "STEP_KINDS), point and goal [mm, physical]; cell, axis and sign of the\n"
+                      "tetrahedron, (n, 3) each.");
+}
+
+}  // namespace
+
+void bind_proxies(py::module_& module) {
+    module.attr("STEP_KINDS") =
+        py::make_tuple("place", "free move", "cross", "goal", "slide", "recover", "press");
+    bind_trace(module);
+    py::class_<PlacedProxy>(module, "Proxy",
+                            "The proxy alone, without forces. A value: a copy goes on exactly as "
+                            "its original.")
+        .def(py::init([](const Field& field, const io::Level& level, const Vec3& start,
+                         const std::string& method) {
+                 const Way way = way_of(field, level, method);
+                 return PlacedProxy{way, way.placed(start)};
+             }),
+             py::arg("field"), py::arg("isovalue"), py::arg("start"), py::arg("method") = "exact",
+             "Put at `start` [mm, physical], or the nearest free place. method: of methods().")
+        .def("follow", &follow, py::arg("hips"), py::kw_only(),
+             py::arg("penetrability") = py::none(), py::arg("scale") = 1.0,
+             py::arg("steps") = false,
+             "An update for each place of the hand [mm, physical], shape (n, 3), in order: a\n"
+             "ProxyTrace. scale: mm of volume per mm of hand, for the threshold of penetrability.")
+        .def_property_readonly("scp", [](const PlacedProxy& p) { return p.proxy.scp_physical; })
+        .def("__copy__", [](const PlacedProxy& p) { return p; });
+    module.def(
+        "follow_each", &follow_each, py::arg("field"), py::arg("isovalue"), py::arg("hips"),
+        py::arg("first"), py::arg("method") = "exact", py::arg("threads") = 0,
+        "Many hands, one behind the other in `hips` [mm, physical], shape (n, 3); `first`: the\n"
+        "row in which each begins. A proxy of its own is put there and follows to the next\n"
+        "hand's row. On all processors, or `threads`; the result does not depend on that.");
+    module.def(
+        "cast_rays", &cast_rays, py::arg("field"), py::arg("isovalue"), py::arg("starts"),
+        py::arg("ends"),
+        "Where straight segments [mm, physical] first meet the isosurface: (points [mm], unit\n"
+        "normals out of the solid), shape (n, 3) each, NaN where one meets nothing.");
+}
+
+}  // namespace palpate::python
