@@ -22,6 +22,7 @@ struct FileSource {
     std::optional<io::RawLayout> raw;  ///< of a file without a header
     std::optional<Vec3> spacing;       ///< [mm] instead of what the file gives or lacks
     std::string series;                ///< DICOM series: UID or number; empty: the only one
+    std::string orientation = {};      ///< instead of the file's: io::direction_from()
 };
 /// A volume that scenes::make_volume() makes.
 struct SyntheticSource {
@@ -62,7 +63,8 @@ std::string name_of(const Source& source);
 Source source_named(const std::string& name);
 
 /// The names and values under which recordings and session files keep a source: "volume" is its
-/// name, the others are "dims", "type", "spacing", "skip", "byte-order", "series", "time-step",
+/// name, the others are "dims", "type", "spacing", "orientation", "skip", "byte-order", "series",
+/// "time-step",
 /// "level", "channel", "memory" [bytes, of the process], "coarse-first", "all-times",
 /// "forbidden-is-missing", "frame-interval", "smooth", "dequantize" and "prefilter". What was not
 /// given is left out; so is a cache, which is of one machine. Web addresses are without password
