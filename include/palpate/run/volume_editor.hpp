@@ -64,8 +64,8 @@ class VolumeEditor {
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     /// For a servo that is not attached: nothing.
     void detach(const Servo& servo);
-    /// What this servo feels with from now on; null: a point. For one that is not attached:
-    /// nothing.
+    /// What this servo feels with from now on; null: a point. The brush rests until the tool has
+    /// been in the air. For a servo that is not attached: nothing.
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// The brush of every attached servo; nothing: the hand only feels. Throws as check().
     void set_brush(const std::optional<HandBrush>& brush);
@@ -97,8 +97,8 @@ class VolumeEditor {
         Field field;  // for its solid side and background
         std::shared_ptr<const Tool> tool;
         std::optional<Touch> touch = {};
-        bool resting = false;                       // after an undo, until it was in the air
-        std::int64_t from = 0;                      // the first tick that surely has the tool
+        bool resting = false;   // after an undo or another tool, until it was in the air
+        std::int64_t from = 0;  // the first tick that surely has the tool
         std::shared_ptr<const ToolBody> body = {};  // of the tool, for the last sweep
     };
     /// What an edit reads, by the low corner of the box.
