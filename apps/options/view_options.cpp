@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 namespace palpate::app {
 
@@ -20,7 +21,10 @@ void ViewOptions::add_to(CLI::App& command) {
         ->check(CLI::NonNegativeNumber);
 }
 
-void ViewOptions::check() const {
+void ViewOptions::settle() {
+    std::string& volume = run.source.volume();
+    if (volume.ends_with(".json") && session.empty()) session = std::exchange(volume, {});
+    if (volume.ends_with(".csv") && play.empty()) play = std::exchange(volume, {});
     if (has_volume() && !session.empty()) {
         throw std::invalid_argument("VOLUME and --session: give only one of them");
     }
