@@ -2100,7 +2100,7 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Die Messungen sind noch in keiner Sitzungsdatei. Sitzung speichern?</translation>
     </message>
     <message>
-        <source>&amp;Orientation and spacing…</source>
+        <source>Or&amp;ientation and spacing…</source>
         <translation>&amp;Lage und Abstand…</translation>
     </message>
     <message>

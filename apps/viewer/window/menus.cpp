@@ -203,7 +203,7 @@ void make_data_menu(MainWindow& window, Actions& actions) {
                    std::holds_alternative<run::StoreSource>(window.content().source().from);
         });
     actions.add(
-        menu, "choose_grid", MainWindow::tr("&Orientation and spacing…"), {},
+        menu, "choose_grid", MainWindow::tr("Or&ientation and spacing…"), {},
         [&window] { window.settle_work([&window] { window.ask_grid(); }); },
         [&window] { return window.live() && window.content().from_file(); });
     menu->addSeparator();
