@@ -47,13 +47,10 @@ ImageArray array_from(const nlohmann::json& json) {
 }  // namespace
 
 nlohmann::json json_from(const ChunkedImage& image) {
-    nlohmann::json json = {{"format", image.format},
-                           {"unit", image.unit},
-                           {"channels", image.channels},
-                           {"times", image.times},
-                           {"frame_interval", image.frame_interval},
-                           {"notes", image.notes},
-                           {"levels", nlohmann::json::array()}};
+    nlohmann::json json = {{"format", image.format},     {"unit", image.unit},
+                           {"measured", image.measured}, {"channels", image.channels},
+                           {"times", image.times},       {"frame_interval", image.frame_interval},
+                           {"notes", image.notes},       {"levels", nlohmann::json::array()}};
     if (image.range) json["range"] = *image.range;
     for (const ImageArray& array : image.levels) {
         json["levels"].push_back({{"id", array.id},
@@ -76,6 +73,7 @@ ChunkedImage chunked_image_from(const nlohmann::json& json) {
     ChunkedImage image;
     image.format = one_line(json.at("format").get<std::string>().substr(0, longest_name));
     image.unit = json.at("unit").get<std::string>();
+    image.measured = json.at("measured").get<bool>();
     image.channels = lines_from(json.at("channels"), longest_name);
     image.times =
         static_cast<int>(std::clamp<std::int64_t>(whole_from(json.at("times")), 0, 1 << 30));

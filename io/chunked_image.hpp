@@ -29,6 +29,7 @@ struct ImageArray {
 struct ChunkedImage {
     std::string format;
     std::string unit;                   ///< of length; empty: the file gives none
+    bool measured = true;               ///< false: the file gives no spacing
     std::vector<std::string> channels;  ///< names; empty: one, without a name
     int times = 1;
     double frame_interval = 0;                     ///< [s]; 0: the file does not say

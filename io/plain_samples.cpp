@@ -31,8 +31,7 @@ PlainSamples raw_samples(const fs::path& path, const ReadOptions& options) {
     const RawLayout raw = checked_layout(path, options);
     PlainSamples plain;
     plain.format = "raw";
-    plain.geometry.size = raw.size;
-    plain.geometry.spacing = raw.spacing;
+    plain.geometry = geometry_of(raw, options);
     plain.stored = *stored_named(name_of(raw.type));
     plain.file = path;
     plain.offset = raw.skip;
@@ -62,7 +61,7 @@ PlainSamples plain_from(const nlohmann::json& done) {
 /// What the helper finds in the header.
 nlohmann::json located(const fs::path& path, const ReadOptions& options) {
     nlohmann::json request = {{"caller", getpid()}};
-    if (options.spacing) request["spacing"] = json_from(*options.spacing);
+    add_to(request, {options.spacing, options.orientation});
     constexpr double seconds = 60;  // for a header
     const double limit = options.time_limit_s > 0 ? options.time_limit_s : seconds;
     const HelperJob job{

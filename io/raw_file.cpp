@@ -112,6 +112,16 @@ RawLayout checked_layout(const std::filesystem::path& path, const ReadOptions& o
     return raw;
 }
 
+Geometry geometry_of(const RawLayout& raw, const ReadOptions& options) {
+    Geometry geometry;
+    geometry.size = raw.size;
+    geometry.spacing = raw.spacing;
+    geometry.oriented = false;
+    geometry.measured = raw.spacing != Vec3::Ones();
+    put_in({options.spacing, options.orientation}, geometry);
+    return geometry;
+}
+
 VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& options) {
     if (options.time_step != 0) {
         throw InputError(path.string() + ": a raw file holds one volume; use time step 0");
@@ -138,11 +148,8 @@ VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& option
         }
         if (count > 0) notes.push_back(non_finite_note(count));
     }
-    Geometry geometry;
-    geometry.size = raw.size;
-    geometry.spacing = raw.spacing;
-    return {Volume(geometry, raw.type, samples, bytes), packed ? "raw, gzip" : "raw", 1,
-            std::move(notes)};
+    return {Volume(geometry_of(raw, options), raw.type, samples, bytes),
+            packed ? "raw, gzip" : "raw", 1, std::move(notes)};
 }
 
 void write_raw(const Volume& volume, const std::filesystem::path& path, const Progress& progress) {

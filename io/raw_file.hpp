@@ -10,6 +10,10 @@ namespace palpate::io {
 /// (0: none) and the file, if that is not packed, has exactly its bytes.
 RawLayout checked_layout(const std::filesystem::path& path, const ReadOptions& options);
 
+/// Of a file that says nothing: without orientation, and without spacing unless `raw` or `options`
+/// have one.
+Geometry geometry_of(const RawLayout& raw, const ReadOptions& options);
+
 /// Reads options.raw's layout from `path`. The file must hold exactly its bytes: skip + samples.
 /// Throws InputError.
 VolumeFile read_raw(const std::filesystem::path& path, const ReadOptions& options);

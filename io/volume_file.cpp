@@ -113,7 +113,7 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
                               {"pictures", options.series_pictures},
                               {"time_step", options.time_step},
                               {"memory", limited.memory_limit_bytes}};
-    if (options.spacing) request["spacing"] = json_from(*options.spacing);
+    add_to(request, {options.spacing, options.orientation});
     return asked_of_helper(path, [&] {
         const Descriptor samples = shared_memory();
         const TimeLimits limits(options.time_limit_s, bytes_in(path));

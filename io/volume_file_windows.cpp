@@ -60,7 +60,7 @@ VolumeFile read_volume(const std::filesystem::path& path, const ReadOptions& opt
     request.path = path;
     request.time_step = options.time_step;
     request.memory_limit = limited.memory_limit_bytes;
-    request.spacing = options.spacing;
+    request.grid = {options.spacing, options.orientation};
     reading = {nullptr, options.progress};
     try {
         Result result = read_with_header(path, request);

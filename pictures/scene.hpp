@@ -84,6 +84,7 @@ struct PictureScene {
     std::string title;               ///< above the legend; may be empty
     bool legend = true;              ///< what the colours are, in the upper left corner
     bool orientation = true;         ///< a cube with L, R, A, P, S, I in the lower left corner
+    bool oriented = true;            ///< as in Geometry; false: +X, -X, ... on the cube
     bool scale_bar = true;           ///< in the lower right corner
 };
 

@@ -105,6 +105,7 @@ inline json json_from(const PictureScene& scene, const std::vector<SurfaceArrays
             {"title", scene.title},
             {"legend", scene.legend},
             {"orientation", scene.orientation},
+            {"oriented", scene.oriented},
             {"scale_bar", scene.scale_bar}};
 }
 
@@ -144,6 +145,7 @@ inline PictureScene scene_from(const json& j, std::vector<SurfaceArrays>& arrays
     scene.title = j.at("title").get<std::string>();
     scene.legend = j.at("legend").get<bool>();
     scene.orientation = j.at("orientation").get<bool>();
+    scene.oriented = j.at("oriented").get<bool>();
     scene.scale_bar = j.at("scale_bar").get<bool>();
     return scene;
 }

@@ -96,6 +96,7 @@ LoadedVolume loaded_of(const FileSource& file, const Source& source, const io::P
     options.interval = source.frame_interval.value_or(0);
     options.read.raw = file.raw;
     options.read.spacing = file.spacing;
+    options.read.orientation = file.orientation;
     options.read.series = file.series;
     options.read.progress = progress;
     if (source.frame && !io::names_a_series(file.path)) {

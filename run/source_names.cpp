@@ -6,6 +6,7 @@
 
 #include "io/system/number.hpp"
 #include "palpate/io/address.hpp"
+#include "palpate/io/orientation.hpp"
 #include "palpate/io/raw_options.hpp"
 #include "palpate/run/source.hpp"
 
@@ -42,6 +43,7 @@ void add_names(Names& names, const FileSource& file) {
         if (file.raw->big_endian) names["byte-order"] = "big";
     }
     if (file.spacing) names["spacing"] = spacing_text(*file.spacing);
+    if (!file.orientation.empty()) names["orientation"] = file.orientation;
     if (!file.series.empty()) names["series"] = file.series;
 }
 
@@ -52,7 +54,9 @@ void add_names(Names& names, const SyntheticSource& synthetic) {
 void add_names(Names&, const LiveSource&) {}
 
 void add_names(Names& names, const StoreSource& store) {
-    add_names(names, FileSource{{}, store.options.raw, store.options.spacing, {}});
+    add_names(
+        names,
+        FileSource{{}, store.options.raw, store.options.spacing, {}, store.options.orientation});
     names["level"] = std::to_string(store.loader.level);
     if (store.options.channel > 0) names["channel"] = std::to_string(store.options.channel);
     if (store.loader.whole_process) names["memory"] = std::to_string(store.loader.memory);
@@ -78,6 +82,8 @@ FileSource with_layout(FileSource file, const Names& names) {
         file.raw->big_endian = order == "big";
     }
     if (!spacing.empty()) file.spacing = io::spacing_from(spacing);
+    file.orientation = value_of(names, "orientation");
+    if (!file.orientation.empty()) (void)io::direction_from(file.orientation);
     file.series = value_of(names, "series");
     return file;
 }
@@ -100,6 +106,7 @@ std::optional<StoreSource> store_of(const FileSource& file, const Names& names) 
     stream::StoreOptions options;
     options.raw = file.raw;
     options.spacing = file.spacing;
+    options.orientation = file.orientation;
     options.channel = count_of(names, "channel");
     const bool asked =
         names.contains("level") || names.contains("memory") || names.contains("all-times");
@@ -129,9 +136,10 @@ std::optional<StoreSource> store_of(const FileSource& file, const Names& names) 
 }
 
 SyntheticSource with_type(SyntheticSource synthetic, const Names& names) {
-    if (names.contains("dims") || names.contains("spacing")) {
+    if (names.contains("dims") || names.contains("spacing") || names.contains("orientation")) {
         throw std::invalid_argument(
-            "dims and spacing are for files; a synthetic volume's size is part of its name: "
+            "dims, spacing and orientation are for files; a synthetic volume's size is part of its "
+            "name: "
             "synthetic:NAME:WxHxD");
     }
     const auto skip = io::number_from<std::uint64_t>(value_of(names, "skip")).value_or(0);

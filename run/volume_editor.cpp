@@ -115,6 +115,7 @@ void VolumeEditor::use_tool(const Servo& servo, std::shared_ptr<const Tool> tool
         hand.tool = tool;
         hand.body.reset();
         hand.touch.reset();
+        hand.resting = true;  // a larger tool touches where the hand did not move
         const auto now = servo.snapshot();
         hand.from = now ? now->number + Servo::sure_after : 0;
     }

@@ -40,6 +40,7 @@ double shortest_length(const Geometry& geometry, int axes) {
 
 Geometry centred(const Index3& size, const Vec3& spacing, const Mat3& direction) {
     Geometry geometry{size, spacing, Vec3::Zero(), direction};
+    geometry.oriented = false;  // no body's
     geometry.origin = -physical_centre(geometry);
     return geometry;
 }

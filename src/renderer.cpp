@@ -401,6 +401,15 @@ void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
     renderer.force.waiting = true;
 }
 
+void lift(Renderer& renderer) noexcept {
+    forget_layers(renderer.layers, renderer.proxy, renderer.field);
+    Proxy anew;
+    anew.isovalue = renderer.proxy.isovalue;
+    renderer.proxy = anew;
+    if (renderer.tool_proxy) renderer.tool_proxy->placed = false;
+    renderer.force.waiting = true;
+}
+
 std::string isovalue_warning(const Field& field, double isovalue) {
     const Volume& volume = field.volume();
     const double s = field.sign();

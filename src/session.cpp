@@ -152,6 +152,7 @@ static RendererSettings changed_by(const Command& command, const RendererSetting
         },
         [&](const DeviceTransform& to) { changed.transform = to; },
         [](const DeviceLimits& to) { check(to); },
+        [](const command::Lift&) {},
     };
     std::visit(check_one, command);
     return changed;
@@ -222,6 +223,7 @@ void apply(Session& session,  // NOLINT(bugprone-exception-escape)
             renderer.force.waiting = true;
         },
         [&](const DeviceLimits& to) { keep_within(session, to); },
+        [&](const command::Lift&) { lift(renderer); },
     };
     std::visit(apply_one, checked.command());
 }

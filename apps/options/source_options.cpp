@@ -31,6 +31,10 @@ void SourceOptions::add_to(CLI::App& command, bool optional) {
         ->check(one_of({"uint8", "int16", "uint16", "float32"}));
     text("spacing", "Spacing [mm] instead of what the file gives or lacks: X,Y,Z")
         ->type_name("X,Y,Z");
+    text("orientation",
+         "Where the axes run to in the body instead of what the file gives or lacks: three letters "
+         "as in LPS or RAS")
+        ->type_name("LPS");
     text("skip", "Bytes of header to skip in a raw file")
         ->type_name("UINT")
         ->check(count(largest_count));

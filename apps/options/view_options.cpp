@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 namespace palpate::app {
 
@@ -27,7 +28,10 @@ void ViewOptions::add_to(CLI::App& command) {
         ->check(from_zero());
 }
 
-void ViewOptions::check() const {
+void ViewOptions::settle() {
+    std::string& volume = run.source.volume();
+    if (volume.ends_with(".json") && session.empty()) session = std::exchange(volume, {});
+    if (volume.ends_with(".csv") && play.empty()) play = std::exchange(volume, {});
     if (has_volume() && !session.empty()) {
         throw std::invalid_argument("VOLUME and --session: give only one of them");
     }
@@ -40,15 +44,18 @@ void ViewOptions::check() const {
     (void)window_size();
     if (screenshot.empty()) warn_of_no_effect(*command_, {"--after"}, "there is no --screenshot");
     if (session.empty() && play.empty()) return;
-    warn_of_no_effect(
-        *command_, {"VOLUME",           "--dims",       "--type",       "--spacing",
-                    "--skip",           "--byte-order", "--series",     "--time-step",
-                    "--frame-interval", "--smooth",     "--dequantize", "--prefilter",
-                    "--level",          "--channel",    "--memory",     "--coarse-first",
-                    "--all-times",      "--cache",      "--cache-size", "--forbidden-is-missing",
-                    "--isovalue",       "--solid",      "--field",      "--background",
-                    "--method",         "--layers",     "--labels"},
-        "the " + std::string(play.empty() ? "session" : "recording") + " says what is felt");
+    const std::string reason =
+        "the " + std::string(play.empty() ? "session" : "recording") + " says what is felt";
+    if (has_volume()) warn_of_no_effect(*command_, {"VOLUME"}, reason);
+    warn_of_no_effect(*command_,
+                      {"--dims",      "--type",       "--spacing",        "--orientation",
+                       "--skip",      "--byte-order", "--series",         "--time-step",
+                       "--smooth",    "--dequantize", "--frame-interval", "--prefilter",
+                       "--level",     "--channel",    "--memory",         "--coarse-first",
+                       "--all-times", "--cache",      "--cache-size",     "--forbidden-is-missing",
+                       "--isovalue",  "--solid",      "--field",          "--background",
+                       "--method",    "--layers",     "--labels"},
+                      reason);
 }
 
 std::optional<std::array<int, 2>> ViewOptions::window_size() const {

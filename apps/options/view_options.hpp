@@ -20,9 +20,10 @@ struct ViewOptions {
 
     /// For `palpate view` and for the viewer itself.
     void add_to(CLI::App& command);
-    /// Once the command line has been read. Throws std::invalid_argument for options that exclude
-    /// each other. Warns on standard error of options that do nothing.
-    void check() const;
+    /// Once the command line has been read. A VOLUME that is a session or a recording takes the
+    /// place of that option. Throws std::invalid_argument for options that exclude each other.
+    /// Warns on standard error of options that do nothing.
+    void settle();
     /// Width and height of the window [pixels]; nothing: not given. Throws std::invalid_argument
     /// for a size that is none.
     std::optional<std::array<int, 2>> window_size() const;

@@ -49,6 +49,7 @@ std::optional<run::StoreSource> store_of(const run::Source& source) {
     run::StoreSource store{file->path, {}, {}};
     store.options.raw = file->raw;
     store.options.spacing = file->spacing;
+    store.options.orientation = file->orientation;
     if (!stream::is_store(file->path, store.options)) return std::nullopt;
     return store;
 }

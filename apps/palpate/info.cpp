@@ -13,6 +13,7 @@
 #include "apps/palpate/progress.hpp"
 #include "palpate/filters/dequantize.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/io/orientation.hpp"
 #include "palpate/run/statistics.hpp"
 
 namespace palpate::app {
@@ -22,17 +23,10 @@ constexpr int fine_bins = 256;  // for the suggestions and JSON
 constexpr int text_bins = 16;
 constexpr int bar_width = 40;
 
-/// Where each index axis runs to, anatomically: "L P S" for an axis-aligned LPS grid.
+/// Where each index axis runs to in the body: "L P S" for an axis-aligned LPS grid.
 std::string orientation(const Geometry& geometry) {
-    constexpr const char* towards[3][2] = {{"L", "R"}, {"P", "A"}, {"S", "I"}};
-    std::string text;
-    for (int axis = 0; axis < 3; ++axis) {
-        int most = 0;
-        geometry.direction.col(axis).cwiseAbs().maxCoeff(&most);
-        if (axis > 0) text += ' ';
-        text += towards[most][geometry.direction(most, axis) < 0];
-    }
-    return text;
+    const std::string letters = io::orientation_of(geometry);
+    return fmt::format("{}", fmt::join(letters, " "));
 }
 
 bool is_oblique(const Geometry& geometry) {
@@ -139,7 +133,8 @@ nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histo
             {"spacing_mm", list(g.spacing)},
             {"origin_mm", list(g.origin)},
             {"direction", direction},
-            {"orientation", orientation(g)},
+            {"orientation", g.oriented ? nlohmann::ordered_json(orientation(g)) : nullptr},
+            {"spacing_known", g.measured},
             {"values", json_of(loaded.values)},
             {"minimum", samples->minimum()},
             {"maximum", samples->maximum()},
@@ -198,12 +193,15 @@ void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram
         fmt::print("frames       from {:g} to {:g} s, round in {:g} s\n", times.front(),
                    times.back(), loaded.sequence.period);
     }
-    fmt::print("spacing      {:g} x {:g} x {:g} mm\n", g.spacing[0], g.spacing[1], g.spacing[2]);
+    fmt::print("spacing      {:g} x {:g} x {:g} mm{}\n", g.spacing[0], g.spacing[1], g.spacing[2],
+               g.measured ? "" : ", assumed: the file gives none (--spacing)");
     fmt::print("extent       {:g} x {:g} x {:g} mm\n", extent[0], extent[1], extent[2]);
     fmt::print("origin       {:g}, {:g}, {:g} mm (LPS)\n", g.origin[0] + 0.0, g.origin[1] + 0.0,
                g.origin[2] + 0.0);  // no -0
-    fmt::print("orientation  axes run towards {}{}\n", orientation(g),
-               is_oblique(g) ? " (oblique)" : "");
+    fmt::print("orientation  {}{}\n",
+               g.oriented ? "axes run towards " + orientation(g)
+                          : "not known: the file gives none (--orientation)",
+               g.oriented && is_oblique(g) ? " (oblique)" : "");
     const std::string values = text_of(loaded.values);
     if (!values.empty()) fmt::print("values       {}\n", values);
     if (loaded.values.padding) {

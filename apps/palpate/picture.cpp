@@ -13,6 +13,7 @@ namespace palpate::app {
 pictures::PictureScene scene_of(const run::LoadedVolume& loaded, int width, int height) {
     const std::filesystem::path path(loaded.name);
     pictures::PictureScene scene;
+    scene.oriented = loaded.volume.geometry().oriented;
     scene.width = width;
     scene.height = height;
     scene.title = (path.has_filename() ? path : path.parent_path()).filename().string();

@@ -67,7 +67,7 @@ void add_view(CLI::App& app, const Words& words) {
         "file there. ? lists the shortcuts.\n\nExample:\n  palpate view head.nrrd --device mouse");
     options->add_to(*command);
     command->callback([options, words] {
-        options->check();
+        options->settle();
         become_viewer(words);
     });
 }

@@ -43,6 +43,8 @@ void open(viewer::MainWindow& window, const app::ViewOptions& options) {
 int show(QApplication& application, const app::ViewOptions& options) {
     viewer::MainWindow window({options.run.setup(), options.run.device, options.run.record});
     if (const auto size = options.window_size()) window.resize((*size)[0], (*size)[1]);
+    if (!options.size.empty() || !options.screenshot.empty()) window.forget_layout();
+    if (!options.screenshot.empty()) window.messages().set_unattended();
     window.show();
     open(window, options);
     // A signal ends the window at once: forces go to zero, nobody is asked.
@@ -72,7 +74,7 @@ int main(int argc, char** argv) {
     try {
         app::refuse_impossible_values(command, argc, argv);
         command.parse(argc, argv);
-        options.check();
+        options.settle();
     } catch (const CLI::Success& e) {
         return command.exit(e);
     } catch (const CLI::ParseError& e) {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 struct LoadOptions {
     std::optional<io::RawLayout> raw;
     std::optional<Vec3> spacing;
-    std::string series;
+    std::string series, orientation;
     std::optional<int> frame;
     std::optional<double> frame_interval;
     int smooth = 0, dequantize = 0;
@@ -34,9 +34,11 @@ run::Source source_of(const fs::path& name, const LoadOptions& options) {
         file->raw = options.raw;
         file->spacing = options.spacing;
         file->series = options.series;
-    } else if (options.raw || options.spacing || !options.series.empty()) {
-        throw std::invalid_argument(name.string() +
-                                    ": raw, spacing and series are for files and folders");
+        file->orientation = options.orientation;
+    } else if (options.raw || options.spacing || !options.series.empty() ||
+               !options.orientation.empty()) {
+        throw std::invalid_argument(
+            name.string() + ": raw, spacing, orientation and series are for files and folders");
     }
     source.frame = options.frame;
     source.frame_interval = options.frame_interval;
@@ -171,20 +173,23 @@ void bind_load(py::module_& module) {
     module.def(
         "load",
         [](const fs::path& source, std::optional<io::RawLayout> raw, std::optional<Vec3> spacing,
-           std::string series, std::optional<int> frame, std::optional<double> frame_interval,
-           int smooth, int dequantize, bool prefilter, const ProgressFunction& progress) {
+           std::string orientation, std::string series, std::optional<int> frame,
+           std::optional<double> frame_interval, int smooth, int dequantize, bool prefilter,
+           const ProgressFunction& progress) {
             return load(source,
-                        {raw, spacing, std::move(series), frame, frame_interval, smooth, dequantize,
-                         prefilter},
+                        {raw, spacing, std::move(series), std::move(orientation), frame,
+                         frame_interval, smooth, dequantize, prefilter},
                         progress);
         },
         py::arg("source"), py::kw_only(), py::arg("raw") = py::none(),
-        py::arg("spacing") = py::none(), py::arg("series") = "", py::arg("frame") = py::none(),
-        py::arg("frame_interval") = py::none(), py::arg("smooth") = 0, py::arg("dequantize") = 0,
-        py::arg("prefilter") = false, py::arg("progress") = py::none(),
+        py::arg("spacing") = py::none(), py::arg("orientation") = "", py::arg("series") = "",
+        py::arg("frame") = py::none(), py::arg("frame_interval") = py::none(),
+        py::arg("smooth") = 0, py::arg("dequantize") = 0, py::arg("prefilter") = false,
+        py::arg("progress") = py::none(),
         "Reads a volume: a file or folder (NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI, raw), a\n"
         "numbered series ('heart_%03d.nrrd'), 'synthetic:NAME[:WxHxD]', or 'live:FILE'.\n"
-        "spacing [mm] instead of the file's; frame: of a sequence this one alone; smooth: passes;\n"
+        "spacing [mm] and orientation (the sides that the axes run to: 'LPS', 'RAS') instead of\n"
+        "the file's; frame: of a sequence this one alone; smooth: passes;\n"
         "dequantize: rounds; prefilter: sharpened(). progress(fraction) may raise to stop.\n"
         "Raises InputError, SeriesChoice.");
 }

@@ -99,10 +99,12 @@ void bind_open_store(py::module_& module) {
     module.def(
         "open_store",
         [](const fs::path& place, std::optional<io::RawLayout> raw, std::optional<Vec3> spacing,
-           int channel, int time, const fs::path& cache, bool forbidden_is_missing) {
+           std::string orientation, int channel, int time, const fs::path& cache,
+           bool forbidden_is_missing) {
             stream::StoreOptions options;
             options.raw = raw;
             options.spacing = spacing;
+            options.orientation = std::move(orientation);
             options.channel = channel;
             options.time = time;
             options.forbidden_is_missing = forbidden_is_missing;
@@ -115,8 +117,9 @@ void bind_open_store(py::module_& module) {
                 address, options};
         },
         py::arg("address"), py::kw_only(), py::arg("raw") = py::none(),
-        py::arg("spacing") = py::none(), py::arg("channel") = 0, py::arg("time") = 0,
-        py::arg("cache") = "", py::arg("forbidden_is_missing") = false, Unlocked(),
+        py::arg("spacing") = py::none(), py::arg("orientation") = "", py::arg("channel") = 0,
+        py::arg("time") = 0, py::arg("cache") = "", py::arg("forbidden_is_missing") = false,
+        Unlocked(),
         "Opens what is read by the box: OME-Zarr and other chunked formats, folders or http://,\n"
         "https:// and s3:// addresses, and plain files whose samples are not compressed\n"
         "(docs/streaming.md). cache: a folder that keeps what came over the network.\n"

@@ -32,6 +32,12 @@ void bind_geometry(py::module_& module) {
         .field("origin", &Geometry::origin, "Physical position of sample (0, 0, 0) [mm].")
         .field("direction", &Geometry::direction,
                "Columns: unit vectors of the index axes, shape (3, 3).")
+        .field(
+            "oriented", &Geometry::oriented,
+            "The axes are those of the body (LPS); False: the file does not say, left and right\n"
+            "may be mirrored.")
+        .field("measured", &Geometry::measured,
+               "The spacing is in mm; False: the file does not say.")
         .done()
         .def("physical", &physical_from_index, py::arg("index"),
              "The physical point [mm] of an index (i, j, k), fractions allowed.")
@@ -84,13 +90,10 @@ void bind_volumes(py::module_& module) {
         .def(py::pickle(
             [](const Volume& self) {
                 const Geometry& g = self.geometry();
-                return py::make_tuple(array_of(self), g.spacing, g.origin, g.direction);
+                return py::make_tuple(array_of(self), g);
             },
             [](const py::tuple& state) {
-                return volume_from(state[0].cast<py::array>(),
-                                   geometry_of(state[1].cast<Vec3>(), state[2].cast<Vec3>(),
-                                               state[3].cast<Mat3>()),
-                                   true);
+                return volume_from(state[0].cast<py::array>(), state[1].cast<Geometry>(), true);
             }));
 }
 

@@ -123,6 +123,8 @@ void make_room_for_tools(Renderer& renderer);
 /// There has to be room, and nothing is allocated. The settings have to pass check() with it.
 void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
               const Mat3& orientation) noexcept;
+/// The proxy starts at the hand with the next tick, wherever it is now: the force starts again.
+void lift(Renderer& renderer) noexcept;
 /// A warning if nothing can be felt at this level (it lies outside the data's range), or if the
 /// background is solid at it, and with that all of space outside the data; else empty.
 std::string isovalue_warning(const Field& field, double isovalue);

@@ -92,6 +92,9 @@ struct UseLayers {
 struct UseTool {
     std::shared_ptr<const Tool> tool;
 };
+/// Lifts the hand off: the proxy leaves whatever holds it, such as a closed shell, and starts at
+/// the hand with the next tick. All punctures are forgotten. The force starts again.
+struct Lift {};
 /// Scales the volume about the SCP, which changes neither the proxy nor the force.
 struct Scale {
     double scale;  ///< physical mm per device mm, > 0
@@ -108,7 +111,7 @@ struct Resume {
 using Command = std::variant<command::Isovalue, command::Freeze, command::Clutch, command::Forces,
                              command::Scale, command::Samples, command::Moment, command::Speed,
                              command::UseLayers, command::UseTool, command::Resume, ForceSettings,
-                             Friction, Penetrability, DeviceTransform, DeviceLimits>;
+                             Friction, Penetrability, DeviceTransform, DeviceLimits, command::Lift>;
 
 /// One callable of several, for std::visit over a Command: an alternative that is left out does not
 /// compile.

@@ -84,6 +84,8 @@ struct Geometry {
     Vec3 spacing = Vec3::Ones();        ///< [mm] between neighbouring samples, > 0
     Vec3 origin = Vec3::Zero();         ///< [mm] physical position of sample (0, 0, 0)
     Mat3 direction = Mat3::Identity();  ///< columns: unit vectors of the index axes, orthonormal
+    bool oriented = true;  ///< the physical axes are those of the body (LPS), not assumed
+    bool measured = true;  ///< the spacing is in millimetres, not assumed
 
     bool operator==(const Geometry&) const = default;
 };

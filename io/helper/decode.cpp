@@ -104,7 +104,7 @@ void check_geometry(const Geometry& geometry) {
 }
 
 void finish(Result& result, const Request& request, std::span<std::byte> samples) {
-    if (request.spacing) result.geometry.spacing = *request.spacing;
+    put_in(request.grid, result.geometry);
     check_geometry(result.geometry);
     if (result.type != SampleType::float32) return;
     const std::span<float> floats{reinterpret_cast<float*>(samples.data()),

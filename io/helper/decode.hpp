@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/stored.hpp"
+#include "palpate/io/orientation.hpp"
 #include "palpate/io/series.hpp"
 #include "palpate/io/value_info.hpp"
 #include "palpate/volume.hpp"
@@ -45,7 +46,7 @@ struct Request {
     bool pictures = false;  ///< of the series, if one has to be chosen
     int time_step = 0;
     std::uint64_t memory_limit = UINT64_MAX;  ///< [bytes]
-    std::optional<Vec3> spacing;              ///< [mm] instead of the file's
+    GivenGrid grid;                           ///< instead of the file's
 };
 
 /// When the volumes of a 4-D file were taken.

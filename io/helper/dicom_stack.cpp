@@ -206,6 +206,7 @@ void set_single_spacing(const DicomSlice& slice, Stack& stack) {
     stack.geometry.spacing[2] = slice.thickness > 0 ? slice.thickness : 1;
     if (!(slice.thickness > 0)) {
         stack.notes.emplace_back("it gives no distance between slices: 1 mm was taken");
+        stack.geometry.measured = false;
     }
 }
 
@@ -325,10 +326,13 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
     DicomSeries scaled = series;  // with a pixel size in any case
     if (!any.pixel) {
         stack.notes.emplace_back("it gives no pixel spacing: 1 mm was taken");
+        stack.geometry.measured = false;
         for (auto& s : scaled.slices) s.pixel = Vec3(1, 1, 0);
     }
     stack.geometry.spacing.head<2>() = scaled.slices.front().pixel->head<2>();
     if (scaled.slices.size() > 1) place_by_location(scaled, stack.notes);
+    stack.geometry.oriented =
+        std::ranges::all_of(series.slices, [](const DicomSlice& s) { return s.row && s.column; });
     if (!std::ranges::all_of(scaled.slices, is_placed)) {
         pile_up(scaled, request, stack);
         stack.geometry.size[2] = static_cast<int>(stack.slices.size());

@@ -216,7 +216,8 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
     if (channel >= setups || time >= image.times) return image;
     const BdvSetup& setup = all[static_cast<std::size_t>(channel)];
     image.unit = setup.unit;
-    if (image.unit.empty()) {
+    image.measured = !image.unit.empty();
+    if (!image.measured) {
         image.unit = "millimeter";
         image.notes.emplace_back("no XML file beside it gives its spacing: 1 mm was taken");
     }

@@ -84,7 +84,7 @@ PlainLayout samples_of(VolumeHeader header, const Request& request) {
     plain.about.times = header.times;
     plain.about.values = header.values;
     plain.about.notes = header.notes;
-    if (request.spacing) plain.about.geometry.spacing = *request.spacing;
+    put_in(request.grid, plain.about.geometry);
     check_geometry(plain.about.geometry);
     plain.about.geometry = orthonormal(plain.about.geometry);
     return plain;

@@ -1,8 +1,11 @@
 // Writes NRRD, MetaImage and NIfTI with ITK's ImageIO classes, straight from the shared samples: no
 // itk::Image, no pixel conversion, no factories.
+#include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
+
+#include <fstream>
 
 #include "io/helper/headers.hpp"
 #include "io/helper/readers.hpp"
@@ -44,6 +47,25 @@ void check_written(const std::filesystem::path& path, const std::string& extensi
         throw Failure("is too large for this format; write .nrrd instead");
 }
 
+/// Says in a NRRD header that the axes are not known to be the body's. NIfTI has no place for an
+/// origin without saying that they are.
+void leave_unoriented(itk::ImageIOBase& io) {
+    itk::EncapsulateMetaData<std::string>(io.GetMetaDataDictionary(), "NRRD_space",
+                                          "3D-right-handed");
+}
+
+/// ITK has no way to leave MetaImage's orientation open.
+void erase_orientation(const std::filesystem::path& path) {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    const std::string field = "AnatomicalOrientation = ";
+    for (std::string line; std::getline(file, line) && !line.starts_with("ElementDataFile");) {
+        if (!line.starts_with(field)) continue;
+        file.seekp(file.tellg() - static_cast<std::streamoff>(line.size() - field.size() + 1));
+        file << std::string(line.size() - field.size(), '?');
+        return;
+    }
+}
+
 }  // namespace
 
 void write_with_itk(const std::filesystem::path& path, const std::string& extension,
@@ -73,8 +95,10 @@ void write_with_itk(const std::filesystem::path& path, const std::string& extens
     io->SetPixelType(itk::IOPixelEnum::SCALAR);
     io->SetNumberOfComponents(1);
     io->SetUseCompression(compress);
+    if (!geometry.oriented) leave_unoriented(*io);
     io->WriteImageInformation();
     io->Write(samples);
+    if (!geometry.oriented && extension.starts_with(".mh")) erase_orientation(path);
     check_written(path, extension, sample_count(geometry));
 }
 

@@ -78,7 +78,7 @@ nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked, Read*
     request.series = asked.at("series").get<std::string>();
     request.time_step = asked.at("time_step").get<int>();
     request.memory_limit = asked.at("memory").get<std::uint64_t>();
-    if (asked.contains("spacing")) request.spacing = vec3_from(asked["spacing"]);
+    request.grid = grid_from(asked);
     request.pictures = asked.value("pictures", false);
     limit_this_process(asked, request.memory_limit);
     Result result;
@@ -102,7 +102,7 @@ nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked, Read*
 nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked, Locate* locate) {
     Request request;
     request.path = path;
-    if (asked.contains("spacing")) request.spacing = vec3_from(asked["spacing"]);
+    request.grid = grid_from(asked);
     limit_this_process(asked, 1 << 30);
     PlainLayout plain;
     try {

@@ -143,6 +143,9 @@ void read_geometry(const HeaderFields& fields, VolumeHeader& header) {
             g.direction(static_cast<Eigen::Index>(b), i) = turn[a * axes + b];
         }
     }
+    const std::string sides = fields.value("anatomicalorientation");
+    g.oriented = sides.empty() ? g.direction != Mat3::Identity() : !sides.starts_with('?');
+    g.measured = !spacing.empty();
     if (spacing.empty()) header.notes.push_back("its header gives no spacing: 1 mm was taken");
     const std::string unit = fields.value("distanceunits");
     const double length = unit == "?" ? 1 : length_unit(unit, header.notes);

@@ -236,12 +236,20 @@ void note_spacings(const Transform& sform, const Header& header, double unit,
     }
 }
 
+constexpr std::size_t qform_code = 252, sform_code = 254;  // [bytes] where they lie
+
+/// False where the header says nothing of the grid's place in the body.
+bool is_placed(const Header& header) {
+    return header.number<std::int16_t>(qform_code) > 0 ||
+           header.number<std::int16_t>(sform_code) > 0;
+}
+
 /// The sform goes before the qform, unless it is sheared, which a grid cannot be.
 Transform transform_of(const Header& header, std::vector<std::string>& notes) {
     const double unit = unit_of_length(header, notes);
-    const bool has_qform = header.number<std::int16_t>(252) > 0;
-    const bool has_sform = header.number<std::int16_t>(254) > 0;
-    if (!has_sform && !has_qform) {
+    const bool has_qform = header.number<std::int16_t>(qform_code) > 0;
+    const bool has_sform = header.number<std::int16_t>(sform_code) > 0;
+    if (!is_placed(header)) {
         notes.push_back(
             "its header says nothing of its orientation in the body (no sform, no "
             "qform): its axes were taken as those of LPS");
@@ -276,6 +284,7 @@ Geometry geometry_of(const Header& header, std::vector<std::string>& notes) {
         g.direction.col(axis) = (lps.col(axis) / g.spacing[axis]).array() + 0.0;  // no -0
     }
     g.origin = lps.col(3).array() + 0.0;
+    g.oriented = is_placed(header);
     return g;
 }
 

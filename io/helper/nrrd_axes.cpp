@@ -78,22 +78,23 @@ std::vector<std::string> units_in(const std::string& text) {
 struct Space {
     std::size_t dimension = 0;   ///< 0: the header gives none
     Vec3 to_lps = Vec3::Ones();  ///< factors to left, posterior, superior [mm]
+    bool is_body = false;        ///< its axes are the patient's
 };
 
 Space named_space(const HeaderFields& fields) {
     static const std::map<std::string, Space> spaces = {
-        {"right-anterior-superior", {3, {-1, -1, 1}}},
-        {"ras", {3, {-1, -1, 1}}},
-        {"left-anterior-superior", {3, {1, -1, 1}}},
-        {"las", {3, {1, -1, 1}}},
-        {"left-posterior-superior", {3, {1, 1, 1}}},
-        {"lps", {3, {1, 1, 1}}},
-        {"right-anterior-superior-time", {4, {-1, -1, 1}}},
-        {"rast", {4, {-1, -1, 1}}},
-        {"left-anterior-superior-time", {4, {1, -1, 1}}},
-        {"last", {4, {1, -1, 1}}},
-        {"left-posterior-superior-time", {4, {1, 1, 1}}},
-        {"lpst", {4, {1, 1, 1}}},
+        {"right-anterior-superior", {3, {-1, -1, 1}, true}},
+        {"ras", {3, {-1, -1, 1}, true}},
+        {"left-anterior-superior", {3, {1, -1, 1}, true}},
+        {"las", {3, {1, -1, 1}, true}},
+        {"left-posterior-superior", {3, {1, 1, 1}, true}},
+        {"lps", {3, {1, 1, 1}, true}},
+        {"right-anterior-superior-time", {4, {-1, -1, 1}, true}},
+        {"rast", {4, {-1, -1, 1}, true}},
+        {"left-anterior-superior-time", {4, {1, -1, 1}, true}},
+        {"last", {4, {1, -1, 1}, true}},
+        {"left-posterior-superior-time", {4, {1, 1, 1}, true}},
+        {"lpst", {4, {1, 1, 1}, true}},
         {"scanner-xyz", {3, {1, 1, 1}}},
         {"scanner-xyz-time", {4, {1, 1, 1}}},
         {"3d-right-handed", {3, {1, 1, 1}}},
@@ -118,7 +119,7 @@ Space named_space(const HeaderFields& fields) {
 Space space_of(const HeaderFields& fields, std::vector<std::string>& notes) {
     Space space = named_space(fields);
     const std::string name = lower(fields.value("space"));
-    if (name.rfind("scanner", 0) == 0 || name.rfind("3d-", 0) == 0) {
+    if (!name.empty() && !space.is_body) {
         notes.push_back("its space is '" + name +
                         "', which is not the patient's: its axes were taken as those of LPS");
     }
@@ -336,8 +337,11 @@ Geometry geometry_of(const HeaderFields& fields, const Space& space, std::vector
         }
         if (!axis.spacing && !axis.direction) {
             add_note(notes, "its header gives no spacing: 1 mm was taken");
+            g.measured = false;
         }
     }
+    const bool directed = std::ranges::any_of(spatial, [](const Axis& a) { return !!a.direction; });
+    g.oriented = space.is_body && directed;
     complete_directions(spatial, g.direction);
     if (space.dimension > 0 && fields.has("space origin")) {
         std::size_t at = 0;

@@ -20,6 +20,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "palpate/io/orientation.hpp"
 #include "palpate/volume.hpp"
 
 namespace palpate::io {
@@ -40,6 +41,8 @@ inline nlohmann::json json_from(const Geometry& g) {
     return {{"size", {g.size[0], g.size[1], g.size[2]}},
             {"spacing", json_from(g.spacing)},
             {"origin", json_from(g.origin)},
+            {"oriented", g.oriented},
+            {"measured", g.measured},
             {"axes",
              {json_from(Vec3(g.direction.col(0))), json_from(Vec3(g.direction.col(1))),
               json_from(Vec3(g.direction.col(2)))}}};
@@ -53,7 +56,20 @@ inline Geometry geometry_from(const nlohmann::json& j) {
     }
     g.spacing = vec3_from(j.at("spacing"));
     g.origin = vec3_from(j.at("origin"));
+    g.oriented = j.at("oriented").get<bool>();
+    g.measured = j.at("measured").get<bool>();
     return g;
+}
+
+/// Puts into a request what is used instead of the file's, and takes it out again.
+inline void add_to(nlohmann::json& request, const GivenGrid& given) {
+    if (given.spacing) request["spacing"] = json_from(*given.spacing);
+    if (!given.orientation.empty()) request["orientation"] = given.orientation;
+}
+inline GivenGrid grid_from(const nlohmann::json& request) {
+    GivenGrid given{{}, request.value("orientation", std::string())};
+    if (request.contains("spacing")) given.spacing = vec3_from(request["spacing"]);
+    return given;
 }
 
 /// Bytes of a mesh in shared memory: vertices of three doubles, triangles of three 32-bit numbers.

@@ -107,7 +107,8 @@ ChunkedImage tiff_image(const fs::path& path, int channel, int time) {
     ChunkedImage found;
     const TiffLayout layout = layout_of(tiff.get(), path, found.notes);
     const OmeImage& image = layout.image;
-    if (!image.spacing_note.empty()) found.notes.push_back(image.spacing_note);
+    found.measured = image.spacing_note.empty();
+    if (!found.measured) found.notes.push_back(image.spacing_note);
     found.format = image.format;
     found.unit = "millimeter";
     found.channels = image.channels;

@@ -136,7 +136,9 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
     const auto& spacing = layout.image.spacing;
     result.geometry.spacing = {spacing[2], spacing[1], spacing[0]};
     const std::string& note = layout.image.spacing_note;
-    if (!request.spacing && !note.empty()) result.notes.push_back(note);
+    if (!request.grid.spacing && !note.empty()) result.notes.push_back(note);
+    result.geometry.oriented = false;
+    result.geometry.measured = note.empty();
     finish(result, request, samples);
     return result;
 }

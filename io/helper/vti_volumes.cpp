@@ -137,6 +137,7 @@ Geometry geometry_of(vtkImageData& image, bool at_cells) {
         first[a] = extent[2 * a] + (at_cells && samples > 1 ? 0.5 : 0.0);
         for (int r = 0; r < 3; ++r) g.direction(r, a) = direction->GetElement(r, a);
     }
+    g.oriented = false;  // VTK's space is nobody's
     // VTK's origin is where index 0 lies, which need not be the first sample.
     if (first != Vec3::Zero()) g.origin = physical_from_index(g, first);
     return g;

@@ -264,6 +264,7 @@ static void members(auto& v, Is<command::UseLayers> auto& s) {
 static void members(auto& v, Is<command::UseTool> auto& s) {
     v("tool", s.tool);
 }
+static void members(auto&, Is<command::Lift> auto&) {}
 static void members(auto& v, Is<command::Moment> auto& s) {
     v("time", s.time);
 }
@@ -279,9 +280,10 @@ Json written(const T& value) {
 }
 
 /// The name of each alternative of Command, in its order.
-constexpr std::array command_names{
-    "isovalue", "freeze", "clutch", "forces", "scale",    "samples",       "moment",    "speed",
-    "layers",   "tool",   "resume", "force",  "friction", "penetrability", "transform", "limits"};
+constexpr std::array command_names{"isovalue", "freeze", "clutch",   "forces",        "scale",
+                                   "samples",  "moment", "speed",    "layers",        "tool",
+                                   "resume",   "force",  "friction", "penetrability", "transform",
+                                   "limits",   "lift"};
 static_assert(command_names.size() == std::variant_size_v<Command>);
 
 template <std::size_t i = 0>

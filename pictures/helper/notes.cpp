@@ -130,7 +130,7 @@ vtkSmartPointer<vtkRenderer> orientation_of(const PictureScene& scene, int width
     const double side = 0.17 * std::min(width, height);
     auto renderer = orientation_view(layer);
     renderer->SetViewport(0, 0, side / width, side / height);
-    turn_orientation(*renderer, scene.camera.towards_viewer, scene.camera.up);
+    turn_orientation(*renderer, scene.camera.towards_viewer, scene.camera.up, scene.oriented);
     return renderer;
 }
 

@@ -15,14 +15,18 @@
 namespace palpate::pictures {
 namespace {
 
+void name_faces(vtkAnnotatedCubeActor& cube, bool oriented) {
+    cube.SetXPlusFaceText(oriented ? "L" : "+X");
+    cube.SetXMinusFaceText(oriented ? "R" : "-X");
+    cube.SetYPlusFaceText(oriented ? "P" : "+Y");
+    cube.SetYMinusFaceText(oriented ? "A" : "-Y");
+    cube.SetZPlusFaceText(oriented ? "S" : "+Z");
+    cube.SetZMinusFaceText(oriented ? "I" : "-Z");
+}
+
 vtkSmartPointer<vtkAnnotatedCubeActor> body_cube() {
     auto cube = vtkSmartPointer<vtkAnnotatedCubeActor>::New();
-    cube->SetXPlusFaceText("L");
-    cube->SetXMinusFaceText("R");
-    cube->SetYPlusFaceText("P");
-    cube->SetYMinusFaceText("A");
-    cube->SetZPlusFaceText("S");
-    cube->SetZMinusFaceText("I");
+    name_faces(*cube, true);
     cube->SetFaceTextScale(0.62);
     cube->SetXFaceTextRotation(90);
     cube->SetYFaceTextRotation(0);
@@ -98,7 +102,9 @@ vtkSmartPointer<vtkRenderer> orientation_view(int layer) {
     return view;
 }
 
-void turn_orientation(vtkRenderer& view, const Vec3& towards_viewer, const Vec3& up) {
+void turn_orientation(vtkRenderer& view, const Vec3& towards_viewer, const Vec3& up,
+                      bool oriented) {
+    name_faces(*vtkAnnotatedCubeActor::SafeDownCast(view.GetViewProps()->GetLastProp()), oriented);
     vtkCamera* const camera = view.GetActiveCamera();
     camera->ParallelProjectionOn();
     camera->SetFocalPoint(0, 0, 0);

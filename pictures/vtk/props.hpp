@@ -16,10 +16,11 @@ namespace palpate::pictures {
 /// They go with the camera.
 void light(vtkRenderer& renderer);
 
-/// A cube with the sides of the body on it (LPS): L, R, A, P, S, I. Alone in a renderer, which
-/// shows it from a side with turn_orientation().
+/// A cube with the sides of the body on it (LPS): L, R, A, P, S, I, or, where they are not known,
+/// the ends of the axes: +X, -X. Alone in a renderer, which shows it from a side with
+/// turn_orientation().
 vtkSmartPointer<vtkRenderer> orientation_view(int layer);
-void turn_orientation(vtkRenderer& view, const Vec3& towards_viewer, const Vec3& up);
+void turn_orientation(vtkRenderer& view, const Vec3& towards_viewer, const Vec3& up, bool oriented);
 
 /// A bar in the lower right corner of a picture, in pixels.
 struct ScaleBar {

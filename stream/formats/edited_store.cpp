@@ -64,6 +64,7 @@ Json json_of(const EditsNote& note, const fs::path& out) {
     }
     if (options.forbidden_is_missing) json["forbidden_is_missing"] = true;
     if (options.spacing) json["spacing"] = list_of(*options.spacing);
+    if (!options.orientation.empty()) json["orientation"] = options.orientation;
     for (const ChunkSet& level : note.chunks) {
         Json chunks = Json::array();
         for (const auto& chunk : level) {
@@ -99,6 +100,7 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
             raw.at("big_endian").get<bool>()};
     }
     if (json.contains("spacing")) of.spacing = three_of<Vec3>(json["spacing"]);
+    of.orientation = json.value("orientation", std::string());
     note.level = json.at("level").get<int>();
     note.bounds = {json.at("bounds").at(0).get<double>(), json.at("bounds").at(1).get<double>()};
     const Json& levels = json.at("chunks");

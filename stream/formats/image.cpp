@@ -8,6 +8,7 @@
 
 #include "io/units.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/io/orientation.hpp"
 #include "stream/formats/stores.hpp"
 
 namespace palpate::stream {
@@ -76,7 +77,7 @@ class Taking {
         for (std::size_t i = 0; i < volume_.arrays.size(); ++i) {
             info.levels.push_back(level_of(volume_.arrays[i], image, image.levels[i], roles));
         }
-        use_spacing();
+        use_given();
         return std::move(volume_);
     }
 
@@ -133,6 +134,8 @@ class Taking {
             level.geometry.origin[i] = place.translation[a] * unit;
         }
         if (image.direction) level.geometry.direction = *image.direction;
+        level.geometry.oriented = image.oriented;
+        level.geometry.measured = image.measured;
         try {
             check(level.geometry);
         } catch (const std::invalid_argument& e) {
@@ -143,15 +146,21 @@ class Taking {
     }
 
     /// The spacing that the caller gives is that of the finest level.
-    void use_spacing() {
-        if (!options_.spacing) return;
+    void use_given() {
         const Geometry finest = volume_.info.levels[0].geometry;
-        const Vec3 factor = options_.spacing->cwiseQuotient(finest.spacing);
+        Geometry given = finest;
+        io::put_in({options_.spacing, options_.orientation}, given);
+        if (given == finest) return;
+        const Vec3 factor = given.spacing.cwiseQuotient(finest.spacing);
         for (Level& level : volume_.info.levels) {
-            Geometry& grid = level.geometry;
-            grid.spacing = grid.spacing.cwiseProduct(factor);
-            const Vec3 apart = grid_axes_from_physical(finest, grid.origin - finest.origin);
-            grid.origin = finest.origin + finest.direction * apart.cwiseProduct(factor);
+            const Vec3 apart =
+                grid_axes_from_physical(finest, level.geometry.origin - finest.origin);
+            const Vec3 spacing = level.geometry.spacing.cwiseProduct(factor);
+            const Index3 size = level.geometry.size;
+            level.geometry = given;
+            level.geometry.size = size;
+            level.geometry.spacing = spacing;
+            level.geometry.origin = given.origin + given.direction * apart.cwiseProduct(factor);
         }
     }
 

@@ -33,7 +33,9 @@ struct Image {
     std::vector<std::string> channels = {};     ///< names, as far as they are given
     std::optional<Range> range = std::nullopt;  ///< of the finest level
     std::optional<Mat3> direction =
-        std::nullopt;  ///< of the grid's axes; translations are then LPS
+        std::nullopt;       ///< of the grid's axes; translations are then LPS
+    bool oriented = false;  ///< the grid's axes are the body's
+    bool measured = true;   ///< false: the scales are assumed
 };
 
 /// The axes of an array that does not name them: its last three are z, y, x, before them c and t.

@@ -68,6 +68,7 @@ ChunkedVolume located_volume(const io::ChunkedImage& found,
     Image image;
     image.axes = usual_axes(3);
     for (ImageAxis& axis : image.axes) axis.unit = found.unit;
+    image.measured = found.measured;
     if (found.range && (*found.range)[0] <= (*found.range)[1]) {
         image.range = Range{(*found.range)[0], (*found.range)[1]};
     }

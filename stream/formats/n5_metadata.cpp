@@ -215,6 +215,7 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
             level.translation[a] = spacing * ((*factors)[a] - 1) / 2;
             image.axes[a].unit = resolution ? resolution->units[a] : "millimeter";
         }
+        image.measured = resolution.has_value();
         if (!resolution) note_once(notes, "it does not tell its spacing: 1 mm was taken");
         image.levels.push_back(level);
     }

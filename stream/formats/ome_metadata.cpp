@@ -93,11 +93,15 @@ std::optional<Range> range_of(const Json& attributes) {
     return Range{range[0], range[1]};
 }
 
-std::optional<Mat3> direction_of(const Json& attributes) {
+/// What OME-Zarr has no place for.
+void take_direction(const Json& attributes, Image& image) {
     const Json ours = attributes.value("palpate", Json::object());
-    if (!ours.is_object() || !ours.contains("direction")) return std::nullopt;
+    if (!ours.is_object()) return;
+    image.measured = ours.value("measured", Json(true)) == true;
+    if (!ours.contains("direction")) return;
     const std::vector<double> columns = numbers_of(ours["direction"], 9, "direction");
-    return Mat3(Eigen::Map<const Mat3>(columns.data()));
+    image.direction = Mat3(Eigen::Map<const Mat3>(columns.data()));
+    image.oriented = ours.value("oriented", Json(true)) == true;
 }
 
 }  // namespace
@@ -129,7 +133,7 @@ std::optional<Image> ome_image(const Json& given) {
     }
     found.channels = channel_names(attributes);
     found.range = range_of(given);
-    found.direction = direction_of(given);
+    take_direction(given, found);
     return found;
 }
 

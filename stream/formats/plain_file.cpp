@@ -64,6 +64,7 @@ class PlainFile : public Store {
         io::ReadOptions read;
         read.raw = options.raw;
         read.spacing = options.spacing;
+        read.orientation = options.orientation;
         return read;
     }
 

@@ -84,6 +84,7 @@ class Opening {
         volume_.info.format = "Zarr " + std::to_string(root.version);
         volume_.info.notes.push_back("it is an array without a place in space: 1 mm was taken");
         Image image;
+        image.measured = false;
         image.axes = usual_axes(array.axes());
         take_names(root, image.axes);
         for (ImageAxis& axis : image.axes) axis.unit = "millimeter";

@@ -28,8 +28,9 @@ std::string nrrd_head(const Geometry& grid, SampleType type) {
         directions += " " + in_brackets(grid.direction.col(a) * grid.spacing[a]);
     }
     const std::string name = type == SampleType::float32 ? "float" : std::string(name_of(type));
-    return "NRRD0004\ntype: " + name + "\ndimension: 3\nspace: left-posterior-superior\nsizes: " +
-           std::to_string(grid.size[0]) + " " + std::to_string(grid.size[1]) + " " +
+    const std::string space = grid.oriented ? "left-posterior-superior" : "3D-right-handed";
+    return "NRRD0004\ntype: " + name + "\ndimension: 3\nspace: " + space +
+           "\nsizes: " + std::to_string(grid.size[0]) + " " + std::to_string(grid.size[1]) + " " +
            std::to_string(grid.size[2]) + "\nspace directions:" + directions +
            "\nkinds: domain domain domain\nendian: little\nencoding: raw\nspace origin: " +
            in_brackets(grid.origin) + "\n\n";

@@ -139,13 +139,15 @@ ZarrWriter::ZarrWriter(fs::path folder, SampleType type, std::vector<CoarserGrid
 void ZarrWriter::write_metadata(const std::optional<Range>& range) const {
     Json image = image_of(levels_), ours = Json::object();
     const Geometry& finest = levels_.front().geometry;
-    if (finest.direction != Mat3::Identity()) {
+    if (finest.oriented || finest.direction != Mat3::Identity()) {
         // OME-Zarr has no directions before version 0.6.
         for (int column = 0; column < 3; ++column) {
             for (int row = 0; row < 3; ++row)
                 ours["direction"].push_back(finest.direction(row, column));
         }
     }
+    if (ours.contains("direction") && !finest.oriented) ours["oriented"] = false;
+    if (!finest.measured) ours["measured"] = false;
     if (range) ours["range"] = {range->minimum, range->maximum};
     if (!range) folder_->make();
     const bool two = options_.zarr_version == 2;

@@ -21,7 +21,8 @@ TEST(Info, tells_size_type_origin_and_range_of_a_synthetic_volume) {
     EXPECT_EQ(j["type"], "float32");
     EXPECT_EQ(j["spacing_mm"], json({1.0, 1.0, 1.0}));
     EXPECT_EQ(j["origin_mm"], json({-49.5, -49.5, -14.5}));
-    EXPECT_EQ(j["orientation"], "L P S");
+    EXPECT_EQ(j["orientation"], nullptr) << "it is no body";
+    EXPECT_EQ(j["spacing_known"], true);
     EXPECT_EQ(j["memory_bytes"], 4 * 100 * 100 * 30);
     EXPECT_EQ(j["time_steps"], 1);
     EXPECT_EQ(j["minimum"], 0);
@@ -106,8 +107,38 @@ TEST(Info, prints_the_same_facts_as_text) {
     EXPECT_EQ(text.err, "");
     for (const std::string part :
          {"synthetic:cylinder\n", "100 x 100 x 30 samples, float32", "1 x 1 x 1 mm",
-          "100 x 100 x 30 mm", "towards L P S", "1.2 MB", "isovalues    try ", "histogram"}) {
+          "100 x 100 x 30 mm", "not known: the file gives none (--orientation)", "1.2 MB",
+          "isovalues    try ", "histogram"}) {
         EXPECT_TRUE(contains(text.out, part)) << part << " is not in\n" << text.out;
+    }
+}
+
+TEST(Info, takes_orientation_and_spacing_from_the_command_line_where_the_file_has_none) {
+    const ScratchFolder folder;
+    support::put_bytes(folder / "a.raw", std::string(8, '\1') + std::string(16, '\2'));
+    const Words raw{"a.raw", "--dims", "2x3x4", "--type", "uint8"};
+    const json lacks = info(folder, raw);
+    EXPECT_EQ(lacks["orientation"], nullptr);
+    EXPECT_EQ(lacks["spacing_known"], false);
+    const Outcome text = palpate(folder, Words{"info"} + raw);
+    EXPECT_TRUE(contains(text.out, "1 x 1 x 1 mm, assumed: the file gives none (--spacing)"));
+    const json given = info(folder, raw + Words{"--orientation", "LIA", "--spacing", "1,1,2"});
+    EXPECT_EQ(given["orientation"], "L I A");
+    EXPECT_EQ(given["spacing_known"], true);
+    EXPECT_EQ(given["direction"], json({{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}));
+    const Outcome wrong = palpate(folder, Words{"info"} + raw + Words{"--orientation", "LRA"});
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_TRUE(contains(wrong.err, "orientation LRA: three letters are needed")) << wrong.err;
+    const Outcome made = palpate(folder, "info synthetic:sphere --orientation LPS");
+    EXPECT_TRUE(contains(made.err, "orientation are for files")) << made.err;
+    // What is not known is not claimed by the file it is converted to.
+    for (const std::string out : {"a.nrrd", "a.mha", "a.zarr"}) {
+        ASSERT_EQ(palpate(folder, Words{"convert"} + raw + Words{out}).status, 0) << out;
+        EXPECT_EQ(info(folder, {out})["orientation"], nullptr) << out;
+        const std::string known = "known-" + out;
+        const Words all = Words{"convert"} + raw + Words{"--orientation", "RAS", known};
+        ASSERT_EQ(palpate(folder, all).status, 0) << out;
+        EXPECT_EQ(info(folder, {known})["orientation"], "R A S") << out;
     }
 }
 
@@ -129,7 +160,7 @@ struct Known {
     std::string type;
     double minimum, maximum;
     std::vector<double> spacing;
-    std::string orientation;
+    json orientation;
     friend std::ostream& operator<<(std::ostream& out, const Known& known) {
         return out << known.name;
     }
@@ -156,11 +187,11 @@ TEST_P(RealVolume, has_the_values_that_its_source_gives) {
 INSTANTIATE_TEST_SUITE_P(
     Info, RealVolume,
     testing::Values(
-        Known{"lobster.nrrd", {301, 324, 56}, "uint8", 0, 255, {1, 1, 1.4}, "L P S"},
-        Known{"orange.nrrd", {256, 256, 64}, "uint8", 0, 228, {0.390625, 0.390625, 1}, "L P S"},
-        Known{"cthead_unc.nrrd", {256, 256, 113}, "uint16", 0, 3272, {1, 1, 2}, "L P S"},
+        Known{"lobster.nrrd", {301, 324, 56}, "uint8", 0, 255, {1, 1, 1.4}, nullptr},
+        Known{"orange.nrrd", {256, 256, 64}, "uint8", 0, 228, {0.390625, 0.390625, 1}, nullptr},
+        Known{"cthead_unc.nrrd", {256, 256, 113}, "uint16", 0, 3272, {1, 1, 2}, nullptr},
         Known{"anatomical_be.nii", {33, 41, 25}, "int16", -610, 30393, {2, 2, 2}, "L A S"},
-        Known{"HeadMRVolume.mhd", {48, 62, 42}, "uint8", 0, 255, {4, 4, 4}, "L P S"},
+        Known{"HeadMRVolume.mhd", {48, 62, 42}, "uint8", 0, 255, {4, 4, 4}, nullptr},
         Known{"dicom_sphere", {86, 86, 63}, "uint16", 0, 3752, {2.23256, 2.23256, 2.2}, "P I R"}));
 
 TEST(Info, the_first_level_suggested_bounds_what_was_scanned) {

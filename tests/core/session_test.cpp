@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "palpate/scenes/volumes.hpp"
 #include "support/allocation_counter.hpp"
 #include "support/constants.hpp"
 #include "support/press.hpp"
@@ -55,6 +56,39 @@ TEST(Session, renders_what_the_renderer_renders) {
         ASSERT_EQ(live.proxy().scp, tick.proxy.scp);
     }
     EXPECT_GT(live.force(), 1);
+}
+
+TEST(Session, a_hand_that_is_lifted_leaves_a_closed_shell_with_a_point_and_with_a_tool) {
+    const scenes::Scene shell = scenes::make_volume("shell:32x32x32");
+    for (const bool ball : {false, true}) {
+        RendererSettings settings;
+        if (ball) settings.tool = std::make_shared<const Tool>(sphere_tool(1, 0.5));
+        const Field field(shell.volume, Solid::above, {}, Interpolation::cubic);
+        Session session{make_renderer(field, shell.isovalue, settings), {}};
+        DeviceReading hand;
+        hand.status = DeviceStatus::ready;
+        double time = 0;
+        const auto next = [&] { return advance(session, time += period, hand); };
+        SessionTick last = next();
+        for (double x = 0; x < 30; x += 0.1) {
+            hand.position = {x, 0, 0};
+            last = next();
+        }
+        EXPECT_EQ(last.tick.proxy.mode, Mode::constrained);
+        EXPECT_GT((last.tick.proxy.hip - last.tick.proxy.scp).norm(), 5) << "it is caught inside";
+        apply(session, command::Lift{});
+        last = next();
+        EXPECT_EQ(last.tick.proxy.mode, Mode::free);
+        EXPECT_EQ(last.tick.proxy.scp, last.tick.proxy.hip);
+        for (int i = 0; i < 100; ++i) last = next();
+        EXPECT_EQ(last.tick.force, Vec3::Zero()) << "it falls within its rate limit";
+        for (double x = 30; x > 5; x -= 0.1) {
+            hand.position = {x, 0, 0};
+            last = next();
+        }
+        EXPECT_GT(last.tick.proxy.scp[0], 8) << "and held outside";
+        EXPECT_GT(last.tick.force[0], 0);
+    }
 }
 
 TEST(Session, input_that_is_not_good_gives_no_force_and_leaves_the_proxy) {

@@ -85,7 +85,7 @@ std::shared_ptr<const Tool> random_tool(Random& random) {
 }
 
 Command random_command(Random& random) {
-    switch (random.below(11)) {
+    switch (random.below(12)) {
         case 0:
             return command::Isovalue{random.uniform(-1, 1)};
         case 1:
@@ -112,6 +112,8 @@ Command random_command(Random& random) {
                                 random.uniform(0, 400), random.uniform(0.1, 2)};
         case 9:
             return command::UseTool{random.below(3) == 0 ? nullptr : random_tool(random)};
+        case 10:
+            return command::Lift{};
         default:
             return DeviceTransform{oblique_direction(), random.point(-1, 1), 2};
     }

@@ -26,6 +26,7 @@ TEST(raw_file, every_type_is_read_plain_packed_and_after_a_header) {
          {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
         Geometry g = random_geometry(random, false, false);
         g.origin.setZero();
+        g.oriented = false;
         const Volume volume = random_volume(random, type, g);
         for (const std::string& header : {std::string(), std::string(37, 'h')}) {
             put_bytes(folder / "a.raw", header + raw_bytes(volume));
@@ -65,6 +66,7 @@ TEST(raw_file, what_is_written_is_read_again_with_the_words_that_were_said) {
     std::mt19937 random(23);
     Geometry g;
     g.size = Index3(61, 40, 300);  // more than one piece
+    g.oriented = false;
     g.spacing = Vec3(0.1, 1, 2.5);
     for (const auto type :
          {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {

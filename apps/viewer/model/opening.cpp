@@ -1,6 +1,7 @@
 // Loads a volume and takes grey levels and a first isovalue from its histogram.
 #include "apps/viewer/model/opening.hpp"
 
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 
@@ -11,9 +12,12 @@ constexpr int bins = 256;
 /// Part of the samples, at either end, that may be all black or all white.
 constexpr double outliers = 0.002;
 
-/// The level below which this part of the samples lies.
+/// The level below which this part of the samples lies, but for a background that is most of them.
 double quantile(const run::Histogram& histogram, double part) {
-    const auto& counts = histogram.counts;
+    auto counts = histogram.counts;
+    const auto most = std::ranges::max_element(counts);
+    const auto sum = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
+    if (2 * *most > sum && *most < sum) *most = 0;
     const double all =
         static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
     double below = 0;

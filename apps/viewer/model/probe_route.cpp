@@ -48,6 +48,19 @@ std::optional<Vec3> surface_under(const Field& field, double isovalue, const Vec
     return hit.hit && hit.point != from ? std::optional(hit.point) : std::nullopt;
 }
 
+std::optional<Vec3> tool_on_surface(const Field& field, double isovalue, const Vec3& at,
+                                    const Vec3& towards, std::span<const Vec3> points) {
+    std::optional<Vec3> rest = surface_under(field, isovalue, at, towards);
+    if (!rest) return rest;
+    for (const Vec3& point : points) {
+        const auto met = surface_under(field, isovalue, at + point, towards);
+        if (!met) continue;
+        const double depth = (*met - point).dot(towards);
+        if (depth > rest->dot(towards)) rest = at_depth(*rest, towards, depth);
+    }
+    return rest;
+}
+
 std::optional<Vec3> surface_in_view(const Field& field, double isovalue, const Vec3& towards,
                                     const Vec3& up) {
     const Geometry& g = field.geometry();

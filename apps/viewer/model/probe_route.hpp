@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "palpate/field.hpp"
@@ -22,7 +23,14 @@ DepthExtent extent_along(const Geometry& geometry, const Vec3& towards);
 std::optional<Vec3> surface_under(const Field& field, double isovalue, const Vec3& at,
                                   const Vec3& towards);
 
-/// The same, under the middle of the grid, or under the point nearest to it that has a surface.
+/// Where a tool's reference point is when the tool, coming from the viewer over a point of the
+/// picture, first touches. `points`: of the tool, turned as it is [mm, physical axes]. Nothing
+/// where surface_under() finds nothing.
+std::optional<Vec3> tool_on_surface(const Field& field, double isovalue, const Vec3& at,
+                                    const Vec3& towards, std::span<const Vec3> points);
+
+/// As surface_under(), under the middle of the grid, or under the point nearest to it that has a
+/// surface.
 std::optional<Vec3> surface_in_view(const Field& field, double isovalue, const Vec3& towards,
                                     const Vec3& up);
 

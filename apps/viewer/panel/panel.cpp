@@ -239,7 +239,6 @@ void Panel::set_session(const Field& field, const run::Histogram& histogram, dou
     clear_edits();
     now_ = before_ = {settings, isovalue, false, false, edit_->choice()};
     asked_by_ = nullptr;
-    last_.reset();
     for (Section* part : sections_) {
         part->say({});
         part->setEnabled(true);
@@ -265,7 +264,6 @@ void Panel::clear_edits() {
 
 void Panel::clear() {
     live_ = false;
-    last_.reset();
     isovalue_->clear();
     layers_->clear();
     isovalue_->set_layered(false, false);
@@ -360,7 +358,7 @@ void Panel::take(const Command& command) {
                           [&](const DeviceLimits& limits) { settings.device = limits; },
                           // Not shown in the panel.
                           [](const command::Samples&) {}, [](const command::Moment&) {},
-                          [](const command::Speed&) {}},
+                          [](const command::Speed&) {}, [](const command::Lift&) {}},
                command);
 }
 
@@ -384,6 +382,11 @@ void Panel::ask(Section* by, const Command& command) {
     if (!refused_ && live_) show_effect();
 }
 
+void Panel::request(const Command& command) {
+    ask(std::holds_alternative<command::Isovalue>(command) ? isovalue_part_ : device_part_,
+        command);
+}
+
 void Panel::ask_penetrability(const PressThrough& next) {
     Penetrability penetrability;
     try {
@@ -394,11 +397,8 @@ void Panel::ask_penetrability(const PressThrough& next) {
     }
     const bool ends = now_.settings.penetrability.on && !penetrability.on;
     ask(penetrability_part_, penetrability);
-    if (!ends || refused_ || !last_) return;
-    // The session keeps the level felt last, so the isovalue becomes that level. Past the last
-    // range nothing is felt: then the isovalue stays.
-    const double felt = last_->session.tick.proxy.isovalue;
-    ask(isovalue_part_, command::Isovalue{std::isfinite(felt) ? felt : now_.isovalue});
+    // Else the session keeps the level that the hand has reached.
+    if (ends && !refused_) ask(isovalue_part_, command::Isovalue{now_.isovalue});
 }
 
 void Panel::refuse(Section* by, const QString& why) {
@@ -423,7 +423,6 @@ void Panel::show_refused(const QString& why) {
 
 void Panel::show_snapshot(const Snapshot& snapshot) {
     if (!live_) return;
-    last_ = snapshot;
     now_.frozen = snapshot.session.frozen;
     now_.clutched = snapshot.session.clutched;
     now_.settings.forces_on = snapshot.forces_on;

@@ -60,6 +60,8 @@ class Panel : public QWidget {
     void show_report(const ServoReport& report, double rate);
     /// `problem`: what is wrong with the device and what to do, or empty.
     void show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem);
+    /// Asks for another isovalue or scale as the controls of that section do, for keys and menus.
+    void request(const Command& command);
     /// The last request was refused: shows why in its section, and the state before it. May be
     /// called while `asked` or another signal is emitted, or later.
     void show_refused(const QString& why);
@@ -135,7 +137,6 @@ class Panel : public QWidget {
     Effect now_, before_;  // in effect; before the last request
     Section* asked_by_ = nullptr;
     bool refused_ = false;
-    std::optional<Snapshot> last_;
     std::optional<Field> unedited_;  // from which automatic values are computed
 };
 

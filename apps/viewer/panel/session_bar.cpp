@@ -26,9 +26,11 @@ void SessionSwitch::show_state(bool on) {
     if (!awaited_.passes_over(same) && !same) set_state(on);
 }
 
-void SessionSwitch::set_on_text(const QString& text) {
+bool SessionSwitch::set_on_text(const QString& text) {
+    if (text == on_) return false;
     on_ = text;
     if (isChecked()) setText(on_);
+    return true;
 }
 
 void SessionSwitch::set_state(bool on) {
@@ -55,6 +57,8 @@ SessionBar::SessionBar()
     forces_->setFont(big);
     forces_->setMinimumHeight(static_cast<int>(2.6 * fontMetrics().height()));
     contact_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+    contact_->setFixedHeight(2 * fontMetrics().lineSpacing());  // a tool in contact has two lines
+    contact_->setAlignment(Qt::AlignTop);
     auto* switches = column_of({freeze_, clutch_});
     switches->layout()->setSpacing(2);
     column_in(this, {row_of({forces_, switches}, 0), gauge_, contact_});
@@ -87,10 +91,11 @@ void SessionBar::changeEvent(QEvent* event) {
     QWidget::changeEvent(event);
 }
 
-void SessionBar::show_waiting(bool waiting) {
-    if (forces_->property("waiting").toBool() == waiting) return;
-    forces_->setProperty("waiting", waiting);
-    forces_->set_on_text(waiting ? tr("Forces WAIT: withdraw a little") : tr("Forces are ON"));
+/// `why`: they are on, but there are none; empty: nothing holds them back.
+void SessionBar::show_waiting(const QString& why) {
+    const QString text = why.isEmpty() ? tr("Forces are ON") : tr("Forces WAIT") + '\n' + why;
+    if (!forces_->set_on_text(text)) return;
+    forces_->setProperty("waiting", !why.isEmpty());
     forces_->setStyleSheet({});  // a rule by property is looked up only once
     colour_forces();
 }
@@ -105,18 +110,21 @@ void SessionBar::set_session(const RendererSettings& settings) {
 
 void SessionBar::clear() {
     for (SessionSwitch* one : {forces_, freeze_, clutch_}) one->set_state(false);
-    show_waiting(false);
+    show_waiting({});
     gauge_->clear();
     contact_->clear();
 }
 
 void SessionBar::show_snapshot(const Snapshot& now, double limit) {
     forces_->show_state(now.forces_on);
-    show_waiting(waits_for_hand(now));
+    const std::string words = app::force_words(now.session.tick);
+    show_waiting(words == "no input"   ? tr("no input from the device")
+                 : waits_for_hand(now) ? tr("withdraw a little")
+                                       : QString());
     freeze_->show_state(now.session.frozen);
     clutch_->show_state(now.session.clutched);
     const Tick& tick = now.session.tick;
-    gauge_->set_force(tick.force.norm(), limit, QString::fromStdString(app::force_words(tick)));
+    gauge_->set_force(tick.force.norm(), limit, QString::fromStdString(words));
     const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
     const bool touching = tick.proxy.mode == palpate::Mode::constrained;
     QString text = (touching ? tr("In contact, pull %1 mm (%2 mm in the volume)")

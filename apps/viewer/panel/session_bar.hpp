@@ -21,7 +21,7 @@ class SessionSwitch : public QPushButton {
     void show_state(bool on);
     /// The state now, whatever was clicked.
     void set_state(bool on);
-    void set_on_text(const QString& text);
+    bool set_on_text(const QString& text);
 
   Q_SIGNALS:
     void wanted(bool on);
@@ -52,7 +52,7 @@ class SessionBar : public QWidget {
 
   private:
     void colour_forces();
-    void show_waiting(bool waiting);
+    void show_waiting(const QString& why);
 
     SessionSwitch *forces_, *freeze_, *clutch_;
     ForceGauge* gauge_;

@@ -29,6 +29,7 @@ Annotations::Annotations(int layer)
     p->SetJustificationToCentered();
     p->SetVerticalJustificationToBottom();
     writing_->AddActor2D(text_);
+    orientation_->DrawOff();  // before it has its place it would fill the window
 }
 
 void Annotations::show_bar(const Content& what) {
@@ -56,7 +57,8 @@ void Annotations::show(const Content& what) {
         std::clamp(0.17 * std::min(what.width, what.height), 4 * what.em, 9 * what.em);
     orientation_->SetViewport(0, 0, std::min(1.0, side / what.width),
                               std::min(1.0, side / what.height));
-    pictures::turn_orientation(*orientation_, what.camera.towards_viewer, what.camera.up);
+    pictures::turn_orientation(*orientation_, what.camera.towards_viewer, what.camera.up,
+                               what.oriented);
 }
 
 }  // namespace palpate::viewer

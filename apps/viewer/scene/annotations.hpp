@@ -21,6 +21,7 @@ class Annotations {
 
     struct Content {
         bool orientation = true, scale_bar = true;
+        bool oriented = true;  ///< as in Geometry
         pictures::Camera camera;
         int width = 1, height = 1;  ///< [device pixels]
         double em = 12;             ///< [device pixels] height of the widget's font

@@ -45,6 +45,8 @@ Scene::Scene(QWidget* parent, MakePainter make_painter)
     setMinimumSize(120, 90);
     setMouseTracking(true);
     setRenderWindow(parts_->window.Get());
+    const Colour paper = background_of(palette());
+    parts_->front->SetBackground(paper.red, paper.green, paper.blue);  // until there is a picture
     // The widget handles mouse and keys itself.
     if (auto* const interactor = parts_->window->GetInteractor()) {
         interactor->SetInteractorStyle(nullptr);
@@ -200,6 +202,13 @@ void Scene::reset_camera() {
     fitted_ = true;
 }
 
+void Scene::show_whole() {
+    if (!parts_->background.field()) return;
+    const pictures::View view{camera_.towards_viewer, camera_.up};
+    move_camera(whole(parts_->background.field()->geometry(), view, view_size()));
+    fitted_ = true;
+}
+
 void Scene::changed() {
     RenderRequest request = parts_->wanted;
     request.background = background_of(palette());
@@ -294,7 +303,8 @@ void Scene::lay_out() {
     }
     Annotations::Content annotations;
     annotations.orientation = look.orientation && field;
-    annotations.scale_bar = look.scale_bar && field;
+    annotations.oriented = field && field->geometry().oriented;
+    annotations.scale_bar = look.scale_bar && field && field->geometry().measured;
     annotations.camera = camera;
     annotations.width = static_cast<int>(std::lround(width() * ratio));
     annotations.height = static_cast<int>(std::lround(height() * ratio));
@@ -307,7 +317,7 @@ void Scene::lay_out() {
 void Scene::resizeEvent(QResizeEvent* event) {
     QVTKOpenGLNativeWidget::resizeEvent(event);
     if (fitted_ && parts_->background.field()) {
-        reset_camera();
+        show_whole();
     } else {
         changed();
     }

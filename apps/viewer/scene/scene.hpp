@@ -92,6 +92,8 @@ class Scene : public QVTKOpenGLNativeWidget {
     void look_from(const pictures::View& view);
     /// The whole volume from where it shows most.
     void reset_camera();
+    /// The whole volume from the same side as now.
+    void show_whole();
 
     /// True if all is shown at full quality and nothing is under way.
     bool settled() const;

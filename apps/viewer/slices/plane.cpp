@@ -10,8 +10,10 @@ namespace palpate::viewer {
 namespace {
 
 // Along +x, +y, +z of physical space (LPS), and against them.
-constexpr std::array positive{'L', 'P', 'S'};
-constexpr std::array negative{'R', 'A', 'I'};
+constexpr std::array body_ends{std::array{"L", "P", "S"}, std::array{"R", "A", "I"}};
+constexpr std::array grid_ends{std::array{"+X", "+Y", "+Z"}, std::array{"-X", "-Y", "-Z"}};
+// Across an axis of which the file does not say what it is.
+constexpr std::array plain_titles{"YZ", "XZ", "XY"};
 constexpr std::array titles{QT_TRANSLATE_NOOP("palpate::viewer::SlicePane", "Sagittal"),
                             QT_TRANSLATE_NOOP("palpate::viewer::SlicePane", "Coronal"),
                             QT_TRANSLATE_NOOP("palpate::viewer::SlicePane", "Axial")};
@@ -33,13 +35,17 @@ std::array<int, 3> anatomical_axes(const Mat3& direction) {
     return best;
 }
 
-std::string letters_towards(const Vec3& direction) {
+const char* end_of(const Geometry& geometry, int axis, bool positive) {
+    return (geometry.oriented ? body_ends : grid_ends)[positive ? 0 : 1][std::size_t(axis)];
+}
+
+std::string letters_towards(const Geometry& geometry, const Vec3& direction) {
     std::array<int, 3> order{0, 1, 2};
     std::ranges::stable_sort(order, std::greater{}, [&](int a) { return std::abs(direction[a]); });
     std::string letters;
     for (const int a : order) {
         if (!letters.empty() && std::abs(direction[a]) < aslant) break;
-        letters += direction[a] > 0 ? positive[std::size_t(a)] : negative[std::size_t(a)];
+        letters += end_of(geometry, a, direction[a] > 0);
     }
     return letters;
 }
@@ -52,7 +58,7 @@ SlicePlane slice_plane(const Geometry& geometry, int axis) {
     SlicePlane plane;
     plane.axis = axis;
     plane.anatomical = body[std::size_t(axis)];
-    plane.title = titles[std::size_t(plane.anatomical)];
+    plane.title = (geometry.oriented ? titles : plain_titles)[std::size_t(plane.anatomical)];
     // To the right: the patient's left; on sagittal slices, the back. Down: the back; on upright
     // slices, the feet, which are against +z.
     const int to_right = plane.anatomical == 0 ? 1 : 0;
@@ -66,10 +72,10 @@ SlicePlane slice_plane(const Geometry& geometry, int axis) {
     const auto shown = [&](const ScreenAxis& s) -> Vec3 {
         return (s.flip ? -1 : 1) * direction.col(s.axis);
     };
-    plane.at_right = letters_towards(shown(plane.right));
-    plane.at_left = letters_towards(-shown(plane.right));
-    plane.at_bottom = letters_towards(shown(plane.down));
-    plane.at_top = letters_towards(-shown(plane.down));
+    plane.at_right = letters_towards(geometry, shown(plane.right));
+    plane.at_left = letters_towards(geometry, -shown(plane.right));
+    plane.at_bottom = letters_towards(geometry, shown(plane.down));
+    plane.at_top = letters_towards(geometry, -shown(plane.down));
     return plane;
 }
 
@@ -100,12 +106,11 @@ Vec3 index_from_slice(const SlicePlane& plane, const Geometry& geometry, const V
 }
 
 std::string position_text(const SlicePlane& plane, const Geometry& geometry, const Vec3& physical) {
-    const auto body = static_cast<std::size_t>(plane.anatomical);
     const Vec3 axis = geometry.direction.col(plane.axis);
     double at = (axis[plane.anatomical] > 0 ? 1 : -1) * axis.dot(physical);
     if (std::abs(at) < 0.005) at = 0;  // as it will be shown
     char text[32];
-    std::snprintf(text, sizeof text, "%c %.2f mm", at >= 0 ? positive[body] : negative[body],
+    std::snprintf(text, sizeof text, "%s %.2f mm", end_of(geometry, plane.anatomical, at >= 0),
                   std::abs(at));
     return text;
 }

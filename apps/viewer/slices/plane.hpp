@@ -21,9 +21,9 @@ struct SlicePlane {
     int axis = 2;            ///< of the grid: across
     ScreenAxis right, down;  ///< u and v
     int anatomical = 2;      ///< what `axis` is nearest to: 0 left-right, 1 front-back, 2 up-down
-    std::string title;       ///< Sagittal, Coronal or Axial
-    /// What lies towards each edge of the screen: L, R, A, P, S, I, the nearest first; a second or
-    /// third letter where the grid lies aslant by more than 15 degrees.
+    std::string title;       ///< Sagittal, Coronal or Axial; YZ, XZ or XY of a grid not oriented
+    /// What lies towards each edge of the screen: L, R, A, P, S, I (+X, -X, ...), the nearest
+    /// first; a second or third letter where the grid lies aslant by more than 15 degrees.
     std::string at_left, at_right, at_top, at_bottom;
 };
 

@@ -184,6 +184,10 @@ void SlicePane::set_unit(LengthUnit unit) {
     update();
 }
 
+int SlicePane::anatomical() const {
+    return content_ ? content_->plane.anatomical : axis_;
+}
+
 QString SlicePane::title() const {
     return content_ ? tr(content_->plane.title.c_str()) : QString();
 }

@@ -74,7 +74,9 @@ class SlicePane : public QWidget {
     void set_measurements(const std::vector<Measurement>& measurements);
     void set_unit(LengthUnit unit);
 
-    /// Sagittal, Coronal or Axial; empty without a volume.
+    /// As SlicePlane::anatomical; without a volume its own axis.
+    int anatomical() const;
+    /// Sagittal, Coronal or Axial, or XY, ...; empty without a volume.
     QString title() const;
     /// Where a point is drawn [pixels of the widget], and which point of the slice is drawn there.
     QPointF pixel_of(const Vec3& physical) const;

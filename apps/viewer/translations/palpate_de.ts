@@ -971,6 +971,65 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     </message>
 </context>
 <context>
+    <name>palpate::viewer::GridDialog</name>
+    <message>
+        <source>The spacing is known</source>
+        <translation>Der Abstand ist bekannt</translation>
+    </message>
+    <message>
+        <source>Exchange left and right</source>
+        <translation>Links und rechts vertauschen</translation>
+    </message>
+    <message>
+        <source>Orientation and spacing</source>
+        <translation>Lage und Abstand</translation>
+    </message>
+    <message>
+        <source>not known</source>
+        <translation>nicht bekannt</translation>
+    </message>
+    <message>
+        <source>to the left (L)</source>
+        <translation>nach links (L)</translation>
+    </message>
+    <message>
+        <source>to the right (R)</source>
+        <translation>nach rechts (R)</translation>
+    </message>
+    <message>
+        <source>to the back (P)</source>
+        <translation>nach hinten (P)</translation>
+    </message>
+    <message>
+        <source>to the front (A)</source>
+        <translation>nach vorn (A)</translation>
+    </message>
+    <message>
+        <source>to the head (S)</source>
+        <translation>zum Kopf (S)</translation>
+    </message>
+    <message>
+        <source>to the feet (I)</source>
+        <translation>zu den Füßen (I)</translation>
+    </message>
+    <message>
+        <source>%1 runs</source>
+        <translation>%1 verläuft</translation>
+    </message>
+    <message>
+        <source>The side of the body that this axis of the samples runs to</source>
+        <translation>Die Seite des Körpers, zu der diese Achse der Werte verläuft</translation>
+    </message>
+    <message>
+        <source>Spacing along %1 [mm]</source>
+        <translation>Abstand entlang %1 [mm]</translation>
+    </message>
+    <message>
+        <source>Between neighbouring samples</source>
+        <translation>Zwischen benachbarten Werten</translation>
+    </message>
+</context>
+<context>
     <name>palpate::viewer::Hints</name>
     <message>
         <source>Forces are off: the space bar switches them on</source>
@@ -991,6 +1050,14 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     <message>
         <source>%1 mm deep, %2 N</source>
         <translation>%1 mm tief, %2 N</translation>
+    </message>
+    <message>
+        <source>The brush is on: it changes what it touches (B: off)</source>
+        <translation>Der Pinsel ist an: Er verändert, was er berührt (B: aus)</translation>
+    </message>
+    <message>
+        <source>A recording is played: Esc leaves it</source>
+        <translation>Eine Aufzeichnung wird abgespielt: Esc verlässt sie</translation>
     </message>
 </context>
 <context>
@@ -1697,10 +1764,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Fühlen und Sehen</translation>
     </message>
     <message>
-        <source>The proxy: where it is (LPS) [mm], the sample there and its slope</source>
-        <translation>Der Proxy: wo er ist (LPS) [mm], der Wert dort und seine Steigung</translation>
-    </message>
-    <message>
         <source>Open a volume, or drop one here (Ctrl+O); ? lists the shortcuts</source>
         <translation>Öffnen Sie ein Volumen oder legen Sie es hier ab (Strg+O); ? zeigt die Tastenkürzel</translation>
     </message>
@@ -1885,10 +1948,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Von unten</translation>
     </message>
     <message>
-        <source>From the oblique</source>
-        <translation>Von schräg vorn</translation>
-    </message>
-    <message>
         <source>&amp;Whole volume</source>
         <translation>&amp;Ganzes Volumen</translation>
     </message>
@@ -2019,6 +2078,38 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>&amp;Level, channel and time…</source>
         <translation>Detailst&amp;ufe, Kanal und Zeit …</translation>
+    </message>
+    <message>
+        <source>The proxy: where it is [mm], the sample there and its slope</source>
+        <translation>Der Proxy: wo er ist [mm], der Wert dort und dessen Steigung</translation>
+    </message>
+    <message>
+        <source>No spacing in the file</source>
+        <translation>Kein Abstand in der Datei</translation>
+    </message>
+    <message>
+        <source>No orientation in the file</source>
+        <translation>Keine Lage in der Datei</translation>
+    </message>
+    <message>
+        <source>No orientation and no spacing in the file</source>
+        <translation>Keine Lage und kein Abstand in der Datei</translation>
+    </message>
+    <message>
+        <source>The measurements are in no session file yet. Save the session?</source>
+        <translation>Die Messungen sind noch in keiner Sitzungsdatei. Sitzung speichern?</translation>
+    </message>
+    <message>
+        <source>Or&amp;ientation and spacing…</source>
+        <translation>&amp;Lage und Abstand…</translation>
+    </message>
+    <message>
+        <source>From %1</source>
+        <translation>Von %1</translation>
+    </message>
+    <message>
+        <source>From a corner</source>
+        <translation>Von einer Ecke</translation>
     </message>
 </context>
 <context>
@@ -2644,10 +2735,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
             <numerusform>%n Takte aufgezeichnet, bis zum anderen Gerät</numerusform>
         </translation>
     </message>
-    <message>
-        <source>Layers are felt, not an isovalue: choose No layers to feel one</source>
-        <translation>Es werden Schichten gefühlt, kein Isowert: Wählen Sie „Keine Schichten“, um einen zu fühlen</translation>
-    </message>
 </context>
 <context>
     <name>palpate::viewer::Scene</name>
@@ -2745,10 +2832,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Ob der Proxy auf einer Oberfläche ist, und wie weit er von der Hand entfernt ist [mm der Hand; mm im Volumen]</translation>
     </message>
     <message>
-        <source>Forces WAIT: withdraw a little</source>
-        <translation>Kräfte WARTEN: zurück</translation>
-    </message>
-    <message>
         <source>no tick yet</source>
         <translation>noch kein Takt</translation>
     </message>
@@ -2766,6 +2849,18 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
             <numerusform>%n Punkt des Werkzeugs hält, Drehmoment %1 N mm</numerusform>
             <numerusform>%n Punkte des Werkzeugs halten, Drehmoment %1 N mm</numerusform>
         </translation>
+    </message>
+    <message>
+        <source>Forces WAIT</source>
+        <translation>Kräfte WARTEN</translation>
+    </message>
+    <message>
+        <source>no input from the device</source>
+        <translation>keine Eingabe vom Gerät</translation>
+    </message>
+    <message>
+        <source>withdraw a little</source>
+        <translation>etwas zurückziehen</translation>
     </message>
 </context>
 <context>
@@ -3160,6 +3255,13 @@ Die Vorlage noch einmal wählen macht rückgängig. Strg+Rad zoomt, Umschalt+Rad
     </message>
 </context>
 <context>
+    <name>palpate::viewer::Views</name>
+    <message>
+        <source>Sides of the body are not known: say how the volume lies, and its spacing</source>
+        <translation>Die Seiten des Körpers sind nicht bekannt: angeben, wie das Volumen liegt, und seinen Abstand</translation>
+    </message>
+</context>
+<context>
     <name>palpate::viewer::Welcome</name>
     <message>
         <source>Open a volume…</source>
@@ -3190,16 +3292,16 @@ Die Vorlage noch einmal wählen macht rückgängig. Strg+Rad zoomt, Umschalt+Rad
         <translation>Palpate: Volumen fühlen</translation>
     </message>
     <message>
-        <source>Click a surface to touch it; drag to move along, hold the button or turn the wheel to press.
-The right button turns the view.
-Drag the line in the histogram to feel another level; press harder to go through a layer.</source>
-        <translation>Klicken Sie auf eine Oberfläche, um sie zu berühren; ziehen Sie, um entlangzufahren, halten Sie die Taste oder drehen Sie das Rad, um zu drücken.
-Die rechte Taste dreht die Ansicht.
-Ziehen Sie die Linie im Histogramm, um einen anderen Wert zu fühlen; drücken Sie stärker, um durch eine Schicht zu gehen.</translation>
-    </message>
-    <message>
         <source>Recent</source>
         <translation>Zuletzt geöffnet</translation>
+    </message>
+    <message>
+        <source>Click a surface to touch it; drag to move along, hold the button or turn the wheel to press.
+The right button turns the view.
+Drag the line in the histogram to feel another level. The page Feel lets you press through surfaces.</source>
+        <translation>Klicken Sie auf eine Oberfläche, um sie zu berühren; ziehen Sie, um entlangzufahren, halten Sie die Taste oder drehen Sie das Rad, um zu drücken.
+Die rechte Taste dreht die Ansicht.
+Ziehen Sie die Linie im Histogramm, um einen anderen Wert zu fühlen. Auf der Seite Fühlen lässt sich durch Oberflächen drücken.</translation>
     </message>
 </context>
 </TS>

@@ -34,6 +34,12 @@ class Content : public QObject {
     /// Where the volume as it is felt can be read again: the file that it was saved to last, else
     /// where it came from. For an open volume.
     run::Source source() const { return saved_ ? *saved_ : volume_->loaded.source; }
+    /// Of an open volume: it is a file or a store, which lies as its header says.
+    bool from_file() const {
+        const auto& from = volume_->loaded.source.from;
+        return std::holds_alternative<run::FileSource>(from) ||
+               std::holds_alternative<run::StoreSource>(from);
+    }
     /// The volume as it is felt was written there.
     void set_saved(const run::Source& source);
     bool saved_elsewhere() const { return saved_.has_value(); }

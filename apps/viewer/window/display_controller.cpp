@@ -22,10 +22,14 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Of a single slice, as it lies on a screen: rows to the right, and down or towards the head.
-std::optional<pictures::View> face_on(const Geometry& geometry) {
+/// Of a stack thinner than this part of its next longer side, as it lies on a screen: rows to the
+/// right, and down or towards the head. 0: of a single slice.
+std::optional<pictures::View> face_on(const Geometry& geometry, double is_thin) {
     int thin = 0;
-    if (geometry.size.minCoeff(&thin) > 1) return std::nullopt;
+    Vec3 sides = (geometry.size.cast<double>() - Vec3::Ones()).cwiseProduct(geometry.spacing);
+    const double thickness = sides.minCoeff(&thin);
+    sides[thin] = sides.maxCoeff();
+    if (thickness > is_thin * sides.minCoeff()) return std::nullopt;
     const Vec3 right = geometry.direction.col(thin == 0 ? 1 : 0);
     const Vec3 up = thin == 2 ? Vec3(-geometry.direction.col(1)) : geometry.direction.col(2);
     return pictures::View{right.cross(up), up};
@@ -78,7 +82,9 @@ void DisplayController::show_volume(const Field& field, double isovalue,
     show_field(field, isovalue);
     views_.scene().reset_camera();
     look_from_hand(transform);
-    if (const auto view = face_on(field.geometry())) {
+    // With another device the view is that of the hand, or it would go aslant.
+    const bool mouse = content_.live() && content_.live()->mouse();
+    if (const auto view = face_on(field.geometry(), mouse ? 0.2 : 0)) {
         views_.scene().set_camera(whole(field.geometry(), *view, views_.scene().view_size()));
     }
     views_.set_window(content_.volume()->dark(), content_.volume()->bright());

@@ -70,10 +70,16 @@ void EditController::use_brush(const BrushChoice& brush) {
     run::VolumeEditor* editor = content_.editor();
     if (!editor) return;
     try {
-        editor->set_brush(brush.on ? std::optional<run::HandBrush>(brush) : std::nullopt);
+        editor->set_brush(brush.on && !resting_ ? std::optional<run::HandBrush>(brush)
+                                                : std::nullopt);
     } catch (const std::invalid_argument& e) {
         panel_.show_refused(QString::fromStdString(e.what()));
     }
+}
+
+void EditController::rest(bool on) {
+    resting_ = on;
+    use_brush(panel_.brush());
 }
 
 void EditController::undo() {
@@ -132,7 +138,6 @@ void EditController::save(const QString& path, std::function<void()> then) {
         data->is_streamed()
             ? tr(": it opens as the edited volume while the original stays where it is")
             : QString::fromStdString(io::opening_words(file, data->loaded().volume));
-    messages_.show_done(tr("Saving %1").arg(path));
     saving_.start(
         tr("Saving %1").arg(path),
         [file, data](const io::Progress& progress) { data->save(file, progress); },
@@ -148,8 +153,10 @@ void EditController::save(const QString& path, std::function<void()> then) {
 }
 
 void EditController::ask_save_surface() {
-    const QString base =
-        QFileInfo(QString::fromStdString(run::name_of(content_.source()))).completeBaseName();
+    const std::string volume = run::name_of(content_.source());
+    const auto kind = static_cast<int>(io::written_extension_of(volume).size());  // .nii.gz is one
+    const QFileInfo name(QString::fromStdString(volume));
+    const QString base = kind > 0 ? name.fileName().chopped(kind) : name.completeBaseName();
     const QString path = ask_save_name(window_, tr("Save the surface (.ply, .stl, .obj or .vtp)"),
                                        base.section(':', -1) + ".ply", "ply", true,
                                        tr("Meshes (*.ply *.stl *.obj *.vtp)"));
@@ -202,7 +209,7 @@ bool EditController::go_on(QMessageBox& question, const std::function<void()>& o
     if (!unsaved()) return true;
     question.setObjectName("lose_edits");
     question.setDefaultButton(QMessageBox::Save);
-    const int answer = question.exec();
+    const int answer = messages_.answer_to(question);
     if (answer == QMessageBox::Save) ask_save(once_saved);
     return answer == QMessageBox::Discard;
 }

@@ -28,6 +28,8 @@ class EditController : public QObject {
     EditController(Content& content, Panel& panel, Messages& messages, QWidget* window);
 
     void use_brush(const BrushChoice& brush);
+    /// While the hand is lifted the brush does nothing.
+    void rest(bool on);
     void undo();
     void redo();
 
@@ -67,6 +69,7 @@ class EditController : public QObject {
     QWidget* window_;
     BackgroundTask saving_;
     QString problem_;
+    bool resting_ = false;
 };
 
 /// Saves edits where run::Data::rescue() finds a place; prints the name on standard error.

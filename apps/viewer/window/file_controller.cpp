@@ -11,6 +11,7 @@
 #include "apps/viewer/window/display_controller.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/layers_controller.hpp"
+#include "apps/viewer/window/measure_controller.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/raw_dialog.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
@@ -27,16 +28,28 @@ std::filesystem::path path_of(const QString& name) {
     return std::filesystem::path(name.toStdString());
 }
 
+/// The same source, its grid lying otherwise.
+run::Source with_grid(run::Source source, const io::GivenGrid& grid) {
+    const auto put_into = [&](auto& options) {
+        options.spacing = grid.spacing;
+        options.orientation = grid.orientation;
+    };
+    if (auto* file = std::get_if<run::FileSource>(&source.from)) put_into(*file);
+    if (auto* store = std::get_if<run::StoreSource>(&source.from)) put_into(store->options);
+    return source;
+}
+
 }  // namespace
 
 FileController::FileController(Content& content, RunController& run, LayersController& layers,
                                RecordingController& recordings, DisplayController& display,
-                               Messages& messages)
+                               MeasureController& measuring, Messages& messages)
     : content_(content),
       run_(run),
       layers_(layers),
       recordings_(recordings),
       display_(display),
+      measuring_(measuring),
       messages_(messages),
       loader_(messages) {}
 
@@ -66,13 +79,12 @@ void FileController::choose_series(const io::SeriesChoice& choice, const run::So
                                    const Then& then) {
     const QString name = short_name(QString::fromStdString(name_of(source)));
     auto* dialog = new SeriesDialog(name, choice.series(), messages_.window());
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
     connect(dialog, &QDialog::accepted, this, [this, dialog, source, then] {
         run::Source chosen = source;
         std::get<run::FileSource>(chosen.from).series = std::to_string(dialog->chosen());
         load(chosen, then);
     });
-    dialog->open();  // does not block the live run
+    messages_.ask(dialog, QString::fromStdString(choice.what()));
 }
 
 /// As load(), but does not read a volume again that is open already. Addresses whose query was left
@@ -103,20 +115,18 @@ void FileController::open_path(const QString& path) {
 
 void FileController::ask_layout(const run::Source& source) {
     auto* dialog = new RawDialog(QString::fromStdString(name_of(source)), messages_.window());
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
     connect(dialog, &QDialog::accepted, this, [this, dialog, source] {
         run::Source known = source;
         known.from = dialog->layout_source();
         open_volume(known);
     });
-    dialog->open();  // does not block the live run
+    messages_.ask(dialog);
 }
 
 void FileController::ask_address() {
     auto* dialog = new StoreDialog(std::nullopt, 0, messages_.window());
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
     connect(dialog, &QDialog::accepted, this, [this, dialog] { open_volume(dialog->source()); });
-    dialog->open();  // does not block the live run
+    messages_.ask(dialog);
 }
 
 void FileController::ask_level() {
@@ -125,13 +135,12 @@ void FileController::ask_level() {
     const auto* store = std::get_if<run::StoreSource>(&felt.from);
     if (!store) return;
     auto* dialog = new StoreDialog(*store, felt.frame.value_or(0), messages_.window());
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
     connect(dialog, &QDialog::accepted, this, [this, dialog, channel = store->options.channel] {
         const run::Source chosen = dialog->source();
         const bool same = std::get<run::StoreSource>(chosen.from).options.channel == channel;
         same ? feel_again(chosen) : open_volume(chosen);
     });
-    dialog->open();
+    messages_.ask(dialog);
 }
 
 void FileController::open_volume(const run::Source& source) {
@@ -193,6 +202,25 @@ void FileController::feel_again(const run::Source& source) {
     load(source, [this, session, request = run_.take_request()](std::shared_ptr<Opened> opened) {
         feel_session(std::move(opened), session, request);
     });
+}
+
+void FileController::use_grid(const io::GivenGrid& grid) {
+    if (!content_.live()) return;
+    SessionFile session = session_now();
+    session.source = with_grid(session.source, grid);
+    // Places in the volume are elsewhere now.
+    session.camera.reset();
+    session.crosshair.reset();
+    session.measurements.clear();
+    session.look.cut = Cut::nothing;
+    const RendererSettings settings = *std::exchange(session.settings, std::nullopt);
+    load(session.source,
+         [this, session, settings, request = run_.take_request()](std::shared_ptr<Opened> opened) {
+             feel_session(std::move(opened), session, request);
+             RendererSettings placed = settings;
+             placed.transform = content_.live()->settings().transform;
+             run_.restore(placed);
+         });
 }
 
 void FileController::open_recording(const QString& path) {
@@ -264,6 +292,7 @@ SessionFile FileController::session_now() const {
 void FileController::save_session(const QString& path) {
     if (!content_.volume()) return;
     write_session(path.toStdString(), session_now());
+    measuring_.set_saved();
     content_.set_session(path);
     remember_file(path);
     messages_.show_done(tr("Saved %1").arg(path));
@@ -277,6 +306,7 @@ void FileController::open_session(const QString& path) {
                                           std::shared_ptr<Opened> opened) {
             feel_session(std::move(opened), session, request);
             content_.set_session(path);
+            measuring_.set_saved();
             remember_file(path);
             if (session.settings && lack_labels(session.settings->layers)) {
                 layers_.restore(session.settings->layers, path);

@@ -8,12 +8,14 @@
 
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/window/background_task.hpp"
+#include "palpate/io/orientation.hpp"
 
 namespace palpate::viewer {
 
 class Content;
 class DisplayController;
 class LayersController;
+class MeasureController;
 class RecordingController;
 class RunController;
 struct Opened;
@@ -25,7 +27,8 @@ class FileController : public QObject {
 
   public:
     FileController(Content& content, RunController& run, LayersController& layers,
-                   RecordingController& recordings, DisplayController& display, Messages& messages);
+                   RecordingController& recordings, DisplayController& display,
+                   MeasureController& measuring, Messages& messages);
 
     /// A volume, a folder, a session, layers or a recording: its name tells which. Asks for the
     /// layout where lacks_layout().
@@ -47,8 +50,11 @@ class FileController : public QObject {
     void dequantize(bool on);
     /// Ends the playback: feels the recording's volume, at the level and in the view shown.
     void leave_playback();
-    /// Throws io::OutputError.
+    /// With its measurements. Throws io::OutputError.
     void save_session(const QString& path);
+    /// Reads the volume again with what was asked for in place of its orientation and spacing: it
+    /// is felt as before, but seen anew.
+    void use_grid(const io::GivenGrid& grid);
 
     /// What is being read.
     BackgroundTask& loader() { return loader_; }
@@ -72,6 +78,7 @@ class FileController : public QObject {
     LayersController& layers_;
     RecordingController& recordings_;
     DisplayController& display_;
+    MeasureController& measuring_;
     Messages& messages_;
     BackgroundTask loader_;
 };

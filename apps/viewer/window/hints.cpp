@@ -40,6 +40,7 @@ Hints::Hints(const Content& content, const RecordingController& recordings, Scen
       recordings_(recordings),
       scene_(scene),
       reason_(label_over(scene, "hint", "background-color: #ffb000; color: black;")),
+      brush_(label_over(scene, "brush_on", "background-color: #d55e00; color: white;")),
       depth_(label_over(scene, "depth", "background-color: rgba(0, 0, 0, 150); color: white;")),
       recording_(label_over(scene, "recording_clock",
                             "background-color: rgba(0, 0, 0, 150); color: white;")) {
@@ -63,10 +64,16 @@ QString Hints::reason_of(const Snapshot& now) {
     return {};
 }
 
-void Hints::observe(const std::optional<Snapshot>& now) {
+void Hints::observe(const std::optional<Snapshot>& now, bool brush) {
     const int line = 2 * scene_.fontMetrics().height();
     const bool live = content_.live() && now;
-    say(*reason_, live ? reason_of(*now) : QString(), {scene_.width() / 2, line});
+    const QString reason = live                  ? reason_of(*now)
+                           : content_.playback() ? tr("A recording is played: Esc leaves it")
+                                                 : QString();
+    say(*reason_, reason, {scene_.width() / 2, line});
+    say(*brush_,
+        live && brush ? tr("The brush is on: it changes what it touches (B: off)") : QString(),
+        {scene_.width() / 2, scene_.height() - line});
     show_depth(live ? now : std::nullopt);
     if (!recordings_.recording()) return recording_->hide();
     const auto seconds = recorded_.elapsed() / 1000;

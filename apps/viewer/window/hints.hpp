@@ -1,5 +1,5 @@
 // Words over the scene, where the eye is: why there is no force, how deep the probe presses, and
-// that a recording runs.
+// that the brush is on and that a recording runs.
 #pragma once
 
 #include <QElapsedTimer>
@@ -21,8 +21,8 @@ class Hints : public QObject {
   public:
     Hints(const Content& content, const RecordingController& recordings, Scene& scene);
 
-    /// Often: shows what holds now. Nothing: no run is felt or played.
-    void observe(const std::optional<Snapshot>& now);
+    /// Often: shows what holds now. Nothing: no run is felt or played. `brush`: it is on.
+    void observe(const std::optional<Snapshot>& now, bool brush);
 
   private:
     QString reason_of(const Snapshot& now);
@@ -31,7 +31,7 @@ class Hints : public QObject {
     const Content& content_;
     const RecordingController& recordings_;
     Scene& scene_;
-    QLabel *reason_, *depth_, *recording_;
+    QLabel *reason_, *brush_, *depth_, *recording_;
     QElapsedTimer recorded_;
     QElapsedTimer waiting_;  // for data; invalid: the hand does not
 };

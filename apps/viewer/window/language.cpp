@@ -49,6 +49,8 @@ Translation::Translation(Language language) {
         (void)own_.load("palpate_en", resources);
     }
     QCoreApplication::installTranslator(&own_);
+    // Fields read and show numbers as all other words do: with a decimal point.
+    QLocale::setDefault(QLocale(QLocale::English));
     if (qt_.load(QLocale(own_.language()), "qtbase", "_",
                  QLibraryInfo::location(QLibraryInfo::TranslationsPath))) {
         QCoreApplication::installTranslator(&qt_);

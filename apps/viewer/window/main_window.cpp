@@ -12,6 +12,7 @@
 #include <QDragEnterEvent>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QMessageBox>
 #include <QMimeData>
 #include <QScreen>
 #include <QSettings>
@@ -27,6 +28,7 @@
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
+#include "apps/viewer/window/grid_dialog.hpp"
 #include "apps/viewer/window/menus.hpp"
 #include "apps/viewer/window/streaming_words.hpp"
 #include "apps/viewer/window/views.hpp"
@@ -68,7 +70,7 @@ MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
       probe_(content_, run_, *views_, messages_),
       editing_(content_, *panel_, messages_, this),
       playing_(content_, *timeline_, messages_),
-      files_(content_, run_, layers_, recordings_, display_, messages_),
+      files_(content_, run_, layers_, recordings_, display_, measuring_, messages_),
       hints_(content_, recordings_, views_->scene()),
       actions_(this, messages_) {
     setObjectName("palpate");
@@ -109,7 +111,7 @@ void MainWindow::build() {
     streaming_->setObjectName("streaming");
     statusBar()->addPermanentWidget(streaming_);
     readout_->setObjectName("readout");
-    readout_->setToolTip(tr("The proxy: where it is (LPS) [mm], the sample there and its slope"));
+    readout_->setToolTip(tr("The proxy: where it is [mm], the sample there and its slope"));
     statusBar()->addPermanentWidget(readout_);
     frame_time_->setObjectName("frames");
     statusBar()->addPermanentWidget(frame_time_);
@@ -132,6 +134,7 @@ void MainWindow::connect_parts() {
         views_->set_brush(ball ? brush.radius : 0);
     };
     connect(panel_, &Panel::brush_changed, this, outline_brush);
+    connect(&probe_, &ProbeController::lifted, &editing_, &EditController::rest);
     connect(&content_, &Content::run_changed, this, outline_brush);
     connect(&content_, &Content::closed, this, outline_brush);
     connect(&panel_->isovalue_controls(), &IsovalueControls::dequantize_wanted, this,
@@ -140,6 +143,9 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::run_started, this, &MainWindow::show_title);
     connect(&content_, &Content::playback_started, this, &MainWindow::show_title);
     connect(&content_, &Content::renamed, this, &MainWindow::show_title);
+    connect(&content_, &Content::run_started, this, &MainWindow::show_grid);
+    connect(&content_, &Content::playback_started, this, &MainWindow::show_grid);
+    connect(views_, &Views::grid_asked, actions_.find("choose_grid"), &QAction::trigger);
     // Once the threads that draw have let go of it.
     connect(&content_, &Content::closed, this,
             [this] { QTimer::singleShot(give_back_ms, this, [] { malloc_trim(0); }); });
@@ -178,6 +184,58 @@ void MainWindow::show_title() {
     setWindowTitle(tr("%1[*]%2 – Palpate").arg(volume, session));
 }
 
+/// What the file does not say of its grid, and the names of the views that depend on it.
+void MainWindow::show_grid() {
+    const Geometry& grid = content_.volume()->loaded.volume.geometry();
+    name_views(actions_, grid.oriented);
+    const bool missing = content_.from_file() && !(grid.oriented && grid.measured);
+    views_->set_missing(!missing        ? QString()
+                        : grid.oriented ? tr("No spacing in the file")
+                        : grid.measured ? tr("No orientation in the file")
+                                        : tr("No orientation and no spacing in the file"));
+}
+
+void MainWindow::ask_grid() {
+    const run::LoadedVolume& loaded = content_.volume()->loaded;
+    const Geometry& grid = loaded.streamed ? loaded.streamed->store->info().levels[0].geometry
+                                           : loaded.volume.geometry();
+    auto* dialog = new GridDialog(grid, given_grid(content_.source()), this);
+    connect(dialog, &QDialog::accepted, this,
+            [this, dialog] { messages_.guarded([&] { files_.use_grid(dialog->grid()); }); });
+    messages_.ask(dialog);
+}
+
+void MainWindow::settle_work(const std::function<void()>& action) {
+    if (may_lose_work([this, action] { settle_work(action); })) action();
+}
+
+/// True if there is none, or it is given up. `once_saved` runs after it was saved.
+bool MainWindow::may_lose_work(const std::function<void()>& once_saved) {
+    if (!editing_.may_lose_edits(once_saved)) return false;
+    if (!measuring_.unsaved()) return true;
+    QMessageBox box(QMessageBox::Question, "Palpate",
+                    tr("The measurements are in no session file yet. Save the session?"),
+                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
+    box.setObjectName("lose_measurements");
+    box.setDefaultButton(QMessageBox::Save);
+    const int answer = messages_.answer_to(box);
+    if (answer == QMessageBox::Save) {
+        messages_.guarded([&] { save_session(content_.session(), once_saved); });
+    }
+    return answer == QMessageBox::Discard;
+}
+
+void MainWindow::save_session(const QString& name, const std::function<void()>& then) {
+    editing_.save_edits_first([=, this] {
+        const QString path =
+            !name.isEmpty() ? name
+                            : ask_save_name(this, tr("Save the session"), "session.json", "json");
+        if (path.isEmpty()) return;
+        files_.save_session(path);
+        if (then) then();
+    });
+}
+
 void MainWindow::restore_layout() {
     const QSettings settings;
     if (!restoreGeometry(settings.value("geometry").toByteArray())) {
@@ -197,13 +255,12 @@ void MainWindow::use(const Preferences& preferences) {
 
 void MainWindow::ask_preferences() {
     auto* dialog = new PreferencesDialog(saved_preferences(), this);
-    dialog->setAttribute(Qt::WA_DeleteOnClose);
     connect(dialog, &PreferencesDialog::changed, this, [this](const Preferences& preferences) {
         if (preferences.appearance != last_appearance()) set_appearance(preferences.appearance);
         save_preferences(preferences);
         use(preferences);
     });
-    dialog->open();  // does not block the live run
+    messages_.ask(dialog);
 }
 
 void MainWindow::tick() {
@@ -213,7 +270,7 @@ void MainWindow::tick() {
     details_.observe(now);
     rest_or_wake(now);
     probe_.observe();
-    hints_.observe(now);
+    hints_.observe(now, content_.editor() && panel_->brush().on);
     if (now) panel_->show_stroke(*now);
     if (now && rounds_ % panel_rounds == 0) {
         panel_->show_snapshot(*now);
@@ -302,10 +359,14 @@ void MainWindow::end() {
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {
-    if (!editing_.may_lose_edits([this] { close(); })) return event->ignore();
-    QSettings settings;
-    settings.setValue("geometry", saveGeometry());
-    settings.setValue("state", saveState());
+    // Later: a window that is closing does not close.
+    const auto close_again = [this] { QTimer::singleShot(0, this, [this] { close(); }); };
+    if (!may_lose_work(close_again)) return event->ignore();
+    if (keeps_layout_) {
+        QSettings settings;
+        settings.setValue("geometry", saveGeometry());
+        settings.setValue("state", saveState());
+    }
     recordings_.stop();
     event->accept();
 }
@@ -327,7 +388,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
     // The volume stays, with its edits.
     if (LayersController::is_layers_file(path)) return layers_.open(path);
     if (ToolController::is_tool_file(path)) return tools_.open(path);
-    editing_.settle_edits([this, path] { files_.open_path(path); });
+    settle_work([this, path] { files_.open_path(path); });
 }
 
 }  // namespace palpate::viewer

@@ -67,6 +67,14 @@ class MainWindow : public QMainWindow {
 
     /// Opens the dialog; changes are seen at once, and kept.
     void ask_preferences();
+    /// Asks how the grid of the volume lies in the body, and its spacing.
+    void ask_grid();
+    /// `action` at once, or after unsaved edits and measurements were saved or given up.
+    void settle_work(const std::function<void()>& action);
+    /// Asks for a name where there is none. A session names a volume, so its edits are saved first.
+    void save_session(const QString& name, const std::function<void()>& then = {});
+    /// Size and layout of this window are not those of the next start.
+    void forget_layout() { keeps_layout_ = false; }
     /// Throws io::OutputError.
     void save_picture(const QString& path, bool whole_window);
     /// Nothing is being loaded, saved or drawn.
@@ -85,6 +93,8 @@ class MainWindow : public QMainWindow {
     void connect_parts();
     void connect_welcome();
     void show_title();
+    void show_grid();
+    bool may_lose_work(const std::function<void()>& once_saved);
     void restore_layout();
     void use(const Preferences& preferences);
     void show_readout(const Snapshot& now);
@@ -113,6 +123,7 @@ class MainWindow : public QMainWindow {
     Hints hints_;
     Actions actions_;
     QTimer timer_;
+    bool keeps_layout_ = true;
     int rounds_ = 0, at_rest_ = 0;
     std::optional<Snapshot> seen_;  // the last one that differed from the one before
 };

@@ -31,6 +31,9 @@ class MeasureController : public QObject {
     /// The complete ones.
     const std::vector<Measurement>& measurements() const { return done_; }
     void set_measurements(const std::vector<Measurement>& measurements);
+    /// There are some that are in no session file.
+    bool unsaved() const { return !done_.empty() && done_ != saved_; }
+    void set_saved() { saved_ = done_; }
 
   private:
     void add_point(const Vec3& at);
@@ -39,7 +42,7 @@ class MeasureController : public QObject {
     Content& content_;
     Views& views_;
     Messages& messages_;
-    std::vector<Measurement> done_;
+    std::vector<Measurement> done_, saved_;
     std::optional<Measurement> made_;
     LengthUnit unit_ = LengthUnit::automatic;
 };

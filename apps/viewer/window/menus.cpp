@@ -7,6 +7,7 @@
 #include <QMenu>
 #include <QMenuBar>
 #include <QToolBar>
+#include <map>
 
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
@@ -26,7 +27,7 @@ void fill_recent(QMenu& menu, MainWindow& window) {
     menu.clear();
     for (const QString& path : recent_files()) {
         QObject::connect(menu.addAction(path), &QAction::triggered, &window, [&window, path] {
-            window.editing().settle_edits([&window, path] { window.files().open_path(path); });
+            window.settle_work([&window, path] { window.files().open_path(path); });
         });
     }
     if (menu.isEmpty()) menu.addAction(MainWindow::tr("nothing yet"))->setEnabled(false);
@@ -35,7 +36,7 @@ void fill_recent(QMenu& menu, MainWindow& window) {
 void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     const auto open = [&window](auto ask) {
         return [&window, ask] {
-            window.editing().settle_edits([&window, ask] {
+            window.settle_work([&window, ask] {
                 const QString path = ask(&window);
                 if (!path.isEmpty()) window.files().open_path(path);
             });
@@ -45,39 +46,27 @@ void add_open_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     actions.add(menu, "open_folder", MainWindow::tr("Open a &folder (DICOM, TIFF, Zarr)…"),
                 QKeySequence("Ctrl+Shift+O"), open(ask_open_folder));
     actions.add(menu, "open_raw", MainWindow::tr("Open raw &data…"), {}, [&window] {
-        window.editing().settle_edits([&window] {
+        window.settle_work([&window] {
             const QString path = ask_open_raw_name(&window);
             if (!path.isEmpty()) window.files().ask_layout(run::source_named(path.toStdString()));
         });
     });
-    actions.add(
-        menu, "open_address", MainWindow::tr("Open a&n address…"), QKeySequence("Ctrl+L"),
-        [&window] { window.editing().settle_edits([&window] { window.files().ask_address(); }); });
+    actions.add(menu, "open_address", MainWindow::tr("Open a&n address…"), QKeySequence("Ctrl+L"),
+                [&window] { window.settle_work([&window] { window.files().ask_address(); }); });
     QMenu* recent = menu->addMenu(MainWindow::tr("Open &recent"));
     recent->setObjectName("recent");
     QObject::connect(recent, &QMenu::aboutToShow, &window,
                      [&window, recent] { fill_recent(*recent, window); });
 }
 
-/// Asks for a name where there is none. A session names a volume, so its edits are saved first.
-void save_session(MainWindow& window, const QString& name) {
-    window.editing().save_edits_first([&window, name] {
-        const QString path = !name.isEmpty()
-                                 ? name
-                                 : ask_save_name(&window, MainWindow::tr("Save the session"),
-                                                 "session.json", "json");
-        if (!path.isEmpty()) window.files().save_session(path);
-    });
-}
-
 void add_save_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     const auto opened = [&window] { return window.content().volume() != nullptr; };
     actions.add(
         menu, "save_session", MainWindow::tr("&Save the session"), QKeySequence::Save,
-        [&window] { save_session(window, window.content().session()); }, opened);
+        [&window] { window.save_session(window.content().session()); }, opened);
     actions.add(
         menu, "save_session_as", MainWindow::tr("Save the session &as…"), {},
-        [&window] { save_session(window, {}); }, opened);
+        [&window] { window.save_session({}); }, opened);
     const auto picture = [&window](bool whole_window) {
         const QString path = ask_save_name(&window, MainWindow::tr("Save a picture"),
                                            "palpate-" + time_stamp() + ".png", "png");
@@ -150,10 +139,17 @@ void make_session_menu(MainWindow& window, Actions& actions) {
         [&window] { return window.probe().possible(); });
     menu->addSeparator();
     const auto raise = [&window](double percent) {
-        return [&window, percent] { window.run().raise_isovalue(percent); };
+        return [&window, percent] {
+            const double range = window.content().felt().volume().range();
+            const double level = window.panel().isovalue() + 0.01 * percent * range;
+            window.panel().request(command::Isovalue{level});
+        };
     };
     const auto scale = [&window](double factor) {
-        return [&window, factor] { window.run().scale_hand(factor); };
+        return [&window, factor] {
+            const double now = window.panel().settings().transform.scale;
+            window.panel().request(command::Scale{factor * now});
+        };
     };
     actions.add(menu, "level_up", MainWindow::tr("Isovalue &up by 1 %"), QKeySequence("+"),
                 raise(1), live);
@@ -206,6 +202,10 @@ void make_data_menu(MainWindow& window, Actions& actions) {
             return window.live() &&
                    std::holds_alternative<run::StoreSource>(window.content().source().from);
         });
+    actions.add(
+        menu, "choose_grid", MainWindow::tr("Or&ientation and spacing…"), {},
+        [&window] { window.settle_work([&window] { window.ask_grid(); }); },
+        [&window] { return window.live() && window.content().from_file(); });
     menu->addSeparator();
     actions.add(
         menu, "play_sequence", MainWindow::tr("&Play the sequence, or pause it"), QKeySequence("K"),
@@ -219,22 +219,27 @@ void make_data_menu(MainWindow& window, Actions& actions) {
                 playable);
 }
 
-/// Names of pictures::view_names().
-QString view_text(const std::string& name) {
+/// Names of pictures::view_names(), and what they are where the sides of the body are not known.
+QString view_text(const std::string& name, bool oriented) {
+    static const std::map<std::string, QString> ends = {{"front", "-Y"}, {"back", "+Y"},
+                                                        {"left", "+X"},  {"right", "-X"},
+                                                        {"top", "+Z"},   {"bottom", "-Z"}};
+    const auto end = ends.find(name);
+    if (!oriented && end != ends.end()) return MainWindow::tr("From %1").arg(end->second);
     if (name == "front") return MainWindow::tr("From the front");
     if (name == "back") return MainWindow::tr("From the back");
     if (name == "left") return MainWindow::tr("From the left");
     if (name == "right") return MainWindow::tr("From the right");
     if (name == "top") return MainWindow::tr("From the top");
     if (name == "bottom") return MainWindow::tr("From the bottom");
-    if (name == "oblique") return MainWindow::tr("From the oblique");
+    if (name == "oblique") return MainWindow::tr("From a corner");
     return QString::fromStdString(name);
 }
 
 void add_camera_actions(MainWindow& window, Actions& actions, QMenu* menu) {
     actions.add(
         menu, "whole", MainWindow::tr("&Whole volume"), QKeySequence("R"),
-        [&window] { window.views().scene().reset_camera(); },
+        [&window] { window.views().scene().show_whole(); },
         [&window] { return window.content().volume() != nullptr; });
     const auto from_hand = [&window] {
         const auto now = window.live() ? window.live()->snapshot() : std::nullopt;
@@ -244,7 +249,7 @@ void add_camera_actions(MainWindow& window, Actions& actions, QMenu* menu) {
                 [&window] { return window.live() != nullptr; });
     int number = 0;
     for (const std::string& name : pictures::view_names()) {
-        actions.add(menu, ("view_" + name).c_str(), view_text(name),
+        actions.add(menu, ("view_" + name).c_str(), view_text(name, true),
                     QKeySequence(QString::number(++number)), [&window, name] {
                         window.views().scene().look_from(pictures::view_named(name));
                     });
@@ -343,6 +348,12 @@ void make_help_menu(MainWindow& window, Actions& actions) {
 }
 
 }  // namespace
+
+void name_views(Actions& actions, bool oriented) {
+    for (const std::string& name : pictures::view_names()) {
+        actions.find(("view_" + name).c_str())->setText(view_text(name, oriented));
+    }
+}
 
 void make_menus(MainWindow& window, Actions& actions) {
     make_file_menu(window, actions);

@@ -17,6 +17,17 @@ bool Messages::guarded(const std::function<void()>& action) {
     }
 }
 
+void Messages::ask(QDialog* dialog, const QString& otherwise) {
+    dialog->setAttribute(Qt::WA_DeleteOnClose);
+    if (!unattended_) return dialog->open();
+    show_problem(otherwise.isEmpty() ? dialog->windowTitle() : otherwise);
+    dialog->deleteLater();
+}
+
+int Messages::answer_to(QMessageBox& question) {
+    return unattended_ ? int(QMessageBox::Discard) : question.exec();
+}
+
 void Messages::show_problem(const QString& what, int status) {
     problem_ = what;
     problem_status_ = status;

@@ -7,6 +7,8 @@
 
 #include "apps/options/exit_status.hpp"
 
+class QDialog;
+class QMessageBox;
 class QWidget;
 
 namespace palpate::viewer {
@@ -27,6 +29,13 @@ class Messages : public QObject {
     const QString& problem() const { return problem_; }
     int problem_status() const { return problem_status_; }
     void forget() { problem_.clear(); }
+    /// Nobody is there to answer: questions are problems, or answered with No.
+    void set_unattended() { unattended_ = true; }
+    /// Opens a dialog that does not block the live run and is deleted afterwards. If nobody is
+    /// there, it is a problem in these words, or else in its title.
+    void ask(QDialog* dialog, const QString& otherwise = {});
+    /// Asks, and returns the button; QMessageBox::Discard if nobody is there.
+    int answer_to(QMessageBox& question);
     /// What dialogs belong to.
     QWidget* window() const { return window_; }
 
@@ -37,6 +46,7 @@ class Messages : public QObject {
     QWidget* window_;
     QString problem_;
     int problem_status_ = 0;
+    bool unattended_ = false;
 };
 
 }  // namespace palpate::viewer

@@ -2,6 +2,7 @@
 #include "apps/viewer/window/probe_controller.hpp"
 
 #include <QAction>
+#include <QApplication>
 #include <algorithm>
 #include <numbers>
 #include <utility>
@@ -26,41 +27,35 @@ constexpr double off_voxels = 2;
 constexpr double arrived_mm = 0.2;
 /// A button held so long presses deeper, at this speed [device mm/s].
 constexpr double hold_seconds = 0.6, press_speed = 3;
-/// So soon after the button went down a drag begins, or it is a touch.
-constexpr int drag_ms = 150;
 
 }  // namespace
 
 ProbeController::ProbeController(Content& content, RunController& run, Views& views,
                                  Messages& messages)
-    : content_(content), views_(views), messages_(messages) {
+    : content_(content), run_(run), views_(views), messages_(messages) {
     connect(&views, &Views::probe_dragged, this, [this](const Vec3& by) {
-        pressed_.reset();
-        held_.invalidate();
+        forget_press();
         move_by(by);
     });
+    connect(&views, &Views::double_clicked, this, &ProbeController::forget_press);
     connect(&views, &Views::tool_turned, this, &ProbeController::turn_by);
     connect(&views, &Views::probe_aimed, this, &ProbeController::move_to);
     connect(&views, &Views::probe_pressed, this, [this](const Vec3& at) {
         pressed_ = at;
-        held_.start();
+        since_.start();
+        held_ = true;
         pressed_seconds_ = 0;
     });
-    connect(&views, &Views::probe_released, this, [this] {
-        held_.invalidate();
-        if (pressed_) touch(*std::exchange(pressed_, std::nullopt));
-    });
+    connect(&views, &Views::probe_released, this, [this] { held_ = false; });
     connect(&run, &RunController::device_changed, this, [this] {
         set_pointing(possible());
+        end_route();
         approaching_ = possible();
-        route_.clear();
     });
     connect(&content, &Content::playback_started, this, [this] { set_pointing(false); });
     connect(&content, &Content::closed, this, [this] {
-        approaching_ = false;
-        route_.clear();
-        pressed_.reset();
-        held_.invalidate();
+        end_route();
+        forget_press();
     });
     add_keys();
 }
@@ -103,9 +98,40 @@ void ProbeController::move_by(const Vec3& by) {
 void ProbeController::move_to(const Vec3& to) {
     const auto now = possible() ? content_.snapshot() : std::nullopt;
     if (!now) return;
-    approaching_ = false;
-    route_.clear();
+    end_route();
     aim(now->session.transform, to);
+}
+
+void ProbeController::forget_press() {
+    pressed_.reset();
+    held_ = false;
+}
+
+void ProbeController::end_route() {
+    approaching_ = false;
+    if (route_.empty()) return;
+    route_.clear();
+    Q_EMIT lifted(false);
+}
+
+/// Back out of the volume, across in front of it, and forward.
+void ProbeController::send_to(const DeviceTransform& transform, const Vec3& to) {
+    route_ =
+        route_in_front(content_.live()->field().geometry(), aimed(transform), to, towards_viewer());
+    std::ranges::reverse(route_);
+    aim(transform, route_.back());
+    Q_EMIT lifted(true);
+}
+
+/// Turned as the hand holds it [mm, physical axes].
+std::vector<Vec3> ProbeController::tool_points(const DeviceTransform& transform) const {
+    std::vector<Vec3> points;
+    const auto tool = content_.tool();
+    if (!tool) return points;
+    const Mat3 turned =
+        transform.rotation * content_.live()->mouse()->turned_to().toRotationMatrix();
+    for (const Vec3& point : tool->points()) points.push_back(turned * point);
+    return points;
 }
 
 /// The part of a step that ends in front of the grid's far side.
@@ -129,15 +155,13 @@ void ProbeController::touch(const Vec3& at) {
     const Vec3 aside = at - from - (at - from).dot(towards) * towards;
     const double grab = grab_px * mm_per_pixel(views_.scene().camera(), views_.scene().view_size());
     if (aside.norm() <= grab && now->session.tick.proxy.mode == Mode::constrained) return;
-    const Field& field = content_.live()->field();
     const Content::OuterSurface outer = content_.outer_surface();
-    const auto surface = surface_under(outer.field, outer.level, at, towards);
+    const auto surface =
+        tool_on_surface(outer.field, outer.level, at, towards, tool_points(transform));
     if (!surface) return;
     const double stiffness = content_.live()->settings().force.stiffness;
     const double depth = transform.scale * std::min(touch_newtons / stiffness, deepest_touch);
-    route_ = route_in_front(field.geometry(), from, *surface - depth * towards, towards);
-    std::ranges::reverse(route_);
-    aim(transform, route_.back());
+    send_to(transform, *surface - depth * towards);
 }
 
 void ProbeController::observe() {
@@ -145,8 +169,10 @@ void ProbeController::observe() {
     if (!live || live->session.device.status != DeviceStatus::ready) return;
     const Snapshot& now = *live;
     if (approaching_) approach(now);
-    // A press that is no drag is a touch.
-    if (pressed_ && held_.elapsed() > drag_ms) touch(*std::exchange(pressed_, std::nullopt));
+    // A press that is neither a drag nor the first of a double click is a touch.
+    if (pressed_ && since_.elapsed() > QApplication::doubleClickInterval()) {
+        touch(*std::exchange(pressed_, std::nullopt));
+    }
     if (!route_.empty()) return travel(now);
     press_deeper(now);
 }
@@ -160,24 +186,27 @@ void ProbeController::approach(const Snapshot& now) {
     const Content::OuterSurface outer = content_.outer_surface();
     const auto surface = surface_in_view(outer.field, outer.level, towards, camera.up);
     if (!surface) return;
-    const Vec3 off = off_voxels * field.geometry().spacing.maxCoeff() * towards;
     const DeviceTransform& transform = now.session.transform;
-    route_ = route_in_front(field.geometry(), aimed(transform), *surface + off, towards);
-    std::ranges::reverse(route_);
-    aim(transform, route_.back());
+    const auto rest =
+        tool_on_surface(outer.field, outer.level, *surface, towards, tool_points(transform));
+    const Vec3 off = off_voxels * field.geometry().spacing.maxCoeff() * towards;
+    send_to(transform, rest.value_or(*surface) + off);
 }
 
 void ProbeController::travel(const Snapshot& now) {
     const Vec3 away = now.session.device.position - content_.live()->mouse()->aimed();
     if (away.norm() > arrived_mm) return;
+    // In front of the volume nothing is in the way of the proxy, whatever held it.
+    if (route_.size() == 2) run_.send(command::Lift{});
+    if (route_.size() == 1) return end_route();
     route_.pop_back();
-    if (!route_.empty()) aim(now.session.transform, route_.back());
+    aim(now.session.transform, route_.back());
 }
 
 /// While the button is held still.
 void ProbeController::press_deeper(const Snapshot& now) {
-    if (!held_.isValid()) return;
-    const double seconds = 1e-3 * double(held_.elapsed()) - hold_seconds - pressed_seconds_;
+    if (!held_) return;
+    const double seconds = 1e-3 * double(since_.elapsed()) - hold_seconds - pressed_seconds_;
     if (!(seconds > 0)) return;
     pressed_seconds_ += seconds;
     const Tick& tick = now.session.tick;

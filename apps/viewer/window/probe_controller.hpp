@@ -35,33 +35,44 @@ class ProbeController : public QObject {
     void turn_by(const Vec3& rotation);
     /// `screen`: about the axes to the right, up, towards the viewer [radians].
     void twist(const Vec3& screen);
-    /// Brings the probe from in front to the surface under a point of the picture, and a little
-    /// into it; nothing where the probe is there already, or there is no surface.
+    /// Lifts the hand, wherever it is, and brings it from in front to the surface under a point of
+    /// the picture, until probe or tool touches lightly; nothing where the probe is there already,
+    /// or there is no surface.
     void touch(const Vec3& at);
 
     /// Sixty times a second: goes on with what takes time.
     void observe();
     /// The probe is on its way to where it was sent.
-    bool travelling() const { return approaching_ || !route_.empty(); }
+    bool travelling() const { return approaching_ || pressed_ || !route_.empty(); }
+
+  Q_SIGNALS:
+    /// The hand is off the volume, on its way to where it was sent; or has arrived.
+    void lifted(bool off);
 
   private:
     void add_keys();
     Vec3 towards_viewer() const;
     Vec3 aimed(const DeviceTransform& transform) const;
     void aim(const DeviceTransform& transform, const Vec3& physical);
+    std::vector<Vec3> tool_points(const DeviceTransform& transform) const;
+    void send_to(const DeviceTransform& transform, const Vec3& to);
+    void forget_press();
+    void end_route();
     void approach(const Snapshot& now);
     void travel(const Snapshot& now);
     void press_deeper(const Snapshot& now);
     Vec3 before_far_side(const Vec3& from, const Vec3& by);
 
     Content& content_;
+    RunController& run_;
     Views& views_;
     Messages& messages_;
     bool pointing_ = false;
     bool approaching_ = false;     // a run has begun: to the first surface, once there is a tick
     std::vector<Vec3> route_;      // stops to come, the next one last [mm, physical]
     std::optional<Vec3> pressed_;  // where the button went down, until it is a touch or a drag
-    QElapsedTimer held_;           // since then, without a drag; not valid while it is up
+    QElapsedTimer since_;          // then
+    bool held_ = false;            // since then, without a drag
     double pressed_seconds_ = 0;   // of it, for which the probe has gone deeper
 };
 

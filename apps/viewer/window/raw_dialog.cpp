@@ -148,7 +148,8 @@ void RawDialog::show_slice() {
 
 run::FileSource RawDialog::layout_source() const {
     const io::RawLayout layout = layout_now();
-    return {path_.toStdString(), layout, layout.spacing, {}};
+    const bool given = layout.spacing != Vec3::Ones();
+    return {path_.toStdString(), layout, given ? std::optional(layout.spacing) : std::nullopt, {}};
 }
 
 }  // namespace palpate::viewer

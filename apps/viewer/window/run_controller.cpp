@@ -89,23 +89,6 @@ void RunController::restore(const RendererSettings& settings) {
     Q_EMIT content_.run_changed();
 }
 
-void RunController::raise_isovalue(double percent) {
-    const run::Run* live = content_.live();
-    if (!live) return;
-    if (have_surfaces(live->settings().layers)) {
-        return messages_.show_done(
-            tr("Layers are felt, not an isovalue: choose No layers to feel one"));
-    }
-    const double step = 0.01 * percent * live->field().volume().range();
-    send(command::Isovalue{live->isovalue() + step});
-}
-
-void RunController::scale_hand(double factor) {
-    if (const run::Run* live = content_.live()) {
-        send(command::Scale{live->settings().transform.scale * factor});
-    }
-}
-
 void RunController::find_devices() {
     if (search_.busy()) return;
     auto found = std::make_shared<std::vector<devices::DeviceFinding>>();

@@ -53,9 +53,6 @@ class RunController : public QObject {
     /// Sends those of the settings for which there are commands; the panel shows the result. Not
     /// layers that lack_labels().
     void restore(const RendererSettings& settings);
-    /// By so many percent of the data's range.
-    void raise_isovalue(double percent);
-    void scale_hand(double factor);
 
     void find_devices();
     void use_device(const QString& option);

@@ -3,6 +3,7 @@
 
 #include <QBoxLayout>
 #include <QMouseEvent>
+#include <QPushButton>
 #include <QSplitter>
 #include <algorithm>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/slices/slice_pane.hpp"
+#include "palpate/proxy.hpp"
 
 namespace palpate::viewer {
 
@@ -17,6 +19,10 @@ Views::Views(MakePainter make_painter, QWidget* parent)
     : QWidget(parent),
       scene_(new Scene(nullptr, std::move(make_painter))),
       slices_{new SlicePane(0), new SlicePane(1), new SlicePane(2)},
+      by_body_(slices_),
+      missing_(named(new QPushButton(this), "missing_grid",
+                     tr("Sides of the body are not known: say how the volume lies, and its "
+                        "spacing"))),
       across_(new QSplitter(Qt::Horizontal)),
       left_(new QSplitter(Qt::Vertical)),
       down_(new QSplitter(Qt::Vertical)) {
@@ -29,11 +35,9 @@ Views::Views(MakePainter make_painter, QWidget* parent)
     across_->setStretchFactor(0, 3);
     across_->setStretchFactor(1, 1);
     scene_->installEventFilter(this);
-    // Axial above, as is usual.
-    for (const std::size_t axis : {2U, 1U, 0U}) {
+    for (const std::size_t axis : {0U, 1U, 2U}) {
         SlicePane* pane = slices_[axis];
         pane->setObjectName(QString("slice%1").arg(axis));
-        down_->addWidget(pane);
         pane->installEventFilter(this);
         connect(pane, &SlicePane::crosshair_chosen, this, &Views::choose_crosshair);
         connect(pane, &SlicePane::probe_aimed, this, &Views::probe_aimed);
@@ -45,15 +49,39 @@ Views::Views(MakePainter make_painter, QWidget* parent)
     connect(scene_, &Scene::tool_turned, this, &Views::tool_turned);
     connect(scene_, &Scene::probe_pressed, this, &Views::probe_pressed);
     connect(scene_, &Scene::probe_released, this, &Views::probe_released);
-    connect(scene_, &Scene::point_chosen, this, &Views::point_chosen);
-    connect(scene_, &Scene::point_pointed_at, this, &Views::point_pointed_at);
+    connect(scene_, &Scene::point_chosen, this,
+            [this](const Vec3& at) { Q_EMIT point_chosen(on_surface(at)); });
+    connect(scene_, &Scene::point_pointed_at, this,
+            [this](const Vec3& at) { Q_EMIT point_pointed_at(on_surface(at)); });
     arrange(Arrangement::beside);
+    missing_->setStyleSheet(
+        "QPushButton { background-color: #ffb000; color: black; border-radius: 4px; "
+        "padding: 3px 8px; }");
+    missing_->move(fontMetrics().height(), fontMetrics().height());
+    missing_->hide();
+    connect(missing_, &QPushButton::clicked, this, &Views::grid_asked);
+}
+
+void Views::set_missing(const QString& words) {
+    missing_->setText(words);
+    missing_->adjustSize();
+    missing_->setVisible(!words.isEmpty());
+    missing_->raise();
+}
+
+/// The picture is coarser than the surface that is felt.
+Vec3 Views::on_surface(const Vec3& seen) const {
+    const Vec3 near =
+        1.5 * field_->geometry().spacing.maxCoeff() * axes_of(scene_->camera()).towards_viewer;
+    const RayHit hit = cast_ray(*field_, isovalue_, seen + near, seen - near);
+    return hit.hit && hit.point != seen + near ? hit.point : seen;
 }
 
 bool Views::eventFilter(QObject* watched, QEvent* event) {
     if (event->type() == QEvent::MouseButtonDblClick) {
         const auto& mouse = static_cast<const QMouseEvent&>(*event);
         if (mouse.button() == Qt::LeftButton && mouse.modifiers() == Qt::NoModifier) {
+            Q_EMIT double_clicked();
             toggle_alone(static_cast<QWidget*>(watched));
             return true;
         }
@@ -73,12 +101,21 @@ void Views::show_next_slice() {
     show_panes();
 }
 
+/// Axial above, as is usual, whatever the order of storage.
+void Views::order_panes() {
+    const auto before = by_body_;
+    for (SlicePane* pane : slices_) by_body_[std::size_t(pane->anatomical())] = pane;
+    if (by_body_ != before) arrange(arrangement_);
+}
+
 void Views::arrange(Arrangement arrangement) {
+    arrangement_ = arrangement;
     alone_ = nullptr;
     slices_shown_ = true;
     const bool four = arrangement == Arrangement::four;
     // Above one another in every arrangement: axial, coronal, sagittal.
-    (four ? left_ : down_)->addWidget(slices_[0]);
+    for (const std::size_t pane : {2U, 1U}) down_->addWidget(by_body_[pane]);
+    (four ? left_ : down_)->addWidget(by_body_[0]);
     show_panes();
     const int part = four ? 1 : 3;
     across_->setSizes({part * 300, 300});
@@ -93,24 +130,28 @@ void Views::show_panes() {
     };
     scene_->setVisible(seen(scene_));
     for (SlicePane* pane : slices_) pane->setVisible(seen(pane));
-    left_->setVisible(seen(scene_) || (slices_[0]->parent() == left_ && seen(slices_[0])));
+    left_->setVisible(seen(scene_) || (by_body_[0]->parent() == left_ && seen(by_body_[0])));
     down_->setVisible(!alone_ ? slices_shown_ : alone_->parent() == down_);
 }
 
 void Views::set_field(const Field& field, double isovalue, const std::optional<Geometry>& counted) {
     isovalue_ = isovalue;
+    field_ = field;
     scene_->set_field(field, isovalue);
     for (SlicePane* pane : slices_) pane->set_field(field, isovalue, counted);
+    order_panes();
     set_crosshair(physical_centre(field.geometry()));
     touched_ = false;
 }
 
 void Views::update_field(const Field& field) {
+    field_ = field;
     scene_->update_field(field);
     for (SlicePane* pane : slices_) pane->update_field(field);
 }
 
 void Views::clear() {
+    field_.reset();
     scene_->clear();
     for (SlicePane* pane : slices_) pane->clear();
 }

@@ -13,6 +13,7 @@
 #include "apps/viewer/scene/painter.hpp"
 #include "palpate/servo.hpp"
 
+class QPushButton;
 class QSplitter;
 
 namespace palpate::viewer {
@@ -62,6 +63,8 @@ class Views : public QWidget {
     void set_window(double low, double high);
     double window_low() const { return window_low_; }
     double window_high() const { return window_high_; }
+    /// What the file does not say of the volume's grid, on a button over the panes; empty: none.
+    void set_missing(const QString& words);
     void show_slices(bool shown);
     bool slices_shown() const;
     /// Beside: the slices in a column beside the scene. Four: all panes of the same size, the
@@ -87,6 +90,10 @@ class Views : public QWidget {
     /// As Scene's.
     void probe_pressed(const palpate::Vec3& at);
     void probe_released();
+    /// A pane was enlarged, or all are shown again.
+    void double_clicked();
+    /// The button of set_missing() was pressed.
+    void grid_asked();
     void follow_changed(bool follow);
     /// While measuring.
     void point_chosen(const palpate::Vec3& at);
@@ -97,10 +104,16 @@ class Views : public QWidget {
 
   private:
     void choose_crosshair(const Vec3& physical);
+    Vec3 on_surface(const Vec3& seen) const;
+    void order_panes();
     void show_panes();
 
     Scene* scene_;
-    std::array<SlicePane*, 3> slices_;
+    std::optional<Field> field_;         // as it is shown
+    std::array<SlicePane*, 3> slices_;   // by the axis of the grid
+    std::array<SlicePane*, 3> by_body_;  // sagittal, coronal, axial
+    Arrangement arrangement_ = Arrangement::beside;
+    QPushButton* missing_;
     QSplitter *across_, *left_, *down_;
     QWidget* alone_ = nullptr;
     bool slices_shown_ = true;

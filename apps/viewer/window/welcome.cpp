@@ -58,7 +58,7 @@ Welcome::Welcome(QWidget* parent)
     auto* how = words(tr(
         "Click a surface to touch it; drag to move along, hold the button or turn the wheel to "
         "press.\nThe right button turns the view.\nDrag the line in the histogram to feel another "
-        "level; press harder to go through a layer."));
+        "level. The page Feel lets you press through surfaces."));
     auto* column = column_of({title, open, folder, sample, recent_, how, devices_});
     column->setFixedWidth(column_width);
     column->layout()->setSpacing(10);

@@ -35,6 +35,8 @@ struct ReadOptions {
     std::optional<RawLayout> raw;
     /// Used instead of the spacing that the file gives or lacks [mm].
     std::optional<Vec3> spacing;
+    /// Used instead of the orientation that the file gives or lacks: direction_from().
+    std::string orientation = {};
     /// Which DICOM series: its UID, or its number in the list that the error message gives.
     std::string series;
     /// Make pictures for SeriesChoice if a series has to be chosen.

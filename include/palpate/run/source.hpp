@@ -22,6 +22,7 @@ struct FileSource {
     std::optional<io::RawLayout> raw;  ///< of a file without a header
     std::optional<Vec3> spacing;       ///< [mm] instead of what the file gives or lacks
     std::string series;                ///< DICOM series: UID or number. Empty: the only one
+    std::string orientation = {};      ///< instead of the file's: io::direction_from()
 };
 /// A volume that scenes::make_volume() makes.
 struct SyntheticSource {
@@ -62,8 +63,8 @@ std::string name_of(const Source& source);
 Source source_named(const std::string& name);
 
 /// The names and values under which recordings and session files keep a source. "volume" is its
-/// name. The others are "dims", "type", "spacing", "skip", "byte-order", "series", "time-step",
-/// "level", "channel", "memory" [bytes, of the process], "coarse-first", "all-times",
+/// name. The others are "dims", "type", "spacing", "orientation", "skip", "byte-order", "series",
+/// "time-step", "level", "channel", "memory" [bytes, of the process], "coarse-first", "all-times",
 /// "forbidden-is-missing", "frame-interval", "smooth", "dequantize" and "prefilter". Missing
 /// options are left out, and so is a cache, which is local. Web addresses are without password
 /// and query (io::address_to_keep()). If they had one, "secrets" says "left out".

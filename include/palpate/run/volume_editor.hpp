@@ -71,8 +71,8 @@ class VolumeEditor {
     /// For an attached servo. Throws std::runtime_error, and does not begin, if it takes no
     /// commands.
     void record(const Servo& servo, const BeginRecording& begin);
-    /// What this servo feels with from now on. Null: a point. For one that is not attached:
-    /// nothing.
+    /// What this servo feels with from now on. Null: a point. The brush rests until the tool has
+    /// been in the air. For a servo that is not attached: nothing.
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// The brush of every attached servo. Nothing: the hand only feels. Throws as check().
     void set_brush(const std::optional<HandBrush>& brush);
@@ -104,8 +104,8 @@ class VolumeEditor {
         Field field;  // for its solid side and background
         std::shared_ptr<const Tool> tool;
         std::optional<Touch> touch = {};
-        bool resting = false;                       // after an undo, until it was in the air
-        std::int64_t from = 0;                      // the first tick that surely has the tool
+        bool resting = false;   // after an undo or another tool, until it was in the air
+        std::int64_t from = 0;  // the first tick that surely has the tool
         std::shared_ptr<const ToolBody> body = {};  // of the tool, for the last sweep
     };
     /// What an edit reads, by the low corner of the box.

@@ -54,6 +54,7 @@ struct Traffic {
 struct StoreOptions {
     std::optional<io::RawLayout> raw;  ///< of a file without a header
     std::optional<Vec3> spacing;       ///< [mm] instead of what the store gives or lacks
+    std::string orientation = {};      ///< the same, as io::direction_from() takes it
     int channel = 0;
     int time = 0;
     std::filesystem::path cache_folder = {};  ///< disk cache of remote stores; empty: none

@@ -33,6 +33,15 @@ TEST(Opening, first_level_lies_within_the_data) {
     EXPECT_LT(first_isovalue(opened), opened.loaded.volume.maximum());
 }
 
+TEST(Opening, a_background_does_not_decide_the_contrast) {
+    std::vector<std::uint8_t> samples(4096, 0);
+    for (std::size_t i = 0; i < 4; ++i) samples[i * 900] = static_cast<std::uint8_t>(100 + 20 * i);
+    Volume cells(Geometry{.size = {16, 16, 16}}, samples);
+    const Opened opened{{cells, source_named("cells"), "cells"}, run::histogram_of(cells, 256)};
+    EXPECT_NEAR(opened.dark(), 100, 2);
+    EXPECT_NEAR(opened.bright(), 160, 2);
+}
+
 TEST(Opening, constant_data_are_refused_with_their_name) {
     Volume constant(Geometry{.size = {4, 4, 4}}, std::vector<std::uint8_t>(64, 9));
     const Opened opened{{constant, source_named("flat"), "flat"}, run::histogram_of(constant, 256)};

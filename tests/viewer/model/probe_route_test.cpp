@@ -36,6 +36,26 @@ TEST(ProbeRoute, beside_the_middle_the_nearest_surface_in_view_is_taken) {
     EXPECT_FALSE(surface_in_view(field, 1e9, towards, up)) << "nothing is solid";
 }
 
+TEST(ProbeRoute, a_tool_that_comes_from_in_front_rests_with_the_point_that_touches_first) {
+    const scenes::Scene scene = scenes::make_volume("sphere:48x48x48");
+    const Field field(scene.volume);
+    const Vec3 at = physical_centre(field.geometry()) + Vec3(6, 0, 0);
+    const Vec3 bare = tool_on_surface(field, scene.isovalue, at, towards, {}).value();
+    EXPECT_EQ(bare, surface_under(field, scene.isovalue, at, towards));
+    const std::vector<Vec3> points{{0, 0, -3}, {-6, 0, 0}, {0, 0, 5}};
+    const Vec3 rest = tool_on_surface(field, scene.isovalue, at, towards, points).value();
+    EXPECT_EQ(rest.head<2>(), bare.head<2>());
+    double most = bare[2];
+    for (const Vec3& point : points) {
+        const auto met = surface_under(field, scene.isovalue, at + point, towards);
+        most = std::max(most, met.value()[2] - point[2]);
+    }
+    EXPECT_NEAR(rest[2], most, 1e-9);
+    EXPECT_GT(rest[2], bare[2] + 2);
+    const Vec3 beside = physical_from_index(field.geometry(), Vec3(1, 1, 20));
+    EXPECT_FALSE(tool_on_surface(field, scene.isovalue, beside, towards, points));
+}
+
 TEST(ProbeRoute, a_single_slice_has_a_front) {
     const Geometry geometry{Index3(9, 9, 1)};
     const Field field(Volume(geometry, std::vector<std::uint8_t>(81, 200)), Solid::above, 0.0);

@@ -177,6 +177,11 @@ TEST_F(Forces, snapshots_move_the_gauge_and_say_what_holds_the_force_back) {
     now.session.tick.force_flags = force_waiting;
     panel.show_snapshot(now);
     EXPECT_EQ(gauge->words(), "waiting");
+    now.session.tick.force_flags = force_stale;
+    now.forces_on = true;
+    panel.show_snapshot(now);
+    EXPECT_EQ(gauge->words(), "no input");
+    EXPECT_EQ(find<QPushButton>("forces")->text(), "Forces WAIT\nno input from the device");
     now.session.tick.force_flags = force_off;
     panel.show_snapshot(now);
     EXPECT_EQ(gauge->words(), "off");

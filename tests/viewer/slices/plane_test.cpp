@@ -57,6 +57,20 @@ TEST(SlicePlane, every_grid_is_shown_in_the_radiological_convention) {
     }
 }
 
+TEST(SlicePlane, sides_that_the_file_does_not_tell_are_not_named) {
+    for (const Mat3& direction : signed_orders()) {
+        Geometry geometry = grid({4, 5, 6}, {1, 2, 3}, {7, 8, 9}, direction);
+        geometry.oriented = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            const SlicePlane plane = slice_plane(geometry, axis);
+            std::string all = plane.title + plane.at_left + plane.at_right + plane.at_top;
+            all += plane.at_bottom + position_text(plane, geometry, {10, 20, 30});
+            all.resize(all.find(" "));
+            EXPECT_EQ(all.find_first_not_of("XYZ+-"), std::string::npos) << all;
+        }
+    }
+}
+
 TEST(SlicePlane, right_on_the_screen_is_where_its_letter_says) {
     for (const Mat3& direction : signed_orders()) {
         const Geometry geometry = grid({4, 5, 6}, {1, 2, 3}, {7, 8, 9}, direction);

@@ -2,9 +2,11 @@
 #include <QAction>
 #include <QDir>
 #include <QFile>
+#include <QLabel>
 #include <QMessageBox>
 #include <QPushButton>
 #include <QStatusBar>
+#include <QTabWidget>
 #include <QTimer>
 #include <QToolButton>
 
@@ -73,6 +75,35 @@ TEST_F(ChangingData, the_edited_volume_is_saved_as_zarr_and_then_read_as_it_is_f
     EXPECT_EQ(std::memcmp(saved.data(), felt.data(), felt.bytes()), 0);
     feel(scratch("carved.zarr").toStdString());
     EXPECT_TRUE(window_->live()->data().is_streamed());
+}
+
+TEST_F(ChangingData, a_brush_that_is_on_is_seen_over_the_scene_on_every_page) {
+    feel("synthetic:sphere:48x48x48");
+    auto& words = part<QLabel>("brush_on");
+    EXPECT_FALSE(words.isVisible());
+    press(Qt::Key_B);
+    auto& tabs = part<QTabWidget>("tabs");
+    for (int page = 0; page < tabs.count(); ++page) {
+        tabs.setCurrentIndex(page);
+        wait_until([&] { return words.isVisible(); });
+    }
+    press(Qt::Key_B);
+    wait_until([&] { return !words.isVisible(); });
+}
+
+TEST_F(ChangingData, a_hand_that_is_sent_elsewhere_edits_nothing_on_its_way) {
+    feel("synthetic:sphere:48x48x48");
+    press_until_force();
+    turn_wheel(window_->views().scene(), 10);
+    wait_for_hand();
+    press(Qt::Key_B);
+    Scene& scene = window_->views().scene();
+    wait_until([&] { return work().version > 0; });
+    press(Qt::Key_Z, Qt::ControlModifier);
+    wait_until([&] { return !work().changed; });
+    QTest::mouseClick(&scene, Qt::LeftButton, {}, scene.rect().center() + QPoint(60, 0));
+    wait_until([&] { return window_->live()->mouse()->aimed()[2] > 0 && force() == 0; });
+    EXPECT_EQ(work().undo_steps, 0U) << "drawing back carved";
 }
 
 using DrawnChangingData = ChangingData;

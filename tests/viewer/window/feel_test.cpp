@@ -114,6 +114,78 @@ TEST_F(Window, a_click_touches_the_surface_there_and_a_held_button_presses_deepe
     EXPECT_GT(force(), 0.1) << "nor lets go";
 }
 
+TEST_F(Window, a_double_click_on_the_scene_moves_no_hand) {
+    feel(large_sphere);
+    QApplication::setDoubleClickInterval(100);
+    Scene& scene = window_->views().scene();
+    const Vec3 before = window_->live()->mouse()->aimed();
+    const QPoint at = scene.rect().center() + QPoint(40, 30);
+    QTest::mouseClick(&scene, Qt::LeftButton, {}, at);
+    QTest::mouseDClick(&scene, Qt::LeftButton, {}, at);
+    EXPECT_EQ(window_->views().alone(), &scene);
+    QElapsedTimer since;
+    since.start();
+    wait_until([&] { return since.elapsed() > 3 * QApplication::doubleClickInterval(); });
+    EXPECT_EQ(window_->live()->mouse()->aimed(), before);
+    QTest::mouseClick(&scene, Qt::LeftButton, {}, at);
+    wait_until([&] { return window_->live()->mouse()->aimed() != before; });
+}
+
+TEST_F(Window, a_click_frees_a_probe_that_is_caught_in_a_closed_shell) {
+    feel("synthetic:shell:48x48x48");
+    const double level = window_->live()->isovalue();
+    // Into the shell while nothing is solid.
+    window_->run().send(command::Isovalue{1e9});
+    window_->probe().move_to(Vec3::Zero());
+    wait_for_hand();
+    window_->run().send(command::Isovalue{level});
+    wait_for_ticks(4);
+    Scene& scene = window_->views().scene();
+    QTest::mouseClick(&scene, Qt::LeftButton, {}, scene.rect().center());
+    wait_until([&] { return !window_->probe().travelling(); });
+    wait_for_hand();
+    wait_until([&] { return force() > 0.1; });
+    const Vec3 towards = axes_of(scene.camera()).towards_viewer;
+    const auto outer = surface_under(window_->live()->field(), level, Vec3::Zero(), towards);
+    EXPECT_NEAR((now().session.tick.proxy.scp - outer.value()).norm(), 0, 0.3);
+    EXPECT_LT(force(), 0.6);
+}
+
+TEST_F(Window, plus_and_minus_change_the_panel_too) {
+    feel(large_sphere);
+    const double before = window_->live()->isovalue();
+    press(Qt::Key_Plus);
+    wait_until([&] { return window_->live()->isovalue() > before; });
+    const auto shown = [&] { return part<QDoubleSpinBox>("isovalue_box").value(); };
+    EXPECT_NEAR(shown(), window_->live()->isovalue(), 1e-3);
+    EXPECT_EQ(window_->panel().isovalue(), window_->live()->isovalue());
+    press(Qt::Key_Minus);
+    press(Qt::Key_Minus);
+    wait_until([&] { return window_->live()->isovalue() < before; });
+    EXPECT_NEAR(shown(), window_->live()->isovalue(), 1e-3);
+}
+
+TEST_F(Window, a_thin_stack_is_seen_face_on) {
+    feel("synthetic:sphere:6x40x40");
+    EXPECT_NEAR(std::abs(axes_of(window_->views().scene().camera()).towards_viewer[0]), 1, 1e-9);
+}
+
+TEST_F(Window, r_shows_the_whole_volume_from_the_same_side) {
+    feel(large_sphere);
+    Scene& scene = window_->views().scene();
+    press(Qt::Key_3);
+    drag(scene, scene.rect().center(), scene.rect().center() + QPoint(90, 40), Qt::RightButton);
+    const pictures::Camera before = scene.camera();
+    pictures::Camera away = before;
+    away.half_height *= 0.2;
+    away.focus += Vec3(5, 6, 7);
+    scene.set_camera(away);
+    press(Qt::Key_R);
+    EXPECT_LT((scene.camera().towards_viewer - before.towards_viewer).norm(), 1e-9);
+    EXPECT_LT((scene.camera().up - before.up).norm(), 1e-9);
+    EXPECT_GT(scene.camera().half_height, 3 * away.half_height);
+}
+
 TEST_F(Window, the_wheel_does_not_carry_the_probe_out_at_the_far_side) {
     feel("synthetic:torus:48x48x24");
     Scene& scene = window_->views().scene();

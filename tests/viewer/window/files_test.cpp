@@ -237,6 +237,54 @@ TEST_F(Files, screenshot_waits_for_the_hand_writes_and_closes) {
     EXPECT_FALSE(QImage(scratch("shot.png")).isNull());
 }
 
+TEST_F(Files, measurements_are_not_lost_without_a_question) {
+    feel("synthetic:sphere:48x48x48");
+    SlicePane& axial = window_->views().slice(2);
+    press(Qt::Key_M);
+    for (const int x : {0, 20}) {
+        QTest::mouseClick(&axial, Qt::LeftButton, {}, axial.rect().center() + QPoint(x, 5));
+    }
+    ASSERT_EQ(window_->measuring().measurements().size(), 1U);
+    answer(QMessageBox::Cancel);
+    EXPECT_FALSE(window_->close());
+    answer(QMessageBox::Save);
+    typing(scratch("case.json"), [&] { EXPECT_FALSE(window_->close()) << "it is saved first"; });
+    wait_until([&] { return !window_->isVisible(); });
+    EXPECT_EQ(read_session(scratch("case.json").toStdString()).measurements.size(), 1U);
+    open_window("mouse");
+    window_->files().open_path(scratch("case.json"));
+    wait_until([&] { return window_->live() && window_->settled(); });
+    EXPECT_EQ(window_->measuring().measurements().size(), 1U);
+    EXPECT_TRUE(window_->close()) << "they are in the session";
+}
+
+TEST_F(Files, nobody_is_asked_where_nobody_is_there) {
+    for (int i = 0; i < 6; ++i) {
+        io::test::TestSlice slice;
+        slice.series = i < 3 ? "1.2.3.1" : "1.2.3.2";
+        slice.number = i;
+        slice.position = "0\\0\\" + std::to_string(i);
+        slice.columns = slice.rows = 20;
+        io::test::put_slice(scratch_.path() / ("slice" + std::to_string(i)), slice);
+    }
+    window_->messages().set_unattended();
+    run::Source source = run::source_named(scratch(".").toStdString());
+    std::get<run::FileSource>(source.from).series = "7";
+    window_->files().open_volume(source);
+    const Screenshot screenshot(*window_, scratch("shot.png"), 0);
+    viewer::wait_until([&] { return !window_->isVisible(); });
+    EXPECT_EQ(screenshot.status(), 3);
+    EXPECT_TRUE(window_->messages().problem().contains("no DICOM series '7'"));
+    EXPECT_EQ(window_->findChild<QDialog*>("choose-series"), nullptr);
+}
+
+TEST_F(Files, a_window_of_a_given_size_is_not_that_of_the_next_start) {
+    window_->resize(700, 500);
+    window_->forget_layout();
+    EXPECT_TRUE(window_->close());
+    EXPECT_FALSE(QSettings().contains("geometry"));
+}
+
 TEST_F(Files, screenshot_of_what_cannot_be_opened_ends_with_its_status) {
     window_->files().open_path(scratch("missing.nrrd"));
     const Screenshot screenshot(*window_, scratch("shot.png"), 0);
@@ -256,6 +304,18 @@ TEST_F(Files, a_slice_moves_the_hand_with_ctrl_only) {
     const Vec3 wanted = axial.point_at(at);
     QTest::mouseClick(&axial, Qt::LeftButton, Qt::ControlModifier, at);
     wait_until([&] { return (now().session.tick.proxy.hip - wanted).norm() < 0.1; });
+}
+
+TEST(ViewOptions, a_session_or_a_recording_is_opened_by_its_name) {
+    for (const auto& [name, session, play] :
+         {std::array{"a/b.json", "a/b.json", ""}, {"b.csv", "", "b.csv"}, {"c.nrrd", "", ""}}) {
+        app::ViewOptions options;
+        options.run.source.volume() = name;
+        options.settle();
+        EXPECT_EQ(options.session, session);
+        EXPECT_EQ(options.play, play);
+        EXPECT_EQ(options.has_volume(), std::string(name) == "c.nrrd");
+    }
 }
 
 TEST(WindowSize, is_read_or_refused) {

@@ -35,6 +35,21 @@ class ToolInWindow : public InWindow {
     }
 };
 
+TEST_F(ToolInWindow, a_click_brings_the_tool_and_not_its_middle_to_the_surface) {
+    feel(ball);
+    for (const char* name : {"Burr", "Ball", "Point"}) {
+        choose(name);
+        Scene& scene = window_->views().scene();
+        QTest::mouseClick(&scene, Qt::LeftButton, {}, scene.rect().center() + QPoint(50, 20));
+        wait_until([&] { return !window_->probe().travelling(); });
+        wait_for_hand();
+        wait_for_ticks(4);
+        EXPECT_EQ(now().session.tick.proxy.mode, Mode::constrained) << name;
+        EXPECT_GT(force(), 0.1) << name;
+        EXPECT_LT(force(), 0.6) << name;
+    }
+}
+
 TEST_F(ToolInWindow, is_pressed_and_turned_with_the_mouse) {
     feel(ball);
     choose("Box");

@@ -1,0 +1,100 @@
+// Volumes of which the file does not say how they lie in the body, or their spacing.
+#include <QAction>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QPushButton>
+
+#include "apps/viewer/model/session_file.hpp"
+#include "palpate/io/volume_file.hpp"
+#include "palpate/scenes/volumes.hpp"
+#include "viewer/window/window_fixture.hpp"
+
+namespace palpate::viewer::test {
+namespace {
+
+class Grid : public InWindow {
+  protected:
+    void write(const char* name, const char* fields) {
+        const Index3 size(20, 24, 28);
+        const Volume ball = scenes::make_volume("sphere:20x24x28").volume;
+        std::ofstream out(scratch_.path() / name, std::ios::binary);
+        out << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 20 24 28\nencoding: raw\n"
+            << fields << "\n";
+        out.write(static_cast<const char*>(ball.data()), std::streamsize(ball.bytes()));
+        ASSERT_EQ(ball.geometry().size, size);
+    }
+    QStringList titles() {
+        QStringList all;
+        for (const int axis : {2, 1, 0}) all << window_->views().slice(axis).title();
+        return all;
+    }
+    const Geometry& grid() { return window_->live()->field().geometry(); }
+    QPushButton& badge() { return part<QPushButton>("missing_grid"); }
+};
+
+TEST_F(Grid, that_is_not_oriented_is_shown_with_neutral_names_until_it_is_assigned) {
+    write("a.nrrd", "spacings: 1 1 2\n");
+    feel(scratch("a.nrrd").toStdString());
+    EXPECT_EQ(titles(), QStringList({"XY", "XZ", "YZ"}));
+    EXPECT_TRUE(badge().isVisible());
+    EXPECT_EQ(badge().text(), "No orientation in the file");
+    EXPECT_EQ(part<QAction>("view_front").text(), "From -Y");
+    const double level = window_->live()->isovalue() + 3;
+    window_->run().send(command::Isovalue{level});
+    wait_for_ticks(3);
+    QTest::mouseClick(&badge(), Qt::LeftButton);
+    auto& dialog = part<QDialog>("grid");
+    activate(dialog);
+    const auto choose = [&](const char* axis, Qt::Key first_letter, int times) {
+        auto& box = part<QComboBox>(axis);
+        box.setFocus();
+        for (int i = 0; i < times; ++i) QTest::keyClick(&box, first_letter);
+    };
+    // Of "not known, L, R, P, A, S, I" these.
+    choose("grid_side_X", Qt::Key_Down, 2);
+    choose("grid_side_Y", Qt::Key_Down, 6);
+    choose("grid_side_Z", Qt::Key_Down, 4);
+    QTest::mouseClick(&part<QPushButton>("grid_mirror"), Qt::LeftButton);
+    QTest::keyClick(&dialog, Qt::Key_Return);
+    wait_until([&] { return window_->live() && grid().oriented && window_->settled(); });
+    EXPECT_EQ(io::orientation_of(grid()), "LIA");
+    EXPECT_EQ(grid().spacing, Vec3(1, 1, 2));
+    EXPECT_EQ(titles(), QStringList({"Coronal", "Axial", "Sagittal"}));
+    EXPECT_LT(window_->views().slice(1).y(), window_->views().slice(2).y()) << "axial above";
+    EXPECT_FALSE(badge().isVisible());
+    EXPECT_EQ(window_->live()->isovalue(), level) << "felt as before";
+    EXPECT_EQ(part<QAction>("view_front").text(), "From the front");
+    window_->files().save_session(scratch("case.json"));
+    feel("synthetic:sphere:20x20x20");
+    window_->files().open_path(scratch("case.json"));
+    wait_until([&] { return window_->live() && grid().size[1] == 24 && window_->settled(); });
+    EXPECT_EQ(io::orientation_of(grid()), "LIA");
+    EXPECT_TRUE(grid().oriented);
+}
+
+TEST_F(Grid, without_a_spacing_says_so_and_takes_one) {
+    write("c.nrrd", "");
+    feel(scratch("c.nrrd").toStdString());
+    EXPECT_EQ(badge().text(), "No orientation and no spacing in the file");
+    QTest::mouseClick(&badge(), Qt::LeftButton);
+    part<QDoubleSpinBox>("grid_spacing_Z").setValue(2.5);
+    QTest::keyClick(&part<QDialog>("grid"), Qt::Key_Return);
+    wait_until([&] { return window_->live() && grid().measured && window_->settled(); });
+    EXPECT_EQ(grid().spacing, Vec3(1, 1, 2.5));
+    EXPECT_EQ(badge().text(), "No orientation in the file");
+    EXPECT_TRUE(badge().isVisible());
+}
+
+TEST_F(Grid, of_a_body_or_of_no_file_needs_no_words) {
+    feel("synthetic:sphere:20x20x20");
+    EXPECT_FALSE(badge().isVisible());
+    EXPECT_EQ(titles(), QStringList({"XY", "XZ", "YZ"}));
+    write("d.nrrd",
+          "space: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: space space space\n");
+    feel(scratch("d.nrrd").toStdString());
+    EXPECT_FALSE(badge().isVisible());
+    EXPECT_EQ(titles(), QStringList({"Axial", "Coronal", "Sagittal"}));
+}
+
+}  // namespace
+}  // namespace palpate::viewer::test
