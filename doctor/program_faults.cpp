@@ -21,7 +21,8 @@ constexpr std::array<Use, 4> uses{{
     {"palpate-picture-helper", "helper-pictures", false, "no picture can be drawn"},
     {"palpate-explicit-helper", "helper-explicit", false,
      "the experiment `palpate evaluate scaling` does not run"},
-    {"palpate-evaluate", "helper-evaluate", false, "the experiments of `palpate evaluate` in C++ do not run"},
+    {"palpate-evaluate", "helper-evaluate", false,
+     "the experiments of `palpate evaluate` in C++ do not run"},
 }};
 
 bool draws_by_processor(const std::string& renderer) {

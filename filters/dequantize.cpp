@@ -66,7 +66,7 @@ void check(const DequantizeOptions& options) {
             "the coarsest step of dequantizing is a power of two from 1 to " +
             std::to_string(greatest_step) + ", not " + std::to_string(coarsest));
     }
-    if (options.level && !(*options.level > 0 && *options.level < 1e30)) {
+    if (options.level && !(*options.level > 1e-30 && *options.level < 1e30)) {
         throw std::invalid_argument("the distance between levels must be a number above 0");
     }
     if (options.threads < 0) throw std::invalid_argument("a number of threads is 0 or more");
@@ -197,6 +197,9 @@ DequantizePlan plan_of(double level, double minimum, double maximum,
                        const DequantizeOptions& options,
                        const std::function<std::vector<SurfaceSite>(int)>& sites) {
     check(options);
+    if (!(maximum - minimum < 1e9 * level)) {
+        throw std::invalid_argument("the distance between levels is too small for these samples");
+    }
     DequantizePlan plan{level, minimum, maximum, is_mask(minimum, maximum, level), {}};
     const int coarsest = options.coarsest ? *options.coarsest
                          : plan.mask      ? mask_step

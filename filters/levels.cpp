@@ -73,7 +73,9 @@ std::optional<double> level_of(std::span<const double> values, bool whole_number
         smallest = std::min(smallest, values[i] - values[i - 1]);
     }
     if (!whole_numbers && !on_levels(values, smallest)) return std::nullopt;
-    return smallest;
+    // A distance so small is that of numbers, not of levels.
+    const bool has_levels = smallest > 1e-30 && values.back() - values.front() < 1e9 * smallest;
+    return has_levels ? std::optional(smallest) : std::nullopt;
 }
 
 std::optional<double> level_of(const Volume& volume) {

@@ -301,14 +301,20 @@ void Run::record(const std::filesystem::path& path) {
     if (lost) std::rethrow_exception(lost);
 }
 
+/// Where the session takes no commands, an empty recording is left.
+
 void Run::record_from_now() {
-    data_->record(*servo_, [this](const std::vector<Command>& history) {
-        recording_->begin_with(history);
-        if (!servo_->record(recording_->queue())) {
-            recording_.reset();
-            throw QueueFull("too many commands at once: nothing is recorded");
-        }
-    });
+    try {
+        data_->record(*servo_, [this](const std::vector<Command>& history) {
+            recording_->begin_with(history);
+            if (!servo_->record(recording_->queue())) {
+                throw QueueFull("too many commands at once: nothing is recorded");
+            }
+        });
+    } catch (...) {
+        recording_.reset();
+        throw;
+    }
 }
 
 std::int64_t Run::stop_recording() {

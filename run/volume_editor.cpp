@@ -105,7 +105,11 @@ void VolumeEditor::detach(const Servo& servo) {
 
 void VolumeEditor::record(const Servo& servo, const BeginRecording& begin) {
     const std::scoped_lock lock(mutex_);
-    streamer_ ? streamer_->record(servo, begin, history()) : begin(history());
+    if (streamer_) return streamer_->record(servo, begin, history());
+    const bool lacks = std::ranges::any_of(
+        hands_, [&](const Hand& hand) { return hand.servo == &servo && hand.lacks; });
+    if (lacks) throw std::runtime_error(takes_no_commands);
+    begin(history());
 }
 
 void VolumeEditor::use_tool(const Servo& servo, std::shared_ptr<const Tool> tool) {
@@ -240,7 +244,8 @@ void VolumeEditor::send(const command::Samples& command) {
     for (Hand& hand : hands_) {
         int attempt = 0;
         while (!hand.servo->send(command) && ++attempt < attempts) std::this_thread::sleep_for(1ms);
-        refused |= attempt == attempts;
+        hand.lacks = attempt == attempts;
+        refused |= hand.lacks;
     }
     if (refused) throw std::runtime_error(takes_no_commands);
 }

@@ -13,9 +13,6 @@
 namespace palpate {
 namespace {
 
-/// No device reaches farther from its origin [device mm].
-constexpr double farthest_hand = 1e4;
-
 /// Whether a hand can have moved here since the last good position.
 bool plausible(const Session& session, double time, const Vec3& position) {
     if (!position.allFinite() || !(position.cwiseAbs().maxCoeff() <= farthest_hand)) return false;
@@ -31,11 +28,6 @@ Mat3 orthonormal(const Mat3& m) {
     r.col(1) = (m.col(1) - r.col(0) * r.col(0).dot(m.col(1))).normalized();
     r.col(2) = r.col(0).cross(r.col(1));
     return r;
-}
-
-bool is_rotation(const Mat3& m) {
-    return m.allFinite() && (m.transpose() * m - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-6 &&
-           m.determinant() > 0;
 }
 
 /// Moves and turns the volume so that HIP and tool stay where they were in it.

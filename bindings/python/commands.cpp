@@ -54,6 +54,11 @@ void bind_commands(py::module_& module) {
     bind(names, "Moment", "time", &command::Moment::time, "Goes to a time of a sequence [s].");
     bind(names, "Speed", "speed", &command::Speed::speed,
          "Seconds of a sequence per second; negative: backwards; 0: paused.");
+    py::class_<command::Lift>(names, "Lift",
+                              "Lifts the hand off: the proxy starts at the hand with the next "
+                              "tick, whatever holds it. The force starts again.")
+        .def(py::init<>())
+        .def("__repr__", [](const command::Lift&) { return "command.Lift()"; });
     py::class_<command::Samples>(names, "Samples", "Another version of the samples, same grid.")
         .def(py::init([](const std::shared_ptr<Samples>& samples, std::uint64_t version) {
                  return command::Samples{samples, version};

@@ -165,9 +165,13 @@ struct SessionPoint {
     Mode tool_mode = Mode::free;
     bool tool_placed = false;
     bool tool_slides = false;
+    std::array<ToolContact, most_tool_contacts> contacts{};
+    std::array<int, most_tool_contacts> idle{};  ///< updates for which a contact had no pressure
+    int contact_count = 0;
+    double trust = 1, stride = 64;  ///< longest steps [voxel], in contact and with nothing near
 };
-/// Writes the state of a session. A tool first forgets its contacts, and finds them again in the
-/// next tick. Neither throws nor allocates.
+/// Writes the state of a session. A tool first forgets results that only save time. Neither throws
+/// nor allocates.
 void halt(Session& session, SessionPoint& point) noexcept;
 
 /// The result of a live tick.

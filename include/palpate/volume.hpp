@@ -87,7 +87,11 @@ struct Geometry {
     bool oriented = true;  ///< the physical axes are those of the body (LPS), not assumed
     bool measured = true;  ///< the spacing is in millimetres, not assumed
 
-    bool operator==(const Geometry&) const = default;
+    /// The same grid. Whether its place is known does not count.
+    bool operator==(const Geometry& other) const {
+        return size == other.size && spacing == other.spacing && origin == other.origin &&
+               direction == other.direction;
+    }
 };
 
 /// All samples of a grid.

@@ -84,20 +84,24 @@ std::string list_of(const std::vector<fs::path>& folders) {
     return text;
 }
 
-/// A child process that is dead and reaped when this object is gone.
+/// A child process that is dead and reaped when this object is gone. In a fork of the process that
+/// began it nothing happens to it.
 class Child {
   public:
     Child() = default;
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
     ~Child() {
-        if (pid_ <= 0) return;
+        if (pid_ <= 0 || parent_ != getpid()) return;
         kill(pid_, SIGKILL);
         int status = 0;
         while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
         }
     }
-    void begin(pid_t pid) { pid_ = pid; }
+    void begin(pid_t pid) {
+        pid_ = pid;
+        parent_ = getpid();
+    }
     /// Waits for the end of a child that has closed its pipes, two seconds at most before it is
     /// killed. The status is waitpid's; 0 if the caller's program ignores SIGCHLD.
     int wait() {
@@ -113,7 +117,7 @@ class Child {
     }
 
   private:
-    pid_t pid_ = -1;
+    pid_t pid_ = -1, parent_ = -1;
 };
 
 struct SpawnActions {

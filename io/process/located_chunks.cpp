@@ -1,6 +1,8 @@
 // What image is in a file of chunks, and where its chunks lie. See the header.
 #include "io/process/located_chunks.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
 #include <utility>
@@ -75,7 +77,7 @@ nlohmann::json ChunkFile::answer(const nlohmann::json& question, const std::stop
         if (stop.stop_requested()) throw Cancelled{};
     };
     HelperTalk talk = std::exchange(talk_, nullptr);  // kept only if it answers
-    const bool is_new = !talk;
+    const bool is_new = !talk || talker_ != getpid();
     if (is_new) {
         nlohmann::json request = nlohmann::json::object();
         if (read_) request["size"] = size_;
@@ -86,6 +88,7 @@ nlohmann::json ChunkFile::answer(const nlohmann::json& question, const std::stop
     HelperResult result = talk(question, give, check);
     if (result.failure.empty()) {
         talk_ = std::move(talk);
+        talker_ = getpid();
         return std::move(result.done);
     }
     // An earlier question may have harmed it, or the system has ended it meanwhile.

@@ -52,6 +52,7 @@ class ChunkFile {
     std::uint64_t size_ = 0;
     Read read_;
     HelperTalk talk_;
+    int talker_ = 0;  // process that began it: a fork must not take its parent's answers
 };
 
 }  // namespace palpate::io

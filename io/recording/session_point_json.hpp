@@ -120,6 +120,13 @@ static void members(auto& v, Is<LayerState> auto& s) {
     v("hip", s.hip);
 }
 
+static void members(auto& v, Is<ToolContact> auto& s) {
+    whole(v, "point", s.point, 0, static_cast<double>(most_tool_points));
+    v("place", s.place);
+    v("normal", s.normal);
+    v("pressure", s.pressure);
+}
+
 static void members(auto& v, Is<SessionPoint> auto& s) {
     v("moment", s.moment);
     v("speed", s.speed);
@@ -135,6 +142,14 @@ static void members(auto& v, Is<SessionPoint> auto& s) {
     whole(v, "tool_mode", s.tool_mode, 0, 1);
     v("tool_placed", s.tool_placed);
     v("tool_slides", s.tool_slides);
+    v("trust", s.trust);
+    v("stride", s.stride);
+    whole(v, "contact_count", s.contact_count, 0, most_tool_contacts);
+    for (int i = 0; i < s.contact_count; ++i) {
+        const std::string number = std::to_string(i + 1);
+        v("contact_" + number, s.contacts[static_cast<std::size_t>(i)]);
+        whole(v, "idle_" + number, s.idle[static_cast<std::size_t>(i)], 0, 1e9);
+    }
 }
 
 static void members(auto& v, Is<command::Resume> auto& s) {

@@ -13,17 +13,44 @@
 namespace palpate {
 namespace {
 
-/// Nothing of what a tool's proxy knows but its pose stays.
-void forget_contacts(ToolProxy& proxy, const std::shared_ptr<const Tool>& tool) noexcept {
-    proxy.use(tool);  // has room, as it is felt
-    proxy.contacts = {};
+/// Takes the contacts out of a tool's proxy, and drops the results that only save time.
+void halt_tool(ToolProxy& proxy, const Tool* tool, SessionPoint& point) noexcept {
     tool::Kept& kept = proxy.kept();
-    kept.trust = 1;
-    kept.stride = 64;
-    kept.idle = {};
+    if (tool) {
+        point.tool = proxy.pose;
+        point.tool_mode = proxy.mode;
+        point.tool_placed = proxy.placed;
+        point.tool_slides = proxy.sliding;
+        point.contacts = proxy.contacts;
+        point.idle = kept.idle;
+        point.contact_count = proxy.contact_count;
+        point.trust = kept.trust;
+        point.stride = kept.stride;
+    }
+    kept.renewed = true;
     kept.inside = false;
     kept.recovery = {};
     kept.surroundings.samples.reset();  // others hold them
+}
+
+/// The inverse, for a proxy that halt_tool() has left or that is new.
+void resume_tool(ToolProxy& proxy, const SessionPoint& point) noexcept {
+    tool::Kept& kept = proxy.kept();
+    proxy.pose = point.tool;
+    proxy.mode = point.tool_mode;
+    proxy.placed = point.tool_placed;
+    proxy.sliding = point.tool_slides;
+    proxy.contacts = point.contacts;
+    // The tool may be another one than that of the check.
+    const auto is_of_tool = [&](const ToolContact& contact) {
+        return static_cast<std::size_t>(contact.point) < proxy.tool().points().size();
+    };
+    const auto end = point.contacts.begin() + point.contact_count;
+    proxy.contact_count =
+        std::all_of(point.contacts.begin(), end, is_of_tool) ? point.contact_count : 0;
+    kept.idle = point.idle;
+    kept.trust = point.trust;
+    kept.stride = point.stride;
 }
 
 void require(bool is_so, const char* what) {
@@ -48,10 +75,34 @@ bool is_place(const LatticePoint& point) {
            u[0] <= 0.5 && u[1] <= u[0] && std::abs(u[2]) <= u[1];
 }
 
-bool is_finite(const HandPast& past) {
-    return std::isfinite(past.last_tick) && std::isfinite(past.seen_at) && past.hand.allFinite() &&
-           past.frozen_hand.allFinite() && past.held_hip.allFinite() && past.tool.allFinite() &&
-           past.frozen_tool.allFinite() && past.held_tool.allFinite();
+/// Near enough to be computed with [mm].
+bool is_within(const Vec3& v, double farthest) {
+    return v.allFinite() && v.cwiseAbs().maxCoeff() <= farthest;
+}
+bool is_near(const Vec3& physical, const Geometry& grid) {
+    return physical.allFinite() &&
+           is_within(index_from_physical(grid, physical), 10 * farthest_hip);
+}
+
+bool is_possible(const HandPast& past) {
+    return std::isfinite(past.last_tick) && std::isfinite(past.seen_at) &&
+           is_within(past.hand, farthest_hand) && is_within(past.frozen_hand, farthest_hand) &&
+           is_within(past.held_hip, 1e60) && is_rotation(past.tool) &&
+           is_rotation(past.frozen_tool) && is_rotation(past.held_tool);
+}
+
+bool is_possible(const SessionPoint& point, const Tool* tool, const Geometry& grid) {
+    const int points = tool ? static_cast<int>(tool->points().size()) : 0;
+    const auto is_contact = [&](const ToolContact& contact) {
+        return contact.point >= 0 && contact.point < points && is_near(contact.place, grid) &&
+               is_within(contact.normal, 2) && std::isfinite(contact.pressure);
+    };
+    return point.contact_count >= 0 && point.contact_count <= most_tool_contacts &&
+           std::all_of(point.contacts.begin(), point.contacts.begin() + point.contact_count,
+                       is_contact) &&
+           point.trust > 0 && point.trust <= 1 && point.stride > 0 && point.stride <= 64 &&
+           is_unit(point.tool.orientation) &&
+           (!point.tool_placed || is_near(point.tool.position, grid));
 }
 
 bool is_finite(const ForceState& force) {
@@ -94,13 +145,9 @@ bool is_of(const LayerState& state, const Layers* layers) {
 void halt(Session& session, SessionPoint& point) noexcept {
     Renderer& renderer = session.renderer;
     const RendererSettings& settings = renderer.settings;
-    if (settings.tool) {
-        ToolProxy& proxy = *renderer.tool_proxy;
-        forget_contacts(proxy, settings.tool);
-        point.tool = proxy.pose;
-        point.tool_mode = proxy.mode;
-        point.tool_placed = proxy.placed;
-        point.tool_slides = proxy.sliding;
+    if (renderer.tool_proxy) {
+        halt_tool(*renderer.tool_proxy, settings.tool.get(), point);
+        if (!settings.tool) resume_tool(*renderer.tool_proxy, point);  // as a new one
     }
     point.moment = renderer.field.time();
     point.speed = session.speed;
@@ -117,19 +164,19 @@ void halt(Session& session, SessionPoint& point) noexcept {
 void check(const SessionPoint& point, const RendererSettings& settings, const FieldKind& field) {
     require(std::isfinite(point.moment) && std::abs(point.speed) <= 1000,
             "the moment or the speed is out of range");
-    require(is_finite(point.past) && is_finite(point.force), "a number is not finite");
+    require(is_possible(point.past) && is_finite(point.force), "a number is out of range");
     const Proxy& proxy = point.proxy;
-    require(is_place(proxy.scp) && proxy.scp_physical.allFinite(), "the SCP has no place");
-    require(is_number(proxy.isovalue) && is_number(proxy.behind.value_or(0)) &&
-                is_number(point.isovalue_without_layers.value_or(0)),
+    require(!proxy.placed || (is_place(proxy.scp) && is_near(proxy.scp_physical, field.geometry)),
+            "the SCP has no place");
+    check_isovalue(point.isovalue_without_layers.value_or(proxy.isovalue), field.solid);
+    require(is_number(proxy.isovalue) && is_number(proxy.behind.value_or(0)),
             "a level is not a number");
-    require(std::isfinite(proxy.recovery_reach) && proxy.ahead.allFinite(),
-            "the proxy's state is not finite");
+    require(proxy.recovery_reach >= 0 && proxy.recovery_reach <= 1e7 && is_within(proxy.ahead, 2),
+            "the proxy's state is out of range");
     require(!proxy.placed || proxy.interpolation == field.interpolation,
             "the proxy is of another field");
     require(is_of(point.layers, settings.layers.get()), "it is of other layers");
-    require(point.tool.position.allFinite() && is_unit(point.tool.orientation),
-            "the tool has no pose");
+    require(is_possible(point, settings.tool.get(), field.geometry), "the tool has no pose");
 }
 
 void resume(Session& session, const SessionPoint& point) noexcept {
@@ -145,13 +192,13 @@ void resume(Session& session, const SessionPoint& point) noexcept {
     renderer.force = point.force;
     renderer.layers = point.layers;
     restore_set(renderer.layers, settings.layers.get(), renderer.field);
-    if (!settings.tool || !renderer.tool_proxy) return;
-    ToolProxy& proxy = *renderer.tool_proxy;
-    forget_contacts(proxy, settings.tool);
-    proxy.pose = point.tool;
-    proxy.mode = point.tool_mode;
-    proxy.placed = point.tool_placed;
-    proxy.sliding = point.tool_slides;
+    if (renderer.layers.set) {  // covers the field
+        Tissues(*settings.layers, renderer.layers, renderer.proxy, renderer.field);
+    }
+    if (!renderer.tool_proxy) return;
+    SessionPoint ignored;
+    halt_tool(*renderer.tool_proxy, nullptr, ignored);
+    resume_tool(*renderer.tool_proxy, point);
 }
 
 }  // namespace palpate

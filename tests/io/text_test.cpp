@@ -17,8 +17,6 @@ using namespace palpate::support;
 
 namespace {
 
-struct Cancelled {};
-
 std::string refusal_of_text(const std::filesystem::path& path) {
     const std::string message = message_of<InputError>([&] { (void)read_text(path); });
     EXPECT_TRUE(message.starts_with(path.string() + ": ")) << message;

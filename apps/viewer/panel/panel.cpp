@@ -358,7 +358,8 @@ void Panel::take(const Command& command) {
                           [&](const DeviceLimits& limits) { settings.device = limits; },
                           // Not shown in the panel.
                           [](const command::Samples&) {}, [](const command::Moment&) {},
-                          [](const command::Speed&) {}, [](const command::Lift&) {}},
+                          [](const command::Speed&) {}, [](const command::Lift&) {},
+                          [](const command::Resume&) {}},
                command);
 }
 

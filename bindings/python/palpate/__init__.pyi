@@ -757,10 +757,12 @@ class command:
         def same_surfaces(self) -> bool: ...
     class UseTool:
         def __init__(self, tool: Optional[Tool]) -> None: ...
+    class Lift:
+        def __init__(self) -> None: ...
 
 _Command = Union[command.Isovalue, command.Freeze, command.Clutch, command.Forces, command.Scale,
                  command.Samples, command.Moment, command.Speed, command.UseLayers,
-                 command.UseTool, ForceSettings, Friction, DeviceTransform, DeviceLimits,
+                 command.UseTool, command.Lift, ForceSettings, Friction, DeviceTransform, DeviceLimits,
                  Penetrability]
 
 class Error(Exception): ...

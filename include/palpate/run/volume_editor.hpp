@@ -106,6 +106,7 @@ class VolumeEditor {
         std::optional<Touch> touch = {};
         bool resting = false;   // after an undo or another tool, until it was in the air
         std::int64_t from = 0;  // the first tick that surely has the tool
+        bool lacks = false;     // it took no command when the newest version was sent
         std::shared_ptr<const ToolBody> body = {};  // of the tool, for the last sweep
     };
     /// What an edit reads, by the low corner of the box.
