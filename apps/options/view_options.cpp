@@ -42,6 +42,9 @@ void ViewOptions::settle() {
         throw std::invalid_argument("--play and --session: give only one of them");
     }
     (void)window_size();
+}
+
+void ViewOptions::warn() const {
     if (screenshot.empty()) warn_of_no_effect(*command_, {"--after"}, "there is no --screenshot");
     if (session.empty() && play.empty()) return;
     const std::string reason =

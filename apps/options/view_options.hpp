@@ -22,8 +22,10 @@ struct ViewOptions {
     void add_to(CLI::App& command);
     /// Once the command line has been read. A VOLUME that is a session or a recording takes the
     /// place of that option. Throws std::invalid_argument for options that exclude each other.
-    /// Warns on standard error of options that do nothing.
     void settle();
+    /// Warns on standard error of options that do nothing. After settle(), and only in the viewer:
+    /// `palpate view` becomes it, and each warning shall appear once.
+    void warn() const;
     /// Width and height of the window [pixels]; nothing: not given. Throws std::invalid_argument
     /// for a size that is none.
     std::optional<std::array<int, 2>> window_size() const;

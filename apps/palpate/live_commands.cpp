@@ -76,8 +76,8 @@ Command LiveCommands::setting_from(const CommandWords& words, RendererSettings& 
     throw std::invalid_argument(
         "there is no command '" + name +
         "'; there are isovalue, stiffness, damping, viscosity, friction, penetrability, layers, "
-        "forces, freeze, clutch, scale, brush, carve, add, smooth, paint, fill, undo, redo, save, "
-        "play, pause, step, seek, loop, quit");
+        "forces, freeze, clutch, lift, scale, brush, carve, add, smooth, paint, fill, undo, redo, "
+        "save, play, pause, step, seek, loop, quit");
 }
 
 DataRequest LiveCommands::take_up(const std::optional<run::HandBrush>& brush) {
@@ -100,6 +100,10 @@ Request LiveCommands::from_words(std::string_view line) {
     }
     if (auto data = data_request(words, field_.volume())) return data;
     if (name == "quit" && words.count() == 1) return Quit{};
+    if (name == "lift") {
+        words.as("lift, without a value").expect(1);
+        return command::Lift{};
+    }
     const CommandWords toggle = words.as(name + " on|off");
     if (name == "forces") return command::Forces{toggle.on_or_off()};
     if (name == "freeze") return command::Freeze{toggle.on_or_off()};

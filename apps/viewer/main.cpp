@@ -75,6 +75,7 @@ int main(int argc, char** argv) {
         app::refuse_impossible_values(command, argc, argv);
         command.parse(argc, argv);
         options.settle();
+        options.warn();
     } catch (const CLI::Success& e) {
         return command.exit(e);
     } catch (const CLI::ParseError& e) {

@@ -19,9 +19,9 @@ HARMLESS = [signal.SIGCHLD, signal.SIGURG, signal.SIGWINCH, signal.SIGCONT, sign
 
 COMMANDS = ("isovalue {percent}%", "stiffness {k}", "damping 0.0005", "viscosity 0.0002", "friction 0.5,0.3",
             "friction 0,0", "penetrability off", "penetrability threshold {k}", "forces off", "forces on",
-            "freeze on", "freeze off", "clutch on", "clutch off", "scale {factor}", "brush carve 3 20",
-            "brush add 2 20", "brush smooth 3 20", "brush off", "carve {at} 3", "add {at} 2", "smooth {at} 4",
-            "fill 1,1,1:4,4,4 {percent}", "undo", "redo")
+            "freeze on", "freeze off", "clutch on", "clutch off", "lift", "scale {factor}",
+            "brush carve 3 20", "brush add 2 20", "brush smooth 3 20", "brush off", "carve {at} 3",
+            "add {at} 2", "smooth {at} 4", "fill 1,1,1:4,4,4 {percent}", "undo", "redo")
 
 
 def commands(random):

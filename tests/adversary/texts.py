@@ -57,7 +57,7 @@ def a_trajectory(program, random, folder, counts):
 
 COMMANDS = ("isovalue {}", "isovalue {}%", "stiffness {}", "damping {}", "viscosity {}", "friction {},{}",
             "penetrability off", "penetrability threshold {}", "penetrability ranges {} {}:{}", "forces off",
-            "forces on", "freeze on", "freeze off", "clutch on", "clutch off", "scale {}",
+            "forces on", "freeze on", "freeze off", "clutch on", "clutch off", "lift", "scale {}",
             "brush carve {}", "brush paint {} {} {}", "brush off", "carve {},{},{} {}", "fill 1,{},1 {}",
             "undo", "redo", "play {}", "pause", "step {}", "seek {}", "loop on", "nonsense", "")
 SMALL = ("0", "0.5", "1", "2", "50", "100", "-1")

@@ -151,12 +151,13 @@ TEST(Touch, carries_out_and_records_commands) {
     put_bytes(folder / "commands.txt",
               "# what happens\n0.1 isovalue 60%\n0.2 penetrability threshold 0.4\n"
               "0.3 friction 0.4,0.2\n0.4 stiffness 0.25\n0.5 scale 1.5  # about the SCP\n"
-              "0.6 freeze on\n0.7 freeze off\n0.8 forces off\n1.0 quit\n9 forces on\n");
+              "0.6 freeze on\n0.7 freeze off\n0.75 lift\n0.8 forces off\n1.0 quit\n"
+              "9 forces on\n");
     const Outcome done =
         palpate(folder, "touch " + unpaced + " --commands commands.txt --record r.csv");
     EXPECT_EQ(done.status, 0) << done.err;
     const Ticks ticks = ticks_of(folder / "r.csv");
-    EXPECT_EQ(ticks.commands, 8);
+    EXPECT_EQ(ticks.commands, 9);
     // What the transform was follows from the commands; that the scale changed, from the ways of
     // hand and HIP.
     EXPECT_NEAR(ticks.last_way / ticks.last_device_way, 1.5, 1e-6);
@@ -218,6 +219,7 @@ TEST(Touch, refuses_commands_that_it_does_not_understand_before_anything_runs) {
     };
     refused("0 dance\n", "c.txt, line 1: there is no command 'dance'");
     refused("\n1 freeze\n", "c.txt, line 2: expected: freeze on|off");
+    refused("0 lift off\n", "c.txt, line 1: expected: lift, without a value");
     refused("soon freeze on\n", "is no time");
     refused("2 freeze on\n1 freeze off\n", "the time goes back");
     refused("0 stiffness 1000\n", "to be rendered stably");

@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"info synthetic:bagel", "'bagel'"}, Case{"info synthetic:noise:0x4x4", "'0x4x4'"},
         Case{"info synthetic:noise:4x4", "'4x4'"},
         Case{"info synthetic:noise:99999x99999x99999", "the limit is"},
-        Case{"info synthetic:noise --dims 4x4x4", "dims and spacing are for files"},
+        Case{"info synthetic:noise --dims 4x4x4", "dims, spacing and orientation are for files"},
         Case{"info synthetic:noise --type int64", "'int64'"},
         Case{"info synthetic:noise --type", "--type"},
         Case{"info synthetic:noise --time-step -1", "-1 is not a whole number"},

@@ -29,6 +29,12 @@ TEST_F(WithViewer, view_becomes_the_viewer_with_the_same_words_and_its_exit_stat
     EXPECT_EQ(seen.out, "viewer synthetic:sphere:8x8x8 --device mouse -i 3\n");
 }
 
+TEST_F(WithViewer, warnings_of_options_without_effect_are_left_to_it) {
+    const Outcome seen = palpate(folder_, "view synthetic:sphere:8x8x8 --after 2");
+    EXPECT_EQ(seen.status, 7);
+    EXPECT_EQ(seen.err, "");
+}
+
 TEST_F(WithViewer, touch_opens_it_where_there_is_a_display) {
     const Outcome seen = palpate(folder_, "touch synthetic:sphere:8x8x8");
     EXPECT_EQ(seen.status, 7);

@@ -172,7 +172,7 @@ TEST(MeshFile, in_any_other_format_is_refused_with_the_four_that_are) {
     for (const std::string name : {"a.stp", "a", "a.ply.gz", ".ply"}) {
         const std::string message =
             message_of<std::invalid_argument>([&] { write_mesh(example(), folder / name); });
-        EXPECT_TRUE(contains(message, "use .ply, .stl, .obj or .vtp")) << message;
+        EXPECT_TRUE(contains(message, "use one of .ply, .stl, .obj, .vtp")) << message;
     }
     EXPECT_TRUE(folder.names().empty());
 }

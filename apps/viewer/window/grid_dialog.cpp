@@ -35,11 +35,15 @@ GridDialog::GridDialog(const Geometry& grid, const io::GivenGrid& given, QWidget
         {"P", tr("to the back (P)")}, {"A", tr("to the front (A)")}, {"S", tr("to the head (S)")},
         {"I", tr("to the feet (I)")}};
     const std::string now = grid.oriented ? io::orientation_of(grid) : "";
+    // What the file itself says can be replaced, not taken away.
+    const bool may_be_unknown = !grid.oriented || !given.orientation.empty();
     auto* form = new QFormLayout;
     for (std::size_t a = 0; a < 3; ++a) {
         const QChar axis("XYZ"[a]);
         sides_[a] = named(new QComboBox, "grid_side_" + QString(axis));
-        for (const auto& [letter, text] : sides) sides_[a]->addItem(text, letter);
+        for (const auto& [letter, text] : sides) {
+            if (*letter || may_be_unknown) sides_[a]->addItem(text, letter);
+        }
         if (!now.empty()) sides_[a]->setCurrentIndex(sides_[a]->findData(QString(now[a])));
         spacing_[a] = named(new QDoubleSpinBox, "grid_spacing_" + QString(axis));
         spacing_[a]->setDecimals(4);
@@ -56,12 +60,15 @@ GridDialog::GridDialog(const Geometry& grid, const io::GivenGrid& given, QWidget
     }
     mirror_->setAutoDefault(false);  // Return is for OK
     measured_->setChecked(grid.measured);
+    measured_->setEnabled(!grid.measured || given.spacing);
     form->addRow(measured_);
     form->addRow(mirror_);
     connect(mirror_, &QPushButton::clicked, this, &GridDialog::mirror);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
     accept_ = buttons->button(QDialogButtonBox::Ok);
-    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+    // With nothing changed the volume need not be read again.
+    connect(buttons, &QDialogButtonBox::accepted, this,
+            [this] { done(changed() ? Accepted : Rejected); });
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
     auto* fields = new QWidget;
     fields->setLayout(form);
@@ -92,6 +99,11 @@ void GridDialog::judge() {
     }
     accept_->setEnabled(good);
     mirror_->setEnabled(good && !letters().empty());
+}
+
+bool GridDialog::changed() const {
+    const io::GivenGrid now = grid();
+    return now.spacing != given_.spacing || now.orientation != given_.orientation;
 }
 
 io::GivenGrid GridDialog::grid() const {

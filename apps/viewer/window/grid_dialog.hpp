@@ -22,7 +22,7 @@ class GridDialog : public QDialog {
     Q_OBJECT
 
   public:
-    /// `grid`: as it is felt, with `given` in it.
+    /// `grid`: as it is felt, with `given` in it. Accepted only if something was changed.
     GridDialog(const Geometry& grid, const io::GivenGrid& given, QWidget* parent = nullptr);
     /// What shall replace the file's own; what was not touched stays as it was given.
     io::GivenGrid grid() const;
@@ -30,6 +30,7 @@ class GridDialog : public QDialog {
   private:
     void mirror();
     void judge();
+    bool changed() const;
     std::string letters() const;
 
     const Geometry before_;

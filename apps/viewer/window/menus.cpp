@@ -197,7 +197,7 @@ void make_data_menu(MainWindow& window, Actions& actions) {
         [&window] { return window.overlays().overlay() != nullptr; });
     actions.add(
         menu, "choose_level", MainWindow::tr("&Level, channel and time…"), {},
-        [&window] { window.files().ask_level(); },
+        [&window] { window.settle_work([&window] { window.files().ask_level(); }); },
         [&window] {
             return window.live() &&
                    std::holds_alternative<run::StoreSource>(window.content().source().from);

@@ -4,6 +4,7 @@
 #include <QAction>
 #include <QApplication>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -19,6 +20,8 @@ namespace {
 
 /// So near to the probe a click takes hold of it where it is [pixels].
 constexpr double grab_px = 14;
+/// And no farther than this before or behind the surface that is clicked.
+constexpr double grab_voxels = 3;
 /// A click presses with this force, and no deeper than this [device mm].
 constexpr double touch_newtons = 0.3, deepest_touch = 3;
 /// In front of the surface at the start.
@@ -154,11 +157,14 @@ void ProbeController::touch(const Vec3& at) {
     const Vec3 towards = towards_viewer(), from = aimed(transform);
     const Vec3 aside = at - from - (at - from).dot(towards) * towards;
     const double grab = grab_px * mm_per_pixel(views_.scene().camera(), views_.scene().view_size());
-    if (aside.norm() <= grab && now->session.tick.proxy.mode == Mode::constrained) return;
     const Content::OuterSurface outer = content_.outer_surface();
     const auto surface =
         tool_on_surface(outer.field, outer.level, at, towards, tool_points(transform));
     if (!surface) return;
+    const ProxyUpdate& proxy = now->session.tick.proxy;
+    const double away = std::abs((proxy.scp - *surface).dot(towards));
+    const double near = grab_voxels * content_.live()->field().geometry().spacing.maxCoeff();
+    if (aside.norm() <= grab && away <= near && proxy.mode == Mode::constrained) return;
     const double stiffness = content_.live()->settings().force.stiffness;
     const double depth = transform.scale * std::min(touch_newtons / stiffness, deepest_touch);
     send_to(transform, *surface - depth * towards);

@@ -318,6 +318,20 @@ TEST(ViewOptions, a_session_or_a_recording_is_opened_by_its_name) {
     }
 }
 
+TEST(ViewOptions, without_effect_are_told_apart_from_the_settling) {
+    CLI::App command;
+    app::ViewOptions options;
+    options.add_to(command);
+    command.parse("synthetic:sphere:8x8x8 --after 2");
+    testing::internal::CaptureStderr();
+    options.settle();
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    testing::internal::CaptureStderr();
+    options.warn();
+    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+              "palpate: warning: --after does nothing: there is no --screenshot\n");
+}
+
 TEST(WindowSize, is_read_or_refused) {
     app::ViewOptions options;
     EXPECT_FALSE(options.window_size());

@@ -1,7 +1,9 @@
 // Volumes of which the file does not say how they lie in the body, or their spacing.
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QPointer>
 #include <QPushButton>
 
 #include "apps/viewer/model/session_file.hpp"
@@ -94,6 +96,24 @@ TEST_F(Grid, of_a_body_or_of_no_file_needs_no_words) {
     feel(scratch("d.nrrd").toStdString());
     EXPECT_FALSE(badge().isVisible());
     EXPECT_EQ(titles(), QStringList({"Axial", "Coronal", "Sagittal"}));
+}
+
+TEST_F(Grid, that_the_file_gives_cannot_be_taken_away_and_is_not_read_again_unchanged) {
+    write("e.nrrd",
+          "space: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nkinds: space space space\n");
+    feel(scratch("e.nrrd").toStdString());
+    const auto* felt = window_->live();
+    auto& choose = part<QAction>("choose_grid");
+    wait_until([&] { return choose.isEnabled(); });
+    choose.trigger();
+    EXPECT_EQ(part<QComboBox>("grid_side_X").count(), 6) << "not known is no choice";
+    EXPECT_EQ(part<QComboBox>("grid_side_X").currentData().toString(), "R");
+    EXPECT_FALSE(part<QCheckBox>("grid_measured").isEnabled());
+    const QPointer<QDialog> dialog = &part<QDialog>("grid");
+    QTest::keyClick(dialog, Qt::Key_Return);
+    wait_until([&] { return !dialog || !dialog->isVisible(); });
+    EXPECT_TRUE(window_->settled());
+    EXPECT_EQ(window_->live(), felt);
 }
 
 }  // namespace
