@@ -91,7 +91,7 @@ TEST_P(Help, has_examples_that_work) {
     ASSERT_FALSE(examples.empty());
     for (const std::string& example : examples) {
         EXPECT_TRUE(example.starts_with(command)) << example;
-        if (example == "evaluate all --quick") continue;  // Evaluate.* runs it, for a minute
+        if (example == "evaluate all --quick") continue;  // tests/python/evaluate_test.py runs it
         const ScratchFolder folder;
         put_named_files(folder, example);
         // A window is for people: here a program takes its place that accepts what it is given.

@@ -68,6 +68,9 @@ VALUES = {  # line: what is offered, and nothing else
     "touch head.nrrd --facing l": {"left"},
     "tool burr": {"burr:"},
 }
+if "--seeds" in options_of("evaluate"):  # a build with Python
+    VALUES |= {"evaluate dr": {"drift"}, "evaluate a": {"all"}, "evaluate drift -o ": {"scans"},
+               "evaluate walk-through --method gradient-": {"gradient-improved"}}
 for line, values in VALUES.items():
     assert completed(f"palpate {line}") == values, (line, completed(f"palpate {line}"))
 assert "ct-bone-drilling" in completed("palpate replay head.nrrd --layers ct-b")

@@ -16,7 +16,7 @@ import palpate
 import pytest
 
 from palpate.evaluate import __main__ as program
-from palpate.evaluate import bodies
+from palpate.evaluate import bodies, compiled
 from palpate.evaluate import drift, fall_through, fidelity, penetration, report, sampling, walk_through
 from palpate.evaluate.experiment import Claim, Options, Result, Table
 from palpate.evaluate.outside import Outside
@@ -307,6 +307,11 @@ def test_all_leaves_out_what_cannot_be_done_on_the_users_volume(tmp_path):
 
 @pytest.mark.parametrize("words, status, told", [
     ("", 2, "EXPERIMENT"), ("nothing", 2, "drift"), ("drift --seed -1", 2, "whole number"),
+    ("dirft", 2, "did you mean drift?"), ("drift --method exat", 2, "did you mean exact?"),
+    ("drift --mehtod exact", 2, "there is no option --mehtod: did you mean --method?"),
+    ("drift --seed 1.5", 2, "--seed: '1.5' is not a whole number"), ("drift --seed 1 --seed 2", 2, "more than once"),
+    ("drift --seeds", 2, "--seeds needs a value: How many seeds"), ("drift --output=", 2, "--output: the value is empty"),
+    ("drift fidelity", 2, "'fidelity' is one argument too many"), ("drift --json=yes", 2, "--json: this option takes no value"),
     ("drift --data nowhere", 2, "no such folder"), ("drift --volume head.nrrd", 2, "head.nrrd@300"),
     ("drift --volume head.nrrd@300", 3, "head.nrrd"), ("penetration --range 3:2", 2, "no range"),
     ("drift --quick --volume synthetic:torus@1e9", 2, "cannot go round it"),
@@ -315,6 +320,55 @@ def test_what_makes_no_sense_is_refused_in_one_line(tmp_path, words, status, tol
     ran = evaluate(tmp_path, *words.split(), status=status)
     assert ran.stderr.startswith("palpate: ") and ran.stderr.count("\n") == 1 and told in ran.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("words, warned", [
+    ("walk-through --range 1:2 --seeds 2", ["--range does nothing: it is for penetration",
+                                            "--seeds does nothing: it is for fall-through"]),
+    ("penetration --method paper", ["--method does nothing: it is for walk-through"]),
+    ("walk-through --method paper", []), ("all --range 1:2 --seed 2 --seeds 2 --method paper", [])])
+def test_an_option_that_changes_nothing_gives_a_warning(capsys, words, warned):
+    chosen = program.arguments(words.split())
+    program.warn_of_no_effect(chosen, program.EXPERIMENTS if chosen.name == "all" else [chosen.name])
+    assert capsys.readouterr().err == "".join(f"palpate: warning: {line}\n" for line in warned)
+
+
+def test_without_gnuplot_what_needs_it_is_refused_before_any_work(tmp_path):
+    ran = evaluate(tmp_path, "all", "--quick", status=5, environment={"PATH": str(tmp_path)})
+    assert ran.stderr.count("\n") == 1 and "stability" in ran.stderr and "apt install gnuplot-nox" in ran.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_the_program_in_cpp_what_needs_it_is_refused_before_any_work(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(palpate, "__file__", str(tmp_path / "palpate/__init__.py"))
+    with pytest.raises(compiled.Failed, match="palpate-evaluate is missing") as stop:
+        program.evaluate(program.arguments(["all", "--quick"]), [])
+    assert stop.value.status == 5 and list(tmp_path.iterdir()) == []
+
+
+GONE = "exec 3> >(true); wait $!; {} >&3"  # the reader has gone before the program starts
+
+
+@pytest.mark.parametrize("words", ["drift --help", "--version", "walk-through --quick -o found",
+                                   "walk-through --quick --json -o found"])
+@pytest.mark.parametrize("line, status", [("{} >/dev/full", 5), ("{} >&-", 5), (GONE, 0)])
+def test_standard_output_that_takes_nothing_is_told_and_all_else_is_whole(tmp_path, words, line, status):
+    ran = subprocess.run(["bash", "-c", line.format(f'"$PALPATE" evaluate {words}')], cwd=tmp_path,
+                         stderr=subprocess.PIPE, text=True)
+    assert ran.returncode == status, ran.stderr
+    if status:
+        assert ran.stderr.startswith("palpate: standard output: ") and ran.stderr.count("\n") == 1
+    else:
+        assert ran.stderr == ""
+    assert (tmp_path / "found/walk-through.csv").exists() == ("found" in words)
+
+
+def test_a_reader_that_goes_before_all_is_done_ends_it_without_words(tmp_path):
+    ran = subprocess.run(["bash", "-c", GONE.format('"$PALPATE" evaluate all --quick -o found 2>err')], cwd=tmp_path)
+    notes = (tmp_path / "err").read_text().splitlines()
+    assert ran.returncode == 141 and all(line.startswith("palpate: note: ") for line in notes)
+    assert not (tmp_path / "found/report.html").exists()
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_any_work(tmp_path):

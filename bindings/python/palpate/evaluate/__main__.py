@@ -1,9 +1,11 @@
 """The command line: palpate evaluate NAME, or python3 -m palpate.evaluate NAME."""
 
 import argparse
+import difflib
 import importlib.util
 import json
 import os
+import re
 import shlex
 import shutil
 import signal
@@ -19,13 +21,16 @@ EXPERIMENTS = ("drift", "fall-through", "performance", "scaling", "fidelity", "s
 IN_PYTHON = ("drift", "fall-through", "walk-through", "penetration", "fidelity")
 METHODS = ("exact", "paper", "gradient", "gradient-improved")
 PACKAGES = ("numpy", "scipy", "matplotlib")  # Debian: python3-NAME
-CLAIMS_BROKEN, WRONG_USE, BAD_INPUT, BAD_OUTPUT = 1, 2, 3, 5  # exit status, docs/command_line.md
+USERS = {"--range": ("penetration",), "--seeds": ("fall-through",), "--method": ("walk-through",),
+         "--seed": ("fall-through", "performance", "scaling", "layers", "tools", "streaming")}  # of options that few use
+CLAIMS_BROKEN, WRONG_USE, BAD_INPUT, BAD_OUTPUT, READER_GONE = 1, 2, 3, 5, 141  # exit status, docs/command_line.md
 HELP = f"""Run experiments; each gives a table, figures and checked claims
 
 Usage: palpate evaluate [OPTIONS] EXPERIMENT
 
 Positionals:
-  EXPERIMENT                  Which experiment, or all
+  EXPERIMENT {{{','.join(EXPERIMENTS)},all}}
+                              Which experiment; all runs every one and adds report.html, which needs no other file
 
 Options:
   -h,--help                   Print this help message and exit
@@ -33,16 +38,15 @@ Options:
   -o,--output FOLDER          Folder for the results [palpate-evaluation]
   --volume VOLUME@ISOVALUE    Volume to use instead of the experiment's own; may be given again
   --data FOLDER               Folder with the real volumes that some experiments use, such as lobster.nrrd (default: environment PALPATE_DATA)
-  --method METHOD             Proxy method, for experiments that show one: {', '.join(METHODS)} [exact]
-  --seed N                    Seed of everything random [1]
-  --seeds N                   How many seeds draw their own lines, from the first one on; for fall-through [3]
+  --method {{{','.join(METHODS)}}}
+                              Proxy method, for walk-through [exact]
+  --seed UINT                 Seed of everything random [1]
+  --seeds UINT                How many seeds draw their own lines, from the first one on; for fall-through [3]
   --range LOW:HIGH            Range of interest, in the data's units or in percent of its range, for penetration; may be given again
   --quick                     Seconds instead of minutes; every claim is checked all the same
   --json                      Print paragraphs and claims as JSON
   -q,--quiet                  Print nothing
 
-Experiments: {', '.join(EXPERIMENTS)}.
-all runs every experiment and adds report.html, which needs no other file.
 Exit status 1: a claim does not hold.
 
 Examples:
@@ -60,20 +64,47 @@ class Stop(Exception):
         self.status = status
 
 
-class Parser(argparse.ArgumentParser):
-    def error(self, message):
-        raise Stop(WRONG_USE, f"{message} (see palpate evaluate --help)")
+class Once(argparse.Action):
+    def __call__(self, parser, chosen, value, name=None):
+        if hasattr(chosen, self.dest):
+            raise argparse.ArgumentError(self, "it is given more than once")
+        setattr(chosen, self.dest, value)
+
+
+def meant(word, names):
+    """The names that a misspelt word may stand for, at most one."""
+    small = word.lower().lstrip("-")
+    bare = {name.lstrip("-"): name for name in names}
+    begun = [name for name in bare if len(small) > 1 and name.startswith(small)]
+    return [bare[name] for name in (begun or difflib.get_close_matches(small, bare, 1, 0.65))[:1]]
+
+
+def text_of(text):
+    if not text:
+        raise argparse.ArgumentTypeError("the value is empty")
+    return text
+
+
+def one_of(names):
+    def check(word):
+        if text_of(word) not in names:
+            hint = "".join(f" (did you mean {name}?)" for name in meant(word, names))
+            raise argparse.ArgumentTypeError(f"there is no '{word}': use one of {', '.join(names)}{hint}")
+        return word
+    return check
 
 
 def whole_number(text):
-    if not text.isdecimal() or int(text) >= 2**64:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number of 0 or more")
-    return int(text)
+    if text_of(text).isdecimal() and text.isascii() and int(text) < 2**64:
+        return int(text)
+    if re.fullmatch(r"-?[0-9]+", text):
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number from 0 to {2**64 - 1}")
+    raise argparse.ArgumentTypeError(f"'{text}' is not a whole number")
 
 
 def interval(text):
     """A pair of functions of a volume, from 'LOW:HIGH'."""
-    ends = text.split(":")
+    ends = text_of(text).split(":")
     try:
         low, high = (float(end.removesuffix("%")) for end in ends)
         if not low <= high or len({end.endswith("%") for end in ends}) == 2:
@@ -86,27 +117,103 @@ def interval(text):
                  for part in (low, high))
 
 
+def complaint(error):
+    """What is wrong with an option's value, in the words of the other commands."""
+    name = error.argument_name.rpartition("/")[2]
+    if error.message.startswith("expected"):
+        return f"{name} needs a value: " + re.search(rf"{name} \S+\s+(.*)", HELP).group(1)
+    if error.message.startswith("ignored explicit argument"):
+        return f"{name}: this option takes no value"
+    return f"{name}: {error.message}"
+
+
+def experiment_of(words, options):
+    """The word that is left when the options are taken."""
+    end = words.index("--") if "--" in words else len(words)
+    for word in words[:end]:
+        if word.startswith("-"):
+            hint = "".join(f": did you mean {name}?" for name in meant(word.partition("=")[0], options))
+            raise Stop(WRONG_USE, f"there is no option {word}{hint} (see palpate evaluate --help)")
+    names = words[:end] + words[end + 1:]
+    try:
+        if not names:
+            raise argparse.ArgumentTypeError("it is needed, as in palpate evaluate drift")
+        name = one_of((*EXPERIMENTS, "all"))(names[0])
+    except argparse.ArgumentTypeError as error:
+        raise Stop(WRONG_USE, f"EXPERIMENT: {error} (see palpate evaluate --help)") from error
+    if names[1:]:
+        raise Stop(WRONG_USE, f"'{names[1]}' is one argument too many (see palpate evaluate --help)")
+    return name
+
+
 def arguments(words):
-    parser = Parser(add_help=False, allow_abbrev=False)
-    parser.add_argument("name", metavar="EXPERIMENT", choices=(*EXPERIMENTS, "all"))
-    parser.add_argument("-o", "--output", default="palpate-evaluation")
-    parser.add_argument("--volume", action="append", default=[])
-    parser.add_argument("--data", default=None)
-    parser.add_argument("--method", choices=METHODS, default="exact")
-    parser.add_argument("--seed", type=whole_number, default=1)
-    parser.add_argument("--seeds", type=whole_number, default=3)
-    parser.add_argument("--range", type=interval, action="append", default=[])
-    parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--json", action="store_true")
-    parser.add_argument("-q", "--quiet", action="store_true")
-    chosen = parser.parse_args(words)
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False,
+                                     argument_default=argparse.SUPPRESS)
+    options = [parser.add_argument("-o", "--output", action=Once, type=text_of),
+               parser.add_argument("--volume", action="append", type=text_of),
+               parser.add_argument("--data", action=Once, type=text_of),
+               parser.add_argument("--method", action=Once, type=one_of(METHODS)),
+               parser.add_argument("--seed", action=Once, type=whole_number),
+               parser.add_argument("--seeds", action=Once, type=whole_number),
+               parser.add_argument("--range", action="append", type=interval),
+               *(parser.add_argument(*names, action="store_true", default=False)
+                 for names in (["--quick"], ["--json"], ["-q", "--quiet"]))]
+    try:
+        given, rest = parser.parse_known_args(words)
+    except argparse.ArgumentError as error:
+        raise Stop(WRONG_USE, f"{complaint(error)} (see palpate evaluate --help)") from error
+    name = experiment_of(rest, ["--help", "--version", *(option.option_strings[-1] for option in options)])
+    chosen = argparse.Namespace(**{"output": "palpate-evaluation", "volume": [], "data": None, "method": "exact",
+                                   "seed": 1, "seeds": 3, "range": [], **vars(given)})
+    chosen.name, chosen.given = name, [f"--{option}" for option in vars(given)]
     if chosen.data is not None and not Path(chosen.data).is_dir():
         raise Stop(WRONG_USE, f"--data {chosen.data}: there is no such folder")
     chosen.data = chosen.data or os.environ.get("PALPATE_DATA") or None
-    missing = [f"python3-{name}" for name in PACKAGES if not importlib.util.find_spec(name)]
+    missing = [f"python3-{package}" for package in PACKAGES if not importlib.util.find_spec(package)]
     if missing:
         raise Stop(BAD_OUTPUT, f"experiments need NumPy, SciPy and Matplotlib: apt install {' '.join(missing)}")
     return chosen
+
+
+def lost(stream):
+    """For a stream that cannot be written: Python flushes once more at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def say(text, last=False):
+    """On standard output. last: the work is done, so a reader that has gone has all that it wanted."""
+    try:
+        print(text, flush=True)
+    except OSError as error:
+        lost(sys.stdout)
+        if not isinstance(error, BrokenPipeError):
+            raise Stop(BAD_OUTPUT, f"standard output: {error.strerror}") from error
+        if not last:
+            raise Stop(READER_GONE, "") from error
+
+
+def tell(text):
+    """On standard error, in a line."""
+    try:
+        print(f"palpate: {text}", file=sys.stderr, flush=True)
+    except OSError:
+        lost(sys.stderr)
+
+
+def warn_of_no_effect(chosen, names):
+    for option, users in USERS.items():
+        if option in chosen.given and not set(users) & set(names):
+            tell(f"warning: {option} does nothing: it is for {', '.join(users)}")
+
+
+def refuse_without_programs(names):
+    """Before any work, if what experiments in C++ need is missing."""
+    from palpate.evaluate import compiled
+    names = [name for name in names if name not in IN_PYTHON]
+    if names:
+        compiled.program()
+        if not shutil.which("gnuplot"):
+            raise Stop(BAD_OUTPUT, f"the figures of {', '.join(names)} need gnuplot: install it (apt install gnuplot-nox)")
 
 
 class Folder:
@@ -142,7 +249,7 @@ def options_of(chosen, name):
 
     def note(text):
         if not chosen.quiet:
-            print(f"palpate: note: {name}: {text.removeprefix(name + ': ')}", file=sys.stderr)
+            tell(f"note: {name}: {text.removeprefix(name + ': ')}")
 
     return Options(quick=chosen.quick, seed=chosen.seed, seeds=max(1, chosen.seeds), method=chosen.method,
                    ranges=tuple(chosen.range),
@@ -187,7 +294,9 @@ def as_json(reports):
 def evaluate(chosen, words):
     from palpate.evaluate import compiled, report
     names = EXPERIMENTS if chosen.name == "all" else (chosen.name,)
+    refuse_without_programs(names)
     options_of(chosen, chosen.name)  # refuses volumes before any work
+    warn_of_no_effect(chosen, names)
     folder, reports = Folder(chosen.output), []
     try:
         for name in names:
@@ -196,20 +305,20 @@ def evaluate(chosen, words):
             except (ValueError, compiled.Failed) as error:
                 if len(names) == 1 or getattr(error, "status", WRONG_USE) != WRONG_USE:
                     raise
-                print(f"palpate: note: {name} is left out: {error}", file=sys.stderr)
+                tell(f"note: {name} is left out: {error}")
                 continue
             folder.complete()
             if not (chosen.quiet or chosen.json):
-                print(shown(reports[-1]))
+                say(shown(reports[-1]), last=len(names) == 1)
         if chosen.name == "all":
             report.write_html(reports, folder.path, folder.part / "report.html")
             folder.complete()
     finally:
         folder.close()
     if chosen.json:
-        print(as_json(reports))
+        say(as_json(reports), last=True)
     elif not chosen.quiet:
-        print(f"Results: {chosen.output}{' (open report.html)' if chosen.name == 'all' else ''}")
+        say(f"Results: {chosen.output}{' (open report.html)' if chosen.name == 'all' else ''}", last=True)
     broken = sum(not claim.held for made in reports for claim in made.claims)
     if broken:
         raise Stop(CLAIMS_BROKEN, f"{broken} of the claims do not hold (see above)")
@@ -220,15 +329,18 @@ def interrupt(number, frame):
 
 
 def main(words):
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(number, interrupt)
-    if "--help" in words or "-h" in words:
-        print(HELP)
-        return 0
+    # Closed streams: what is written fails for standard output, and is lost for standard error.
+    sys.stdout = sys.stdout or open(os.open(os.devnull, os.O_RDONLY), "w", encoding="utf-8")
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
     try:
+        if "--help" in words or "-h" in words:
+            say(HELP, last=True)
+            return 0
         if "--version" in words:
             import palpate
-            print(f"palpate {palpate.__version__}")
+            say(f"palpate {palpate.__version__}", last=True)
             return 0
         chosen = arguments(words)
         import palpate
@@ -241,7 +353,8 @@ def main(words):
     except Exception as error:
         if not hasattr(error, "status"):
             raise
-        print(f"palpate: {error}", file=sys.stderr)
+        if error.status != READER_GONE:
+            tell(error)
         return error.status
     return 0
 
