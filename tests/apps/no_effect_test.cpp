@@ -5,25 +5,25 @@
 namespace palpate::app::test {
 namespace {
 
-constexpr const char* ball = "synthetic:sphere:16x16x16";
+constexpr const char* small_ball = "synthetic:sphere:16x16x16";
 
-struct Case {
+struct Ineffective {
     std::string words, warning;
-    friend std::ostream& operator<<(std::ostream& out, const Case& c) {
+    friend std::ostream& operator<<(std::ostream& out, const Ineffective& c) {
         return out << '\'' << c.words << '\'';
     }
 };
 
-class NoEffect : public testing::TestWithParam<Case> {};
+class NoEffect : public testing::TestWithParam<Ineffective> {};
 
 TEST_P(NoEffect, is_told_in_one_line_and_the_work_goes_on) {
     const ScratchFolder folder;
     put_trajectory(folder);
-    ASSERT_EQ(palpate(folder, std::string("convert ") + ball + " still.nrrd").status, 0);
+    ASSERT_EQ(palpate(folder, std::string("convert ") + small_ball + " still.nrrd").status, 0);
     support::put_bytes(folder / "tool.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n");
     std::string line = GetParam().words;
     for (auto at = line.find("BALL"); at != std::string::npos; at = line.find("BALL")) {
-        line.replace(at, 4, ball);
+        line.replace(at, 4, small_ball);
     }
     const Outcome outcome = palpate(folder, line);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -31,39 +31,45 @@ TEST_P(NoEffect, is_told_in_one_line_and_the_work_goes_on) {
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
 }
 
-const std::string replay = "replay BALL --trajectory t.csv -o a.csv -q ";
-const std::string touch = "touch BALL --unpaced --seconds 0.05 -q ";
+const std::string replaying = "replay BALL --trajectory t.csv -o a.csv -q ";
+const std::string touching = "touch BALL --unpaced --seconds 0.05 -q ";
 
 INSTANTIATE_TEST_SUITE_P(
     Options, NoEffect,
     testing::Values(
-        Case{touch + "--playback 2", "--playback does nothing: "},
-        Case{touch + "--once --sequence-memory 5", "--once, --sequence-memory do nothing: "},
-        Case{touch + "--normal-priority", "--normal-priority does nothing: "},
-        Case{"info still.nrrd --frame-interval 2", "--frame-interval does nothing: still.nrrd"},
-        Case{"info still.nrrd --time-step 0", "--time-step does nothing: "},
-        Case{"info still.nrrd --series 2", "--series does nothing: "},
-        Case{"info still.nrrd --byte-order big", "--byte-order does nothing: "},
-        Case{"info still.nrrd --channel 2", "--channel does nothing: "},
-        Case{"info still.nrrd --cache x --cache-size 1GB", "--cache, --cache-size do nothing: "},
-        Case{"info BALL --memory 100MB --coarse-first", "--memory, --coarse-first do nothing: "},
-        Case{"info BALL --level 1", "--level does nothing: "},
-        Case{"info BALL --forbidden-is-missing", "--forbidden-is-missing does nothing: "},
-        Case{"extract BALL -o a.ply --tolerance 0.1 --field linear", "--tolerance does nothing: "},
-        Case{"convert BALL a.zarr -q --compress", "--compress does nothing: "},
-        Case{"convert BALL a.mha -q --chunk 8 --threads 2", "--chunk, --threads do nothing: "},
-        Case{"render BALL -o a.png -q --stiffness 2", "--stiffness does nothing: "},
-        Case{"tool point --spacing 2", "--spacing does nothing: "},
-        Case{"tool tool.csv --spacing 2", "--spacing does nothing: "},
-        Case{replay + "--tool-spacing 2", "--tool-spacing does nothing: "},
-        Case{replay + "--rotational-stiffness 9 --torque-limit 9",
-             "--rotational-stiffness, --torque-limit do nothing: "},
-        Case{replay + "--isovalue 90 --penetrability ranges --range 100:150",
-             "--isovalue does nothing: "},
-        Case{replay + "--isovalue 90 --penetrability threshold --minimum 95",
-             "--isovalue does nothing: "},
-        Case{"demo --depth 3 sculpt BALL -q --duration 0.1 --pictures 2 --picture 64",
-             "--depth does nothing: "}));
+        Ineffective{touching + "--playback 2", "--playback does nothing: "},
+        Ineffective{touching + "--once --sequence-memory 5",
+                    "--once, --sequence-memory do nothing: "},
+        Ineffective{touching + "--normal-priority", "--normal-priority does nothing: "},
+        Ineffective{"info still.nrrd --frame-interval 2",
+                    "--frame-interval does nothing: still.nrrd"},
+        Ineffective{"info still.nrrd --time-step 0", "--time-step does nothing: "},
+        Ineffective{"info still.nrrd --series 2", "--series does nothing: "},
+        Ineffective{"info still.nrrd --byte-order big", "--byte-order does nothing: "},
+        Ineffective{"info still.nrrd --channel 2", "--channel does nothing: "},
+        Ineffective{"info still.nrrd --cache x --cache-size 1GB",
+                    "--cache, --cache-size do nothing: "},
+        Ineffective{"info BALL --memory 100MB --coarse-first",
+                    "--memory, --coarse-first do nothing: "},
+        Ineffective{"info BALL --level 1", "--level does nothing: "},
+        Ineffective{"info BALL --forbidden-is-missing", "--forbidden-is-missing does nothing: "},
+        Ineffective{"extract BALL -o a.ply --tolerance 0.1 --field linear",
+                    "--tolerance does nothing: "},
+        Ineffective{"convert BALL a.zarr -q --compress", "--compress does nothing: "},
+        Ineffective{"convert BALL a.mha -q --chunk 8 --threads 2",
+                    "--chunk, --threads do nothing: "},
+        Ineffective{"render BALL -o a.png -q --stiffness 2", "--stiffness does nothing: "},
+        Ineffective{"tool point --spacing 2", "--spacing does nothing: "},
+        Ineffective{"tool tool.csv --spacing 2", "--spacing does nothing: "},
+        Ineffective{replaying + "--tool-spacing 2", "--tool-spacing does nothing: "},
+        Ineffective{replaying + "--rotational-stiffness 9 --torque-limit 9",
+                    "--rotational-stiffness, --torque-limit do nothing: "},
+        Ineffective{replaying + "--isovalue 90 --penetrability ranges --range 100:150",
+                    "--isovalue does nothing: "},
+        Ineffective{replaying + "--isovalue 90 --penetrability threshold --minimum 95",
+                    "--isovalue does nothing: "},
+        Ineffective{"demo --depth 3 sculpt BALL -q --duration 0.1 --pictures 2 --picture 64",
+                    "--depth does nothing: "}));
 
 TEST(NoEffect, says_nothing_of_options_that_have_one) {
     const ScratchFolder folder;
@@ -84,7 +90,7 @@ TEST(NoEffect, says_nothing_of_options_that_have_one) {
 TEST(NoEffect, ranges_of_a_file_need_no_isovalue) {
     const ScratchFolder folder;
     put_trajectory(folder);
-    ASSERT_EQ(palpate(folder, std::string("convert ") + ball + " still.nrrd").status, 0);
+    ASSERT_EQ(palpate(folder, std::string("convert ") + small_ball + " still.nrrd").status, 0);
     const std::string line = "replay still.nrrd --trajectory t.csv -o a.csv -q ";
     EXPECT_EQ(palpate(folder, line + "--penetrability ranges --range 100:150").status, 0);
     expect_failure(palpate(folder, line), 2, "--isovalue is needed");
