@@ -40,8 +40,9 @@ def test_a_store_is_felt_while_it_is_read(volume, tmp_path):
     for what in (store, loaded):
         with palpate.Run(what, palpate.Setup(isovalue=2000, real_time=False)) as run:
             run.record(tmp_path / f"{type(what).__name__}.csv")
+            begun = run.snapshot().number if run.snapshot() else 0
             end = time.monotonic() + 120
-            while not run.snapshot() or run.snapshot().number < 50:
+            while not run.snapshot() or run.snapshot().number < begun + 60:
                 assert time.monotonic() < end
                 time.sleep(0.005)
         run.stop_recording()

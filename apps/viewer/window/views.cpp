@@ -27,6 +27,7 @@ Views::Views(MakePainter make_painter, QWidget* parent)
       left_(new QSplitter(Qt::Vertical)),
       down_(new QSplitter(Qt::Vertical)) {
     row_in(this, {across_});
+    missing_->setAccessibleName(missing_->toolTip());
     scene_->setObjectName("scene");
     scene_->setMinimumSize(200, 200);
     left_->addWidget(scene_);
