@@ -60,7 +60,7 @@ void SourceOptions::add_to(CLI::App& command, bool optional) {
                   dequantize,
                   "Give back what rounding to levels took, against terraces and the stair steps of "
                   "masks: --dequantize or --dequantize=ROUNDS; samples become float32")
-        ->check(from_to(0, filters::most_rounds));
+        ->check(count(filters::most_rounds));
     command.add_flag("--prefilter", prefilter,
                      "Sharpen the samples so that thin structures keep their height in the smooth "
                      "field; they become float32");

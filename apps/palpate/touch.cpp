@@ -386,7 +386,6 @@ void touch(const CLI::App& command, const TouchOptions& options) {
     }
     const auto remote = make_remote(options.igtl, options.igtl_connect, options.source.quiet);
     run::LoadedVolume loaded = load_for_terminal(options.source);
-    if (!options.source.quiet) note_terraces(loaded);
     auto data = std::make_shared<run::Data>(std::move(loaded), setup.playback,
                                             options.unpaced ? Pace::by_steps : Pace::own_thread);
     auto run = std::make_unique<run::Run>(data, setup);
@@ -397,6 +396,7 @@ void touch(const CLI::App& command, const TouchOptions& options) {
     if (!options.commands.empty()) requests = read_commands(options.commands, commands);
     if (!options.brush.empty()) take_up_brush(*run, commands, options.brush);
     start_recording(*run, options);
+    if (!options.source.quiet) note_terraces(data->loaded());
     const DeviceInfo device = run->device();
     stay_awake();
     auto begin = std::chrono::steady_clock::now();

@@ -119,7 +119,8 @@ Space named_space(const HeaderFields& fields) {
 Space space_of(const HeaderFields& fields, std::vector<std::string>& notes) {
     Space space = named_space(fields);
     const std::string name = lower(fields.value("space"));
-    if (!name.empty() && !space.is_body) {
+    // Right-handed axes say no more than that the sides are not known (Geometry::oriented).
+    if (!name.empty() && !space.is_body && !name.starts_with("3d-right-handed")) {
         notes.push_back("its space is '" + name +
                         "', which is not the patient's: its axes were taken as those of LPS");
     }

@@ -92,7 +92,7 @@ TEST(Extract, refuses_unknown_extensions_before_the_work) {
     const ScratchFolder folder;
     for (const std::string name : {"a.foo", "a", "-", "a.ply.gz"}) {
         expect_failure(palpate(folder, "extract no-such-file.nrrd -i 5 -o " + name), 2,
-                       ".ply, .stl, .obj or .vtp");
+                       ".ply, .stl, .obj, .vtp");
     }
     EXPECT_TRUE(folder.names().empty());
 }

@@ -395,7 +395,7 @@ TEST(Validate, says_what_an_old_recording_and_one_that_was_cut_off_cannot_tell) 
     EXPECT_TRUE(contains(old.out, "the same bit for bit"));
     EXPECT_TRUE(contains(old.out, "cannot be known")) << old.out;
     recorded.text = original.substr(0, original.size() / 2);
-    const auto cut = recorded.validate_with("recording 4", "recording 4");
+    const auto cut = recorded.validate_with("recording 5", "recording 5");
     EXPECT_EQ(cut.status, 0) << cut.err;
     EXPECT_TRUE(contains(cut.out, "cut off before its end")) << cut.out;
 }
