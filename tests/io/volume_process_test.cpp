@@ -75,7 +75,7 @@ TEST_F(HelperProcess, an_answer_that_makes_no_sense_is_refused) {
     refusal_with("echo '{\"done\":{\"geometry\":7,\"type\":\"uint8\"}}' >&4");
     const std::string geometry =
         "\"geometry\":{\"size\":[2,2,2],\"spacing\":[1,1,1],\"origin\":[0,0,0],\"axes\":"
-        "[[1,0,0],[0,1,0],[0,0,1]]}";
+        "[[1,0,0],[0,1,0],[0,0,1]],\"oriented\":true,\"measured\":true}";
     const std::string rest = ",\"format\":\"x\",\"time_steps\":1,\"notes\":[]";
     EXPECT_TRUE(contains(
         refusal_with("echo '{\"done\":{" + geometry + ",\"type\":\"uint8\"" + rest + "}}' >&4"),
