@@ -48,8 +48,9 @@ int coarsest_for(double level, const std::function<std::vector<SurfaceSite>(int)
 }
 
 /// Coarse rounds take long waves out of the rounding, and a few too many flatten what is curved.
-int rounds_of(int step, int finest, bool mask) {
-    if (step == 1) return mask ? finest : (finest + 9) / 10;
+/// They leave little to the rounds of step 1.
+int rounds_of(int step, int coarsest, int finest, bool mask) {
+    if (step == 1) return mask || coarsest <= 2 ? finest : (finest + 9) / 10;
     if (step == 2) return mask ? 20 : 16;
     if (step == 4) return mask ? 10 : 6;
     return 2;
@@ -205,7 +206,7 @@ DequantizePlan plan_of(double level, double minimum, double maximum,
                          : plan.mask      ? mask_step
                                           : coarsest_for(level, sites);
     for (int step = coarsest; step >= 1; step /= 2) {
-        plan.rounds.push_back({step, rounds_of(step, options.rounds, plan.mask)});
+        plan.rounds.push_back({step, rounds_of(step, coarsest, options.rounds, plan.mask)});
     }
     return plan;
 }

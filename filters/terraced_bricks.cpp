@@ -42,7 +42,7 @@ struct WeighRow {
                 const float off = in_levels(own[i], scale) - (2 * row.mean[i] - twice);
                 const auto weight = static_cast<std::int32_t>(16 * std::min(slope, 4096.0F));
                 all += weight;
-                stepped += slope <= steepest_terrace && std::abs(off) <= 0.5F ? weight : 0;
+                stepped += std::abs(off) <= 0.5F ? weight : 0;
             }
             sums[brick].all += all;
             sums[brick].stepped += stepped;

@@ -21,10 +21,6 @@ struct MovedSamples {
     std::ptrdiff_t moved_slice = 0;  ///< from one slice to the next
 };
 
-/// Where a sample is so many levels above its neighbour, rounding tilts normals by a degree:
-/// steeper terraces are not felt.
-inline constexpr float steepest_terrace = 12;
-
 /// Which bricks of 16 x 16 x 16 samples are dequantized.
 class TerracedBricks {
   public:

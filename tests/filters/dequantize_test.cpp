@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "palpate/io/sample_volume.hpp"
 #include "palpate/io/volume_file.hpp"
@@ -120,6 +121,35 @@ TEST(Dequantize, gives_a_ball_of_8_bits_its_normals_back) {
     EXPECT_LT(fine.mean, 0.05);
     EXPECT_LT(fine.p99, 0.2);
     EXPECT_LT(std::abs(fine.bias), 0.01);
+}
+
+/// Mean angle between the gradient and the true normal of the scene's torus [degrees].
+double tilt_of_torus(const Volume& volume) {
+    support::Random random(11);
+    const double edge = volume.geometry().size[0];
+    double sum = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const double along = random.uniform(0, 2 * std::numbers::pi);
+        const double round = random.uniform(0, 2 * std::numbers::pi);
+        const Vec3 out(std::cos(along), std::sin(along), 0);
+        const Vec3 normal = std::cos(round) * out + std::sin(round) * Vec3::UnitZ();
+        const Vec3 at = 0.3 * edge * out + 0.12 * edge * normal;
+        const Vec3 slope = gradient(volume, index_from_physical(volume.geometry(), at));
+        sum += std::acos(std::min(1.0, std::abs(normal.dot(slope.normalized()))));
+    }
+    return sum / 2000 * 180 / std::numbers::pi;
+}
+
+TEST(Dequantize, gives_a_torus_its_normals_back_though_its_terraces_are_short_and_steep) {
+    for (const std::string size : {"60x60x30", "80x80x40"}) {
+        const Volume before = scenes::make_volume("torus:" + size, SampleType::uint8).volume;
+        const Volume true_samples =
+            scenes::make_volume("torus:" + size, SampleType::float32).volume;
+        const double least = tilt_of_torus(true_samples);
+        const double rough = tilt_of_torus(before) - least;
+        EXPECT_GT(rough, 0.25) << size;
+        EXPECT_LT(tilt_of_torus(dequantized(before)) - least, 0.1 * rough) << size;
+    }
 }
 
 TEST(Dequantize, keeps_small_bodies_on_gentle_slopes_where_they_are) {

@@ -44,8 +44,9 @@ std::optional<Terraces> terraces_of(const Volume& volume);
 std::string reason_to_dequantize(const Terraces& terraces);
 
 struct DequantizeOptions {
-    /// Rounds of step 1 for masks, 1 to most_rounds. Other data take a tenth of them, and coarser
-    /// steps have their own number. More rounds flatten the stair steps of masks further.
+    /// Rounds of step 1, 1 to most_rounds. After coarser steps than 2, data that are no mask take a
+    /// tenth of them. Coarser steps have their own number. More rounds flatten the stair steps of
+    /// masks further.
     int rounds = 40;
     /// The coarsest step [samples], a power of two up to greatest_step. Without it, the largest up
     /// to 16 over which half of the surfaces are straight to within the rounding; for masks 4.
