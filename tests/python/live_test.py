@@ -199,23 +199,28 @@ def test_the_servo_ticks_on_while_a_python_thread_holds_the_gil():
 
 def test_after_a_single_failure_the_force_begins_with_the_ramp():
     class Once(Still):
-        fails = False
+        fails, times = False, []
 
         def read(self):
             if self.fails:
-                self.fails, self.failed_at = False, len(self.forces)
+                self.fails, self.failed_at, self.failed_on = False, time.monotonic(), len(self.forces)
                 raise RuntimeError("once")
             return super().read()
+
+        def write(self, force, torque):
+            super().write(force, torque)
+            self.times.append(time.monotonic())
 
     device = Once(surface_height() - 0.5)
     servo = palpate.Servo(renderer(), device, device_rate=4000)  # the servo sees a part of its readings
     with servo:
         until(lambda: servo.snapshot() and servo.snapshot().tick.force[2] > 0.2)
         device.fails = True
-        until(lambda: not device.fails and len(device.forces) > device.failed_at + 2)
-        # One write may have been under way when the reading failed.
-        first = [numpy.linalg.norm(force) for force in device.forces[device.failed_at:device.failed_at + 2]]
-        assert min(first) == 0
+        until(lambda: not device.fails and len(device.forces) > device.failed_on + 40)
+        # There is none that was written within 10 ms, however many writes these were.
+        after = list(zip(device.times, device.forces))[device.failed_on:]
+        assert not any(numpy.any(force) for at, force in after if at < device.failed_at + 0.01)
+        assert not numpy.any(after[0][1])
         until(lambda: servo.snapshot().tick.force[2] > 0.2)  # and it comes back
 
 

@@ -126,8 +126,7 @@ struct Case {
     void (*begin)(Run& live, const Folder& folder);
     const std::string& volume = a_ball;
     const std::string& device = a_hand;
-    /// [N] How much the forces of two runs may differ. A tool finds its contacts anew, and frames
-    /// come when they have been read.
+    /// [N] How much the forces of two runs may differ: frames come when they have been read.
     double apart = 0;
 };
 std::ostream& operator<<(std::ostream& out, const Case& one) {
@@ -189,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"frozen_with_other_forces", from::frozen_with_other_forces},
         Case{"in_layers_with_a_needle", from::in_layers_with_a_needle, a_ball, a_turning_hand},
         Case{"in_a_label", from::in_a_label}, Case{"after_edits", from::after_edits},
-        Case{"with_a_tool", from::with_a_tool, a_ball, a_turning_hand, 0.02},
+        Case{"with_a_tool", from::with_a_tool, a_ball, a_turning_hand},
         Case{"playing", from::playing, a_heart, a_hand, std::numeric_limits<double>::infinity()}),
     [](const auto& info) { return info.param.name; });
 
