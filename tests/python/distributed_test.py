@@ -202,7 +202,7 @@ def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_p
     command = [sys.executable, "-m", "palpate.distributed", source, out, "--chunk", "16", "--block", "16",
                "--dequantize", "40", "--workers", "1"]
     running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    records = pathlib.Path(f"{out}.partial/work/records/state-0")
+    records = pathlib.Path(f"{out}.partial", "work", "records", "state-0")
     while running.poll() is None and not (records.exists() and any(records.iterdir())):
         time.sleep(0.05)
     running.send_signal(signal.SIGINT)
