@@ -39,7 +39,7 @@ struct ChunkedImage {
         levels{};  ///< the finest first; none if there is no such channel or time
 };
 
-/// Where a chunk lies in its file. As the helper hands them over, in memory that both share.
+/// Where a chunk lies in its file, as the helper tells it.
 struct ChunkPlace {
     std::uint64_t offset = 0, length = 0;  ///< [bytes]; no length: it is not stored
     std::uint64_t skipped = 0;  ///< bit i: codec i, in the order of decoding, was not used

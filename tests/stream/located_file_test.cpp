@@ -106,6 +106,27 @@ std::array<std::int64_t, 3> chunks_of(const io::ImageArray& array) {
     return count;
 }
 
+/// PyTorch's loaders, for one, fork with stores open.
+TEST(LocatedFile, a_fork_has_a_helper_of_its_own_and_leaves_that_of_its_parent) {
+    auto file = std::make_unique<io::ChunkFile>(hdf5_written() / "image.ims");
+    const io::ChunkedImage image = file->describe(0, 0);
+    const std::set<pid_t> helper = children();
+    ASSERT_EQ(helper.size(), 1U);
+    const pid_t fork = ::fork();
+    if (fork == 0) {
+        // The child's own helper is a child of the child.
+        const bool answers = file->describe(0, 0).levels.size() == image.levels.size();
+        const std::set<pid_t> own = children();
+        file.reset();  // as at the child's end
+        ::_exit(answers && own.size() == 1 && own != helper ? 0 : 1);
+    }
+    int status = -1;
+    ASSERT_EQ(::waitpid(fork, &status, 0), fork);
+    EXPECT_EQ(status, 0);
+    EXPECT_EQ(file->describe(0, 0).levels.size(), image.levels.size());
+    EXPECT_EQ(children(), helper) << "the parent's helper goes on";
+}
+
 TEST(LocatedFile, one_helper_answers_all_questions_and_gets_each_page_once) {
     FarFile far;
     io::ChunkFile there = far.file();
