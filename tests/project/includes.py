@@ -185,8 +185,29 @@ def check_umbrella(root):
     return problems
 
 
+def check_windows(root):
+    """A source that stream/CMakeLists.txt compiles for Windows needs no source that it leaves out: of each of
+    stream's headers that it includes, the source is in the list, unless a *_windows.cpp stands in for it."""
+    cmake = root / "stream/CMakeLists.txt"
+    listed = re.search(r"if\(WIN32\).*?set\(sources ([^)]*)\)", cmake.read_text(), re.S) if cmake.exists() else None
+    if not listed:
+        return []
+    sources = [root / "stream" / name for name in listed[1].split()]
+    headers = {source: [resolve(root, source, name) for _, name in includes_of(source)] for source in sources}
+    stood_in = {header for source in sources if source.stem.endswith("_windows") for header in headers[source]}
+    problems = []
+    for source in sources:
+        for header in headers[source]:
+            if header is None or owner_of(header)[0] != "stream" or header in stood_in:
+                continue
+            needed = (root / header).with_suffix(".cpp")
+            if needed.exists() and needed not in sources:
+                problems.append(f"stream/CMakeLists.txt: {source.name} needs {needed.name} on Windows")
+    return problems
+
+
 def check(root):
-    problems = check_umbrella(root)
+    problems = check_umbrella(root) + check_windows(root)
     for path in repository.files(root, repository.CPP):
         relative = path.relative_to(root)
         if zone_of(relative) in ("include", "src"):

@@ -127,6 +127,16 @@ class Includes(unittest.TestCase):
         self.assertIn("order", self.problems({name: "".join(reversed(lines))})[0])
         self.assertIn("missing", self.problems({name: "".join(lines[:-1])})[0])
 
+    def test_a_source_that_windows_lacks_is_found(self):
+        tree = {"stream/CMakeLists.txt": "if(WIN32)  # raw files\n  set(sources plain.cpp store_windows.cpp)\nendif()\n",
+                "stream/plain.cpp": '#include "stream/room.hpp"\n', "stream/room.hpp": "\n",
+                "stream/store_windows.cpp": "\n"}
+        self.assertEqual(self.problems(tree), [])
+        tree["stream/room.cpp"] = "\n"
+        self.assertIn("plain.cpp needs room.cpp on Windows", self.problems(tree)[0])
+        tree["stream/store_windows.cpp"] = '#include "stream/room.hpp"\n'
+        self.assertEqual(self.problems(tree), [])
+
 
 class Style(unittest.TestCase):
     def assert_found(self, name, text, words):

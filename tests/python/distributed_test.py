@@ -200,7 +200,7 @@ def test_stages_hold_all_rounds_in_their_order_and_reach_no_farther_than_the_hal
 def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_path):
     source, out = ball(tmp_path), tmp_path / "out.zarr"
     command = [sys.executable, "-m", "palpate.distributed", source, out, "--chunk", "16", "--block", "16",
-               "--dequantize", "40", "--workers", "1"]
+               "--dequantize", "4", "--workers", "1"]
     running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     records = pathlib.Path(f"{out}.partial", "work", "records", "state-0")
     while running.poll() is None and not (records.exists() and any(records.iterdir())):
@@ -210,7 +210,7 @@ def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_p
     assert running.returncode == 130 and "the same command goes on" in said
     again = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     assert int(re.search(r"\((\d+) kept", again.stdout)[1]) > 60
-    assert files(out) == on_one_machine(source, tmp_path / "one.zarr", "--chunk", "16", "--dequantize")
+    assert files(out) == on_one_machine(source, tmp_path / "one.zarr", "--chunk", "16", "--dequantize=4")
     refused = subprocess.run(command, check=False, stderr=subprocess.PIPE, text=True)
     assert refused.returncode == 1 and "is there already" in refused.stderr
     assert "Traceback" not in refused.stderr
