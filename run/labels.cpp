@@ -2,6 +2,7 @@
 #include "palpate/run/labels.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
@@ -28,6 +29,24 @@ std::set<int> numbers_in(const Volume& volume) {
         }
     });
     return numbers;
+}
+
+/// Numbers of 32 bits and more are kept as float32, which tells whole numbers apart up to 2^24.
+void require_whole_numbers(const LoadedVolume& labels) {
+    if (labels.time_steps > 1) {
+        throw std::invalid_argument(labels.name +
+                                    ": has several frames (moments, or segments that overlap), and "
+                                    "labels are one volume: save one of them");
+    }
+    if (labels.volume.type() != SampleType::float32) return;
+    const auto* const samples = static_cast<const float*>(labels.volume.data());
+    const auto count = sample_count(labels.volume.geometry());
+    const auto wrong = std::find_if(samples, samples + count, [](float value) {
+        return !(std::abs(value) < 0x1p24F) || value != std::floor(value);
+    });
+    if (wrong == samples + count) return;
+    throw std::invalid_argument(labels.name + ": labels are whole numbers below 16777216, and " +
+                                std::to_string(*wrong) + " is none");
 }
 
 std::string names_in(const LoadedVolume& labels) {
@@ -72,12 +91,6 @@ void number_by_name(Layers& layers, const LoadedVolume& labels) {
 }
 
 void attach(Layers& layers, const LoadedVolume& labels) {
-    if (labels.volume.type() == SampleType::float32) {
-        throw std::invalid_argument(labels.name + ": labels are whole numbers, these are not");
-    }
-    if (labels.time_steps > 1) {
-        throw std::invalid_argument(labels.name + ": is a sequence; labels must stand still");
-    }
     layers.by_label = true;
     layers.label_volume = labels.name;
     layers.labels = numbered_labels(labels.volume, layers.layers, level_count(layers));
@@ -102,6 +115,7 @@ io::LayersFile layers_of(std::span<const io::LabelName> labels) {
 
 io::LayersFile layers_by_label(const LoadedVolume& labels,
                                const std::optional<io::LayersFile>& like) {
+    require_whole_numbers(labels);
     io::LayersFile file;
     if (like) {
         file = *like;
@@ -123,7 +137,9 @@ std::shared_ptr<const Layers> with_labels(std::shared_ptr<const Layers> layers,
     }
     Layers complete = *layers;
     try {
-        attach(complete, load(source_named(path.string())));
+        const LoadedVolume labels = load(source_named(path.string()));
+        require_whole_numbers(labels);
+        attach(complete, labels);
     } catch (const std::invalid_argument& e) {
         throw io::InputError(recording.string() + ": its labels: " + e.what());
     }

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <new>
+#include <sstream>
 #include <utility>
 
 #include "io/helper/dicom_check.hpp"
@@ -48,7 +49,11 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
          {{0x0018, 0x2010}, "of a scanned image (NominalScannedPixelSpacing)"}}};
     for (const auto& [tag, where] : tags) {
         const auto pixel = measures.numbers(tag);
-        if (pixel.size() != 2) continue;
+        if (pixel.empty()) continue;
+        if (pixel.size() != 2) {
+            throw Failure("its DICOM tag PixelSpacing has " + std::to_string(pixel.size()) +
+                          " numbers instead of 2; correct it");
+        }
         check_spacing(pixel[0], "DICOM tag PixelSpacing");
         check_spacing(pixel[1], "DICOM tag PixelSpacing");
         s.pixel = Vec3(pixel[1], pixel[0], 0);  // DICOM gives the distance between rows first
@@ -192,6 +197,24 @@ Counted counted(const DicomGroup& data) {
     return Counted::otherwise;
 }
 
+/// Where each frame lies among the slices, from 0, as SliceVector says it.
+std::vector<int> order_of(const DicomSlice& file, const DicomGroup& data) {
+    const auto told = data.counts({0x0054, 0x0080});
+    std::vector<int> order;
+    for (int i = 0; i < file.frames; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        order.push_back(told.empty() ? i : at < told.size() ? static_cast<int>(told[at]) - 1 : -1);
+    }
+    std::vector<int> sorted = order;
+    std::ranges::sort(sorted);
+    for (int i = 0; i < file.frames; ++i) {
+        if (sorted[static_cast<std::size_t>(i)] == i) continue;
+        throw Failure(quoted(file.file) + " has a SliceVector that does not name each of its " +
+                      std::to_string(file.frames) + " slices once; export it again");
+    }
+    return order;
+}
+
 /// One behind the other from the first one's position, by the distances given [mm].
 void place_behind(std::vector<DicomSlice>& slices, const std::vector<double>& distances) {
     const DicomSlice first = slices.front();
@@ -202,9 +225,9 @@ void place_behind(std::vector<DicomSlice>& slices, const std::vector<double>& di
     }
 }
 
-std::vector<double> even_distances(std::size_t count, double step) {
+std::vector<double> even_distances(const std::vector<int>& order, double step) {
     std::vector<double> distances;
-    for (std::size_t i = 0; i < count; ++i) distances.push_back(static_cast<double>(i) * step);
+    for (const int place : order) distances.push_back(place * step);
     return distances;
 }
 
@@ -245,16 +268,33 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
             return slices;
         }
     }
+    const std::vector<int> order = order_of(file, data);
+    for (std::size_t i = 0; i < slices.size(); ++i) slices[i].instance = order[i];
     const double between = data.number(between_tag, 0);  // negative: against the normal
     check_coordinate(between, "DICOM tag SpacingBetweenSlices");
     if (between != 0) {
-        place_behind(slices, even_distances(slices.size(), between));
+        place_behind(slices, even_distances(order, between));
         return slices;
     }
     const double step = file.thickness > 0 ? file.thickness : 1;
-    place_behind(slices, even_distances(slices.size(), step));
+    place_behind(slices, even_distances(order, step));
     note(all + "do not say where they lie: taken as slices " + text_of(step) + " mm apart");
     return slices;
+}
+
+/// What tells images of one place in one series apart: magnitude or phase (the third value of
+/// ImageType), and the echo.
+std::string kind_of(const DicomGroup& data) {
+    std::istringstream values(data.text({0x0008, 0x0008}));
+    std::string kind;
+    for (int i = 0; i < 3; ++i) {
+        if (!std::getline(values, kind, '\\')) kind.clear();
+    }
+    kind = trimmed(kind);
+    if (const auto echo = data.numbers({0x0018, 0x0081}); !echo.empty()) {
+        kind += (kind.empty() ? "" : ", ") + ("echo time " + text_of(echo[0]) + " ms");
+    }
+    return kind;
 }
 
 DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const DicomGroup& data) {
@@ -271,6 +311,7 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     s.instance_uid = data.text({0x0008, 0x0018});
     s.series_uid = data.text({0x0020, 0x000e});
     s.description = data.text({0x0008, 0x103e});
+    s.image_type = kind_of(data);
     s.patient = data.text({0x0010, 0x0010});
     s.study = data.text({0x0008, 0x1030});
     s.values.modality = data.text({0x0008, 0x0060});
@@ -290,11 +331,9 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     }
     const std::string colours = data.text({0x0028, 0x0004});
     s.has_colours = !colours.empty() && lower(colours).find("monochrome") != 0;
-    if (!s.position) {
-        if (const auto location = data.numbers({0x0020, 0x1041}); location.size() == 1) {
-            check_coordinate(location[0], "DICOM tag SliceLocation");
-            s.location = location[0];
-        }
+    if (const auto location = data.numbers({0x0020, 0x1041}); location.size() == 1) {
+        check_coordinate(location[0], "DICOM tag SliceLocation");
+        s.location = location[0];
     }
     if (constexpr DicomTag dose{0x3004, 0x000e}; data.has(dose)) {
         s.slope = data.number(dose, 1);

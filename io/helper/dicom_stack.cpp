@@ -214,26 +214,50 @@ bool is_placed(const DicomSlice& s) {
     return s.position && s.row && s.column;
 }
 
-/// Places slices that have no position by their SliceLocation, if each has one of its own.
-void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
+/// [mm] along the normal of slices whose place or orientation is missing: their SliceLocation, or
+/// else their positions along the line on which these lie. Empty if some have neither.
+std::vector<double> locations_of(const DicomSeries& series) {
     std::vector<double> locations;
     for (const DicomSlice& s : series.slices) {
-        if (s.position || !s.location) return;
-        locations.push_back(*s.location);
+        if (s.location) locations.push_back(*s.location);
     }
-    std::ranges::sort(locations);
+    if (locations.size() == series.slices.size()) return locations;
+    locations.clear();
+    Vec3 line = Vec3::Zero();
+    for (const DicomSlice& s : series.slices) {
+        if (!s.position) return {};
+        const Vec3 way = *s.position - *series.slices.front().position;
+        if (way.norm() > line.norm()) line = way;
+    }
+    int longest = 0;
+    line.cwiseAbs().maxCoeff(&longest);
+    if (line[longest] < 0) line = -line;
+    for (const DicomSlice& s : series.slices)
+        locations.push_back(line.normalized().dot(*s.position));
+    return locations;
+}
+
+/// Places slices that lack a position or an orientation, if each has a place of its own.
+void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
+    if (std::ranges::all_of(series.slices, is_placed)) return;
+    const std::vector<double> locations = locations_of(series);
+    std::vector<double> sorted = locations;
+    std::ranges::sort(sorted);
     const double least = same_place_mm(series);
     const auto is_near = [&](double a, double b) { return b - a <= least; };
-    if (std::ranges::adjacent_find(locations, is_near) != locations.end()) return;
-    for (DicomSlice& s : series.slices) {
+    if (std::ranges::adjacent_find(sorted, is_near) != sorted.end() || sorted.empty()) return;
+    const bool by_location = series.slices.front().location.has_value();
+    for (std::size_t i = 0; i < locations.size(); ++i) {
+        DicomSlice& s = series.slices[i];
         if (!s.row || !s.column) {
             s.row = Vec3::UnitX();
             s.column = Vec3::UnitY();
         }
-        s.position = s.row->cross(*s.column) * *s.location;
+        s.position = s.row->cross(*s.column) * locations[i];
     }
     notes.emplace_back(
-        "its slices have no position: they were placed by their SliceLocation, along their normal");
+        std::string("its slices lack a position or an orientation: they were placed by their ") +
+        (by_location ? "SliceLocation" : "positions' distances") + ", along their normal");
 }
 
 /// Slices without position or orientation, stacked in the order of their numbers, or moments of
@@ -315,7 +339,15 @@ const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std:
                        : matching.empty() ? "has no DICOM series '" + chosen + "'"
                                           : "has several DICOM series '" + chosen + "'";
     std::vector<SeriesInfo> list;
-    for (const DicomSeries& series : all) list.push_back(info_of(series));
+    for (const DicomSeries& series : all) {
+        list.push_back(info_of(series));
+        const auto shares = [&](const DicomSeries& other) { return other.uid == series.uid; };
+        const std::string& kind = series.slices.front().image_type;
+        if (std::ranges::count_if(all, shares) > 1 && !kind.empty()) {
+            std::string& text = list.back().description;
+            text += (text.empty() ? "" : ", ") + kind;
+        }
+    }
     throw ChooseSeries(text + "; choose one by its number or UID", std::move(list));
 }
 

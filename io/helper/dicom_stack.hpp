@@ -19,13 +19,13 @@ struct DicomSlice {
     std::filesystem::path file;
     std::string series_uid, instance_uid, description;
     std::string patient, study;
-    std::string stack, image_type;  ///< of a frame: stacks of one file; original, phase, ...
+    std::string stack, image_type;  ///< stacks of one file; magnitude, phase, echoes ...
     ValueInfo values;
     int rows = 0, columns = 0;
     int frames = 1, frame = 0;  ///< how many its file has, and which of them it is
     int instance = 0, acquisition = 0;
     std::optional<Vec3> position;     ///< [mm, LPS] centre of the first pixel
-    std::optional<double> location;   ///< [mm] SliceLocation, for slices without a position
+    std::optional<double> location;   ///< [mm] SliceLocation, for slices that are not placed
     std::optional<Vec3> row, column;  ///< unit vectors along a row and along a column
     std::optional<Vec3> pixel;        ///< [mm] between columns, between rows, 0
     double thickness = 0;             ///< [mm] between slices or of one; 0 if not given

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 SampleType common_type(const std::vector<Decoded>& slices, std::vector<std::string>& notes) {
     const Stored first = slices.front().stored;
     bool same = true, floats = false;
-    double low = 0, high = 0;
+    auto [low, high] = range_of(first, slices.front().samples);
     for (const Decoded& d : slices) {
         same = same && d.stored == first;
         floats = floats || d.stored == Stored::float32 || d.stored == Stored::float64;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <map>
 #include <numeric>
 
 #include "io/helper/decode.hpp"
@@ -169,19 +170,35 @@ std::string bdv_moment(int time, int setup) {
 struct BdvSetup {
     std::array<double, 3> spacing = {1, 1, 1};
     std::string unit, name;
+    bool has_spacing = false;
 };
 
-std::vector<BdvSetup> setups_in(const std::filesystem::path& xml, int setups) {
-    std::vector<BdvSetup> all(static_cast<std::size_t>(setups));
+std::string resolutions_of(int setup) {
+    return with_number("/s%02d/resolutions", setup);
+}
+
+/// The numbers of those in the file, which may begin anywhere and have gaps.
+std::vector<int> setups_of(const Hdf5File& file) {
+    constexpr int most = 1000;
+    std::vector<int> setups;
+    for (int s = 0; s < most; ++s) {
+        if (file.has(resolutions_of(s))) setups.push_back(s);
+    }
+    return setups;
+}
+
+std::map<int, BdvSetup> setups_in(const std::filesystem::path& xml) {
+    std::map<int, BdvSetup> all;
     const XmlElement root = read_xml(xml);
     for (const XmlElement* setup : root.all("SequenceDescription/ViewSetups/ViewSetup")) {
         const auto id = number_from<int>(trimmed(setup->text_of("id")));
-        if (!id || *id < 0 || *id >= setups) continue;
-        BdvSetup& one = all[static_cast<std::size_t>(*id)];
+        if (!id) continue;
+        BdvSetup& one = all[*id];
         one.unit = trimmed(setup->text_of("voxelSize/unit"));
         one.name = trimmed(setup->text_of("name"));
         const std::vector<double> size = numbers_in(setup->text_of("voxelSize/size"), "voxelSize");
-        for (std::size_t i = 0; i < 3 && size.size() == 3; ++i) one.spacing[2 - i] = size[i];
+        one.has_spacing = size.size() == 3;
+        for (std::size_t i = 0; i < 3 && one.has_spacing; ++i) one.spacing[2 - i] = size[i];
     }
     return all;
 }
@@ -203,30 +220,35 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
                        int time) {
     ChunkedImage image;
     image.format = "BigDataViewer HDF5";
-    const int setups = file.count([](int s) { return with_number("/s%02d/resolutions", s); });
+    const std::vector<int> setups = setups_of(file);
     image.times = file.count([](int t) { return with_number("/t%05d", t); });
     auto xml = path;
     xml.replace_extension(".xml");
-    std::vector<BdvSetup> all(static_cast<std::size_t>(setups));
-    if (std::filesystem::exists(xml)) all = setups_in(xml, setups);
-    for (int s = 0; setups > 1 && s < setups; ++s) {
-        const std::string& name = all[static_cast<std::size_t>(s)].name;
+    std::map<int, BdvSetup> all;
+    if (std::filesystem::exists(xml)) all = setups_in(xml);
+    for (const int s : setups) {
+        if (setups.size() == 1) break;
+        const std::string& name = all[s].name;
         image.channels.push_back(name.empty() ? "setup " + std::to_string(s) : name);
     }
-    if (channel >= setups || time >= image.times) return image;
-    const BdvSetup& setup = all[static_cast<std::size_t>(channel)];
+    if (channel >= static_cast<int>(setups.size()) || time >= image.times) return image;
+    const int id = setups[static_cast<std::size_t>(channel)];
+    const bool has_spacing = all.contains(id) && all[id].has_spacing;
+    const BdvSetup& setup = all[id];
     image.unit = setup.unit;
-    image.measured = !image.unit.empty();
-    if (!image.measured) {
-        image.unit = "millimeter";
+    image.measured = has_spacing && !setup.unit.empty();
+    if (setup.unit.empty()) image.unit = "millimeter";
+    if (!has_spacing) {
         image.notes.emplace_back("no XML file beside it gives its spacing: 1 mm was taken");
+    } else if (setup.unit.empty()) {
+        image.notes.emplace_back("its XML file gives no unit of length: millimetres were taken");
     }
-    const std::string moment = bdv_moment(time, channel);
+    const std::string moment = bdv_moment(time, id);
     if (!file.has(moment)) {
-        throw Failure("has no setup " + std::to_string(channel) + " at time " +
-                      std::to_string(time) + "; choose another");
+        throw Failure("has no setup " + std::to_string(id) + " at time " + std::to_string(time) +
+                      "; choose another");
     }
-    const auto factors = rows_of(file, with_number("/s%02d/resolutions", channel));
+    const auto factors = rows_of(file, resolutions_of(id));
     for (std::size_t l = 0; l < factors.size(); ++l) {
         ImageArray level = file.array(moment + "/" + std::to_string(l) + "/cells");
         // BigDataViewer keeps its 16 bits without a sign in HDF5's with one.
@@ -244,7 +266,7 @@ ChunkedImage hdf5_image(const std::filesystem::path& path, int channel, int time
     if (file.has("/DataSet/ResolutionLevel 0/TimePoint 0/Channel 0/Data")) {
         return imaris_image(file, channel, time);
     }
-    if (file.has("/s00/resolutions")) return bdv_image(file, path, channel, time);
+    if (!setups_of(file).empty()) return bdv_image(file, path, channel, time);
     throw Failure(
         "is an HDF5 file of another program; those of Imaris (5.5 and later) and BigDataViewer are "
         "read");

@@ -9,6 +9,7 @@
 
 #include "io/helper/headers.hpp"
 #include "io/helper/nrrd_axes.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {
@@ -213,8 +214,9 @@ bool is_swapped(const HeaderFields& fields, Stored stored, const DataPlace& plac
 }
 
 /// Of 3D Slicer's segmentations: "Segment0_LabelValue:=1", "Segment0_Name:=liver",
-/// "Segment0_Color:=0.5 0.2 0.1". Those that say no value, or nonsense, are passed over.
-std::vector<LabelName> labels_of(const HeaderFields& fields) {
+/// "Segment0_Color:=0.5 0.2 0.1". Those that say no value, or nonsense, are passed over. Segments
+/// that overlap are in several layers, which are the file's frames: "Segment0_Layer:=1".
+std::vector<LabelName> labels_of(const HeaderFields& fields, int frame) {
     constexpr int most = 4096;
     std::vector<LabelName> labels;
     for (int i = 0; i < most; ++i) {
@@ -223,6 +225,7 @@ std::vector<LabelName> labels_of(const HeaderFields& fields) {
             return found == fields.keys.end() ? std::string() : found->second;
         };
         if (text("ID").empty() && text("LabelValue").empty()) break;
+        if (number_from<int>(trimmed(text("Layer"))).value_or(0) != frame) continue;
         LabelName label;
         std::istringstream value(text("LabelValue"));
         if (!(value >> label.value)) continue;
@@ -258,7 +261,7 @@ VolumeHeader nrrd_header(const Request& request) {
     header.place.swapped = is_swapped(fields, header.stored, header.place);
     take_axes(fields, header);
     note_ignored(fields, header.notes);
-    header.values.labels = labels_of(fields);
+    header.values.labels = labels_of(fields, request.time_step);
     return header;
 }
 

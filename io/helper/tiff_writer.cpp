@@ -48,6 +48,8 @@ void write_page(TIFF* tiff, const Geometry& geometry, SampleType type, int z, bo
     TIFFSetField(tiff, TIFFTAG_COMPRESSION,
                  compress ? COMPRESSION_ADOBE_DEFLATE : COMPRESSION_NONE);
     TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, rows);
+    // Without it ImageJ takes the samples of all pages as one piece after the first page's.
+    TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
     set_resolution(tiff, geometry.spacing);
     if (z == 0) set_image_j_spacing(tiff, geometry.spacing, geometry.size.z());
     for (std::uint32_t strip = 0, y = 0; y < height; ++strip, y += rows) {
@@ -68,13 +70,15 @@ void write_tiff(const std::filesystem::path& path, const Geometry& geometry, Sam
     const auto pages = static_cast<std::size_t>(geometry.size.z());
     // Classic TIFF points to 4 GB; some of them are for its directories and for what does not pack.
     const bool big = pages * (page + 4096) > 0xF0000000;
+    // tifffile takes samples that fit before the second page's directory for one piece.
+    const bool tiny = pages * page < 4096;
     Tiff tiff = open_tiff(path, big ? "w8" : "w");
     if (!tiff) fail_unfinished();
     std::vector<std::byte> slice(page);  // libtiff may turn what it is given
     for (std::size_t z = 0; z < pages; ++z) {
         const auto* const from = static_cast<const std::byte*>(samples) + z * page;
         std::copy_n(from, page, slice.begin());
-        write_page(tiff.get(), geometry, type, static_cast<int>(z), compress, slice.data());
+        write_page(tiff.get(), geometry, type, static_cast<int>(z), compress || tiny, slice.data());
         say_progress(static_cast<double>(z + 1) / static_cast<double>(pages));
     }
     tiff.reset();  // writes what is left

@@ -5,6 +5,7 @@ import json
 import subprocess
 
 import h5py
+import nibabel
 import numpy
 import palpate
 import pydicom
@@ -138,6 +139,42 @@ def test_slices_without_a_position_lie_at_their_slice_location(tmp_path):
     change = lambda i: {"ImagePositionPatient": None, "SliceLocation": 20 - 3 * i}
     volume = noted(save(tmp_path / "a", stack(ramp("i2"), change=change)), "SliceLocation")
     assert volume.geometry.spacing[2] == 3 and numpy.array_equal(volume.array, ramp("i2")[::-1])
+
+
+def test_slices_without_an_orientation_lie_at_their_slice_location_or_at_their_positions(tmp_path):
+    for name, more in (("SliceLocation", ["SliceLocation"]), ("positions", [])):
+        change = lambda i: {"ImageOrientationPatient": None, "SliceThickness": 1.25, **{k: -2.5 * i for k in more}}
+        volume = noted(save(tmp_path / name, stack(ramp("i2"), -2.5, change=change)), "their " + name)
+        assert volume.geometry.spacing[2] == 2.5 and numpy.array_equal(volume.array, ramp("i2")[::-1])
+
+
+@pytest.mark.parametrize("second", ({"ImageType": ["ORIGINAL", "PRIMARY", "P"]}, {"EchoTime": 9.8}))
+def test_images_of_another_kind_in_one_series_are_chosen_and_not_played(tmp_path, second):
+    first = {"ImageType": ["ORIGINAL", "PRIMARY", "M"], "EchoTime": 4.9}
+    slices = stack(ramp("i2"), change=lambda i: first) + stack(ramp("i2") + 1000, change=lambda i: {**first, **second})
+    for number, data in enumerate(slices):
+        data.InstanceNumber, data.SOPInstanceUID = number + 1, f"1.2.3.{number}"
+    folder = save(tmp_path / "a", slices)
+    with pytest.raises(palpate.SeriesChoice) as caught:
+        palpate.load(folder)
+    assert len({series["description"] for series in caught.value.series}) == 2
+    least = [palpate.load(folder, series=str(number)).volume.minimum for number in (1, 2)]
+    assert sorted(least) == [ramp("i2").min(), 1000 + ramp("i2").min()]
+
+
+@pytest.mark.parametrize("order", ([1, 2, 3, 4, 5], [5, 4, 3, 2, 1], [2, 1, 5, 3, 4], [1, 1, 2, 2, 3]))
+def test_frames_of_nuclear_medicine_lie_where_their_slice_vector_says(tmp_path, order):
+    data = slice_of(ramp("u2")[0], 1, (1, 2, 3), SOPClassUID="1.2.840.10008.5.1.4.1.1.20", Modality="NM",
+                    NumberOfFrames=len(order), FrameIncrementPointer=0x00540080, SliceVector=order,
+                    SpacingBetweenSlices=2, PixelData=ramp("u2").tobytes())
+    folder = save(tmp_path / "a", [data])
+    if len(set(order)) < len(order):
+        return refused(folder, "SliceVector")
+    assert numpy.array_equal(palpate.load(folder).volume.array, ramp("u2")[numpy.argsort(order)])
+
+
+def test_a_pixel_spacing_of_three_numbers_is_refused(tmp_path):
+    refused(save(tmp_path / "a", stack(ramp("i2"), change=lambda i: {"PixelSpacing": [1, 2, 3]})), "PixelSpacing", "3")
 
 
 def test_the_spacing_at_a_detector_and_mapped_values_are_noted(tmp_path):
@@ -293,6 +330,47 @@ def test_tiff_planes_that_are_no_slices_are_noted_or_refused(tmp_path):
     refused(path, "PhotometricInterpretation 32844")
 
 
+@pytest.mark.parametrize("dtype", ("u1", "i2", "f4"))
+def test_a_tiff_of_ours_is_read_slice_by_slice_by_others(tmp_path, dtype):
+    for compress in (False, True):
+        path = tmp_path / f"{compress}.tif"
+        palpate.write(palpate.Volume(ramp(dtype), spacing=(0.5, 0.7, 1.3)), path, compress=compress)
+        with tifffile.TiffFile(path) as file:
+            assert numpy.array_equal(file.asarray(), ramp(dtype))
+            # ImageJ takes the samples for one piece, but for pages that have this tag.
+            assert file.is_imagej and all(page.tags["Orientation"].value == 1 for page in file.pages)
+
+
+# Segmentations -----------------------------------------------------------------------------------------
+
+
+def test_segments_that_overlap_have_the_names_of_their_layer(tmp_path):
+    path, names = tmp_path / "a.seg.nrrd", (("liver", 1, 0), ("tumour", 1, 1), ("bone", 2, 1))
+    keys = "".join(f"Segment{i}_ID:=S{i}\nSegment{i}_Name:={name}\nSegment{i}_LabelValue:={value}\nSegment{i}_Layer:={layer}\n"
+                   for i, (name, value, layer) in enumerate(names))
+    header = ("NRRD0004\ntype: uint8\ndimension: 4\nsizes: 2 6 4 5\nencoding: raw\nkinds: list domain domain domain\n"
+              "space: left-posterior-superior\nspace directions: none (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n")
+    path.write_bytes((header + keys + "\n").encode() + bytes(240))
+    for frame, expected in enumerate(({1: "liver"}, {1: "tumour", 2: "bone"})):
+        assert palpate.load(path, frame=frame).values["labels"] == expected
+    with pytest.raises(ValueError, match="overlap"):
+        palpate.layers_by_label(palpate.load(path))
+
+
+@pytest.mark.parametrize("dtype", ("u1", "i2", "i4", "u4", "i8", "f4", "f8"))
+def test_labels_are_whole_numbers_of_any_type(tmp_path, dtype):
+    path, labels = tmp_path / "a.nii", numpy.zeros(SHAPE, dtype)
+    labels[1:4, 1:3, 1:4], labels[2, 2, 2] = 3, 7
+    nibabel.save(nibabel.Nifti1Image(labels.T, numpy.diag([-1, -1, 1, 1]), dtype=labels.dtype), path)
+    assert [layer.level for layer in palpate.layers_by_label(palpate.load(path)).layers] == [3, 7]
+    for wrong in (3.5, 2 ** 24 + 1):
+        if labels.dtype.kind == "f" or (labels.dtype.itemsize > 2 and wrong == 2 ** 24 + 1):
+            labels[0, 0, 0] = wrong
+            nibabel.save(nibabel.Nifti1Image(labels.T, numpy.eye(4), dtype=labels.dtype), path)
+            with pytest.raises(ValueError, match="whole numbers"):
+                palpate.layers_by_label(palpate.load(path))
+
+
 OME = ('<?xml version="1.0"?>{comment}<{p}OME xmlns{x}="http://www.openmicroscopy.org/Schemas/OME/2016-06" UUID="urn:uuid:1">'
        '<{p}Image ID="Image:0"><{p}Pixels ID="Pixels:0" Type="uint16" DimensionOrder="XYZCT" SizeX="6" SizeY="4" SizeZ="5" '
        'SizeC="1" SizeT="1" PhysicalSizeX="1" PhysicalSizeY="2" PhysicalSizeZ="3">{data}</{p}Pixels></{p}Image></{p}OME>')
@@ -383,6 +461,27 @@ def test_hdf5_of_big_data_viewer(tmp_path, filters, order):
             expected = file["t00000/s00/0/cells"][:].astype("float64")
         finite = numpy.isfinite(expected)
         assert numpy.array_equal(by_the_box(path)[1], numpy.where(finite, expected, expected[finite].min()))
+
+
+@pytest.mark.parametrize("unit, note", (("um", ""), ("", "no unit"), (None, "no XML")))
+def test_setups_of_big_data_viewer_have_any_numbers(tmp_path, unit, note):
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        for setup in (1, 3):
+            file[f"s{setup:02d}/resolutions"], file[f"s{setup:02d}/subdivisions"] = [[1.0, 1, 1]], [[4, 3, 2]]
+            file.create_dataset(f"t00000/s{setup:02d}/0/cells", data=ramp("u2", first=setup), chunks=(2, 3, 4))
+    setups = "".join(f"<ViewSetup><id>{i}</id><name>n{i}</name><voxelSize><unit>{unit}</unit><size>2 3 4</size>"
+                     "</voxelSize></ViewSetup>" for i in (1, 3))
+    if unit is not None:
+        (tmp_path / "a.xml").write_text(f"<SpimData><SequenceDescription><ViewSetups>{setups}</ViewSetups>"
+                                        "</SequenceDescription></SpimData>")
+    for channel, setup in enumerate((1, 3)):
+        store = palpate.open_store(str(tmp_path / "a.h5"), channel=channel)
+        volume = store.read((0, 0, 0), (6, 4, 5))
+        assert numpy.array_equal(volume.array, ramp("u2", first=setup))
+        scale = {"um": (0.002, 0.003, 0.004), "": (2, 3, 4), None: (1, 1, 1)}[unit]
+        assert numpy.allclose(volume.geometry.spacing, scale)
+        assert (store.channels == ["n1", "n3"]) == (unit is not None)
+        assert any(note in text for text in store.notes) == bool(note)
 
 
 # Neuroglancer's n5 -------------------------------------------------------------------------------------
