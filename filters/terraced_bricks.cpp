@@ -9,8 +9,6 @@
 namespace palpate::filters {
 namespace {
 
-constexpr int edge = TerracedBricks::edge;
-
 /// What is in a brick: weights of its samples, which are their slopes. Whole numbers, so that parts
 /// of a volume have the same.
 struct BrickSums {

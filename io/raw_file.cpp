@@ -11,6 +11,7 @@
 #include "io/finite.hpp"
 #include "io/inflate.hpp"
 #include "io/system/system.hpp"
+#include "palpate/io/orientation.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::io {
