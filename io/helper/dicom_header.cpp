@@ -331,9 +331,11 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     }
     const std::string colours = data.text({0x0028, 0x0004});
     s.has_colours = !colours.empty() && lower(colours).find("monochrome") != 0;
-    if (const auto location = data.numbers({0x0020, 0x1041}); location.size() == 1) {
-        check_coordinate(location[0], "DICOM tag SliceLocation");
-        s.location = location[0];
+    if (!s.position || !s.row || !s.column) {
+        if (const auto location = data.numbers({0x0020, 0x1041}); location.size() == 1) {
+            check_coordinate(location[0], "DICOM tag SliceLocation");
+            s.location = location[0];
+        }
     }
     if (constexpr DicomTag dose{0x3004, 0x000e}; data.has(dose)) {
         s.slope = data.number(dose, 1);

@@ -341,9 +341,11 @@ const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std:
     std::vector<SeriesInfo> list;
     for (const DicomSeries& series : all) {
         list.push_back(info_of(series));
-        const auto shares = [&](const DicomSeries& other) { return other.uid == series.uid; };
         const std::string& kind = series.slices.front().image_type;
-        if (std::ranges::count_if(all, shares) > 1 && !kind.empty()) {
+        const auto differs = [&](const DicomSeries& other) {
+            return other.uid == series.uid && other.slices.front().image_type != kind;
+        };
+        if (std::ranges::any_of(all, differs) && !kind.empty()) {
             std::string& text = list.back().description;
             text += (text.empty() ? "" : ", ") + kind;
         }
