@@ -12,6 +12,7 @@
 #include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/ends.hpp"
+#include "palpate/io/output.hpp"
 
 namespace {
 
@@ -82,15 +83,16 @@ int run_program(int argc, char** argv, const std::function<void(CLI::App&)>& add
         return run(argc, argv, add_commands);
     } catch (const Interrupted&) {
         return fail("interrupted", status_of_signal(stop_signal));
+    } catch (const palpate::io::ReaderGone&) {
+        return status_of_signal(broken_pipe);
     } catch (const std::exception& e) {
         const Failure failure = failure_of(e);
         // Ctrl-C reaches the helper process as well, and its end may be seen first.
         if (failure.status == bad_input && interrupted())
             return fail("interrupted", status_of_signal(stop_signal));
-        const bool to_stdout =
-            std::ferror(stdout) != 0 || failure.text.starts_with("standard output:");
-        if (to_stdout && reader_has_gone()) return status_of_signal(broken_pipe);
-        if (std::ferror(stdout) != 0) return finish_output();
+        if (std::ferror(stdout) != 0) {
+            return reader_has_gone() ? status_of_signal(broken_pipe) : finish_output();
+        }
         return fail(failure.text, failure.status);
     }
 }

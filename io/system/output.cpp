@@ -145,6 +145,13 @@ void PendingFile::fail(const std::string& problem) {
     throw OutputError(target_.string() + ": " + problem);
 }
 
+void PendingFile::fail_to_write(int error) {
+    discard();
+    const std::string text = target_.string() + ": could not be written: " + because(error);
+    if (error == EPIPE) throw ReaderGone(text);
+    throw OutputError(text);
+}
+
 void PendingFile::write(std::string_view bytes) {
     if (descriptor_ < 0) throw OutputError(target_.string() + ": is closed already");
     while (!bytes.empty()) {
@@ -160,7 +167,7 @@ void PendingFile::flush() {
     while (!left.empty()) {
         const auto written = ::write(descriptor_, left.data(), left.size());
         if (written < 0 && errno == EINTR) continue;
-        if (written < 0) fail("could not be written: " + because(errno));
+        if (written < 0) fail_to_write(errno);
         left.remove_prefix(static_cast<std::size_t>(written));
     }
     buffer_.clear();
@@ -170,12 +177,10 @@ void PendingFile::flush() {
 void PendingFile::complete() {
     if (descriptor_ < 0) throw OutputError(target_.string() + ": is closed already");
     flush();
-    if (!temporary_.empty() && !synchronise(descriptor_)) {
-        fail("could not be written: " + because(errno));
-    }
+    if (!temporary_.empty() && !synchronise(descriptor_)) fail_to_write(errno);
     const int closing = descriptor_;
     descriptor_ = -1;
-    if (::close(closing) != 0 && errno != EINTR) fail("could not be written: " + because(errno));
+    if (::close(closing) != 0 && errno != EINTR) fail_to_write(errno);
 }
 
 /// Not for good: what the target held before is kept under the temporary name. Where names cannot

@@ -109,12 +109,14 @@ TEST(Pipe, to_a_reader_that_takes_one_line_ends_quietly) {
     std::string text = "t,x,y,z\n";  // more rows than a pipe holds
     for (int i = 0; i < 20'000; ++i) text += std::to_string(i) + ",-20,0.1,0\n";
     support::put_bytes(folder / "t.csv", text);
-    const std::string table = "replay synthetic:sphere:16x16x16 --trajectory t.csv -o - ";
-    const Outcome cut = piped(folder, table + "--path p.csv");
-    EXPECT_EQ(cut.out, "141\n") << "the work did not come to its end";
-    EXPECT_EQ(cut.err, "");
-    EXPECT_FALSE(std::filesystem::exists(folder / "p.csv"));
-    EXPECT_TRUE(support::bytes_of(folder / "line").starts_with("t,hip_x"));
+    const std::string table = "replay synthetic:sphere:16x16x16 --trajectory t.csv --path p.csv ";
+    for (const std::string output : {"-o -", "-o /dev/stdout", "-o /dev/fd/1"}) {
+        const Outcome cut = piped(folder, table + output);
+        EXPECT_EQ(cut.out, "141\n") << output << ": the work did not come to its end";
+        EXPECT_EQ(cut.err, "") << output;
+        EXPECT_FALSE(std::filesystem::exists(folder / "p.csv"));
+        EXPECT_TRUE(support::bytes_of(folder / "line").starts_with("t,hip_x"));
+    }
     // Text at the end of the work: all was done.
     const Outcome whole =
         Running(

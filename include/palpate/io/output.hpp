@@ -12,6 +12,11 @@
 
 namespace palpate::io {
 
+/// The reader of a stream has ended, because it has enough.
+class ReaderGone : public OutputError {
+    using OutputError::OutputError;
+};
+
 /// Throws OutputError if a file cannot be written here: no such folder, no permission, a folder has
 /// its name. Makes and opens nothing, so a long run can begin with it; a PendingFile does so, too.
 void check_output(const std::filesystem::path& path);
@@ -51,6 +56,7 @@ class PendingFile {
     void take_back() noexcept;
     void keep() noexcept;
     [[noreturn]] void fail(const std::string& problem);
+    [[noreturn]] void fail_to_write(int error);
     void discard() noexcept;
 
     std::filesystem::path target_;
