@@ -13,6 +13,7 @@
 #include "apps/palpate/progress.hpp"
 #include "palpate/io/output.hpp"
 #include "palpate/io/sample_volume.hpp"
+#include "palpate/names.hpp"
 #include "pictures/levels.hpp"
 #include "pictures/view.hpp"
 
@@ -66,6 +67,19 @@ void explore(const DemoOptions& options) {
               }});
 }
 
+/// A kind of demo, misspelt, is taken for a volume. Throws std::invalid_argument.
+void refuse_misspelt_kind(const CLI::App& command, const std::string& volume) {
+    std::error_code error;
+    if (std::filesystem::exists(volume, error)) return;
+    std::vector<std::string> kinds;
+    for (const CLI::App* kind : command.get_subcommands([](const CLI::App*) { return true; })) {
+        kinds.push_back(kind->get_name());
+    }
+    const std::string near = nearest_name(volume, kinds);
+    if (near.empty()) return;
+    throw std::invalid_argument(volume + ": does not exist: did you mean demo " + near + "?");
+}
+
 }  // namespace
 
 void add_demo(CLI::App& app) {
@@ -98,6 +112,7 @@ void add_demo(CLI::App& app) {
             options->source.volume() = io::sample_volume_path().string();
             if (command->count("--seed") == 0) options->hand.seed = 2;  // over the face
         }
+        refuse_misspelt_kind(*command, options->source.name());
         explore(*options);
     });
 }

@@ -118,6 +118,14 @@ TEST(Demo, uses_an_existing_folder_and_keeps_other_files) {
     EXPECT_EQ(support::bytes_of(folder / "out/mine.txt"), "mine");
 }
 
+TEST(Demo, a_misspelt_kind_is_no_volume_that_is_missing) {
+    const ScratchFolder folder;
+    expect_failure(palpate(folder, "demo sculp"), 2, "did you mean demo sculpt?");
+    expect_failure(palpate(folder, "demo beatng -q"), 2, "did you mean demo beating?");
+    expect_failure(palpate(folder, "demo head.nrrd"), 3, "does not exist");
+    EXPECT_TRUE(folder.names().empty());
+}
+
 TEST(Demo, renders_forces_at_any_rate) {
     const ScratchFolder folder;
     ASSERT_EQ(palpate(folder, quick + "-o out -q --rate 20 -k 0.05").status, 0);
