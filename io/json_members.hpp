@@ -1,5 +1,6 @@
-// JSON from lists of members: a struct has one function template members(visitor, value), which
-// calls visitor("name", value.name) for each member, in the struct's namespace or in palpate::io.
+// JSON from lists of members: a struct has a table of settings (palpate/settings.hpp), or one
+// function template members(visitor, value), which calls visitor("name", value.name) for each
+// member, in the struct's namespace or in palpate::io.
 // JsonWriter and JsonReader walk through it. Other types have to_value() and from_value(), found in
 // the same places.
 #pragma once
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "io/recording/settings_json.hpp"
+#include "palpate/settings.hpp"
 
 namespace palpate::io {
 
@@ -48,6 +50,13 @@ void from_value(const Json& json, const std::string& name, Mat3& value);
 void from_value(const Json& json, const std::string& name, Quaternion& value);
 void from_value(const Json& json, const std::string& name, Layers& layers);
 void from_value(const Json& json, const std::string& name, Tool& tool);
+
+/// The list of members of a struct that has a table of its settings.
+template <class S>
+requires Described<std::remove_const_t<S>>
+void members(auto& v, S& s) {
+    for_each_setting<std::remove_const_t<S>>([&](const auto& one) { v(one.key, s.*one.member); });
+}
 
 struct JsonWriter {
     Json json = Json::object();

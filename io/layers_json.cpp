@@ -138,9 +138,7 @@ void take_layers(const Json& list, Layers& layers) {
 Needle needle_from(const Json& json) {
     Members members(json, "needle");
     Needle needle;
-    members.take("lateral_stiffness", needle.lateral_stiffness);
-    members.take("static_ratio", needle.static_ratio);
-    members.take("stick_speed", needle.stick_speed);
+    for_each_setting<Needle>([&](const auto& one) { members.take(one.key, needle.*one.member); });
     members.finish();
     return needle;
 }
@@ -167,11 +165,7 @@ Json to_json(const Layers& layers) {
     json["closing"] = layers.closing;
     if (layers.by_label && !both) json["by_label"] = true;
     if (!layers.label_volume.empty()) json["label_volume"] = layers.label_volume;
-    if (layers.needle) {
-        json["needle"] = {{"lateral_stiffness", layers.needle->lateral_stiffness},
-                          {"static_ratio", layers.needle->static_ratio},
-                          {"stick_speed", layers.needle->stick_speed}};
-    }
+    if (layers.needle) json["needle"] = JsonWriter::of(*layers.needle);
     return json;
 }
 

@@ -2,12 +2,8 @@
 #include "palpate/force.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 
 namespace palpate {
 namespace {
@@ -19,30 +15,6 @@ constexpr double velocity_filter = 1 / (2 * std::numbers::pi * 100);
 /// false position would keep the filtered velocity high for tens of ticks.
 constexpr double fastest_hand = 1e4;
 constexpr double fastest_turn = 100;  // [rad/s] the same
-
-std::string text_of(double value) {
-    std::array<char, 32> text;
-    std::snprintf(text.data(), text.size(), "%.6g", value);
-    return text.data();
-}
-
-[[noreturn]] void refuse(const char* setting, double value, const std::string& wanted) {
-    throw std::invalid_argument(std::string(setting) + " = " + text_of(value) + ": must be " +
-                                wanted);
-}
-
-/// Builds no text, so allocates nothing, if all is well.
-void require(bool good, const char* setting, double value, const char* wanted) {
-    if (!good) refuse(setting, value, wanted);
-}
-
-void require_not_negative(const char* setting, double value) {
-    require(value >= 0 && std::isfinite(value), setting, value, "finite and at least 0");
-}
-
-void require_positive(const char* setting, double value) {
-    require(value > 0 && std::isfinite(value), setting, value, "finite and above 0");
-}
 
 ForceResult stop(ForceState& state, std::uint8_t why) {
     state = ForceState{};
@@ -197,69 +169,6 @@ ForceSettings stable(ForceSettings s, const DeviceLimits& limits) noexcept {
     const double peak = greatest_stiffness(limits, s.damping + s.viscosity) * s.magnet.distance / 4;
     if (s.magnet.distance > 0 && !(s.magnet.peak <= peak)) s.magnet.peak = peak;
     return s;
-}
-
-void check(const DeviceLimits& limits) {
-    require(limits.rate >= 1 && limits.rate <= 1e5, "rate [Hz]", limits.rate, "1 to 100000");
-    require_positive("maximum force [N]", limits.maximum_force);
-    require_positive("physical damping [N s/mm]", limits.physical_damping);
-    require_not_negative("maximum torque [N mm]", limits.maximum_torque);
-    require_positive("physical rotational damping [N mm s/rad]",
-                     limits.physical_rotational_damping);
-}
-
-static void check_rotation(const ForceSettings& s, const DeviceLimits& limits) {
-    require_not_negative("rotational stiffness [N mm/rad]", s.rotational_stiffness);
-    require_not_negative("rotational damping [N mm s/rad]", s.rotational_damping);
-    require(s.torque_limit >= 0, "torque limit [N mm]", s.torque_limit, "at least 0 (inf: none)");
-    require(s.torque_rate_limit > 0, "torque rate limit [N mm/s]", s.torque_rate_limit,
-            "above 0 (inf: none)");
-    if (!(s.rotational_damping < limits.physical_rotational_damping)) {
-        refuse("rotational damping [N mm s/rad]", s.rotational_damping,
-               "below the physical rotational damping of device and hand, " +
-                   text_of(limits.physical_rotational_damping));
-    }
-    const double most = greatest_rotational_stiffness(limits, s.rotational_damping);
-    if (!(s.rotational_stiffness <= most)) {
-        refuse("rotational stiffness [N mm/rad]", s.rotational_stiffness,
-               "at most " + text_of(most) + " at " + text_of(limits.rate) +
-                   " Hz to be rendered stably");
-    }
-}
-
-void check(const ForceSettings& s, const DeviceLimits& limits) {
-    check(limits);
-    require_not_negative("stiffness [N/mm]", s.stiffness);
-    require_not_negative("damping [N s/mm]", s.damping);
-    require_not_negative("viscosity [N s/mm]", s.viscosity);
-    require_not_negative("magnet distance [mm]", s.magnet.distance);
-    require_not_negative("magnet peak [N]", s.magnet.peak);
-    require_not_negative("texture amplitude [mm]", s.texture.amplitude);
-    require_positive("texture wavelength [mm]", s.texture.wavelength);
-    require_not_negative("force limit [N]", s.limit);
-    require(s.rate_limit > 0, "force rate limit [N/s]", s.rate_limit, "above 0 (inf: none)");
-    require_not_negative("force ramp [s]", s.ramp);
-    require(s.stale_after > 0, "stale time [s]", s.stale_after, "above 0 (inf: none)");
-    require(s.start_below >= 0, "force to start below [N]", s.start_below,
-            "at least 0 (inf: start at any)");
-    const double damping = s.damping + s.viscosity;
-    if (!(damping < limits.physical_damping)) {
-        refuse(
-            "damping + viscosity [N s/mm]", damping,
-            "below the physical damping of device and hand, " + text_of(limits.physical_damping));
-    }
-    const double most = greatest_stiffness(limits, damping);
-    if (!(s.stiffness <= most)) {
-        refuse("stiffness [N/mm]", s.stiffness,
-               "at most " + text_of(most) + " at " + text_of(limits.rate) +
-                   " Hz to be rendered stably");
-    }
-    check_rotation(s, limits);
-    // 4 peak / distance is the magnet's own stiffness where it is steepest.
-    if (s.magnet.distance > 0 && !(4 * s.magnet.peak <= most * s.magnet.distance)) {
-        refuse("magnet peak [N]", s.magnet.peak,
-               "at most " + text_of(most * s.magnet.distance / 4) + " over this distance");
-    }
 }
 
 ForceResult render_force(ForceState& state, const ForceSettings& settings,

@@ -32,6 +32,7 @@
 #include "palpate/exchange.hpp"
 #include "palpate/device.hpp"
 #include "palpate/session.hpp"
+#include "palpate/settings.hpp"
 #include "palpate/servo.hpp"
 #include "palpate/surface.hpp"
 // clang-format on

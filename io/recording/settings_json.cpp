@@ -159,57 +159,6 @@ void from_value(const Json& json, const std::string& name, Tool& tool) {
 
 // The lists of members. Not in an unnamed namespace, where JsonWriter would not find them.
 
-static void members(auto& v, Is<Friction> auto& s) {
-    v("static", s.static_coefficient);
-    v("dynamic", s.dynamic_coefficient);
-}
-
-static void members(auto& v, Is<Magnet> auto& s) {
-    v("distance", s.distance);
-    v("peak", s.peak);
-}
-
-static void members(auto& v, Is<Texture> auto& s) {
-    v("amplitude", s.amplitude);
-    v("wavelength", s.wavelength);
-}
-
-static void members(auto& v, Is<ForceSettings> auto& s) {
-    v("stiffness", s.stiffness);
-    v("damping", s.damping);
-    v("viscosity", s.viscosity);
-    v("magnet", s.magnet);
-    v("texture", s.texture);
-    v("limit", s.limit);
-    v("rate_limit", s.rate_limit);
-    v("ramp", s.ramp);
-    v("stale_after", s.stale_after);
-    v("start_below", s.start_below);
-    v("rotational_stiffness", s.rotational_stiffness);
-    v("rotational_damping", s.rotational_damping);
-    v("torque_limit", s.torque_limit);
-    v("torque_rate_limit", s.torque_rate_limit);
-}
-
-static void members(auto& v, Is<DeviceLimits> auto& s) {
-    v("maximum_force", s.maximum_force);
-    v("rate", s.rate);
-    v("physical_damping", s.physical_damping);
-    v("maximum_torque", s.maximum_torque);
-    v("physical_rotational_damping", s.physical_rotational_damping);
-}
-
-static void members(auto& v, Is<DeviceTransform> auto& s) {
-    v("rotation", s.rotation);
-    v("translation", s.translation);
-    v("scale", s.scale);
-}
-
-static void members(auto& v, Is<DensityRange> auto& s) {
-    v("low", s.low);
-    v("high", s.high);
-}
-
 static void members(auto& v, Is<Penetrability> auto& s) {
     v("on", s.on);
     v("threshold", s.threshold);
@@ -220,13 +169,6 @@ static void members(auto& v, Is<Penetrability> auto& s) {
     for (int i = 0; i < s.range_count; ++i) {
         v("range_" + std::to_string(i + 1), s.ranges[static_cast<std::size_t>(i)]);
     }
-}
-
-static void members(auto& v, Is<SessionSettings> auto& s) {
-    v("clutch_buttons", s.clutch_buttons);
-    v("deadman_buttons", s.deadman_buttons);
-    v("fastest_hand", s.fastest_hand);
-    v("overrun", s.overrun);
 }
 
 static void members(auto& v, Is<RendererSettings> auto& s) {

@@ -1,0 +1,231 @@
+// Describes every setting once: its unit, range and purpose. Files, command-line options, live
+// commands, the C interface and the Python module are made from these tables. A setting's default
+// is that of its struct.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <type_traits>
+
+#include "palpate/session.hpp"
+
+namespace palpate {
+
+/// The values that a number may have. NaN is in no range.
+struct ValueRange {
+    double least, most;  ///< both included, except `least` where `open`
+    bool open;
+    const char* words;  ///< "finite and at least 0"
+
+    constexpr bool has(double value) const {
+        return (open ? value > least : value >= least) && value <= most;
+    }
+};
+namespace ranges {
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double greatest = std::numeric_limits<double>::max();
+inline constexpr ValueRange any{-infinity, infinity, false, "a number"};
+inline constexpr ValueRange not_negative{0, greatest, false, "finite and at least 0"};
+inline constexpr ValueRange positive{0, greatest, true, "finite and above 0"};
+inline constexpr ValueRange limit{0, infinity, true, "above 0 (inf: none)"};
+inline constexpr ValueRange limit_or_zero{0, infinity, false, "at least 0 (inf: none)"};
+inline constexpr ValueRange start{0, infinity, false, "at least 0 (inf: start at any)"};
+inline constexpr ValueRange rate{1, 1e5, false, "1 to 100000"};
+}  // namespace ranges
+
+/// One setting of a struct.
+template <class Owner, class Value>
+struct Setting {
+    Value Owner::*member;
+    const char* name;   ///< of the member, and in Python and C
+    const char* unit;   ///< "N/mm", or "" without one
+    const char* about;  ///< a sentence without its full stop
+    ValueRange range = ranges::any;
+    const char* title = name;    ///< in messages
+    const char* key = name;      ///< in files
+    const char* option = "";     ///< of the command line: "--force-limit", or ""
+    const char* left_open = "";  ///< the meaning of None in Python, or "" if it cannot be None
+
+    constexpr Setting within(const ValueRange& to) const { return with(&Setting::range, to); }
+    constexpr Setting titled(const char* to) const { return with(&Setting::title, to); }
+    constexpr Setting in_files(const char* to) const { return with(&Setting::key, to); }
+    constexpr Setting as_option(const char* to) const { return with(&Setting::option, to); }
+    constexpr Setting if_open(const char* to) const { return with(&Setting::left_open, to); }
+
+  private:
+    template <class Part>
+    constexpr Setting with(Part Setting::*part, const Part& to) const {
+        Setting changed = *this;
+        changed.*part = to;
+        return changed;
+    }
+};
+template <class Owner, class Value>
+constexpr Setting<Owner, Value> setting(Value Owner::*member, const char* name, const char* unit,
+                                        const char* about) {
+    return {member, name, unit, about};
+}
+
+/// The table of a struct: a tuple with a Setting for each member, in the order of files.
+template <class T>
+inline constexpr std::nullptr_t settings_of{};
+/// T has a table.
+template <class T>
+concept Described = !std::same_as<decltype(settings_of<T>), const std::nullptr_t>;
+/// Calls visit(setting) for each setting of T.
+template <Described T>
+constexpr void for_each_setting(auto&& visit) {
+    std::apply([&](const auto&... each) { (visit(each), ...); }, settings_of<T>);
+}
+/// Calls visit(path, setting, number) for each number of a struct, and of the structs in it, as in
+/// "force.magnet.peak" for the path "force". `number` is a reference into `owner`.
+template <class Owner>
+void for_each_number(const std::string& path, Owner& owner, auto&& visit) {
+    for_each_setting<std::remove_const_t<Owner>>([&](const auto& one) {
+        auto& value = owner.*one.member;
+        using Value = std::remove_cvref_t<decltype(value)>;
+        const std::string name = path + "." + one.name;
+        if constexpr (Described<Value>) for_each_number(name, value, visit);
+        if constexpr (std::same_as<Value, double>) visit(name, one, value);
+    });
+}
+
+template <>
+inline constexpr auto settings_of<Friction> = std::tuple{
+    setting(&Friction::static_coefficient, "static_coefficient", "",
+            "Pull along the surface that moves a resting proxy, of that into it (0: none)")
+        .in_files("static")
+        .within(ranges::not_negative),
+    setting(&Friction::dynamic_coefficient, "dynamic_coefficient", "",
+            "The same of a moving proxy, at most the static one")
+        .in_files("dynamic")
+        .within(ranges::not_negative)};
+
+template <>
+inline constexpr auto settings_of<Magnet> = std::tuple{
+    setting(&Magnet::distance, "distance", "device mm", "Distance at which it ends (0: off)")
+        .titled("magnet distance")
+        .within(ranges::not_negative),
+    setting(&Magnet::peak, "peak", "N", "Its force halfway")
+        .titled("magnet peak")
+        .within(ranges::not_negative)};
+
+template <>
+inline constexpr auto settings_of<Texture> =
+    std::tuple{setting(&Texture::amplitude, "amplitude", "mm, physical", "Height (0: off)")
+                   .titled("texture amplitude")
+                   .within(ranges::not_negative),
+               setting(&Texture::wavelength, "wavelength", "mm, physical", "From bump to bump")
+                   .titled("texture wavelength")
+                   .within(ranges::positive)};
+
+template <>
+inline constexpr auto settings_of<ForceSettings> = std::tuple{
+    setting(&ForceSettings::stiffness, "stiffness", "N/mm", "Stiffness")
+        .as_option("-k,--stiffness")
+        .if_open("0.5, or less if the device needs it")
+        .within(ranges::not_negative),
+    setting(&ForceSettings::damping, "damping", "N s/mm", "Damping along the contact normal")
+        .as_option("--damping")
+        .within(ranges::not_negative),
+    setting(&ForceSettings::viscosity, "viscosity", "N s/mm", "Viscosity of the medium")
+        .as_option("--viscosity")
+        .within(ranges::not_negative),
+    setting(&ForceSettings::magnet, "magnet", "", "Snap to near surfaces").as_option("--magnet"),
+    setting(&ForceSettings::texture, "texture", "", "Bumps").as_option("--texture"),
+    setting(&ForceSettings::limit, "limit", "N", "Largest force, in addition to the device's limit")
+        .titled("force limit")
+        .as_option("--force-limit")
+        .if_open("the device's; offline 3.3")
+        .within(ranges::not_negative),
+    setting(&ForceSettings::rate_limit, "rate_limit", "N/s", "Largest change of force")
+        .titled("force rate limit")
+        .as_option("--force-rate")
+        .if_open("2000; in replay() inf")
+        .within(ranges::limit),
+    setting(&ForceSettings::ramp, "ramp", "s", "Ramp of the force from zero at the start")
+        .titled("force ramp")
+        .as_option("--ramp")
+        .if_open("0.25; in replay() 0")
+        .within(ranges::not_negative),
+    setting(&ForceSettings::stale_after, "stale_after", "s",
+            "A longer time between two states of the device is a pause")
+        .titled("stale time")
+        .within(ranges::limit),
+    setting(&ForceSettings::start_below, "start_below", "N",
+            "After a start or pause no force until the wanted one is this small (inf: do not wait)")
+        .titled("force to start below")
+        .as_option("--start-below")
+        .if_open("0.3 in a Run, else inf")
+        .within(ranges::start),
+    setting(&ForceSettings::rotational_stiffness, "rotational_stiffness", "N mm/rad",
+            "Of a tool (0: from stiffness and the tool's gyration)")
+        .titled("rotational stiffness")
+        .as_option("--rotational-stiffness")
+        .within(ranges::not_negative),
+    setting(&ForceSettings::rotational_damping, "rotational_damping", "N mm s/rad", "Of a tool")
+        .titled("rotational damping")
+        .as_option("--rotational-damping")
+        .within(ranges::not_negative),
+    setting(&ForceSettings::torque_limit, "torque_limit", "N mm", "Largest torque")
+        .titled("torque limit")
+        .as_option("--torque-limit")
+        .within(ranges::limit_or_zero),
+    setting(&ForceSettings::torque_rate_limit, "torque_rate_limit", "N mm/s",
+            "Largest change of torque")
+        .titled("torque rate limit")
+        .within(ranges::limit)};
+
+template <>
+inline constexpr auto settings_of<DeviceLimits> = std::tuple{
+    setting(&DeviceLimits::maximum_force, "maximum_force", "N", "Never exceeded")
+        .titled("maximum force")
+        .within(ranges::positive),
+    setting(&DeviceLimits::rate, "rate", "Hz", "Of the servo loop").within(ranges::rate),
+    setting(&DeviceLimits::physical_damping, "physical_damping", "N s/mm", "Of device and hand")
+        .titled("physical damping")
+        .within(ranges::positive),
+    setting(&DeviceLimits::maximum_torque, "maximum_torque", "N mm",
+            "Never exceeded (0: the device renders none)")
+        .titled("maximum torque")
+        .within(ranges::not_negative),
+    setting(&DeviceLimits::physical_rotational_damping, "physical_rotational_damping", "N mm s/rad",
+            "Of device and hand, against turning")
+        .titled("physical rotational damping")
+        .within(ranges::positive)};
+
+template <>
+inline constexpr auto settings_of<DeviceTransform> =
+    std::tuple{setting(&DeviceTransform::rotation, "rotation", "",
+                       "Orthonormal, device axes to physical axes, (3, 3)"),
+               setting(&DeviceTransform::translation, "translation", "mm, physical",
+                       "Where the device's origin lies"),
+               setting(&DeviceTransform::scale, "scale", "", "Physical mm per mm of hand, above 0")
+                   .within(ranges::positive)};
+
+template <>
+inline constexpr auto settings_of<DensityRange> =
+    std::tuple{setting(&DensityRange::low, "low", "data units", "Least level felt"),
+               setting(&DensityRange::high, "high", "data units", "Greatest level felt")};
+
+template <>
+inline constexpr auto settings_of<Needle> = std::tuple{
+    setting(&Needle::lateral_stiffness, "lateral_stiffness", "N/mm", "Towards the line")
+        .within(ranges::not_negative),
+    setting(&Needle::static_ratio, "static_ratio", "", "Friction at rest, of that in motion"),
+    setting(&Needle::stick_speed, "stick_speed", "mm/s", "Slower than this the shaft sticks")};
+
+template <>
+inline constexpr auto settings_of<SessionSettings> = std::tuple{
+    setting(&SessionSettings::clutch_buttons, "clutch_buttons", "",
+            "Bits of the buttons that hold the volume to the hand"),
+    setting(&SessionSettings::deadman_buttons, "deadman_buttons", "",
+            "Bits of the buttons of which one must be held (0: none)"),
+    setting(&SessionSettings::fastest_hand, "fastest_hand", "device mm/s",
+            "Fastest plausible motion of a hand"),
+    setting(&SessionSettings::overrun, "overrun", "s", "A tick that takes longer gives no force")};
+
+}  // namespace palpate
