@@ -1,5 +1,8 @@
 // Commands of the C interface to a run: each is checked here and carried out within a tick or two.
+#include <initializer_list>
+
 #include "bindings/c/handles.hpp"
+#include "bindings/c/settings.hpp"
 #include "bindings/c/structs.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "palpate/io/tool_file.hpp"
@@ -17,13 +20,17 @@ palpate_status send(palpate_run* run, Make&& make) noexcept {
     });
 }
 
-/// Sends the force settings in use, changed.
-template <class Change>
-palpate_status send_force(palpate_run* run, Change&& change) noexcept {
+struct NamedValue {
+    const char* name;
+    double value;
+};
+/// Changes settings of one group.
+palpate_status set(palpate_run* run, std::initializer_list<NamedValue> values) noexcept {
     return send(run, [&](const run::Run& now) {
-        ForceSettings force = now.settings().force;
-        change(force);
-        return force;
+        RendererSettings settings = now.settings();
+        Command command;
+        for (const auto& [name, value] : values) command = change(settings, name, value);
+        return command;
     });
 }
 
@@ -54,6 +61,10 @@ extern "C" PALPATE_API palpate_status palpate_run_set_clutch(palpate_run* run, i
     return send(run, [&](const run::Run&) { return command::Clutch{on != 0}; });
 }
 
+extern "C" PALPATE_API palpate_status palpate_run_lift(palpate_run* run) {
+    return send(run, [](const run::Run&) { return command::Lift{}; });
+}
+
 extern "C" PALPATE_API palpate_status palpate_run_set_scale(palpate_run* run, double scale) {
     return send(run, [&](const run::Run&) { return command::Scale{scale}; });
 }
@@ -63,29 +74,39 @@ extern "C" PALPATE_API palpate_status palpate_run_set_transform(palpate_run* run
     return send(run, [&](const run::Run&) { return transform_from(&given(to, "to")); });
 }
 
+extern "C" PALPATE_API palpate_status palpate_run_get(const palpate_run* run, const char* name,
+                                                      double* value) {
+    return guarded([&] {
+        const std::scoped_lock lock(given(run, "run").mutex);
+        given(value, "value") = value_of(run->run->settings(), &given(name, "name"));
+    });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_set(palpate_run* run, const char* name,
+                                                      double value) {
+    if (!name) return guarded([&] { given(name, "name"); });
+    return set(run, {{name, value}});
+}
+
 extern "C" PALPATE_API palpate_status palpate_run_set_stiffness(palpate_run* run,
                                                                 double newton_per_mm) {
-    return send_force(run, [&](ForceSettings& force) { force.stiffness = newton_per_mm; });
+    return set(run, {{"force.stiffness", newton_per_mm}});
 }
 
 extern "C" PALPATE_API palpate_status palpate_run_set_damping(palpate_run* run, double damping,
                                                               double viscosity) {
-    return send_force(run, [&](ForceSettings& force) {
-        force.damping = damping;
-        force.viscosity = viscosity;
-    });
+    return set(run, {{"force.damping", damping}, {"force.viscosity", viscosity}});
 }
 
 extern "C" PALPATE_API palpate_status palpate_run_set_force_limit(palpate_run* run, double newton) {
-    return send_force(run, [&](ForceSettings& force) { force.limit = newton; });
+    return set(run, {{"force.limit", newton}});
 }
 
 extern "C" PALPATE_API palpate_status palpate_run_set_friction(palpate_run* run,
                                                                double static_coefficient,
                                                                double dynamic_coefficient) {
-    return send(run, [&](const run::Run&) {
-        return Friction{static_coefficient, dynamic_coefficient};
-    });
+    return set(run, {{"friction.static_coefficient", static_coefficient},
+                     {"friction.dynamic_coefficient", dynamic_coefficient}});
 }
 
 extern "C" PALPATE_API palpate_status palpate_run_set_penetration(palpate_run* run,

@@ -35,7 +35,9 @@ Geometry geometry_from(const palpate_geometry* geometry) {
     const palpate_geometry given = taken(geometry, "geometry");
     Geometry result;
     result.size = {given.size[0], given.size[1], given.size[2]};
-    if (!is_zero(given.spacing, 3)) result.spacing = vec3(given.spacing);
+    result.measured = !is_zero(given.spacing, 3);
+    result.oriented = !is_zero(given.direction, 9);
+    if (result.measured) result.spacing = vec3(given.spacing);
     result.origin = vec3(given.origin);
     result.direction = mat3(given.direction);
     return result;

@@ -186,7 +186,7 @@ class Header:
             return [f"{way} {name}" for way in (SAMPLES if function.endswith("_copy") else SAMPLES[:1])]
         if kind not in NUMBERS:
             return [f"IntPtr {name}"]  # a handle, or a context
-        if name in ("done", "ticks", "needed"):
+        if name in ("done", "ticks", "needed", "value"):
             return [f"out {NUMBERS[kind]} {name}"]
         return [f"{'' if constant else '[Out] '}{NUMBERS[kind]}[] {name}"]
 

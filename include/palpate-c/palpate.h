@@ -77,9 +77,10 @@ enum { PALPATE_UINT8 = 0, PALPATE_INT16 = 1, PALPATE_UINT16 = 2, PALPATE_FLOAT32
 typedef struct palpate_geometry {
     uint32_t size_of;
     int32_t size[3];     /* samples along x, y, z; x varies fastest in memory */
-    double spacing[3];   /* [mm]; all 0: 1 */
+    double spacing[3];   /* [mm]; all 0: 1, assumed */
     double origin[3];    /* [mm] of the first sample */
-    double direction[9]; /* columns are the grid's axes, orthonormal; all 0: identity */
+    double direction[9]; /* columns are the grid's axes, orthonormal; all 0: identity, assumed: which
+                            side is left is not known */
 } palpate_geometry;
 
 /* Copies the samples. */
@@ -242,6 +243,54 @@ PALPATE_API palpate_status palpate_renderer_render(palpate_renderer *renderer,
 PALPATE_API palpate_status palpate_renderer_set_isovalue(palpate_renderer *renderer,
                                                          double isovalue);
 PALPATE_API void palpate_renderer_destroy(palpate_renderer *renderer);
+
+/* ---- Settings by name: of renderers and runs. Since 0.3 ---------------------------------------- */
+
+/* Each setting, from the library's own table. palpate_setting_describe() gives the same.
+ *   `force.stiffness` [N/mm] Stiffness (default: 0.5).
+ *   `force.damping` [N s/mm] Damping along the contact normal (default: 0).
+ *   `force.viscosity` [N s/mm] Viscosity of the medium (default: 0).
+ *   `force.magnet.distance` [device mm] Distance at which it ends (0: off) (default: 0).
+ *   `force.magnet.peak` [N] Its force halfway (default: 0).
+ *   `force.texture.amplitude` [mm, physical] Height (0: off) (default: 0).
+ *   `force.texture.wavelength` [mm, physical] From bump to bump (default: 2).
+ *   `force.limit` [N] Largest force, in addition to the device's limit (default: 3.3).
+ *   `force.rate_limit` [N/s] Largest change of force (default: 2000).
+ *   `force.ramp` [s] Ramp of the force from zero at the start (default: 0.25).
+ *   `force.stale_after` [s] A longer time between two states of the device is a pause (default: 0.02).
+ *   `force.start_below` [N] After a start or pause no force until the wanted one is this small (inf: do
+ *       not wait) (default: inf).
+ *   `force.rotational_stiffness` [N mm/rad] Of a tool (0: from stiffness and the tool's gyration)
+ *       (default: 0).
+ *   `force.rotational_damping` [N mm s/rad] Of a tool (default: 0).
+ *   `force.torque_limit` [N mm] Largest torque (default: inf).
+ *   `force.torque_rate_limit` [N mm/s] Largest change of torque (default: 200000).
+ *   `friction.static_coefficient` Pull along the surface that moves a resting proxy, of that into it (0:
+ *       none) (default: 0).
+ *   `friction.dynamic_coefficient` The same of a moving proxy, at most the static one (default: 0).
+ *   `limits.maximum_force` [N] Never exceeded (default: 3.3).
+ *   `limits.rate` [Hz] Of the servo loop (default: 1000).
+ *   `limits.physical_damping` [N s/mm] Of device and hand (default: 0.0025).
+ *   `limits.maximum_torque` [N mm] Never exceeded (0: the device renders none) (default: 0).
+ *   `limits.physical_rotational_damping` [N mm s/rad] Of device and hand, against turning (default: 1).
+ */
+typedef struct palpate_setting {
+    uint32_t size_of;
+    int32_t open;       /* 1: `least` itself is not accepted */
+    const char *name;   /* texts live as long as the library */
+    const char *unit;   /* "" without one */
+    const char *about;
+    double least, most; /* accepted */
+    double usual;       /* the default where nothing is given and no device asks for less */
+} palpate_setting;
+
+PALPATE_API size_t palpate_setting_count(void);
+PALPATE_API palpate_status palpate_setting_describe(size_t index, palpate_setting *out);
+/* Settings of a renderer, from the next tick on. */
+PALPATE_API palpate_status palpate_renderer_get(const palpate_renderer *renderer, const char *name,
+                                                double *value);
+PALPATE_API palpate_status palpate_renderer_set(palpate_renderer *renderer, const char *name,
+                                                double value);
 
 /* ---- Devices ---------------------------------------------------------------------------------- */
 
@@ -438,7 +487,12 @@ PALPATE_API palpate_status palpate_run_report(const palpate_run *run, palpate_re
 PALPATE_API palpate_status palpate_run_text(const palpate_run *run, int32_t which, char *buffer,
                                             size_t size, size_t *needed);
 
+/* A setting by its name, as asked for last. Since 0.3. */
+PALPATE_API palpate_status palpate_run_get(const palpate_run *run, const char *name, double *value);
+
 /* Commands, carried out within a tick or two. */
+/* A setting by its name. Limits can only be lowered. Since 0.3. */
+PALPATE_API palpate_status palpate_run_set(palpate_run *run, const char *name, double value);
 PALPATE_API palpate_status palpate_run_set_isovalue(palpate_run *run, double isovalue);
 PALPATE_API palpate_status palpate_run_set_forces(palpate_run *run, int32_t on);
 PALPATE_API palpate_status palpate_run_set_frozen(palpate_run *run, int32_t on);
@@ -459,6 +513,10 @@ PALPATE_API palpate_status palpate_run_set_layers(palpate_run *run, const char *
 /* The same for the surfaces that are felt, with other levels or properties: what was punctured stays
  * open. Since 0.3. */
 PALPATE_API palpate_status palpate_run_change_layers(palpate_run *run, const char *layers);
+
+/* Lifts the hand off: the proxy leaves whatever holds it, such as a closed shell, and starts at the hand.
+ * The force starts again. Since 0.3. */
+PALPATE_API palpate_status palpate_run_lift(palpate_run *run);
 
 /* Goes on with another device, and with everything that was asked for. */
 PALPATE_API palpate_status palpate_run_use_device(palpate_run *run, const char *device);

@@ -80,6 +80,8 @@ static class FeelsABall
         Native.Check(Native.palpate_run_set_layers(run, "ct-needle"));
         Native.Check(Native.palpate_run_change_layers(run, "ct-needle"));
         Native.Check(Native.palpate_run_set_layers(run, null));
+        Native.Check(Native.palpate_run_lift(run));
+        SetEach(run);
         Require(Native.RunText(run, Constants.TextDevice) == "gerät", "the device's model");
         string folder = Path.Combine(Path.GetTempPath(), "palpate-größe-" + Guid.NewGuid());
         Directory.CreateDirectory(folder);
@@ -91,6 +93,26 @@ static class FeelsABall
         Native.Check(Native.palpate_volume_load(file, ref options, out volume));
         Native.palpate_volume_destroy(volume);
         Directory.Delete(folder, true);
+    }
+
+    /// What is set by any name is what the run has.
+    static void SetEach(IntPtr run)
+    {
+        ulong count = (ulong)Native.palpate_setting_count();
+        Require(count > 20, "there are settings");
+        for (ulong i = 0; i < count; ++i)
+        {
+            var setting = new Setting { SizeOf = Native.SizeOf<Setting>() };
+            Native.Check(Native.palpate_setting_describe((UIntPtr)i, ref setting));
+            string name = Native.Text(setting.Name);
+            double before, after;
+            Native.Check(Native.palpate_run_get(run, name, out before));
+            if (before == 0 && name.StartsWith("limits.")) continue; // a limit cannot be raised
+            double wanted = double.IsInfinity(before) ? 7 : before == 0 ? 1e-4 : 0.9 * before;
+            Native.Check(Native.palpate_run_set(run, name, wanted));
+            Native.Check(Native.palpate_run_get(run, name, out after));
+            Require(after == wanted && after != before, name);
+        }
     }
 
     static IntPtr Run(IntPtr data)

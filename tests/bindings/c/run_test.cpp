@@ -134,6 +134,29 @@ TEST_F(CRun, stopping_returns_when_a_slow_device_has_the_zero) {
     EXPECT_EQ(palpate_run_stop(run_), PALPATE_OK);
 }
 
+TEST_F(CRun, what_is_set_by_any_name_is_what_the_run_has_and_renders) {
+    const palpate_own_device own = device_of(hand_);
+    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+    EXPECT_EQ(palpate_run_lift(run_), PALPATE_WRONG_STATE);
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    ASSERT_EQ(palpate_run_set_friction(run_, 0.5, 0.25), PALPATE_OK);
+    for (std::size_t i = 0; i < palpate_setting_count(); ++i) {
+        PALPATE_STRUCT(palpate_setting, one);
+        ASSERT_EQ(palpate_setting_describe(i, &one), PALPATE_OK);
+        double before = NAN, after = NAN;
+        ASSERT_EQ(palpate_run_get(run_, one.name, &before), PALPATE_OK) << palpate_last_error();
+        const double wanted = !std::isfinite(before) ? 7 : before == 0 ? 1e-4 : 0.9 * before;
+        ASSERT_EQ(palpate_run_set(run_, one.name, wanted), PALPATE_OK) << palpate_last_error();
+        ASSERT_EQ(palpate_run_get(run_, one.name, &after), PALPATE_OK);
+        const bool none_to_lower = before == 0 && std::string(one.name).starts_with("limits.");
+        EXPECT_EQ(after, none_to_lower ? 0 : wanted) << one.name;
+    }
+    ASSERT_EQ(palpate_run_set_stiffness(run_, 0.375), PALPATE_OK) << palpate_last_error();
+    EXPECT_TRUE(shows([](const auto& s) { return s.stiffness == 0.375; }));
+    EXPECT_EQ(palpate_run_set(run_, "force.colour", 1), PALPATE_INVALID);
+    EXPECT_EQ(palpate_run_lift(run_), PALPATE_OK) << palpate_last_error();
+}
+
 TEST_F(CRun, layers_that_are_the_same_surfaces_are_sent_as_such) {
     palpate_own_device own = device_of(hand_);
     ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();

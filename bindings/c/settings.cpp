@@ -1,0 +1,118 @@
+// Finds settings by name and describes them.
+#include "bindings/c/settings.hpp"
+
+#include <deque>
+#include <optional>
+#include <stdexcept>
+
+#include "bindings/c/handles.hpp"
+#include "bindings/c/structs.hpp"
+#include "palpate/names.hpp"
+
+namespace palpate::c {
+namespace {
+
+/// Calls visit(path, setting, number, group) for each number that a run can change, where a command
+/// changes all of its group.
+void for_each_of(auto& settings, auto&& visit) {
+    const auto walk = [&](const char* path, auto& group) {
+        for_each_number(path, group, [&](const std::string& name, const auto& one, auto& number) {
+            visit(name, one, number, group);
+        });
+    };
+    walk("force", settings.force);
+    walk("friction", settings.proxy.friction);
+    walk("limits", settings.device);
+}
+
+[[noreturn]] void refuse(const std::string& name) {
+    std::vector<std::string> names;
+    for (const palpate_setting& one : all_settings()) names.emplace_back(one.name);
+    throw std::invalid_argument("there is no setting '" + name + "': " + use_one_of(names, name));
+}
+
+struct SettingList {
+    std::deque<std::string> names;  // which the settings point to
+    std::vector<palpate_setting> settings;
+};
+
+SettingList described() {
+    SettingList made;
+    const RendererSettings usual;
+    for_each_of(usual, [&](const std::string& name, const auto& one, double value, const auto&) {
+        auto setting = sized<palpate_setting>();
+        setting.open = one.range.open;
+        setting.name = made.names.emplace_back(name).c_str();
+        setting.unit = one.unit;
+        setting.about = one.about;
+        setting.least = one.range.least;
+        setting.most = one.range.most;
+        setting.usual = value;
+        made.settings.push_back(setting);
+    });
+    return made;
+}
+
+}  // namespace
+
+const std::vector<palpate_setting>& all_settings() {
+    static const SettingList all = described();
+    return all.settings;
+}
+
+double value_of(const RendererSettings& settings, const std::string& name) {
+    std::optional<double> value;
+    for_each_of(settings, [&](const std::string& one, const auto&, double number, const auto&) {
+        if (one == name) value = number;
+    });
+    if (!value) refuse(name);
+    return *value;
+}
+
+Command change(RendererSettings& settings, const std::string& name, double value) {
+    std::optional<Command> command;
+    for_each_of(settings, [&](const std::string& one, const auto&, double& number, auto& group) {
+        if (one != name) return;
+        number = value;
+        command = group;
+    });
+    if (!command) refuse(name);
+    return *command;
+}
+
+extern "C" PALPATE_API size_t palpate_setting_count(void) {
+    size_t count = 0;
+    guarded([&] { count = all_settings().size(); });
+    return count;
+}
+
+extern "C" PALPATE_API palpate_status palpate_setting_describe(size_t index, palpate_setting* out) {
+    return guarded([&] {
+        if (index >= all_settings().size()) {
+            throw std::invalid_argument("index: there are " +
+                                        std::to_string(all_settings().size()) + " settings");
+        }
+        give(out, "out", all_settings()[index]);
+    });
+}
+
+extern "C" PALPATE_API palpate_status palpate_renderer_get(const palpate_renderer* renderer,
+                                                           const char* name, double* value) {
+    return guarded([&] {
+        const RendererSettings& now = given(renderer, "renderer").renderer.settings;
+        given(value, "value") = value_of(now, &given(name, "name"));
+    });
+}
+
+extern "C" PALPATE_API palpate_status palpate_renderer_set(palpate_renderer* renderer,
+                                                           const char* name, double value) {
+    return guarded([&] {
+        Renderer& r = given(renderer, "renderer").renderer;
+        RendererSettings changed = r.settings;
+        change(changed, &given(name, "name"), value);
+        check(changed);
+        r.settings = changed;
+    });
+}
+
+}  // namespace palpate::c
