@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cctype>
 #include <stdexcept>
 
 #include "apps/options/no_effect.hpp"
 #include "apps/options/values.hpp"
 #include "io/system/number.hpp"
 #include "palpate/run/labels.hpp"
+#include "palpate/settings.hpp"
 
 namespace palpate::app {
 namespace {
@@ -111,43 +113,50 @@ void RenderOptions::add_penetrability_to(CLI::App& command) {
         ->type_name("LOW:HIGH");
 }
 
+/// An option for two numbers of the same table, as in `--magnet DISTANCE,PEAK`.
+template <class Pair>
+static void add_pair(CLI::App& command, const std::string& name, const std::string& about,
+                     Pair& pair) {
+    std::string help = about + ": ", type;
+    for_each_setting<Pair>([&](const auto& one) {
+        std::string word = one.name;
+        for (char& c : word) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        const char* const comma = type.empty() ? "" : ",";
+        help += fmt::format("{}{} [{}]", comma, word, one.unit);
+        type += comma + word;
+    });
+    const auto read = [name, &pair](const std::string& text) {
+        const auto numbers = two_numbers(name, text);
+        std::size_t next = 0;
+        for_each_setting<Pair>([&](const auto& one) { pair.*one.member = numbers.at(next++); });
+    };
+    command.add_option_function<std::string>(name, read, help)->type_name(type);
+}
+
 void RenderOptions::add_force_to(CLI::App& command) {
     ForceSettings& force = given.force;
-    command.add_option("-k,--stiffness", given.stiffness, "Stiffness [N/mm]")
-        ->default_str(fmt::format("{}", force.stiffness));
-    command.add_option("--damping", force.damping, "Damping along the normal [N s/mm]");
-    command.add_option("--viscosity", force.viscosity, "Viscosity of the medium [N s/mm]");
+    for_each_setting<ForceSettings>([&](const auto& one) {
+        if (one.option[0] == '\0') return;
+        auto& value = force.*one.member;
+        if constexpr (std::same_as<double&, decltype(value)>) {
+            // What depends on the device is set where it is given only.
+            std::optional<double>* const left_open = &value == &force.stiffness ? &given.stiffness
+                                                     : &value == &force.limit   ? &given.limit
+                                                                                : nullptr;
+            const std::string help = fmt::format("{} [{}]", one.about, one.unit);
+            CLI::Option* const option = left_open ? command.add_option(one.option, *left_open, help)
+                                                  : command.add_option(one.option, value, help);
+            option->default_str(fmt::format("{}", value));
+        } else {
+            add_pair(command, one.option, one.about, value);
+        }
+    });
     command
         .add_option_function<std::string>(
             "--friction",
             [this](const std::string& text) { given.friction = friction_from("--friction", text); },
             "Friction coefficients; dynamic at most static")
         ->type_name("STATIC[,DYNAMIC]");
-    const auto add_pair = [&](const char* name, auto& pair, const char* help) {
-        const auto read = [name, &pair](const std::string& text) {
-            const auto [first, second] = two_numbers(name, text);
-            pair = {first, second};
-        };
-        return command.add_option_function<std::string>(name, read, help);
-    };
-    add_pair("--magnet", force.magnet, "Snap to near surfaces: DISTANCE [mm],PEAK [N]")
-        ->type_name("D,P");
-    add_pair("--texture", force.texture, "Bumps: AMPLITUDE,WAVELENGTH [mm]")->type_name("A,W");
-    command.add_option("--rotational-stiffness", force.rotational_stiffness,
-                       "Of a tool [N mm/rad] (default: from stiffness and the tool's gyration)");
-    command.add_option("--rotational-damping", force.rotational_damping, "Of a tool [N mm s/rad]");
-    command.add_option("--torque-limit", force.torque_limit, "Largest torque [N mm]")
-        ->capture_default_str();
-    command.add_option("--force-limit", given.limit, "Largest force [N]")
-        ->default_str(fmt::format("{}", force.limit));
-    command.add_option("--force-rate", force.rate_limit, "Largest change of force [N/s]")
-        ->capture_default_str();
-    command.add_option("--ramp", force.ramp, "Ramp of the force from zero at the start [s]")
-        ->capture_default_str();
-    command
-        .add_option("--start-below", force.start_below,
-                    "After a start or pause no force until the wanted one is this small [N]")
-        ->capture_default_str();
 }
 
 void RenderOptions::warn_of_no_effect() const {

@@ -12,6 +12,7 @@
 #include "palpate/io/csv.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "palpate/io/level.hpp"
+#include "palpate/settings.hpp"
 
 namespace palpate::app {
 
@@ -59,25 +60,35 @@ Command LiveCommands::layers_from(const CommandWords& words) {
     }
 }
 
+/// Calls visit(name, value) for each number of the force that has an option, by the option's name.
+static void for_each_force(ForceSettings& force, auto&& visit) {
+    for_each_setting<ForceSettings>([&](const auto& one) {
+        const std::string_view option = one.option;
+        auto& value = force.*one.member;
+        if constexpr (std::same_as<double&, decltype(value)>) {
+            if (!option.empty()) visit(option.substr(option.rfind("--") + 2), value);
+        }
+    });
+}
+
 /// A command that changes one setting.
 Command LiveCommands::setting_from(const CommandWords& words, RendererSettings& next) const {
     const std::string& name = words.name();
-    ForceSettings& force = next.force;
-    double* const setting = name == "stiffness"   ? &force.stiffness
-                            : name == "damping"   ? &force.damping
-                            : name == "viscosity" ? &force.viscosity
-                                                  : nullptr;
-    if (setting) {
-        *setting = words.expect(2).number(1);
-        return force;
-    }
+    bool found = false;
+    std::string forces;
+    for_each_force(next.force, [&](std::string_view one, double& value) {
+        forces.append(one).append(", ");
+        if (one != name) return;
+        value = words.expect(2).number(1);
+        found = true;
+    });
+    if (found) return next.force;
     if (name == "friction") return next.proxy.friction = friction_from(name, words.expect(2)[1]);
     if (name == "scale") return command::Scale{words.expect(2).number(1)};
     throw std::invalid_argument(
-        "there is no command '" + name +
-        "'; there are isovalue, stiffness, damping, viscosity, friction, penetrability, layers, "
-        "forces, freeze, clutch, lift, scale, brush, carve, add, smooth, paint, fill, undo, redo, "
-        "save, play, pause, step, seek, loop, quit");
+        "there is no command '" + name + "'; there are isovalue, " + forces +
+        "friction, penetrability, layers, forces, freeze, clutch, lift, scale, brush, carve, add, "
+        "smooth, paint, fill, undo, redo, save, play, pause, step, seek, loop, quit");
 }
 
 DataRequest LiveCommands::take_up(const std::optional<run::HandBrush>& brush) {
