@@ -27,7 +27,7 @@ class BuildWithCMake(build_ext):
                    f"-DPYTHON_EXECUTABLE={sys.executable}"]
         if not (build / "CMakeCache.txt").exists():
             subprocess.run(["cmake", "-S", ROOT, "-B", build, *generator, *options], check=True)
-        subprocess.run(["cmake", "--build", build, "--target", "palpate_python", "--parallel",
+        subprocess.run(["cmake", "--build", build, "--target", "palpate_python_types", "--parallel",
                         str(os.cpu_count() or 1)], check=True)
         made = build / "bindings" / "python" / "palpate"
         # Links to the helpers and data are followed: the package is whole by itself.

@@ -84,7 +84,9 @@ void bind_commands(py::module_& module) {
             "felt, with other levels or properties, so what was punctured stays open.")
         .def_readonly("same_surfaces", &command::UseLayers::same_surfaces);
     py::class_<command::UseTool>(names, "UseTool", "Another tool; None: a point.")
-        .def(py::init([](const std::shared_ptr<Tool>& tool) { return command::UseTool{tool}; }),
+        .def(py::init([](const std::optional<std::shared_ptr<Tool>>& tool) {
+                 return command::UseTool{tool.value_or(nullptr)};
+             }),
              py::arg("tool"));
 }
 

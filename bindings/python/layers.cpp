@@ -122,11 +122,7 @@ void bind_layers(py::module_& module) {
             "{name: value}: stiffness [N/mm], static_friction, dynamic_friction, damping and\n"
             "viscosity [N s/mm], puncture_force [N], drag [N/mm per mm].")
         .done();
-    Record<Needle>(module, "Needle", "A hand that holds a needle.")
-        .field("lateral_stiffness", &Needle::lateral_stiffness, "[N/mm] towards the line")
-        .field("static_ratio", &Needle::static_ratio, "Friction at rest, of that in motion.")
-        .field("stick_speed", &Needle::stick_speed, "[mm/s] slower than this the shaft sticks")
-        .done();
+    Record<Needle>(module, "Needle", "A hand that holds a needle.").settings().done();
     bind_layers_class(module);
     module.def(
         "layers_named",

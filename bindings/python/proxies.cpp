@@ -35,7 +35,7 @@ struct ProxyTrace {
     py::array_t<bool> constrained, unfinished;
     py::array_t<int> tetrahedra;
     py::array_t<std::int64_t> update_ns;
-    py::object steps = py::none();
+    std::optional<py::dict> steps = {};
 };
 
 /// Where the rows of a ProxyTrace are written; usable without the GIL.
@@ -203,8 +203,10 @@ ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles
     return trace;
 }
 
-py::tuple cast_rays(const Field& field, const io::Level& level, const Doubles& starts,
-                    const Doubles& ends) {
+std::pair<py::array_t<double>, py::array_t<double>> cast_rays(const Field& field,
+                                                              const io::Level& level,
+                                                              const Doubles& starts,
+                                                              const Doubles& ends) {
     const std::vector<Vec3> from = points_from(starts, "starts"), to = points_from(ends, "ends");
     if (from.size() != to.size()) throw std::invalid_argument("as many starts as ends are needed");
     const double isovalue = io::level_in(field.volume(), level);
@@ -219,7 +221,7 @@ py::tuple cast_rays(const Field& field, const io::Level& level, const Doubles& s
             normals[i] = hit.normal;
         }
     }
-    return py::make_tuple(array_from(std::move(points)), array_from(std::move(normals)));
+    return {array_from(std::move(points)), array_from(std::move(normals))};
 }
 
 void bind_trace(py::module_& module) {

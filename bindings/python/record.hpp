@@ -4,8 +4,18 @@
 #pragma once
 
 #include "bindings/python/casters.hpp"
+#include "palpate/settings.hpp"
 
 namespace palpate::python {
+
+/// "[N] Largest force" of a setting in a table.
+template <class Owner, class Value>
+std::string text_of(const Setting<Owner, Value>& setting) {
+    std::string text = setting.about;
+    if (*setting.unit != '\0') text = std::string("[") + setting.unit + "] " + text;
+    if (*setting.left_open != '\0') text += std::string("; None: ") + setting.left_open;
+    return text;
+}
 
 template <class T>
 class Record {
@@ -18,6 +28,13 @@ class Record {
     Record& field(const char* name, Member Owner::*member, const char* about) {
         class_.def_readwrite(name, member, about);
         names_.append(name);
+        return *this;
+    }
+    /// All fields of a struct that has a table, as the table describes them.
+    template <class Owner = T>
+    Record& settings() {
+        for_each_setting<Owner>(
+            [&](const auto& one) { field(one.name, one.member, text_of(one).c_str()); });
         return *this;
     }
     /// A field that looks otherwise in Python: get(const T&), set(T&, value).

@@ -1,4 +1,6 @@
 // Settings of force, friction, device and penetrability, and the setup that has them all.
+#include <algorithm>
+
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/record.hpp"
 #include "bindings/python/setup.hpp"
@@ -9,13 +11,9 @@
 
 namespace palpate::python {
 
-AskedForce::AskedForce(const ForceSettings& given)
-    : ForceSettings(given),
-      asked_stiffness(given.stiffness),
-      asked_limit(given.limit),
-      asked_rate_limit(given.rate_limit),
-      asked_ramp(given.ramp),
-      asked_start_below(given.start_below) {}
+AskedForce::AskedForce(const ForceSettings& given) : ForceSettings(given) {
+    for (const auto& [number, open] : left_open) this->*open = given.*number;
+}
 
 ForceSettings offline_force() {
     ForceSettings force;
@@ -26,11 +24,9 @@ ForceSettings offline_force() {
 
 ForceSettings force_of(const AskedForce& asked, const ForceSettings& usual) {
     ForceSettings force = asked;
-    force.stiffness = asked.asked_stiffness.value_or(usual.stiffness);
-    force.limit = asked.asked_limit.value_or(usual.limit);
-    force.rate_limit = asked.asked_rate_limit.value_or(usual.rate_limit);
-    force.ramp = asked.asked_ramp.value_or(usual.ramp);
-    force.start_below = asked.asked_start_below.value_or(usual.start_below);
+    for (const auto& [number, open] : left_open) {
+        force.*number = (asked.*open).value_or(usual.*number);
+    }
     return force;
 }
 
@@ -70,62 +66,48 @@ Penetrability penetrability_for(const PressThrough& press, const Field& field, d
 
 namespace {
 
+/// The member of which Python sees this number; null: it cannot be left open.
+std::optional<double> AskedForce::*open_member(double ForceSettings::*number) {
+    const auto found =
+        std::ranges::find(left_open, number, &decltype(left_open)::value_type::first);
+    return found == left_open.end() ? nullptr : found->second;
+}
+
 void bind_force(py::module_& module) {
     Record<Magnet>(module, "Magnet",
                    "Pulls a free hand to a near surface: 0 at the surface, `peak` halfway.")
-        .field("distance", &Magnet::distance, "[device mm] 0: off")
-        .field("peak", &Magnet::peak, "[N]")
+        .settings()
         .done();
     Record<Texture>(module, "Texture", "A bumpy surface, by turning the contact force.")
-        .field("amplitude", &Texture::amplitude, "[mm, physical] 0: off")
-        .field("wavelength", &Texture::wavelength, "[mm, physical]")
+        .settings()
         .done();
-    using F = AskedForce;
-    Record<F>(module, "ForceSettings",
-              "Force and torque from hand and proxy: f = stiffness (SCP - HIP), with limits.\n"
-              "What is None depends on use and device: each field says how.")
-        .field("stiffness", &F::asked_stiffness, "[N/mm] None: 0.5, or less if the device needs it")
-        .field("damping", &F::damping, "[N s/mm] along the contact normal")
-        .field("viscosity", &F::viscosity, "[N s/mm] of the medium")
-        .field("magnet", &F::magnet, "Magnet")
-        .field("texture", &F::texture, "Texture")
-        .field("limit", &F::asked_limit, "[N] largest force; None: the device's; offline 3.3")
-        .field("rate_limit", &F::asked_rate_limit,
-               "[N/s] largest change of force; None: 2000; in replay() inf")
-        .field("ramp", &F::asked_ramp,
-               "[s] from zero to full force at the start; None: 0.25; in replay() 0")
-        .field("stale_after", &F::stale_after, "[s] a longer time between two states is a pause")
-        .field("start_below", &F::asked_start_below,
-               "[N] no force until the wanted one is at most this; inf: do not wait;\n"
-               "None: 0.3 in a Run, else inf")
-        .field("rotational_stiffness", &F::rotational_stiffness,
-               "[N mm/rad] of a tool; 0: stiffness times its gyration squared")
-        .field("rotational_damping", &F::rotational_damping, "[N mm s/rad]")
-        .field("torque_limit", &F::torque_limit, "[N mm] largest torque")
-        .field("torque_rate_limit", &F::torque_rate_limit, "[N mm/s] largest change of torque")
-        .done();
+    Record<AskedForce> force(
+        module, "ForceSettings",
+        "Force and torque from hand and proxy: f = stiffness (SCP - HIP), with limits.\n"
+        "What is None depends on use and device: each field says how.");
+    for_each_setting<ForceSettings>([&](const auto& one) {
+        if constexpr (std::same_as<decltype(one.member), double ForceSettings::*>) {
+            if (const auto open = open_member(one.member)) {
+                force.field(one.name, open, text_of(one).c_str());
+                return;
+            }
+        }
+        force.field(one.name, one.member, text_of(one).c_str());
+    });
+    force.done();
     Record<Friction>(module, "Friction", "Coulomb friction on the proxy's motion.")
-        .field("static_coefficient", &Friction::static_coefficient, "0: none")
-        .field("dynamic_coefficient", &Friction::dynamic_coefficient, "At most the static one.")
+        .settings()
         .done();
 }
 
 void bind_device_settings(py::module_& module) {
-    using L = DeviceLimits;
-    Record<L>(module, "DeviceLimits", "What a device can take. Never exceeded.")
-        .field("maximum_force", &L::maximum_force, "[N]")
-        .field("rate", &L::rate, "[Hz] of the servo loop")
-        .field("physical_damping", &L::physical_damping, "[N s/mm] of device and hand")
-        .field("maximum_torque", &L::maximum_torque, "[N mm] 0: it renders none")
-        .field("physical_rotational_damping", &L::physical_rotational_damping, "[N mm s/rad]")
+    Record<DeviceLimits>(module, "DeviceLimits", "What a device can take. Never exceeded.")
+        .settings()
         .done();
-    using T = DeviceTransform;
-    Record<T>(module, "DeviceTransform",
-              "The place of the device's workspace in the volume:\n"
-              "physical = translation + scale * rotation @ device.")
-        .field("rotation", &T::rotation, "Orthonormal, device axes to physical axes, (3, 3).")
-        .field("translation", &T::translation, "[mm, physical] where the device's origin lies")
-        .field("scale", &T::scale, "physical mm per device mm, > 0")
+    Record<DeviceTransform>(module, "DeviceTransform",
+                            "The place of the device's workspace in the volume:\n"
+                            "physical = translation + scale * rotation @ device.")
+        .settings()
         .done()
         .def("physical", &physical_from_device, py::arg("device"),
              "The physical point [mm] of a device point [device mm].")

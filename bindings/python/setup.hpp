@@ -1,6 +1,7 @@
 // How to feel, as Python gives it: run::RenderSetup with a tool by its text or as points.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -27,6 +28,14 @@ struct AskedForce : ForceSettings {
     std::optional<double> asked_stiffness, asked_limit, asked_rate_limit, asked_ramp,
         asked_start_below;  ///< nothing: the usual one
 };
+
+/// The numbers that may be left open.
+inline constexpr std::array left_open{
+    std::pair{&ForceSettings::stiffness, &AskedForce::asked_stiffness},
+    std::pair{&ForceSettings::limit, &AskedForce::asked_limit},
+    std::pair{&ForceSettings::rate_limit, &AskedForce::asked_rate_limit},
+    std::pair{&ForceSettings::ramp, &AskedForce::asked_ramp},
+    std::pair{&ForceSettings::start_below, &AskedForce::asked_start_below}};
 
 using ToolChoice = std::variant<std::string, std::shared_ptr<Tool>>;
 using LayersChoice = std::variant<std::monostate, io::LayersFile, std::filesystem::path>;

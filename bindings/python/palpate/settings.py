@@ -178,14 +178,22 @@ def _initializer(raw, kind, fields):
     return __init__
 
 
-def _alias(part, name, about):
-    """A field that is another name of one in a part."""
-    return property(lambda self: getattr(getattr(self, part), name),
-                    lambda self, value: setattr(getattr(self, part), name, value), doc=about)
+def _alias(kind, part, name):
+    """A field that is another name of one in a part, which is of this kind."""
+    def get(self):
+        return getattr(getattr(self, part), name)
+
+    get.__doc__ = vars(kind)[name].raw.fget.__doc__
+    return property(get, lambda self, value: setattr(getattr(self, part), name, value),
+                    doc=f"The same as {part}.{name}.")
 
 
 def _frozen_getter(raw, why):
-    return property(lambda self: _frozen(_kept(raw.__get__(self)), why), doc=raw.__doc__)
+    def get(self):
+        return _frozen(_kept(raw.__get__(self)), why)
+
+    get.__doc__ = raw.fget.__doc__
+    return property(get, doc=raw.__doc__)
 
 
 def complete(module):
@@ -212,4 +220,4 @@ def complete(module):
                     setattr(kind, name, vars(_Settings)[name])
             kind.__init__ = _initializer(kind.__init__, kind.__name__, kind._fields)
     for name in ("limit", "stiffness"):
-        setattr(module.RenderSetup, name, _alias("force", name, f"The same as force.{name}."))
+        setattr(module.RenderSetup, name, _alias(module.ForceSettings, "force", name))
