@@ -6,11 +6,15 @@
 namespace palpate::python {
 namespace {
 
-Geometry geometry_of(const Vec3& spacing, const Vec3& origin, const Mat3& direction) {
+/// What is not given is assumed, and the geometry says so.
+Geometry geometry_of(const std::optional<Vec3>& spacing, const Vec3& origin,
+                     const std::optional<Mat3>& direction) {
     Geometry geometry;
-    geometry.spacing = spacing;
+    geometry.spacing = spacing.value_or(geometry.spacing);
     geometry.origin = origin;
-    geometry.direction = direction;
+    geometry.direction = direction.value_or(geometry.direction);
+    geometry.measured = spacing.has_value();
+    geometry.oriented = direction.has_value();
     return geometry;
 }
 
@@ -55,18 +59,20 @@ void bind_volumes(py::module_& module) {
         module, "Volume",
         "Samples on a regular grid. They do not change: edits make new versions (Editor).");
     copied_as_itself(volume)
-        .def(py::init([](const py::array& array, const Vec3& spacing, const Vec3& origin,
-                         const Mat3& direction, bool copy) {
-                 return volume_from(array, geometry_of(spacing, origin, direction), copy);
-             }),
-             py::arg("array"), py::arg("spacing") = Vec3(1, 1, 1),
-             py::arg("origin") = Vec3(0, 0, 0), py::arg("direction") = Mat3(Mat3::Identity()),
-             py::arg("copy") = false,
-             "Shares the samples of an array of shape (z, y, x) of uint8, int16, uint16 or "
-             "float32,\n"
-             "without a copy: do not write to it afterwards. An array that is not C-contiguous is\n"
-             "a ValueError; with copy=True it is copied. spacing and origin in mm (x, y, z), LPS.\n"
-             "as_volume() converts other types and understands nibabel and zarr.")
+        .def(
+            py::init([](const py::array& array, const std::optional<Vec3>& spacing,
+                        const Vec3& origin, const std::optional<Mat3>& direction, bool copy) {
+                return volume_from(array, geometry_of(spacing, origin, direction), copy);
+            }),
+            py::arg("array"), py::arg("spacing") = py::none(), py::arg("origin") = Vec3(0, 0, 0),
+            py::arg("direction") = py::none(), py::arg("copy") = false,
+            "Shares the samples of an array of shape (z, y, x) of uint8, int16, uint16 or "
+            "float32,\n"
+            "without a copy: do not write to it afterwards. An array that is not C-contiguous is\n"
+            "a ValueError; with copy=True it is copied. spacing and origin in mm (x, y, z), LPS.\n"
+            "Without a direction the geometry is not `oriented`: nothing says which side is left.\n"
+            "Without a spacing, 1 mm is assumed and it is not `measured`.\n"
+            "as_volume() converts other types and understands nibabel and zarr.")
         .def_property_readonly("geometry", &Volume::geometry, "A copy of its Geometry.",
                                py::return_value_policy::copy)
         .def_property_readonly(

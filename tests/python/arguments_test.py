@@ -80,7 +80,7 @@ def volume():
 
 @pytest.mark.parametrize("call, text", [
     (lambda: palpate.Volume(numpy.zeros((2, 2, 2), "f4"), spacing=2),
-     "Volume(): spacing must be 3 numbers, not 2"),
+     "Volume(): spacing must be 3 numbers or None, not 2"),
     (lambda: palpate.Volume([1]), "Volume(): array must be an array, not list"),
     (lambda: palpate.RenderSetup(penetrability="threshold"),
      "RenderSetup.penetrability must be Penetrability or None, not 'threshold'"),

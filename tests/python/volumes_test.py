@@ -33,6 +33,23 @@ def test_an_array_is_taken_over_and_given_back_without_a_copy(dtype):
     assert not volume.array.flags.writeable
 
 
+def test_a_volume_of_an_array_says_what_of_its_place_is_assumed():
+    array = samples("uint8")
+    for given, known in (({}, (False, False)), ({"spacing": (1, 1, 1)}, (False, True)),
+                         ({"direction": numpy.eye(3)}, (True, False)),
+                         ({"spacing": (1, 2, 3), "direction": numpy.eye(3)}, (True, True))):
+        for volume in (palpate.Volume(array, **given), palpate.as_volume(array, **given)):
+            place = volume.geometry
+            assert (place.oriented, place.measured) == known
+            again = pickle.loads(pickle.dumps(volume)).geometry
+            assert (again.oriented, again.measured) == known
+    placed = palpate.as_volume(nibabel.Nifti1Image(array.T, numpy.diag([2, 2, 2, 1])))
+    assert placed.geometry.oriented and placed.geometry.measured
+    image = nibabel.Nifti1Image(array.T, None)
+    with pytest.warns(UserWarning, match="says nothing of its orientation"):
+        assert not palpate.as_volume(image).geometry.oriented
+
+
 def test_samples_live_as_long_as_somebody_holds_them():
     array = samples("float32")
     expected = array.copy()

@@ -51,22 +51,27 @@ def _frame_of(data, frame, axis):
 def _from_nibabel(image, frame):
     """Samples [z, y, x] and their place: nibabel's are [x, y, z], its space is RAS."""
     samples = numpy.asanyarray(_frame_of(image.dataobj, frame, axis=3))
-    affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ _affine_of(image)
+    affine, placed = _affine_of(image)
+    affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ affine
     spacing = numpy.linalg.norm(affine[:3, :3], axis=0)
     if not numpy.all(spacing > 0):
         raise ValueError("the image's affine has an axis of length 0")
-    return samples.T, {"spacing": spacing, "origin": affine[:3, 3],
-                       "direction": affine[:3, :3] / spacing}
+    place = {"spacing": spacing, "origin": affine[:3, 3]}
+    if placed:
+        place["direction"] = affine[:3, :3] / spacing
+    return samples.T, place
 
 
 def _affine_of(image):
-    """Index to RAS [mm], chosen as load() chooses it for a NIfTI file (docs/io.md)."""
+    """Index to RAS [mm], chosen as load() chooses it for a NIfTI file (docs/io.md), and whether the header
+    says it."""
     affine, header = numpy.asarray(image.affine, dtype=float), image.header
     if not hasattr(header, "get_qform"):
-        return affine
+        return affine, True
     unit = {"meter": 1000.0, "micron": 1e-3}.get(header.get_xyzt_units()[0], 1.0)
     placed = header["sform_code"] > 0 or header["qform_code"] > 0
-    if not placed and numpy.allclose(affine, header.get_base_affine()):
+    placed = placed or image.affine is not None and not numpy.allclose(affine, header.get_base_affine())
+    if not placed:
         warnings.warn("the image's header says nothing of its orientation in the body: its axes "
                       "were taken as those of LPS", stacklevel=4)
         affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ numpy.diag([*header["pixdim"][1:4], 1.0])
@@ -74,7 +79,7 @@ def _affine_of(image):
         warnings.warn("the image's affine is sheared, which a grid cannot be: its qform was taken",
                       stacklevel=4)
         affine = header.get_qform()
-    return numpy.diag([unit, unit, unit, 1.0]) @ affine
+    return numpy.diag([unit, unit, unit, 1.0]) @ affine, placed
 
 
 def _is_sheared(affine):
