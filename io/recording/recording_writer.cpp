@@ -5,8 +5,7 @@
 #include <chrono>
 #include <system_error>
 
-#include "io/recording/recording_head.hpp"
-#include "io/recording/trace_columns.hpp"
+#include "io/recording/recording_text.hpp"
 #include "io/system/stepping_thread.hpp"
 #include "io/system/system.hpp"
 
@@ -19,50 +18,6 @@ constexpr auto between_writes = 100ms;
 constexpr auto between_syncs = 500ms;
 constexpr std::size_t most_buffered = std::size_t{1} << 20;
 
-constexpr std::string_view session_columns =
-    ",status,force_flags,device_status,device_x,device_y,device_z,buttons,age,"
-    "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched,"
-    "moment,samples,layer_touched,layers_inside,layers_punctured";
-constexpr std::string_view check_columns = ",tick,crc32";
-
-/// The cells of a tick that the session gave, without the end of the line.
-void append_session(std::string& text, const SessionTick& tick) {
-    append_row(text, trace_row(tick.tick));
-    append_cell(text, static_cast<std::int64_t>(tick.tick.proxy.status));
-    append_cell(text, static_cast<std::int64_t>(tick.tick.force_flags));
-    append_cell(text, static_cast<std::int64_t>(tick.device.status));
-    append_cells(text, tick.device.position);
-    append_cell(text, static_cast<std::int64_t>(tick.device.buttons));
-    append_cell(text, tick.device.age);
-    for (int r = 0; r < 3; ++r) append_cells(text, tick.device.orientation.row(r));
-    append_cell(text, static_cast<std::int64_t>(tick.frozen));
-    append_cell(text, static_cast<std::int64_t>(tick.clutched));
-    append_cell(text, tick.moment);
-    append_cell(text, static_cast<std::int64_t>(tick.version));
-    append_cell(text, std::int64_t{tick.tick.layers.touched});
-    append_cell(text, std::int64_t{tick.tick.layers.inside});
-    append_cell(text, std::int64_t{tick.tick.layers.punctured});
-    append_tool(text, trace_row(tick.tick));
-}
-
-std::string head_text(const RecordingHead& head) {
-    std::string text = "#";
-    text += recording_mark;
-    append_number(text, std::int64_t{recording_format});
-    text += "\n# ";
-    // A name that is not UTF-8 must not prevent a recording.
-    for (const char c : to_json(head).dump(1, ' ', true, Json::error_handler_t::replace)) {
-        text += c;
-        if (c == '\n') text += "# ";
-    }
-    text += '\n';
-    text += trace_header;
-    text += session_columns;
-    text += tool_header;
-    text += check_columns;
-    return text + '\n';
-}
-
 /// Room for the ticks of eight seconds and the commands between them.
 std::size_t room_for(double rate) {
     return static_cast<std::size_t>(8 * rate);
@@ -72,8 +27,8 @@ std::size_t room_for(double rate) {
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHead& head,
                                  Pace pace)
-    : path_(path), queue_(room_for(head.rate)) {
-    buffer_.reserve(most_buffered);
+    : path_(path), queue_(room_for(head.rate)), text_(std::make_unique<RecordingText>(head)) {
+    text_->lines.reserve(most_buffered);
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (std::filesystem::is_regular_file(status)) {
@@ -87,7 +42,6 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Record
                           ": choose another place");
     }
     seekable_ = !stream;
-    buffer_ = head_text(head);
     flush();
     if (const std::string wrong = problem(); !wrong.empty()) {
         close();
@@ -115,6 +69,10 @@ void RecordingWriter::end_threads() {
     syncer_ = {};
 }
 
+std::int64_t RecordingWriter::ticks() const {
+    return text_->ticks();
+}
+
 std::string RecordingWriter::problem() const {
     const std::scoped_lock lock(mutex_);
     return problem_;
@@ -123,9 +81,7 @@ std::string RecordingWriter::problem() const {
 void RecordingWriter::finish(std::int64_t lost) {
     end_threads();
     drain();
-    buffer_ += "#";
-    buffer_ += end_mark;
-    buffer_ += Json{{"ticks", ticks()}, {"lost", lost}, {"crc32", checksum_}}.dump() + "\n";
+    text_->end(lost);
     flush();
     (void)synchronise(descriptor_);
     close();
@@ -157,39 +113,22 @@ void RecordingWriter::drain() {
             first.swap(first_);
         }
         for (const Command& command : first) {
-            append(command);
-            if (buffer_.size() > most_buffered) flush();
+            text_->append(command);
+            if (text_->lines.size() > most_buffered) flush();
         }
     };
     begin();
     while (const auto event = queue_.pop()) {
         begin();  // those that were given meanwhile, before the first event
-        std::visit([this](const auto& one) { append(one); }, *event);
-        if (buffer_.size() > most_buffered) flush();
+        std::visit([this](const auto& one) { text_->append(one); }, *event);
+        if (text_->lines.size() > most_buffered) flush();
     }
 }
 
-void RecordingWriter::append(const SessionTick& tick) {
-    const std::size_t begin = buffer_.size();
-    append_session(buffer_, tick);
-    append_cell(buffer_, ticks_.fetch_add(1, std::memory_order_relaxed));
-    checksum_ = checksum_with(std::string_view(buffer_).substr(begin), checksum_);
-    append_cell(buffer_, std::int64_t{checksum_});
-    buffer_ += '\n';
-}
-
-void RecordingWriter::append(const Command& command) {
-    const std::size_t begin = buffer_.size();
-    buffer_ += "#";
-    buffer_ += command_mark;
-    buffer_ += to_json(command, bodies_).dump();
-    checksum_ = checksum_with(std::string_view(buffer_).substr(begin), checksum_);
-    buffer_ += '\n';
-}
-
 void RecordingWriter::flush() {
-    if (!problem().empty()) buffer_.clear();
-    std::string_view rest = buffer_;
+    std::string& buffer = text_->lines;
+    if (!problem().empty()) buffer.clear();
+    std::string_view rest = buffer;
     while (!rest.empty()) {
         const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
         if (count < 0 && errno == EINTR) continue;
@@ -197,7 +136,7 @@ void RecordingWriter::flush() {
         rest.remove_prefix(static_cast<std::size_t>(count));
     }
     const int error = errno;
-    const std::string_view done(buffer_.data(), buffer_.size() - rest.size());
+    const std::string_view done(buffer.data(), buffer.size() - rest.size());
     written_ += static_cast<std::int64_t>(done.rfind('\n') + 1);  // npos + 1 is 0
     if (!rest.empty()) {
         // What is there ends with a whole line. Should that fail, readers leave a torn line out.
@@ -207,7 +146,7 @@ void RecordingWriter::flush() {
                    (means_full(error) ? ": free some space" : ": record to another place") +
                    "; what was recorded before is kept";
     }
-    buffer_.clear();
+    buffer.clear();
 }
 
 void RecordingWriter::close() {

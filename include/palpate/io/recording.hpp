@@ -48,6 +48,8 @@ struct RecordingHead {
     SessionSettings session;
 };
 
+class RecordingText;
+
 /// Writes a recording while the session runs. The file has its own name from the start and is
 /// brought to the disk twice a second, so that whatever ends the program, all but the last second
 /// is there. An existing file is never touched.
@@ -73,7 +75,7 @@ class RecordingWriter {
     /// stays. Any thread.
     std::string problem() const;
     /// Ticks on the disk or on their way to it.
-    std::int64_t ticks() const { return ticks_.load(std::memory_order_relaxed); }
+    std::int64_t ticks() const;
     /// Writes what is left and the last line, which tells a whole recording from one cut off, with
     /// the number of events that were lost on their way here. After the servo has stopped. Throws
     /// OutputError for what problem() says.
@@ -82,20 +84,15 @@ class RecordingWriter {
   private:
     void end_threads();
     void drain();
-    void append(const SessionTick& tick);
-    void append(const Command& command);
     void flush();
     void close();
 
     std::filesystem::path path_;
     int descriptor_ = -1;
     Queue<SessionEvent> queue_;
-    std::string buffer_;
-    std::uint32_t checksum_ = 0;                           // of all events so far
-    std::vector<std::shared_ptr<const ToolBody>> bodies_;  // of its edits, by number
-    std::int64_t written_ = 0;                             // bytes that are whole lines on the disk
+    std::unique_ptr<RecordingText> text_;
+    std::int64_t written_ = 0;  // bytes that are whole lines on the disk
     bool seekable_ = false;
-    std::atomic<std::int64_t> ticks_{0};
     mutable std::mutex mutex_;  // of what follows. The servo never comes near
     std::string problem_;
     std::vector<Command> first_;

@@ -1,0 +1,81 @@
+// Lines of recordings (docs/recordings.md).
+#include "io/recording/recording_text.hpp"
+
+#include "io/recording/trace_columns.hpp"
+
+namespace palpate::io {
+namespace {
+
+constexpr std::string_view session_columns =
+    ",status,force_flags,device_status,device_x,device_y,device_z,buttons,age,"
+    "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched,"
+    "moment,samples,layer_touched,layers_inside,layers_punctured";
+constexpr std::string_view check_columns = ",tick,crc32";
+
+/// The cells of a tick that the session gave, without the end of the line.
+void append_session(std::string& text, const SessionTick& tick) {
+    append_row(text, trace_row(tick.tick));
+    append_cell(text, static_cast<std::int64_t>(tick.tick.proxy.status));
+    append_cell(text, static_cast<std::int64_t>(tick.tick.force_flags));
+    append_cell(text, static_cast<std::int64_t>(tick.device.status));
+    append_cells(text, tick.device.position);
+    append_cell(text, static_cast<std::int64_t>(tick.device.buttons));
+    append_cell(text, tick.device.age);
+    for (int r = 0; r < 3; ++r) append_cells(text, tick.device.orientation.row(r));
+    append_cell(text, static_cast<std::int64_t>(tick.frozen));
+    append_cell(text, static_cast<std::int64_t>(tick.clutched));
+    append_cell(text, tick.moment);
+    append_cell(text, static_cast<std::int64_t>(tick.version));
+    append_cell(text, std::int64_t{tick.tick.layers.touched});
+    append_cell(text, std::int64_t{tick.tick.layers.inside});
+    append_cell(text, std::int64_t{tick.tick.layers.punctured});
+    append_tool(text, trace_row(tick.tick));
+}
+
+std::string head_text(const RecordingHead& head) {
+    std::string text = "#";
+    text += recording_mark;
+    append_number(text, std::int64_t{recording_format});
+    text += "\n# ";
+    // A name that is not UTF-8 must not prevent a recording.
+    for (const char c : to_json(head).dump(1, ' ', true, Json::error_handler_t::replace)) {
+        text += c;
+        if (c == '\n') text += "# ";
+    }
+    text += '\n';
+    text += trace_header;
+    text += session_columns;
+    text += tool_header;
+    text += check_columns;
+    return text + '\n';
+}
+
+}  // namespace
+
+RecordingText::RecordingText(const RecordingHead& head) : lines(head_text(head)) {}
+
+void RecordingText::append(const SessionTick& tick) {
+    const std::size_t begin = lines.size();
+    append_session(lines, tick);
+    append_cell(lines, ticks_.fetch_add(1, std::memory_order_relaxed));
+    checksum_ = checksum_with(std::string_view(lines).substr(begin), checksum_);
+    append_cell(lines, std::int64_t{checksum_});
+    lines += '\n';
+}
+
+void RecordingText::append(const Command& command) {
+    const std::size_t begin = lines.size();
+    lines += "#";
+    lines += command_mark;
+    lines += to_json(command, bodies_).dump();
+    checksum_ = checksum_with(std::string_view(lines).substr(begin), checksum_);
+    lines += '\n';
+}
+
+void RecordingText::end(std::int64_t lost) {
+    lines += "#";
+    lines += end_mark;
+    lines += Json{{"ticks", ticks()}, {"lost", lost}, {"crc32", checksum_}}.dump() + "\n";
+}
+
+}  // namespace palpate::io
