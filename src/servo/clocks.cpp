@@ -37,7 +37,7 @@ Alarm::Alarm() noexcept = default;
 Alarm::~Alarm() = default;
 
 void Alarm::sleep_until(std::int64_t ns) noexcept {
-    const timespec t{ns / second_ns, ns % second_ns};
+    const timespec t{static_cast<std::time_t>(ns / second_ns), static_cast<long>(ns % second_ns)};
     while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
     }
 }

@@ -1,0 +1,145 @@
+// Palpate for the browser and for Node: volumes, and sessions that feel them. Types: palpate.d.ts.
+import createCore from "./palpate_core.js";
+
+const snapshotNames = [
+  "number", "time", "hip", "scp", "force", "normal", "constrained", "density", "isovalue", "flags",
+  "touched", "inside", "version", "missed", "stiffness", "status",
+];
+const vectors = new Set(["hip", "scp", "force", "normal"]);
+
+const sampleTypes = new Map([
+  [Uint8Array, "uint8"], [Uint8ClampedArray, "uint8"], [Int16Array, "int16"], [Uint16Array, "uint16"],
+  [Float32Array, "float32"],
+]);
+const arrayTypes = { uint8: Uint8Array, int16: Int16Array, uint16: Uint16Array, float32: Float32Array };
+
+/** The module's bytes, from beside this file: emscripten's own loader cannot read files in Node. */
+async function readCore() {
+  const address = new URL("./palpate_core.wasm", import.meta.url);
+  if (address.protocol !== "file:") {
+    const answer = await fetch(address);
+    if (!answer.ok) throw new Error(`${address}: ${answer.status} ${answer.statusText}`);
+    return answer.arrayBuffer();
+  }
+  const { readFile } = await import("node:fs/promises");
+  return readFile(address);
+}
+
+/** Samples of a grid. */
+export class Volume {
+  constructor(core) {
+    this.core = core;
+    const { samples, ...geometry } = core.description();
+    Object.assign(this, geometry);
+  }
+  /** A copy of the samples, x fastest. */
+  samples() {
+    const bytes = this.core.description().samples.slice();
+    return new arrayTypes[this.type](bytes.buffer);
+  }
+  delete() {
+    this.core.delete();
+  }
+}
+
+/** A hand that feels a volume: the native servo, one step() per tick. */
+export class Session {
+  constructor(core) {
+    this.core = core;
+  }
+  read(position, { buttons = 0, measured = performance.now() } = {}) {
+    this.core.read(position[0], position[1], position[2], buttons, measured / 1000);
+  }
+  lose() {
+    this.core.lose();
+  }
+  step() {
+    return this.core.step();
+  }
+  stepAt(time, position, { buttons = 0, age = 0 } = {}) {
+    if (position) this.core.read(position[0], position[1], position[2], buttons, time - age);
+    return this.core.stepAt(time);
+  }
+  get due() {
+    return 1000 * this.core.due();
+  }
+  stop() {
+    this.core.stop();
+  }
+  command(name, members = {}) {
+    this.core.send(JSON.stringify({ [name]: members }));
+  }
+  edit(edit, { sameStep = false } = {}) {
+    this.core.edit(JSON.stringify(edit), sameStep);
+  }
+  drill(radius, { sameStep = false } = {}) {
+    return this.core.drill(radius, sameStep);
+  }
+  undo() {
+    return this.core.undo();
+  }
+  redo() {
+    return this.core.redo();
+  }
+  snapshot() {
+    const numbers = this.core.snapshot();
+    const result = {};
+    let at = 0;
+    for (const name of snapshotNames) {
+      if (vectors.has(name)) {
+        result[name] = [numbers[at], numbers[at + 1], numbers[at + 2]];
+        at += 3;
+      } else {
+        result[name] = numbers[at++];
+      }
+    }
+    result.constrained = result.constrained === 1;
+    return result;
+  }
+  report() {
+    return JSON.parse(this.core.report());
+  }
+  record(begun = new Date()) {
+    this.core.record(begun.toISOString());
+  }
+  recording() {
+    return this.core.recording();
+  }
+  surface(isovalue) {
+    return this.core.surface(isovalue);
+  }
+  /** Renders a hand's path [device mm], one position per tick at `rate` [Hz]. */
+  replay(path, rate = 1000) {
+    return path.map((position, i) => {
+      this.stepAt(i / rate, position);
+      return this.snapshot();
+    });
+  }
+  delete() {
+    this.core.delete();
+  }
+}
+
+class Palpate {
+  constructor(core) {
+    this.core = core;
+  }
+  volume(samples, { size, spacing = [1, 1, 1], origin = [0, 0, 0], direction = [1, 0, 0, 0, 1, 0, 0, 0, 1] }) {
+    const type = sampleTypes.get(samples.constructor);
+    if (!type) throw new Error("samples are a Uint8Array, Int16Array, Uint16Array or Float32Array");
+    const bytes = new Uint8Array(samples.buffer, samples.byteOffset, samples.byteLength);
+    return new Volume(this.core.newVolume(bytes, type, size, spacing, origin, direction));
+  }
+  scene(specification) {
+    const { volume, ...rest } = this.core.scene(specification);
+    return { volume: new Volume(volume), ...rest };
+  }
+  session(volume, setup) {
+    return new Session(this.core.newSession(volume.core, JSON.stringify(setup)));
+  }
+}
+
+/** Loads the module; `wasm` are its bytes, if they are not beside this file. */
+export async function load(wasm) {
+  return new Palpate(await createCore({ wasmBinary: wasm ?? (await readCore()) }));
+}
