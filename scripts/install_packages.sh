@@ -23,6 +23,7 @@ groups (default: all)
   test     package, and what only the tests use: lintian and pkg-config for the Debian packages, Mono for C#
   dev      clang, lld, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck
   docs     MkDocs and Doxygen, for the documentation as a site
+  web      core, emscripten, and Chromium for the tests of the page; not in all
   windows  core, MinGW and Wine, and the headers that the libraries for Windows are built with; not in all
   all      everything above
 TEXT
@@ -41,6 +42,7 @@ package=(dpkg-dev file)
 test=("${package[@]}" lintian pkg-config mono-mcs mono-runtime)
 dev=(clang lld clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 docs=(mkdocs doxygen python3-pygments libjs-jquery)
+web=("${core[@]}" emscripten node-acorn nlohmann-json3-dev googletest chromium)
 windows=("${core[@]}" g++-mingw-w64-x86-64-posix wine64 libz-mingw-w64-dev nlohmann-json3-dev
     libboost-dev libcli11-dev libfmt-dev)
 
@@ -61,6 +63,7 @@ for group in "${@:-all}"; do
         dev) wanted+=("${dev[@]}") ;;
         docs) wanted+=("${docs[@]}") ;;
         windows) wanted+=("${windows[@]}") ;;
+        web) wanted+=("${web[@]}") ;;
         all) wanted+=("${viewer[@]}" "${test[@]}" "${dev[@]}" "${docs[@]}") ;;
         -h | --help) usage; exit 0 ;;
         *) echo "install_packages.sh: no group '$group'" >&2; usage >&2; exit 2 ;;

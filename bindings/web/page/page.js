@@ -1,0 +1,245 @@
+// The page: a mouse or finger moves the hand; pressing pushes it against the surface until the spring is as long
+// as asked for. What it does goes through Hand, what it shows comes from there.
+import { Hand } from "../hand.js";
+import { drawHistogram, drawSlices, histogramOf } from "./charts.js";
+import { readVolume } from "./files.js";
+import { Scene } from "./scene.js";
+
+const $ = (id) => document.getElementById(id);
+const headAddress = new URL("./visible_human_head.nrrd", import.meta.url);
+const levels = { head: 35 }; // [data units] the skin
+const headLayers = {
+  name: "Skin and bone of the head",
+  layers: [
+    { name: "skin", level: 35, stiffness: 0.3, static_friction: 0.3, dynamic_friction: 0.2, puncture_force: 1.2, viscosity: 0.0002 },
+    { name: "bone", level: 100, stiffness: 0.5, static_friction: 0.2, dynamic_friction: 0.15 },
+  ],
+};
+const speed = 90; // [device mm/s] at which the hand approaches
+const slowly = 15; // [device mm/s] while surfaces give way
+const far = 75; // [device mm] where it rests
+
+const scene = new Scene($("scene"));
+let volume = null; // of the worker's answer `ready`
+let snapshot = null;
+let histogram = null;
+let level = 0;
+let pressing = false;
+let meshing = false; // a surface was asked for and has not come
+let stale = false; // and another one is needed
+let recording = false;
+let opened = ""; // name of the volume
+let shown = 0; // level of the surface
+const hand = [0, 0, far];
+
+/** Volume and device, centre on centre, the front of the body towards the viewer. */
+function transformFor({ size, spacing, origin, direction }) {
+  const middle = [0, 1, 2].map((row) => origin[row] + [0, 1, 2].reduce((sum, a) => sum + direction[3 * row + a] * spacing[a] * (size[a] - 1) * 0.5, 0));
+  const longest = Math.max(...size.map((n, a) => n * spacing[a]));
+  return { rotation: [[1, 0, 0], [0, 0, -1], [0, 1, 0]], translation: middle, scale: longest / 140 };
+}
+
+let toldUntil = 0;
+/** Shows a state, which stays for `least` ms. */
+function tell(text, least = 0) {
+  if (performance.now() < toldUntil && least === 0) return;
+  toldUntil = performance.now() + least;
+  if ($("state").textContent !== text) $("state").textContent = text;
+}
+
+const to = new Hand({
+  ready(made) {
+    volume = { ...made, number: (volume?.number ?? 0) + 1 };
+    histogram = histogramOf(volume);
+    useLevel(levels[opened] ?? made.isovalue ?? histogram.otsu);
+    document.body.dataset.ready = "1";
+    to.send("report");
+  },
+  snapshot(now) {
+    snapshot = now;
+    if (Number.isFinite(now.isovalue) && $("through").checked) level = now.isovalue;
+    if (volume && Math.abs(level - shown) > 0.03 * (volume.maximum - volume.minimum)) remesh(); // pressed through
+    const pull = Math.hypot(...now.force);
+    tell(now.constrained ? `In contact: ${pull.toFixed(1)} N at level ${now.isovalue.toFixed(0)}` : pressing ? "Approaching ..." : "Move, and press to touch");
+  },
+  surface(mesh) {
+    scene.show(mesh, transformFor(volume));
+    meshing = false;
+    document.body.dataset.surface = String(Number(document.body.dataset.surface ?? 0) + 1);
+    if (stale) remesh();
+  },
+  edited: () => remesh(),
+  recording(text) {
+    const link = $("save");
+    URL.revokeObjectURL(link.href);
+    link.href = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+    link.hidden = false;
+  },
+  report({ ticks, missed, lateness, work }) {
+    const us = (ns) => `${(ns / 1000).toFixed(0)} µs`;
+    const rows = [["ticks", ticks], ["missed", missed], ["late, median", us(lateness.p50)], ["late, 99 %", us(lateness.p99)],
+      ["late, 99.9 %", us(lateness.p999)], ["work, median", us(work.p50)], ["sleeps between ticks", volume.isolated ? "yes" : "no"]];
+    $("report").innerHTML = rows.map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("");
+  },
+  error: (text) => tell(`Error: ${text}`, 5000),
+});
+
+function remesh() {
+  stale = meshing;
+  if (meshing) return;
+  meshing = true;
+  shown = level;
+  to.send("surface", level);
+}
+
+function useLevel(value) {
+  level = value;
+  const slider = $("isovalue");
+  [slider.min, slider.max, slider.step] = [volume.minimum, volume.maximum, (volume.maximum - volume.minimum) / 500];
+  slider.value = value;
+  $("isovalueText").textContent = value.toFixed(1);
+  to.command("isovalue", { value });
+  remesh();
+}
+
+function begin(data, name, file) {
+  snapshot = null;
+  scene.surface = null;
+  opened = name;
+  hand[2] = far;
+  $("through").checked = $("layers").checked = $("drill").checked = false;
+  $("layersLabel").hidden = name !== "head";
+  to.send("burr", 0);
+  const { geometry, samples, scene: made } = data;
+  const fit = geometry && transformFor(geometry);
+  to.send("begin", {
+    samples, geometry, scene: made,
+    setup: {
+      ...(made ? {} : { isovalue: levels[name] ?? middleOf(samples) }), volume: file, device: "mouse",
+      // A page reads its mouse 60 times a second.
+      settings: { force: { stiffness: 0.5, stale_after: 0.08, limit: 3.3 }, transform: fit ?? { rotation: [[1, 0, 0], [0, 0, -1], [0, 1, 0]], scale: 64 / 140 } },
+    },
+  }, samples ? [samples.buffer] : []);
+}
+
+function middleOf(samples) {
+  return histogramOf({ samples, ...rangeOf(samples) }).otsu;
+}
+function rangeOf(samples) {
+  return samples.reduce((r, v) => ({ minimum: Math.min(r.minimum, v), maximum: Math.max(r.maximum, v) }), { minimum: Infinity, maximum: -Infinity });
+}
+
+async function open(name, read, file) {
+  tell("Loading ...");
+  try {
+    begin(await read(), name, file);
+  } catch (error) {
+    tell(`Error: ${error.message}`, 5000);
+  }
+}
+
+const openHead = () => open("head", async () => readVolume(await (await fetch(headAddress)).arrayBuffer()), "visible_human_head.nrrd");
+const openFile = (file) => open(file.name, async () => readVolume(await file.arrayBuffer()), file.name);
+
+// The hand.
+let then = performance.now();
+function frame(now) {
+  const dt = Math.min(0.1, (now - then) / 1000);
+  then = now;
+  moveByKeys(dt);
+  const asked = Number($("press").value);
+  $("pressText").textContent = `${asked} mm`;
+  if (snapshot && scene.transform) {
+    const proxy = scene.device(snapshot.scp);
+    const pull = proxy[2] - hand[2];
+    if (!pressing) hand[2] = Math.min(far, hand[2] + speed * dt);
+    else if (!snapshot.constrained) hand[2] = Math.max(-far, hand[2] - speed * dt);
+    else {
+      const most = ($("through").checked || $("layers").checked ? slowly : speed) * dt;
+      hand[2] += Math.max(-most, Math.min(most, pull - asked));
+    }
+  }
+  if (volume && !document.hidden) to.read(hand);
+  scene.draw(snapshot, hand);
+  if (volume) {
+    drawHistogram($("histogram"), histogram, level);
+    if (snapshot) drawSlices($("slices"), volume, snapshot.scp);
+  }
+  requestAnimationFrame(frame);
+}
+
+const canvas = $("scene");
+const follow = (event) => {
+  [hand[0], hand[1]] = scene.under(event, 0);
+};
+const setPressing = (on) => {
+  pressing = on;
+  if ($("drill").checked) to.send("burr", on ? drillRadius() : 0); // each press is a step of undo
+};
+const drillRadius = () => 2.5 * Math.max(...volume.spacing);
+canvas.addEventListener("pointermove", follow);
+canvas.addEventListener("pointerdown", (event) => {
+  canvas.setPointerCapture(event.pointerId);
+  follow(event);
+  setPressing(true);
+});
+for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, () => setPressing(false));
+canvas.addEventListener("wheel", (event) => {
+  event.preventDefault();
+  $("press").value = Number($("press").value) - Math.sign(event.deltaY) * 0.5;
+}, { passive: false });
+
+const held = new Set();
+canvas.addEventListener("keydown", (event) => {
+  if (event.key.startsWith("Arrow") || event.key === " ") event.preventDefault();
+  if (event.key === " " && !pressing) setPressing(true);
+  if (event.key === "+") $("press").stepUp();
+  if (event.key === "-") $("press").stepDown();
+  held.add(event.key);
+});
+canvas.addEventListener("keyup", (event) => {
+  held.delete(event.key);
+  if (event.key === " ") setPressing(false);
+});
+canvas.addEventListener("blur", () => {
+  held.clear();
+  if (pressing) setPressing(false);
+});
+function moveByKeys(dt) {
+  const way = (more, less) => ((held.has(more) ? 1 : 0) - (held.has(less) ? 1 : 0)) * 50 * dt;
+  hand[0] += way("ArrowRight", "ArrowLeft");
+  hand[1] += way("ArrowUp", "ArrowDown");
+}
+
+// The panel.
+$("volume").onchange = ({ target }) =>
+  target.value === "head" ? openHead() : open(target.value, () => ({ scene: target.value }), target.value);
+$("file").onchange = ({ target }) => target.files[0] && openFile(target.files[0]);
+document.ondragover = (event) => event.preventDefault();
+document.ondrop = (event) => {
+  event.preventDefault();
+  if (event.dataTransfer.files[0]) openFile(event.dataTransfer.files[0]);
+};
+$("isovalue").oninput = ({ target }) => useLevel(Number(target.value));
+$("histogram").onclick = (event) => {
+  event.preventDefault();
+  const box = $("histogram").getBoundingClientRect();
+  useLevel(volume.minimum + ((event.clientX - box.left) / box.width) * (volume.maximum - volume.minimum));
+};
+$("through").onchange = ({ target }) => {
+  to.command("penetrability", target.checked ? { on: true, threshold: 3, range_count: 1, range_1: { low: level, high: volume.maximum } } : { on: false });
+  if (!target.checked) useLevel(Number($("isovalue").value)); // back to where it began
+};
+$("layers").onchange = ({ target }) => to.command("layers", target.checked ? { layers: headLayers } : {});
+$("drill").onchange = ({ target }) => to.send("burr", target.checked && pressing ? drillRadius() : 0);
+$("undo").onclick = () => to.send("undo");
+$("redo").onclick = () => to.send("redo");
+$("record").onclick = ({ target }) => {
+  recording = !recording;
+  target.setAttribute("aria-pressed", String(recording));
+  target.textContent = recording ? "End the recording" : "Record";
+  to.send(recording ? "record" : "recording");
+};
+setInterval(() => volume && to.send("report"), 1000);
+requestAnimationFrame(frame);
+openHead();

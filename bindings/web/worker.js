@@ -1,0 +1,99 @@
+// The servo loop of a page, in a Worker: sleeps until each tick is due and posts snapshots. Messages are
+// { name: argument }, see Hand in hand.js. A session that has lost its page has stale input and no force.
+import { load } from "./palpate.js";
+
+const betweenSnapshots = 16; // [ms]
+const betweenCarvings = 40; // [ms]
+const sleeper = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayBuffer(4)) : null;
+const turns = new MessageChannel();
+
+const loaded = load();
+let session;
+let running = false;
+let lastSnapshot = 0;
+let lastCarving = 0;
+let burr = 0; // [mm] radius, 0: none
+let carving = false; // within one step of undo
+
+const post = (name, value, transfer = []) => postMessage({ [name]: value }, transfer);
+
+/** One tick, then back to the event loop, which takes the messages that have come meanwhile. */
+function turn() {
+  if (!running) return;
+  const left = session.due - performance.now();
+  if (left > 0) {
+    // Without isolation there is no sleep of under 4 ms: the loop keeps its processor busy.
+    if (sleeper) Atomics.wait(sleeper, 0, 0, left);
+    if (session.due > performance.now()) return void turns.port2.postMessage(null);
+  }
+  running = session.step();
+  const now = performance.now();
+  if (burr > 0 && now - lastCarving > betweenCarvings) carve(now);
+  if (now - lastSnapshot > betweenSnapshots || !running) {
+    lastSnapshot = now;
+    post("snapshot", session.snapshot());
+  }
+  turns.port2.postMessage(null);
+}
+
+function carve(now) {
+  lastCarving = now;
+  if (!session.drill(burr, { sameStep: carving })) return;
+  carving = true;
+  post("edited", true);
+}
+
+const actions = {
+  async begin({ samples, geometry, scene, setup }) {
+    const palpate = await loaded;
+    const made = scene ? palpate.scene(scene) : { volume: palpate.volume(samples, geometry) };
+    const { volume } = made;
+    session?.delete();
+    session = palpate.session(volume, { isovalue: made.isovalue, ...setup });
+    const copy = volume.samples();
+    volume.delete(); // the session holds its samples
+    const { type, size, spacing, origin, direction, minimum, maximum } = volume;
+    post("ready", {
+      isovalue: made.isovalue, samples: copy, type, size, spacing, origin, direction, minimum, maximum,
+      isolated: sleeper !== null,
+    }, [copy.buffer]);
+    if (!running) {
+      running = true;
+      turns.port2.postMessage(null);
+    }
+  },
+  read({ position, buttons, at }) {
+    // Clocks of a page and its worker begin at other times.
+    session?.read(position, { buttons, measured: at - performance.timeOrigin });
+  },
+  lose: () => session?.lose(),
+  command: ([name, members]) => session.command(name, members),
+  burr(radius) {
+    burr = radius;
+    carving = false;
+  },
+  undo: () => post("edited", session.undo()),
+  redo: () => post("edited", session.redo()),
+  surface(isovalue) {
+    const mesh = session.surface(isovalue);
+    post("surface", mesh, [mesh.vertices.buffer, mesh.normals.buffer, mesh.triangles.buffer]);
+  },
+  record: () => session.record(),
+  recording: () => post("recording", session.recording()),
+  report: () => post("report", session.report()),
+  end() {
+    running = false;
+    session?.stop();
+  },
+};
+
+turns.port1.onmessage = turn;
+onmessage = async ({ data }) => {
+  for (const [name, argument] of Object.entries(data)) {
+    try {
+      await actions[name](argument);
+    } catch (error) {
+      post("error", error.message);
+    }
+  }
+};
