@@ -42,14 +42,18 @@ class WebVolume {
         geometry.size = vector_from(size).cast<int>();
         geometry.spacing = vector_from(spacing);
         geometry.origin = vector_from(origin);
-        for (int row = 0; row < 3; ++row) geometry.direction.row(row) = vector_from(direction, 3 * row);
+        for (int row = 0; row < 3; ++row)
+            geometry.direction.row(row) = vector_from(direction, 3 * row);
         const auto bytes = samples["byteLength"].as<std::size_t>();
         const std::shared_ptr<std::byte[]> copy(new std::byte[bytes]);
-        val(typed_memory_view(bytes, reinterpret_cast<unsigned char*>(copy.get()))).call<void>("set", samples);
+        val(typed_memory_view(bytes, reinterpret_cast<unsigned char*>(copy.get())))
+            .call<void>("set", samples);
         samples_ = std::make_shared<const Samples>(
-            Volume(geometry, sample_type_from(type), std::shared_ptr<const void>(copy, copy.get()), bytes));
+            Volume(geometry, sample_type_from(type), std::shared_ptr<const void>(copy, copy.get()),
+                   bytes));
     }
-    explicit WebVolume(Volume volume) : samples_(std::make_shared<const Samples>(std::move(volume))) {}
+    explicit WebVolume(Volume volume)
+        : samples_(std::make_shared<const Samples>(std::move(volume))) {}
 
     const Volume& volume() const { return samples_->volume(); }
     const std::shared_ptr<const Samples>& samples() const { return samples_; }
@@ -105,7 +109,8 @@ val copied(const char* type, const std::vector<T>& values) {
 }
 
 val surface_of(const Field& field, double isovalue) {
-    const SurfaceMesh mesh = extract_surface(field, isovalue, {.normals = field.interpolation() == Interpolation::cubic});
+    const SurfaceMesh mesh = extract_surface(
+        field, isovalue, {.normals = field.interpolation() == Interpolation::cubic});
     const auto floats = [](const std::vector<Vec3>& points) {
         std::vector<float> list;
         list.reserve(3 * points.size());
@@ -115,7 +120,8 @@ val surface_of(const Field& field, double isovalue) {
         return copied("Float32Array", list);
     };
     std::vector<unsigned> corners;
-    for (const auto& triangle : mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+    for (const auto& triangle : mesh.triangles)
+        corners.insert(corners.end(), triangle.begin(), triangle.end());
     val result = val::object();
     result.set("vertices", floats(mesh.vertices));
     result.set("normals", floats(mesh.normals));

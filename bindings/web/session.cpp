@@ -26,9 +26,10 @@ std::int64_t clock_ns() noexcept {
 constexpr double longest_stroke = 10;  // times the brush's radius
 
 Field field_from(const std::shared_ptr<const Samples>& samples, const Json& setup) {
-    const auto background = setup.contains("background")
-                                ? std::optional(io::number_from_json(setup["background"], "background"))
-                                : std::nullopt;
+    const auto background =
+        setup.contains("background")
+            ? std::optional(io::number_from_json(setup["background"], "background"))
+            : std::nullopt;
     const bool below = setup.value("solid", "above") == "below";
     return Field(samples, below ? Solid::below : Solid::above, background,
                  interpolation_from(setup.value("field", "cubic")));
@@ -41,9 +42,10 @@ RendererSettings settings_from(const Json& setup) {
 }
 
 Session session_from(const Field& field, const Json& setup) {
-    Session session{make_renderer(field, io::number_from_json(io::member(setup, "isovalue"), "isovalue"),
-                                  settings_from(setup)),
-                    {}};
+    Session session{
+        make_renderer(field, io::number_from_json(io::member(setup, "isovalue"), "isovalue"),
+                      settings_from(setup)),
+        {}};
     if (setup.contains("session")) io::from_json(setup["session"], session.settings);
     return session;
 }
@@ -67,10 +69,10 @@ WebSession::WebSession(std::shared_ptr<const Samples> samples, const std::string
       editor_(std::move(samples)),
       field_(field_from(editor_.samples(), setup_)),
       start_(session_from(field_, setup_)),
-      servo_(std::make_unique<Servo>(start_, device_,
-                                     ServoSettings{.rate = setup_.value("rate", 1000.0),
-                                                   .real_time = false,
-                                                   .clock = &clock_ns})) {
+      servo_(std::make_unique<Servo>(
+          start_, device_,
+          ServoSettings{
+              .rate = setup_.value("rate", 1000.0), .real_time = false, .clock = &clock_ns})) {
     versions_.emplace_back(editor_.samples(), command::Samples{});
 }
 

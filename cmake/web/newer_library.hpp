@@ -87,7 +87,8 @@ auto find(Range&& range, const Value& value) {
 /// By a projection: of two values, that whose member is less comes first.
 template <class Key>
 auto by(Key key) {
-    return [key](const auto& a, const auto& b) { return std::invoke(key, a) < std::invoke(key, b); };
+    return
+        [key](const auto& a, const auto& b) { return std::invoke(key, a) < std::invoke(key, b); };
 }
 template <class Range>
 void sort(Range&& range) {

@@ -1,5 +1,5 @@
-// The text of a recording, line by line. RecordingWriter brings it to a file. The web module keeps it
-// in memory. Private to io/ and bindings/web.
+// The text of a recording, line by line. RecordingWriter brings it to a file. The web module keeps
+// it in memory. Private to io/ and bindings/web.
 #pragma once
 
 #include <atomic>
