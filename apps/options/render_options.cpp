@@ -61,13 +61,13 @@ void RenderOptions::add_to(CLI::App& command) {
         ->type_name(fmt::format("{{{}}}|FILE.json", fmt::join(io::layers_names(), ",")));
     command
         .add_option("--labels", labels,
-                    "Layers by place: a label volume (a segmentation) on its own grid")
+                    "A layer for each label of a segmentation: a label volume on its own grid")
         ->type_name("VOLUME");
     command
         .add_option_function<std::string>(
             "--tool", [this](const std::string& text) { given.tool = io::tool_spec_from(text); },
-            "Feel with a rigid tool: sphere:R, rod:L, needle[:L,R], burr:R, box:X,Y,Z, fingertip "
-            "[mm], or a file: points (.csv) or a mesh (.stl, .ply, .obj, .vtp)")
+            "Touch with a rigid tool: sphere:R, rod:L, needle[:L,R], burr:R, box:X,Y,Z, fingertip "
+            "[mm], or a file with points (.csv) or a mesh (.stl, .ply, .obj, .vtp)")
         ->type_name("{point,sphere:,rod:,needle,burr:,box:,fingertip}|FILE.{csv,stl,ply,obj,vtp}")
         ->default_str("point");
     command
@@ -76,13 +76,15 @@ void RenderOptions::add_to(CLI::App& command) {
         ->check(above_zero());
     add_force_to(command);
     command
-        .add_option(
-            "--rate", given.rate,
-            "Rate of the loop the forces are meant for [Hz] (default: 1000; live 250 with a "
-            "device that renders no force)")
+        .add_option("--rate", given.rate,
+                    "Rate of the loop [Hz] (default: 1000, or 250 in live sessions with a device "
+                    "that renders no force)")
         ->type_name("FLOAT");
-    command.add_option("--scale", given.scale, "Physical mm per mm of hand")->default_str("1");
-    command.add_option("--step-budget", given.step_budget, "Most tetrahedra an update may enter")
+    command.add_option("--scale", given.scale, "Millimetres of volume per millimetre of hand")
+        ->default_str("1");
+    command
+        .add_option("--step-budget", given.step_budget,
+                    "Largest number of tetrahedra that an update may enter")
         ->default_str(std::to_string(ProxySettings{}.step_budget));
 }
 
@@ -93,14 +95,17 @@ void RenderOptions::add_penetrability_to(CLI::App& command) {
                                               : Penetrability::ranges;
     };
     command
-        .add_option_function<std::string>("--penetrability", choose,
-                                          "Where the surface gives way to pressing")
+        .add_option_function<std::string>(
+            "--penetrability", choose,
+            "Whether the surface gives way when it is pressed hard, and at which levels")
         ->check(one_of({"off", "threshold", "ranges"}))
         ->default_str("off");
-    command.add_option("--threshold", threshold, "Penetration threshold PT [device mm] (1)");
+    command.add_option("--threshold", threshold,
+                       "Penetration threshold PT: depth of the hand at which the surface gives way "
+                       "[device mm] (1)");
     command.add_option_function<std::string>(
         "--minimum", [this](const std::string& text) { minimum = io::level_from_text(text); },
-        "threshold: least level felt (default: the isovalue)");
+        "For threshold: the lowest level that is touched (default: the isovalue)");
     // Without allow_extra_args(false) this would take VOLUME for one more range.
     command
         .add_option_function<std::vector<std::string>>(
@@ -108,7 +113,7 @@ void RenderOptions::add_penetrability_to(CLI::App& command) {
             [this](const std::vector<std::string>& texts) {
                 for (const std::string& text : texts) ranges.push_back(range_from(text));
             },
-            "ranges: levels that are felt, LOW:HIGH; may be given again")
+            "For ranges: levels that are touched, LOW:HIGH. May be given again")
         ->allow_extra_args(false)
         ->type_name("LOW:HIGH");
 }
@@ -155,7 +160,7 @@ void RenderOptions::add_force_to(CLI::App& command) {
         .add_option_function<std::string>(
             "--friction",
             [this](const std::string& text) { given.friction = friction_from("--friction", text); },
-            "Friction coefficients; dynamic at most static")
+            "Friction coefficients. The dynamic one is at most the static one")
         ->type_name("STATIC[,DYNAMIC]");
 }
 

@@ -71,33 +71,35 @@ void RunOptions::add_device_options(CLI::App& command) {
     command.add_option_function<std::string>(
         "--clutch",
         [this](const std::string& text) { given.clutch = button_from("--clutch", text); },
-        "Button that holds the volume to the hand: 1, 2, ... or none (2, or 1 of 1)");
+        "Button that attaches the volume to the hand: 1, 2, ... or none (default: 2, or 1 on "
+        "devices with one button)");
     command.add_option_function<std::string>(
         "--dead-man",
         [this](const std::string& text) { given.deadman = button_from("--dead-man", text); },
-        "Button that must be held for any force (none)");
+        "Button that must be held for any force (default: none)");
 }
 
 void RunOptions::add_script_options(CLI::App& command) {
     command
         .add_option("--commands", commands,
-                    "File of commands, a line each: SECONDS COMMAND, as in 1.5 isovalue 300")
+                    "File of commands with their times, one per line: SECONDS COMMAND, for example "
+                    "1.5 isovalue 300")
         ->type_name("FILE.txt");
     command
         .add_option("--seconds", seconds,
                     "End after this time [s] (default: when the hand has finished)")
         ->check(above_zero());
     command.add_flag("--unpaced", unpaced,
-                     "Do not wait for the clock, with a simulated or recorded hand: the session is "
-                     "computed as fast as possible, in the same way each time");
+                     "Do not wait for the clock: compute a session with a simulated or recorded "
+                     "hand as fast as possible, in the same way each time");
     command.add_option(
         "--brush", brush,
-        "Brush that follows the proxy from the start: 'KIND RADIUS [RATE [VALUE]]', "
-        "KIND carve, add, smooth or paint, RADIUS [mm] of a ball, or tool[:BEYOND] for "
-        "the tool's own shape and so much round it [mm], RATE [1/s] or inf");
+        "Brush that follows the proxy from the start: 'KIND RADIUS [RATE [VALUE]]'. KIND is carve, "
+        "add, smooth or paint. RADIUS is that of a ball [mm], or tool[:BEYOND] for the tool's own "
+        "shape and BEYOND mm around it. RATE is in 1/s, or inf");
     command
         .add_option("--save", save,
-                    "File for the volume as it is at the end, edits included; or a folder *.zarr")
+                    "File for the volume at the end, with its edits, or a folder *.zarr")
         ->type_name(file_of(io::written_extensions()));
     command.add_flag("--json", json, "Print the report as JSON");
 }
@@ -105,19 +107,19 @@ void RunOptions::add_script_options(CLI::App& command) {
 void RunOptions::add_data_options(CLI::App& command) {
     command
         .add_option("--playback", given.playback.speed,
-                    "Speed at which a sequence is played from the start; 0: paused")
+                    "Speed at which a sequence is played from the start. 0 is paused")
         ->check(from_to(-1000.0, 1000.0))
         ->capture_default_str();
     command.add_flag(
         "--once", [this](std::int64_t) { given.playback.loader.loop = false; },
-        "A sequence stops at its end instead of starting again");
+        "Stop a sequence at its end instead of starting again");
     command
         .add_option_function<int>(
             "--sequence-memory",
             [this](int megabytes) {
                 given.playback.loader.memory_bytes = std::uint64_t(megabytes) << 20;
             },
-            "Most memory that frames of a sequence may take [MB]")
+            "Memory limit for the frames of a sequence [MB]")
         ->check(from_to(1, 1 << 20))
         ->default_str(std::to_string(given.playback.loader.memory_bytes >> 20));
 }

@@ -29,11 +29,10 @@ void SourceOptions::add_to(CLI::App& command, bool optional) {
     text("dims", "Size of a raw file in samples: WxHxD")->type_name("WxHxD");
     text("type", "Sample type of a raw file (or a synthetic volume)")
         ->check(one_of({"uint8", "int16", "uint16", "float32"}));
-    text("spacing", "Spacing [mm] instead of what the file gives or lacks: X,Y,Z")
-        ->type_name("X,Y,Z");
+    text("spacing", "Spacing [mm], which replaces that of the file: X,Y,Z")->type_name("X,Y,Z");
     text("orientation",
-         "Where the axes run to in the body instead of what the file gives or lacks: three letters "
-         "as in LPS or RAS")
+         "Side of the body that each axis runs to, which replaces that of the file: three letters "
+         "such as LPS or RAS")
         ->type_name("LPS");
     text("skip", "Bytes of header to skip in a raw file")
         ->type_name("UINT")
@@ -43,37 +42,36 @@ void SourceOptions::add_to(CLI::App& command, bool optional) {
     text("series", "DICOM series: its number in the list, or its UID");
     command
         .add_option("--time-step", frame,
-                    "This frame alone of a 4-D file or a numbered series (heart_%d.nrrd), from 0")
+                    "Only this frame of a 4-D file or a numbered series (heart_%d.nrrd), from 0")
         ->check(count());
     command
         .add_option("--frame-interval", frame_interval,
-                    "Time from frame to frame [s] instead of what the file gives or lacks")
+                    "Time between two frames [s], which replaces that of the file")
         ->check(above_zero());
     command
         .add_option("--smooth", smooth,
-                    "Smooth the samples so many times (3x3x3 binomial), against the steps of 8-bit "
-                    "data; they become float32")
+                    "Smooth the samples this many times (3x3x3 binomial), against the steps of "
+                    "8-bit data. They become float32")
         ->check(from_to(0, 64));
     // A flag, so that the word after it stays the volume.
     command
         .add_flag("--dequantize{" + std::to_string(filters::DequantizeOptions{}.rounds) + "}",
                   dequantize,
-                  "Give back what rounding to levels took, against terraces and the stair steps of "
-                  "masks: --dequantize or --dequantize=ROUNDS; samples become float32")
+                  "Remove the terraces of rounded data and the stair steps of masks: --dequantize "
+                  "or --dequantize=ROUNDS. Samples become float32")
         ->check(count(filters::most_rounds));
     command.add_flag("--prefilter", prefilter,
                      "Sharpen the samples so that thin structures keep their height in the smooth "
-                     "field; they become float32");
+                     "field. They become float32");
     add_streaming_to(command);
     command.add_flag("-q,--quiet", quiet, "No progress, no notes");
 }
 
 void SourceOptions::add_streaming_to(CLI::App& command) {
     command
-        .add_option(
-            "--level", texts["level"],
-            "Level of detail to feel of a store with several, 0 the finest; a plain file is "
-            "then read as it is felt")
+        .add_option("--level", texts["level"],
+                    "Level of detail of a store that is touched, 0 for the finest. A plain file is "
+                    "then read while it is touched")
         ->type_name("UINT")
         ->check(count());
     command.add_option("--channel", texts["channel"], "Channel of a store, from 0")
@@ -81,22 +79,21 @@ void SourceOptions::add_streaming_to(CLI::App& command) {
         ->check(count());
     command
         .add_option("--memory", memory,
-                    "Most memory that the program may take while it feels (512MB for what is "
-                    "felt); a plain file is then read as "
-                    "it is felt")
+                    "Memory limit of the whole program while a store is touched (without it, 512MB "
+                    "for samples). A plain file is then read while it is touched")
         ->type_name("SIZE")
         ->transform(size_in_bytes());
     command.add_flag("--coarse-first", coarse_first,
-                     "Feel a coarser level where the one that is felt has not come yet");
+                     "Use a coarser level until the finer one has loaded");
     command.add_flag("--all-times", all_times,
-                     "A store's times as a sequence, each read whole at the level");
-    command.add_option("--cache", cache_folder, "Folder that keeps what came over the network")
+                     "Play the times of a store as a sequence, each read whole at the level");
+    command.add_option("--cache", cache_folder, "Folder that keeps downloaded data")
         ->type_name("FOLDER");
-    command.add_option("--cache-size", cache_bytes, "Most that this folder keeps (4GB)")
+    command.add_option("--cache-size", cache_bytes, "Size limit of this folder (4GB)")
         ->type_name("SIZE")
         ->transform(size_in_bytes());
     command.add_flag("--forbidden-is-missing", forbidden_is_missing,
-                     "Chunks for which the server answers 403 are not stored, as with S3");
+                     "Treat chunks for which the server answers 403 as not stored, as with S3");
 }
 
 run::Source SourceOptions::source() const {
@@ -172,15 +169,14 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
         .add_option_function<std::string>(
             "--field",
             [&field](const std::string& text) { field.interpolation = interpolation_from(text); },
-            "How densities continue between samples: cubic (smooth), linear (with facets, the "
-            "paper's)")
+            "Interpolation between samples: cubic (smooth) or linear (with facets, the paper's)")
         ->check(one_of({"cubic", "linear"}))
         ->default_str("cubic; linear for the methods paper and gradient");
     command.add_option_function<std::string>(
         "--background",
         [&field](const std::string& text) { field.background = io::level_from_text(text); },
-        "Level outside the data (default: the data's minimum; its maximum for "
-        "--solid below)");
+        "Density outside the data (default: the data's minimum, or its maximum with --solid "
+        "below)");
 }
 
 void warn_of_isovalue(const Field& field, double isovalue) {

@@ -15,7 +15,8 @@ void ViewOptions::add_to(CLI::App& command) {
     run.add_to(command, RunOptions::For::view);
     command.add_option("--session", session, "Session file to open: volume, view and settings")
         ->type_name("FILE.json");
-    command.add_option("--play", play, "Recording to play, with a time line, in place of feeling")
+    command
+        .add_option("--play", play, "Recording to play, with a timeline, instead of a live session")
         ->type_name("FILE.csv");
     command.add_option("--window", size, "Size of the window [pixels]: WIDTHxHEIGHT")
         ->type_name("WxH");

@@ -161,10 +161,11 @@ void add_convert(CLI::App& app) {
         ->type_name(file_of(io::written_extensions()))
         ->required();
     command
-        ->add_option("--ome-version", words->ome_version, "Of OME-Zarr: 0.4 (Zarr 2), 0.5 (Zarr 3)")
+        ->add_option("--ome-version", words->ome_version,
+                     "Version of OME-Zarr: 0.4 (Zarr 2) or 0.5 (Zarr 3)")
         ->check(one_of({"0.4", "0.5"}))
         ->capture_default_str();
-    command->add_option("--chunk", words->zarr.chunk, "Samples of a chunk along each axis")
+    command->add_option("--chunk", words->zarr.chunk, "Samples per chunk along each axis")
         ->check(from_to(8, 512))
         ->capture_default_str();
     command
@@ -176,11 +177,13 @@ void add_convert(CLI::App& app) {
                                           : text == "zstd" ? stream::Compression::zstd
                                                            : stream::Compression::blosc;
             },
-            "Of chunks: none, gzip, zstd, blosc")
+            "Compression of chunks: none, gzip, zstd or blosc")
         ->check(one_of({"none", "gzip", "zstd", "blosc"}))
         ->default_str("zstd");
-    command->add_flag("--compress", words->compress, "Compress the samples of another file");
-    command->add_option("--threads", words->zarr.threads, "That read, pack and write chunks")
+    command->add_flag("--compress", words->compress, "Compress the samples of other formats");
+    command
+        ->add_option("--threads", words->zarr.threads,
+                     "Number of threads that read, pack and write chunks")
         ->check(from_to(1, 256))
         ->capture_default_str();
     command->add_flag("--json", words->json, "Print the summary as JSON");

@@ -87,8 +87,8 @@ void add_demo(CLI::App& app) {
     options->motion = "explore";
     options->picture_width = 900;
     options->output = "palpate-demo";
-    CLI::App* command =
-        app.add_subcommand("demo", "A simulated hand explores a volume; pictures and a report");
+    CLI::App* command = app.add_subcommand(
+        "demo", "Let a simulated hand explore a volume, and draw pictures and a report");
     command->footer(
         "Examples:\n  palpate demo\n  palpate demo head.nrrd --isovalue 34.5 --motion circle");
     add_demo_sculpt(*command);

@@ -220,7 +220,8 @@ void add_demo_sculpt(CLI::App& demo) {
     options->hand.duration_s = 4;
     options->hand.depth_mm = 4;
     CLI::App* command = add_changing(
-        demo, "sculpt", "A simulated hand carves what it feels; an animation", options, sculpt);
+        demo, "sculpt", "Let a simulated hand carve the surface that it touches, as an animation",
+        options, sculpt);
     command->footer("Example:\n  palpate demo sculpt head.nrrd --isovalue 34.5 --radius 4");
     add_motion_options(*command, *options);
     command->add_option("--radius", options->brush.radius, "Radius of the brush [mm]");
@@ -233,8 +234,9 @@ void add_demo_beating(CLI::App& demo) {
     options->output = "palpate-beating";
     options->hand.depth_mm = 5;
     CLI::App* command = add_changing(
-        demo, "beating", "A hand rests on a surface that moves, of a sequence; an animation",
-        options, beating);
+        demo, "beating",
+        "Let a simulated hand rest on the moving surface of a sequence, as an animation", options,
+        beating);
     command->footer("Example:\n  palpate demo beating synthetic:beating:48x48x48 --beats 2");
     command->add_option("--beats", options->beats, "How often the sequence is played")
         ->check(from_to(1, 1000));

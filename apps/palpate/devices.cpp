@@ -39,10 +39,10 @@ void list_devices(bool json) {
 void add_devices(CLI::App& app) {
     auto json = std::make_shared<bool>(false);
     CLI::App* command = app.add_subcommand(
-        "devices", "List haptic devices: which were found, and why others were not");
+        "devices", "List the haptic devices that were found, and why others were not");
     command->footer(
-        "Looks for each kind of device: its library, its service, the device itself. Nothing is "
-        "moved.\n\nExample:\n  palpate devices");
+        "Looks for the library, the service and the devices of each kind. No device "
+        "moves.\n\nExample:\n  palpate devices");
     command->add_flag("--json", *json, "Print the list as JSON");
     command->callback([json] { list_devices(*json); });
 }

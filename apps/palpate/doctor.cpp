@@ -71,17 +71,17 @@ void examine(const Options& options) {
 void add_doctor(CLI::App& app) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
-        "doctor", "Examine this machine: what it lacks for good haptics, and what mends it");
+        "doctor", "Examine this machine, and report what to mend for good haptics");
     command->footer(
         "Looks at kernel, priorities, locked memory, processors, clock, graphics, helpers and "
-        "devices, and runs the servo\nwith a simulated hand to measure how late it is woken. Moves "
-        "no device. Exit status 4 if something essential is missing.\nWith --report the servo runs "
-        "for ten minutes under load: the report is a certificate, and goes with a bug.\n\n"
-        "Examples:\n  palpate doctor\n  palpate doctor --device haply\n  palpate doctor --report "
-        "report.md");
+        "devices, and runs the servo\nwith a simulated hand to measure how late it is woken. No "
+        "device moves. The exit status is 4 if something essential is\nmissing. With --report the "
+        "servo runs for ten minutes under load. Send the report along with a bug "
+        "report.\n\nExamples:\n  palpate doctor\n  palpate doctor --device haply\n  palpate doctor "
+        "--report report.md");
     command
         ->add_option("--seconds", options->seconds,
-                     "Duration of the measurement: 10, with --report 600; 0: none")
+                     "Duration of the measurement [s] (default: 10, with --report 600). 0 skips it")
         ->check(from_to(0.0, 86400.0));
     command->add_option("--device", options->device, "This device has to work")
         ->type_name(fmt::format("{{{}}}", fmt::join(devices::device_names(), ",")));
@@ -90,7 +90,7 @@ void add_doctor(CLI::App& app) {
                      "Write a report with a real-time certificate, as Markdown")
         ->type_name("FILE.md");
     command->add_flag("--json", options->json, "Print everything that was found as JSON");
-    command->add_flag("--quiet", options->quiet, "Print nothing; the exit status says it");
+    command->add_flag("--quiet", options->quiet, "Print nothing. The exit status has the result");
     command->callback([options] { examine(*options); });
 }
 

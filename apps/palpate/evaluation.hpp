@@ -8,7 +8,7 @@ namespace palpate::app {
 
 inline constexpr std::string_view evaluation_command = "evaluate";
 inline constexpr const char* evaluation_description =
-    "Run experiments; each gives a table, figures and checked claims";
+    "Run experiments, each with a table, figures and checked claims";
 
 /// Goes on as Python, with the words behind the command. Returns if Python or the package is not
 /// there.

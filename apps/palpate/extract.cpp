@@ -66,8 +66,8 @@ void add_extract(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("extract", "Write the whole isosurface as a watertight mesh");
     command->footer(
-        "Marching tetrahedra over the lattice that the proxy walks; coordinates are LPS, mm.\n\n"
-        "Example:\n  palpate extract head.nrrd --isovalue 99.5 --output skull.ply");
+        "The mesh is the surface that the proxy touches. Coordinates are LPS, in mm.\n\nExample:\n "
+        " palpate extract head.nrrd --isovalue 99.5 --output skull.ply");
     options->source.add_to(*command);
     add_field_options(*command, options->field);
     command->add_option("-o,--output", options->output, "Mesh to write")
@@ -75,8 +75,8 @@ void add_extract(CLI::App& app) {
         ->required();
     command
         ->add_option("--tolerance", options->tolerance,
-                     "Split facets of the smooth surface until they are as near to it [voxel] (0: "
-                     "not at all)")
+                     "Split facets of the smooth surface until they are this close to it [voxel]. "
+                     "0 splits none")
         ->check(from_to(1e-6, 1.0));
     command->add_flag("--json", options->json, "Print the summary as JSON");
     command->callback([options, command] { extract(*command, *options); });

@@ -34,9 +34,9 @@ int finish_output() {
 
 int run(int argc, char** argv, const std::function<void(CLI::App&)>& add_commands) {
     CLI::App app(
-        "Feel the surfaces inside volumetric data.\n\n"
-        "VOLUME is a file (NRRD, MetaImage, NIfTI, TIFF, VTI, DICOM, raw), a folder with a DICOM "
-        "series or a TIFF stack,\nor synthetic:NAME[:WxHxD].",
+        "Touch the surfaces inside volumetric data.\n\nVOLUME is a file (NRRD, MetaImage, NIfTI, "
+        "TIFF, VTI, DICOM, raw), a folder with a DICOM series or a TIFF stack,\nor "
+        "synthetic:NAME[:WxHxD].",
         "palpate");
     app.allow_windows_style_options(false);  // a path may begin with a slash there, too
     app.set_version_flag("--version", "palpate " PALPATE_VERSION);

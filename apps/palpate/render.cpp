@@ -203,8 +203,8 @@ void render(const CLI::App& command, const RenderPictureOptions& options) {
 
 void add_render(CLI::App& app) {
     auto options = std::make_shared<RenderPictureOptions>();
-    CLI::App* command =
-        app.add_subcommand("render", "A picture of isosurfaces, hand and proxy; needs no display");
+    CLI::App* command = app.add_subcommand(
+        "render", "Draw isosurfaces, hand and proxy as a picture, without a display");
     command->footer(
         "Points are physical (LPS, mm). With --hip alone, the proxy is computed at the first "
         "--isovalue.\n\nExamples:\n"
@@ -213,8 +213,8 @@ void add_render(CLI::App& app) {
     options->source.add_to(*command);
     command
         ->add_option("-i,--isovalue", options->isovalues,
-                     "Level to draw, in the data's units (300) or percent of its range (53%); "
-                     "may be given again: the outer surfaces are translucent")
+                     "Level to draw, in the data's units (300) or percent of its range (53%). May "
+                     "be given again: the outer surfaces are translucent")
         ->allow_extra_args(false);
     add_side_options(*command, options->field);
     command->add_option("--scp", options->scp, "The proxy [mm, physical]")->type_name("X,Y,Z");
@@ -230,11 +230,11 @@ void add_render(CLI::App& app) {
         ->type_name("FILE.csv");
     auto* view = command
                      ->add_option("--view", options->view,
-                                  "Side of the body to look at (default: one that shows most)")
+                                  "Side of the body to look at (default: the one that shows most)")
                      ->check(one_of(pictures::view_names()));
     command
         ->add_option("--azimuth", options->azimuth,
-                     "Look from [degrees]: 0 the front, 90 the body's left side")
+                     "Direction of the view [degrees]: 0 is the front, 90 the body's left side")
         ->excludes(view);
     command->add_option("--elevation", options->elevation, "Look from above [degrees], -90 to 90")
         ->excludes(view);

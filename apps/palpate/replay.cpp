@@ -173,7 +173,7 @@ void add_replay(CLI::App& app) {
     CLI::App* command = app.add_subcommand("replay", "Render a recorded motion of the hand");
     command->footer(
         "The trajectory is CSV with columns t,x,y,z (s, mm in the volume's physical space), and "
-        "for a tool its orientation qw,qx,qy,qz; a trace serves too.\nThe ramp and the limit on "
+        "for a tool its orientation qw,qx,qy,qz. A trace works, too.\nThe ramp and the limit on "
         "the change of force, which a live session has, are "
         "off unless asked for.\n\n"
         "Example:\n  palpate replay head.nrrd --trajectory hand.csv --isovalue 34.5 --output "

@@ -146,7 +146,8 @@ void describe(const CLI::App& command, const ToolOptions& options) {
 
 void add_tool(CLI::App& app) {
     auto options = std::make_shared<ToolOptions>();
-    CLI::App* command = app.add_subcommand("tool", "What a tool touches with: its points and size");
+    CLI::App* command =
+        app.add_subcommand("tool", "Describe a tool: its contact points and its size");
     command->footer(
         "Tools: point, sphere:R, rod:L, needle[:L,R], burr:R, box:X,Y,Z, fingertip (lengths in "
         "mm), a file of points (CSV with columns x,y,z), or a mesh (.stl, .ply, .obj, .vtp; mm, "
@@ -156,8 +157,9 @@ void add_tool(CLI::App& app) {
         ->type_name("{point,sphere:,rod:,needle,burr:,box:,fingertip}|FILE.{csv,stl,ply,obj,vtp}")
         ->required();
     command
-        ->add_option("--spacing", options->spacing,
-                     "Distance of neighbouring points [mm]; when felt: half a voxel")
+        ->add_option(
+            "--spacing", options->spacing,
+            "Distance of neighbouring points [mm]. When you touch, the default is half a voxel")
         ->check(above_zero())
         ->capture_default_str();
     command

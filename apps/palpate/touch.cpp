@@ -447,24 +447,24 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
     auto options = std::make_shared<TouchOptions>();
     CLI::App* command = app.add_subcommand(name, what);
     command->footer(fmt::format(
-        "Without --device a simulated hand explores the volume. Forces begin at zero, when the "
-        "wanted one is small, and end at zero,\nwhatever ends the session. With a terminal, keys "
+        "Without --device a simulated hand explores the volume. Forces begin at zero once the "
+        "computed force is small.\nThey end at zero, however the session ends. On a terminal, keys "
         "work while it runs (? lists them).\n\nExample:\n  {}",
         example));
     options->add_to(*command, is_record ? RunOptions::For::record : RunOptions::For::touch);
     if (!is_record) {
         command->add_flag("--headless", options->headless,
-                          "No window, even where there is a display; so too with --json, "
-                          "--seconds, --commands, --igtl");
+                          "Open no window, even if there is a display. The options --json, "
+                          "--seconds, --commands and --igtl do the same");
     }
     command
         ->add_option("--igtl", options->igtl,
-                     "Send poses and force to 3D Slicer, take volumes and commands: wait for "
-                     "clients at [HOST:]PORT by OpenIGTLink")
+                     "Send poses and force to 3D Slicer by OpenIGTLink, and receive volumes and "
+                     "commands: wait for clients at [HOST:]PORT")
         ->type_name("[HOST:]PORT");
     command
         ->add_option("--igtl-connect", options->igtl_connect,
-                     "The same, but connect to a server, again and again")
+                     "The same, but connect to a server, and again after a break")
         ->type_name("[HOST:]PORT");
     command->callback([options, words, is_record, command] {
         if (!is_record && wants_window(*options)) become_viewer(words);
@@ -475,12 +475,12 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
 }  // namespace
 
 void add_touch(CLI::App& app, const Words& words) {
-    add_session(app, "touch", "Feel a volume live, through a haptic device", false, words,
+    add_session(app, "touch", "Touch a volume live with a haptic device", false, words,
                 "palpate touch head.nrrd --isovalue 34.5 --device haply --record session.csv");
 }
 
 void add_record(CLI::App& app) {
-    add_session(app, "record", "Feel a volume live and record the session", true, {},
+    add_session(app, "record", "Touch a volume live and record the session", true, {},
                 "palpate record head.nrrd --isovalue 34.5 --device haply --output session.csv");
 }
 

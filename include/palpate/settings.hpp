@@ -146,7 +146,7 @@ inline constexpr auto settings_of<ForceSettings> = std::tuple{
         .as_option("--force-rate")
         .if_open("2000; in replay() inf")
         .within(ranges::limit),
-    setting(&ForceSettings::ramp, "ramp", "s", "Ramp of the force from zero at the start")
+    setting(&ForceSettings::ramp, "ramp", "s", "Duration of the rise of the force from zero at the start")
         .titled("force ramp")
         .as_option("--ramp")
         .if_open("0.25; in replay() 0")
@@ -156,17 +156,18 @@ inline constexpr auto settings_of<ForceSettings> = std::tuple{
         .titled("stale time")
         .within(ranges::limit),
     setting(&ForceSettings::start_below, "start_below", "N",
-            "After a start or pause no force until the wanted one is this small (inf: do not wait)")
+            "No force after a start or a pause until the computed one is this small (inf: do not wait)")
         .titled("force to start below")
         .as_option("--start-below")
         .if_open("0.3 in a Run, else inf")
         .within(ranges::start),
     setting(&ForceSettings::rotational_stiffness, "rotational_stiffness", "N mm/rad",
-            "Of a tool (0: from stiffness and the tool's gyration)")
+            "Rotational stiffness of a tool (0: from stiffness and the tool's gyration)")
         .titled("rotational stiffness")
         .as_option("--rotational-stiffness")
         .within(ranges::not_negative),
-    setting(&ForceSettings::rotational_damping, "rotational_damping", "N mm s/rad", "Of a tool")
+    setting(&ForceSettings::rotational_damping, "rotational_damping", "N mm s/rad",
+            "Rotational damping of a tool")
         .titled("rotational damping")
         .as_option("--rotational-damping")
         .within(ranges::not_negative),

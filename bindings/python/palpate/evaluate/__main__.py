@@ -24,26 +24,26 @@ PACKAGES = ("numpy", "scipy", "matplotlib")  # Debian: python3-NAME
 USERS = {"--range": ("penetration",), "--seeds": ("fall-through",), "--method": ("walk-through",),
          "--seed": ("fall-through", "performance", "scaling", "layers", "tools", "streaming")}  # of options that few use
 CLAIMS_BROKEN, WRONG_USE, BAD_INPUT, BAD_OUTPUT, READER_GONE = 1, 2, 3, 5, 141  # exit status, docs/command_line.md
-HELP = f"""Run experiments; each gives a table, figures and checked claims
+HELP = f"""Run experiments, each with a table, figures and checked claims
 
 Usage: palpate evaluate [OPTIONS] EXPERIMENT
 
 Positionals:
   EXPERIMENT {{{','.join(EXPERIMENTS)},all}}
-                              Which experiment; all runs every one and adds report.html, which needs no other file
+                              Name of the experiment, or all to run every one and to write report.html, which needs no other file
 
 Options:
   -h,--help                   Print this help message and exit
   --version                   Display program version information and exit
   -o,--output FOLDER          Folder for the results [palpate-evaluation]
-  --volume VOLUME@ISOVALUE    Volume to use instead of the experiment's own; may be given again
+  --volume VOLUME@ISOVALUE    Volume to use instead of the experiment's own. May be given again
   --data FOLDER               Folder with the real volumes that some experiments use, such as lobster.nrrd (default: environment PALPATE_DATA)
   --method {{{','.join(METHODS)}}}
                               Proxy method, for walk-through [exact]
   --seed UINT                 Seed of everything random [1]
-  --seeds UINT                How many seeds draw their own lines, from the first one on; for fall-through [3]
-  --range LOW:HIGH            Range of interest, in the data's units or in percent of its range, for penetration; may be given again
-  --quick                     Seconds instead of minutes; every claim is checked all the same
+  --seeds UINT                How many seeds draw their own lines, from the first one on, for fall-through [3]
+  --range LOW:HIGH            Range of interest, in the data's units or in percent of its range, for penetration. May be given again
+  --quick                     Seconds instead of minutes, with every claim checked
   --json                      Print paragraphs and claims as JSON
   -q,--quiet                  Print nothing
 
