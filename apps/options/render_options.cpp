@@ -169,7 +169,7 @@ void RenderOptions::warn_of_no_effect() const {
         app::warn_of_no_effect(
             *command_,
             {"--tool-spacing", "--rotational-stiffness", "--rotational-damping", "--torque-limit"},
-            "a point has no size and does not turn, another --tool has");
+            "a point has no size and does not turn: choose another --tool");
     }
     if (std::holds_alternative<io::PointsSpec>(given.tool)) {
         app::warn_of_no_effect(*command_, {"--tool-spacing"}, "the tool's file gives its points");
@@ -177,8 +177,8 @@ void RenderOptions::warn_of_no_effect() const {
     if (penetrability == Penetrability::ranges || minimum) {
         app::warn_of_no_effect(*command_, {"--isovalue"},
                                penetrability == Penetrability::ranges
-                                   ? "each --range is felt at its own levels"
-                                   : "what is felt begins at --minimum");
+                                   ? "each --range has levels of its own"
+                                   : "the levels begin at --minimum");
     }
 }
 

@@ -129,7 +129,7 @@ void SourceOptions::warn_of_no_effect(const run::Source& source) const {
     } else if (!run::is_web_address(store->address)) {
         warn({"--cache", "--cache-size", "--forbidden-is-missing"}, " is on this machine");
     } else if (cache_folder.empty()) {
-        warn({"--cache-size"}, " has no --cache to go to");
+        warn({"--cache-size"}, " is read without --cache");
     }
     const bool described = file ? !file->raw : store && !store->options.raw;
     if (described) warn({"--skip", "--byte-order"}, " is read as its header describes it");
@@ -196,8 +196,8 @@ double required_isovalue(const run::LoadedVolume& loaded, const Field& field,
                          const run::FieldSetup& setup) {
     if (!setup.isovalue && !loaded.isovalue) {
         throw std::invalid_argument(
-            fmt::format("--isovalue is needed: which level of {} to feel; palpate info {} suggests "
-                        "some",
+            fmt::format("--isovalue is needed: the level of {} that you want to touch. palpate "
+                        "info {} suggests some",
                         loaded.name, loaded.name));
     }
     return suggested_isovalue(loaded, field, setup);

@@ -69,7 +69,7 @@ std::optional<std::array<int, 2>> ViewOptions::window_size() const {
     if (!read || end != static_cast<int>(size.size()) || width < 320 || height < 240 ||
         width > 16384 || height > 16384) {
         throw std::invalid_argument("--window " + size +
-                                    ": WIDTHxHEIGHT in pixels, as in 1280x800, is meant");
+                                    ": write WIDTHxHEIGHT in pixels, as in 1280x800");
     }
     return std::array{width, height};
 }

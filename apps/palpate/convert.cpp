@@ -40,7 +40,8 @@ std::optional<run::StoreSource> store_of(const run::Source& source) {
     if (source.smooth > 0 || source.dequantize > 0 || source.prefilter) return std::nullopt;
     if (const auto* store = std::get_if<run::StoreSource>(&source.from)) {
         if (store->all_times) {
-            throw std::invalid_argument("one time is converted: name it by --time-step");
+            throw std::invalid_argument(
+                "only one time can be converted: choose it with --time-step");
         }
         return *store;
     }

@@ -59,7 +59,8 @@ DataRequest stroke(const CommandWords& words, const Volume& volume) {
     run::check(hand);
     return [hand, ends = two_points(words)](run::Data& data, const Field& field, double isovalue) {
         if (!std::isfinite(isovalue))
-            throw std::invalid_argument("no level is felt, so the brush has none to work at");
+            throw std::invalid_argument(
+                "there is no surface to touch now, so the brush has nothing to work on");
         Brush brush = brush_for(hand.kind, field, isovalue, hand.radius);
         if (hand.value) brush.value = *hand.value;
         data.editor().apply(edit::Stroke{brush, ends[0], ends[1]});

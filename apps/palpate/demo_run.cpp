@@ -187,7 +187,7 @@ void run_demo(Demo& demo, const DemoOptions& options, const DemoPicture& picture
     io::write_file(folder / "report.html", report_html(demo, images));
     results.complete();
     if (quiet) return;
-    fmt::print("{} felt {} at isovalue {:g}.\n{}", demo.hand, demo.loaded.name, demo.isovalue,
+    fmt::print("{} touched {} at isovalue {:g}.\n{}", demo.hand, demo.loaded.name, demo.isovalue,
                summary_text(demo.summary));
     if (!plotted) fmt::print("No figure over time: gnuplot is not installed.\n");
     fmt::print("Results: {} (open report.html)\n", options.output);

@@ -190,8 +190,8 @@ void print_text(const run::LoadedVolume& loaded, const run::Histogram& histogram
     if (loaded.time_steps > 1) fmt::print("time steps   {}\n", loaded.time_steps);
     const std::vector<double>& times = loaded.sequence.times;
     if (!times.empty()) {
-        fmt::print("frames       from {:g} to {:g} s, round in {:g} s\n", times.front(),
-                   times.back(), loaded.sequence.period);
+        fmt::print("frames       from {:g} to {:g} s, period {:g} s\n", times.front(), times.back(),
+                   loaded.sequence.period);
     }
     fmt::print("spacing      {:g} x {:g} x {:g} mm{}\n", g.spacing[0], g.spacing[1], g.spacing[2],
                g.measured ? "" : ", assumed: the file gives none (--spacing)");

@@ -23,7 +23,7 @@ pictures::PictureScene scene_of(const run::LoadedVolume& loaded, int width, int 
 void require_png(const std::string& option, const std::string& name) {
     if (is_stream(name) || std::filesystem::path(name).extension() == ".png") return;
     throw std::invalid_argument(option + " " + name +
-                                ": pictures are PNG files; give a name that ends in .png");
+                                ": pictures are PNG files: give a name that ends in .png");
 }
 
 std::string draw(const pictures::PictureScene& scene) {

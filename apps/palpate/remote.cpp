@@ -124,9 +124,9 @@ std::unique_ptr<Remote> make_remote(const std::string& listen, const std::string
         const bridge::Settings settings = bridge::settings_from(client ? connect : listen, client);
         if (!bridge::is_local(settings)) {
             fmt::print(stderr,
-                       "warning: OpenIGTLink has no passwords and no encryption: whoever reaches "
-                       "{} can read what is felt and change volume and level. Use it in a network "
-                       "of your own only, or over ssh: ssh -L 18944:localhost:18944\n",
+                       "warning: OpenIGTLink has no passwords and no encryption: everybody who "
+                       "reaches {} can read the session and change volume and level. Use it only "
+                       "in a network of your own, or over ssh: ssh -L 18944:localhost:18944\n",
                        settings.host);
         }
         auto remote = std::make_unique<Remote>(settings);

@@ -91,7 +91,7 @@ pictures::Contact contact_of(const RenderPictureOptions& options, const Field& f
         if (!place(proxy, field, *contact.hip, isovalue)) {
             throw std::invalid_argument(
                 fmt::format("--hip {}: all of space is solid at isovalue {:g}, so there is no "
-                            "proxy; choose another level",
+                            "proxy: choose another level",
                             options.hip, isovalue));
         }
         contact.scp = update_exact(proxy, field, *contact.hip).scp;
@@ -167,8 +167,8 @@ Drawing drawing_of(const RenderPictureOptions& options) {
             pictures::add_levels(scene, field, levels, [&](double fraction) { bar.at(fraction); });
         if (every > 1 && !options.source.quiet) {
             fmt::print(stderr,
-                       "palpate: note: {}: too large for a picture; drawn from one in {} samples "
-                       "along each axis, without what is finer\n",
+                       "palpate: note: {}: too large for a picture: drawn from one in {} samples "
+                       "along each axis, without finer details\n",
                        loaded.name, every);
         }
     }

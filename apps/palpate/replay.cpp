@@ -73,13 +73,13 @@ void validate(const std::string& recording, const std::string& volume, bool quie
         fmt::print("the recording lost {} events while it was made\n", reader.lost());
     }
     if (!reader.complete()) {
-        fmt::print("the recording was cut off before its end: what came after tick {} is missing\n",
+        fmt::print("the recording was cut off before its end: the ticks after {} are missing\n",
                    replay.ticks() - 1);
     }
     if (!reader.has_checksums()) {
         fmt::print(
-            "it was made by an earlier version, without checksums: whether something was removed "
-            "from it cannot be known\n");
+            "an earlier version made it, without checksums: whether something was removed from it "
+            "cannot be known\n");
     }
 }
 

@@ -305,8 +305,8 @@ void start_recording(run::Run& run, const RunOptions& options) {
     run.record(options.record);
     if (run.data().loaded().live && !options.source.quiet) {
         fmt::print(stderr,
-                   "note: what a live source pushes is not recorded: the recording can be plotted, "
-                   "not rendered again\n");
+                   "note: the frames of a live source are not recorded: the recording can be "
+                   "plotted, but not rendered again\n");
     }
 }
 
@@ -337,7 +337,8 @@ void require_own_time(const TouchOptions& options, const run::Setup& setup) {
         return;
     }
     throw std::invalid_argument(
-        "--unpaced is for a simulated or recorded hand without a bridge: others go with the clock");
+        "--unpaced is for a simulated or recorded hand without a bridge: all others need the "
+        "clock");
 }
 
 void require_no_mouse(const run::Setup& setup) {

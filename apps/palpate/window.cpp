@@ -40,8 +40,7 @@ void become_viewer(const Words& words) {
     if (program.empty()) {
         throw std::invalid_argument(
             "the viewer is not installed: build with PALPATE_VIEWER=ON (package libvtk9-qt-dev), "
-            "or "
-            "feel without a window (palpate touch --headless)");
+            "or touch without a window (palpate touch --headless)");
     }
     if (!has_display()) {
         throw std::invalid_argument(

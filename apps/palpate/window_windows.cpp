@@ -16,7 +16,7 @@ bool has_display() {
 
 void become_viewer(const Words&) {
     throw std::invalid_argument(
-        "there is no viewer for Windows yet: feel without a window (palpate touch --headless)");
+        "there is no viewer for Windows yet: touch without a window (palpate touch --headless)");
 }
 
 }  // namespace palpate::app
