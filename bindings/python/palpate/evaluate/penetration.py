@@ -1,4 +1,4 @@
-"""penetration: what is felt from the skin into the brain? (Corenthy et al. 2012, section 5, Fig. 8)
+"""penetration: which surfaces does a press meet from the skin into the brain? (Corenthy et al. 2012, section 5, Fig. 8)
 
 A hand presses straight in and comes out again, with penetrability off, with a threshold, and with ranges of
 interest.
@@ -13,7 +13,7 @@ from . import figures
 from .experiment import GRANTED, Claim, Figure, Result, Table, largest
 from .subjects import Subject, real, synthetic
 
-TITLE = "What is felt from the skin into the brain?"
+TITLE = "Which surfaces does a press meet from the skin into the brain?"
 STIFFNESS = 0.5  # k [N/mm]
 THRESHOLD = 1.0  # PT [device mm]
 SPEED, RATE = 20.0, 1000.0  # [device mm/s], [Hz]
@@ -149,18 +149,18 @@ def claims_of(presses):
     most = STIFFNESS * THRESHOLD
     for function in ("threshold", "ranges"):
         force = max(float(press.force.max()) for press in of(function))
-        yield Claim(f"{function}: the spring never pulls with more than k PT = {most:g} N", force <= most + ROUNDING,
+        yield Claim(f"{function}: the force of the spring never exceeds k PT = {most:g} N", force <= most + ROUNDING,
                     f"largest {force:.10g} N")
     below, contacts = (sum(of_one(p) for p in of("threshold")) for of_one in (Press.below_minimum, lambda p: len(p.felt)))
-    yield Claim("threshold: no level on the free side of the minimum is ever felt", below == 0,
+    yield Claim("threshold: no level on the free side of the minimum is felt", below == 0,
                 f"{below} of {contacts} ticks in contact")
     others, contacts = (sum(of_one(p) for p in of("ranges")) for of_one in (Press.out_of_ranges, lambda p: len(p.felt)))
-    yield Claim("ranges: only levels within the ranges are ever felt", others == 0,
+    yield Claim("ranges: only levels within the ranges are felt", others == 0,
                 f"{others} of {contacts} ticks in contact")
     moved = max(float(numpy.ptp(press.trace.isovalue)) for press in of("off"))
     yield Claim("off: the isovalue never changes", moved == 0, f"spread {moved:g}")
     inside = max(largest(press.line.subject.excess(press.trace.density)) for press in of("off"))
-    yield Claim(f"off: the SCP never enters (to {GRANTED:g} of the data's range)", inside <= GRANTED,
+    yield Claim(f"off: the SCP never enters the solid (to {GRANTED:g} of the data's range)", inside <= GRANTED,
                 f"largest excess {inside:.2g}")
 
 
@@ -225,11 +225,16 @@ def figure_of(lines, presses):
     for name, place in zip(FUNCTIONS, (0.97, 0.86, 0.75)):
         axes[2, 0].text(0.98, place, name, color=FUNCTIONS[name], transform=axes[2, 0].transAxes, ha="right", va="top",
                         fontsize=7.5)
-    return Figure("", "The hand goes straight in (solid lines) and out again (dashed). First row: the data in a plane through "
-                  "the line of the hand (dotted), with the surfaces at the levels, and the proxy while the hand presses with "
-                  "ranges (red dots). Second row: the level felt in contact, and in grey the data at the hand. Third row: the "
-                  "force of the spring, at most k PT where the surface gives way. With penetrability off, it leaves the panel. "
-                  "Last row: where the proxy is in contact.", drawn)
+    return Figure("", "Each column is a body. The hand goes straight in (solid lines) and out again (dashed lines). First row: a "
+                  "slice of the data that contains the line of the hand (dotted). It shows the surfaces, and the proxy while the "
+                  "hand presses with ranges (red dots). Second row: the level felt in contact, and the density at the hand in "
+                  "grey. Third row: the force of the spring. It is at most k PT where the surface gives way. With penetrability "
+                  "off, it leaves the panel. Last row: the depths at which the proxy is in contact.", drawn)
+
+
+def ranges_of(line):
+    ranges = ", and ".join(f"{low:g} to {high:g}" if numpy.isfinite(high) else f"{low:g} and more" for low, high in line.ranges)
+    return f"The ranges of {line.subject.name} are {ranges}."
 
 
 def run(options):
@@ -241,10 +246,14 @@ def run(options):
             presses.append(Press(line, function))
             table.extend(presses[-1].rows(20 if options.quick else 5))
     return Result(table, [figure_of(lines, presses)], list(claims_of(presses)), [
-        f"A hand presses straight in at {SPEED:g} mm/s and comes out again, at {RATE:g} Hz with k = {STIFFNESS:g} N/mm. One "
-        "millimetre of the hand is one voxel. With the threshold, the surface gives way when the hand is PT = "
-        f"{THRESHOLD:g} mm behind it, and every level from the first one on may be felt. With ranges, only the levels in them "
-        "are felt: " + "; ".join(f"{line.subject.name} {', '.join(f'{low:g} to {high:g}' for low, high in line.ranges)}"
-                                 for line in lines).replace("to inf", "and more") + ".",
-        "Nothing in this experiment is random: it is one line per body, with the exact method on the linear field."],
+        "With penetrability, a surface gives way when it is pressed hard enough, so the hand meets deeper surfaces in the same "
+        "press. This experiment shows which levels are felt on the way, and how large the force becomes. It follows section 5 "
+        "and Fig. 8 of Corenthy et al. 2012.",
+        f"A hand presses straight into each body at {SPEED:g} mm/s and comes out again, with {RATE:g} ticks per second. The "
+        f"stiffness is k = {STIFFNESS:g} N/mm. One millimetre of the hand is one voxel. Each body is pressed three times. With "
+        "penetrability off, the surface never gives way. With the threshold, it gives way when the hand is PT = "
+        f"{THRESHOLD:g} mm behind it, and every level from the first one on may be felt. With ranges, it gives way in the "
+        "same manner, but only levels within the ranges may be felt. " + " ".join(ranges_of(line) for line in lines),
+        "Nothing in this experiment is random. There is one line per body. The method is exact, and the field is linear. The "
+        "column \"levels felt\" gives the lowest and the highest level."],
         Table(summary_of(presses)), data)
