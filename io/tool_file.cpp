@@ -33,7 +33,7 @@ std::array<double, count> sizes_from(const std::string& text, std::string_view s
         if (!number || !(*number > 0 && *number < 1e6) || last != (comma == sizes.npos)) {
             throw std::invalid_argument("the tool '" + text + "': " + std::to_string(count) +
                                         (count == 1 ? " length" : " lengths") +
-                                        " above 0 [mm] must follow the colon");
+                                        " above 0 and below 1e6 [mm] must follow the colon");
         }
         found[i] = *number;
         sizes.remove_prefix(last ? sizes.size() : comma + 1);

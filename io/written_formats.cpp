@@ -52,6 +52,9 @@ std::string why_not_written(const std::filesystem::path& path, const Geometry& g
         }
         return text.append(all.back()) + ": name one of these";
     }
+    if (extension.starts_with(".nii") && geometry.size.maxCoeff() > 32767) {
+        return path.string() + ": NIfTI holds at most 32767 samples along an axis: name it .nrrd";
+    }
     const bool placed =
         geometry.origin != Vec3::Zero() || geometry.direction != Eigen::Matrix3d::Identity();
     if (placed && (extension == ".raw" || extension == ".tif" || extension == ".tiff")) {

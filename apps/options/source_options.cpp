@@ -112,6 +112,11 @@ run::Source SourceOptions::source() const {
     source.frame_interval = frame_interval;
     source.smooth = smooth;
     source.prefilter = prefilter;
+    if (dequantize < 0) {  // of --dequantize=0, which means "off" for a flag
+        throw std::invalid_argument("--dequantize takes 1 to " +
+                                    std::to_string(filters::most_rounds) +
+                                    " rounds: leave it out to keep the samples");
+    }
     source.dequantize = dequantize;
     return source;
 }

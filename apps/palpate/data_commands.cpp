@@ -57,7 +57,9 @@ DataRequest stroke(const CommandWords& words, const Volume& volume) {
     hand.radius = words.number(2);
     if (words.count() > 3) hand.value = io::level_from_text(words[3], volume);
     run::check(hand);
-    return [hand, ends = two_points(words)](run::Data& data, const Field& field, double isovalue) {
+    const auto ends = two_points(words);
+    if (!ends[0].allFinite() || !ends[1].allFinite()) words.refuse();
+    return [hand, ends](run::Data& data, const Field& field, double isovalue) {
         if (!std::isfinite(isovalue))
             throw std::invalid_argument(
                 "there is no surface to touch now, so the brush has nothing to work on");

@@ -56,6 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
         Ineffective{"extract BALL -o a.ply --tolerance 0.1 --field linear",
                     "--tolerance does nothing: "},
         Ineffective{"convert BALL a.zarr -q --compress", "--compress does nothing: "},
+        Ineffective{"convert BALL a.nii -q --compress", "--compress does nothing: .nii is never"},
         Ineffective{"convert BALL a.mha -q --chunk 8 --threads 2",
                     "--chunk, --threads do nothing: "},
         Ineffective{"render BALL -o a.png -q --stiffness 2", "--stiffness does nothing: "},

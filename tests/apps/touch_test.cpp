@@ -220,6 +220,7 @@ TEST(Touch, refuses_commands_that_it_does_not_understand_before_anything_runs) {
     refused("0 dance\n", "c.txt, line 1: there is no command 'dance'");
     refused("\n1 freeze\n", "c.txt, line 2: expected: freeze on|off");
     refused("0 lift off\n", "c.txt, line 1: expected: lift, without a value");
+    refused("0 carve nan,0,0 5\n", "c.txt, line 1: expected: carve X,Y,Z");
     refused("soon freeze on\n", "is no time");
     refused("2 freeze on\n1 freeze off\n", "the time goes back");
     refused("0 stiffness 1000\n", "to be rendered stably");

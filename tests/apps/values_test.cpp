@@ -116,6 +116,8 @@ INSTANTIATE_TEST_SUITE_P(
              "range (53%) (see palpate extract --help)"},
         Line{"extract synthetic:sphere -o a.ply --solid above --solid below",
              "--solid: it is given more than once (see palpate extract --help)"},
+        Line{"info synthetic:sphere --dequantize=0",
+             "--dequantize takes 1 to 1000 rounds: leave it out to keep the samples"},
         Line{"info synthetic:sphere --json=abc",
              "--json = abc: this option takes no such value (see palpate info --help)"}));
 
