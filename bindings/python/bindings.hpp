@@ -30,6 +30,8 @@ void bind_run(py::module_& module);
 void bind_recordings(py::module_& module);
 void bind_evaluation(py::module_& module);
 void bind_proxies(py::module_& module);
+void bind_tool_paths(py::module_& module);
+void bind_closed_loop(py::module_& module);
 void bind_scenes(py::module_& module);
 
 }  // namespace palpate::python

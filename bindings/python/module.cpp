@@ -60,5 +60,7 @@ PYBIND11_MODULE(_palpate, module) {
     bind_recordings(module);
     bind_evaluation(module);
     bind_proxies(module);
+    bind_tool_paths(module);
+    bind_closed_loop(module);
     bind_scenes(module);
 }

@@ -175,16 +175,21 @@ void follow_one(const Way& way, const std::vector<Vec3>& hips, std::size_t from,
     }
 }
 
-ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles& hips,
-                       const Firsts& firsts, const std::string& method, int threads) {
-    const Way way = way_of(field, level, method);
-    const std::vector<Vec3> points = points_from(hips, "hips");
+std::vector<std::size_t> begins_of(const Firsts& firsts, std::size_t rows) {
     std::vector<std::size_t> begins(firsts.data(), firsts.data() + firsts.size());
-    begins.push_back(points.size());
+    begins.push_back(rows);
     if (begins.front() != 0 ||
         std::ranges::adjacent_find(begins, std::greater_equal<>{}) != begins.end()) {
         throw std::invalid_argument("first: rows of hips, rising, from 0, are needed");
     }
+    return begins;
+}
+
+ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles& hips,
+                       const Firsts& firsts, const std::string& method, int threads) {
+    const Way way = way_of(field, level, method);
+    const std::vector<Vec3> points = points_from(hips, "hips");
+    const std::vector<std::size_t> begins = begins_of(firsts, points.size());
     (void)way.placed(points.front());  // throws here, not in a thread
     ProxyTrace trace(static_cast<py::ssize_t>(points.size()));
     const Rows rows(trace);
@@ -201,6 +206,55 @@ ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles
     }
     running.clear();
     return trace;
+}
+
+/// What a call times.
+struct Timed {
+    std::size_t batch = 1;  ///< updates between two readings of the clock; 0: only the clock
+    std::size_t cold = 0;   ///< only every so many updates, after the caches were emptied; 0: all
+};
+
+/// [ns] per update, in the order of the hands.
+std::vector<double> times_of(const Way& way, const std::vector<Vec3>& hips,
+                             const std::vector<std::size_t>& begins, const Timed& timed) {
+    constexpr std::size_t more_than_caches = std::size_t{48} << 20, line = 64;  // bytes
+    std::vector<std::uint8_t> memory(timed.cold > 0 ? more_than_caches : 0, 1);
+    volatile std::uint8_t* const walked = memory.data();
+    std::vector<double> times;
+    std::size_t number = 0;
+    for (std::size_t hand = 0; hand + 1 < begins.size(); ++hand) {
+        Proxy proxy = way.placed(hips[begins[hand]]);
+        for (std::size_t i = begins[hand] + 1; i < begins[hand + 1];) {
+            const std::size_t end =
+                std::min(begins[hand + 1], i + std::max<std::size_t>(1, timed.batch));
+            const bool counts = timed.cold == 0 || ++number % timed.cold == 0;
+            if (counts) {
+                for (std::size_t at = 0; at < memory.size(); at += line) walked[at] = 2;
+            }
+            const auto begin = Clock::now();
+            for (std::size_t k = i; timed.batch > 0 && k < end; ++k) {
+                way.method(proxy, way.field, hips[k], {}, {});
+            }
+            const std::chrono::duration<double, std::nano> taken = Clock::now() - begin;
+            if (counts) times.push_back(taken.count() / double(end - i));
+            i = end;
+        }
+    }
+    return times;
+}
+
+py::array_t<double> update_times(const Field& field, const io::Level& level, const Doubles& hips,
+                                 const Firsts& firsts, const std::string& method, std::size_t batch,
+                                 std::size_t cold) {
+    const Way way = way_of(field, level, method);
+    const std::vector<Vec3> points = points_from(hips, "hips");
+    const std::vector<std::size_t> begins = begins_of(firsts, points.size());
+    std::vector<double> times;
+    {
+        const py::gil_scoped_release unlocked;
+        times = times_of(way, points, begins, {batch, cold});
+    }
+    return array_from(std::move(times));
 }
 
 std::pair<py::array_t<double>, py::array_t<double>> cast_rays(const Field& field,
@@ -271,6 +325,14 @@ void bind_proxies(py::module_& module) {
         "Many hands, one behind the other in `hips` [mm, physical], shape (n, 3); `first`: the\n"
         "row in which each begins. A proxy of its own is put there and follows to the next\n"
         "hand's row. On all processors, or `threads`; the result does not depend on that.");
+    module.def(
+        "update_times", &update_times, py::arg("field"), py::arg("isovalue"), py::arg("hips"),
+        py::arg("first"), py::arg("method") = "exact", py::arg("batch") = 1, py::arg("cold") = 0,
+        "[ns] per update of hands as for follow_each(), in one thread, measured in C++ over "
+        "batches\n"
+        "of so many updates. batch=0: the clock's own cost. cold: only every so many updates, "
+        "after the\n"
+        "processor's caches were emptied.");
     module.def(
         "cast_rays", &cast_rays, py::arg("field"), py::arg("isovalue"), py::arg("starts"),
         py::arg("ends"),

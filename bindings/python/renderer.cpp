@@ -1,5 +1,7 @@
-// One tick at a time: a pose of the hand in, proxy and force out.
+// Ticks one at a time, or those of a whole trajectory: a pose of the hand in, proxy and force out.
 #include "palpate/renderer.hpp"
+
+#include <chrono>
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
@@ -36,6 +38,75 @@ Tick tick(Renderer& renderer, double time, const Vec3& position,
     DeviceState state{time, position, valid, armed, released, pointing};
     if (orientation) state.orientation = orientation->normalized().toRotationMatrix();
     return render(renderer, state);
+}
+
+/// The hand of many ticks, which point nowhere unless that is given.
+std::vector<DeviceState> states_from(const Doubles& time, const Doubles& position,
+                                     const std::optional<Doubles>& pointing) {
+    const std::vector<Vec3> places = points_from(position, "position");
+    const std::vector<Vec3> tips = pointing ? points_from(*pointing, "pointing")
+                                            : std::vector<Vec3>(places.size(), Vec3::Zero());
+    if (time.ndim() != 1 || time.size() != py::ssize_t(places.size()) ||
+        tips.size() != places.size()) {
+        throw std::invalid_argument("as many times, positions and pointings are needed");
+    }
+    std::vector<DeviceState> states(places.size());
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        states[i].time = time.data()[i];
+        states[i].position = places[i];
+        states[i].pointing = tips[i];
+    }
+    return states;
+}
+
+py::dict follow_ticks(Renderer& renderer, const Doubles& time, const Doubles& position,
+                      const std::optional<Doubles>& pointing, bool alternatives) {
+    const std::vector<DeviceState> states = states_from(time, position, pointing);
+    std::vector<Tick> ticks(states.size());
+    Renderer own = renderer;  // other threads may use it
+    {
+        const py::gil_scoped_release unlocked;
+        for (std::size_t i = 0; i < states.size(); ++i) {
+            if (alternatives) {
+                Renderer copy = own;
+                ticks[i] = render(copy, states[i]);
+            } else {
+                ticks[i] = render(own, states[i]);
+            }
+        }
+    }
+    renderer = std::move(own);
+    const auto of = [&](const auto& value) { return column(ticks, value); };
+    return py::dict(
+        py::arg("scp") = of([](const Tick& t) { return t.proxy.scp; }),
+        py::arg("density") = of([](const Tick& t) { return t.proxy.density; }),
+        py::arg("constrained") =
+            of([](const Tick& t) { return t.proxy.mode == Mode::constrained; }),
+        py::arg("behind") = of([](const Tick& t) { return t.proxy.behind; }),
+        py::arg("force") = of([](const Tick& t) { return t.force; }),
+        py::arg("layer") = of([](const Tick& t) { return int{t.layers.touched}; }),
+        py::arg("inside") = of([](const Tick& t) { return int{t.layers.inside}; }),
+        py::arg("punctured") = of([](const Tick& t) { return int{t.layers.punctured}; }));
+}
+
+py::array_t<double> batch_ns(Renderer& renderer, const Doubles& time, const Doubles& position,
+                             std::size_t batch) {
+    using SteadyClock = std::chrono::steady_clock;
+    if (batch == 0) throw std::invalid_argument("batch: at least one tick is needed");
+    const std::vector<DeviceState> states = states_from(time, position, std::nullopt);
+    std::vector<double> times(states.size() / batch);
+    Renderer own = renderer;
+    {
+        const py::gil_scoped_release unlocked;
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            const auto begin = SteadyClock::now();
+            for (std::size_t k = i * batch; k < (i + 1) * batch; ++k) render(own, states[k]);
+            const std::chrono::duration<double, std::nano> taken = SteadyClock::now() - begin;
+            times[i] = taken.count() / double(batch);
+        }
+    }
+    renderer = std::move(own);
+    return array_from(std::move(times));
 }
 
 void bind_flags(py::module_& module) {
@@ -169,6 +240,16 @@ void bind_renderer(py::module_& module) {
              "pointing: unit, to a needle's tip. Takes microseconds and keeps the GIL, so threads "
              "may\n"
              "share a Renderer.")
+        .def(
+            "follow", &follow_ticks, py::arg("time"), py::arg("position"), py::kw_only(),
+            py::arg("pointing") = py::none(), py::arg("alternatives") = false,
+            "render() for each row of `time` [s], shape (n,), and `position` [device mm], (n, 3),\n"
+            "without the GIL: arrays by name, scp, density, constrained, behind (it holds from\n"
+            "inside), force, layer, inside and punctured, as of a Tick. alternatives: each row by "
+            "a\n"
+            "copy of the renderer as it is, which stays.")
+        .def("batch_ns", &batch_ns, py::arg("time"), py::arg("position"), py::arg("batch"),
+             "The time of a tick [ns]: the mean of each `batch` ticks, without a clock inside.")
         .def_property_readonly("field", [](const Renderer& r) { return r.field; })
         .def("copy", [](const Renderer& r) { return r; })
         .def("__copy__", [](const Renderer& r) { return r; })

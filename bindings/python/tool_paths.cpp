@@ -1,0 +1,108 @@
+// The proxy of a rigid tool alone, without forces: whole trajectories in, arrays out, without the GIL.
+#include "bindings/python/arrays.hpp"
+#include "bindings/python/bindings.hpp"
+#include "palpate/baselines/penalty_tool.hpp"
+#include "palpate/io/level.hpp"
+#include "palpate/tool_proxy.hpp"
+
+namespace palpate::python {
+namespace {
+
+struct NumberedPose {
+    std::int64_t tick;
+    Pose pose;
+};
+/// What an update made, and every pose on its way.
+struct ToolPath {
+    std::vector<ToolUpdate> updates;
+    std::vector<NumberedPose> poses;
+};
+
+std::vector<Pose> poses_from(const Doubles& position, const Doubles& orientation) {
+    const std::vector<Vec3> places = points_from(position, "position");
+    if (orientation.ndim() != 2 || orientation.shape(1) != 4 ||
+        orientation.shape(0) != py::ssize_t(places.size())) {
+        throw std::invalid_argument("orientation_xyzw: an array of shape (n, 4) is needed");
+    }
+    std::vector<Pose> poses(places.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const double* q = orientation.data(py::ssize_t(i), 0);
+        poses[i] = {places[i], Quaternion(q[3], q[0], q[1], q[2]).normalized()};
+    }
+    return poses;
+}
+
+ToolPath exact_path(const Field& field, double isovalue, std::shared_ptr<const Tool> tool,
+                    const std::vector<Pose>& hands) {
+    ToolPath path;
+    ToolProxy proxy(std::move(tool));
+    proxy.isovalue = isovalue;
+    const PoseObserver observer{[](const Pose& pose, void* to) {
+                                    auto& made = *static_cast<ToolPath*>(to);
+                                    made.poses.push_back({std::ssize(made.updates), pose});
+                                },
+                                &path};
+    for (const Pose& hand : hands) {
+        path.updates.push_back(update_tool(proxy, field, hand, {}, observer));
+    }
+    return path;
+}
+
+ToolPath penalty_path(const Field& field, double isovalue, std::shared_ptr<const Tool> tool,
+                      const std::vector<Pose>& hands) {
+    ToolPath path;
+    baselines::PenaltyTool state{std::move(tool), isovalue};
+    for (const Pose& hand : hands) {
+        path.updates.emplace_back().proxy = baselines::update_penalty(state, field, hand).proxy;
+    }
+    return path;
+}
+
+py::dict follow_tool(const Field& field, const io::Level& level, std::shared_ptr<Tool> tool,
+                     const Doubles& position, const Doubles& orientation,
+                     const std::string& method) {
+    if (method != "exact" && method != "penalty") {
+        throw std::invalid_argument("method: 'exact' or 'penalty'");
+    }
+    const double isovalue = io::level_in(field.volume(), level);
+    const std::vector<Pose> hands = poses_from(position, orientation);
+    ToolPath path;
+    {
+        const py::gil_scoped_release unlocked;
+        path = (method == "exact" ? exact_path : penalty_path)(field, isovalue, tool, hands);
+    }
+    const auto of = [&](const auto& value) { return column(path.updates, value); };
+    using Update = ToolUpdate;
+    return py::dict(
+        py::arg("position") = of([](const Update& u) { return u.proxy.position; }),
+        py::arg("orientation_xyzw") = of([](const Update& u) { return xyzw(u.proxy.orientation); }),
+        py::arg("contacts") = of([](const Update& u) { return u.contacts; }),
+        py::arg("unfinished") = of([](const Update& u) { return u.status != UpdateStatus::done; }),
+        py::arg("recovering") =
+            of([](const Update& u) { return u.status == UpdateStatus::recovering; }),
+        py::arg("rounds") = of([](const Update& u) { return u.rounds; }),
+        py::arg("work") = of([](const Update& u) { return u.work; }),
+        py::arg("pose_tick") = column(path.poses, [](const NumberedPose& p) { return p.tick; }),
+        py::arg("pose_position") =
+            column(path.poses, [](const NumberedPose& p) { return p.pose.position; }),
+        py::arg("pose_orientation_xyzw") =
+            column(path.poses, [](const NumberedPose& p) { return xyzw(p.pose.orientation); }));
+}
+
+}  // namespace
+
+void bind_tool_paths(py::module_& module) {
+    module.def(
+        "follow_tool", &follow_tool, py::arg("field"), py::arg("isovalue"), py::arg("tool"),
+        py::arg("position"), py::arg("orientation_xyzw"), py::arg("method") = "exact",
+        "An update of a tool for each pose of the hand, position [mm, physical], shape (n, 3), and\n"
+        "orientation_xyzw, (n, 4); the tool starts at the first pose. method: 'exact', or "
+        "'penalty', a\n"
+        "baseline. Arrays by name: position, orientation_xyzw, contacts, unfinished, recovering, "
+        "rounds\n"
+        "and work of each update; pose_tick, pose_position and pose_orientation_xyzw of every pose "
+        "on\n"
+        "the way, between which each point of the tool goes straight (exact).");
+}
+
+}  // namespace palpate::python
