@@ -56,11 +56,7 @@ std::span<const Experiment> experiments();
 
 // Each is in the folder of its name. They throw std::invalid_argument for options that make no
 // sense.
-Result performance(const Options& options);
 Result scaling(const Options& options);
-Result stability(const Options& options);
-Result layers(const Options& options);
-Result tools(const Options& options);
 Result streaming(const Options& options);
 
 }  // namespace palpate::evaluation

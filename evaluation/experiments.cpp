@@ -5,8 +5,8 @@ namespace palpate::evaluation {
 
 std::span<const Experiment> experiments() {
     static constexpr Experiment all[] = {
-        {"performance", &performance}, {"scaling", &scaling}, {"stability", &stability},
-        {"layers", &layers},           {"tools", &tools},     {"streaming", &streaming},
+        {"scaling", &scaling},
+        {"streaming", &streaming},
     };
     return all;
 }

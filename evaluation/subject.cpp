@@ -19,16 +19,9 @@ struct RealVolume {
     double isovalue;
 };
 
-constexpr std::array<RealVolume, 9> real_volumes{{
-    {"lobster", "lobster.nrrd", 35},            // shell
-    {"daisy-pollen", "daisy_pollen.nrrd", 40},  // grain with spines
-    {"orange", "orange.nrrd", 15},              // peel
-    {"ct-head", "cthead_unc.nrrd", 500},        // skin
-    {"visible-human", "visible_human_head.nrrd", 60},
-    {"neuron", "neuron_confocal.nrrd", 30},
-    {"engine", "engine.nrrd", 60},
-    {"bonsai", "bonsai.nrrd", 40},
-    {"iguana", "iguana.nii.gz", 50},
+constexpr std::array<RealVolume, 2> real_volumes{{
+    {"lobster", "lobster.nrrd", 35},      // shell
+    {"ct-head", "cthead_unc.nrrd", 500},  // skin
 }};
 
 }  // namespace

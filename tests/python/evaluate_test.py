@@ -23,10 +23,13 @@ from palpate.evaluate.outside import Outside
 from palpate.evaluate.subjects import Subject, of_text
 from palpate.evaluate.walls import Lines, closed_shell
 
-# Quick tables of the C++ program, 28 November 2026. The filter is a newer one in the rows of dequantized data.
+# Quick tables of the C++ programs, 28 November 2026: of layers and tools the parts without curves and random numbers. The
+# filter is a newer one in the rows of dequantized data.
 BEFORE = pathlib.Path(__file__).with_name("evaluate")
 MODULES = {"drift": drift, "fall-through": fall_through, "fidelity": fidelity, "penetration": penetration,
            "walk-through": walk_through}
+CLAIMS = {"drift": 4, "fall-through": 9, "performance": 3, "scaling": 7, "fidelity": 9, "stability": 8, "walk-through": 5,
+          "penetration": 6, "layers": 7, "tools": 5, "streaming": 2}
 
 
 def evaluate(folder, *words, status=0, environment=None):
@@ -37,51 +40,70 @@ def evaluate(folder, *words, status=0, environment=None):
 
 
 @pytest.fixture(scope="module")
-def quick():
-    return {name: module.run(Options(quick=True)) for name, module in MODULES.items()}
+def quick(tmp_path_factory):
+    """What one quick run of all experiments says, and the folder of its results."""
+    folder = tmp_path_factory.mktemp("all")
+    found = json.loads(evaluate(folder, "all", "--quick", "--json", "-o", "found").stdout)
+    return {experiment["experiment"]: experiment for experiment in found}, folder / "found"
 
 
-@pytest.mark.parametrize("name, claims", [("drift", 4), ("fall-through", 9), ("fidelity", 9), ("penetration", 6), ("walk-through", 5)])
-def test_claims_hold_in_quick_mode(quick, name, claims):
-    result = quick[name]
-    assert len(result.claims) == claims
-    assert [claim for claim in result.claims if not claim.held] == []
-    assert result.figures and result.paragraphs and result.summary
+@pytest.mark.parametrize("name", program.EXPERIMENTS)
+def test_claims_hold_in_quick_mode(quick, name):
+    experiments, folder = quick
+    claims = experiments[name]["claims"]
+    assert len(claims) == CLAIMS[name]
+    assert [claim for claim in claims if not claim["holds"]] == []
+    for ending in (".csv", ".svg", ".md", *([] if name in program.COMPILED else [".pdf"])):
+        assert (folder / (name + ending)).exists(), name
 
 
-def before(name):
-    with (BEFORE / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        return [row for row in csv.DictReader(file) if "(measured)" not in row.get("method", "")]
+def test_all_makes_one_report_that_needs_no_other_file(quick):
+    experiments, folder = quick
+    page = (folder / "report.html").read_text()
+    assert list(experiments) == list(program.EXPERIMENTS)
+    assert all(f'<h2 id="{name}">' in page for name in experiments)
+    assert page.count('src="data:image/') == page.count('src="') >= len(experiments)
+
+
+def rows_of(path, parts=None):
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if "(measured)" not in row.get("method", "")]
+    return [row for row in rows if parts is None or row["part"] in parts]
 
 
 def tolerance(name, column, was):
     """How far a cell may be from the number before."""
-    if column == "update_median_us":
+    if column == "update_median_us" or column.endswith("_ns") or column == "paper_over_ours":
         return numpy.inf
     if name == "fidelity" and was["method"] in ("paper", "gradient-improved"):
         return 0.1 * abs(float(was[column])) + 1e-9  # they amplify the last bits of the hand's position
-    return TOLERANCE.get(name, {}).get(column, 1e-6 if name == "fidelity" else 1e-12 * max(1, abs(float(was[column]))))
+    return TOLERANCE.get(name, {}).get(column, 1e-6 if name == "fidelity" else 1e-11 * max(1, abs(float(was[column]))))
 
 
-# What is drawn at random differs: other random numbers draw the lines. Shares of 60 lines differ by chance.
+# What is drawn at random differs: other random numbers draw the lines. Shares of 60 lines differ by chance. A needle goes
+# another way into the balls, whose samples are rounded.
 RANDOM = {"median_path_in_wall_voxel": 1, "inside_while_pressed_share": 0.6, "pressed_share": 0.4,
           "unfelt_share": 0.4, "inside_share": 0, "ticks_per_crossing": 150, "worst_excess_of_range": 0.2}
-TOLERANCE = {"drift": {"density": 1e-6, "worst_deviation_of_range": 1e-9}, "fall-through": RANDOM}
+TOLERANCE = {"drift": {"density": 1e-6, "worst_deviation_of_range": 1e-9}, "fall-through": RANDOM,
+             "layers": {"rms_n": 2e-3, "worst_n": 0.05}, "tools": {"force_n": 1e-8}}
 
 
-@pytest.mark.parametrize("name", MODULES)
+@pytest.mark.parametrize("name", [path.stem for path in sorted(BEFORE.glob("*.csv"))])
 def test_the_table_is_that_of_the_program_in_cpp_within_tolerances(quick, name):
-    table, old = quick[name].table, before(name)
-    assert set(old[0]) <= set(table.columns)
-    table = [row for row in table if "(measured)" not in row["method" if "method" in row else "mode"]]
+    old = rows_of(BEFORE / f"{name}.csv")
+    parts = {row["part"] for row in old} if name in ("layers", "tools") else None
+    table = rows_of(quick[1] / f"{name}.csv", parts)
+    assert set(old[0]) <= set(table[0])
+    table = [row for row in table if "(measured)" not in row.get("mode", "")]
     assert len(table) == len(old)
     for row, was in zip(table, old):
         for column, text in was.items():
-            cell = row.get(column, numpy.nan)
-            if isinstance(cell, str):
-                assert cell == text or column == "tetrahedron", (column, was, row)
-            elif not numpy.isnan(cell) and text:
-                assert abs(cell - float(text)) <= tolerance(name, column, was), (column, was, row)
+            try:
+                number, cell = float(text), float(row[column])
+            except ValueError:  # text, or nothing where something was not measured
+                assert row[column] == text or "" in (row[column], text) or column == "tetrahedron", (column, was, row)
+                continue
+            assert abs(cell - number) <= tolerance(name, column, was), (column, was, row)
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -286,30 +308,22 @@ def test_the_module_does_the_same_as_the_program(tmp_path):
     assert (tmp_path / "first/walk-through.csv").read_bytes() == (tmp_path / "second/walk-through.csv").read_bytes()
 
 
-def test_all_makes_one_report_that_needs_no_other_file(tmp_path):
-    found = json.loads(evaluate(tmp_path, "all", "--quick", "--json", "-o", "found").stdout)
-    page = (tmp_path / "found/report.html").read_text()
-    assert [experiment["experiment"] for experiment in found] == list(program.EXPERIMENTS)
-    for experiment in found:
-        name = experiment["experiment"]
-        assert experiment["claims"] and all(claim["holds"] for claim in experiment["claims"]), experiment
-        assert f'<h2 id="{name}">' in page
-        for ending in (".csv", ".svg", ".md"):
-            assert (tmp_path / "found" / (name + ending)).exists(), name
-    assert page.count('src="data:image/') == page.count('src="') >= len(found)
-
-
-def test_all_leaves_out_what_cannot_be_done_on_the_users_volume(tmp_path):
-    ran = evaluate(tmp_path, "all", "--quick", "-o", "found", "--volume", "synthetic:plane:24x24x24")
-    assert "note: drift is left out: " in ran.stderr
+def test_all_leaves_out_what_cannot_be_done_on_the_users_volume(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(program, "EXPERIMENTS", ("drift", "walk-through"))
+    words = ["all", "--quick", "-o", "found", "--volume", "synthetic:plane:24x24x24"]
+    program.evaluate(program.arguments(words), words)
+    assert "note: drift is left out: " in capsys.readouterr().err
     assert not (tmp_path / "found/drift.csv").exists()
-    assert (tmp_path / "found/stability.csv").exists() and (tmp_path / "found/report.html").exists()
+    assert (tmp_path / "found/walk-through.csv").exists() and (tmp_path / "found/report.html").exists()
 
 
 @pytest.mark.parametrize("words, status, told", [
     ("", 2, "EXPERIMENT"), ("nothing", 2, "drift"), ("drift --seed -1", 2, "whole number"),
     ("dirft", 2, "did you mean drift?"), ("drift --method exat", 2, "did you mean exact?"),
     ("drift --mehtod exact", 2, "there is no option --mehtod: did you mean --method?"),
+    ("fall-through --seeds 1001", 2, "--seeds: 1001 is not a whole number from 1 to 1000"),
+    ("layers --seeds 0", 2, "from 1 to 1000"), ("tools --volume synthetic:torus", 2, "leave out --volume"),
     ("drift --seed 1.5", 2, "--seed: '1.5' is not a whole number"), ("drift --seed 1 --seed 2", 2, "more than once"),
     ("drift --seeds", 2, "--seeds needs a value: How many seeds"), ("drift --output=", 2, "--output: the value is empty"),
     ("drift fidelity", 2, "'fidelity' is one argument too many"), ("drift --json=yes", 2, "--json: this option takes no value"),
@@ -325,7 +339,7 @@ def test_what_makes_no_sense_is_refused_in_one_line(tmp_path, words, status, tol
 
 @pytest.mark.parametrize("words, warned", [
     ("walk-through --range 1:2 --seeds 2", ["--range does nothing: it is for penetration",
-                                            "--seeds does nothing: it is for fall-through"]),
+                                            "--seeds does nothing: it is for fall-through, layers, tools"]),
     ("penetration --method paper", ["--method does nothing: it is for walk-through"]),
     ("walk-through --method paper", []), ("all --range 1:2 --seed 2 --seeds 2 --method paper", [])])
 def test_an_option_that_changes_nothing_gives_a_warning(capsys, words, warned):
@@ -336,7 +350,7 @@ def test_an_option_that_changes_nothing_gives_a_warning(capsys, words, warned):
 
 def test_without_gnuplot_what_needs_it_is_refused_before_any_work(tmp_path):
     ran = evaluate(tmp_path, "all", "--quick", status=5, environment={"PATH": str(tmp_path)})
-    assert ran.stderr.count("\n") == 1 and "stability" in ran.stderr and "apt install gnuplot-nox" in ran.stderr
+    assert ran.stderr.count("\n") == 1 and "scaling" in ran.stderr and "apt install gnuplot-nox" in ran.stderr
     assert list(tmp_path.iterdir()) == []
 
 

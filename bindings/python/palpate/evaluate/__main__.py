@@ -18,10 +18,11 @@ if not __package__:  # run as a folder, by the program palpate: this folder's mo
 
 EXPERIMENTS = ("drift", "fall-through", "performance", "scaling", "fidelity", "stability", "walk-through",
                "penetration", "layers", "tools", "streaming")  # in the order of docs/evaluation.md
-IN_PYTHON = ("drift", "fall-through", "walk-through", "penetration", "fidelity")
+COMPILED = ("scaling", "streaming")  # those that are still C++
+MOST_SEEDS = 1000
 METHODS = ("exact", "paper", "gradient", "gradient-improved")
 PACKAGES = ("numpy", "scipy", "matplotlib")  # Debian: python3-NAME
-USERS = {"--range": ("penetration",), "--seeds": ("fall-through",), "--method": ("walk-through",),
+USERS = {"--range": ("penetration",), "--seeds": ("fall-through", "layers", "tools"), "--method": ("walk-through",),
          "--seed": ("fall-through", "performance", "scaling", "layers", "tools", "streaming")}  # of options that few use
 CLAIMS_BROKEN, WRONG_USE, BAD_INPUT, BAD_OUTPUT, READER_GONE = 1, 2, 3, 5, 141  # exit status, docs/command_line.md
 HELP = f"""Run experiments, each with a table, figures and checked claims
@@ -41,7 +42,7 @@ Options:
   --method {{{','.join(METHODS)}}}
                               Proxy method, for walk-through [exact]
   --seed UINT                 Seed of everything random [1]
-  --seeds UINT                How many seeds draw their own lines, from the first one on, for fall-through [3]
+  --seeds UINT                How many seeds draw their own lines, from the first one on, for fall-through, layers and tools. At most {MOST_SEEDS} [3]
   --range LOW:HIGH            Range of interest, in the data's units or in percent of its range, for penetration. May be given again
   --quick                     Seconds instead of minutes, with every claim checked
   --json                      Print paragraphs and claims as JSON
@@ -102,6 +103,13 @@ def whole_number(text):
     raise argparse.ArgumentTypeError(f"'{text}' is not a whole number")
 
 
+def seed_count(text):
+    count = whole_number(text)
+    if not 1 <= count <= MOST_SEEDS:
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number from 1 to {MOST_SEEDS}")
+    return count
+
+
 def interval(text):
     """A pair of functions of a volume, from 'LOW:HIGH'."""
     ends = text_of(text).split(":")
@@ -154,7 +162,7 @@ def arguments(words):
                parser.add_argument("--data", action=Once, type=text_of),
                parser.add_argument("--method", action=Once, type=one_of(METHODS)),
                parser.add_argument("--seed", action=Once, type=whole_number),
-               parser.add_argument("--seeds", action=Once, type=whole_number),
+               parser.add_argument("--seeds", action=Once, type=seed_count),
                parser.add_argument("--range", action="append", type=interval),
                *(parser.add_argument(*names, action="store_true", default=False)
                  for names in (["--quick"], ["--json"], ["-q", "--quiet"]))]
@@ -209,7 +217,7 @@ def warn_of_no_effect(chosen, names):
 def refuse_without_programs(names):
     """Before any work, if what experiments in C++ need is missing."""
     from palpate.evaluate import compiled
-    names = [name for name in names if name not in IN_PYTHON]
+    names = [name for name in names if name in COMPILED]
     if names:
         compiled.program()
         if not shutil.which("gnuplot"):
@@ -251,7 +259,7 @@ def options_of(chosen, name):
         if not chosen.quiet:
             tell(f"note: {name}: {text.removeprefix(name + ': ')}")
 
-    return Options(quick=chosen.quick, seed=chosen.seed, seeds=max(1, chosen.seeds), method=chosen.method,
+    return Options(quick=chosen.quick, seed=chosen.seed, seeds=chosen.seeds, method=chosen.method,
                    ranges=tuple(chosen.range),
                    subjects=tuple(map(of_text, chosen.volume)), progress=progress, note=note,
                    data=Path(chosen.data) if chosen.data else None)
@@ -267,11 +275,11 @@ def run(name, chosen, folder, words):
     """The Report of an experiment whose files are written."""
     from palpate.evaluate import compiled, machine, report
     options = options_of(chosen, name)
-    if name in IN_PYTHON:
+    if name in COMPILED:
+        title, result = compiled.TITLES[name], compiled.run(name, options, chosen.volume, folder)
+    else:
         module = importlib.import_module(f"palpate.evaluate.{name.replace('-', '_')}")
         title, result = module.TITLE, module.run(options)
-    else:
-        title, result = compiled.TITLES[name], compiled.run(name, options, chosen.volume, folder)
     options.progress(1)
     made = report.Report(name, title, result, f"{machine.described(command_of(words))} Seed {chosen.seed}; " + (
         "quick mode: too short for the times to mean anything." if chosen.quick else "full run."))

@@ -11,11 +11,7 @@ import palpate
 
 from .experiment import Claim, Figure, Result, Table
 
-TITLES = {"performance": "What does an update cost?",
-          "scaling": "What does the cost grow with, and what does the explicit approach cost?",
-          "stability": "How stiff may a surface be before it buzzes?",
-          "layers": "What is felt of several surfaces in one stroke?",
-          "tools": "Does any point of a tool go through?",
+TITLES = {"scaling": "What does the cost grow with, and what does the explicit approach cost?",
           "streaming": "How long does a hand wait for a volume that is read as it is felt?"}
 
 

@@ -39,8 +39,9 @@ def short(cell):
 def write_csv(table, path):
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(table.columns)
-        writer.writerows([number(row.get(name, math.nan)) for name in table.columns] for row in table)
+        columns = table.columns
+        writer.writerow(columns)
+        writer.writerows([number(row.get(name, math.nan)) for name in columns] for row in table)
 
 
 def claims_of(result):
@@ -58,8 +59,8 @@ def files_of(report):
 def markdown_table(table):
     if not table:
         return ""
-    lines = [table.columns, ["---"] * len(table.columns),
-             *([short(row.get(name, math.nan)) for name in table.columns] for row in table)]
+    columns = table.columns
+    lines = [columns, ["---"] * len(columns), *([short(row.get(name, math.nan)) for name in columns] for row in table)]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines) + "\n"
 
 
@@ -85,9 +86,10 @@ def write_files(report, folder):
 def html_table(table):
     if not table:
         return ""
-    rows = ["".join(f"<th>{html.escape(name)}</th>" for name in table.columns)]
+    columns = table.columns
+    rows = ["".join(f"<th>{html.escape(name)}</th>" for name in columns)]
     for row in table:
-        cells = [row.get(name, math.nan) for name in table.columns]
+        cells = [row.get(name, math.nan) for name in columns]
         rows.append("".join(f"<td>{html.escape(short(cell)).replace('**no**', '<b>NO</b>')}</td>" for cell in cells))
     return "<table>\n" + "".join(f"<tr>{row}</tr>\n" for row in rows) + "</table>\n"
 

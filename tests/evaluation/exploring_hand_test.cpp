@@ -1,53 +1,11 @@
-// performance in its quick mode, and what it uses: the exploring hand, the timing, the paper's
-// table.
-#include <algorithm>
-#include <cmath>
+// The hand that explores, and how updates are timed.
+#include <gtest/gtest.h>
 
-#include "evaluation/claims.hpp"
 #include "evaluation/exploring_hand.hpp"
-#include "evaluation/performance/paper_table.hpp"
 #include "evaluation/timing.hpp"
 
 namespace palpate::evaluation {
 namespace {
-
-TEST(Performance, claims_hold_in_quick_mode) {
-    const Result result = quick_result(performance);
-    EXPECT_EQ(result.claims.size(), 3U);
-    EXPECT_EQ(result.table.rows().size(), 12U);  // 2 volumes, 2 resolutions, 3 methods
-    EXPECT_EQ(result.table.number(0, "paper_mean_us"), 52);
-    EXPECT_EQ(result.table.number(3, "paper_mean_us"), 72);
-    EXPECT_EQ(result.summary.rows().size(), 4U);
-    EXPECT_NEAR(result.summary.number(0, "hand in the paper [cm/s]"), 9.54, 1e-9);
-}
-
-TEST(Performance, same_seed_gives_the_same_table_but_for_the_times) {
-    Options options = quick_options();
-    options.subjects.push_back(synthetic("torus:40x40x20"));
-    const Table once = performance(options).table, again = performance(options).table;
-    options.seed = 2;
-    const Table other = performance(options).table;
-    bool differs = false;
-    for (std::size_t i = 0; i < once.rows().size(); ++i) {
-        for (const char* column : {"speed_mm_s", "constrained_share", "depth_mm", "updates",
-                                   "tetrahedra_per_update", "unfinished_updates"}) {
-            EXPECT_EQ(once.number(i, column), again.number(i, column)) << column;
-            differs = differs || once.number(i, column) != other.number(i, column);
-        }
-    }
-    EXPECT_TRUE(differs);
-}
-
-TEST(Performance, on_a_body_too_ragged_for_the_hand_there_is_a_note_and_no_claim) {
-    Options options = quick_options();
-    // On larger noise the hand keeps to its targets for one seed in six, and which seeds these are
-    // depends on the last bits of the processor's sines.
-    options.subjects.push_back(synthetic("noise:4x4x4"));
-    std::string notes;
-    options.note = [&](const std::string& text) { notes += text; };
-    EXPECT_EQ(performance(options).claims.size(), 2U);
-    EXPECT_NE(notes.find("very small"), std::string::npos);
-}
 
 TEST(ExploringHand, comes_within_two_percent_of_the_wanted_speed_and_share) {
     const Subject torus = synthetic("torus");
@@ -115,24 +73,6 @@ TEST(UpdateTimes, counts_are_the_methods_own_and_percentiles_are_in_order) {
     EXPECT_LE(times.p999_ns, times.max_ns);
     EXPECT_LE(times.max_ns, times.interrupted_max_ns);
     EXPECT_GT(times.cold_p50_ns, 0);
-}
-
-TEST(PaperTable, a_row_has_the_speeds_and_shares_of_both_resolutions) {
-    const PaperRow* const orange = paper_row("orange");
-    ASSERT_NE(orange, nullptr);
-    EXPECT_EQ(orange->at[0].mean_us, 55);
-    EXPECT_EQ(orange->at[1].speed_mm_s, 30.2);
-    EXPECT_EQ(orange->at[1].constrained_share, 0.606);
-    EXPECT_EQ(paper_row("bonsai"), nullptr);
-}
-
-TEST(Performance, a_volume_of_the_user_has_our_target_and_no_row_of_the_paper) {
-    Options options = quick_options();
-    options.subjects.push_back(synthetic("torus:40x40x20"));
-    const Result result = performance(options);
-    EXPECT_EQ(result.table.text(0, "target_from"), "ours");
-    EXPECT_TRUE(std::isnan(result.table.number(0, "paper_mean_us")));
-    EXPECT_TRUE(result.summary.rows().empty());
 }
 
 }  // namespace

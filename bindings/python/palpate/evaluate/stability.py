@@ -1,0 +1,305 @@
+"""stability: how stiff may a surface be before it buzzes?
+
+A simulated device and hand in a closed loop with the renderer, pressed into a surface and held there, or with the handle
+held straight by a rotational spring. A loop that does not come to rest is in a limit cycle, felt as buzzing.
+"""
+
+import copy
+import dataclasses
+
+import numpy
+import palpate
+from scipy.spatial.transform import Rotation
+
+from . import figures
+from .experiment import Claim, Figure, Result, Table, in_parallel
+from .subjects import synthetic
+
+TITLE = "How stiff may a surface be before it buzzes?"
+SECONDS = 4  # held for; the last second counts
+LARGEST = 3.0  # [N/mm] that is tried
+LEAST_STEP, LEAST_ANGLE = 0.01, 0.02  # [mm], [degrees] the least that a step counts for
+MAP_PROFILE = "touch"
+PROFILES = palpate.simulated_profiles()
+TORQUE = [name for name, profile in PROFILES.items() if profile["maximum_torque"] > 0]
+# Part of the table: title, whether the mechanics have friction, field.
+PARTS = {"profiles": ("as they are", True, "linear"), "profiles, smooth field": ("as they are, smooth field", True, "cubic"),
+         "profiles without friction": ("without friction", False, "linear"),
+         "profiles without friction, smooth field": ("without friction, smooth field", False, "cubic")}
+ROTATION = {"rotation, ideal": "no delay, friction, steps", "rotation, delayed": "delay alone", "rotation": "as they are"}
+
+
+@dataclasses.dataclass
+class Plan:
+    rates: list  # [Hz]
+    encoders: list  # [mm]
+    stiffnesses: list  # [N/mm]
+    bound_parts: list  # of the theory's bound of rotational stiffness
+
+
+def plan_of(quick):
+    if quick:
+        return Plan([250, 1000], [0, 0.1], [0.5, LARGEST], [0.5, 0.8, 0.9, 1.25, 2])
+    return Plan([250, 500, 1000, 2000, 4000], [0, 0.01, 0.03, 0.1], [0.1 * i for i in range(1, 30)] + [LARGEST],
+                [0.05 * i for i in range(2, 51)])
+
+
+def moves_within(steps, position, encoder):
+    """Whether a position that moves so much [mm] keeps to a number of encoder steps."""
+    return position <= (steps + 0.01) * numpy.maximum(LEAST_STEP, encoder)
+
+
+def loop_of(field, isovalue, device, rate, damping, straight=False, **force):
+    """Arrays of a closed loop. damping: of the limits, large, as check() would refuse what is to be shown."""
+    info = palpate.simulated_info(device, field, isovalue, rate)
+    limits = copy.copy(info.limits)
+    setattr(limits, "physical_rotational_damping" if straight else "physical_damping", damping)
+    renderer = palpate.Renderer(field, isovalue, palpate.RenderSetup(rate=rate, force=palpate.ForceSettings(**force)), limits,
+                                palpate.fit_workspace(field.geometry, info))
+    return palpate.closed_loop(renderer, device, SECONDS, rate, straight)
+
+
+def pressed(subject, part, profile, friction, interpolation, encoder, rate, stiffness):
+    """A row: a light hand presses and holds."""
+    field = palpate.Field(subject.field.volume, interpolation=interpolation, solid=subject.field.solid,
+                          background=subject.field.background)
+    device = (f"simulated:{profile},grip=light,friction={'yes' if friction else 'no'},encoder={encoder:g},hand=hold,depth=6,"
+              f"seconds={SECONDS}")
+    limit = palpate.simulated_info(device, field, subject.isovalue, rate).limits.maximum_force
+    loop = loop_of(field, subject.isovalue, device, rate, 1, stiffness=stiffness, limit=limit)
+    last = slice(int((SECONDS - 1) * rate), None)
+    position, force = loop["position"][last], loop["force"][last]
+    push = numpy.linalg.norm(force[-1])
+    moved = numpy.ptp(position, axis=0).max()
+    return {"part": part, "profile": profile, "friction": "yes" if friction else "no", "field": interpolation,
+            "encoder_step_mm": encoder, "rate_hz": rate, "stiffness_N_mm": stiffness, "position_peak_to_peak_mm": moved,
+            "along_force_peak_to_peak_mm": numpy.ptp(position @ (force[-1] / (push if push > 0 else 1))),
+            "force_peak_to_peak_N": numpy.ptp(force, axis=0).max(), "push_N": push,
+            "in_contact": "yes" if loop["constrained"][last].any() else "no",
+            "at_rest": "yes" if moves_within(2, moved, encoder) else "no"}
+
+
+def turned(subject, part, profile, rate, share):
+    """A row: a light hand turns the handle by 20 degrees against a spring that holds it straight. The theory: at rest while
+    k (period / 2 + delay) < damping."""
+    device = f"simulated:{profile},grip=light,hand=hold,depth=0,seconds={SECONDS},turn=20,turn_time=0.5"
+    if part != "rotation":
+        device += ",friction=no,angle_step=0,torque_step=0" + (",delay=0" if part == "rotation, ideal" else "")
+    field, known = subject.field, PROFILES[profile]
+    limits = palpate.simulated_info(device, field, subject.isovalue, rate).limits
+    damping = limits.physical_rotational_damping
+    bound = damping / (0.5 / rate + (0 if part == "rotation, ideal" else known["delay"]))
+    loop = loop_of(field, subject.isovalue, device, rate, 1e6, True, rotational_stiffness=share * bound)
+    turns = Rotation.from_quat(loop["orientation_xyzw"][int((SECONDS - 1) * rate):]).inv().as_rotvec(degrees=True)
+    moved = numpy.ptp(turns, axis=0).max()
+    step = numpy.degrees(known["angle_step"]) if part == "rotation" else 0
+    return {"part": part, "profile": profile, "friction": "yes" if part == "rotation" else "no", "rate_hz": rate,
+            "at_rest": "yes" if moved <= 2.01 * max(LEAST_ANGLE, step) else "no", "part_of_bound": share,
+            "rotational_stiffness_N_mm_rad": share * bound, "checked_N_mm_rad": 2 * rate * damping,
+            "turn_peak_to_peak_deg": moved, "torque_N_mm": numpy.linalg.norm(loop["torque"][-1])}
+
+
+def cases_of(subject, plan):
+    """(function, arguments) of each row."""
+    def each(part, profile, friction, field, encoder):
+        return [(pressed, (subject, part, profile, friction, field, encoder, rate, stiffness))
+                for rate in plan.rates for stiffness in plan.stiffnesses]
+
+    cases = [case for encoder in plan.encoders for case in each("map", MAP_PROFILE, False, "linear", encoder)]
+    for part, (_, friction, field) in PARTS.items():
+        for name, profile in PROFILES.items():
+            cases += each(part, name, friction, field, profile["encoder_step"])
+    cases += [(pressed, (subject, "rated", name, True, "linear", profile["encoder_step"], 1000, profile["stiffness"]))
+              for name, profile in PROFILES.items()]
+    return cases + [(turned, (subject, part, profile, rate, share)) for part in ROTATION for profile in TORQUE
+                    for rate in plan.rates for share in plan.bound_parts]
+
+
+def measured(cases, progress):
+    table, step = Table(), 64
+    for begin in range(0, len(cases), step):
+        progress(begin / len(cases))
+        table.extend(in_parallel(lambda case: case[0](*case[1]), cases[begin:begin + step]))
+    return table
+
+
+def largest_stable(rows, rate, steps=2):
+    """The largest stiffness up to which every one tried moves by so many encoder steps at most, which is at rest for two;
+    0 if none does."""
+    found = 0.0
+    for row in rows.where(rate_hz=rate):
+        if not moves_within(steps, row["position_peak_to_peak_mm"], row["encoder_step_mm"]):
+            break
+        found = row["stiffness_N_mm"]
+    return found
+
+
+def compared(table, plan, on_linear, on_smooth, steps):
+    """(profile, rate, largest stable stiffness on the linear field, and on the smooth one) of every case."""
+    for profile in PROFILES:
+        linear, smooth = (table.where(part=part, profile=profile) for part in (on_linear, on_smooth))
+        for rate in plan.rates:
+            yield profile, rate, largest_stable(linear, rate, steps), largest_stable(smooth, rate, steps)
+
+
+def counted(found):
+    """How often the smooth field is stiffer, as stiff, and less stiff."""
+    linear, smooth = numpy.array([one[2:] for one in found]).T
+    return int((smooth > linear).sum()), int((smooth == linear).sum()), int((smooth < linear).sum())
+
+
+def rated_claim(table):
+    rows = table.where(part="rated")
+    said = ", ".join(f"{r['profile']} {r['stiffness_N_mm']:g} N/mm: {r['position_peak_to_peak_mm']:.2g} mm" for r in rows)
+    return Claim("every profile comes to rest at its rated stiffness at 1 kHz, to two encoder steps",
+                 all(r["at_rest"] == r["in_contact"] == "yes" for r in rows), said)
+
+
+def smooth_claim(table, plan):
+    found = list(compared(table, plan, *list(PARTS)[:2], 2))
+    more, same, less = counted(found)
+    losses = "".join(f"{name} at {rate:g} Hz: {smooth:.1f} against {linear:.1f} N/mm; "
+                     for name, rate, linear, smooth in found if smooth < linear)
+    return Claim("on the smooth field every profile comes to rest at least as stiff as on the linear one, at every rate",
+                 less == 0, f"{losses}as stiff in {same} cases, stiffer in {more}")
+
+
+def control_claim(table):
+    """That the map can tell: the worst corner does not rest."""
+    corner = table.where(part="map", rate_hz=250, stiffness_N_mm=LARGEST, encoder_step_mm=0)[0]
+    return Claim(f"a loop that must buzz does: {MAP_PROFILE}, 3 N/mm at 250 Hz, no friction", corner["at_rest"] == "no",
+                 f"{corner['position_peak_to_peak_mm']:.3g} mm peak to peak")
+
+
+def bound_claims(table):
+    """Whether all cases of a part so near the bound are, or are not, at rest."""
+    for part, low, high, rests, statement in (
+            ("rotation, ideal", 0, 0.9, True, "without delay, friction and steps a handle comes to rest at 0.9 of the rotational "
+             "stiffness that check() accepts, and below"),
+            ("rotation, ideal", 1.25, numpy.inf, False, "and shakes at 1.25 of it, and above"),
+            ("rotation, delayed", 0, 0.8, True, "with its delay alone it comes to rest up to 0.8 of damping / (period / 2 + delay)"),
+            ("rotation, delayed", 1.25, numpy.inf, False, "and shakes at 1.25 of that, and above"),
+            ("rotation", 0, 0.8, True, "as it is, with friction, it comes to rest up to 0.8 of that")):
+        rows = Table(row for row in table.where(part=part) if low - 1e-9 <= row["part_of_bound"] <= high + 1e-9)
+        moved = rows["turn_peak_to_peak_deg"]
+        yield Claim(statement, len(rows) > 0 and all((row["at_rest"] == "yes") == rests for row in rows),
+                    f"{'at most' if rests else 'at least'} {moved.max() if rests else moved.min():.3g} degrees peak to peak in "
+                    f"{len(rows)} cases")
+
+
+def map_figure(table, plan):
+    """Stiffness over rate, the colour the movement at rest; a line where it ends."""
+    drawn, panels = figures.panels(columns=len(plan.encoders), height=2.7, sharey=True)
+    norm = figures.matplotlib.colors.LogNorm(1e-3, 10)
+    edges = numpy.append([0], 0.5 * numpy.add(plan.stiffnesses[1:], plan.stiffnesses[:-1])).tolist() + [LARGEST + 0.05]
+    for axes, encoder in zip(panels, plan.encoders):
+        rows = table.where(part="map", encoder_step_mm=encoder)
+        moved = [[max(1e-3, row["position_peak_to_peak_mm"]) for row in rows.where(rate_hz=rate)] for rate in plan.rates]
+        image = axes.pcolormesh(numpy.arange(len(plan.rates) + 1) - 0.5, edges, numpy.array(moved).T, cmap="Greys", norm=norm)
+        for number, rate in enumerate(plan.rates):
+            stable = largest_stable(rows, rate)
+            axes.plot([number - 0.5, number + 0.5], [stable + 0.05] * 2, color=figures.VERMILION, lw=2.5)
+        axes.set(title=f"steps of {encoder:g} mm", xlabel="update rate [kHz]", ylim=(0, LARGEST + 0.05))
+        axes.set_xticks(range(len(plan.rates)), [f"{rate / 1000:g}" for rate in plan.rates])
+        axes.grid(False)
+    panels[0].set_ylabel("stiffness [N/mm]")
+    drawn.colorbar(image, ax=panels, label="movement, peak to peak [mm]")
+    drawn.suptitle("Faster loops and finer encoders carry stiffer walls", x=0.01, ha="left")
+    return Figure("", f"How far the device goes on moving when a light hand presses and holds (simulated {MAP_PROFILE}, no friction in "
+                  "its mechanics), for encoder steps of different size: white is rest, dark a limit cycle. Below the vermilion line it "
+                  "moves by two encoder steps at most.", drawn)
+
+
+def rate_axis(axes, rates):
+    axes.set(xscale="log", xlabel="update rate [kHz]")
+    axes.set_xticks([rate / 1000 for rate in rates], [f"{rate / 1000:g}" for rate in rates])
+    axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
+
+
+def profile_figure(table, plan):
+    drawn, panels = figures.panels(columns=4, height=2.9, sharey=True)
+    for axes, (part, (title, *_)) in zip(panels, PARTS.items()):
+        stable = numpy.array([[largest_stable(table.where(part=part, profile=name), rate) for rate in plan.rates] for name in PROFILES])
+        axes.imshow(stable, cmap="Blues", vmin=0, vmax=1.6 * LARGEST, aspect="auto")
+        for (row, column), value in numpy.ndenumerate(stable):
+            axes.text(column, row, f"{value:.1f}", ha="center", va="center", fontsize=6)
+        axes.set_title(title.replace(", ", ",\n"), fontsize=7.5)
+        axes.set(xlabel="rate [kHz]")
+        axes.set_xticks(range(len(plan.rates)), [f"{rate / 1000:g}" for rate in plan.rates])
+        axes.set_yticks(range(len(PROFILES)), PROFILES)
+        axes.grid(False)
+    drawn.suptitle("Friction of the mechanics stills what would buzz", x=0.01, ha="left")
+    return Figure("profiles", "The largest stiffness [N/mm], of those tried up to 3, at which a simulated device in a light hand comes to "
+                  "rest, with its own encoders and delay: with its friction and without it, which stills small limit cycles, on the "
+                  "linear and on the smooth field.", drawn)
+
+
+def rotation_figure(table, plan):
+    drawn, panels = figures.panels(columns=3, height=2.8, sharey=True)
+    for axes, (part, title) in zip(panels, ROTATION.items()):
+        for profile, colour in zip(TORQUE, (figures.BLUE, figures.VERMILION, figures.GREEN, figures.PURPLE)):
+            limits = []
+            for rate in plan.rates:
+                rests = 0.0
+                for row in table.where(part=part, profile=profile, rate_hz=rate):
+                    if row["at_rest"] == "no":
+                        break
+                    rests = row["rotational_stiffness_N_mm_rad"]
+                limits.append(rests or numpy.nan)
+            axes.plot([rate / 1000 for rate in plan.rates], limits, color=colour, marker="o", lw=1, ms=3, label=profile)
+        checked = [table.where(part=part, rate_hz=rate)[0]["checked_N_mm_rad"] for rate in plan.rates]
+        axes.plot([rate / 1000 for rate in plan.rates], checked, color=figures.GREY, ls="--", label="check()")
+        axes.set(title=title, yscale="log", ylim=(100, 1e5))
+        rate_axis(axes, plan.rates)
+    panels[0].set_ylabel("stiffness [N mm/rad]")
+    drawn.suptitle("A delay lowers the rotational stiffness that is stable", x=0.01, ha="left")
+    drawn.canvas.draw()
+    figures.label_ends(panels[2])
+    return Figure("rotation", "The largest rotational stiffness at which a simulated device with torque in a light hand comes to rest, "
+                  "of those tried up to 2.5 times the bound of the theory. Left: without delay, friction and steps; there the bound is "
+                  "that of check(). Middle: with their delay alone. Right: as they are; friction stills every case that was tried.",
+                  drawn)
+
+
+def summary_of(table, plan):
+    for profile in PROFILES:
+        yield {"profile": profile, "rated [N/mm]": PROFILES[profile]["stiffness"],
+               **{f"at rest up to [N/mm], {title}, 1 kHz": largest_stable(table.where(part=part, profile=profile), 1000)
+                  for part, (title, *_) in PARTS.items()}}
+
+
+def paragraphs_of(table, plan, subject):
+    maps = []
+    for encoder in plan.encoders:
+        rows = table.where(part="map", encoder_step_mm=encoder)
+        maps.append(f"with encoder steps of {encoder:g} mm " +
+                    ", ".join(f"{largest_stable(rows, rate):.1f} N/mm at {rate:g} Hz" for rate in plan.rates))
+    parts = list(PARTS)[2:]
+    rest = counted(list(compared(table, plan, *parts, 2)))
+    wide = list(compared(table, plan, *parts, 10))
+    later, same, earlier = counted(wide)
+    most = max(max(linear - smooth for *_, linear, smooth in wide), 0)
+    return [f"A simulated device in a light hand is pressed into {subject.name} and held for {SECONDS} s, of which the last second "
+            "counts. It is at rest if its position, as the encoders tell it, moves by two encoder steps at most (a step counts for "
+            f"{LEAST_STEP:g} mm at least). The largest stiffness that comes to rest, of those tried up to 3 N/mm, for {MAP_PROFILE} "
+            f"without friction in its mechanics, is {'; '.join(maps)}.",
+            "Without friction nothing holds a hand sideways, and the smooth field has no facets to rest in. Of "
+            f"{sum(rest)} cases (a profile at a rate) it comes to rest up to a larger stiffness than on the linear field in {rest[0]}, up "
+            f"to a smaller one in {rest[2]}. Movement by more than 10 steps begins at the same stiffness in {same} of them, later in "
+            f"{later}, and in {earlier} earlier, by {most:.1f} N/mm at most.",
+            "For rotation, the light hand turns the handle by 20 degrees against a rotational spring that holds it straight. Rest is as "
+            f"above, and a step of angle counts for {LEAST_ANGLE:g} degrees at least. check() accepts 2 x rate x damping, which is where "
+            "a handle without delay begins to shake, because its inertia is large against damping times period. A delay lowers that to "
+            "damping / (period / 2 + delay), of which check() knows nothing: to be stable without friction, a device with a delay of half "
+            "a period takes half of what check() accepts. Friction of the wrist, which is assumed, stills what would shake.",
+            "Everything here is simulated and nothing is random, so there are no intervals. The profiles' masses, frictions and delays "
+            "are partly assumed (docs/devices/simulated.md), so the shape of the map is worth more than its numbers."]
+
+
+def run(options):
+    plan = plan_of(options.quick)
+    subject = options.subjects[0] if options.subjects else synthetic("sphere")
+    table = measured(cases_of(subject, plan), options.progress)
+    claims = [rated_claim(table), smooth_claim(table, plan), control_claim(table), *bound_claims(table)]
+    return Result(table, [map_figure(table, plan), profile_figure(table, plan), rotation_figure(table, plan)], claims,
+                  paragraphs_of(table, plan, subject), Table(summary_of(table, plan)))

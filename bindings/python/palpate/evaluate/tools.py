@@ -1,0 +1,424 @@
+"""tools: does any point of a tool go through?
+
+Rigid tools in six degrees of freedom: at rest against closed forms, a peg in its hole, and wild hands, with a penalty
+method beside the exact one.
+"""
+
+import dataclasses
+import math
+
+import numpy
+import palpate
+from scipy.spatial.transform import Rotation
+
+from . import figures, sampling
+from .experiment import GRANTED, Claim, Figure, Result, Table, in_parallel, largest
+
+TITLE = "Does any point of a tool go through?"
+WALL = 14.0  # [mm] radius of the shell
+MOST_JUDGED = 60  # chords per pose
+PLACES, FINEST = 8, 1e-4  # on a chord: where it is looked at first, and the last step as a part of it
+STRAIGHT = Rotation.from_quat([0, 0, 0, 1])
+
+
+@dataclasses.dataclass
+class Scene:
+    """On the smooth field; a voxel is a mm. wall: radius [mm] of a closed shell, in which the tool starts and stays."""
+
+    name: str
+    field: palpate.Field
+    isovalue: float
+    wall: float = 0
+
+    def excess(self, points):
+        """[range] in the solid."""
+        return (self.field.value(points) - self.isovalue) / self.field.range
+
+
+def sampled(size, density):
+    """Samples of a function of physical space, whose middle is the origin."""
+    at = numpy.arange(size) - 0.5 * (size - 1)
+    z, y, x = numpy.meshgrid(at, at, at, indexing="ij")
+    return palpate.Field(palpate.Volume(density(x, y, z).astype(numpy.float32), origin=[at[0]] * 3))
+
+
+def hostile_scenes(seed):
+    """White noise, grains of salt, and a ball's shell, 1.5 voxels thick."""
+    noise = numpy.random.default_rng([seed, 0]).uniform(0, 1, (32, 32, 32))
+    salt = 255 * (numpy.random.default_rng([seed, 1]).uniform(0, 1, (32, 32, 32)) < 0.02)
+    yield Scene("noise", sampled(32, lambda x, y, z: noise), 0.55)
+    yield Scene("salt", sampled(32, lambda x, y, z: salt), 60)
+    yield Scene("shell", sampled(40, lambda x, y, z: 1.5 - abs(numpy.sqrt(x * x + y * y + z * z) - WALL)), 0.75, WALL)
+
+
+def tools_of():
+    """(name, tool): points half a voxel apart. A cube with n points along its edges has 6 (n - 1)^2 + 2."""
+    yield "point", palpate.Tool([[0.0, 0, 0]], turns=False)
+    yield "rod", palpate.Tool.named("rod:4.5", 0.5)
+    for points in (100, 1000):
+        edge = 0.5 * round(((points - 2) / 6)**0.5)
+        yield "cube", palpate.Tool.named(f"box:{edge},{edge},{edge}", 0.5)
+    yield "scalpel", palpate.Tool.named("box:16,3.5,0.4", 0.5)
+
+
+# Tools at rest: stiffness 1 N/mm, rotational stiffness the gyration squared, so that the force is the way from hand to
+# proxy, and the torque the rotation between them times the gyration squared.
+
+def pressed(scene, tool, position, turn):
+    """(force [N], torque [N mm], contacts) of a tool that is pressed down, until it rests."""
+    for most in (4, 200):  # updates; nearly always four are enough
+        hands = numpy.tile(numpy.asarray(position, dtype=float), (most + 1, 1))
+        hands[0, 2] += 25
+        path = palpate.follow_tool(scene.field, scene.isovalue, tool, hands, numpy.tile(turn.as_quat(), (most + 1, 1)))
+        if not path["unfinished"][1:].all():
+            break
+    done = int(numpy.append(numpy.flatnonzero(~path["unfinished"][1:]) + 1, most)[0])
+    rest = Rotation.from_quat(path["orientation_xyzw"][done])
+    return path["position"][done] - position, tool.gyration**2 * (rest * turn.inv()).as_rotvec(), int(path["contacts"][done])
+
+
+def equilibrium(name, parameter, found, force, torque):
+    size = numpy.linalg.norm
+    off = size(found[1] - torque)
+    return {"part": "equilibrium", "scene": name, "parameter": parameter, "contacts": found[2], "force_n": size(found[0]),
+            "closed_form_n": size(force), "force_off_share": size(found[0] - force) / size(force), "torque_nmm": size(found[1]),
+            "closed_form_nmm": size(torque), "torque_off_share": off / size(torque) if size(torque) > 0 else off}
+
+
+def boxes():
+    """A box pressed onto a plane, tilted and twisted: it lies flat, the rest of the rotation is felt. Flat orientations
+    turn about z; the nearest has the same twist."""
+    scene, box = Scene("plane", sampled(40, lambda x, y, z: -z), 0), palpate.Tool.named("box:6,4,2", 0.5)
+    for tilt in (0.02, 0.04, 0.06, 0.08):
+        turn = Rotation.from_rotvec([0, 0, 8 * tilt]) * Rotation.from_rotvec([tilt, -0.7 * tilt, 0])
+        x, y, z, w = turn.as_quat()
+        level = Rotation.from_rotvec([0, 0, 2 * numpy.arctan2(z, w)])
+        found = pressed(scene, box, [0, 0, -1.0], turn)
+        yield equilibrium("box on a plane", tilt, found, numpy.array([0, 0, 2.0]),
+                          box.gyration**2 * (level * turn.inv()).as_rotvec())
+
+
+def levers():
+    """A rod whose one end is on the plane, its middle pressed down and turned: k h = N, h = l / 2 sin(a), and
+    k_r (turn - a) = N l / 2 cos(a)."""
+    scene, half, gyration = Scene("plane", sampled(40, lambda x, y, z: -z), 0), 4.0, 4.0
+    rod = palpate.Tool(half * numpy.outer(numpy.arange(-16, 17) / 16, [1, 0, 0]), gyration)
+    for turn in 0.1 * numpy.arange(1, 9):
+        found = pressed(scene, rod, [0, 0, 0], Rotation.from_rotvec([0, turn, 0]))
+        low, high = 0.0, turn
+        for _ in range(100):
+            angle = 0.5 * (low + high)
+            held = gyration**2 * (turn - angle) <= half**2 * numpy.sin(angle) * numpy.cos(angle)
+            low, high = (low, angle) if held else (angle, high)
+        yield equilibrium("rod on its end", turn, found, numpy.array([0, 0, half * numpy.sin(low)]),
+                          gyration**2 * numpy.array([0, low - turn, 0]))
+
+
+def spheres():
+    """A ball pressed onto a ball, whose density falls with the square of the distance, so that the smooth field's surface
+    is a ball, too: the force goes through both middles. Between points a ball sinks by at most the parameter."""
+    scene = Scene("ball", sampled(40, lambda x, y, z: -(x * x + y * y + z * z)), -144)
+    bottom = palpate.cast_rays(scene.field, scene.isovalue, [[0, 0, 16.0]], [[0, 0, 8.0]])[0][0, 2]
+    radius, spacing, depth = 3, 0.15, 2
+    tool = palpate.Tool.named(f"sphere:{radius}", spacing)
+    for angle in 0.2 * numpy.arange(5):
+        out = numpy.array([numpy.sin(angle), 0.3 * numpy.sin(angle), numpy.cos(angle)])
+        out /= numpy.linalg.norm(out)
+        found = pressed(scene, tool, (bottom + radius - depth) * out, STRAIGHT)
+        yield equilibrium("ball on a ball", 0.5 * spacing**2 * (1 / radius + 1 / bottom), found, depth * out, numpy.zeros(3))
+
+
+# The judge, by values of the field alone.
+
+def steepest(field):
+    """[range per mm] A bound of the smooth field's slope: twice what neighbouring samples differ by."""
+    samples = numpy.pad(field.volume.array.astype(float), 1, constant_values=field.background)
+    differences = [abs(numpy.diff(samples, axis=axis)).max() for axis in range(3)]
+    return 2 * float(numpy.linalg.norm(differences)) / field.range / min(field.geometry.spacing)
+
+
+def greatest_on_chords(scene, starts, ends):
+    """[range] The greatest excess on any of the chords: of nine places on each, refined around the greatest where a
+    chord may reach more than is known already."""
+    along = ends - starts
+    parts = numpy.arange(PLACES + 1) / PLACES
+    excess = scene.excess((starts[:, None] + parts[:, None] * along[:, None]).reshape(-1, 3)).reshape(len(starts), -1)
+    best, most = parts[excess.argmax(axis=1)], excess.max(axis=1)
+    reach = steepest(scene.field) * numpy.linalg.norm(along, axis=1) / (2 * PLACES)
+    open_ = most + reach > most.max()
+    starts, along, best, most, known = starts[open_], along[open_], best[open_], most[open_], most.max()
+    step = 0.5 / PLACES
+    while step > FINEST and len(starts):
+        for side in (-step, step):
+            part = best + side
+            here = numpy.where((part >= 0) & (part <= 1), scene.excess(starts + part[:, None] * along), -numpy.inf)
+            best, most = numpy.where(here > most, part, best), numpy.maximum(most, here)
+        step *= 0.5
+    return max(known, float(most.max(initial=-numpy.inf)))
+
+
+def chords_of(tool, path):
+    """(starts, ends) of the ways of points, (n, 3) each, from pose to pose. Of a tool with many points a part is judged,
+    another one at each pose; not while it is brought out of the solid, and not where it is placed."""
+    points, step, tick = tool.points, 1 + (len(tool.points) - 1) // MOST_JUDGED, path["pose_tick"]
+    poses = numpy.flatnonzero((tick > 0) & ~path["recovering"][tick - 1])
+    counts = [len(range(pose % step, len(points), step)) for pose in poses]
+    which = numpy.concatenate([numpy.arange(pose % step, len(points), step) for pose in [*poses, len(points) * step]])
+    row, which = numpy.repeat(poses, counts), which[:sum(counts)]
+    first = tick[row] != tick[row - 1]  # begins where the update before it ended
+    before = [numpy.where(first[:, None], path[name][tick[row] - 1], path[f"pose_{name}"][row - 1])
+              for name in ("position", "orientation_xyzw")]
+
+    def places(position, orientation):
+        return position + Rotation.from_quat(orientation).apply(points[which])
+
+    return (places(*before), places(path["pose_position"][row], path["pose_orientation_xyzw"][row])) if len(row) else (
+        numpy.empty((0, 3)), numpy.empty((0, 3)))
+
+
+def distances(tool, path, hands, turns):
+    """[mm] from hand to proxy, and from each hand to the proxy before it."""
+    def of(places, proxy):
+        turn = (turns[len(turns) - len(places):] * proxy.inv()).magnitude() if tool.turns else 0
+        return numpy.hypot(numpy.linalg.norm(hands[len(hands) - len(places):] - places, axis=1), tool.gyration * turn)
+
+    proxy = Rotation.from_quat(path["orientation_xyzw"])
+    return of(path["position"], proxy)[1:], of(path["position"][:-1], proxy[:-1])
+
+
+def judged(scene, tool, hands, turns, chunk=400_000):
+    """(path, verdict) of a tool that starts at the first hand, in free space."""
+    path = palpate.follow_tool(scene.field, scene.isovalue, tool, hands, turns.as_quat())
+    starts, ends = chords_of(tool, path)
+    parts = [slice(i, i + chunk) for i in range(0, len(starts), chunk)]
+    worst = in_parallel(lambda part: greatest_on_chords(scene, starts[part], ends[part]), parts)
+    now, before = distances(tool, path, hands, turns)
+    known = ~path["recovering"][:-1]
+    return path, {"chords": len(starts), "worst_excess_of_range": max(worst, default=-1.0),
+                  "worst_growth_voxel": largest((now - before)[known]),
+                  "unfinished_share": path["unfinished"][1:].mean(), "rounds_mean": path["rounds"][1:].mean(),
+                  "rounds_most": int(path["rounds"][1:].max()), "work_mean": path["work"][1:].mean(),
+                  "work_most": int(path["work"][1:].max())}
+
+
+# A peg with a quarter of a voxel around it goes into its hole, is wiggled there, and comes out.
+
+def peg(radius, length):
+    """Rings of points half a voxel apart."""
+    count = int(numpy.ceil(2 * numpy.pi * radius / 0.5))
+    angle, z = 2 * numpy.pi * numpy.arange(count) / count, numpy.arange(-0.5 * length, 0.5 * length + 1e-9, 0.5)
+    ring = radius * numpy.stack([numpy.cos(angle), numpy.sin(angle)], axis=1)
+    return palpate.Tool(numpy.column_stack([numpy.tile(ring, (len(z), 1)), numpy.repeat(z, count)]))
+
+
+def fit(quick):
+    """The hole is along z, of 5 mm radius, up to z = 8."""
+    scene = Scene("hole", sampled(48, lambda x, y, z: numpy.minimum(numpy.hypot(x, y) - 5, 8 - z)), 0)
+    tool, ticks = peg(4.75, 10), 100 if quick else 3000
+    i = numpy.arange(3 * ticks + 1)
+    t, phase = i / ticks, 0.02 * i
+    depth = numpy.where(t < 1, t, numpy.where(t < 2, 1, 3 - t))
+    wiggle = numpy.where((t > 1) & (t < 2), 1, 0.1)
+    hands = numpy.stack([wiggle * numpy.sin(phase), wiggle * numpy.sin(1.3 * phase), 20 - 24 * depth], axis=1)
+    turns = Rotation.from_rotvec(0.2 * wiggle[:, None] * numpy.stack(
+        [numpy.sin(1.7 * phase), numpy.cos(phase), numpy.full(len(i), 0.5)], axis=1))
+    hands, turns = numpy.concatenate([[[0, 0, 20.0]], hands]), Rotation.concatenate([STRAIGHT, turns])
+    path, verdict = judged(scene, tool, hands, turns)
+    return {"part": "fit", "scene": "peg in a hole", "points": len(tool.points), "ticks": 3 * ticks,
+            "lowest_mm": path["position"][1:, 2].min(), "end_mm": path["position"][-1, 2],
+            **{name: verdict[name] for name in ("chords", "worst_excess_of_range", "unfinished_share", "rounds_most")}}
+
+
+# Wild hands: up to 3 voxels and 0.02 rad per tick (3 m/s and 20 rad/s at 1 kHz), now slowly, now fast, within a ball.
+
+def direction(random):
+    z, angle = random.uniform(-1, 1), random.uniform(0, 2 * math.pi)
+    across = math.sqrt(1 - z * z)
+    return across * math.cos(angle), across * math.sin(angle), z
+
+
+def moved(vector, by, size):
+    """A unit vector, turned a little."""
+    x, y, z = (v + size * d for v, d in zip(vector, by))
+    length = math.sqrt(x * x + y * y + z * z)
+    return x / length, y / length, z / length
+
+
+def wild_hand(random, ticks, radius, start):
+    """(positions, turns), from a place in free space."""
+    place, way, spin = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+    left, positions, turns = 0, [start], [STRAIGHT]
+    x, y, z, w = 0.0, 0.0, 0.0, 1.0  # of the turn
+    for _ in range(ticks):
+        left -= 1
+        if left <= 0:
+            left = 20 + int(100 * random.uniform())
+            speed = 3 if random.uniform() < 0.3 else 0.3 * random.uniform()
+            turning = 0.02 if random.uniform() < 0.3 else 0.004 * random.uniform()
+        way, spin = moved(way, direction(random), 0.2), moved(spin, direction(random), 0.3)
+        far = math.sqrt(sum(p * p for p in place))
+        if far > radius:
+            way = tuple(-p / far for p in place)
+        place = tuple(p + speed * v for p, v in zip(place, way))
+        (a, b, c), d = (math.sin(0.5 * turning) * v for v in spin), math.cos(0.5 * turning)
+        x, y, z, w = (d * x + a * w + b * z - c * y, d * y - a * z + b * w + c * x, d * z + a * y - b * x + c * w,
+                      d * w - a * x - b * y - c * z)
+        positions.append(place)
+        turns.append((x, y, z, w))
+    return numpy.array(positions), Rotation.from_quat([STRAIGHT.as_quat(), *turns[1:]])
+
+
+def points_at(tool, path, ticks):
+    """[mm, physical] Of all points of a tool in some ticks, (ticks, points, 3), in parts that fit into memory."""
+    for part in numpy.array_split(ticks, 1 + len(ticks) * len(tool.points) // 1_000_000):
+        turn = Rotation.from_quat(path["orientation_xyzw"][part]).as_matrix()
+        yield numpy.einsum("tij,pj->tpi", turn, tool.points) + path["position"][part][:, None]
+
+
+def deepest(scene, tool, path, ticks):
+    """[voxel] How deep the deepest point is, by the field's slope, at most as deep as its excess could be; in the shell,
+    beyond its inner side."""
+    most = 0.0
+    for points in points_at(tool, path, ticks):
+        if scene.wall:
+            most = max(most, numpy.linalg.norm(points, axis=2).max() - (scene.wall - 0.75))
+            continue
+        flat = points.reshape(-1, 3)
+        excess = scene.field.value(flat) - scene.isovalue
+        flat, excess = flat[excess > 0], excess[excess > 0]
+        slope = numpy.linalg.norm(scene.field.gradient(flat), axis=1) if len(flat) else excess
+        most = max(most, numpy.minimum(excess / numpy.maximum(slope, 1e-9), 10).max(initial=0))
+    return most
+
+
+def through(scene, tool, path):
+    """In how many ticks a point is beyond the wall."""
+    if not scene.wall:
+        return 0
+    return sum(int((numpy.linalg.norm(points, axis=2).max(axis=1) > scene.wall).sum())
+               for points in points_at(tool, path, numpy.arange(1, len(path["position"]))))
+
+
+def hostile_row(scene, method, name, tool, hands, counts):
+    """One row for the hands of all seeds. counts: ticks of each hand that the method gets."""
+    found, gone, depth = [], 0, 0.0
+    for (positions, turns), count in zip(hands, counts):
+        hand, turn = positions[:count + 1], turns[:count + 1]
+        if method == "exact":
+            path, verdict = judged(scene, tool, hand, turn)
+            found.append(verdict)
+        else:
+            path = palpate.follow_tool(scene.field, scene.isovalue, tool, hand, turn.as_quat(), method)
+        gone += through(scene, tool, path)
+        depth = max(depth, deepest(scene, tool, path, numpy.arange(1, count + 1, 64 if method == "exact" else 1)))
+    ticks, verdicts = sum(counts), Table(found)
+    row = {"part": "hostile", "scene": scene.name, "method": method, "tool": name, "points": len(tool.points), "ticks": ticks,
+           "through_share": gone / ticks, "deepest_voxel": depth}
+    for column in found[0] if found else ():
+        values = verdicts[column]
+        row[column] = (values.sum() if column == "chords" else values @ counts / ticks if column.endswith(("share", "mean"))
+                       else values.max())
+    return row
+
+
+def hostile(options):
+    ticks, penalty_ticks = (90, 90) if options.quick else (100_000, 10_000)
+    scenes, tools = list(hostile_scenes(options.seed)), list(tools_of())
+
+    def counts(all_ticks):
+        return [len(range(part, all_ticks, options.seeds)) for part in range(options.seeds)]
+
+    for number, scene in enumerate(scenes):
+        start = (0.0, 0, 0) if scene.wall else (0.0, 0, 40)
+        hands = [wild_hand(numpy.random.default_rng([options.seed, 2 + part]), count, 2 * scene.wall or 24, start)
+                 for part, count in enumerate(counts(ticks))]
+        for name, tool in tools:
+            options.progress(0.05 + 0.95 * (number + tools.index((name, tool)) / len(tools)) / len(scenes))
+            for method, wanted in (("exact", ticks), ("penalty", penalty_ticks)):
+                yield hostile_row(scene, method, name, tool, hands, counts(wanted))
+
+
+def claims_of(table):
+    rest, fitted = table.where(part="equilibrium"), table.where(part="fit")[0]
+    exact = table.where(part="hostile", method="exact")
+    force, torque = largest(rest["force_off_share"]), largest(rest["torque_off_share"])
+    excess, growth, gone = exact["worst_excess_of_range"].max(), largest(exact["worst_growth_voxel"]), exact["through_share"]
+    ticks = int(exact.where(scene="shell")["ticks"].sum())
+    return [
+        Claim("force and torque of a box on a plane, a rod on its end and a ball on a ball are within 1 % of the closed form",
+              force <= 0.01 and torque <= 0.01, f"at most {100 * force:.2g} % and {100 * torque:.2g} % off"),
+        Claim("a peg with a quarter of a voxel around it goes into its hole, can be wiggled, and comes out, never in the solid",
+              bool(fitted["lowest_mm"] < -3.5 and fitted["end_mm"] > 19 and fitted["worst_excess_of_range"] <= GRANTED),
+              "from 20 to {lowest_mm:.2f} and back to {end_mm:.2f} mm, at most {worst_excess_of_range:.1e} of the range"
+              .format(**fitted)),
+        Claim("no point of a tool is anywhere on its way more than 1e-9 of the range in the solid", bool(excess <= GRANTED),
+              f"at most {excess:.1e}; more on {sampling.none_of(int(exact['chords'].sum()), 'chords')}"),
+        Claim("no point of a tool ever gets through a closed shell of 1.5 voxels", bool((gone == 0).all()),
+              sampling.none_of(ticks, "ticks") if (gone == 0).all() else f"{gone.max():.3g} of the ticks"),
+        Claim("the distance to the hand never grows in a tick", growth <= 1e-10, f"at most by {growth:.1e} voxel")]
+
+
+def summary_of(table):
+    for row in table.where(part="hostile", method="exact"):
+        penalty = table.where(part="hostile", method="penalty", scene=row["scene"], tool=row["tool"], points=row["points"])[0]
+        yield {"scene": row["scene"], "tool": f"{row['tool']}, {row['points']} points", "rounds, mean": row["rounds_mean"],
+               "goes on in the next tick [%]": 100 * row["unfinished_share"],
+               "deepest point, exact [range]": max(0.0, row["worst_excess_of_range"]),
+               "deepest point, penalty [voxel]": penalty["deepest_voxel"],
+               "ticks beyond the shell, penalty [%]": 100 * penalty["through_share"] if row["scene"] == "shell" else numpy.nan}
+
+
+def hostile_figure(table):
+    drawn, panels = figures.panels(columns=3, height=2.5, sharey=True)
+    for axes, name in zip(panels, ("noise", "salt", "shell")):
+        for method, colour, marker in (("exact", figures.BLUE, "o"), ("penalty", figures.VERMILION, "^")):
+            rows = Table(sorted(table.where(part="hostile", scene=name, method=method), key=lambda row: row["points"]))
+            axes.plot(rows["points"], rows["deepest_voxel"], color=colour, marker=marker, label=method)
+        axes.set(title=name, xscale="log", xlabel="points of the tool")
+    panels[0].set_ylabel("deepest point [voxel]")
+    drawn.suptitle("The exact method keeps every point outside; a penalty does not", x=0.01, ha="left")
+    drawn.canvas.draw()
+    figures.label_ends(panels[2])
+    return Figure("", "Depth of the deepest point of a tool, for tools of more and more points (the scalpel has 528), in three scenes. "
+                  "In noise and salt, depths are cut off at 10 voxels. In the shell, depth counts from the ideal inner radius, which "
+                  "the smooth field moves by up to 0.06 voxel. With the exact method, no point is in the solid by more than 1e-9 of the "
+                  "range.", drawn)
+
+
+def lever_figure(table):
+    rows = table.where(part="equilibrium", scene="rod on its end")
+    drawn, axes = figures.panels(height=2.5)
+    axes.plot(rows["parameter"], rows["closed_form_nmm"], color="#c0c0c0", lw=5)
+    axes.plot(rows["parameter"], rows["torque_nmm"], "o", mfc="none", color=figures.VERMILION)
+    axes.text(0.55, rows["torque_nmm"][-1] * 0.45, "closed form (grey)\nrendered (circles)", fontsize=7.5)
+    axes.set(title="the torque of a lever is that of the closed form", xlabel="turn of the hand [rad]", ylabel="torque [N mm]",
+             xlim=(0, None), ylim=(0, None))
+    return Figure("lever", "A rod on its end, its middle held on the plane and turned: torque in closed form (grey, wide) and as "
+                  "rendered (circles).", drawn)
+
+
+def paragraphs_of(table, seeds):
+    rest, fitted = table.where(part="equilibrium"), table.where(part="fit")[0]
+    exact, penalty = (table.where(part="hostile", method=method) for method in ("exact", "penalty"))
+    sunk = largest(rest.where(scene="ball on a ball")["parameter"])
+    return ["Tools at rest are compared with closed forms, at a stiffness of 1 N/mm: a box on a plane, a rod on its end and a ball on a "
+            f"ball. The points of a ball lie up to {sunk:.3f} mm deeper than a true ball's surface would. A peg of "
+            f"{fitted['points']} points with a quarter of a voxel around it goes in and out. {100 * fitted['unfinished_share']:.2g} % of "
+            f"its updates go on in the next tick, and none takes more than {fitted['rounds_most']} rounds.",
+            f"Wild hands from {seeds} seeds, up to 3 m/s and 20 rad/s, carry tools of 1 to {largest(exact['points']):.0f} points and a "
+            f"scalpel through white noise, salt and a closed shell of 1.5 voxels, {largest(exact['ticks']):.0f} ticks each. At most "
+            f"{100 * largest(exact['unfinished_share']):.1f} % of an exact tool's updates go on in the next tick.",
+            "The penalty method is that of McNeely, Puterbaugh and Troy (1999) with the quasi-static equilibrium of Wan and McNeely "
+            f"(2003), {largest(penalty['ticks']):.0f} ticks each. It has a point beyond the shell in up to "
+            f"{100 * largest(penalty['through_share']):.0f} % of the ticks, and points up to {largest(penalty['deepest_voxel']):.1f} voxels "
+            "deep. What it lets through depends on its stiffness and on the shell's thickness. Nothing here says how real tools and "
+            "tissues feel. Bounds take ticks and chords as independent, which they are not quite."]
+
+
+def run(options):
+    if options.subjects:
+        raise ValueError("tools has scenes of its own: leave out --volume")
+    table = Table([*boxes(), *levers(), *spheres(), fit(options.quick)])
+    table.extend(hostile(options))
+    return Result(table, [hostile_figure(table), lever_figure(table)], claims_of(table), paragraphs_of(table, options.seeds),
+                  Table(summary_of(table)))

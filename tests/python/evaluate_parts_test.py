@@ -1,0 +1,179 @@
+"""The parts of the experiments layers, tools, stability and performance: phantoms and closed forms, the judge of tools, closed
+loops, and times of updates."""
+
+import numpy
+import palpate
+import pytest
+
+from palpate.evaluate import heads, performance, stability, tissues, tools
+from palpate.evaluate.experiment import GRANTED, Options, Table
+from palpate.evaluate.subjects import of_text
+
+
+def test_phantoms_have_their_depth_as_density():
+    random, depth = numpy.random.default_rng(3), numpy.arange(5, tissues.DEEPEST, 0.37)
+    for body in (tissues.flat(), tissues.balls()):
+        field = body.felt("linear")
+        for _ in range(50):
+            way = body.way(random)
+            assert numpy.linalg.norm(way.inward) == pytest.approx(1, abs=1e-12)
+            assert abs(field.value(way.at(depth)) - depth).max() < 1e-3
+
+
+def stepped_spring(depth):
+    """A hand that goes in by tiny steps: the surface that holds it, and where it last gave way."""
+    gone, force = 0, 0
+    for at in numpy.arange(0, depth + 1e-9, 1e-3):
+        force = 0
+        while gone < len(tissues.LEVEL) and at > tissues.LEVEL[gone]:
+            force = tissues.STIFFNESS[gone] * (at - tissues.LEVEL[gone])
+            if force < tissues.PUNCTURE[gone]:
+                break
+            gone, force = gone + 1, 0
+    return force
+
+
+def test_the_closed_form_is_that_of_a_hand_that_goes_in_by_tiny_steps():
+    depths = numpy.array([9.0, 10.5, 12.9, 13.1, 16.1, 19.4, 19.6, 31.0, 32.3, 33.6, 35.6, 35.7, 59.0, 62.0])
+    for depth, force in zip(depths, tissues.spring(depths)):
+        assert force == pytest.approx(stepped_spring(depth), abs=5e-3), depth
+
+
+def test_drag_is_drag_times_length_in_what_gave_way():
+    assert tissues.drag(numpy.array([12.9]))[0] == 0  # the skin still holds
+    assert tissues.drag(numpy.array([13.1]))[0] == pytest.approx(0.03 * 3.1)
+    held_by_bone = 0.03 * 6 + 0.01 * 14 + 0.05 * 3.5 + 0.03 * 26.5
+    assert tissues.drag(numpy.array([61.0]))[0] == pytest.approx(held_by_bone)
+
+
+def test_a_drill_meets_bone_after_the_skin_and_again_from_behind():
+    head, = heads.heads_of(Options(quick=True), [])
+    rows = Table(heads.press_into(head, "drilling", 0.5))
+    assert [row["order"] for row in rows.where(part="head event")] == [
+        "on skin", "through skin", "on bone", "through bone", "on bone from behind", "through bone from behind"]
+
+
+def test_real_heads_that_are_missing_are_named():
+    notes = []
+    assert len(heads.heads_of(Options(note=notes.append), [])) == 1
+    assert "ct-head" in notes[0] and "visible-human" in notes[1]
+
+
+def test_a_volume_of_the_user_takes_the_place_of_heads():
+    subject = of_text("synthetic:sphere:24x24x24")
+    head, = heads.heads_of(Options(quick=True, subjects=(subject,)), [])
+    table = Table(row for name in heads.SETS for row in heads.press_into(head, name, 0.5))
+    assert head.name == "sphere" and all(claim.held for claim in heads.claims_of_heads(table))
+    with pytest.raises(ValueError, match="level"):
+        heads.heads_of(Options(subjects=(of_text("synthetic:sphere:16x16x16@1000"),)), [])
+
+
+def test_rendering_many_ticks_is_rendering_each():
+    field, ticks = tissues.flat().felt("linear"), 400
+    made, hand = tissues.renderer(field, tissues.layers()), numpy.array([4, 4, 0]) + numpy.outer(9 + numpy.arange(ticks) / 90, [0, 0, 1])
+    alone, time = made.copy(), tissues.times(ticks)
+    middle = made.copy()
+    middle.follow(time[:200], hand[:200])
+    trace, fork = made.follow(time, hand), middle.follow(time[200:203], hand[200:203], alternatives=True)
+    for i, tick in enumerate(alone.render(*of) for of in zip(time, hand)):
+        assert (tick.force == trace["force"][i]).all() and tick.punctured == trace["punctured"][i]
+        assert (tick.layer, tick.inside) == (trace["layer"][i], trace["inside"][i])
+    assert trace["punctured"].sum() == 1
+    assert (fork["force"][0] == trace["force"][200]).all()
+    assert (fork["force"][1] == middle.copy().render(time[201], hand[201]).force).all()
+    assert (made.batch_ns(time + 1, hand, 40) > 0).sum() == 10
+    with pytest.raises(ValueError):
+        made.follow(time, hand[1:])
+
+
+def sphere():
+    return tools.Scene("ball", tools.sampled(40, lambda x, y, z: -(x * x + y * y + z * z)), -144)
+
+
+def test_the_judge_of_tools_sees_the_greatest_excess_on_chords():
+    ball = sphere()
+    most = tools.greatest_on_chords(ball, numpy.array([[-15.0, 3, 0], [-15, 14, 0]]), numpy.array([[14.0, 3, 0], [14, 14, 0]]))
+    assert most == pytest.approx(ball.excess([[0, 3.0, 0]])[0], abs=1e-6)
+    assert tools.greatest_on_chords(ball, numpy.array([[-15.0, 14, 0]]), numpy.array([[14.0, 14, 0]])) < 0
+
+
+def test_pruned_chords_are_judged_as_all_are(monkeypatch):
+    noise = next(tools.hostile_scenes(5))
+    random = numpy.random.default_rng(2)
+    starts = random.uniform(-15, 15, (400, 3))
+    ends = starts + random.uniform(-1, 1, (400, 3))
+    pruned = tools.greatest_on_chords(noise, starts, ends)
+    slopes = numpy.linalg.norm(noise.field.gradient(random.uniform(-16, 16, (20000, 3))), axis=1)
+    assert slopes.max() / noise.field.range < tools.steepest(noise.field)
+    monkeypatch.setattr(tools, "steepest", lambda field: numpy.inf)
+    assert tools.greatest_on_chords(noise, starts, ends) == pruned
+
+
+def test_the_judge_of_tools_notices_one_in_the_solid():
+    scene, tool = tools.Scene("plane", tools.sampled(40, lambda x, y, z: -z), 0), palpate.Tool.named("box:2,2,2", 0.5)
+    hands = numpy.outer([10, 5, 5.0], [0, 0, 1])
+    turns = tools.Rotation.from_quat(numpy.tile([0, 0, 0, 1.0], (3, 1)))
+    path, verdict = tools.judged(scene, tool, hands, turns)
+    assert verdict["chords"] > 0 and verdict["worst_excess_of_range"] < 0
+    path["pose_position"] = path["pose_position"] - [0, 0, 5.5]  # as no update leads
+    assert tools.greatest_on_chords(scene, *tools.chords_of(tool, path)) > GRANTED
+
+
+def test_a_penalty_lets_a_scalpel_through_the_shell_and_the_exact_method_does_not():
+    shell = list(tools.hostile_scenes(1))[2]
+    scalpel = dict(tools.tools_of())["scalpel"]
+    hand = tools.wild_hand(numpy.random.default_rng(1), 90, 28, (0.0, 0, 0))
+    assert abs(numpy.linalg.norm(numpy.diff(hand[0], axis=0), axis=1)).max() < 3 + 1e-9
+    penalty, exact = (tools.hostile_row(shell, method, "scalpel", scalpel, [hand], [90]) for method in ("penalty", "exact"))
+    assert penalty["deepest_voxel"] > 1 > 0.1 > exact["deepest_voxel"]
+    assert penalty["through_share"] > 0 == exact["through_share"]
+
+
+def test_a_loop_at_rest_pushes_against_the_surface():
+    subject = of_text("synthetic:sphere")
+    row = stability.pressed(subject, "map", "touch", False, "linear", 0, 1000, 0.5)
+    assert (row["at_rest"], row["in_contact"]) == ("yes", "yes") and row["push_N"] > 0.05
+    assert stability.turned(subject, "rotation, ideal", "premium6dof", 1000, 0.5)["torque_N_mm"] > 5
+    with pytest.raises(ValueError, match="simulated"):
+        stability.loop_of(subject.field, subject.isovalue, "none", 1000, 1)
+
+
+def test_the_hand_is_the_same_for_a_seed_and_comes_near_to_what_is_wanted():
+    subject = of_text("synthetic:torus:40x40x20")
+    once, again, other = (palpate.explore(subject.field, subject.isovalue, seed=seed, trajectories=2, trajectory_s=1, wanted=(50, 0.6))
+                          for seed in (1, 1, 2))
+    assert (once["hips"] == again["hips"]).all() and not numpy.array_equal(once["hips"], other["hips"])
+    assert once["speed_mm_s"] == pytest.approx(50, rel=0.15) and once["constrained_share"] == pytest.approx(0.6, rel=0.15)
+    with pytest.raises(ValueError, match="some volume: a hand from outside"):
+        palpate.explore(subject.field, 1e9, name="some volume")
+
+
+def test_a_volume_of_the_user_has_our_target_and_no_row_of_the_paper():
+    case = performance.Case(of_text("synthetic:torus:40x40x20"))
+    rows = Table(performance.rows_of(case, "LR", performance.Effort(1, 0.5, 2, 0), 1))
+    assert rows.distinct("target_from") == ["ours"] and numpy.isnan(rows["paper_mean_us"]).all()
+    assert not list(performance.summary_of(rows)) and rows[0]["over_exact"] == 1
+
+
+def test_a_hand_far_from_its_target_breaks_a_claim_or_on_a_users_volume_gives_a_note():
+    rows = Table({"method": name, "unfinished_updates": 0, "speed_mm_s": 30, "target_speed_mm_s": 50, "constrained_share": 0.6,
+                  "target_constrained_share": 0.6} for name in performance.METHODS)
+    notes = []
+    own, users = (list(performance.claims_of(rows, Options(subjects=subjects, note=notes.append))) for subjects in ((), (None,)))
+    assert [claim.held for claim in own] == [True, True, False]
+    assert len(users) == 2 and len(notes) == 1 and "very small" in notes[0]
+
+
+def test_times_of_updates_are_in_order_and_each_is_measured():
+    subject = of_text("synthetic:sphere:32x32x32")
+    hand = palpate.explore(subject.field, subject.isovalue, trajectories=2, trajectory_s=0.503)
+    of = (subject.field, subject.isovalue, hand["hips"], hand["first"])
+    assert len(hand["hips"]) == 1008 and list(hand["first"]) == [0, 504]
+    weights = performance.weights_of(hand)
+    assert list(weights) == 2 * ([50] * 10 + [3]) and len(palpate.update_times(*of, batch=50)) == len(weights)
+    assert len(palpate.update_times(*of)) == 1006 and len(palpate.update_times(*of, cold=100)) == 10
+    effort = performance.Effort(2, 0.503, 3, 5)
+    taken = performance.timed(subject, [performance.CONTESTANTS["exact"]], hand, effort)["exact"]
+    found = performance.numbers_of(taken, hand, 20)
+    assert 0 < found["p50_ns"] <= found["p99_ns"] <= found["p999_ns"] <= found["max_ns"] <= found["interrupted_max_ns"]
+    assert found["updates"] == 1006 and found["cold_p50_ns"] > 0
