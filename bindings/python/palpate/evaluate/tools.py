@@ -214,7 +214,7 @@ def peg(radius, length):
 def fit(quick):
     """The hole is along z, of 5 mm radius, up to z = 8."""
     scene = Scene("hole", sampled(48, lambda x, y, z: numpy.minimum(numpy.hypot(x, y) - 5, 8 - z)), 0)
-    tool, ticks = peg(4.75, 10), 100 if quick else 3000
+    tool, ticks = peg(4.75, 10), 150 if quick else 3000
     i = numpy.arange(3 * ticks + 1)
     t, phase = i / ticks, 0.02 * i
     depth = numpy.where(t < 1, t, numpy.where(t < 2, 1, 3 - t))
@@ -322,7 +322,7 @@ def hostile_row(scene, method, name, tool, hands, counts):
 
 
 def hostile(options):
-    ticks, penalty_ticks = (90, 90) if options.quick else (100_000, 10_000)
+    ticks, penalty_ticks = (60, 60) if options.quick else (100_000, 10_000)
     scenes, tools = list(hostile_scenes(options.seed)), list(tools_of())
 
     def counts(all_ticks):
