@@ -85,7 +85,7 @@ def tolerance(name, column, was):
 RANDOM = {"median_path_in_wall_voxel": 1, "inside_while_pressed_share": 0.6, "pressed_share": 0.4,
           "unfelt_share": 0.4, "inside_share": 0, "ticks_per_crossing": 150, "worst_excess_of_range": 0.2}
 TOLERANCE = {"drift": {"density": 1e-6, "worst_deviation_of_range": 1e-9}, "fall-through": RANDOM,
-             "layers": {"rms_n": 2e-3, "worst_n": 0.05}, "tools": {"force_n": 1e-8}}
+             "layers": {"rms_n": 2e-3, "worst_n": 0.05}, "tools": {"force_n": 1e-8, "force_off_share": 1e-8}}
 
 
 @pytest.mark.parametrize("name", [path.stem for path in sorted(BEFORE.glob("*.csv"))])
@@ -310,12 +310,12 @@ def test_the_module_does_the_same_as_the_program(tmp_path):
 
 def test_all_leaves_out_what_cannot_be_done_on_the_users_volume(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(program, "EXPERIMENTS", ("drift", "walk-through"))
+    monkeypatch.setattr(program, "EXPERIMENTS", ("drift", "penetration"))
     words = ["all", "--quick", "-o", "found", "--volume", "synthetic:plane:24x24x24"]
     program.evaluate(program.arguments(words), words)
     assert "note: drift is left out: " in capsys.readouterr().err
     assert not (tmp_path / "found/drift.csv").exists()
-    assert (tmp_path / "found/walk-through.csv").exists() and (tmp_path / "found/report.html").exists()
+    assert (tmp_path / "found/penetration.csv").exists() and (tmp_path / "found/report.html").exists()
 
 
 @pytest.mark.parametrize("words, status, told", [
