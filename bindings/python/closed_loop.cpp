@@ -92,7 +92,8 @@ void bind_closed_loop(py::module_& module) {
     module.def(
         "closed_loop", &closed_loop, py::arg("renderer"), py::arg("device"), py::arg("seconds"),
         py::arg("rate"), py::arg("straight") = false,
-        "A simulated device, 'simulated:touch,grip=light,hand=hold', whose workspace the grid fills, in a\n"
+        "A simulated device, 'simulated:touch,grip=light,hand=hold', whose workspace the grid "
+        "fills, in a\n"
         "closed loop with a copy "
         "of the\n"
         "renderer, as fast as possible and without the GIL: arrays by name, position [device mm],\n"

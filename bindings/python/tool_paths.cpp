@@ -1,4 +1,5 @@
-// The proxy of a rigid tool alone, without forces: whole trajectories in, arrays out, without the GIL.
+// The proxy of a rigid tool alone, without forces: whole trajectories in, arrays out, without the
+// GIL.
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "palpate/baselines/penalty_tool.hpp"
@@ -95,7 +96,8 @@ void bind_tool_paths(py::module_& module) {
     module.def(
         "follow_tool", &follow_tool, py::arg("field"), py::arg("isovalue"), py::arg("tool"),
         py::arg("position"), py::arg("orientation_xyzw"), py::arg("method") = "exact",
-        "An update of a tool for each pose of the hand, position [mm, physical], shape (n, 3), and\n"
+        "An update of a tool for each pose of the hand, position [mm, physical], shape (n, 3), "
+        "and\n"
         "orientation_xyzw, (n, 4); the tool starts at the first pose. method: 'exact', or "
         "'penalty', a\n"
         "baseline. Arrays by name: position, orientation_xyzw, contacts, unfinished, recovering, "
