@@ -228,7 +228,7 @@ LoadedVolume loaded_of(const StoreSource& from, const Source& source,
     }
     loaded.streamed =
         StreamedVolume{std::move(store), from.loader, {from.address, options_of(from, time)}};
-    loaded.streamed->loader.pieces = stream::shared_pieces();
+    loaded.streamed->loader.shared = stream::shared_loader(loaded.streamed->loader.threads);
     start_samples(loaded);  // says now what is wrong with the level
     if (!is_web_address(from.address)) note_original(*loaded.streamed, tell);
     return loaded;

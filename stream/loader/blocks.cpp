@@ -5,7 +5,6 @@
 #include <atomic>
 
 #include "stream/box_bytes.hpp"
-#include "stream/loader/small_threads.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -61,20 +60,13 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
     });
 }
 
-std::shared_ptr<Pieces> shared_pieces() {
-    return std::make_shared<Pieces>();
-}
-
-Blocks::Blocks(const Store& store, std::uint64_t most_bytes, std::shared_ptr<Pieces> pieces,
+Blocks::Blocks(const Store& store, std::uint64_t most_bytes, std::shared_ptr<Loader> loader,
                For whom)
-    : store_(store),
-      most_bytes_(most_bytes),
-      pieces_(pieces ? std::move(pieces) : shared_pieces()),
-      whom_(whom) {}
+    : store_(store), most_bytes_(most_bytes), loader_(std::move(loader)), whom_(whom) {}
 
 Blocks::~Blocks() {
-    const std::scoped_lock lock(pieces_->mutex_);
-    for (const Key& key : ages_) pieces_->kept_.erase(key);
+    const std::scoped_lock lock(loader_->pieces_mutex_);
+    for (const Key& key : ages_) loader_->kept_.erase(key);
 }
 
 void Blocks::read(int level, const SampleBox& box, const SampleBox& room, std::span<std::byte> out,
@@ -116,6 +108,18 @@ bool Blocks::keeps(int level) const {
     return !is_row && bytes_of(piece, store_.info().type) <= most_bytes_ / 4;
 }
 
+bool Blocks::has_all(int level, const SampleBox& box) const {
+    bool all = keeps(level);
+    if (!all) return false;
+    const std::scoped_lock lock(loader_->pieces_mutex_);
+    for_each_whole(grid_of(level), box, [&](const Index3& at, const SampleBox&) {
+        const auto kept = loader_->kept_.find({level, at[0], at[1], at[2]});
+        all = all && kept != loader_->kept_.end() &&
+              kept->second.bytes.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    });
+    return all;
+}
+
 bool Blocks::has_unread(int level, const SampleBox& box) const {
     bool unread = false;
     if (!keeps(level)) return unread;
@@ -135,8 +139,8 @@ void Blocks::read_one(int level, const SampleBox& box, std::stop_token stop) {
 
 /// True for a piece that is kept or that a thread reads now.
 bool Blocks::has(int level, const Index3& at) const {
-    const std::scoped_lock lock(pieces_->mutex_);
-    return pieces_->kept_.contains({level, at[0], at[1], at[2]});
+    const std::scoped_lock lock(loader_->pieces_mutex_);
+    return loader_->kept_.contains({level, at[0], at[1], at[2]});
 }
 
 Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
@@ -145,15 +149,15 @@ Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
     std::promise<Bytes> promise;
     std::shared_future<Bytes> others;
     {
-        const std::scoped_lock lock(pieces_->mutex_);
-        const auto found = pieces_->kept_.find(key);
-        if (found != pieces_->kept_.end()) {
+        const std::scoped_lock lock(loader_->pieces_mutex_);
+        const auto found = loader_->kept_.find(key);
+        if (found != loader_->kept_.end()) {
             use(found->second);
             others = found->second.bytes;
         } else {
             ages_.push_front(key);
             const std::uint64_t size = bytes_of(box, store_.info().type);
-            pieces_->kept_[key] = {promise.get_future().share(), ages_.begin(), size, this};
+            loader_->kept_[key] = {promise.get_future().share(), ages_.begin(), size, this};
             bytes_ += size;
         }
         forget_old(key);
@@ -194,27 +198,27 @@ void Blocks::use(Kept& kept) {
 }
 
 void Blocks::forget(const Key& key) {
-    const std::scoped_lock lock(pieces_->mutex_);
-    const auto found = pieces_->kept_.find(key);
-    if (found == pieces_->kept_.end()) return;
+    const std::scoped_lock lock(loader_->pieces_mutex_);
+    const auto found = loader_->kept_.find(key);
+    if (found == loader_->kept_.end()) return;
     found->second.owner->bytes_ -= found->second.size;
     found->second.owner->ages_.erase(found->second.age);
-    pieces_->kept_.erase(found);
+    loader_->kept_.erase(found);
 }
 
 /// Needs the lock. Drops the own pieces that were not used for longest. Who reads one has its own
 /// share of it.
 void Blocks::forget_old(const Key& but) {
     while (bytes_ > most_bytes_ && ages_.back() != but) {
-        const auto oldest = pieces_->kept_.find(ages_.back());
+        const auto oldest = loader_->kept_.find(ages_.back());
         bytes_ -= oldest->second.size;
-        pieces_->kept_.erase(oldest);
+        loader_->kept_.erase(oldest);
         ages_.pop_back();
     }
 }
 
 std::uint64_t Blocks::bytes() const {
-    const std::scoped_lock lock(pieces_->mutex_);
+    const std::scoped_lock lock(loader_->pieces_mutex_);
     return bytes_;
 }
 

@@ -4,12 +4,8 @@
 
 #include <chrono>
 #include <functional>
-#include <future>
-#include <list>
-#include <map>
-#include <mutex>
 
-#include "palpate/stream/loader.hpp"
+#include "stream/loader/loader.hpp"
 
 namespace palpate::stream {
 
@@ -26,16 +22,12 @@ void read_by_pieces(const Store& store, int level, const SampleBox& box, std::sp
                     int threads, const std::stop_token& stop,
                     const std::function<void(double)>& made = {});
 
-/// Whom pieces are kept for: hands come first.
-enum class For { hands, eyes };
-
-/// The pieces of a store that one reader of it keeps. Readers with the same Pieces read none that
+/// The pieces of a store that one reader of it keeps. Readers with the same Loader read none that
 /// another one keeps or is reading. Each has a bound of its own, and what a hand uses counts as the
 /// hand's, so that eyes never drop it. Any thread may call any function.
 class Blocks {
   public:
-    /// `pieces`: null: shared with no other reader.
-    Blocks(const Store& store, std::uint64_t most_bytes, std::shared_ptr<Pieces> pieces, For whom);
+    Blocks(const Store& store, std::uint64_t most_bytes, std::shared_ptr<Loader> loader, For whom);
     ~Blocks();
     Blocks(const Blocks&) = delete;
     Blocks& operator=(const Blocks&) = delete;
@@ -50,6 +42,8 @@ class Blocks {
               std::stop_token stop);
     /// So that read() finds them, unless they are dropped meanwhile.
     void load(int level, const SampleBox& box, const std::stop_token& stop);
+    /// True if all pieces of a box are here, so that read() waits for nothing.
+    bool has_all(int level, const SampleBox& box) const;
     /// True if some piece of a box is neither kept nor being read.
     bool has_unread(int level, const SampleBox& box) const;
     /// Reads one such piece, if there is one.
@@ -58,15 +52,9 @@ class Blocks {
     std::uint64_t bytes() const;
 
   private:
-    friend class Pieces;
-    using Key = std::array<int, 4>;  // level and place
-    using Bytes = std::shared_ptr<const std::vector<std::byte>>;
-    struct Kept {
-        std::shared_future<Bytes> bytes;  // null if the read failed
-        std::list<Key>::iterator age;     // in the owner's ages_
-        std::uint64_t size;
-        Blocks* owner;
-    };
+    using Key = Loader::Key;
+    using Bytes = Loader::Bytes;
+    using Kept = Loader::Kept;
 
     Bytes block(int level, const Index3& at, const SampleBox& box, std::stop_token stop);
     bool has(int level, const Index3& at) const;
@@ -78,16 +66,10 @@ class Blocks {
 
     const Store& store_;
     const std::uint64_t most_bytes_;
-    const std::shared_ptr<Pieces> pieces_;
+    const std::shared_ptr<Loader> loader_;
     const For whom_;
     std::list<Key> ages_;      // of its own pieces, newest first
     std::uint64_t bytes_ = 0;  // of these
-};
-
-class Pieces {
-    friend class Blocks;
-    std::mutex mutex_;  // also for ages_ and bytes_ of each reader
-    std::map<Blocks::Key, Blocks::Kept> kept_;
 };
 
 }  // namespace palpate::stream

@@ -1,4 +1,4 @@
-// The state and the threads of a BrickLoader. Private to stream/loader.
+// The state of a BrickLoader. Private to stream/loader.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,6 @@
 #include "palpate/stream/loader.hpp"
 #include "stream/loader/blocks.hpp"
 #include "stream/loader/brick_memory.hpp"
-#include "stream/loader/small_threads.hpp"
 
 namespace palpate::stream {
 
@@ -42,10 +41,12 @@ struct BrickLoader::Parts {
     void leave_room(std::uint64_t bytes);
     Brick read(const Index3& brick, int coarser, std::stop_token stop);
 
-    void work(const std::stop_token& stop);
+    Turn next(bool urgent);
+    void make(const Job& job, std::uint64_t waits, const std::stop_token& stop);
     void help(const Job& job, const std::stop_token& stop) const;
     SampleBox source_of(const Index3& brick, int coarser) const;
-    std::optional<Job> next_job();
+    std::optional<Job> next_job(bool urgent);
+    int for_eyes() const;
     std::optional<Job> job_for(const Index3& brick, int level, Clock::time_point now) const;
     bool has(const Index3& brick, int level) const;
     bool is_behind() const;
@@ -70,11 +71,12 @@ struct BrickLoader::Parts {
     const std::shared_ptr<const Samples> empty_;
     const Geometry geometry_;
     std::atomic<std::size_t> most_bricks_;
+    const std::shared_ptr<Loader> loader_;
     const std::unique_ptr<Blocks> blocks_;
     const std::unique_ptr<BrickMemory> memory_;
 
     mutable std::mutex mutex_;
-    std::condition_variable_any changed_;
+    std::condition_variable_any changed_;        // for who waits
     ResidentBricks bricks_;                      // as taken last
     std::map<Place, Brick> held_;                // in memory now
     Clock::time_point newest_{};                 // when the last of those came
@@ -88,14 +90,13 @@ struct BrickLoader::Parts {
     double brick_s_ = 0;          // that a brick lately took to come, 0: none yet
     double speed_ = 0;            // of the fastest hand [bricks/s]
     Clock::time_point looked_{};  // when that was
-    std::uint64_t changes_ = 0;   // that may have made a job
     std::vector<BrickEvent> events_;
     std::uint64_t other_bytes_ = 0;    // leave_room()
     std::uint64_t process_bytes_ = 0;  // of the process, beyond bricks, pieces and edits
     Clock::time_point counted_{};      // when those were
     std::uint64_t most_bytes_ = 0, loaded_ = 0, dropped_ = 0;
     std::string problem_;
-    const std::unique_ptr<SmallThreads> threads_;  // last: they use all of the above
+    const Reading reading_;  // last: its jobs use all of the above
 };
 
 }  // namespace palpate::stream

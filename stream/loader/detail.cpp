@@ -2,10 +2,12 @@
 #include "palpate/stream/detail.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
+#include <thread>
 
 #include "stream/box_bytes.hpp"
 #include "stream/loader/blocks.hpp"
@@ -17,8 +19,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How often threads look whether they may go on.
+/// How often the reader's thread looks whether it is time to publish.
 constexpr std::chrono::milliseconds look_again{30}, idle{500};
+/// Pieces of a viewer that are read and not copied yet.
+constexpr std::size_t most_read = 16;
 /// Of rows, which have no pieces worth keeping: samples along each axis that are read at a time.
 constexpr int piece_of_rows = 64;
 
@@ -64,26 +68,26 @@ Volume volume_of(const Geometry& geometry, SampleType type, std::vector<std::byt
     return {geometry, type, std::shared_ptr<const void>(held, held->data()), held->size()};
 }
 
-}  // namespace
-
 /// A stored piece, as far as it lies in a box.
-struct DetailReader::Piece {
-    enum class State : std::uint8_t { waiting, reading, there, failed };
+struct Piece {
+    enum class State : std::uint8_t { waiting, reading, read, there, failed };
 
     SampleBox box;  // of the level's grid
     State state = State::waiting;
-    Clock::time_point again = {};  // failed: not tried before
-    // With Work::content:
+    Clock::time_point again = {};         // failed: not tried before
+    std::vector<std::byte> samples = {};  // read
+    // Of the reader's thread:
     bool copied = false;  // its samples are in the box
     bool based = false;   // samples interpolated from the newest base are
 };
 
-/// What one viewer wants. But for `content`'s, its members need the reader's mutex.
-struct DetailReader::Work {
+/// What one viewer wants. But for what is of the reader's thread alone, its members need the mutex
+/// of Parts.
+struct Work {
     struct Stage {
         DetailBox of;
         std::vector<Piece> pieces;
-        std::vector<std::byte> samples;  // content
+        std::vector<std::byte> samples;  // of the reader's thread
 
         bool has(Piece::State state) const {
             return std::ranges::any_of(pieces, [&](const Piece& p) { return p.state == state; });
@@ -97,20 +101,27 @@ struct DetailReader::Work {
     std::vector<Stage> stages;  // coarse to fine
     std::size_t stage = 0;      // whose pieces are read, once those of the last that are kept are
     bool has_new = false;       // not published yet
-    bool publishing = false;
-    bool looked = false;  // for pieces of the last stage that are kept
+    bool looked = false;        // for pieces of the last stage that are kept
+    std::vector<std::pair<Stage*, Piece*>> read = {};  // not copied yet
+    // Of the reader's thread:
     Clock::time_point published = Clock::now();
-
-    std::mutex content;
-    std::optional<Volume> base;  // content: of a coarser stage; none: the overview
-    SampleBox changed;           // content: of the last stage's box, since it was published
-    bool done = false;           // content: published with all its pieces
+    std::optional<Volume> base;  // of a coarser stage; none: the overview
+    SampleBox changed;           // of the last stage's box, since it was published
+    bool done = false;           // published with all its pieces
 
     Stage& last() { return stages.back(); }
     bool complete() const {
         return stages.back().count(Piece::State::there) == stages.back().pieces.size();
     }
+    /// All of a coarse stage has come that will.
+    bool has_base() const {
+        const Stage& now = stages[stage];
+        return !complete() && stage + 1 < stages.size() && !now.has(Piece::State::waiting) &&
+               !now.has(Piece::State::reading) && !now.has(Piece::State::read);
+    }
 };
+
+}  // namespace
 
 /// Interpolates a box of `grid`, all of whose samples are in `out`.
 void interpolate_into(const Volume& coarse, const Geometry& grid, const SampleBox& box,
@@ -122,26 +133,52 @@ void interpolate_into(const Volume& coarse, const Geometry& grid, const SampleBo
              box, {out + first * each, row, slice});
 }
 
-DetailReader::DetailReader(std::shared_ptr<const Store> store, Volume overview,
+struct DetailReader::Parts {
+    Parts(std::shared_ptr<const Store> store, Volume overview, DetailSettings settings, Made made);
+
+    void want(int viewer, const std::vector<DetailBox>& coarse_to_fine,
+              std::chrono::milliseconds interval);
+    DetailStatus status();
+    Turn next();
+    void run(const std::stop_token& stop);
+    bool step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);
+    Piece* kept_piece(Work& work) const;
+    void read(Work& work, Work::Stage& stage, Piece& piece, const std::stop_token& stop);
+    void put(Work& work, Work::Stage& stage, Piece& piece) const;
+    void fail(Piece& piece, const std::string& problem);
+    void make_base(Work& work) const;
+    std::size_t fill(const Work& work, Work::Stage& stage) const;
+    void publish(Work& work);
+
+    const std::shared_ptr<const Store> store_;
+    const Volume overview_;
+    const Made made_;
+    const std::shared_ptr<Loader> loader_;
+    Blocks blocks_;
+    std::mutex mutex_;
+    std::condition_variable_any changed_;
+    std::map<int, std::shared_ptr<Work>> work_;  // of each viewer
+    std::uint64_t news_ = 0;                     // counts what may be a reason to go on
+    std::string problem_;
+    const Reading reading_;  // last, as the thread: they use all of the above
+    std::jthread thread_;
+};
+
+DetailReader::Parts::Parts(std::shared_ptr<const Store> store, Volume overview,
                            DetailSettings settings, Made made)
     : store_(std::move(store)),
       overview_(std::move(overview)),
-      settings_(std::move(settings)),
       made_(std::move(made)),
-      blocks_(std::make_unique<Blocks>(*store_, settings_.memory, settings_.pieces, For::eyes)) {
-    for (int i = 0; i < std::max(1, settings_.threads); ++i) {
-        threads_.emplace_back([this](const std::stop_token& stop) { run(stop); });
-    }
-}
+      loader_(settings.shared ? settings.shared : shared_loader(settings.threads)),
+      blocks_(*store_, settings.memory, loader_, For::eyes),
+      reading_(loader_, For::eyes, [this](bool) { return next(); }),
+      thread_([this, begin = std::move(settings.begin_thread)](const std::stop_token& stop) {
+          if (begin) begin();
+          run(stop);
+      }) {}
 
-DetailReader::~DetailReader() {
-    for (std::jthread& thread : threads_) thread.request_stop();
-    changed_.notify_all();
-    threads_.clear();
-}
-
-void DetailReader::want(int viewer, const std::vector<DetailBox>& coarse_to_fine,
-                        std::chrono::milliseconds interval) {
+void DetailReader::Parts::want(int viewer, const std::vector<DetailBox>& coarse_to_fine,
+                               std::chrono::milliseconds interval) {
     if (coarse_to_fine.empty()) throw std::invalid_argument("no box");
     auto work = std::make_shared<Work>();
     work->viewer = viewer;
@@ -159,14 +196,9 @@ void DetailReader::want(int viewer, const std::vector<DetailBox>& coarse_to_fine
     changed_.notify_all();
 }
 
-void DetailReader::forget(int viewer) {
-    const std::scoped_lock lock(mutex_);
-    work_.erase(viewer);
-}
-
-DetailStatus DetailReader::status() const {
+DetailStatus DetailReader::Parts::status() {
     DetailStatus status;
-    status.bytes = blocks_->bytes();
+    status.bytes = blocks_.bytes();
     const std::scoped_lock lock(mutex_);
     for (const auto& [viewer, work] : work_) {
         const std::size_t first = work->complete() ? work->stages.size() - 1 : work->stage;
@@ -182,172 +214,206 @@ DetailStatus DetailReader::status() const {
     return status;
 }
 
-/// Needs the lock. Of the last stage what is kept already; then stage by stage.
-std::optional<DetailReader::Job> DetailReader::piece_of(const std::shared_ptr<Work>& work,
-                                                        bool may_ask) {
-    Work::Stage& last = work->last();
-    for (Piece& piece : last.pieces) {
-        if (work->looked || piece.state != Piece::State::waiting) continue;
-        if (!blocks_->has_unread(last.of.level, piece.box)) return Job{work, &piece, false};
-    }
-    work->looked = true;
-    if (!may_ask || work->complete()) return std::nullopt;
-    Work::Stage& stage = work->stages[work->stage];
+/// The next piece that a thread of the store reads: stage by stage.
+Turn DetailReader::Parts::next() {
+    const std::scoped_lock lock(mutex_);
     const Clock::time_point now = Clock::now();
-    for (Piece& piece : stage.pieces) {
-        const bool again = piece.state == Piece::State::failed && piece.again <= now &&
-                           work->stage + 1 == work->stages.size();
-        if (piece.state == Piece::State::waiting || again) return Job{work, &piece, true};
+    for (const auto& [viewer, work] : work_) {
+        if (!work->looked || work->complete() || work->read.size() >= most_read) continue;
+        Work::Stage& stage = work->stages[work->stage];
+        for (Piece& piece : stage.pieces) {
+            const bool again = piece.state == Piece::State::failed && piece.again <= now &&
+                               work->stage + 1 == work->stages.size();
+            if (piece.state != Piece::State::waiting && !again) continue;
+            Turn turn;
+            turn.job = [this, work, &stage, &piece](const std::stop_token& stop) {
+                read(*work, stage, piece, stop);
+            };
+            piece.state = Piece::State::reading;
+            return turn;
+        }
     }
-    return std::nullopt;
+    return {};
+}
+
+void DetailReader::Parts::run(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    while (!stop.stop_requested()) {
+        const std::uint64_t known = news_;
+        if (step(lock, stop)) continue;
+        const bool has_new =
+            std::ranges::any_of(work_, [](const auto& each) { return each.second->has_new; });
+        changed_.wait_for(lock, stop, has_new ? look_again : idle, [&] { return news_ != known; });
+    }
+}
+
+/// Needs the lock. Does one thing that waits for no read: copies a piece that was read, publishes,
+/// makes the base of a stage, or takes a piece of the last stage that is kept.
+bool DetailReader::Parts::step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
+    const auto unlocked = [&](const auto& what) {
+        lock.unlock();
+        bool done = false;
+        try {
+            what();
+            done = true;
+        } catch (const std::exception&) {  // no memory: what is shown stays
+        }
+        lock.lock();
+        return done;
+    };
+    for (const auto& [viewer, held] : work_) {
+        const std::shared_ptr<Work> work = held;
+        if (!work->read.empty()) {
+            const auto [stage, piece] = work->read.back();
+            work->read.pop_back();
+            if (unlocked([&] { put(*work, *stage, *piece); })) {
+                piece->state = Piece::State::there;
+                work->has_new = work->has_new || stage == &work->last();
+            } else {
+                fail(*piece, "there is too little memory");
+            }
+            if (work->read.size() + 1 == most_read) reading_.wake();
+            return true;
+        }
+        const bool waited = Clock::now() - work->published >= work->interval;
+        if (work->has_new && (work->complete() || waited)) {
+            work->has_new = false;
+            unlocked([&] { publish(*work); });
+            work->published = Clock::now();
+            return true;
+        }
+        if (work->has_base()) {
+            unlocked([&] { make_base(*work); });
+            ++work->stage;
+            work->has_new = true;
+            reading_.wake();
+            return true;
+        }
+        if (work->looked) continue;
+        if (Piece* const piece = kept_piece(*work)) {
+            piece->state = Piece::State::reading;
+            unlocked([&] { read(*work, work->last(), *piece, stop); });
+            return true;
+        }
+        work->looked = true;
+        reading_.wake();
+    }
+    return false;
 }
 
 /// Needs the lock.
-std::optional<DetailReader::Job> DetailReader::next_job() {
-    if (work_.empty()) return std::nullopt;
-    const int most = settings_.most_at_a_time ? settings_.most_at_a_time() : settings_.threads;
-    for (const auto& [viewer, work] : work_) {
-        const bool waited = Clock::now() - work->published >= work->interval;
-        if (work->has_new && !work->publishing && (work->complete() || waited)) return Job{work};
-        if (auto job = piece_of(work, reading_ < most)) return job;
+Piece* DetailReader::Parts::kept_piece(Work& work) const {
+    for (Piece& piece : work.last().pieces) {
+        if (piece.state != Piece::State::waiting) continue;
+        if (blocks_.has_all(work.last().of.level, piece.box)) return &piece;
     }
-    return std::nullopt;
+    return nullptr;
 }
 
-void DetailReader::run(const std::stop_token& stop) {
-    if (settings_.begin_thread) settings_.begin_thread();
-    std::unique_lock lock(mutex_);
-    while (!stop.stop_requested()) {
-        const std::optional<Job> job = next_job();
-        if (!job) {
-            changed_.wait_for(lock, stop, work_.empty() ? idle : look_again,
-                              [this, known = news_] { return news_ != known; });
-            continue;
-        }
-        if (job->piece) {
-            job->piece->state = Piece::State::reading;
-            reading_ += job->asks;
-            lock.unlock();
-            read(*job, stop);
-        } else {
-            job->work->publishing = true;
-            job->work->has_new = false;
-            lock.unlock();
-            try {
-                publish(*job->work);
-            } catch (const std::exception&) {  // no memory: what is shown stays
-            }
-        }
-        lock.lock();
-        if (job->piece) {
-            reading_ -= job->asks;
-        } else {
-            job->work->publishing = false;
-            job->work->published = Clock::now();
-        }
-        ++news_;
-        changed_.notify_all();
-    }
-}
-
-void DetailReader::read(const Job& job, const std::stop_token& stop) {
-    Work& work = *job.work;
-    Piece& piece = *job.piece;
-    const auto stage = std::ranges::find_if(work.stages, [&](const Work::Stage& s) {
-        return &piece >= s.pieces.data() && &piece < s.pieces.data() + s.pieces.size();
-    });
+void DetailReader::Parts::read(Work& work, Work::Stage& stage, Piece& piece,
+                               const std::stop_token& stop) {
     const SampleType type = store_->info().type;
-    const std::size_t each = palpate::size_of(type);
+    std::vector<std::byte> samples;
     std::string problem;
     try {
-        std::vector<std::byte> bytes(count_of(piece.box) * each);
-        blocks_->read(stage->of.level, piece.box, bytes, stop);
-        make_finite(type, bytes, overview_.minimum());
-        const std::scoped_lock content(work.content);
-        stage->samples.resize(count_of(stage->of.box) * each);
-        copy_box(piece.box, bytes.data(), stage->of.box, stage->samples.data(), each);
-        piece.copied = true;
-        if (stage + 1 == work.stages.end()) work.changed = united(work.changed, piece.box);
+        samples.resize(count_of(piece.box) * palpate::size_of(type));
+        blocks_.read(stage.of.level, piece.box, samples, stop);
+        make_finite(type, samples, overview_.minimum());
     } catch (const Cancelled&) {
         return;  // the reader ends
     } catch (const std::exception& e) {
         problem = e.what();
     }
-    bool ends = false;
-    {
-        const std::scoped_lock lock(mutex_);
-        piece.state = problem.empty() ? Piece::State::there : Piece::State::failed;
-        if (problem.empty()) {
-            work.has_new = work.has_new || stage + 1 == work.stages.end();
-        } else {
-            piece.again = Clock::now() + pause_after_failure;
-            problem_ = problem;
-        }
-        const bool current = stage - work.stages.begin() == std::ptrdiff_t(work.stage);
-        ends = current && stage + 1 != work.stages.end() && !stage->has(Piece::State::waiting) &&
-               !stage->has(Piece::State::reading);
-    }
-    if (ends) end_stage(work);
-}
-
-/// All of a coarse stage has come that will: what is missing of the last is made of it.
-void DetailReader::end_stage(Work& work) {
-    try {
-        make_base(work);
-    } catch (const std::bad_alloc&) {  // the base of before stays
-    }
     const std::scoped_lock lock(mutex_);
-    ++work.stage;
-    work.has_new = true;
+    if (problem.empty()) {
+        work.read.emplace_back(&stage, &piece);
+        piece.samples = std::move(samples);
+        piece.state = Piece::State::read;
+    } else {
+        fail(piece, problem);
+    }
+    ++news_;
+    changed_.notify_all();
 }
 
-void DetailReader::make_base(Work& work) const {
+/// Needs the lock.
+void DetailReader::Parts::fail(Piece& piece, const std::string& problem) {
+    piece.state = Piece::State::failed;
+    piece.again = Clock::now() + pause_after_failure;
+    problem_ = problem;
+}
+
+/// Of a piece that was read.
+void DetailReader::Parts::put(Work& work, Work::Stage& stage, Piece& piece) const {
+    const auto samples = std::move(piece.samples);
+    const std::size_t each = palpate::size_of(store_->info().type);
+    stage.samples.resize(count_of(stage.of.box) * each);
+    copy_box(piece.box, samples.data(), stage.of.box, stage.samples.data(), each);
+    piece.copied = true;
+    if (&stage == &work.last()) work.changed = united(work.changed, piece.box);
+}
+
+/// What is missing of the last stage is made of the coarse one.
+void DetailReader::Parts::make_base(Work& work) const {
     Work::Stage& stage = work.stages[work.stage];
-    const Geometry grid = geometry_of(grid_of(*store_, stage.of), stage.of.box);
-    const std::scoped_lock content(work.content);
-    {
-        const SampleType type = store_->info().type;
-        stage.samples.resize(count_of(stage.of.box) * palpate::size_of(type));
-        for (const Piece& piece : stage.pieces) {
-            if (piece.copied) continue;
-            const Index3 low = stage.of.box.low;
-            interpolate_into(work.base ? *work.base : overview_, grid,
-                             {piece.box.low - low, piece.box.high - low}, stage.samples.data());
-        }
-        work.base = volume_of(grid, type, std::move(stage.samples));
-        for (Piece& piece : work.last().pieces) {
-            piece.based = false;
-            if (!piece.copied) work.changed = united(work.changed, piece.box);
-        }
+    fill(work, stage);
+    work.base = volume_of(geometry_of(grid_of(*store_, stage.of), stage.of.box),
+                          store_->info().type, std::move(stage.samples));
+    for (Piece& piece : work.last().pieces) {
+        piece.based = false;
+        if (!piece.copied) work.changed = united(work.changed, piece.box);
     }
 }
-
-void DetailReader::publish(Work& work) {
-    Work::Stage& last = work.last();
-    const Geometry grid = geometry_of(grid_of(*store_, last.of), last.of.box);
-    const SampleType type = store_->info().type;
-    const Index3 low = last.of.box.low;
+/// What is missing of a stage is interpolated from the base, which is coarser. Returns how many
+/// pieces are missing.
+std::size_t DetailReader::Parts::fill(const Work& work, Work::Stage& stage) const {
+    const Geometry grid = geometry_of(grid_of(*store_, stage.of), stage.of.box);
+    const Index3 low = stage.of.box.low;
+    stage.samples.resize(count_of(stage.of.box) * palpate::size_of(store_->info().type));
     std::size_t missing = 0;
-    std::vector<std::byte> samples;
-    SampleBox changed;
-    {
-        const std::scoped_lock content(work.content);
-        if (work.done) return;
-        last.samples.resize(count_of(last.of.box) * palpate::size_of(type));
-        for (Piece& piece : last.pieces) {
-            missing += !piece.copied;
-            if (piece.copied || piece.based) continue;
-            interpolate_into(work.base ? *work.base : overview_, grid,
-                             {piece.box.low - low, piece.box.high - low}, last.samples.data());
-            piece.based = true;
-        }
-        if (!work.changed.empty()) changed = {work.changed.low - low, work.changed.high - low};
-        work.changed = {};
-        work.done = missing == 0;  // nothing is added to it
-        samples = work.done ? std::move(last.samples) : last.samples;
+    for (Piece& piece : stage.pieces) {
+        missing += !piece.copied;
+        if (piece.copied || piece.based) continue;
+        interpolate_into(work.base ? *work.base : overview_, grid,
+                         {piece.box.low - low, piece.box.high - low}, stage.samples.data());
+        piece.based = true;
     }
-    made_(work.viewer, {last.of, volume_of(grid, type, std::move(samples)), last.pieces.size(),
-                        missing, changed});
+    return missing;
+}
+
+void DetailReader::Parts::publish(Work& work) {
+    if (work.done) return;
+    Work::Stage& last = work.last();
+    const std::size_t missing = fill(work, last);
+    const Index3 low = last.of.box.low;
+    SampleBox changed;
+    if (!work.changed.empty()) changed = {work.changed.low - low, work.changed.high - low};
+    work.changed = {};
+    work.done = missing == 0;  // nothing is added to it
+    std::vector<std::byte> samples = work.done ? std::move(last.samples) : last.samples;
+    made_(work.viewer, {last.of,
+                        volume_of(geometry_of(grid_of(*store_, last.of), last.of.box),
+                                  store_->info().type, std::move(samples)),
+                        last.pieces.size(), missing, changed});
+}
+
+DetailReader::DetailReader(std::shared_ptr<const Store> store, Volume overview,
+                           DetailSettings settings, Made made)
+    : parts_(std::make_unique<Parts>(std::move(store), std::move(overview), std::move(settings),
+                                     std::move(made))) {}
+
+DetailReader::~DetailReader() = default;
+
+void DetailReader::want(int viewer, const std::vector<DetailBox>& coarse_to_fine,
+                        std::chrono::milliseconds interval) {
+    parts_->want(viewer, coarse_to_fine, interval);
+}
+void DetailReader::forget(int viewer) {
+    const std::scoped_lock lock(parts_->mutex_);
+    parts_->work_.erase(viewer);
+}
+DetailStatus DetailReader::status() const {
+    return parts_->status();
 }
 
 }  // namespace palpate::stream

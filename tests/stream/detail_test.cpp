@@ -76,9 +76,10 @@ std::vector<Volume> ramps() {
 
 constexpr std::chrono::milliseconds often{1};
 
-DetailSettings settings_of(int threads) {
+/// So many read at a time.
+DetailSettings settings_of(int for_eyes) {
     DetailSettings settings;
-    settings.threads = threads;
+    settings.threads = 2 * for_eyes;
     return settings;
 }
 
@@ -145,17 +146,13 @@ TEST(DetailReader, versions_say_which_samples_have_changed) {
     levels[0] = noise_of(SampleType::float32, levels[0].geometry(), 5);
     const auto store = std::make_shared<VolumesStore>(levels, cube(16));
     Seen seen;
-    std::atomic<int> allowed{0};
-    DetailSettings settings = settings_of(1);
-    settings.most_at_a_time = [&] { return allowed.load(); };
     store->before_read = [&](int level, const SampleBox&, const std::stop_token&) {
         if (level != 0) return;
         // Between two pieces there is time to publish.
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     };
-    DetailReader reader(store, levels.back(), settings, seen.made());
+    DetailReader reader(store, levels.back(), settings_of(1), seen.made());
     reader.want(0, {{1, {{5, 5, 5}, {40, 40, 40}}}, {0, {{11, 12, 13}, {80, 79, 78}}}}, often);
-    allowed = 1;
     ASSERT_TRUE(comes_true([&] { return seen.complete(0); }));
     const auto all = seen.of(0);
     ASSERT_GT(all.size(), 3U);
@@ -174,33 +171,6 @@ TEST(DetailReader, versions_say_which_samples_have_changed) {
         }
     }
     EXPECT_GT(different, 1000U);
-}
-
-TEST(DetailReader, reads_no_more_at_a_time_than_it_may_and_waits_while_that_is_none) {
-    const auto store = std::make_shared<VolumesStore>(ramps(), cube(8));
-    std::atomic<int> allowed{0}, at_once{0}, most{0}, reads{0}, asked{0};
-    store->before_read = [&](int, const SampleBox&, const std::stop_token&) {
-        ++reads;
-        const int now = ++at_once;
-        if (now > most) most = now;
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        --at_once;
-    };
-    Seen seen;
-    DetailSettings settings = settings_of(6);
-    settings.most_at_a_time = [&] {
-        ++asked;
-        return allowed.load();
-    };
-    DetailReader reader(store, ramps().back(), settings, seen.made());
-    reader.want(3, {{0, {{0, 0, 0}, {63, 63, 40}}}});
-    const int before = asked;
-    ASSERT_TRUE(comes_true([&] { return asked >= before + 12; })) << "threads want to read";
-    EXPECT_EQ(reads, 0);
-    EXPECT_EQ(reader.status().missing, reader.status().wanted);
-    allowed = 2;
-    ASSERT_TRUE(comes_true([&] { return seen.complete(3); }));
-    EXPECT_EQ(most, 2);
 }
 
 TEST(DetailReader, what_is_no_longer_wanted_is_not_read_and_what_is_kept_is_not_read_again) {
@@ -297,18 +267,17 @@ class CountedStore {
 
 constexpr std::uint64_t hand_memory = std::uint64_t{1} << 26;
 
-TEST(SharedPieces, hands_and_eyes_together_read_each_piece_once) {
+TEST(SharedLoader, hands_and_eyes_together_read_each_piece_once) {
     const Volume volume = noise_of(SampleType::uint8, grid({200, 150, 130}), 5);
     for (int round = 0; round < 4; ++round) {
         CountedStore counted(volume);
         const Volume overview = overview_of(*counted.store(), 1000);
         counted.forget();
-        const auto pieces = shared_pieces();
-        BrickLoader loader(counted.store(), overview,
-                           {.memory = hand_memory, .threads = 4, .pieces = pieces});
+        const auto shared = shared_loader(6);
+        BrickLoader loader(counted.store(), overview, {.memory = hand_memory, .shared = shared});
         Seen seen;
-        DetailSettings settings = settings_of(3);
-        settings.pieces = pieces;
+        DetailSettings settings;
+        settings.shared = shared;
         DetailReader reader(counted.store(), overview, settings, seen.made());
         reader.want(0, {{0, whole_box(volume.geometry())}});
         const Interest hand{Vec3(100, 75, 65), Vec3(100, 75, 65)};
@@ -325,21 +294,20 @@ TEST(SharedPieces, hands_and_eyes_together_read_each_piece_once) {
     }
 }
 
-TEST(SharedPieces, eyes_do_not_drop_what_the_hand_uses_and_go_without_taking_it) {
+TEST(SharedLoader, eyes_do_not_drop_what_the_hand_uses_and_go_without_taking_it) {
     const Volume volume = noise_of(SampleType::uint8, grid({200, 150, 130}), 6);
     CountedStore counted(volume);
     const Volume overview = overview_of(*counted.store(), 1000);
-    const auto pieces = shared_pieces();
-    BrickLoader loader(counted.store(), overview,
-                       {.memory = hand_memory, .threads = 1, .pieces = pieces});
+    const auto shared = shared_loader(2);
+    BrickLoader loader(counted.store(), overview, {.memory = hand_memory, .shared = shared});
     const SampleBox felt{{0, 0, 0}, {63, 63, 63}};
     const std::uint64_t hand_bytes = 64 * 64 * 64;
     std::vector<std::byte> samples(hand_bytes);
     {
         Seen seen;
-        DetailSettings settings = settings_of(1);
+        DetailSettings settings;
         settings.memory = 3 * hand_bytes / 2;
-        settings.pieces = pieces;
+        settings.shared = shared;
         DetailReader reader(counted.store(), overview, settings, seen.made());
         reader.want(0, {{0, felt}});
         ASSERT_TRUE(comes_true([&] { return seen.complete(0); }));
@@ -358,7 +326,7 @@ TEST(SharedPieces, eyes_do_not_drop_what_the_hand_uses_and_go_without_taking_it)
     EXPECT_EQ(samples, test::box_of(volume, felt));
 }
 
-TEST(SharedPieces, a_read_of_the_eyes_that_is_cancelled_is_begun_anew_for_the_hand) {
+TEST(SharedLoader, a_read_of_the_eyes_that_is_cancelled_is_begun_anew_for_the_hand) {
     const Volume volume = noise_of(SampleType::uint8, grid(cube(40)), 7);
     const auto store = store_in_pieces(volume);
     std::atomic<bool> eyes_read{false}, hangs{true};
@@ -368,11 +336,11 @@ TEST(SharedPieces, a_read_of_the_eyes_that_is_cancelled_is_begun_anew_for_the_ha
         if (stop.stop_requested()) throw Cancelled{};
     };
     const Volume overview = noise_of(SampleType::uint8, grid(cube(8)), 1);
-    const auto pieces = shared_pieces();
-    BrickLoader loader(store, overview, {.memory = hand_memory, .threads = 2, .pieces = pieces});
+    const auto shared = shared_loader(3);
+    BrickLoader loader(store, overview, {.memory = hand_memory, .shared = shared});
     Seen seen;
-    DetailSettings settings = settings_of(1);
-    settings.pieces = pieces;
+    DetailSettings settings;
+    settings.shared = shared;
     auto reader = std::make_unique<DetailReader>(store, overview, settings, seen.made());
     reader->want(0, {{0, {{0, 0, 0}, {9, 9, 9}}}});
     ASSERT_TRUE(comes_true([&] { return eyes_read.load(); }));
@@ -382,6 +350,87 @@ TEST(SharedPieces, a_read_of_the_eyes_that_is_cancelled_is_begun_anew_for_the_ha
     hangs = false;
     hand.join();
     EXPECT_EQ(samples, test::box_of(volume, {{0, 0, 0}, {9, 9, 9}}));
+}
+
+/// A hand that feels all of level 0, 27 pieces, and eyes that see level 1.
+struct HandAndEyes {
+    explicit HandAndEyes(int threads) : shared(shared_loader(threads)) {
+        settings.shared = shared;
+        store->before_read = [this](int level, const SampleBox&, const std::stop_token& stop) {
+            order.push(level);
+            ++reads[static_cast<std::size_t>(level)];
+            while (hold[static_cast<std::size_t>(level)] && !stop.stop_requested()) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            }
+            if (stop.stop_requested()) throw Cancelled{};
+        };
+    }
+    /// Levels as they were read.
+    class Order {
+      public:
+        void push(int level) {
+            const std::scoped_lock lock(mutex_);
+            levels_.push_back(level);
+        }
+        std::vector<int> get() const {
+            const std::scoped_lock lock(mutex_);
+            return levels_;
+        }
+
+      private:
+        mutable std::mutex mutex_;
+        std::vector<int> levels_;
+    };
+
+    const std::shared_ptr<VolumesStore> store =
+        std::make_shared<VolumesStore>(ramps(), cube(32));
+    const std::shared_ptr<Loader> shared;
+    std::array<std::atomic<bool>, 4> hold{};
+    std::array<std::atomic<int>, 4> reads{};
+    Order order;
+    DetailSettings settings;
+    const Interest hand{Vec3::Constant(48), Vec3::Constant(48)};
+    static constexpr std::uint64_t memory = std::uint64_t{1} << 28;
+};
+
+TEST(SharedLoader, what_the_hand_needs_at_once_comes_before_what_the_eyes_asked_for_earlier) {
+    HandAndEyes both(1);
+    both.hold[1] = true;
+    Seen seen;
+    const Volume overview = ramps().back();
+    BrickLoader loader(both.store, overview, {.memory = both.memory, .shared = both.shared});
+    DetailReader reader(both.store, overview, both.settings, seen.made());
+    reader.want(0, {{1, whole_box(both.store->info().levels[1].geometry)}});
+    ASSERT_TRUE(comes_true([&] { return both.reads[1] == 1; }));
+    loader.look({&both.hand, 1});
+    both.hold[1] = false;
+    ASSERT_TRUE(comes_true([&] { return seen.complete(0); }));
+    std::vector<int> expected(27, 0);
+    expected.insert(expected.begin(), 1);
+    expected.insert(expected.end(), 7, 1);
+    EXPECT_EQ(both.order.get(), expected);
+}
+
+TEST(SharedLoader, eyes_have_one_thread_while_the_hand_lacks_something_and_six_then) {
+    HandAndEyes both(40);
+    both.hold[0] = both.hold[1] = true;
+    Seen seen;
+    const Volume overview = ramps().back();
+    BrickLoader loader(both.store, overview, {.memory = both.memory, .shared = both.shared});
+    loader.look({&both.hand, 1});
+    ASSERT_TRUE(comes_true([&] { return both.reads[0] == 27; }));
+    DetailReader reader(both.store, overview, both.settings, seen.made());
+    reader.want(0, {{1, whole_box(both.store->info().levels[1].geometry)}});
+    ASSERT_TRUE(comes_true([&] { return both.reads[1] == 1; }));
+    for (int i = 0; i < 100; ++i) {
+        loader.look({&both.hand, 1});
+        ASSERT_EQ(both.reads[1], 1);
+    }
+    both.hold[0] = false;
+    ASSERT_TRUE(comes_true([&] { return reader.status().coming == 6; }));
+    both.hold[1] = false;
+    ASSERT_TRUE(comes_true([&] { return seen.complete(0); }));
+    EXPECT_EQ(both.reads[1], 8);
 }
 
 }  // namespace

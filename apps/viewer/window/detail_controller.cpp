@@ -20,9 +20,6 @@ constexpr std::int64_t most_slice_samples = 1 << 21, most_patch_samples = 1 << 2
 constexpr std::int64_t most_pieces = 1 << 16;
 /// Between two versions of what has not come as a whole: drawing and extracting take time.
 constexpr std::chrono::milliseconds slice_interval{250}, patch_interval{1500};
-/// Requests at a time, of the sixteen of a store: while the hand lacks nothing, while it fills its
-/// memory round it, while it needs something at once.
-constexpr int most_reads = 6, fewer_reads = 3, fewest_reads = 1;
 /// A view that is still for so long is worth a finer surface.
 constexpr qint64 rest_ms = 200;
 
@@ -84,15 +81,8 @@ void DetailController::begin() {
         lower_thread_priority);
     stream::DetailSettings settings;
     settings.memory = memory_;
-    settings.threads = std::clamp(loaded.streamed->loader.threads / 2, 1, most_reads);
     settings.begin_thread = lower_thread_priority;
-    settings.pieces = loaded.streamed->loader.pieces;
-    if (content_.live()) {
-        settings.most_at_a_time = [data = content_.data()] {
-            const stream::BrickLoaderStatus hand = data->streaming();
-            return hand.urgent > 0 ? fewest_reads : hand.missing > 0 ? fewer_reads : most_reads;
-        };
-    }
+    settings.shared = loaded.streamed->loader.shared;
     reader_ = std::make_unique<stream::DetailReader>(
         held_, loaded.volume, settings, [maker = maker_](int viewer, stream::Detail detail) {
             maker->show(viewer, std::move(detail));

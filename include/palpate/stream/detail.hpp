@@ -3,22 +3,16 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <map>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "palpate/stream/store.hpp"
 
 namespace palpate::stream {
 
-class Blocks;
-class Pieces;
+class Loader;
 
 /// A part of a level of a store.
 struct DetailBox {
@@ -40,13 +34,11 @@ struct Detail {
 
 struct DetailSettings {
     std::uint64_t memory = std::uint64_t{1} << 27;  ///< [bytes] most that decoded pieces take
-    int threads = 6;                                ///< that read at a time
-    /// How many pieces may be read at a time now. Asked often, by any thread. Empty: as many as
-    /// there are threads.
-    std::function<int()> most_at_a_time = {};
-    /// What each thread does first, for example to lower its priority.
+    int threads = 12;  ///< that read at a time: half of them for eyes, six at most
+    /// What the reader's own thread does first, for example to lower its priority. It puts pictures
+    /// together and calls `made`.
     std::function<void()> begin_thread = {};
-    std::shared_ptr<Pieces> pieces = {};  ///< as those of a loader
+    std::shared_ptr<Loader> shared = {};  ///< as that of a loader, with its threads
 };
 
 struct DetailStatus {
@@ -61,7 +53,7 @@ struct DetailStatus {
 /// Any thread may call any function.
 class DetailReader {
   public:
-    /// Called from one of the reader's threads, for one viewer by one at a time.
+    /// Called from the reader's own thread.
     using Made = std::function<void(int viewer, Detail)>;
 
     DetailReader(std::shared_ptr<const Store> store, Volume overview, DetailSettings settings,
@@ -83,35 +75,8 @@ class DetailReader {
     DetailStatus status() const;
 
   private:
-    using Clock = std::chrono::steady_clock;
-    struct Piece;
-    struct Work;
-    struct Job {
-        std::shared_ptr<Work> work;
-        Piece* piece = nullptr;  ///< to read. Null: the work is to be published
-        bool asks = false;       ///< disk or network
-    };
-
-    void run(const std::stop_token& stop);
-    std::optional<Job> next_job();
-    std::optional<Job> piece_of(const std::shared_ptr<Work>& work, bool may_ask);
-    void read(const Job& job, const std::stop_token& stop);
-    void end_stage(Work& work);
-    void make_base(Work& work) const;
-    void publish(Work& work);
-
-    const std::shared_ptr<const Store> store_;
-    const Volume overview_;
-    const DetailSettings settings_;
-    const Made made_;
-    const std::unique_ptr<Blocks> blocks_;
-    mutable std::mutex mutex_;
-    std::condition_variable_any changed_;
-    std::map<int, std::shared_ptr<Work>> work_;  // of each viewer
-    int reading_ = 0;
-    std::uint64_t news_ = 0;  // counts what may be a reason to go on
-    std::string problem_;
-    std::vector<std::jthread> threads_;  // last: they use all of the above
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
 };
 
 /// The samples of a grid interpolated from a coarser one that shows the same part of space, with

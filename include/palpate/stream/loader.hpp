@@ -14,11 +14,11 @@
 
 namespace palpate::stream {
 
-class Pieces;
+class Loader;
 
-/// For the decoded pieces of one store. Its readers for hands and for eyes share them, so that each
-/// piece is fetched once.
-std::shared_ptr<Pieces> shared_pieces();
+/// The threads of one store and the pieces that they have decoded. Its readers for hands and for
+/// eyes share them, so that each piece is fetched once, and first what hands need.
+std::shared_ptr<Loader> shared_loader(int threads);
 
 inline constexpr std::int64_t overview_samples = std::int64_t{1} << 21;
 
@@ -38,7 +38,7 @@ struct BrickLoaderSettings {
     /// `memory` bounds all that the process takes, the program itself included; but a hand always
     /// has 64 bricks.
     bool whole_process = false;
-    std::shared_ptr<Pieces> pieces = {};  ///< of this store. Empty: its own
+    std::shared_ptr<Loader> shared = {};  ///< of this store. Empty: its own, with `threads`
 };
 
 /// The samples of a level before any of it is in memory. Throws std::invalid_argument for a level

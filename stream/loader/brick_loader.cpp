@@ -1,4 +1,4 @@
-// The loader's threads: choose the next brick and the one that goes, and publish versions.
+// The bricks round the hands: chooses the next one and the one that goes, and publishes versions.
 #include "stream/loader/brick_loader.hpp"
 
 #include <algorithm>
@@ -89,15 +89,12 @@ BrickLoader::Parts::Parts(std::shared_ptr<const Store> store, Volume overview,
       empty_(empty_samples(*store_, overview_, settings.level, settings.memory)),
       geometry_(empty_->geometry()),
       most_bricks_(most_bricks(*store_, settings.memory)),
-      blocks_(std::make_unique<Blocks>(*store_, settings.memory / pieces_part, settings.pieces,
-                                       For::hands)),
+      loader_(settings.shared ? settings.shared : shared_loader(settings.threads)),
+      blocks_(
+          std::make_unique<Blocks>(*store_, settings.memory / pieces_part, loader_, For::hands)),
       memory_(std::make_unique<BrickMemory>(bytes_of_brick(store_->info().type), most_free_bricks)),
       bricks_(geometry_.size),
-      threads_(std::make_unique<SmallThreads>()) {
-    for (int i = 0; i < std::max(1, settings.threads); ++i) {
-        threads_->start([this](const std::stop_token& stop) { work(stop); });
-    }
-}
+      reading_(loader_, For::hands, [this](bool urgent) { return next(urgent); }) {}
 
 void BrickLoader::Parts::look(std::span<const Interest> hands, Clock::time_point now) {
     double seconds = 0;
@@ -114,9 +111,9 @@ void BrickLoader::Parts::look(std::span<const Interest> hands, Clock::time_point
     if (std::ranges::any_of(wanted_, to_do)) wake();  // not 200 times a second for nothing
 }
 
-/// Needs the lock. Threads without a job look again.
+/// Needs the lock. Threads without a job look again, and so does who waits.
 void BrickLoader::Parts::wake() {
-    ++changes_;
+    loader_->wake();
     changed_.notify_all();
 }
 
@@ -206,8 +203,8 @@ void BrickLoader::Parts::choose_levels(std::span<const Interest> hands, Clock::t
 }
 
 /// Needs the lock. The most urgent brick of which something is to be read: all threads work for the
-/// first, so that it is there soon.
-std::optional<BrickLoader::Parts::Job> BrickLoader::Parts::next_job() {
+/// first, so that it is there soon. `urgent`: nothing unless it is among the first.
+std::optional<BrickLoader::Parts::Job> BrickLoader::Parts::next_job(bool urgent) {
     const bool exact = !waiting_.empty();
     const int first = exact ? 0 : first_, finest = exact ? 0 : finest_;
     // First something everywhere near, then the level that is felt; where the hands are soon, both
@@ -226,10 +223,19 @@ std::optional<BrickLoader::Parts::Job> BrickLoader::Parts::next_job() {
         begun = std::max(begun, round.begin);
         while (begun < round.end && has(wanted_[begun], round.level)) ++begun;
         for (std::size_t i = begun; i < round.end; ++i) {
-            if (auto job = job_for(wanted_[i], round.level, now)) return job;
+            auto job = job_for(wanted_[i], round.level, now);
+            if (job) return urgent && i >= most_urgent ? std::nullopt : job;
         }
     }
     return std::nullopt;
+}
+
+/// Needs the lock, and that next_job() has looked. Of the threads, those that may read for eyes:
+/// few while the hands' memory is filled, one while what they need at once is missing.
+int BrickLoader::Parts::for_eyes() const {
+    const std::size_t all = wanted_.size();
+    if (begun_[0] < std::min(all, most_urgent)) return 1;
+    return begun_[1] < std::min(all, most_soon) || begun_[3] < all ? 3 : Turn{}.for_eyes;
 }
 
 /// Needs the lock. What is to be done for a brick, if anything.
@@ -270,54 +276,49 @@ bool BrickLoader::Parts::is_behind() const {
            Clock::now() - newest_ < time_to_let_go;
 }
 
-void BrickLoader::Parts::work(const std::stop_token& stop) {
-    std::unique_lock lock(mutex_);
-    while (!stop.stop_requested()) {
-        if (is_behind()) {
-            changed_.wait_for(lock, stop, pause_when_behind, [] { return false; });
-            continue;
-        }
-        const std::optional<Job> job = next_job();
-        if (!job) {
-            // What failed is due again some time.
-            changed_.wait_for(lock, stop, std::chrono::milliseconds(500),
-                              [&, seen = changes_] { return changes_ != seen; });
-            continue;
-        }
-        if (job->helps) {
-            lock.unlock();
-            help(*job, stop);
-            lock.lock();
-            continue;
-        }
-        const Place place{array_of(job->brick)};
-        in_flight_[place] = job->coarser;
-        const std::uint64_t waits = waits_;
-        lock.unlock();
-        const bool is_kept = !blocks_->has_unread(settings_.level + job->coarser,
-                                                  source_of(job->brick, job->coarser));
-        const Clock::time_point begin = Clock::now();
-        std::optional<Brick> brick;
-        std::string problem;
-        try {
-            brick = read(job->brick, job->coarser, stop);
-        } catch (const Cancelled&) {  // the loader ends
-        } catch (const std::exception& e) {
-            problem = e.what();
-        }
-        lock.lock();
-        in_flight_.erase(place);
-        if (brick) {
-            if (!is_kept) {
-                const double took = std::chrono::duration<double>(Clock::now() - begin).count();
-                brick_s_ += (brick_s_ > 0 ? newest_part : 1) * (took - brick_s_);
-            }
-            put(*job, *brick);
-        } else if (!problem.empty()) {
-            fail(place, problem, waits);
-        }
-        wake();
+Turn BrickLoader::Parts::next(bool urgent) {
+    const std::scoped_lock lock(mutex_);
+    if (is_behind()) return {.pause = pause_when_behind};
+    const std::optional<Job> job = next_job(urgent);
+    Turn turn{.for_eyes = for_eyes()};
+    if (job && job->helps) {
+        turn.job = [this, job = *job](const std::stop_token& stop) { help(job, stop); };
+    } else if (job) {
+        turn.job = [this, job = *job, waits = waits_](const std::stop_token& stop) {
+            make(job, waits, stop);
+        };
+        in_flight_[{array_of(job->brick)}] = job->coarser;
     }
+    return turn;
+}
+
+/// `waits`: calls of wait_for() before this began.
+void BrickLoader::Parts::make(const Job& job, std::uint64_t waits, const std::stop_token& stop) {
+    const Place place{array_of(job.brick)};
+    const Clock::time_point begin = Clock::now();
+    std::optional<Brick> brick;
+    std::string problem;
+    bool is_kept = false;
+    try {
+        is_kept =
+            !blocks_->has_unread(settings_.level + job.coarser, source_of(job.brick, job.coarser));
+        brick = read(job.brick, job.coarser, stop);
+    } catch (const Cancelled&) {  // the loader ends
+    } catch (const std::exception& e) {
+        problem = e.what();
+    }
+    const std::scoped_lock lock(mutex_);
+    in_flight_.erase(place);
+    if (brick) {
+        if (!is_kept) {
+            const double took = std::chrono::duration<double>(Clock::now() - begin).count();
+            brick_s_ += (brick_s_ > 0 ? newest_part : 1) * (took - brick_s_);
+        }
+        put(job, *brick);
+    } else if (!problem.empty()) {
+        fail(place, problem, waits);
+    }
+    wake();
 }
 
 /// Needs the lock. Tells those who waited for the brick when its read began, after `begun` calls of
