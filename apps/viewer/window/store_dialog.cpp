@@ -1,20 +1,16 @@
 // The form for an address, and what was found there.
 #include "apps/viewer/window/store_dialog.hpp"
 
-#include <QApplication>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDialogButtonBox>
 #include <QFormLayout>
 #include <QLabel>
 #include <QLineEdit>
-#include <QPointer>
 #include <QPushButton>
 #include <QSpinBox>
-#include <functional>
 
 #include "apps/options/exit_status.hpp"
-#include "apps/viewer/model/worker.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/scene/hand_over.hpp"
 
@@ -40,21 +36,6 @@ QString size_text(double bytes) {
 /// Of a request, while somebody waits before a dialog.
 constexpr int most_attempts = 2;
 constexpr double timeout_s = 5;
-
-/// Does `work` on a thread and then `then` on the window's, which never waits for it: a server may
-/// take its time, and the dialog may be gone by then.
-void look_up(std::function<void()> work, std::function<void()> then) {
-    const auto worker = std::make_shared<std::unique_ptr<Worker>>();
-    const auto changed = [worker, then = std::move(then)] {
-        hand_over(qApp, [worker, then] {
-            if (!*worker || !(*worker)->ended()) return;
-            worker->reset();
-            then();
-        });
-    };
-    *worker = std::make_unique<Worker>([work = std::move(work)](const io::Progress&) { work(); },
-                                       changed);
-}
 
 }  // namespace
 
@@ -116,8 +97,8 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
     // Return in the line looks; it must not open what was found at another address.
     for (auto* button : findChildren<QPushButton*>()) button->setAutoDefault(false);
     connect(address_, &QLineEdit::textEdited, this, [this] {
-        looking_.reset();
-        found_.reset();
+        worker_.reset();
+        looking_ = found_ = nullptr;
         show_found();
     });
     if (known) {
@@ -133,6 +114,8 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
     show_found();
 }
 
+StoreDialog::~StoreDialog() = default;
+
 void StoreDialog::look() {
     const std::string address = address_->text().trimmed().toStdString();
     if (address.empty()) return;
@@ -142,8 +125,8 @@ void StoreDialog::look() {
     found_.reset();
     show_found();
     verdict_->setText(tr("Looking …"));
-    look_up(
-        [found, address, is_known = address == known_.address] {
+    worker_ = std::make_unique<Worker>(
+        [found, address, is_known = address == known_.address](const io::Progress& progress) {
             try {
                 if (!is_known) {
                     // As a session keeps names: "level" says that it is a store.
@@ -154,19 +137,17 @@ void StoreDialog::look() {
                 stream::StoreOptions options = found->source.options;
                 options.attempts = most_attempts;
                 options.timeout_s = timeout_s;
-                found->info = stream::open_store(address, options)->info();
+                found->info = stream::open_store(address, options, progress)->info();
             } catch (const std::exception& e) {
                 found->problem = QString::fromStdString(app::failure_of(e).text);
             }
         },
-        [dialog = QPointer<StoreDialog>(this), found] {
-            if (dialog) dialog->take(found);
-        });
+        [this, found] { hand_over(this, [this, found] { take(found); }); });
 }
 
 /// Unless another address was asked for since.
 void StoreDialog::take(const std::shared_ptr<Found>& found) {
-    if (found != looking_) return;
+    if (found != looking_ || !worker_->ended()) return;
     if (found->problem.isEmpty()) found_ = found;
     show_found();
     if (!found->problem.isEmpty()) verdict_->setText(found->problem);

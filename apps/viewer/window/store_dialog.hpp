@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/viewer/model/worker.hpp"
 #include "palpate/run/source.hpp"
 
 class QCheckBox;
@@ -27,6 +28,8 @@ class StoreDialog : public QDialog {
     /// Without a source: asks for the address, too.
     explicit StoreDialog(const std::optional<run::StoreSource>& known, int time = 0,
                          QWidget* parent = nullptr);
+    /// Stops what is looked up.
+    ~StoreDialog() override;
     /// What was chosen.
     run::Source source() const;
 
@@ -47,6 +50,7 @@ class StoreDialog : public QDialog {
     int first_level_ = 0, first_channel_ = 0, first_time_ = 0;  // as they are felt now
     run::StoreSource known_;
     std::shared_ptr<Found> looking_, found_;  // asked last; what can be opened
+    std::unique_ptr<Worker> worker_;          // that looks
 };
 
 /// "0: 512 x 512 x 234, every 1 x 1 x 2 mm, 61 MB".

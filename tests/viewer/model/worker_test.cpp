@@ -1,11 +1,7 @@
 // Tasks on a thread of their own.
 #include "apps/viewer/model/worker.hpp"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -14,6 +10,7 @@
 
 #include "apps/viewer/model/opening.hpp"
 #include "support/eventually.hpp"
+#include "support/silent_server.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -92,33 +89,8 @@ TEST(Worker, destroying_it_cancels_the_task) {
     EXPECT_TRUE(left);
 }
 
-/// Takes connections and never answers.
-struct SilentServer {
-    int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in at{};
-
-    SilentServer() {
-        at.sin_family = AF_INET;
-        at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        socklen_t length = sizeof(at);
-        auto* const address = reinterpret_cast<sockaddr*>(&at);
-        EXPECT_EQ(::bind(socket, address, length), 0);
-        EXPECT_EQ(::getsockname(socket, address, &length), 0);
-        EXPECT_EQ(::listen(socket, 8), 0);
-    }
-    ~SilentServer() { ::close(socket); }
-
-    std::string address() const {
-        return "http://127.0.0.1:" + std::to_string(ntohs(at.sin_port)) + "/v.zarr";
-    }
-    bool is_asked() const {
-        pollfd asked{socket, POLLIN, 0};
-        return ::poll(&asked, 1, 0) == 1;
-    }
-};
-
 TEST(Worker, one_that_opens_a_volume_of_a_silent_server_ends_when_it_is_cancelled) {
-    const SilentServer server;
+    const support::SilentServer server;
     const run::Source source = run::source_from({{"volume", server.address()}});
     Worker worker([&](const io::Progress& progress) { (void)open(source, progress); }, [] {});
     ASSERT_TRUE(support::comes_true([&] { return server.is_asked(); }));

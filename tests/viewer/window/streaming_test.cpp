@@ -6,6 +6,7 @@
 #include <QDialogButtonBox>
 #include <QLabel>
 #include <QLineEdit>
+#include <QPointer>
 #include <QPushButton>
 #include <QSpinBox>
 #include <QStatusBar>
@@ -14,6 +15,7 @@
 #include "palpate/scenes/volumes.hpp"
 #include "palpate/stream/convert.hpp"
 #include "stream/volume_server.hpp"
+#include "support/silent_server.hpp"
 #include "support/zarr_image.hpp"
 #include "viewer/window/window_fixture.hpp"
 
@@ -310,6 +312,28 @@ TEST_F(Streaming, an_address_is_typed_looked_up_and_felt_and_the_window_says_wha
     wait_until([&] { return window_->details().settled(); });
     save("address-finer");
     EXPECT_EQ(QSettings().value("recent").toStringList().value(0), address);
+}
+
+TEST_F(Streaming, a_silent_server_is_left_at_once_when_its_dialog_or_the_window_closes) {
+    for (const bool closes_window : {false, true}) {
+        support::SilentServer server;
+        press(Qt::Key_L, Qt::ControlModifier);
+        auto& line = part<QLineEdit>("store_address");
+        const QPointer<QWidget> dialog = line.window();
+        activate(line);
+        QTest::keyClicks(&line, QString::fromStdString(server.address()));
+        QTest::keyClick(&line, Qt::Key_Return);
+        wait_until([&] { return server.is_asked(); });
+        EXPECT_FALSE(server.is_left());
+        if (closes_window) {
+            window_.reset();
+        } else {
+            auto* buttons = dialog->findChild<QDialogButtonBox*>();
+            QTest::mouseClick(buttons->button(QDialogButtonBox::Cancel), Qt::LeftButton);
+            wait_until([&] { return !dialog; });
+        }
+        EXPECT_TRUE(server.is_left()) << closes_window;
+    }
 }
 
 TEST_F(Streaming, a_hand_that_waits_is_told_why) {
