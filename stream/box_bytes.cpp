@@ -10,6 +10,11 @@ std::uint64_t bytes_of(const SampleBox& box, SampleType type) {
     return static_cast<std::uint64_t>(size.cast<std::int64_t>().prod()) * size_of(type);
 }
 
+Volume volume_from(const Geometry& geometry, SampleType type, std::vector<std::byte> bytes) {
+    const auto held = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
+    return {geometry, type, std::shared_ptr<const void>(held, held->data()), held->size()};
+}
+
 void copy_box(const SampleBox& from, const std::byte* source, const SampleBox& to,
               std::byte* target, std::size_t sample) {
     const Index3 low = from.low.cwiseMax(to.low), high = from.high.cwiseMin(to.high);

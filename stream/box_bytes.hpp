@@ -1,11 +1,15 @@
 // Boxes of samples: their bytes, x fastest, and the pieces that they lie in. Private to stream/.
 #pragma once
 
+#include <vector>
+
 #include "palpate/samples.hpp"
 
 namespace palpate::stream {
 
 std::uint64_t bytes_of(const SampleBox& box, SampleType type);
+
+Volume volume_from(const Geometry& geometry, SampleType type, std::vector<std::byte> bytes);
 
 /// Calls visit(index) for each index in a box, x fastest.
 template <class Visit>

@@ -15,6 +15,13 @@ namespace {
 namespace fs = std::filesystem;
 using Unlocked = py::call_guard<py::gil_scoped_release>;
 
+template <class Work>
+auto until_ctrl_c(Work&& work) {
+    const ProgressFunction none;
+    const auto progress = progress_of(none);
+    return stream::while_telling([&] { progress(0); }, work);
+}
+
 struct OpenStore {
     std::shared_ptr<const stream::Store> store;
     std::string address;  ///< these two open it again
@@ -42,13 +49,9 @@ struct OpenStore {
         grid.size = high - low;
         return with_type(info().type, [&](auto zero) {
             std::vector<decltype(zero)> samples(static_cast<std::size_t>(sample_count(grid)));
-            const ProgressFunction none;
-            const auto progress = progress_of(none);  // Ctrl-C
-            stream::while_telling([&] { progress(0); },
-                                  [&](std::stop_token stop) {
-                                      store->read(number, box,
-                                                  std::as_writable_bytes(std::span(samples)), stop);
-                                  });
+            until_ctrl_c([&](std::stop_token stop) {
+                store->read(number, box, std::as_writable_bytes(std::span(samples)), stop);
+            });
             return Volume(grid, std::move(samples));
         });
     }
@@ -128,7 +131,11 @@ void bind_open_store(py::module_& module) {
     // For palpate.distributed.
     module.def(
         "_content_of",
-        [](const OpenStore& s, int level) { return stream::content_of(*s.store, level); },
+        [](const OpenStore& s, int level) {
+            return until_ctrl_c([&](const std::stop_token& stop) {
+                return stream::content_of(*s.store, level, stop);
+            });
+        },
         Unlocked());
     module.def("_files_at", &stream::files_at, Unlocked());
 }

@@ -13,9 +13,7 @@
 #include <string>
 #include <utility>
 
-#include "stream/formats/hdf5_codecs.hpp"
-#include "stream/formats/lz4_codecs.hpp"
-#include "stream/formats/tiff_codecs.hpp"
+#include "stream/formats/undo_codecs.hpp"
 
 namespace palpate::stream {
 namespace {

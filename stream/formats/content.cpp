@@ -1,11 +1,12 @@
 // Recognises the content of stores. See the header.
 #include "stream/formats/content.hpp"
 
+#define XXH_INLINE_ALL
 #include <sys/stat.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdio>
 #include <cstring>
 #include <map>
@@ -19,21 +20,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t prime1 = 0x9E3779B185EBCA87U, prime2 = 0xC2B2AE3D27D4EB4FU,
-                        prime3 = 0x165667B19E3779F9U, prime4 = 0x85EBCA77C2B2AE63U,
-                        prime5 = 0x27D4EB2F165667C5U;
-constexpr std::size_t stripe = 32;
+/// XXH64, seed 0 (https://github.com/Cyan4973/xxHash): fast, well spread, no protection against
+/// somebody who wants two contents to look alike.
+class ContentHash {
+  public:
+    ContentHash() { XXH64_reset(&state_, 0); }
+    void take(std::span<const std::byte> bytes) {
+        XXH64_update(&state_, bytes.data(), bytes.size());
+    }
+    std::uint64_t value() const { return XXH64_digest(&state_); }
 
-template <class Word>
-Word word_at(const std::byte* at) {
-    Word word;
-    std::memcpy(&word, at, sizeof word);
-    return word;
-}
-
-std::uint64_t round_of(std::uint64_t lane, std::uint64_t word) {
-    return std::rotl(lane + word * prime2, 31) * prime1;
-}
+  private:
+    XXH64_state_t state_;
+};
 
 template <class T>
 void take_value(ContentHash& hash, const T& value) {
@@ -77,6 +76,7 @@ void take_whole(ContentHash& hash, const Store& store, int level, const std::sto
 void take_pieces(ContentHash& hash, const Store& store, int level, std::uint64_t count,
                  const std::stop_token& stop) {
     constexpr int longest = 64;  // [samples]
+    constexpr std::uint64_t prime = 0x9E3779B185EBCA87U;
     const Level& grid = store.info().levels[static_cast<std::size_t>(level)];
     const Index3& size = grid.geometry.size;
     const Index3 piece = grid.chunk.cwiseMin(longest).cwiseMax(1);
@@ -85,7 +85,7 @@ void take_pieces(ContentHash& hash, const Store& store, int level, std::uint64_t
     const std::uint64_t all = along.prod();
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t begin = all / count * i, run = std::max<std::uint64_t>(all / count, 1);
-        const std::uint64_t at = std::min(begin + (i + 1) * prime1 % run, all - 1);
+        const std::uint64_t at = std::min(begin + (i + 1) * prime % run, all - 1);
         const Counts place(at % along[0], at / along[0] % along[1], at / along[0] / along[1]);
         const Index3 low = place.cast<int>().cwiseProduct(piece);
         take_box(hash, store, level,
@@ -94,54 +94,6 @@ void take_pieces(ContentHash& hash, const Store& store, int level, std::uint64_t
 }
 
 }  // namespace
-
-void ContentHash::take_stripe(const std::byte* at) {
-    for (std::size_t i = 0; i < 4; ++i) {
-        lanes_[i] = round_of(lanes_[i], word_at<std::uint64_t>(at + 8 * i));
-    }
-}
-
-void ContentHash::take(std::span<const std::byte> bytes) {
-    bytes_ += bytes.size();
-    while (!bytes.empty()) {
-        if (in_begun_ == 0 && bytes.size() >= stripe) {
-            take_stripe(bytes.data());
-            bytes = bytes.subspan(stripe);
-            continue;
-        }
-        const std::size_t part = std::min(stripe - in_begun_, bytes.size());
-        std::memcpy(begun_ + in_begun_, bytes.data(), part);
-        in_begun_ = (in_begun_ + part) % stripe;
-        bytes = bytes.subspan(part);
-        if (in_begun_ == 0) take_stripe(begun_);
-    }
-}
-
-std::uint64_t ContentHash::value() const {
-    std::uint64_t hash = prime5;
-    if (bytes_ >= stripe) {
-        hash = std::rotl(lanes_[0], 1) + std::rotl(lanes_[1], 7) + std::rotl(lanes_[2], 12) +
-               std::rotl(lanes_[3], 18);
-        for (const std::uint64_t lane : lanes_) hash = (hash ^ round_of(0, lane)) * prime1 + prime4;
-    }
-    hash += bytes_;
-    const std::byte* at = begun_;
-    std::size_t left = in_begun_;
-    for (; left >= 8; left -= 8, at += 8) {
-        hash = std::rotl(hash ^ round_of(0, word_at<std::uint64_t>(at)), 27) * prime1 + prime4;
-    }
-    if (left >= 4) {
-        hash = std::rotl(hash ^ word_at<std::uint32_t>(at) * prime1, 23) * prime2 + prime3;
-        left -= 4;
-        at += 4;
-    }
-    for (; left > 0; --left, ++at) {
-        hash = std::rotl(hash ^ static_cast<std::uint64_t>(*at) * prime5, 11) * prime1;
-    }
-    hash = (hash ^ hash >> 33) * prime2;
-    hash = (hash ^ hash >> 29) * prime3;
-    return hash ^ hash >> 32;
-}
 
 std::string content_of(const Store& store, int level, const std::stop_token& stop) {
     const StoreInfo& info = store.info();

@@ -3,29 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <stop_token>
 #include <string>
 
 #include "palpate/stream/store.hpp"
 
 namespace palpate::stream {
-
-/// XXH64, seed 0 (https://github.com/Cyan4973/xxHash, doc/xxhash_spec.md): fast, well spread, no
-/// protection against somebody who wants two contents to look alike.
-class ContentHash {
-  public:
-    void take(std::span<const std::byte> bytes);
-    std::uint64_t value() const;
-
-  private:
-    void take_stripe(const std::byte* at);
-
-    std::uint64_t lanes_[4] = {0x60EA27EEADC0B5D6U, 0xC2B2AE3D27D4EB4FU, 0, 0x61C8864E7A143579U};
-    std::byte begun_[32] = {};  ///< of the stripe that is not full yet
-    std::size_t in_begun_ = 0;
-    std::uint64_t bytes_ = 0;
-};
 
 /// What `store` holds from a level on: type, channel, time, every level's grid, and samples. Of
 /// each level all, if they are at most 64 MiB (1 MiB of a store behind HTTP). Else those of 64 (8)

@@ -1,10 +1,8 @@
 // Filters of HDF5 that do not compress. See the header.
-#include "stream/formats/hdf5_codecs.hpp"
+#include "stream/formats/undo_codecs.hpp"
 
 #include <algorithm>
 #include <cstdint>
-
-#include "stream/formats/codecs.hpp"
 
 namespace palpate::stream {
 namespace {

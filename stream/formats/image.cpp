@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "io/units.hpp"
@@ -187,6 +188,12 @@ void check_axes(const std::vector<ImageAxis>& axes) {
 
 ChunkedVolume volume_of(const Image& image, ChunkedVolume begun, const StoreOptions& options) {
     return Taking(image, std::move(begun), options).volume();
+}
+
+std::vector<int> axes_in_order(const ChunkedArray& array) {
+    std::vector<int> axes(array.axes());
+    std::iota(axes.begin(), axes.end(), 0);
+    return axes;
 }
 
 void check_array(const ChunkedArray& array) {

@@ -50,6 +50,9 @@ void check_axes(const std::vector<ImageAxis>& axes);
 /// Throws BadMetadata, io::InputError about a choice that there is not.
 ChunkedVolume volume_of(const Image& image, ChunkedVolume begun, const StoreOptions& options);
 
+/// All of an array, the slowest first.
+std::vector<int> axes_in_order(const ChunkedArray& array);
+
 /// Throws BadMetadata instead of std::invalid_argument.
 void check_array(const ChunkedArray& array);
 

@@ -1,5 +1,5 @@
 // The ways in which formats put lz4 blocks into chunks. See the header.
-#include "stream/formats/lz4_codecs.hpp"
+#include "stream/formats/undo_codecs.hpp"
 
 #define XXH_INLINE_ALL  // nothing to link
 #include <lz4.h>
@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <cstring>
 #include <string_view>
-
-#include "stream/formats/codecs.hpp"
 
 namespace palpate::stream {
 

@@ -29,4 +29,18 @@ Json parsed(const std::optional<Bytes>& bytes, const std::string& name) {
     }
 }
 
+std::vector<std::int64_t> sizes_of(const Json& list, const char* member) {
+    std::vector<std::int64_t> sizes;
+    if (!list.is_array() || list.size() > 32) {
+        throw BadMetadata(std::string("its metadata have no sensible '") + member + "'");
+    }
+    for (const Json& size : list) {
+        if (!size.is_number_integer()) {
+            throw BadMetadata(std::string("its '") + member + "' is no list of whole numbers");
+        }
+        sizes.push_back(size.get<std::int64_t>());
+    }
+    return sizes;
+}
+
 }  // namespace palpate::stream

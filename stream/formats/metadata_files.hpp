@@ -17,6 +17,9 @@ Wanted metadata_file(const std::string& folder, const std::string& name);
 /// Null if the file is not there. Throws io::InputError, which names it, if it is not JSON.
 nlohmann::json parsed(const std::optional<Bytes>& bytes, const std::string& name);
 
+/// Whole numbers, as of a shape. Throws BadMetadata, which names the member.
+std::vector<std::int64_t> sizes_of(const nlohmann::json& list, const char* member);
+
 /// What `open` returns; whatever is wrong with metadata becomes an io::InputError about `address`.
 template <class F>
 auto about(const std::string& address, F&& open) {

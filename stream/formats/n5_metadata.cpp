@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "palpate/io/error.hpp"
+#include "stream/formats/metadata_files.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -18,16 +19,7 @@ using Numbers = std::vector<double>;
 
 /// Sizes of N5, the fastest axis first, turned round.
 std::vector<std::int64_t> n5_sizes(const Json& list, const char* what) {
-    std::vector<std::int64_t> sizes;
-    if (!list.is_array() || list.empty() || list.size() > 8) {
-        throw BadMetadata(std::string("its attributes have no sensible '") + what + "'");
-    }
-    for (const Json& size : list) {
-        if (!size.is_number_integer()) {
-            throw BadMetadata(std::string("its '") + what + "' is no list of whole numbers");
-        }
-        sizes.push_back(size.get<std::int64_t>());
-    }
+    std::vector<std::int64_t> sizes = sizes_of(list, what);
     std::ranges::reverse(sizes);
     return sizes;
 }
@@ -178,7 +170,7 @@ ChunkedArray n5_array(const Json& attributes, const std::string& folder) {
     }
     array.bytes.stored = *stored;
     array.bytes.swapped = std::endian::native == std::endian::little && array.bytes.size() > 1;
-    for (std::size_t a = 0; a < array.axes(); ++a) array.stored_axes.push_back(static_cast<int>(a));
+    array.stored_axes = axes_in_order(array);
     array.codecs = n5_codecs(compression_of(attributes));
     check_array(array);
     return array;

@@ -97,20 +97,7 @@ std::shared_ptr<const Objects> remote_objects(const std::string& address,
     return cached_objects(objects, options.cache_folder, options.cache_bytes);
 }
 
-void check_number(const std::string& address, const std::string& what, int wanted, int count) {
-    if (wanted >= 0 && wanted < count) return;
-    throw io::InputError(address + ": there is no " + what + " " + std::to_string(wanted) +
-                         ": it has " + std::to_string(count) +
-                         (count == 1 ? ", number 0" : ", numbered from 0; choose one of them"));
-}
-
 }  // namespace
-
-void check_choice(const StoreInfo& info, const StoreOptions& options) {
-    check_number(info.address, "time", options.time, info.times);
-    check_number(info.address, "channel", options.channel,
-                 info.channels.empty() ? 1 : static_cast<int>(info.channels.size()));
-}
 
 bool is_chunked(const std::string& address) {
     std::error_code error;

@@ -14,18 +14,7 @@ namespace {
 const char* const no_chunks =
     ": Palpate for Windows does not write chunked formats; use a file, or Linux";
 
-void check_number(const std::string& address, const std::string& what, int wanted) {
-    if (wanted == 0) return;
-    throw io::InputError(address + ": there is no " + what + " " + std::to_string(wanted) +
-                         ": it has 1, number 0");
-}
-
 }  // namespace
-
-void check_choice(const StoreInfo& info, const StoreOptions& options) {
-    check_number(info.address, "time", options.time);
-    check_number(info.address, "channel", options.channel);
-}
 
 bool is_chunked(const std::string& address) {
     return std::filesystem::path(address).extension() == ".zarr";  // to be refused

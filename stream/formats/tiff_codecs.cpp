@@ -1,5 +1,6 @@
-// Compressions of TIFF: LZW, and differences along rows. See the header.
-#include "stream/formats/tiff_codecs.hpp"
+// Compressions of TIFF that no library offers apart from reading the file: LZW, and differences
+// along rows. "TIFF Revision 6.0", Adobe 1992, sections 13 and 14. See the header.
+#include "stream/formats/undo_codecs.hpp"
 
 #include <array>
 #include <cstdint>
@@ -7,7 +8,6 @@
 #include <optional>
 
 #include "io/byte_order.hpp"
-#include "stream/formats/codecs.hpp"
 
 namespace palpate::stream {
 namespace {

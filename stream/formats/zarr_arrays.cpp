@@ -6,26 +6,13 @@
 #include <cmath>
 
 #include "palpate/io/error.hpp"
+#include "stream/formats/metadata_files.hpp"
 #include "stream/formats/zarr_metadata.hpp"
 
 namespace palpate::stream {
 namespace {
 
 using Json = nlohmann::json;
-
-std::vector<std::int64_t> sizes_of(const Json& list, const char* what) {
-    std::vector<std::int64_t> sizes;
-    if (!list.is_array() || list.size() > 32) {
-        throw BadMetadata(std::string("its metadata have no sensible '") + what + "'");
-    }
-    for (const Json& size : list) {
-        if (!size.is_number_integer()) {
-            throw BadMetadata(std::string("its '") + what + "' is no list of whole numbers");
-        }
-        sizes.push_back(size.get<std::int64_t>());
-    }
-    return sizes;
-}
 
 [[noreturn]] void refuse_type(const std::string& type) {
     throw BadMetadata("its samples are of type '" + type +
@@ -93,7 +80,7 @@ ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
     const std::string order = zarray.value("order", std::string("C"));
     if (order != "C" && order != "F")
         throw BadMetadata("its order is '" + order + "'; it is C or F");
-    for (std::size_t a = 0; a < array.axes(); ++a) array.stored_axes.push_back(static_cast<int>(a));
+    array.stored_axes = axes_in_order(array);
     if (order == "F") std::ranges::reverse(array.stored_axes);
     const Json filters = zarray.value("filters", Json());
     if (filters.is_array() && !filters.empty()) {
@@ -123,20 +110,13 @@ bool is_little(const Json& codec) {
 
 void transpose(const Json& codec, ChunkedArray& array) {
     const Json order = codec.at("configuration").at("order");
-    std::vector<std::int64_t> axes;
-    if (order == "C" || order == "F") {
-        for (std::size_t a = 0; a < array.axes(); ++a) axes.push_back(static_cast<std::int64_t>(a));
-        if (order == "F") std::ranges::reverse(axes);
-    } else {
-        axes = sizes_of(order, "order");
+    const std::vector<int> in_order = axes_in_order(array);
+    std::vector<std::int64_t> axes(in_order.begin(), in_order.end());
+    if (order == "F") std::ranges::reverse(axes);
+    if (order != "C" && order != "F") axes = sizes_of(order, "order");
+    if (!std::ranges::is_permutation(axes, in_order)) {
+        throw BadMetadata("the order of its axes is no permutation of them");
     }
-    std::vector<std::int64_t> sorted = axes;
-    std::ranges::sort(sorted);
-    bool permutes = sorted.size() == array.axes();
-    for (std::size_t a = 0; permutes && a < sorted.size(); ++a) {
-        permutes = sorted[a] == static_cast<std::int64_t>(a);
-    }
-    if (!permutes) throw BadMetadata("the order of its axes is no permutation of them");
     std::vector<int> stored;
     for (const std::int64_t axis : axes) {
         stored.push_back(array.stored_axes[static_cast<std::size_t>(axis)]);
@@ -244,7 +224,7 @@ ChunkedArray zarr3_array(const Json& zarr, const std::string& folder) {
     array.bytes.stored = *stored;
     array.bytes.fill =
         fitting_fill(fill_of(zarr.value("fill_value", Json()), array.bytes.stored), array.bytes);
-    for (std::size_t a = 0; a < array.axes(); ++a) array.stored_axes.push_back(static_cast<int>(a));
+    array.stored_axes = axes_in_order(array);
     take_key_encoding(zarr.at("chunk_key_encoding"), array);
     for (const Json& transformer : zarr.value("storage_transformers", Json::array())) {
         refuse_codec(transformer.value("name", std::string("storage transformer")));

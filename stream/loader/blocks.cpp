@@ -1,9 +1,6 @@
 // Decoded pieces of a store. See the header.
 #include "stream/loader/blocks.hpp"
 
-#include <algorithm>
-#include <atomic>
-
 #include "stream/box_bytes.hpp"
 
 namespace palpate::stream {
@@ -20,45 +17,6 @@ void for_each_whole(const Level& grid, const SampleBox& box, Work&& work) {
 }
 
 }  // namespace
-
-void for_all_at_once(std::size_t count, int threads, const std::function<void(std::size_t)>& work) {
-    std::atomic<std::size_t> next{0};
-    std::mutex mutex;
-    std::exception_ptr problem;
-    const auto run = [&] {
-        try {
-            for (std::size_t i = next++; i < count; i = next++) work(i);
-        } catch (...) {
-            next = count;
-            const std::scoped_lock lock(mutex);
-            if (!problem) problem = std::current_exception();
-        }
-    };
-    {
-        SmallThreads others;
-        for (int i = 1; i < threads && std::size_t(i) < count; ++i) {
-            others.start([&](const std::stop_token&) { run(); });
-        }
-        run();
-    }
-    if (problem) std::rethrow_exception(problem);
-}
-
-void read_by_pieces(const Store& store, int level, const SampleBox& box, std::span<std::byte> out,
-                    int threads, const std::stop_token& stop,
-                    const std::function<void(double)>& made) {
-    const StoreInfo& info = store.info();
-    std::vector<SampleBox> pieces;
-    for_each_piece(info.levels[static_cast<std::size_t>(level)].chunk, box,
-                   [&](const Index3&, const SampleBox& piece) { pieces.push_back(piece); });
-    std::atomic<std::size_t> done{0};
-    for_all_at_once(pieces.size(), threads, [&](std::size_t i) {
-        std::vector<std::byte> bytes(bytes_of(pieces[i], info.type));
-        store.read(level, pieces[i], bytes, stop);
-        copy_box(pieces[i], bytes.data(), box, out.data(), size_of(info.type));
-        if (made) made(static_cast<double>(++done) / static_cast<double>(pieces.size()));
-    });
-}
 
 Blocks::Blocks(const Store& store, std::uint64_t most_bytes, std::shared_ptr<Loader> loader,
                For whom)

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 
 #include "stream/loader/loader.hpp"
 
@@ -11,16 +10,6 @@ namespace palpate::stream {
 
 /// What could not be had is tried again after this long.
 constexpr std::chrono::seconds pause_after_failure{2};
-
-/// Calls work(0) to work(count - 1) from so many threads; what one of them throws ends the others
-/// and is passed on.
-void for_all_at_once(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
-
-/// Store::read() of a large box by several threads, piece by piece, each of which says what part is
-/// made.
-void read_by_pieces(const Store& store, int level, const SampleBox& box, std::span<std::byte> out,
-                    int threads, const std::stop_token& stop,
-                    const std::function<void(double)>& made = {});
 
 /// The pieces of a store that one reader of it keeps. Readers with the same Loader read none that
 /// another one keeps or is reading. Each has a bound of its own, and what a hand uses counts as the

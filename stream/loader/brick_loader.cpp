@@ -94,7 +94,7 @@ BrickLoader::Parts::Parts(std::shared_ptr<const Store> store, Volume overview,
           std::make_unique<Blocks>(*store_, settings.memory / pieces_part, loader_, For::hands)),
       memory_(std::make_unique<BrickMemory>(bytes_of_brick(store_->info().type), most_free_bricks)),
       bricks_(geometry_.size),
-      reading_(loader_, For::hands, [this](bool urgent) { return next(urgent); }) {}
+      reading_(*loader_, For::hands, [this](bool urgent) { return next(urgent); }) {}
 
 void BrickLoader::Parts::look(std::span<const Interest> hands, Clock::time_point now) {
     double seconds = 0;

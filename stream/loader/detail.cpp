@@ -63,11 +63,6 @@ std::vector<SampleBox> parts_of(const Level& level, const SampleBox& box) {
     return parts;
 }
 
-Volume volume_of(const Geometry& geometry, SampleType type, std::vector<std::byte> bytes) {
-    const auto held = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
-    return {geometry, type, std::shared_ptr<const void>(held, held->data()), held->size()};
-}
-
 /// A stored piece, as far as it lies in a box.
 struct Piece {
     enum class State : std::uint8_t { waiting, reading, read, there, failed };
@@ -134,21 +129,237 @@ void interpolate_into(const Volume& coarse, const Geometry& grid, const SampleBo
 }
 
 struct DetailReader::Parts {
-    Parts(std::shared_ptr<const Store> store, Volume overview, DetailSettings settings, Made made);
+    Parts(std::shared_ptr<const Store> store, Volume overview, DetailSettings settings, Made made)
+        : store_(std::move(store)),
+          overview_(std::move(overview)),
+          made_(std::move(made)),
+          loader_(settings.shared ? settings.shared : shared_loader(settings.threads)),
+          blocks_(*store_, settings.memory, loader_, For::eyes),
+          reading_(*loader_, For::eyes, [this](bool) { return next(); }),
+          thread_([this, begin = std::move(settings.begin_thread)](const std::stop_token& stop) {
+              if (begin) begin();
+              run(stop);
+          }) {}
 
     void want(int viewer, const std::vector<DetailBox>& coarse_to_fine,
-              std::chrono::milliseconds interval);
-    DetailStatus status();
-    Turn next();
-    void run(const std::stop_token& stop);
-    bool step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop);
-    Piece* kept_piece(Work& work) const;
-    void read(Work& work, Work::Stage& stage, Piece& piece, const std::stop_token& stop);
-    void put(Work& work, Work::Stage& stage, Piece& piece) const;
-    void fail(Piece& piece, const std::string& problem);
-    void make_base(Work& work) const;
-    std::size_t fill(const Work& work, Work::Stage& stage) const;
-    void publish(Work& work);
+              std::chrono::milliseconds interval) {
+        if (coarse_to_fine.empty()) throw std::invalid_argument("no box");
+        auto work = std::make_shared<Work>();
+        work->viewer = viewer;
+        work->interval = interval;
+        for (const DetailBox& of : coarse_to_fine) {
+            check(*store_, of);
+            const Level& level = store_->info().levels[static_cast<std::size_t>(of.level)];
+            Work::Stage stage{of, {}, {}};
+            for (const SampleBox& part : parts_of(level, of.box)) stage.pieces.push_back({part});
+            work->stages.push_back(std::move(stage));
+        }
+        const std::scoped_lock lock(mutex_);
+        work_[viewer] = std::move(work);
+        ++news_;
+        changed_.notify_all();
+    }
+
+    DetailStatus status() {
+        DetailStatus status;
+        status.bytes = blocks_.bytes();
+        const std::scoped_lock lock(mutex_);
+        for (const auto& [viewer, work] : work_) {
+            const std::size_t first = work->complete() ? work->stages.size() - 1 : work->stage;
+            for (std::size_t i = first; i < work->stages.size(); ++i) {
+                const Work::Stage& stage = work->stages[i];
+                status.wanted += stage.pieces.size();
+                status.missing += stage.pieces.size() - stage.count(Piece::State::there);
+                status.coming += stage.count(Piece::State::reading);
+                status.failed += stage.count(Piece::State::failed);
+            }
+        }
+        if (status.failed > 0) status.problem = problem_;
+        return status;
+    }
+
+    /// The next piece that a thread of the store reads: stage by stage.
+    Turn next() {
+        const std::scoped_lock lock(mutex_);
+        const Clock::time_point now = Clock::now();
+        for (const auto& [viewer, work] : work_) {
+            if (!work->looked || work->complete() || work->read.size() >= most_read) continue;
+            Work::Stage& stage = work->stages[work->stage];
+            for (Piece& piece : stage.pieces) {
+                const bool again = piece.state == Piece::State::failed && piece.again <= now &&
+                                   work->stage + 1 == work->stages.size();
+                if (piece.state != Piece::State::waiting && !again) continue;
+                Turn turn;
+                turn.job = [this, work, &stage, &piece](const std::stop_token& stop) {
+                    read(*work, stage, piece, stop);
+                };
+                piece.state = Piece::State::reading;
+                return turn;
+            }
+        }
+        return {};
+    }
+
+    void run(const std::stop_token& stop) {
+        std::unique_lock lock(mutex_);
+        while (!stop.stop_requested()) {
+            const std::uint64_t known = news_;
+            if (step(lock, stop)) continue;
+            const bool has_new =
+                std::ranges::any_of(work_, [](const auto& each) { return each.second->has_new; });
+            changed_.wait_for(lock, stop, has_new ? look_again : idle,
+                              [&] { return news_ != known; });
+        }
+    }
+
+    /// Needs the lock. Does one thing that waits for no read: copies a piece that was read,
+    /// publishes, makes the base of a stage, or takes a piece of the last stage that is kept.
+    bool step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
+        const auto unlocked = [&](const auto& what) {
+            lock.unlock();
+            bool done = false;
+            try {
+                what();
+                done = true;
+            } catch (const std::exception&) {  // no memory: what is shown stays
+            }
+            lock.lock();
+            return done;
+        };
+        for (const auto& [viewer, held] : work_) {
+            const std::shared_ptr<Work> work = held;
+            if (!work->read.empty()) {
+                const auto [stage, piece] = work->read.back();
+                work->read.pop_back();
+                if (unlocked([&] { put(*work, *stage, *piece); })) {
+                    piece->state = Piece::State::there;
+                    work->has_new = work->has_new || stage == &work->last();
+                } else {
+                    fail(*piece, "there is too little memory");
+                }
+                if (work->read.size() + 1 == most_read) loader_->wake();
+                return true;
+            }
+            const bool waited = Clock::now() - work->published >= work->interval;
+            if (work->has_new && (work->complete() || waited)) {
+                work->has_new = false;
+                unlocked([&] { publish(*work); });
+                work->published = Clock::now();
+                return true;
+            }
+            if (work->has_base()) {
+                unlocked([&] { make_base(*work); });
+                ++work->stage;
+                work->has_new = true;
+                loader_->wake();
+                return true;
+            }
+            if (work->looked) continue;
+            if (Piece* const piece = kept_piece(*work)) {
+                piece->state = Piece::State::reading;
+                unlocked([&] { read(*work, work->last(), *piece, stop); });
+                return true;
+            }
+            work->looked = true;
+            loader_->wake();
+        }
+        return false;
+    }
+
+    /// Needs the lock.
+    Piece* kept_piece(Work& work) const {
+        for (Piece& piece : work.last().pieces) {
+            if (piece.state != Piece::State::waiting) continue;
+            if (blocks_.has_all(work.last().of.level, piece.box)) return &piece;
+        }
+        return nullptr;
+    }
+
+    void read(Work& work, Work::Stage& stage, Piece& piece, const std::stop_token& stop) {
+        const SampleType type = store_->info().type;
+        std::vector<std::byte> samples;
+        std::string problem;
+        try {
+            samples.resize(count_of(piece.box) * palpate::size_of(type));
+            blocks_.read(stage.of.level, piece.box, samples, stop);
+            make_finite(type, samples, overview_.minimum());
+        } catch (const Cancelled&) {
+            return;  // the reader ends
+        } catch (const std::exception& e) {
+            problem = e.what();
+        }
+        const std::scoped_lock lock(mutex_);
+        if (problem.empty()) {
+            work.read.emplace_back(&stage, &piece);
+            piece.samples = std::move(samples);
+            piece.state = Piece::State::read;
+        } else {
+            fail(piece, problem);
+        }
+        ++news_;
+        changed_.notify_all();
+    }
+
+    /// Needs the lock.
+    void fail(Piece& piece, const std::string& problem) {
+        piece.state = Piece::State::failed;
+        piece.again = Clock::now() + pause_after_failure;
+        problem_ = problem;
+    }
+
+    /// Of a piece that was read.
+    void put(Work& work, Work::Stage& stage, Piece& piece) const {
+        const auto samples = std::move(piece.samples);
+        const std::size_t each = palpate::size_of(store_->info().type);
+        stage.samples.resize(count_of(stage.of.box) * each);
+        copy_box(piece.box, samples.data(), stage.of.box, stage.samples.data(), each);
+        piece.copied = true;
+        if (&stage == &work.last()) work.changed = united(work.changed, piece.box);
+    }
+
+    /// What is missing of the last stage is made of the coarse one.
+    void make_base(Work& work) const {
+        Work::Stage& stage = work.stages[work.stage];
+        fill(work, stage);
+        work.base = volume_from(geometry_of(grid_of(*store_, stage.of), stage.of.box),
+                                store_->info().type, std::move(stage.samples));
+        for (Piece& piece : work.last().pieces) {
+            piece.based = false;
+            if (!piece.copied) work.changed = united(work.changed, piece.box);
+        }
+    }
+    /// What is missing of a stage is interpolated from the base, which is coarser. Returns how many
+    /// pieces are missing.
+    std::size_t fill(const Work& work, Work::Stage& stage) const {
+        const Geometry grid = geometry_of(grid_of(*store_, stage.of), stage.of.box);
+        const Index3 low = stage.of.box.low;
+        stage.samples.resize(count_of(stage.of.box) * palpate::size_of(store_->info().type));
+        std::size_t missing = 0;
+        for (Piece& piece : stage.pieces) {
+            missing += !piece.copied;
+            if (piece.copied || piece.based) continue;
+            interpolate_into(work.base ? *work.base : overview_, grid,
+                             {piece.box.low - low, piece.box.high - low}, stage.samples.data());
+            piece.based = true;
+        }
+        return missing;
+    }
+
+    void publish(Work& work) {
+        if (work.done) return;
+        Work::Stage& last = work.last();
+        const std::size_t missing = fill(work, last);
+        const Index3 low = last.of.box.low;
+        SampleBox changed;
+        if (!work.changed.empty()) changed = {work.changed.low - low, work.changed.high - low};
+        work.changed = {};
+        work.done = missing == 0;  // nothing is added to it
+        std::vector<std::byte> samples = work.done ? std::move(last.samples) : last.samples;
+        made_(work.viewer, {last.of,
+                            volume_from(geometry_of(grid_of(*store_, last.of), last.of.box),
+                                        store_->info().type, std::move(samples)),
+                            last.pieces.size(), missing, changed});
+    }
 
     const std::shared_ptr<const Store> store_;
     const Volume overview_;
@@ -163,239 +374,6 @@ struct DetailReader::Parts {
     const Reading reading_;  // last, as the thread: they use all of the above
     std::jthread thread_;
 };
-
-DetailReader::Parts::Parts(std::shared_ptr<const Store> store, Volume overview,
-                           DetailSettings settings, Made made)
-    : store_(std::move(store)),
-      overview_(std::move(overview)),
-      made_(std::move(made)),
-      loader_(settings.shared ? settings.shared : shared_loader(settings.threads)),
-      blocks_(*store_, settings.memory, loader_, For::eyes),
-      reading_(loader_, For::eyes, [this](bool) { return next(); }),
-      thread_([this, begin = std::move(settings.begin_thread)](const std::stop_token& stop) {
-          if (begin) begin();
-          run(stop);
-      }) {}
-
-void DetailReader::Parts::want(int viewer, const std::vector<DetailBox>& coarse_to_fine,
-                               std::chrono::milliseconds interval) {
-    if (coarse_to_fine.empty()) throw std::invalid_argument("no box");
-    auto work = std::make_shared<Work>();
-    work->viewer = viewer;
-    work->interval = interval;
-    for (const DetailBox& of : coarse_to_fine) {
-        check(*store_, of);
-        const Level& level = store_->info().levels[static_cast<std::size_t>(of.level)];
-        Work::Stage stage{of, {}, {}};
-        for (const SampleBox& part : parts_of(level, of.box)) stage.pieces.push_back({part});
-        work->stages.push_back(std::move(stage));
-    }
-    const std::scoped_lock lock(mutex_);
-    work_[viewer] = std::move(work);
-    ++news_;
-    changed_.notify_all();
-}
-
-DetailStatus DetailReader::Parts::status() {
-    DetailStatus status;
-    status.bytes = blocks_.bytes();
-    const std::scoped_lock lock(mutex_);
-    for (const auto& [viewer, work] : work_) {
-        const std::size_t first = work->complete() ? work->stages.size() - 1 : work->stage;
-        for (std::size_t i = first; i < work->stages.size(); ++i) {
-            const Work::Stage& stage = work->stages[i];
-            status.wanted += stage.pieces.size();
-            status.missing += stage.pieces.size() - stage.count(Piece::State::there);
-            status.coming += stage.count(Piece::State::reading);
-            status.failed += stage.count(Piece::State::failed);
-        }
-    }
-    if (status.failed > 0) status.problem = problem_;
-    return status;
-}
-
-/// The next piece that a thread of the store reads: stage by stage.
-Turn DetailReader::Parts::next() {
-    const std::scoped_lock lock(mutex_);
-    const Clock::time_point now = Clock::now();
-    for (const auto& [viewer, work] : work_) {
-        if (!work->looked || work->complete() || work->read.size() >= most_read) continue;
-        Work::Stage& stage = work->stages[work->stage];
-        for (Piece& piece : stage.pieces) {
-            const bool again = piece.state == Piece::State::failed && piece.again <= now &&
-                               work->stage + 1 == work->stages.size();
-            if (piece.state != Piece::State::waiting && !again) continue;
-            Turn turn;
-            turn.job = [this, work, &stage, &piece](const std::stop_token& stop) {
-                read(*work, stage, piece, stop);
-            };
-            piece.state = Piece::State::reading;
-            return turn;
-        }
-    }
-    return {};
-}
-
-void DetailReader::Parts::run(const std::stop_token& stop) {
-    std::unique_lock lock(mutex_);
-    while (!stop.stop_requested()) {
-        const std::uint64_t known = news_;
-        if (step(lock, stop)) continue;
-        const bool has_new =
-            std::ranges::any_of(work_, [](const auto& each) { return each.second->has_new; });
-        changed_.wait_for(lock, stop, has_new ? look_again : idle, [&] { return news_ != known; });
-    }
-}
-
-/// Needs the lock. Does one thing that waits for no read: copies a piece that was read, publishes,
-/// makes the base of a stage, or takes a piece of the last stage that is kept.
-bool DetailReader::Parts::step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
-    const auto unlocked = [&](const auto& what) {
-        lock.unlock();
-        bool done = false;
-        try {
-            what();
-            done = true;
-        } catch (const std::exception&) {  // no memory: what is shown stays
-        }
-        lock.lock();
-        return done;
-    };
-    for (const auto& [viewer, held] : work_) {
-        const std::shared_ptr<Work> work = held;
-        if (!work->read.empty()) {
-            const auto [stage, piece] = work->read.back();
-            work->read.pop_back();
-            if (unlocked([&] { put(*work, *stage, *piece); })) {
-                piece->state = Piece::State::there;
-                work->has_new = work->has_new || stage == &work->last();
-            } else {
-                fail(*piece, "there is too little memory");
-            }
-            if (work->read.size() + 1 == most_read) reading_.wake();
-            return true;
-        }
-        const bool waited = Clock::now() - work->published >= work->interval;
-        if (work->has_new && (work->complete() || waited)) {
-            work->has_new = false;
-            unlocked([&] { publish(*work); });
-            work->published = Clock::now();
-            return true;
-        }
-        if (work->has_base()) {
-            unlocked([&] { make_base(*work); });
-            ++work->stage;
-            work->has_new = true;
-            reading_.wake();
-            return true;
-        }
-        if (work->looked) continue;
-        if (Piece* const piece = kept_piece(*work)) {
-            piece->state = Piece::State::reading;
-            unlocked([&] { read(*work, work->last(), *piece, stop); });
-            return true;
-        }
-        work->looked = true;
-        reading_.wake();
-    }
-    return false;
-}
-
-/// Needs the lock.
-Piece* DetailReader::Parts::kept_piece(Work& work) const {
-    for (Piece& piece : work.last().pieces) {
-        if (piece.state != Piece::State::waiting) continue;
-        if (blocks_.has_all(work.last().of.level, piece.box)) return &piece;
-    }
-    return nullptr;
-}
-
-void DetailReader::Parts::read(Work& work, Work::Stage& stage, Piece& piece,
-                               const std::stop_token& stop) {
-    const SampleType type = store_->info().type;
-    std::vector<std::byte> samples;
-    std::string problem;
-    try {
-        samples.resize(count_of(piece.box) * palpate::size_of(type));
-        blocks_.read(stage.of.level, piece.box, samples, stop);
-        make_finite(type, samples, overview_.minimum());
-    } catch (const Cancelled&) {
-        return;  // the reader ends
-    } catch (const std::exception& e) {
-        problem = e.what();
-    }
-    const std::scoped_lock lock(mutex_);
-    if (problem.empty()) {
-        work.read.emplace_back(&stage, &piece);
-        piece.samples = std::move(samples);
-        piece.state = Piece::State::read;
-    } else {
-        fail(piece, problem);
-    }
-    ++news_;
-    changed_.notify_all();
-}
-
-/// Needs the lock.
-void DetailReader::Parts::fail(Piece& piece, const std::string& problem) {
-    piece.state = Piece::State::failed;
-    piece.again = Clock::now() + pause_after_failure;
-    problem_ = problem;
-}
-
-/// Of a piece that was read.
-void DetailReader::Parts::put(Work& work, Work::Stage& stage, Piece& piece) const {
-    const auto samples = std::move(piece.samples);
-    const std::size_t each = palpate::size_of(store_->info().type);
-    stage.samples.resize(count_of(stage.of.box) * each);
-    copy_box(piece.box, samples.data(), stage.of.box, stage.samples.data(), each);
-    piece.copied = true;
-    if (&stage == &work.last()) work.changed = united(work.changed, piece.box);
-}
-
-/// What is missing of the last stage is made of the coarse one.
-void DetailReader::Parts::make_base(Work& work) const {
-    Work::Stage& stage = work.stages[work.stage];
-    fill(work, stage);
-    work.base = volume_of(geometry_of(grid_of(*store_, stage.of), stage.of.box),
-                          store_->info().type, std::move(stage.samples));
-    for (Piece& piece : work.last().pieces) {
-        piece.based = false;
-        if (!piece.copied) work.changed = united(work.changed, piece.box);
-    }
-}
-/// What is missing of a stage is interpolated from the base, which is coarser. Returns how many
-/// pieces are missing.
-std::size_t DetailReader::Parts::fill(const Work& work, Work::Stage& stage) const {
-    const Geometry grid = geometry_of(grid_of(*store_, stage.of), stage.of.box);
-    const Index3 low = stage.of.box.low;
-    stage.samples.resize(count_of(stage.of.box) * palpate::size_of(store_->info().type));
-    std::size_t missing = 0;
-    for (Piece& piece : stage.pieces) {
-        missing += !piece.copied;
-        if (piece.copied || piece.based) continue;
-        interpolate_into(work.base ? *work.base : overview_, grid,
-                         {piece.box.low - low, piece.box.high - low}, stage.samples.data());
-        piece.based = true;
-    }
-    return missing;
-}
-
-void DetailReader::Parts::publish(Work& work) {
-    if (work.done) return;
-    Work::Stage& last = work.last();
-    const std::size_t missing = fill(work, last);
-    const Index3 low = last.of.box.low;
-    SampleBox changed;
-    if (!work.changed.empty()) changed = {work.changed.low - low, work.changed.high - low};
-    work.changed = {};
-    work.done = missing == 0;  // nothing is added to it
-    std::vector<std::byte> samples = work.done ? std::move(last.samples) : last.samples;
-    made_(work.viewer, {last.of,
-                        volume_of(geometry_of(grid_of(*store_, last.of), last.of.box),
-                                  store_->info().type, std::move(samples)),
-                        last.pieces.size(), missing, changed});
-}
 
 DetailReader::DetailReader(std::shared_ptr<const Store> store, Volume overview,
                            DetailSettings settings, Made made)

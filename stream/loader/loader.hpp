@@ -11,7 +11,7 @@
 #include <mutex>
 
 #include "palpate/stream/loader.hpp"
-#include "stream/loader/small_threads.hpp"
+#include "stream/small_threads.hpp"
 
 namespace palpate::stream {
 
@@ -28,6 +28,26 @@ struct Turn {
     int for_eyes = 6;  ///< most pieces that may be read for eyes at the same time, says a hand
 };
 
+/// A place among the readers of a store: its threads do the jobs that `next` gives. `urgent`: only
+/// what a hand needs at once.
+class Reading {
+  public:
+    /// Throws std::system_error if the system gives no threads.
+    Reading(Loader& loader, For whom, std::function<Turn(bool urgent)> next);
+    /// Stops the jobs and waits for their end.
+    ~Reading();
+    Reading(const Reading&) = delete;
+    Reading& operator=(const Reading&) = delete;
+
+  private:
+    friend class Loader;
+    Loader& loader_;
+    const For whom_;
+    const std::function<Turn(bool urgent)> next_;
+    std::stop_source stop_;
+    int running_ = 0;  // with the loader's mutex
+};
+
 /// Threads do first what a hand needs at once, then what eyes need, as far as the hand allows, then
 /// what else hands need. They run while there are readers. Any thread may call any function.
 class Loader {
@@ -40,15 +60,6 @@ class Loader {
   private:
     friend class Blocks;
     friend class Reading;
-    using Clock = std::chrono::steady_clock;
-    using Lock = std::unique_lock<std::mutex>;
-    struct Reader {
-        For whom;
-        std::function<Turn(bool urgent)> next;
-        std::stop_source stop = {};
-        int running = 0;
-        bool has_left = false;
-    };
     using Key = std::array<int, 4>;  // level and place
     using Bytes = std::shared_ptr<const std::vector<std::byte>>;
     struct Kept {
@@ -57,10 +68,11 @@ class Loader {
         std::uint64_t size;
         Blocks* owner;
     };
+    using Lock = std::unique_lock<std::mutex>;
 
     void run(const std::stop_token& stop);
-    bool work(Lock& lock, std::chrono::milliseconds& pause);
-    Turn turn_of(Reader& reader, bool urgent, Lock& lock);
+    bool work(Lock& lock, Turn& all);
+    bool work_for(For whom, bool urgent, Lock& lock, Turn& all);
 
     std::mutex pieces_mutex_;  // also for ages_ and bytes_ of each reader's Blocks
     std::map<Key, Kept> kept_;
@@ -68,30 +80,11 @@ class Loader {
     const int count_;
     std::mutex entering_;  // one reader at a time enters or leaves
     std::mutex mutex_;
-    std::condition_variable_any changed_, left_;
-    std::vector<std::shared_ptr<Reader>> readers_;
-    std::uint64_t changes_ = 0;                   // that may have made a job
-    Clock::time_point due_ = Clock::time_point::max();  // when a thread looks without a change
-    int for_eyes_ = 0;                            // threads that work for eyes
+    std::condition_variable_any changed_, ended_;
+    std::vector<Reading*> readers_;
+    std::uint64_t changes_ = 0;  // that may have made a job
+    int for_eyes_ = 0;           // threads that work for eyes
     std::unique_ptr<SmallThreads> threads_;
-};
-
-/// A place among the readers of a store: its threads do the jobs that `next` gives. With `urgent`,
-/// a hand gives only what it needs at once.
-class Reading {
-  public:
-    /// Throws std::system_error if the system gives no threads.
-    Reading(std::shared_ptr<Loader> loader, For whom, std::function<Turn(bool urgent)> next);
-    /// Stops the jobs and waits for their end.
-    ~Reading();
-    Reading(const Reading&) = delete;
-    Reading& operator=(const Reading&) = delete;
-
-    void wake() const { loader_->wake(); }
-
-  private:
-    const std::shared_ptr<Loader> loader_;
-    const std::shared_ptr<Loader::Reader> reader_;
 };
 
 }  // namespace palpate::stream

@@ -8,6 +8,7 @@
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/stream/loader.hpp"
+#include "stream/at_once.hpp"
 #include "stream/box_bytes.hpp"
 #include "stream/loader/brick_loader.hpp"
 #include "stream/loader/upsample.hpp"
@@ -23,20 +24,30 @@ constexpr int threads = 32;
 constexpr std::int64_t most_rows = 4096;
 constexpr std::int64_t most_pieces = 512;
 
-Volume volume_from(const Geometry& geometry, SampleType type, std::vector<std::byte> bytes) {
+Volume finite_volume(const Geometry& geometry, SampleType type, std::vector<std::byte> bytes) {
     const float least = finite_samples(type, bytes).least;
     make_finite(type, bytes, std::isfinite(least) ? least : 0);
-    const auto held = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
-    return {geometry, type, std::shared_ptr<const void>(held, held->data()), held->size()};
+    return volume_from(geometry, type, std::move(bytes));
 }
 
-Volume whole_level(const Store& store, int level, std::stop_token stop,
+/// By several threads, piece by piece, each of which says what part is made.
+Volume whole_level(const Store& store, int level, const std::stop_token& stop,
                    const std::function<void(double)>& made = {}) {
-    const Geometry& geometry = store.info().levels[static_cast<std::size_t>(level)].geometry;
-    const SampleType type = store.info().type;
-    std::vector<std::byte> bytes(static_cast<std::size_t>(sample_count(geometry)) * size_of(type));
-    read_by_pieces(store, level, whole_box(geometry), bytes, threads, stop, made);
-    return volume_from(geometry, type, std::move(bytes));
+    const StoreInfo& info = store.info();
+    const auto& [geometry, chunk] = info.levels[static_cast<std::size_t>(level)];
+    const SampleBox box = whole_box(geometry);
+    std::vector<SampleBox> pieces;
+    for_each_piece(chunk, box,
+                   [&](const Index3&, const SampleBox& piece) { pieces.push_back(piece); });
+    std::vector<std::byte> all(bytes_of(box, info.type));
+    std::atomic<std::size_t> done{0};
+    for_all_at_once(pieces.size(), threads, stop, [&](std::size_t i, const auto& until) {
+        std::vector<std::byte> bytes(bytes_of(pieces[i], info.type));
+        store.read(level, pieces[i], bytes, until);
+        copy_box(pieces[i], bytes.data(), box, all.data(), size_of(info.type));
+        if (made) made(static_cast<double>(++done) / static_cast<double>(pieces.size()));
+    });
+    return finite_volume(geometry, info.type, std::move(all));
 }
 
 /// Every n-th sample along each axis of the coarsest level.
@@ -62,7 +73,7 @@ Volume thinned_level(const Store& store, std::int64_t samples, std::stop_token s
     const auto rows =
         static_cast<std::size_t>(geometry.size[1]) * static_cast<std::size_t>(geometry.size[2]);
     const auto along = static_cast<std::size_t>(geometry.size[0]);
-    for_all_at_once(rows, threads, [&](std::size_t r) {
+    for_all_at_once(rows, threads, stop, [&](std::size_t r, const auto& until) {
         const auto j = static_cast<int>(r % static_cast<std::size_t>(geometry.size[1]));
         const auto k = static_cast<int>(r / static_cast<std::size_t>(geometry.size[1]));
         const Index3 low(0, j * step, k * step);
@@ -70,18 +81,18 @@ Volume thinned_level(const Store& store, std::int64_t samples, std::stop_token s
         std::vector<std::byte> row;
         if (by_row) {
             row.resize(static_cast<std::size_t>(grid.geometry.size[0]) * each);
-            store.read(level, {low, low + Index3(grid.geometry.size[0] - 1, 0, 0)}, row, stop);
+            store.read(level, {low, low + Index3(grid.geometry.size[0] - 1, 0, 0)}, row, until);
         }
         for (int i = 0; i < geometry.size[0]; ++i, out += each) {
             const Index3 at = low + Index3(i * step, 0, 0);
             if (by_row) {
                 std::memcpy(out, row.data() + static_cast<std::size_t>(at[0]) * each, each);
             } else {
-                store.read(level, {at, at}, {out, each}, stop);
+                store.read(level, {at, at}, {out, each}, until);
             }
         }
     });
-    return volume_from(geometry, info.type, std::move(bytes));
+    return finite_volume(geometry, info.type, std::move(bytes));
 }
 
 }  // namespace

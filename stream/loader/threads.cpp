@@ -9,34 +9,29 @@ std::shared_ptr<Loader> shared_loader(int threads) {
     return std::make_shared<Loader>(threads);
 }
 
-Reading::Reading(std::shared_ptr<Loader> loader, For whom, std::function<Turn(bool urgent)> next)
-    : loader_(std::move(loader)),
-      reader_(std::make_shared<Loader::Reader>(Loader::Reader{whom, std::move(next)})) {
-    const std::scoped_lock entering(loader_->entering_);
-    if (!loader_->threads_) {
-        auto threads = std::make_unique<SmallThreads>();
-        for (int i = 0; i < loader_->count_; ++i) {
-            threads->start([of = loader_.get()](const std::stop_token& stop) { of->run(stop); });
-        }
-        loader_->threads_ = std::move(threads);
+Reading::Reading(Loader& loader, For whom, std::function<Turn(bool urgent)> next)
+    : loader_(loader), whom_(whom), next_(std::move(next)) {
+    const std::scoped_lock entering(loader_.entering_);
+    if (!loader_.threads_) {
+        loader_.threads_ = std::make_unique<SmallThreads>(
+            loader_.count_, [&loader](const std::stop_token& stop) { loader.run(stop); });
     }
     {
-        const std::scoped_lock lock(loader_->mutex_);
-        loader_->readers_.push_back(reader_);
+        const std::scoped_lock lock(loader_.mutex_);
+        loader_.readers_.push_back(this);
     }
-    wake();
+    loader_.wake();
 }
 
 Reading::~Reading() {
-    const std::scoped_lock entering(loader_->entering_);
-    reader_->stop.request_stop();
-    std::unique_lock lock(loader_->mutex_);
-    reader_->has_left = true;
-    std::erase(loader_->readers_, reader_);
-    loader_->left_.wait(lock, [&] { return reader_->running == 0; });
-    const bool is_last = loader_->readers_.empty();
+    const std::scoped_lock entering(loader_.entering_);
+    stop_.request_stop();
+    std::unique_lock lock(loader_.mutex_);
+    std::erase(loader_.readers_, this);
+    loader_.ended_.wait(lock, [&] { return running_ == 0; });
+    const bool is_last = loader_.readers_.empty();
     lock.unlock();
-    if (is_last) loader_->threads_.reset();
+    if (is_last) loader_.threads_.reset();
 }
 
 void Loader::wake() {
@@ -49,67 +44,53 @@ void Loader::run(const std::stop_token& stop) {
     Lock lock(mutex_);
     while (!stop.stop_requested()) {
         const std::uint64_t seen = changes_;
-        std::chrono::milliseconds pause = Turn{}.pause;
-        if (work(lock, pause)) continue;
-        const auto changed = [&] { return changes_ != seen; };
-        // One thread looks at the clock for all.
-        const Clock::time_point until = Clock::now() + pause;
-        if (due_ <= until) {
-            changed_.wait(lock, stop, [&] { return changed() || due_ == due_.max(); });
-            continue;
-        }
-        due_ = until;
-        changed_.wait_until(lock, stop, until, changed);
-        if (due_ == until) due_ = due_.max();
+        Turn all{.for_eyes = std::clamp(count_ / 2, 1, Turn{}.for_eyes)};
+        if (work(lock, all)) continue;
+        changed_.wait_for(lock, stop, all.pause, [&] { return changes_ != seen; });
     }
 }
 
 /// Does one job, if there is one.
-bool Loader::work(Lock& lock, std::chrono::milliseconds& pause) {
-    const auto readers = readers_;
-    const auto do_one = [&](For whom, bool urgent, int& for_eyes) {
-        for (const auto& reader : readers) {
-            if (reader->whom != whom) continue;
-            const Turn turn = turn_of(*reader, urgent, lock);
-            if (turn.job) return true;
-            pause = std::min(pause, turn.pause);
-            for_eyes = std::min(for_eyes, turn.for_eyes);
-        }
-        return false;
-    };
-    const auto is_of_eyes = [](const auto& reader) { return reader->whom == For::eyes; };
-    int most = std::clamp(count_ / 2, 1, Turn{}.for_eyes), ignored = 0;
-    if (for_eyes_ < most && std::ranges::any_of(readers, is_of_eyes)) {
-        if (do_one(For::hands, true, most)) return true;
-        if (for_eyes_ < most) {
+bool Loader::work(Lock& lock, Turn& all) {
+    const bool has_eyes = std::ranges::count(readers_, For::eyes, &Reading::whom_) > 0;
+    if (has_eyes && for_eyes_ < all.for_eyes) {
+        if (work_for(For::hands, true, lock, all)) return true;
+        if (for_eyes_ < all.for_eyes) {
             ++for_eyes_;
-            const bool done = do_one(For::eyes, false, ignored);
+            const bool done = work_for(For::eyes, false, lock, all);
             --for_eyes_;
             if (done) return true;
         }
     }
-    return do_one(For::hands, false, ignored);
+    return work_for(For::hands, false, lock, all);
 }
 
-/// Asks a reader and does its job.
-Turn Loader::turn_of(Reader& reader, bool urgent, Lock& lock) {
-    if (reader.has_left) return {};
-    ++reader.running;
-    lock.unlock();
-    Turn turn;
-    try {
-        turn = reader.next(urgent);
-        if (turn.job) {
-            changed_.notify_one();
-            turn.job(reader.stop.get_token());
+/// Asks readers until one has a job, and does it. Of those without, `all` gets the least numbers.
+bool Loader::work_for(For whom, bool urgent, Lock& lock, Turn& all) {
+    const auto readers = readers_;
+    for (Reading* const reader : readers) {
+        // It may have left, and be no more, while the lock was not held.
+        if (std::ranges::count(readers_, reader) == 0 || reader->whom_ != whom) continue;
+        ++reader->running_;
+        lock.unlock();
+        Turn turn;
+        try {
+            turn = reader->next_(urgent);
+            if (turn.job) {
+                changed_.notify_one();
+                turn.job(reader->stop_.get_token());
+            }
+        } catch (const std::exception&) {  // no memory: tried again in a moment
+            turn.job = {};
         }
-    } catch (const std::exception&) {  // no memory: tried again in a moment
-        turn.job = {};
+        lock.lock();
+        --reader->running_;
+        ended_.notify_all();
+        if (turn.job) return true;
+        all.pause = std::min(all.pause, turn.pause);
+        all.for_eyes = std::min(all.for_eyes, turn.for_eyes);
     }
-    lock.lock();
-    --reader.running;
-    if (reader.has_left) left_.notify_all();
-    return turn;
+    return false;
 }
 
 }  // namespace palpate::stream

@@ -294,6 +294,8 @@ class HttpClient::Worker {
         curl_easy_setopt(easy, CURLOPT_FOLLOWLOCATION, 1L);
         curl_easy_setopt(easy, CURLOPT_MAXREDIRS, 5L);
         curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
+        // Looking up a name cannot be stopped: its thread is left alone, not waited for.
+        curl_easy_setopt(easy, CURLOPT_QUICK_EXIT, 1L);
         curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, static_cast<long>(CURL_HTTP_VERSION_2TLS));
         // Only HTTP/2, which comes with TLS, takes several requests over one connection: waiting
         // for the first answer to see whether it does would cost plain HTTP a round trip.

@@ -3,21 +3,21 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <cstring>
-#include <exception>
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "io/path_json.hpp"
 #include "io/system/growing_folder.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/stream/growing_image.hpp"
+#include "stream/at_once.hpp"
+#include "stream/box_bytes.hpp"
 #include "stream/formats/content.hpp"
 #include "stream/formats/edited_store.hpp"
+#include "stream/while_telling.hpp"
 #include "stream/writer/zarr_writer.hpp"
 
 namespace palpate::stream {
@@ -25,61 +25,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Calls work(i, stop) for i from 0 to below `count`, on several threads, and `tell` with how many
-/// are done, on this one. The first exception, of either, stops all and is thrown.
-template <class Work, class Tell>
-void in_parallel(std::int64_t count, int threads, Work&& work, Tell&& tell) {
-    std::atomic<std::int64_t> next = 0, done = 0;
-    std::mutex mutex;
-    std::condition_variable changed;
-    std::exception_ptr failure;
-    int running = threads;
-    {
-        std::stop_source stop;
-        std::vector<std::jthread> team;
-        const auto one = [&] {
-            try {
-                for (std::int64_t i = next++; i < count && !stop.stop_requested(); i = next++) {
-                    work(i, stop.get_token());
-                    ++done;
-                }
-            } catch (const Cancelled&) {
-            } catch (...) {
-                const std::lock_guard lock(mutex);
-                if (!failure) failure = std::current_exception();
-                stop.request_stop();
-            }
-            const std::lock_guard lock(mutex);
-            --running;
-            changed.notify_one();
-        };
-        for (int t = 0; t < threads; ++t) team.emplace_back(one);
-        constexpr auto between = std::chrono::milliseconds(50);
-        std::unique_lock lock(mutex);
-        while (!changed.wait_for(lock, between, [&] { return running == 0; })) {
-            lock.unlock();
-            try {
-                tell(done.load());
-            } catch (...) {
-                stop.request_stop();
-                lock.lock();
-                failure = std::current_exception();
-                lock.unlock();
-            }
-            lock.lock();
-            if (stop.stop_requested()) changed.wait(lock, [&] { return running == 0; });
-        }
-    }
-    if (failure) std::rethrow_exception(failure);
-}
-
 /// All that decides what is written: a run is continued by one of the same job only. The content
 /// covers the source and everything that says how it is read (raw layout, spacing, series,
 /// filters).
-nlohmann::json job_of(const Store& from, int level, const ConvertOptions& options) {
+nlohmann::json job_of(const Store& from, int level, const ConvertOptions& options,
+                      const std::stop_token& stop) {
     nlohmann::json job = {{"version", 1},  // of what is computed and how it is written
                           {"source", io::json_of_path(io::address_to_keep(from.info().address))},
-                          {"content", content_of(from, level)},
+                          {"content", content_of(from, level, stop)},
                           {"level", level},
                           {"zarr", options.zarr_version},
                           {"chunk", options.chunk},
@@ -134,13 +87,14 @@ class Conversion {
     Converted run() {
         partial_.check();  // that the image holds the same folder
         image_.write_metadata({});
-        std::int64_t before = 0;
         for (int l = 0; l < image_.levels(); ++l) {
-            in_parallel(
-                chunks(l), options_.threads,
-                [&](std::int64_t i, const std::stop_token& stop) { convert(l, i, stop); },
-                [&](std::int64_t done) { tell(before + done); });
-            before += chunks(l);
+            while_telling([&] { tell(done_); },
+                          [&](const std::stop_token& stop) {
+                              for_all_at_once(static_cast<std::size_t>(chunks(l)), options_.threads,
+                                              stop, [&](std::size_t i, const auto& until) {
+                                                  convert(l, std::int64_t(i), until);
+                                              });
+                          });
         }
         tell(total_);
         if (image_.stored_chunks() + empty_ != static_cast<std::uint64_t>(total_)) {
@@ -175,12 +129,11 @@ class Conversion {
             if (!image_.write(level, chunk, *samples)) ++empty_;
         }
         if (level == 0) seen_.take(from_.info().type, *samples);
+        ++done_;
     }
 
     Bytes read(const SampleBox& box, const std::stop_token& stop) const {
-        const Index3 size = box.high - box.low + Index3::Ones();
-        Bytes samples(static_cast<std::size_t>(size.cast<std::int64_t>().prod()) *
-                      size_of(from_.info().type));
+        Bytes samples(bytes_of(box, from_.info().type));
         from_.read(level_, box, samples, stop);
         return samples;
     }
@@ -192,6 +145,7 @@ class Conversion {
     GrowingImage image_;
     SeenRange seen_;
     std::int64_t total_ = 0;
+    std::atomic<std::int64_t> done_ = 0;
     std::atomic<std::uint64_t> kept_ = 0, empty_ = 0;
 };
 
@@ -208,9 +162,14 @@ Converted convert_to_zarr(const Store& from, int level, const fs::path& out,
         throw std::invalid_argument("there are 1 to 256 threads");
     }
     check_zarr_place(out);
-    io::GrowingFolder folder =
-        options.resumable ? io::GrowingFolder::resumable(out, job_of(from, level, options).dump(1))
-                          : io::GrowingFolder::alone(out);
+    std::function<void()> tell;
+    if (options.progress) tell = [&] { options.progress(0); };
+    const auto job = [&](const std::stop_token& stop) {
+        return job_of(from, level, options, stop).dump(1);
+    };
+    io::GrowingFolder folder = options.resumable
+                                   ? io::GrowingFolder::resumable(out, while_telling(tell, job))
+                                   : io::GrowingFolder::alone(out);
     Converted converted = Conversion(from, level, options, folder).run();
     folder.put_in_place();
     converted.note = folder.note();

@@ -1,6 +1,7 @@
 // Saves the edits of a store. See palpate/stream/edits.hpp.
 #include "palpate/stream/edits.hpp"
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -12,6 +13,7 @@
 #include "stream/formats/content.hpp"
 #include "stream/formats/edited_store.hpp"
 #include "stream/formats/stores.hpp"
+#include "stream/while_telling.hpp"
 #include "stream/writer/zarr_writer.hpp"
 
 namespace palpate::stream {
@@ -51,7 +53,7 @@ SampleBox coarser_box(const SampleBox& box, const CoarserGrid& coarser) {
 class Saving {
   public:
     Saving(const Store& from, int level, const Samples& edits, fs::path folder, EditsNote note,
-           const io::Progress& progress)
+           std::atomic<double>& made, std::stop_token stop)
         : from_(from),
           level_(level),
           edits_(edits),
@@ -59,7 +61,8 @@ class Saving {
           note_(std::move(note)),
           writer_(folder_, from.info().type, levels_from(from.info(), level),
                   {.chunk = EditsNote::chunk, .progress = {}}),
-          progress_(progress) {}
+          made_(made),
+          stop_(std::move(stop)) {}
 
     EditsNote run() {
         writer_.write_metadata(Range{edits_.minimum(), edits_.maximum()});
@@ -96,7 +99,7 @@ class Saving {
         for (const auto& [chunk, boxes] : parts) {
             const SampleBox box = chunk_box(chunk, grid);
             Bytes samples(bytes_of(box, type()));
-            from_.read(level_ + static_cast<int>(level), box, samples, {});
+            from_.read(level_ + static_cast<int>(level), box, samples, stop_);
             for (const SampleBox& part : boxes) {
                 const Bytes now = level == 0 ? edited(part) : means(level, part);
                 copy_box(part, now.data(), box, samples.data(), size_of(type()));
@@ -109,7 +112,7 @@ class Saving {
             writer_.write_chunk(static_cast<int>(level), at, whole);
             note_.chunks[level].insert(chunk);
             ++done;
-            if (progress_ && level == 0) progress_(double(done) / double(parts.size()));
+            if (level == 0) made_ = double(done) / double(parts.size());
         }
     }
 
@@ -134,11 +137,11 @@ class Saving {
         const SampleBox wanted = finer_box(box, grid.factor, finer);
         Bytes below(bytes_of(wanted, type()));
         const int fine = static_cast<int>(level) - 1;
-        from_.read(level_ + fine, wanted, below, {});
+        from_.read(level_ + fine, wanted, below, stop_);
         for_each_chunk(wanted, [&](const auto& chunk, const SampleBox& part) {
             if (!note_.chunks[level - 1].contains(chunk)) return;
             Bytes now(bytes_of(part, type()));
-            written_->read(fine, part, now, {});
+            written_->read(fine, part, now, stop_);
             copy_box(part, now.data(), wanted, below.data(), size_of(type()));
         });
         Bytes samples(bytes_of(box, type()));
@@ -155,13 +158,15 @@ class Saving {
     EditsNote note_;
     ZarrWriter writer_;
     std::shared_ptr<const Store> written_;
-    const io::Progress& progress_;
+    std::atomic<double>& made_;  // of the finest level
+    const std::stop_token stop_;
 };
 
 /// Of the original, which must be the one that was opened.
-std::string checked_content(const Store& from, const Opened& opened, int level) {
+std::string checked_content(const Store& from, const Opened& opened, int level,
+                            const std::stop_token& stop) {
     if (opened.is_rescue && !opened.content.empty()) return opened.content;
-    std::string content = content_below_edits(from, level);
+    std::string content = content_below_edits(from, level, stop);
     if (opened.content.empty() || content == opened.content) return content;
     throw io::OutputError(opened.address +
                           ": was replaced since it was opened, so that these edits do not fit it; "
@@ -169,11 +174,12 @@ std::string checked_content(const Store& from, const Opened& opened, int level) 
 }
 
 /// What the note says before anything is written: with what the store has of edits itself.
-EditsNote note_for(const Store& from, const Opened& opened, int level, const Samples& edits) {
+EditsNote note_for(const Store& from, const Opened& opened, int level, const Samples& edits,
+                   const std::stop_token& stop) {
     const auto* edited = dynamic_cast<const EditedStore*>(&from);
     EditsNote note{opened, level, {edits.minimum(), edits.maximum()}, {}, {}};
     note.chunks.resize(from.info().levels.size() - static_cast<std::size_t>(level));
-    note.content = checked_content(from, opened, level);
+    note.content = checked_content(from, opened, level, stop);
     if (!edited) return note;
     const EditsNote& before = edited->note();
     note.of = before.of;
@@ -232,9 +238,15 @@ void save_edits(const Store& from, const Opened& opened, int level, const Sample
     }
     check_edits_place(out, opened);
     io::GrowingFolder folder = io::GrowingFolder::alone(out);
-    Saving saving(from, level, edits, folder.result(), note_for(from, opened, level, edits),
-                  progress);
-    write_note(folder.result(), out, saving.run());
+    std::atomic<double> made{0};
+    const auto tell = [&] { progress(made); };
+    const auto save = [&](const std::stop_token& stop) {
+        Saving saving(from, level, edits, folder.result(),
+                      note_for(from, opened, level, edits, stop), made, stop);
+        write_note(folder.result(), out, saving.run());
+    };
+    while_telling(progress ? tell : std::function<void()>(), save);
+    if (progress) tell();
     folder.put_in_place(check_replaceable);
 }
 

@@ -1,12 +1,14 @@
 // Writes a level of a store as one file. See convert.hpp.
 #include <algorithm>
+#include <atomic>
 #include <charconv>
-#include <memory>
 
 #include "palpate/io/output.hpp"
 #include "palpate/io/written_formats.hpp"
 #include "palpate/stream/convert.hpp"
+#include "stream/box_bytes.hpp"
 #include "stream/objects/objects.hpp"
+#include "stream/while_telling.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -44,8 +46,8 @@ int slab_of(const Level& level, SampleType type) {
     return std::clamp(static_cast<int>(most / row), 1, std::max(1, level.chunk[2]));
 }
 
-void write_slabs(const Store& from, int level, io::PendingFile& file,
-                 const io::Progress& progress) {
+void write_slabs(const Store& from, int level, io::PendingFile& file, std::atomic<double>& made,
+                 const std::stop_token& stop) {
     const Level& grid = from.info().levels.at(static_cast<std::size_t>(level));
     const Index3& size = grid.geometry.size;
     const int slab = slab_of(grid, from.info().type);
@@ -53,11 +55,10 @@ void write_slabs(const Store& from, int level, io::PendingFile& file,
     for (int z = 0; z < size[2]; z += slab) {
         const SampleBox box{Index3(0, 0, z),
                             Index3(size[0] - 1, size[1] - 1, std::min(z + slab, size[2]) - 1)};
-        samples.resize(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
-                       static_cast<std::size_t>(box.high[2] - z + 1) * size_of(from.info().type));
-        from.read(level, box, samples, {});
+        samples.resize(bytes_of(box, from.info().type));
+        from.read(level, box, samples, stop);
         file.write({reinterpret_cast<const char*>(samples.data()), samples.size()});
-        if (progress) progress(static_cast<double>(box.high[2] + 1) / size[2]);
+        made = static_cast<double>(box.high[2] + 1) / size[2];
     }
 }
 
@@ -70,19 +71,23 @@ void write_plain(const Store& from, int level, const std::filesystem::path& out,
     if (!problem.empty()) throw io::OutputError(problem);
     const std::string_view extension = io::written_extension_of(out);
     const bool raw = extension == ".raw";
+    std::atomic<double> made{0};
+    std::function<void()> tell;
+    if (options.progress) tell = [&] { options.progress(made); };
     if (raw || (extension == ".nrrd" && !options.compress)) {
         io::PendingFile file(out);
         if (!raw) file.write(nrrd_head(grid, from.info().type));
-        write_slabs(from, level, file, options.progress);
+        while_telling(
+            tell, [&](const std::stop_token& stop) { write_slabs(from, level, file, made, stop); });
+        if (tell) tell();
         file.commit();
         return;
     }
-    const auto bytes = static_cast<std::size_t>(sample_count(grid)) * size_of(from.info().type);
-    const auto samples = std::make_shared<Bytes>(bytes);
-    from.read(level, whole_box(grid), *samples, {});
-    io::write_volume(Volume(grid, from.info().type,
-                            std::shared_ptr<const void>(samples, samples->data()), bytes),
-                     out, options);
+    Bytes samples(bytes_of(whole_box(grid), from.info().type));
+    while_telling(tell, [&](const std::stop_token& stop) {
+        from.read(level, whole_box(grid), samples, stop);
+    });
+    io::write_volume(volume_from(grid, from.info().type, std::move(samples)), out, options);
 }
 
 }  // namespace palpate::stream

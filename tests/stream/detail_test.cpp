@@ -382,8 +382,7 @@ struct HandAndEyes {
         std::vector<int> levels_;
     };
 
-    const std::shared_ptr<VolumesStore> store =
-        std::make_shared<VolumesStore>(ramps(), cube(32));
+    const std::shared_ptr<VolumesStore> store = std::make_shared<VolumesStore>(ramps(), cube(32));
     const std::shared_ptr<Loader> shared;
     std::array<std::atomic<bool>, 4> hold{};
     std::array<std::atomic<int>, 4> reads{};

@@ -1,16 +1,46 @@
 // What servers answer, checked before it is used: other parts than were asked for, compressed
 // bodies, pages, endless ones; secrets in addresses; stopping while a store is opened.
+#include <dlfcn.h>
+#include <netdb.h>
+
+#include <atomic>
 #include <fstream>
+#include <thread>
 
 #include "io/volume_support.hpp"
+#include "palpate/stream/convert.hpp"
 #include "palpate/stream/edits.hpp"
 #include "palpate/stream/loader.hpp"
 #include "stream/shards.hpp"
 #include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
 #include "support/allocation_counter.hpp"
+#include "support/eventually.hpp"
 
 namespace palpate::stream::test {
+namespace {
+
+const std::string silent_name = "silent.invalid";
+std::atomic<bool> asked_for_name{false}, answers_for_name{false};
+
+}  // namespace
+
+/// Takes the place of the system's function. Never answers for 20 s.
+extern "C" int getaddrinfo(const char* name, const char* service, const addrinfo* hints,
+                           addrinfo** result) {
+    if (name == nullptr || name != silent_name) {
+        static const auto system =
+            reinterpret_cast<decltype(&::getaddrinfo)>(::dlsym(RTLD_NEXT, "getaddrinfo"));
+        return system(name, service, hints, result);
+    }
+    asked_for_name = true;
+    for (int i = 0; i < 20'000 && !answers_for_name; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    asked_for_name = false;
+    return EAI_FAIL;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,16 +86,19 @@ struct Served {
     }
 };
 
+std::shared_ptr<const Samples> edits_of(const Store& store) {
+    const ReadSamples read = [&](const SampleBox& box, std::span<std::byte> to) {
+        store.read(0, box, to, {});
+    };
+    const auto empty = empty_samples(store, volume_of(store), 0);
+    return edited(empty, edit::Fill{{{1, 1, 1}, {2, 2, 2}}, 5}, read).samples;
+}
+
 /// Edits of the store at an address, in a folder.
 void save_edits_of(const std::string& address, const fs::path& out,
                    const StoreOptions& options = patient_once()) {
     const auto store = open_store(address, options);
-    const ReadSamples read = [&](const SampleBox& box, std::span<std::byte> to) {
-        store->read(0, box, to, {});
-    };
-    const auto empty = empty_samples(*store, volume_of(*store), 0);
-    const auto samples = edited(empty, edit::Fill{{{1, 1, 1}, {2, 2, 2}}, 5}, read).samples;
-    save_edits(*store, {address, options}, 0, *samples, out, {});
+    save_edits(*store, {address, options}, 0, *edits_of(*store), out, {});
 }
 
 /// Thrown to stop what waits.
@@ -191,6 +224,47 @@ TEST(HttpAnswers, opening_a_store_of_a_silent_server_stops_when_asked_to) {
         options.timeout_s = 1e6;  // it would wait for days
         EXPECT_THROW((void)open_store(address, options, tell), Impatient);
     }
+}
+
+TEST(HttpAnswers, writing_from_a_silent_server_stops_when_asked_to) {
+    const Served served;
+    StoreOptions options = patient_once();
+    options.timeout_s = 1e6;  // it would wait for days
+    const std::string address = served.server.address("c.zarr");
+    const auto store = open_store(address, options);
+    const auto samples = edits_of(*store);
+    served.server.stop_answering();
+    const fs::path out = served.folder / "out";
+    int calls = 0;
+    ConvertOptions convert;
+    convert.progress = [&](double) {
+        if (++calls % 3 == 0) throw Impatient{};
+    };
+    io::WriteOptions plain;
+    plain.progress = convert.progress;
+    for (const bool resumable : {true, false}) {
+        convert.resumable = resumable;
+        EXPECT_THROW((void)convert_to_zarr(*store, 0, out, convert), Impatient);
+    }
+    for (const char* name : {"a.raw", "a.nrrd", "a.mha"}) {
+        EXPECT_THROW(write_plain(*store, 0, served.folder / name, plain), Impatient);
+    }
+    EXPECT_THROW(save_edits(*store, {address, options}, 0, *samples, served.folder / "e.zarr",
+                            convert.progress),
+                 Impatient);
+    EXPECT_EQ(calls, 3 * 6);
+}
+
+TEST(HttpAnswers, a_server_of_names_that_never_answers_is_not_waited_for) {
+    int calls = 0;
+    const auto tell = [&](double) {
+        if (asked_for_name && ++calls == 3) throw Impatient{};
+    };
+    EXPECT_THROW((void)open_store("http://" + silent_name + "/c.zarr", patient_once(), tell),
+                 Impatient);
+    EXPECT_TRUE(asked_for_name) << "it still waits, although we do not";
+    answers_for_name = true;
+    EXPECT_TRUE(support::comes_true([] { return !asked_for_name; }));
 }
 
 TEST(HttpAnswers, edits_do_not_keep_the_password_of_their_original_and_say_so) {

@@ -4,8 +4,7 @@
 
 #include "io/volume_support.hpp"
 #include "palpate/io/volume_file.hpp"
-#include "stream/formats/codecs.hpp"
-#include "stream/formats/tiff_codecs.hpp"
+#include "stream/formats/undo_codecs.hpp"
 #include "stream/store_support.hpp"
 #include "stream/written_files.hpp"
 

@@ -17,7 +17,7 @@ namespace palpate::stream {
 class Loader;
 
 /// The threads of one store and the pieces that they have decoded. Its readers for hands and for
-/// eyes share them, so that each piece is fetched once, and first what hands need.
+/// eyes share them, so that each piece is fetched once, those for hands first.
 std::shared_ptr<Loader> shared_loader(int threads);
 
 inline constexpr std::int64_t overview_samples = std::int64_t{1} << 21;
