@@ -256,13 +256,13 @@ PALPATE_API void palpate_renderer_destroy(palpate_renderer *renderer);
  *   `force.texture.wavelength` [mm, physical] From bump to bump (default: 2).
  *   `force.limit` [N] Largest force, in addition to the device's limit (default: 3.3).
  *   `force.rate_limit` [N/s] Largest change of force (default: 2000).
- *   `force.ramp` [s] Ramp of the force from zero at the start (default: 0.25).
+ *   `force.ramp` [s] Duration of the rise of the force from zero at the start (default: 0.25).
  *   `force.stale_after` [s] A longer time between two states of the device is a pause (default: 0.02).
- *   `force.start_below` [N] After a start or pause no force until the wanted one is this small (inf: do
- *       not wait) (default: inf).
- *   `force.rotational_stiffness` [N mm/rad] Of a tool (0: from stiffness and the tool's gyration)
- *       (default: 0).
- *   `force.rotational_damping` [N mm s/rad] Of a tool (default: 0).
+ *   `force.start_below` [N] No force after a start or a pause until the computed one is this small (inf:
+ *       do not wait) (default: inf).
+ *   `force.rotational_stiffness` [N mm/rad] Rotational stiffness of a tool (0: from stiffness and the
+ *       tool's gyration) (default: 0).
+ *   `force.rotational_damping` [N mm s/rad] Rotational damping of a tool (default: 0).
  *   `force.torque_limit` [N mm] Largest torque (default: inf).
  *   `force.torque_rate_limit` [N mm/s] Largest change of torque (default: 200000).
  *   `friction.static_coefficient` Pull along the surface that moves a resting proxy, of that into it (0:

@@ -146,7 +146,8 @@ inline constexpr auto settings_of<ForceSettings> = std::tuple{
         .as_option("--force-rate")
         .if_open("2000; in replay() inf")
         .within(ranges::limit),
-    setting(&ForceSettings::ramp, "ramp", "s", "Duration of the rise of the force from zero at the start")
+    setting(&ForceSettings::ramp, "ramp", "s",
+            "Duration of the rise of the force from zero at the start")
         .titled("force ramp")
         .as_option("--ramp")
         .if_open("0.25; in replay() 0")
@@ -155,8 +156,9 @@ inline constexpr auto settings_of<ForceSettings> = std::tuple{
             "A longer time between two states of the device is a pause")
         .titled("stale time")
         .within(ranges::limit),
-    setting(&ForceSettings::start_below, "start_below", "N",
-            "No force after a start or a pause until the computed one is this small (inf: do not wait)")
+    setting(
+        &ForceSettings::start_below, "start_below", "N",
+        "No force after a start or a pause until the computed one is this small (inf: do not wait)")
         .titled("force to start below")
         .as_option("--start-below")
         .if_open("0.3 in a Run, else inf")

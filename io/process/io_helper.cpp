@@ -27,6 +27,9 @@ void check_readable(const fs::path& path) {
     const std::string name = path.empty() ? "(no name)" : path.string();
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found && name.find("://") != std::string::npos) {
+        throw InputError(name + ": begins with none of http://, https:// and s3://");
+    }
     if (status.type() == fs::file_type::not_found) {
         throw InputError(name + ": does not exist; check the name");
     }

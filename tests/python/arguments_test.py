@@ -84,6 +84,7 @@ def volume():
     (lambda: palpate.Volume([1]), "Volume(): array must be an array, not list"),
     (lambda: palpate.RenderSetup(penetrability="threshold"),
      "RenderSetup.penetrability must be Penetrability or None, not 'threshold'"),
+    (lambda: setattr(palpate.RenderSetup(), "friction", 0.5), "RenderSetup.friction must be Friction or None, not 0.5"),
     (lambda: palpate.Field(3), "Field(): volume must be Volume or samples must be Samples, not 3"),
     (lambda: palpate.Field(volume(), soild="above"),
      "Field(): there is no argument soild (did you mean solid?); there are: volume, solid, background, "

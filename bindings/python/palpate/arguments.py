@@ -199,7 +199,7 @@ def _told_setter(setter, name):
         except TypeError as error:
             if not _MARK.search(str(error)):
                 raise
-        kinds = dict.fromkeys(_expected(one[0].type) for one in _signatures(setter))
+        kinds = dict.fromkeys(_expected(one[-1].type) for one in _signatures(setter))
         raise TypeError(f"{name} must be {' or '.join(kinds)}, not {_given(value)}")
     return change
 
