@@ -135,7 +135,9 @@ bool is_of(const LayerState& state, const Layers* layers) {
            (state.open & ~all) == 0 && state.outer >= 0 && state.outer <= state.inner &&
            state.inner <= state.level_count && state.touched >= -1 && state.touched < count &&
            state.label_opening.allFinite() && state.hip.allFinite() &&
-           std::ranges::all_of(state.opening, [](const Vec3& at) { return at.allFinite(); }) &&
+           // The others are not set.
+           std::all_of(state.opening.begin(), state.opening.begin() + state.inner,
+                       [](const Vec3& at) { return at.allFinite(); }) &&
            std::isfinite(state.spring.stiffness) && std::isfinite(state.spring.rest) &&
            std::isfinite(state.time) && is_of(state.needle, count);
 }
