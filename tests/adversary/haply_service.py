@@ -51,7 +51,7 @@ class Service:
             self.connections += 1
             self.misbehaved = False
             try:
-                connection.settimeout(0.2)
+                connection.settimeout(10)  # a busy machine may take long to ask
                 connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 self.serve(connection)
             except (OSError, Gone, ValueError, struct.error):
@@ -60,6 +60,7 @@ class Service:
 
     def serve(self, connection):
         self.shake_hands(connection)
+        connection.settimeout(0.2)
         self.answer(connection, 0)
         n = 1
         while not self.closing:
