@@ -94,8 +94,9 @@ py::dict follow_tool(const Field& field, const io::Level& level, std::shared_ptr
 
 void bind_tool_paths(py::module_& module) {
     module.def(
-        "follow_tool", &follow_tool, py::arg("field"), py::arg("isovalue"), py::arg("tool"),
-        py::arg("position"), py::arg("orientation_xyzw"), py::arg("method") = "exact",
+        "follow_tool", &follow_tool, py::arg("field"), py::arg("isovalue"),
+        py::arg("tool").none(false), py::arg("position"), py::arg("orientation_xyzw"),
+        py::arg("method") = "exact",
         "An update of a tool for each pose of the hand, position [mm, physical], shape (n, 3), "
         "and\n"
         "orientation_xyzw, (n, 4); the tool starts at the first pose. method: 'exact', or "

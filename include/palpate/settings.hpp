@@ -1,6 +1,6 @@
-// Describes every setting once: its unit, range and purpose. Files, command-line options, live
-// commands, the C interface and the Python module are made from these tables. A setting's default
-// is that of its struct.
+// Describes each number of force, friction, device, transform, needle and session once: its unit,
+// range and purpose. Files, command-line options, live commands, the C interface and the Python
+// module are made from these tables. A setting's default is that of its struct.
 #pragma once
 
 #include <concepts>
@@ -29,6 +29,7 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr double greatest = std::numeric_limits<double>::max();
 inline constexpr ValueRange any{-infinity, infinity, false, "a number"};
 inline constexpr ValueRange not_negative{0, greatest, false, "finite and at least 0"};
+inline constexpr ValueRange at_least_1{1, greatest, false, "finite and at least 1"};
 inline constexpr ValueRange positive{0, greatest, true, "finite and above 0"};
 inline constexpr ValueRange limit{0, infinity, true, "above 0 (inf: none)"};
 inline constexpr ValueRange limit_or_zero{0, infinity, false, "at least 0 (inf: none)"};
@@ -218,8 +219,10 @@ template <>
 inline constexpr auto settings_of<Needle> = std::tuple{
     setting(&Needle::lateral_stiffness, "lateral_stiffness", "N/mm", "Towards the line")
         .within(ranges::not_negative),
-    setting(&Needle::static_ratio, "static_ratio", "", "Friction at rest, of that in motion"),
-    setting(&Needle::stick_speed, "stick_speed", "mm/s", "Slower than this the shaft sticks")};
+    setting(&Needle::static_ratio, "static_ratio", "", "Friction at rest, of that in motion")
+        .within(ranges::at_least_1),
+    setting(&Needle::stick_speed, "stick_speed", "mm/s", "Slower than this the shaft sticks")
+        .within(ranges::limit_or_zero)};
 
 template <>
 inline constexpr auto settings_of<SessionSettings> = std::tuple{
@@ -228,7 +231,9 @@ inline constexpr auto settings_of<SessionSettings> = std::tuple{
     setting(&SessionSettings::deadman_buttons, "deadman_buttons", "",
             "Bits of the buttons of which one must be held (0: none)"),
     setting(&SessionSettings::fastest_hand, "fastest_hand", "device mm/s",
-            "Fastest plausible motion of a hand"),
-    setting(&SessionSettings::overrun, "overrun", "s", "A tick that takes longer gives no force")};
+            "Fastest plausible motion of a hand")
+        .within(ranges::limit),
+    setting(&SessionSettings::overrun, "overrun", "s", "A tick that takes longer gives no force")
+        .within(ranges::limit)};
 
 }  // namespace palpate

@@ -51,6 +51,7 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
         const auto pixel = measures.numbers(tag);
         if (pixel.empty()) continue;
         if (pixel.size() != 2) {
+            if (tag != pixel_tag) continue;
             throw Failure("its DICOM tag PixelSpacing has " + std::to_string(pixel.size()) +
                           " numbers instead of 2; correct it");
         }

@@ -214,50 +214,56 @@ bool is_placed(const DicomSlice& s) {
     return s.position && s.row && s.column;
 }
 
-/// [mm] along the normal of slices whose place or orientation is missing: their SliceLocation, or
-/// else their positions along the line on which these lie. Empty if some have neither.
-std::vector<double> locations_of(const DicomSeries& series) {
-    std::vector<double> locations;
-    for (const DicomSlice& s : series.slices) {
-        if (s.location) locations.push_back(*s.location);
+/// [mm] along the normal of slices whose place or orientation is missing.
+struct Locations {
+    const char* source = nullptr;
+    std::vector<double> along;  ///< empty if there are none
+};
+
+/// Their positions along the line on which these lie, or else their SliceLocation, whose sign the
+/// standard leaves open.
+Locations locations_of(const std::vector<DicomSlice>& slices) {
+    Locations found;
+    if (std::ranges::all_of(slices, [](const DicomSlice& s) { return s.position.has_value(); })) {
+        Vec3 line = Vec3::Zero();
+        for (const DicomSlice& s : slices) {
+            const Vec3 way = *s.position - *slices.front().position;
+            if (way.norm() > line.norm()) line = way;
+        }
+        int longest = 0;
+        line.cwiseAbs().maxCoeff(&longest);
+        if (line[longest] < 0) line = -line;
+        found.source = "positions' distances";
+        for (const DicomSlice& s : slices) {
+            found.along.push_back(line.stableNormalized().dot(*s.position));
+        }
+    } else if (std::ranges::all_of(slices, [](const auto& s) { return s.location.has_value(); })) {
+        found.source = "SliceLocation";
+        for (const DicomSlice& s : slices) found.along.push_back(*s.location);
     }
-    if (locations.size() == series.slices.size()) return locations;
-    locations.clear();
-    Vec3 line = Vec3::Zero();
-    for (const DicomSlice& s : series.slices) {
-        if (!s.position) return {};
-        const Vec3 way = *s.position - *series.slices.front().position;
-        if (way.norm() > line.norm()) line = way;
-    }
-    int longest = 0;
-    line.cwiseAbs().maxCoeff(&longest);
-    if (line[longest] < 0) line = -line;
-    for (const DicomSlice& s : series.slices)
-        locations.push_back(line.normalized().dot(*s.position));
-    return locations;
+    return found;
 }
 
 /// Places slices that lack a position or an orientation, if each has a place of its own.
 void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
     if (std::ranges::all_of(series.slices, is_placed)) return;
-    const std::vector<double> locations = locations_of(series);
-    std::vector<double> sorted = locations;
+    const Locations locations = locations_of(series.slices);
+    std::vector<double> sorted = locations.along;
     std::ranges::sort(sorted);
     const double least = same_place_mm(series);
     const auto is_near = [&](double a, double b) { return b - a <= least; };
     if (std::ranges::adjacent_find(sorted, is_near) != sorted.end() || sorted.empty()) return;
-    const bool by_location = series.slices.front().location.has_value();
-    for (std::size_t i = 0; i < locations.size(); ++i) {
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
         DicomSlice& s = series.slices[i];
         if (!s.row || !s.column) {
             s.row = Vec3::UnitX();
             s.column = Vec3::UnitY();
         }
-        s.position = s.row->cross(*s.column) * locations[i];
+        s.position = s.row->cross(*s.column) * locations.along[i];
     }
     notes.emplace_back(
         std::string("its slices lack a position or an orientation: they were placed by their ") +
-        (by_location ? "SliceLocation" : "positions' distances") + ", along their normal");
+        locations.source + ", along their normal");
 }
 
 /// Slices without position or orientation, stacked in the order of their numbers, or moments of

@@ -237,9 +237,9 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
     const BdvSetup& setup = all[id];
     image.unit = setup.unit;
     image.measured = has_spacing && !setup.unit.empty();
-    if (setup.unit.empty()) image.unit = "millimeter";
+    if (!image.measured) image.unit = "millimeter";
     if (!has_spacing) {
-        image.notes.emplace_back("no XML file beside it gives its spacing: 1 mm was taken");
+        image.notes.emplace_back("no XML file beside it gives its voxel size: 1 mm was taken");
     } else if (setup.unit.empty()) {
         image.notes.emplace_back("its XML file gives no unit of length: millimetres were taken");
     }

@@ -225,7 +225,7 @@ std::vector<LabelName> labels_of(const HeaderFields& fields, int frame) {
             return found == fields.keys.end() ? std::string() : found->second;
         };
         if (text("ID").empty() && text("LabelValue").empty()) break;
-        if (number_from<int>(trimmed(text("Layer"))).value_or(0) != frame) continue;
+        if (number_from<int>(trimmed(text("Layer"))).value_or(frame) != frame) continue;
         LabelName label;
         std::istringstream value(text("LabelValue"));
         if (!(value >> label.value)) continue;

@@ -89,7 +89,7 @@ BrickLoader::Parts::Parts(std::shared_ptr<const Store> store, Volume overview,
       empty_(empty_samples(*store_, overview_, settings.level, settings.memory)),
       geometry_(empty_->geometry()),
       most_bricks_(most_bricks(*store_, settings.memory)),
-      loader_(settings.shared ? settings.shared : shared_loader(settings.threads)),
+      loader_(loader_for(settings.shared, settings.threads)),
       blocks_(
           std::make_unique<Blocks>(*store_, settings.memory / pieces_part, loader_, For::hands)),
       memory_(std::make_unique<BrickMemory>(bytes_of_brick(store_->info().type), most_free_bricks)),
@@ -298,14 +298,15 @@ void BrickLoader::Parts::make(const Job& job, std::uint64_t waits, const std::st
     const Clock::time_point begin = Clock::now();
     std::optional<Brick> brick;
     std::string problem;
-    bool is_kept = false;
+    bool is_kept = false, failed = false;
     try {
         is_kept =
             !blocks_->has_unread(settings_.level + job.coarser, source_of(job.brick, job.coarser));
         brick = read(job.brick, job.coarser, stop);
     } catch (const Cancelled&) {  // the loader ends
     } catch (const std::exception& e) {
-        problem = e.what();
+        failed = true;
+        problem = text_of(e);
     }
     const std::scoped_lock lock(mutex_);
     in_flight_.erase(place);
@@ -315,7 +316,7 @@ void BrickLoader::Parts::make(const Job& job, std::uint64_t waits, const std::st
             brick_s_ += (brick_s_ > 0 ? newest_part : 1) * (took - brick_s_);
         }
         put(job, *brick);
-    } else if (!problem.empty()) {
+    } else if (failed) {
         fail(place, problem, waits);
     }
     wake();

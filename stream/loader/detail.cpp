@@ -133,7 +133,7 @@ struct DetailReader::Parts {
         : store_(std::move(store)),
           overview_(std::move(overview)),
           made_(std::move(made)),
-          loader_(settings.shared ? settings.shared : shared_loader(settings.threads)),
+          loader_(loader_for(settings.shared, settings.threads)),
           blocks_(*store_, settings.memory, loader_, For::eyes),
           reading_(*loader_, For::eyes, [this](bool) { return next(); }),
           thread_([this, begin = std::move(settings.begin_thread)](const std::stop_token& stop) {
@@ -235,7 +235,7 @@ struct DetailReader::Parts {
                     piece->state = Piece::State::there;
                     work->has_new = work->has_new || stage == &work->last();
                 } else {
-                    fail(*piece, "there is too little memory");
+                    fail(*piece, "no memory");  // so short that it needs none
                 }
                 if (work->read.size() + 1 == most_read) loader_->wake();
                 return true;
@@ -279,6 +279,7 @@ struct DetailReader::Parts {
         const SampleType type = store_->info().type;
         std::vector<std::byte> samples;
         std::string problem;
+        bool failed = false;
         try {
             samples.resize(count_of(piece.box) * palpate::size_of(type));
             blocks_.read(stage.of.level, piece.box, samples, stop);
@@ -286,25 +287,30 @@ struct DetailReader::Parts {
         } catch (const Cancelled&) {
             return;  // the reader ends
         } catch (const std::exception& e) {
-            problem = e.what();
+            failed = true;
+            problem = text_of(e);
         }
         const std::scoped_lock lock(mutex_);
-        if (problem.empty()) {
-            work.read.emplace_back(&stage, &piece);
+        try {
+            if (!failed) work.read.emplace_back(&stage, &piece);
+        } catch (const std::bad_alloc&) {
+            failed = true;
+        }
+        if (failed) {
+            fail(piece, std::move(problem));
+        } else {
             piece.samples = std::move(samples);
             piece.state = Piece::State::read;
-        } else {
-            fail(piece, problem);
         }
         ++news_;
         changed_.notify_all();
     }
 
     /// Needs the lock.
-    void fail(Piece& piece, const std::string& problem) {
+    void fail(Piece& piece, std::string problem) {
         piece.state = Piece::State::failed;
         piece.again = Clock::now() + pause_after_failure;
-        problem_ = problem;
+        problem_ = std::move(problem);
     }
 
     /// Of a piece that was read.

@@ -2,6 +2,8 @@
 // stream/loader.
 #pragma once
 
+#include <unistd.h>
+
 #include <array>
 #include <condition_variable>
 #include <functional>
@@ -9,6 +11,8 @@
 #include <list>
 #include <map>
 #include <mutex>
+#include <new>
+#include <string>
 
 #include "palpate/stream/loader.hpp"
 #include "stream/small_threads.hpp"
@@ -16,6 +20,20 @@
 namespace palpate::stream {
 
 class Blocks;
+class Loader;
+
+/// The shared loader, or one of its own for a reader that has none or that a fork has made: a fork
+/// has none of its parent's threads.
+std::shared_ptr<Loader> loader_for(const std::shared_ptr<Loader>& shared, int threads);
+
+/// Of an error that is told later. Empty where there is no memory for it.
+inline std::string text_of(const std::exception& error) noexcept {
+    try {
+        return error.what();
+    } catch (const std::bad_alloc&) {
+        return {};
+    }
+}
 
 /// Whom something is read for: hands come first.
 enum class For { hands, eyes };
@@ -60,6 +78,7 @@ class Loader {
   private:
     friend class Blocks;
     friend class Reading;
+    friend std::shared_ptr<Loader> loader_for(const std::shared_ptr<Loader>& shared, int threads);
     using Key = std::array<int, 4>;  // level and place
     using Bytes = std::shared_ptr<const std::vector<std::byte>>;
     struct Kept {
@@ -78,6 +97,7 @@ class Loader {
     std::map<Key, Kept> kept_;
 
     const int count_;
+    const int process_ = getpid();
     std::mutex entering_;  // one reader at a time enters or leaves
     std::mutex mutex_;
     std::condition_variable_any changed_, ended_;

@@ -1,5 +1,6 @@
 // The threads of a store. See loader.hpp.
 #include <algorithm>
+#include <new>
 
 #include "stream/loader/loader.hpp"
 
@@ -7,6 +8,10 @@ namespace palpate::stream {
 
 std::shared_ptr<Loader> shared_loader(int threads) {
     return std::make_shared<Loader>(threads);
+}
+
+std::shared_ptr<Loader> loader_for(const std::shared_ptr<Loader>& shared, int threads) {
+    return shared && shared->process_ == getpid() ? shared : shared_loader(threads);
 }
 
 Reading::Reading(Loader& loader, For whom, std::function<Turn(bool urgent)> next)
@@ -67,7 +72,12 @@ bool Loader::work(Lock& lock, Turn& all) {
 
 /// Asks readers until one has a job, and does it. Of those without, `all` gets the least numbers.
 bool Loader::work_for(For whom, bool urgent, Lock& lock, Turn& all) {
-    const auto readers = readers_;
+    std::vector<Reading*> readers;
+    try {
+        readers = readers_;
+    } catch (const std::bad_alloc&) {
+        return false;  // tried again in a moment
+    }
     for (Reading* const reader : readers) {
         // It may have left, and be no more, while the lock was not held.
         if (std::ranges::count(readers_, reader) == 0 || reader->whom_ != whom) continue;
@@ -83,10 +93,12 @@ bool Loader::work_for(For whom, bool urgent, Lock& lock, Turn& all) {
         } catch (const std::exception&) {  // no memory: tried again in a moment
             turn.job = {};
         }
+        const bool done = turn.job != nullptr;
+        turn.job = {};  // what it holds may be large: not with the lock
         lock.lock();
         --reader->running_;
         ended_.notify_all();
-        if (turn.job) return true;
+        if (done) return true;
         all.pause = std::min(all.pause, turn.pause);
         all.for_eyes = std::min(all.for_eyes, turn.for_eyes);
     }

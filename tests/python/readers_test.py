@@ -142,8 +142,8 @@ def test_slices_without_a_position_lie_at_their_slice_location(tmp_path):
 
 
 def test_slices_without_an_orientation_lie_at_their_slice_location_or_at_their_positions(tmp_path):
-    for name, more in (("SliceLocation", ["SliceLocation"]), ("positions", [])):
-        change = lambda i: {"ImageOrientationPatient": None, "SliceThickness": 1.25, **{k: -2.5 * i for k in more}}
+    for name, sign, more in (("SliceLocation", -2.5, {"ImagePositionPatient": None}), ("positions", 2.5, {})):
+        change = lambda i: {"ImageOrientationPatient": None, "SliceThickness": 1.25, "SliceLocation": sign * i, **more}
         volume = noted(save(tmp_path / name, stack(ramp("i2"), -2.5, change=change)), "their " + name)
         assert volume.geometry.spacing[2] == 2.5 and numpy.array_equal(volume.array, ramp("i2")[::-1])
 
@@ -330,13 +330,13 @@ def test_tiff_planes_that_are_no_slices_are_noted_or_refused(tmp_path):
     refused(path, "PhotometricInterpretation 32844")
 
 
+@pytest.mark.parametrize("shape", (SHAPE, (5, 40, 60)))
 @pytest.mark.parametrize("dtype", ("u1", "i2", "f4"))
-def test_a_tiff_of_ours_is_read_slice_by_slice_by_others(tmp_path, dtype):
+def test_a_tiff_of_ours_is_read_slice_by_slice_by_others(tmp_path, dtype, shape):
     for compress in (False, True):
-        path = tmp_path / f"{compress}.tif"
-        palpate.write(palpate.Volume(ramp(dtype), spacing=(0.5, 0.7, 1.3)), path, compress=compress)
+        palpate.write(palpate.Volume(ramp(dtype, shape)), path := tmp_path / f"{compress}.tif", compress=compress)
         with tifffile.TiffFile(path) as file:
-            assert numpy.array_equal(file.asarray(), ramp(dtype))
+            assert numpy.array_equal(file.asarray(), ramp(dtype, shape))
             # ImageJ takes the samples for one piece, but for pages that have this tag.
             assert file.is_imagej and all(page.tags["Orientation"].value == 1 for page in file.pages)
 
