@@ -2,6 +2,8 @@
 #include "palpate/stream/detail.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <map>
@@ -350,6 +352,25 @@ TEST(SharedLoader, a_read_of_the_eyes_that_is_cancelled_is_begun_anew_for_the_ha
     hangs = false;
     hand.join();
     EXPECT_EQ(samples, test::box_of(volume, {{0, 0, 0}, {9, 9, 9}}));
+}
+
+TEST(SharedLoader, a_fork_reads_with_threads_of_its_own) {
+    const auto store = store_in_pieces(noise_of(SampleType::uint8, grid(cube(40)), 8));
+    const Volume overview = noise_of(SampleType::uint8, grid(cube(8)), 1);
+    const BrickLoaderSettings settings{.memory = hand_memory, .shared = shared_loader(3)};
+    const Vec3 hand(20, 20, 20);
+    BrickLoader loader(store, overview, settings);
+    loader.wait_for(hand, 5);
+    const pid_t fork = ::fork();
+    if (fork == 0) {
+        ::alarm(60);  // in place of waiting for ever
+        BrickLoader own(store, overview, settings);
+        own.wait_for(hand, 5);
+        ::_exit(own.status().bytes > 0 ? 0 : 1);
+    }
+    int status = -1;
+    ASSERT_EQ(::waitpid(fork, &status, 0), fork);
+    EXPECT_EQ(status, 0);
 }
 
 /// A hand that feels all of level 0, 27 pieces, and eyes that see level 1.
