@@ -409,6 +409,20 @@ def test_nothing_half_written_is_left_when_interrupted(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_an_interrupt_while_the_folder_is_made_leaves_nothing(tmp_path, monkeypatch):
+    make = pathlib.Path.mkdir
+
+    def interrupted(path, *how, **options):
+        make(path, *how, **options)
+        program.interrupt(signal.SIGINT, None)
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(pathlib.Path, "mkdir", interrupted)
+    with pytest.raises(program.Stop, match="interrupted"):
+        program.evaluate(program.arguments(["walk-through", "--quick", "-o", "found"]), [])
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_real_volumes_are_known_by_their_bytes(tmp_path):
     notes = []
     (tmp_path / "lobster.nrrd").write_bytes((pathlib.Path(palpate.sample_volume())).read_bytes())

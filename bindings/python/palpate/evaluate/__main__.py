@@ -10,7 +10,7 @@ import shlex
 import shutil
 import signal
 import sys
-import tempfile
+import uuid
 from pathlib import Path
 
 if not __package__:  # run as a folder, by the program palpate: this folder's modules are no top-level ones
@@ -225,16 +225,20 @@ def refuse_without_programs(names):
 
 
 class Folder:
-    """The folder of the results; what is not complete leaves nothing behind."""
+    """The folder of the results; what is not complete leaves nothing behind. Its names are known before it is made, so
+    that close() finds what an interrupt in make() leaves."""
 
     def __init__(self, path):
         self.path = Path(path)
         self.is_new = not self.path.exists()
+        self.part = self.path / f".palpate-{uuid.uuid4().hex}"
+
+    def make(self):
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            self.part = Path(tempfile.mkdtemp(prefix=".palpate-", dir=self.path))
+            self.part.mkdir(mode=0o700)
         except OSError as error:
-            raise Stop(BAD_OUTPUT, f"{path}: {error.strerror}: choose another folder with --output") from error
+            raise Stop(BAD_OUTPUT, f"{self.path}: {error.strerror}: choose another folder with --output") from error
 
     def complete(self):
         for file in sorted(self.part.iterdir()):
@@ -243,7 +247,7 @@ class Folder:
 
     def close(self):
         shutil.rmtree(self.part, ignore_errors=True)
-        if self.is_new:
+        if self.is_new and self.path.exists():
             self.path.rmdir()
 
 
@@ -307,6 +311,7 @@ def evaluate(chosen, words):
     warn_of_no_effect(chosen, names)
     folder, reports = Folder(chosen.output), []
     try:
+        folder.make()
         for name in names:
             try:
                 reports.append(run(name, chosen, folder.part, words))
