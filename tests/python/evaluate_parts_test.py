@@ -5,19 +5,21 @@ import numpy
 import palpate
 import pytest
 
-from palpate.evaluate import heads, performance, stability, tissues, tools
+from palpate.evaluate import heads, layers, performance, stability, tissues, tools
 from palpate.evaluate.experiment import GRANTED, Options, Table
 from palpate.evaluate.subjects import of_text
 
 
 def test_phantoms_have_their_depth_as_density():
     random, depth = numpy.random.default_rng(3), numpy.arange(5, tissues.DEEPEST, 0.37)
-    for body in (tissues.flat(), tissues.balls()):
+    # Linear interpolation of a radius between samples 0.125 mm apart is off by 0.125^2 / 8 times its two curvatures.
+    interpolated = 0.125**2 / 8 * 2 / (tissues.BALL_RADIUS - depth)
+    for body, off in ((tissues.flat(), 0 * depth), (tissues.balls(), interpolated)):
         field = body.felt("linear")
         for _ in range(50):
             way = body.way(random)
             assert numpy.linalg.norm(way.inward) == pytest.approx(1, abs=1e-12)
-            assert abs(field.value(way.at(depth)) - depth).max() < 1e-3
+            assert (abs(field.value(way.at(depth)) - depth) <= off + 1e-5).all()
 
 
 def stepped_spring(depth):
@@ -36,7 +38,7 @@ def stepped_spring(depth):
 def test_the_closed_form_is_that_of_a_hand_that_goes_in_by_tiny_steps():
     depths = numpy.array([9.0, 10.5, 12.9, 13.1, 16.1, 19.4, 19.6, 31.0, 32.3, 33.6, 35.6, 35.7, 59.0, 62.0])
     for depth, force in zip(depths, tissues.spring(depths)):
-        assert force == pytest.approx(stepped_spring(depth), abs=5e-3), depth
+        assert force == pytest.approx(stepped_spring(depth), abs=1e-9), depth
 
 
 def test_drag_is_drag_times_length_in_what_gave_way():
@@ -127,6 +129,44 @@ def test_a_penalty_lets_a_scalpel_through_the_shell_and_the_exact_method_does_no
     penalty, exact = (tools.hostile_row(shell, method, "scalpel", scalpel, [hand], [90]) for method in ("penalty", "exact"))
     assert penalty["deepest_voxel"] > 1 > 0.1 > exact["deepest_voxel"]
     assert penalty["through_share"] > 0 == exact["through_share"]
+    assert 0 < exact["touching_share"] < 1
+
+
+@pytest.mark.parametrize("seeds", [1, 3, 61, 1000])
+def test_each_hand_has_ticks_and_in_the_shell_enough_to_get_to_the_wall(seeds):
+    noise, _, shell = tools.hostile_scenes(1)
+    free, enclosed = (tools.counts_of(scene, 60, seeds) for scene in (noise, shell))
+    assert sum(free) == 60 and min(free) > 0 and len(free) == min(seeds, 60)
+    assert enclosed == [tools.LEAST] * seeds and sum(tools.counts_of(shell, 100_000, seeds)) == 100_000
+
+
+@pytest.mark.parametrize("broken", [{}, {"through_share": 0.5}, {"touching_share": 0}])
+def test_a_tool_that_gets_through_the_shell_or_never_touches_it_breaks_the_claim(broken):
+    rows = [{"part": "equilibrium", "force_off_share": 0, "torque_off_share": 0},
+            {"part": "fit", "lowest_mm": -4, "end_mm": 20, "worst_excess_of_range": 0}]
+    rows += [{"part": "hostile", "method": "exact", "scene": "shell", "ticks": 300, "chords": 7, "worst_excess_of_range": 0,
+              "worst_growth_voxel": 0, "through_share": 0, "touching_share": 0.1, **change} for change in ({}, broken)]
+    claims = tools.claims_of(Table(rows))
+    assert [claim.held for claim in claims] == [True, True, True, not broken, True]
+    assert not any("confidence" in claim.measured for claim in claims) and "of 600 ticks" in claims[3].measured
+
+
+def test_loops_that_gain_energy_or_none_at_all_break_claims_that_give_no_bound():
+    kept = {"part": "energy", "most_gained_j": 1e-9, "least_lost_with_puncture_j": 0.1, "runs": 3, "loops_with_punctures": 2}
+    none = {"most_gained_j": -numpy.inf, "least_lost_with_puncture_j": numpy.nan, "runs": 0, "loops_with_punctures": 0}
+    for row, held in ((kept, True), ({**kept, "most_gained_j": 1, "least_lost_with_puncture_j": -1}, False),
+                      ({**kept, **none}, False)):
+        for claim in layers.claims_of_energy(Table([row])):
+            assert claim.held == held and ("confidence" in claim.measured) == held
+
+
+def test_each_case_of_the_closed_loops_draws_loops_of_its_own(monkeypatch):
+    begun = []
+    monkeypatch.setattr(layers, "gained", lambda made, path: begun.append(tuple(path[0])) or (0.0, 0, 1))
+    name, volume, *rest = next(layers.loop_bodies())
+    for number in range(2):
+        layers.energy_row(number, name, palpate.Field(volume), *rest, numpy.inf, Options(quick=True))
+    assert len(set(begun)) == len(begun) == 6
 
 
 def test_a_loop_at_rest_pushes_against_the_surface():
@@ -152,7 +192,7 @@ def test_a_volume_of_the_user_has_our_target_and_no_row_of_the_paper():
     case = performance.Case(of_text("synthetic:torus:40x40x20"))
     rows = Table(performance.rows_of(case, "LR", performance.Effort(1, 0.5, 2, 0), 1))
     assert rows.distinct("target_from") == ["ours"] and numpy.isnan(rows["paper_mean_us"]).all()
-    assert not list(performance.summary_of(rows)) and rows[0]["over_exact"] == 1
+    assert not list(performance.summary_of(rows))
 
 
 def test_a_hand_far_from_its_target_breaks_a_claim_or_on_a_users_volume_gives_a_note():

@@ -214,7 +214,7 @@ def paragraphs_of(table, effort):
 
 
 def run(options):
-    effort, data, table = Effort(4, 1.5, 3, 0) if options.quick else Effort(24, 5, 5, 200), [], Table()
+    effort, data, table = Effort(4, 1.5, 9, 0) if options.quick else Effort(24, 5, 9, 200), [], Table()
     cases = [(case, resolution) for case in cases_of(options, data) for resolution in RESOLUTIONS]
     for number, case in enumerate(cases):
         options.progress(number / len(cases))
