@@ -293,19 +293,13 @@ def test_an_experiment_leaves_a_table_figures_and_a_page_that_says_where_it_was_
         assert part in page, part
 
 
-def test_the_same_run_gives_the_same_bytes(tmp_path):
-    for folder in ("first", "second"):
-        evaluate(tmp_path, "walk-through", "--quick", "-q", "-o", folder)
+def test_the_same_run_gives_the_same_bytes_by_the_program_and_by_the_module(tmp_path):
+    words = ["penetration", "--quick", "-q", "-o"]
+    evaluate(tmp_path, *words, "first")
+    subprocess.run([sys.executable, "-B", "-m", "palpate.evaluate", *words, "second"], cwd=tmp_path, check=True)
     for path in (tmp_path / "first").iterdir():
         if path.suffix != ".md":  # it has the clock of the processor at the time
             assert path.read_bytes() == (tmp_path / "second" / path.name).read_bytes(), path.name
-
-
-def test_the_module_does_the_same_as_the_program(tmp_path):
-    evaluate(tmp_path, "walk-through", "--quick", "-q", "-o", "first")
-    subprocess.run([sys.executable, "-B", "-m", "palpate.evaluate", "walk-through", "--quick", "-q", "-o", "second"],
-                   cwd=tmp_path, check=True)
-    assert (tmp_path / "first/walk-through.csv").read_bytes() == (tmp_path / "second/walk-through.csv").read_bytes()
 
 
 def test_all_leaves_out_what_cannot_be_done_on_the_users_volume(tmp_path, monkeypatch, capsys):
@@ -365,8 +359,8 @@ def test_without_the_program_in_cpp_what_needs_it_is_refused_before_any_work(tmp
 GONE = "exec 3> >(true); wait $!; {} >&3"  # the reader has gone before the program starts
 
 
-@pytest.mark.parametrize("words", ["drift --help", "--version", "walk-through --quick -o found",
-                                   "walk-through --quick --json -o found"])
+@pytest.mark.parametrize("words", ["drift --help", "--version", "penetration --quick -o found",
+                                   "penetration --quick --json -o found"])
 @pytest.mark.parametrize("line, status", [("{} >/dev/full", 5), ("{} >&-", 5), (GONE, 0)])
 def test_standard_output_that_takes_nothing_is_told_and_all_else_is_whole(tmp_path, words, line, status):
     ran = subprocess.run(["bash", "-c", line.format(f'"$PALPATE" evaluate {words}')], cwd=tmp_path,
@@ -376,7 +370,7 @@ def test_standard_output_that_takes_nothing_is_told_and_all_else_is_whole(tmp_pa
         assert ran.stderr.startswith("palpate: standard output: ") and ran.stderr.count("\n") == 1
     else:
         assert ran.stderr == ""
-    assert (tmp_path / "found/walk-through.csv").exists() == ("found" in words)
+    assert (tmp_path / "found/penetration.csv").exists() == ("found" in words)
 
 
 def test_a_reader_that_goes_before_all_is_done_ends_it_without_words(tmp_path):
