@@ -12,6 +12,7 @@
 #include "stream/formats/stores.hpp"
 #include "stream/objects/held_folder.hpp"
 #include "stream/objects/remote_objects.hpp"
+#include "stream/sample_bytes.hpp"
 
 namespace palpate::stream {
 namespace {

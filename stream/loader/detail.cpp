@@ -190,8 +190,9 @@ struct DetailReader::Parts {
                                    work->stage + 1 == work->stages.size();
                 if (piece.state != Piece::State::waiting && !again) continue;
                 Turn turn;
-                turn.job = [this, work, &stage, &piece](const std::stop_token& stop) {
-                    read(*work, stage, piece, stop);
+                // clang 14 captures no name of a structured binding.
+                turn.job = [this, held = work, &stage, &piece](const std::stop_token& stop) {
+                    read(*held, stage, piece, stop);
                 };
                 piece.state = Piece::State::reading;
                 return turn;
@@ -231,7 +232,7 @@ struct DetailReader::Parts {
             if (!work->read.empty()) {
                 const auto [stage, piece] = work->read.back();
                 work->read.pop_back();
-                if (unlocked([&] { put(*work, *stage, *piece); })) {
+                if (unlocked([&, to = stage, from = piece] { put(*work, *to, *from); })) {
                     piece->state = Piece::State::there;
                     work->has_new = work->has_new || stage == &work->last();
                 } else {
