@@ -13,7 +13,9 @@ class PageDevice : public Device {
     DeviceInfo info() const override { return info_; }
     DeviceReading read(double) override {
         DeviceReading reading = newest;
-        reading.age = now - measured;
+        // Both clocks are rounded, and a page and its worker do not agree exactly on the time.
+        const double age = now - measured;
+        reading.age = age < 0 && age > -clock_tolerance ? 0 : age;
         return reading;
     }
     void write(const Wrench& wrench, double) override { force = stopped_ ? Wrench{} : wrench; }
@@ -28,6 +30,8 @@ class PageDevice : public Device {
     Wrench force;         ///< as the servo left it
 
   private:
+    static constexpr double clock_tolerance = 0.005;  // [s]
+
     DeviceInfo info_;
     bool stopped_ = false;
 };
