@@ -122,7 +122,7 @@ void WebSession::push(const Command& command) {
 }
 
 void WebSession::edit(const std::string& edit, bool same_step) {
-    const Json made{{"version", 1}, {"of", 0}, {"edit", Json::parse(edit)}};
+    const Json made{{"version", 1U}, {"of", 0U}, {"edit", Json::parse(edit)}};
     const auto recipe = io::samples_command_from_json(made, bodies_).recipe;
     if (!recipe) throw std::invalid_argument("an edit is a stroke, a sweep or a fill");
     make(std::get<EditOf>(*recipe).edit, same_step);
@@ -169,8 +169,13 @@ bool WebSession::go_to(const SampleBox& changed) {
 }
 
 std::uint64_t WebSession::version_of_samples() const {
-    const auto same = [this](const auto& known) { return known.first == editor_.samples(); };
-    return std::find_if(versions_.rbegin(), versions_.rend(), same)->second.version;
+    const std::shared_ptr<const Samples> samples = editor_.samples();
+    // By owner: the memory of a version that has expired may be used again by this one.
+    const auto same = [&](const auto& known) {
+        return !known.first.owner_before(samples) && !samples.owner_before(known.first);
+    };
+    const auto found = std::find_if(versions_.rbegin(), versions_.rend(), same);
+    return found == versions_.rend() ? 0 : found->second.version;
 }
 
 const SnapshotNumbers& WebSession::snapshot() {
@@ -230,10 +235,14 @@ void WebSession::record(const std::string& begun) {
     text_.emplace(head);
     unrecorded_before_ = servo_->report().unrecorded;
     for (std::size_t i = 1; i < versions_.size(); ++i) text_->append(versions_[i].second);
-    if (versions_.back().first != editor_.samples()) {
-        text_->append(command::Samples{nullptr, version_of_samples()});
+    const std::uint64_t version = version_of_samples();
+    if (versions_.back().second.version != version) {
+        text_->append(command::Samples{nullptr, version});
     }
-    if (!servo_->record(events_)) throw std::runtime_error("too many commands wait");
+    if (!servo_->record(events_)) {
+        text_.reset();
+        throw std::runtime_error("too many commands wait");
+    }
 }
 
 std::string WebSession::recording() {

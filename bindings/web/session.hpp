@@ -69,8 +69,9 @@ class WebSession {
     Editor editor_;
     Field field_;    // as at the start
     Session start_;  // the same
-    /// Each with its recipe and number, without samples there. The first has number 0.
-    std::vector<std::pair<std::shared_ptr<const Samples>, command::Samples>> versions_;
+    /// Each with its recipe and number, without samples there. The first has number 0. A pointer
+    /// has expired once undo cannot come back to its samples.
+    std::vector<std::pair<std::weak_ptr<const Samples>, command::Samples>> versions_;
     std::uint64_t last_version_ = 0;
     std::optional<Vec3> carved_to_;  // [mm, physical]
     io::Bodies bodies_;
