@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,13 +39,20 @@ class WebVolume {
   public:
     WebVolume(const val& samples, const std::string& type, const val& size, const val& spacing,
               const val& origin, const val& direction) {
+        const auto bytes = samples["byteLength"].as<std::size_t>();
+        const Vec3 counts = vector_from(size);
+        // Before the conversion to integers, which is undefined for NaN and huge numbers.
+        const double needed = counts.prod() * static_cast<double>(size_of(sample_type_from(type)));
+        if (!(counts.array() >= 1).all() || needed != static_cast<double>(bytes)) {
+            throw std::invalid_argument("size: the samples have " + std::to_string(bytes) +
+                                        " bytes, which three counts of at least 1 must match");
+        }
         Geometry geometry;
-        geometry.size = vector_from(size).cast<int>();
+        geometry.size = counts.cast<int>();
         geometry.spacing = vector_from(spacing);
         geometry.origin = vector_from(origin);
         for (int row = 0; row < 3; ++row)
             geometry.direction.row(row) = vector_from(direction, 3 * row);
-        const auto bytes = samples["byteLength"].as<std::size_t>();
         const std::shared_ptr<std::byte[]> copy(new std::byte[bytes]);
         val(typed_memory_view(bytes, reinterpret_cast<unsigned char*>(copy.get())))
             .call<void>("set", samples);

@@ -90,8 +90,58 @@ test("input that is stale, lost or not a number gives no force", () => {
   session.lose();
   session.stepAt(2.503);
   assert.equal(force(), 0, "lost");
-  session.stepAt(2.504, [NaN, 0, 0]);
+  for (let i = 0; i < 1000; ++i) session.stepAt(2.504 + i / 1000, pressed);
+  assert.ok(force() > 0.1);
+  session.stepAt(3.504, [NaN, 0, 0]);
   assert.equal(force(), 0, "not a number");
+});
+
+test("a reading of now is fresh, whichever way the clocks were rounded", () => {
+  const { session } = ball();
+  const pressed = path(1500).at(-1);
+  const force = () => Math.hypot(...session.snapshot().force);
+  session.replay(path(1500));
+  for (const [i, age] of [0, -1e-9, -0.004].entries()) {
+    session.stepAt(1.501 + i / 1000, pressed, { age });
+    assert.ok(force() > 0.1, `${age} s`);
+  }
+  session.stepAt(1.504, pressed, { age: -0.01 });
+  assert.equal(force(), 0, "of the future");
+});
+
+test("a recording that could not begin does not prevent the next one", () => {
+  const { session } = ball();
+  session.stepAt(0, [0, 0, 40]);
+  assert.throws(() => {
+    for (;;) session.command("friction", { static: 0.5, dynamic: 0.3 });
+  }, /too many commands/);
+  assert.throws(() => session.record(), /too many commands/);
+  session.stepAt(0.001);
+  session.record();
+  session.stepAt(0.002);
+  assert.match(session.recording(), /# end \{/);
+});
+
+test("undo goes back to the version that it came from", () => {
+  const { session } = ball();
+  session.replay(path(1500));
+  const version = (i) => {
+    session.stepAt(1.5 + i / 1000, path(1500).at(-1));
+    return session.snapshot().version;
+  };
+  assert.ok(session.drill(3));
+  assert.equal(version(1), 1);
+  session.edit({ fill: { low: [0, 0, 0], high: [4, 4, 4], value: 9 } });
+  assert.equal(version(2), 2);
+  session.undo();
+  assert.equal(version(3), 1);
+  session.undo();
+  assert.equal(version(4), 0);
+  session.redo();
+  assert.equal(version(5), 1);
+  session.undo();
+  assert.ok(session.drill(2));
+  assert.equal(version(6), 3);
 });
 
 test("samples of every type go in and come out", () => {
@@ -105,7 +155,10 @@ test("samples of every type go in and come out", () => {
 
 test("errors are those of the core", () => {
   const { volume, session } = ball();
-  assert.throws(() => palpate.volume(new Uint8Array(3), { size: [3, 4, 5] }), Error);
+  for (const size of [[3, 4, 5], [NaN, 4, 5], [Infinity, 1, 1], [-3, -1, 1], [65536, 65536, 1]]) {
+    assert.throws(() => palpate.volume(new Uint8Array(3), { size }), /three counts of at least 1/, String(size));
+  }
+  assert.throws(() => palpate.volume(new Uint8Array(0), { size: [65536, 65536, 1] }), /three counts/, "2^32 bytes are not none");
   assert.throws(() => palpate.scene("bagel"), /cylinder/);
   assert.throws(() => palpate.session(volume, {}), /'isovalue' is missing/);
   assert.throws(() => palpate.session(volume, { isovalue: 1, settings: { force: { stiffness: -1 } } }), /stiffness/);
