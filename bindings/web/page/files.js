@@ -20,6 +20,12 @@ function samplesOf(bytes, type, big, count) {
   return Type.from({ length: count }, (_, i) => view[read](i * size, !big));
 }
 
+const unitsOfLength = new Map([["m", 1000], ["cm", 10], ["mm", 1], ["um", 0.001], ["", 1]]); // [mm]
+function millimetresIn(unit) {
+  if (!unitsOfLength.has(unit)) throw new Error(`the unit of length '${unit}' is not read`);
+  return unitsOfLength.get(unit);
+}
+
 const length = (v) => Math.hypot(...v);
 /** Geometry from the columns that lead from a sample to the next along each axis. */
 function geometryOf(size, axes, origin) {
@@ -37,6 +43,9 @@ async function readNrrd(bytes) {
     if (name) fields[name.trim().toLowerCase()] = value.trim();
   }
   if (fields["data file"] || fields.datafile) throw new Error("the samples of this NRRD are in another file");
+  for (const name of ["line skip", "lineskip", "byte skip", "byteskip"]) {
+    if (Number(fields[name] ?? 0) !== 0) throw new Error(`NRRD files with a ${name} of ${fields[name]} are not read`);
+  }
   const size = (fields.sizes ?? "").split(/\s+/).map(Number);
   if (size.length !== 3) throw new Error("only NRRD files of three dimensions are read");
   const rest = bytes.subarray(end + (bytes[end + 1] === 13 ? 3 : 2));
@@ -52,7 +61,8 @@ async function readNrrd(bytes) {
   const origin = /\(([^)]*)\)/.exec(fields["space origin"] ?? "")?.[1].split(",").map(Number) ?? [0, 0, 0];
   const space = (fields.space ?? "").toLowerCase();
   const flips = { "right-anterior-superior": [-1, -1, 1], ras: [-1, -1, 1], "left-anterior-superior": [1, -1, 1], las: [1, -1, 1] }[space] ?? [1, 1, 1];
-  const lps = (v) => v.map((x, a) => x * flips[a]);
+  const units = space ? [...(fields["space units"] ?? "").matchAll(/"([^"]*)"/g)].map((m) => millimetresIn(m[1])) : [];
+  const lps = (v) => v.map((x, a) => x * flips[a] * (units[a] ?? 1));
   const samples = samplesOf(await inflated(rest), types[fields.type] ?? fields.type, fields.endian === "big", size[0] * size[1] * size[2]);
   return { samples, geometry: geometryOf(size, axes.map(lps), lps(origin)) };
 }
@@ -62,12 +72,17 @@ function readNifti(bytes) {
   const little = view.getInt32(0, true) === 348;
   const short = (at) => view.getInt16(at, little);
   const real = (at) => view.getFloat32(at, little);
-  const size = [42, 44, 46].map(short);
+  const sizes = [0, 1, 2, 3, 4, 5, 6].map((axis) => (axis < short(40) ? short(42 + 2 * axis) : 1));
+  if (sizes.slice(3).some((n) => n > 1)) throw new Error(`only NIfTI files of three dimensions are read, this one has ${short(40)}`);
+  const size = sizes.slice(0, 3);
   const types = { 2: "uint8", 4: "int16", 8: "int32", 16: "float32", 64: "float64", 256: "int8", 512: "uint16", 768: "uint32" };
   const offset = Math.max(348, real(108));
   let samples = samplesOf(bytes.subarray(offset), types[short(70)] ?? short(70), !little, size[0] * size[1] * size[2]);
   const [slope, intercept] = [real(112), real(116)];
-  if (slope !== 0 && (slope !== 1 || intercept !== 0)) samples = Float32Array.from(samples, (v) => slope * v + intercept);
+  if (slope !== 0 && Number.isFinite(slope)) { // else none is given
+    if (!Number.isFinite(intercept)) throw new Error(`the intercept ${intercept} of this NIfTI is not a number`);
+    if (slope !== 1 || intercept !== 0) samples = Float32Array.from(samples, (v) => slope * v + intercept);
+  }
   let axes = [80, 84, 88].map((at, a) => [0, 1, 2].map((b) => (a === b ? real(at) : 0)));
   let origin = [0, 0, 0];
   if (short(254) > 0) {
@@ -86,7 +101,9 @@ function readNifti(bytes) {
     axes = [0, 1, 2].map((column) => turn.map((row) => row[column] * steps[column]));
     origin = [268, 272, 276].map(real);
   }
-  const lps = ([x, y, z]) => [-x, -y, z]; // NIfTI has RAS
+  const unit = millimetresIn(["", "m", "mm", "um"][view.getUint8(123) & 7] ?? `number ${view.getUint8(123) & 7}`);
+  const flip = short(254) > 0 || short(252) > 0 ? -1 : 1; // NIfTI has RAS; without a place, axes are taken as they are
+  const lps = ([x, y, z]) => [flip * unit * x, flip * unit * y, unit * z];
   return { samples, geometry: geometryOf(size, axes.map(lps), lps(origin)) };
 }
 
