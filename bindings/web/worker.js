@@ -20,11 +20,22 @@ const post = (name, value, transfer = []) => postMessage({ [name]: value }, tran
 /** One tick, then back to the event loop, which takes the messages that have come meanwhile. */
 function turn() {
   if (!running) return;
+  try {
+    tick();
+    turns.port2.postMessage(null);
+  } catch (error) {
+    running = false;
+    session.stop();
+    post("error", error.message);
+  }
+}
+
+function tick() {
   const left = session.due - performance.now();
   if (left > 0) {
     // Without isolation there is no sleep of under 4 ms: the loop keeps its processor busy.
     if (sleeper) Atomics.wait(sleeper, 0, 0, left);
-    if (session.due > performance.now()) return void turns.port2.postMessage(null);
+    if (session.due > performance.now()) return;
   }
   running = session.step();
   const now = performance.now();
@@ -33,7 +44,6 @@ function turn() {
     lastSnapshot = now;
     post("snapshot", session.snapshot());
   }
-  turns.port2.postMessage(null);
 }
 
 function carve(now) {
@@ -48,15 +58,20 @@ const actions = {
     const palpate = await loaded;
     const made = scene ? palpate.scene(scene) : { volume: palpate.volume(samples, geometry) };
     const { volume } = made;
-    session?.delete();
-    session = palpate.session(volume, { isovalue: made.isovalue, ...setup });
-    const copy = volume.samples();
-    volume.delete(); // the session holds its samples
-    const { type, size, spacing, origin, direction, minimum, maximum } = volume;
-    post("ready", {
-      isovalue: made.isovalue, samples: copy, type, size, spacing, origin, direction, minimum, maximum,
-      isolated: sleeper !== null,
-    }, [copy.buffer]);
+    try {
+      const begun = palpate.session(volume, { isovalue: made.isovalue, ...setup });
+      session?.delete();
+      session = begun;
+      actions.burr(0);
+      const copy = volume.samples();
+      const { type, size, spacing, origin, direction, minimum, maximum } = volume;
+      post("ready", {
+        isovalue: made.isovalue, samples: copy, type, size, spacing, origin, direction, minimum, maximum,
+        isolated: sleeper !== null,
+      }, [copy.buffer]);
+    } finally {
+      volume.delete(); // the session holds its samples
+    }
     if (!running) {
       running = true;
       turns.port2.postMessage(null);

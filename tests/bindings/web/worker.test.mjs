@@ -1,0 +1,68 @@
+// The worker's loop, in Node's own thread: an error ends the session, and the next one begins.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import test from "node:test";
+
+const channels = [];
+globalThis.MessageChannel = class extends MessageChannel {
+  constructor() {
+    super();
+    channels.push(this);
+  }
+};
+globalThis.onmessage = null;
+let heard = [];
+globalThis.postMessage = (message) => heard.push(message);
+await import(join(process.env.PALPATE_WEB, "worker.js"));
+
+const send = (name, argument = null) => globalThis.onmessage({ data: { [name]: argument } });
+const setup = { settings: { force: { stale_after: 0.08 } } };
+const begin = (more = {}) => send("begin", { scene: "sphere:48x48x48", setup, ...more });
+const messages = (name) => heard.filter((message) => name in message).map((message) => message[name]);
+
+/** Moves the hand down onto the ball until `done`. */
+async function press(done) {
+  for (let z = 30; !done(); z = Math.max(12, z - 0.3)) {
+    send("read", { position: [0, 0, z], buttons: 0, at: performance.timeOrigin + performance.now() });
+    await new Promise((resolve) => setTimeout(resolve, 5));
+  }
+}
+const touches = () => messages("snapshot").some((now) => now.constrained);
+
+test.afterEach(() => (heard = []));
+test.after(() => {
+  send("end");
+  for (const { port1 } of channels) port1.close();
+});
+
+test("a session that cannot begin leaves the one before it", { timeout: 300000 }, async () => {
+  await begin({ scene: "bagel" });
+  assert.match(messages("error")[0], /cylinder/);
+  await begin();
+  assert.equal(messages("ready").length, 1);
+  await press(touches);
+
+  heard = [];
+  await begin({ setup: { settings: { force: { stiffness: -1 } } } });
+  assert.match(messages("error")[0], /stiffness/);
+  assert.equal(messages("ready").length, 0);
+  await press(touches);
+
+  heard = [];
+  await begin();
+  assert.equal(messages("ready").length, 1);
+  await press(touches);
+  assert.deepEqual(messages("error"), []);
+});
+
+test("an error in the loop ends its session and is told, and the next session begins", { timeout: 300000 }, async () => {
+  await begin();
+  send("burr", Infinity);
+  await press(() => messages("error").length > 0);
+  assert.deepEqual(messages("error").map((text) => /radius/.test(text)), [true]);
+  heard = [];
+
+  await begin();
+  await press(touches);
+  assert.deepEqual(messages("error"), []);
+});
