@@ -1,0 +1,54 @@
+// A session in a Worker of the browser. Not for Node.
+import type { Geometry, Report, Samples, SessionSetup, Snapshot, Surface, Vector } from "./palpate.js";
+
+/** The session has begun: its samples, which the page owns, and their geometry. */
+export interface Ready extends Required<Geometry> {
+  /** Of a scene. */
+  isovalue?: number;
+  samples: Samples;
+  type: "uint8" | "int16" | "uint16" | "float32";
+  minimum: number;
+  maximum: number;
+  /** Whether the loop sleeps between ticks (docs/web.md). */
+  isolated: boolean;
+}
+
+/** Called with the messages of the worker. */
+export interface Hearing {
+  ready?(made: Ready): void;
+  /** Around 60 times a second. */
+  snapshot?(now: Snapshot): void;
+  surface?(mesh: Surface): void;
+  /** False if there was nothing to undo or redo. */
+  edited?(changed: boolean): void;
+  recording?(text: string): void;
+  report?(report: Report): void;
+  error?(message: string): void;
+}
+
+/** The functions of Session by name, with their argument. Surfaces are made by the thread that renders. */
+export interface Requests {
+  /** Either a scene, or samples and their geometry. Ends the session before it, unless it fails. */
+  begin: { scene?: string; samples?: Samples; geometry?: Geometry; setup: Omit<SessionSetup, "isovalue"> & { isovalue?: number } };
+  read: { position: Vector; buttons: number; at: number };
+  lose: null;
+  command: [name: string, members: Record<string, unknown>];
+  /** Radius [mm] of the burr that drills, 0 for none. Each call begins a step of undo. */
+  burr: number;
+  undo: null;
+  redo: null;
+  /** At this isovalue. */
+  surface: number;
+  record: null;
+  recording: null;
+  report: null;
+  end: null;
+}
+
+export class Hand {
+  constructor(hear: Hearing);
+  send<Name extends keyof Requests>(name: Name, argument?: Requests[Name], transfer?: Transferable[]): void;
+  /** A reading [device mm], measured now. */
+  read(position: ArrayLike<number>, buttons?: number): void;
+  command(name: string, members?: Record<string, unknown>): void;
+}
