@@ -20,7 +20,8 @@ constexpr To bit_cast(const From& from) noexcept {
     return __builtin_bit_cast(To, from);
 }
 
-/// The fewest digits that read back as the same double.
+/// 15, 16 or 17 significant digits: the first of these that reads back as the same double. A real
+/// to_chars() may need fewer, for example for 5e-324.
 inline to_chars_result to_chars(char* first, char* last, double value) {
     char digits[32];
     int size = 0;
