@@ -26,7 +26,7 @@ let histogram = null;
 let level = 0;
 let pressing = false;
 let meshing = false; // a surface was asked for and has not come
-let stale = false; // and another one is needed
+let stale = false; // another one is needed
 let recording = false;
 let opened = ""; // name of the volume
 let shown = 0; // level of the surface
@@ -50,6 +50,9 @@ function tell(text, least = 0) {
 const to = new Hand({
   ready(made) {
     volume = { ...made, number: (volume?.number ?? 0) + 1 };
+    snapshot = null;
+    scene.surface = null;
+    hand[2] = far;
     histogram = histogramOf(volume);
     useLevel(levels[opened] ?? made.isovalue ?? histogram.otsu);
     document.body.dataset.ready = "1";
@@ -81,12 +84,16 @@ const to = new Hand({
       ["late, 99.9 %", us(lateness.p999)], ["work, median", us(work.p50)], ["sleeps between ticks", volume.isolated ? "yes" : "no"]];
     $("report").innerHTML = rows.map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("");
   },
-  error: (text) => tell(`Error: ${text}`, 5000),
+  error(text) {
+    meshing = false;
+    tell(`Error: ${text}`, 5000);
+  },
 });
 
+/** Not while pressing: the worker makes the surface, and renders no ticks meanwhile. */
 function remesh() {
-  stale = meshing;
-  if (meshing) return;
+  stale = meshing || pressing;
+  if (stale) return;
   meshing = true;
   shown = level;
   to.send("surface", level);
@@ -103,10 +110,8 @@ function useLevel(value) {
 }
 
 function begin(data, name, file) {
-  snapshot = null;
-  scene.surface = null;
+  if (recording) setRecording(false); // the worker still has its session
   opened = name;
-  hand[2] = far;
   $("through").checked = $("layers").checked = $("drill").checked = false;
   $("layersLabel").hidden = name !== "head";
   to.send("burr", 0);
@@ -175,6 +180,7 @@ const follow = (event) => {
 const setPressing = (on) => {
   pressing = on;
   if ($("drill").checked) to.send("burr", on ? drillRadius() : 0); // each press is a step of undo
+  if (stale) remesh();
 };
 const drillRadius = () => 2.5 * Math.max(...volume.spacing);
 canvas.addEventListener("pointermove", follow);
@@ -234,12 +240,13 @@ $("layers").onchange = ({ target }) => to.command("layers", target.checked ? { l
 $("drill").onchange = ({ target }) => to.send("burr", target.checked && pressing ? drillRadius() : 0);
 $("undo").onclick = () => to.send("undo");
 $("redo").onclick = () => to.send("redo");
-$("record").onclick = ({ target }) => {
-  recording = !recording;
-  target.setAttribute("aria-pressed", String(recording));
-  target.textContent = recording ? "End the recording" : "Record";
-  to.send(recording ? "record" : "recording");
-};
+function setRecording(on) {
+  recording = on;
+  $("record").setAttribute("aria-pressed", String(on));
+  $("record").textContent = on ? "End the recording" : "Record";
+  to.send(on ? "record" : "recording");
+}
+$("record").onclick = () => setRecording(!recording);
 setInterval(() => volume && to.send("report"), 1000);
 requestAnimationFrame(frame);
 openHead();

@@ -67,6 +67,16 @@ const says = (page, pattern) =>
   page.waitForFunction((text) => new RegExp(text).test(document.getElementById("state").textContent), { timeout: 150000 }, pattern.source);
 const picture = (page, name) => page.screenshot({ path: join(pictures, `${name}.png`) });
 
+/** In the browser: counts the surfaces that are asked of the worker. */
+function countRequests() {
+  const post = Worker.prototype.postMessage;
+  window.surfacesAsked = 0;
+  Worker.prototype.postMessage = function (message, ...more) {
+    if ("surface" in message) ++window.surfacesAsked;
+    return post.call(this, message, ...more);
+  };
+}
+
 const skip = (!existsSync(chromium) && "there is no Chromium") || (!puppeteer() && "puppeteer-core is not installed (scripts/deep/web)");
 
 test("the head is touched, pressed through, drilled and recorded", { skip, timeout: 1500000 }, async () => {
@@ -95,13 +105,16 @@ test("the head is touched, pressed through, drilled and recorded", { skip, timeo
 
     await page.click("#drill");
     const surfaces = () => page.evaluate(() => Number(document.body.dataset.surface));
-    let before = await surfaces();
     const more = () => page.waitForFunction((n) => Number(document.body.dataset.surface) > n, { timeout: 150000 }, before);
     await page.mouse.move(x, y);
     await page.mouse.down();
-    await more();
+    await page.evaluate(countRequests);
+    await says(page, /In contact/);
     await new Promise((resolve) => setTimeout(resolve, 1500));
+    assert.equal(await page.evaluate(() => window.surfacesAsked), 0, "while the hand presses");
+    let before = await surfaces();
     await page.mouse.up();
+    await more();
     await says(page, /press to touch/);
     await picture(page, "drilled");
     before = await surfaces();
@@ -119,6 +132,20 @@ test("the head is touched, pressed through, drilled and recorded", { skip, timeo
       const volume = join(process.env.PALPATE_SOURCE, "data", "visible_human_head.nrrd");
       execFileSync(process.env.PALPATE, ["replay", file, "--validate", "--volume", volume], { stdio: "pipe" });
     }
+  });
+});
+
+test("another volume ends the recording of the one before", { skip, timeout: 1500000 }, async () => {
+  await opened(async (page) => {
+    await page.click("#record");
+    await page.evaluate(() => (document.body.dataset.surface = "0"));
+    await page.select("#volume", "synthetic:torus:64x64x64");
+    await page.waitForSelector("#save:not([hidden])", { timeout: 150000 });
+    const text = await page.evaluate(async () => (await fetch(document.getElementById("save").href)).text());
+    assert.match(text, /visible_human_head[^]*# end \{/);
+    assert.equal(await page.$eval("#record", (button) => button.getAttribute("aria-pressed")), "false");
+    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0, { timeout: 150000 });
+    await says(page, /press to touch/);
   });
 });
 
