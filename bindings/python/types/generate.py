@@ -1,7 +1,7 @@
 """Writes the module's types for editors and type checkers: a part written by hand, then the types of the compiled
 part, from its docstrings.
 
-usage: stub.py HEAD.pyi OUT.pyi  (with the package palpate in PYTHONPATH)
+usage: generate.py HEAD.pyi OUT.pyi  (with the package palpate in PYTHONPATH)
 """
 
 import re

@@ -1,4 +1,4 @@
-"""Types of palpate, for editors and type checkers: what is written in Python. bindings/python/stub.py adds
+"""Types of palpate, for editors and type checkers: what is written in Python. bindings/python/types/generate.py adds
 those of the compiled part."""
 
 import dataclasses
