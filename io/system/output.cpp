@@ -1,6 +1,7 @@
 // Atomic output by descriptors, because streams report a full disk late or not at all.
 #include "palpate/io/output.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -33,6 +34,14 @@ std::string remedy(int error) {
 
 std::string because(int error) {
     return reason(error) + remedy(error);
+}
+
+/// Whether a descriptor leads to where standard output does.
+bool is_standard_output(int descriptor) {
+    struct stat its {
+    }, own{};
+    return ::fstat(descriptor, &its) == 0 && ::fstat(STDOUT_FILENO, &own) == 0 &&
+           its.st_dev == own.st_dev && its.st_ino == own.st_ino;
 }
 
 /// The file at the end of a chain of links; the path itself if it is no link.
@@ -146,9 +155,10 @@ void PendingFile::fail(const std::string& problem) {
 }
 
 void PendingFile::fail_to_write(int error) {
+    const bool has_reader_gone = error == EPIPE && is_standard_output(descriptor_);
     discard();
     const std::string text = target_.string() + ": could not be written: " + because(error);
-    if (error == EPIPE) throw ReaderGone(text);
+    if (has_reader_gone) throw ReaderGone(text);
     throw OutputError(text);
 }
 

@@ -12,7 +12,7 @@
 
 namespace palpate::io {
 
-/// The reader of a stream has ended, because it has enough.
+/// The reader of standard output has ended, because it has enough.
 class ReaderGone : public OutputError {
     using OutputError::OutputError;
 };
