@@ -1,6 +1,7 @@
 // Volume and session from a recording's head, and its ticks again.
 #include "palpate/run/replay.hpp"
 
+#include "palpate/io/address.hpp"
 #include "palpate/run/labels.hpp"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace palpate::run {
 namespace {
 
 std::string volume_name(const std::string& recorded, const std::filesystem::path& recording) {
-    if (recorded.starts_with("synthetic:") || is_web_address(recorded) ||
+    if (recorded.starts_with("synthetic:") || io::is_web_address(recorded) ||
         std::filesystem::exists(recorded)) {
         return recorded;
     }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "palpate/filters/dequantize.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/scenes/beating.hpp"
 #include "palpate/scenes/volumes.hpp"
@@ -230,7 +231,7 @@ LoadedVolume loaded_of(const StoreSource& from, const Source& source,
         StreamedVolume{std::move(store), from.loader, {from.address, options_of(from, time)}};
     loaded.streamed->loader.shared = stream::shared_loader(loaded.streamed->loader.threads);
     start_samples(loaded);  // says now what is wrong with the level
-    if (!is_web_address(from.address)) note_original(*loaded.streamed, tell);
+    if (!io::is_web_address(from.address)) note_original(*loaded.streamed, tell);
     return loaded;
 }
 

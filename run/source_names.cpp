@@ -112,7 +112,7 @@ std::optional<StoreSource> store_of(const FileSource& file, const Names& names) 
         names.contains("level") || names.contains("memory") || names.contains("all-times");
     const bool chunked = !file.raw && stream::is_chunked(file.path);
     if (!asked && !chunked && !is_large(file.path)) return std::nullopt;
-    if (!is_web_address(file.path) && !stream::is_store(file.path, options)) {
+    if (!io::is_web_address(file.path) && !stream::is_store(file.path, options)) {
         if (!asked) return std::nullopt;
         throw std::invalid_argument(
             file.path +
@@ -131,7 +131,7 @@ std::optional<StoreSource> store_of(const FileSource& file, const Names& names) 
     }
     store.loader.coarse_first = value_of(names, "coarse-first") == "yes";
     // Only a network has to be waited for; each thread has a stack in memory that is locked.
-    if (!is_web_address(file.path)) store.loader.threads = 4;
+    if (!io::is_web_address(file.path)) store.loader.threads = 4;
     return store;
 }
 
@@ -163,10 +163,6 @@ struct NameOf {
 };
 
 }  // namespace
-
-bool is_web_address(const std::string& name) {
-    return name.starts_with("http://") || name.starts_with("https://") || name.starts_with("s3://");
-}
 
 std::string name_of(const Source& source) {
     return std::visit(NameOf{}, source.from);

@@ -9,6 +9,7 @@
 #include "apps/options/no_effect.hpp"
 #include "apps/options/values.hpp"
 #include "palpate/filters/dequantize.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/scenes/volumes.hpp"
 
@@ -131,7 +132,7 @@ void SourceOptions::warn_of_no_effect(const run::Source& source) const {
         warn({"--level", "--channel", "--memory", "--coarse-first", "--all-times", "--cache",
               "--cache-size", "--forbidden-is-missing"},
              " is read as a whole");
-    } else if (!run::is_web_address(store->address)) {
+    } else if (!io::is_web_address(store->address)) {
         warn({"--cache", "--cache-size", "--forbidden-is-missing"}, " is on this machine");
     } else if (cache_folder.empty()) {
         warn({"--cache-size"}, " is read without --cache");

@@ -3,6 +3,7 @@
 #include "bindings/python/own_process.hpp"
 #include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/live_file.hpp"
 #include "palpate/io/raw_options.hpp"
 #include "palpate/io/sample_volume.hpp"
@@ -52,7 +53,7 @@ run::LoadedVolume load(const fs::path& name, const LoadOptions& options,
                        const ProgressFunction& progress) {
     const run::Source source = source_of(name, options);
     const auto kind = name.extension();
-    if (run::is_web_address(name.string()) || kind == ".zarr" || kind == ".n5") {
+    if (io::is_web_address(name.string()) || kind == ".zarr" || kind == ".n5") {
         throw io::InputError(io::without_secrets(name.string()) +
                              ": is read by the box: open it with open_store(); read() gives a "
                              "Volume, and Run(open_store(...)) feels it");

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <map>
 
+#include "palpate/io/address.hpp"
 #include "stream/box_bytes.hpp"
 #include "stream/objects/objects.hpp"
 #include "stream/objects/remote_objects.hpp"
@@ -47,7 +48,8 @@ struct Effort {
 
 Effort effort_for(const StoreInfo& info) {
     if (info.format == "memory") return {UINT64_MAX, 0};
-    if (is_remote(info.address)) return {std::uint64_t{1} << 20, 8};  // each costs a round trip
+    if (io::is_web_address(info.address))
+        return {std::uint64_t{1} << 20, 8};  // each costs a round trip
     return {std::uint64_t{64} << 20, 64};
 }
 

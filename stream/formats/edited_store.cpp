@@ -50,7 +50,7 @@ Json json_of(const EditsNote& note, const fs::path& out) {
         {"level", note.level},          {"channel", options.channel},
         {"time", options.time},         {"bounds", {note.bounds.minimum, note.bounds.maximum}}};
     if (note.lacks_secrets || kept != note.of.address) json["secrets"] = "left out";
-    if (!is_remote(note.of.address)) {
+    if (!io::is_web_address(note.of.address)) {
         json["of"] = io::json_of_path(fs::absolute(note.of.address));
         const fs::path beside =
             placed(note.of.address).lexically_relative(placed(out).parent_path());
@@ -81,7 +81,7 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
     EditsNote note;
     note.of = {io::path_from_json(json.at("of")).string(), options};
     note.content = json.value("content", std::string());
-    note.lacks_secrets = json.contains("secrets") && is_remote(note.of.address) &&
+    note.lacks_secrets = json.contains("secrets") && io::is_web_address(note.of.address) &&
                          io::address_to_keep(note.of.address) == note.of.address;
     const fs::path relative = io::path_from_json(json.value("beside", Json("")));
     const fs::path beside = placed(folder).parent_path() / relative;
@@ -244,7 +244,7 @@ std::shared_ptr<const Store> open_original(const std::stop_token& stop, const st
 
 std::shared_ptr<const Store> open_with_original(const std::stop_token& stop,
                                                 const std::string& folder, EditsNote note) {
-    if (!is_remote(note.of.address) && holds_edits(note.of.address)) {
+    if (!io::is_web_address(note.of.address) && holds_edits(note.of.address)) {
         throw io::InputError(folder + ": is of a volume that is of edits itself: it is damaged");
     }
     auto original = open_original(stop, folder, note);

@@ -7,6 +7,7 @@
 #include "io/plain_samples.hpp"
 #include "io/process/located_chunks.hpp"
 #include "io/tiff_peek.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/formats/edited_store.hpp"
 #include "stream/formats/stores.hpp"
@@ -101,18 +102,18 @@ std::shared_ptr<const Objects> remote_objects(const std::string& address,
 
 bool is_chunked(const std::string& address) {
     std::error_code error;
-    return is_remote(address) || is_chunked_folder(address) || is_pyramid(address) ||
+    return io::is_web_address(address) || is_chunked_folder(address) || is_pyramid(address) ||
            (io::is_hdf5_name(address) && std::filesystem::is_regular_file(address, error));
 }
 
 bool is_store(const std::string& address, const StoreOptions& options) {
-    return is_remote(address) || is_chunked_folder(address) || is_located(address, options) ||
-           is_plain(address, options);
+    return io::is_web_address(address) || is_chunked_folder(address) ||
+           is_located(address, options) || is_plain(address, options);
 }
 
 std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::string& address,
                                         const StoreOptions& options) {
-    if (is_remote(address)) {
+    if (io::is_web_address(address)) {
         if (const auto file = remote_file(address)) {
             return open_located(stop, remote_objects(file->folder, options, stop), file->name,
                                 options);

@@ -28,10 +28,11 @@ std::string escaped(const std::string& key) {
     return text;
 }
 
+constexpr std::string_view s3 = "s3://";  // in letters of any case; the other schemes are longer
+
 /// A bucket with dots has no certificate of its own.
 std::string url_of_s3(const std::string& address) {
-    constexpr std::string_view scheme = "s3://";
-    const std::string rest = address.substr(scheme.size());
+    const std::string rest = address.substr(s3.size());
     const std::size_t slash = std::min(rest.find('/'), rest.size());
     const std::string bucket = rest.substr(0, slash), key = rest.substr(slash);
     if (bucket.empty()) {
@@ -47,7 +48,7 @@ class HttpObjects : public Objects {
         : forbidden_is_missing_(options.forbidden_is_missing),
           stop_(std::move(stop)),
           client_({options.requests, options.timeout_s, options.attempts}, traffic_) {
-        base_ = address.starts_with("s3://") ? url_of_s3(address) : address;
+        base_ = address.find("://") == s3.find("://") ? url_of_s3(address) : address;
         const std::size_t question = std::min(base_.find('?'), base_.size());
         query_ = base_.substr(question);
         base_.resize(question);
@@ -194,11 +195,6 @@ class HttpObjects : public Objects {
 };
 
 }  // namespace
-
-bool is_remote(const std::string& address) {
-    return address.starts_with("http://") || address.starts_with("https://") ||
-           address.starts_with("s3://");
-}
 
 std::shared_ptr<const Objects> http_objects(const std::string& address, const StoreOptions& options,
                                             std::stop_token stop) {

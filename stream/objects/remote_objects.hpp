@@ -8,8 +8,6 @@
 
 namespace palpate::stream {
 
-bool is_remote(const std::string& address);
-
 /// Behind an http://, https:// or s3:// address. `stop`: of requests that have no token of their
 /// own.
 std::shared_ptr<const Objects> http_objects(const std::string& address, const StoreOptions& options,

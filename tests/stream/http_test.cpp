@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "io/volume_support.hpp"
+#include "palpate/io/address.hpp"
 #include "stream/shards.hpp"
 #include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
@@ -61,6 +62,16 @@ TEST(Http, a_volume_of_a_terabyte_opens_and_gives_the_samples_of_its_formula) {
     expect_formula(*store, 7, {Index3(50, 50, 50), Index3(95, 80, 70)});
     EXPECT_GT(store->traffic().requests, 20U);
     EXPECT_GT(store->traffic().bytes, 1000U);
+}
+
+TEST(Http, a_scheme_is_written_in_letters_of_any_case) {
+    const VolumeServer server;
+    const std::string address = server.address("virtual.zarr");
+    expect_formula(*open_store("HTTP" + address.substr(4)), 0, at_a_surface);
+    for (const char* other : {"ftp://host/a.zarr", "http:/host/a.zarr", "S3:", "a/http://b", ""}) {
+        EXPECT_FALSE(io::is_web_address(other)) << other;
+    }
+    EXPECT_TRUE(io::is_web_address("S3://bucket/a.zarr"));
 }
 
 TEST(Http, metadata_of_all_levels_are_asked_for_together) {

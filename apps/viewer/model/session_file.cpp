@@ -12,6 +12,7 @@
 #include "apps/viewer/model/colour_map.hpp"
 #include "io/json_members.hpp"
 #include "io/json_text.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/csv.hpp"
 #include "palpate/io/output.hpp"
 
@@ -285,7 +286,7 @@ void check_session(const SessionFile& s) {
 
 /// A name from the file, relative to the session's folder.
 std::string name_in(const std::string& volume, const std::filesystem::path& folder) {
-    if (volume.starts_with(synthetic_prefix) || run::is_web_address(volume)) return volume;
+    if (volume.starts_with(synthetic_prefix) || io::is_web_address(volume)) return volume;
     return (folder / volume).lexically_normal().string();
 }
 
@@ -304,7 +305,7 @@ run::Source source_from(const Json& json, const std::string& member,
 
 /// The name for the file: relative where the volume lies below the folder.
 std::string name_from(const std::string& volume, const std::filesystem::path& folder) {
-    if (volume.starts_with(synthetic_prefix) || run::is_web_address(volume)) return volume;
+    if (volume.starts_with(synthetic_prefix) || io::is_web_address(volume)) return volume;
     const auto whole = std::filesystem::absolute(volume).lexically_normal();
     const auto below =
         whole.lexically_relative(std::filesystem::absolute(folder).lexically_normal());

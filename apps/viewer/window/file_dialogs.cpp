@@ -8,6 +8,7 @@
 #include <QFileInfo>
 #include <QSettings>
 
+#include "palpate/io/address.hpp"
 #include "palpate/run/source.hpp"
 
 namespace palpate::viewer {
@@ -26,7 +27,7 @@ QString last_folder() {
 
 /// A synthetic volume or a web address.
 bool is_no_file(const QString& path) {
-    return path.startsWith("synthetic:") || run::is_web_address(path.toStdString());
+    return path.startsWith("synthetic:") || io::is_web_address(path.toStdString());
 }
 
 }  // namespace

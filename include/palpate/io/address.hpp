@@ -1,11 +1,23 @@
-// Web addresses as files may keep them, without what gives access.
+// Web addresses: which names are some, and how files may keep them, without what gives access.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 
 #include "palpate/io/error.hpp"
 
 namespace palpate::io {
+
+/// An address with http://, https:// or s3://, in letters of any case.
+inline bool is_web_address(std::string_view name) {
+    const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+    constexpr std::array<std::string_view, 3> schemes = {"http://", "https://", "s3://"};
+    return std::ranges::any_of(schemes, [&](std::string_view scheme) {
+        return std::ranges::equal(name.substr(0, scheme.size()), scheme, {}, small);
+    });
+}
 
 /// A web address as files may keep it: without user, password and query, which may give access; of
 /// a query, the version of an object stays. Other names stay as they are.
