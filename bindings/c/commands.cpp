@@ -1,5 +1,8 @@
 // Commands of the C interface to a run: each is checked here and carried out within a tick or two.
 #include <initializer_list>
+#include <stdexcept>
+#include <string>
+#include <variant>
 
 #include "bindings/c/handles.hpp"
 #include "bindings/c/settings.hpp"
@@ -29,7 +32,14 @@ palpate_status set(palpate_run* run, std::initializer_list<NamedValue> values) n
     return send(run, [&](const run::Run& now) {
         RendererSettings settings = now.settings();
         Command command;
-        for (const auto& [name, value] : values) command = change(settings, name, value);
+        for (const auto& [name, value] : values) {
+            const double before = value_of(settings, name);
+            command = change(settings, name, value);
+            if (std::holds_alternative<DeviceLimits>(command) && value > before) {
+                throw std::invalid_argument(std::string(name) +
+                                            ": a limit of a run can only be lowered");
+            }
+        }
         return command;
     });
 }

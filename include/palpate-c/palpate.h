@@ -491,7 +491,8 @@ PALPATE_API palpate_status palpate_run_text(const palpate_run *run, int32_t whic
 PALPATE_API palpate_status palpate_run_get(const palpate_run *run, const char *name, double *value);
 
 /* Commands, carried out within a tick or two. */
-/* A setting by its name. Limits can only be lowered. Since 0.3. */
+/* A setting by its name. PALPATE_INVALID for a limit that would rise: limits can only be lowered.
+ * Since 0.3. */
 PALPATE_API palpate_status palpate_run_set(palpate_run *run, const char *name, double value);
 PALPATE_API palpate_status palpate_run_set_isovalue(palpate_run *run, double isovalue);
 PALPATE_API palpate_status palpate_run_set_forces(palpate_run *run, int32_t on);
