@@ -77,7 +77,7 @@ void refuse_misspelt_kind(const CLI::App& command, const std::string& volume) {
     }
     const std::string near = nearest_name(volume, kinds);
     if (near.empty()) return;
-    throw std::invalid_argument(volume + ": does not exist: did you mean demo " + near + "?");
+    throw std::invalid_argument(volume + ": does not exist (did you mean demo " + near + "?)");
 }
 
 }  // namespace

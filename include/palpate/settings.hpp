@@ -95,33 +95,36 @@ void for_each_number(const std::string& path, Owner& owner, auto&& visit) {
 }
 
 template <>
-inline constexpr auto settings_of<Friction> = std::tuple{
-    setting(&Friction::static_coefficient, "static_coefficient", "",
-            "Pull along the surface that moves a resting proxy, of that into it (0: none)")
-        .in_files("static")
-        .within(ranges::not_negative),
-    setting(&Friction::dynamic_coefficient, "dynamic_coefficient", "",
-            "The same of a moving proxy, at most the static one")
-        .in_files("dynamic")
-        .within(ranges::not_negative)};
-
-template <>
-inline constexpr auto settings_of<Magnet> = std::tuple{
-    setting(&Magnet::distance, "distance", "device mm", "Distance at which it ends (0: off)")
-        .titled("magnet distance")
-        .within(ranges::not_negative),
-    setting(&Magnet::peak, "peak", "N", "Its force halfway")
-        .titled("magnet peak")
-        .within(ranges::not_negative)};
-
-template <>
-inline constexpr auto settings_of<Texture> =
-    std::tuple{setting(&Texture::amplitude, "amplitude", "mm, physical", "Height (0: off)")
-                   .titled("texture amplitude")
+inline constexpr auto settings_of<Friction> =
+    std::tuple{setting(&Friction::static_coefficient, "static_coefficient", "",
+                       "Pull along the surface that moves a resting proxy, as a part of the pull "
+                       "into it (0: none)")
+                   .in_files("static")
                    .within(ranges::not_negative),
-               setting(&Texture::wavelength, "wavelength", "mm, physical", "From bump to bump")
-                   .titled("texture wavelength")
-                   .within(ranges::positive)};
+               setting(&Friction::dynamic_coefficient, "dynamic_coefficient", "",
+                       "The same for a moving proxy. At most the static one")
+                   .in_files("dynamic")
+                   .within(ranges::not_negative)};
+
+template <>
+inline constexpr auto settings_of<Magnet> =
+    std::tuple{setting(&Magnet::distance, "distance", "device mm",
+                       "Distance at which the magnet ends (0: off)")
+                   .titled("magnet distance")
+                   .within(ranges::not_negative),
+               setting(&Magnet::peak, "peak", "N", "Force of the magnet at half of that distance")
+                   .titled("magnet peak")
+                   .within(ranges::not_negative)};
+
+template <>
+inline constexpr auto settings_of<Texture> = std::tuple{
+    setting(&Texture::amplitude, "amplitude", "mm, physical", "Height of the bumps (0: off)")
+        .titled("texture amplitude")
+        .within(ranges::not_negative),
+    setting(&Texture::wavelength, "wavelength", "mm, physical",
+            "Distance from one bump to the next")
+        .titled("texture wavelength")
+        .within(ranges::positive)};
 
 template <>
 inline constexpr auto settings_of<ForceSettings> = std::tuple{
@@ -135,8 +138,9 @@ inline constexpr auto settings_of<ForceSettings> = std::tuple{
     setting(&ForceSettings::viscosity, "viscosity", "N s/mm", "Viscosity of the medium")
         .as_option("--viscosity")
         .within(ranges::not_negative),
-    setting(&ForceSettings::magnet, "magnet", "", "Snap to near surfaces").as_option("--magnet"),
-    setting(&ForceSettings::texture, "texture", "", "Bumps").as_option("--texture"),
+    setting(&ForceSettings::magnet, "magnet", "", "Pull the hand to a surface that is near")
+        .as_option("--magnet"),
+    setting(&ForceSettings::texture, "texture", "", "Bumps on the surface").as_option("--texture"),
     setting(&ForceSettings::limit, "limit", "N", "Largest force, in addition to the device's limit")
         .titled("force limit")
         .as_option("--force-limit")
@@ -154,7 +158,7 @@ inline constexpr auto settings_of<ForceSettings> = std::tuple{
         .if_open("0.25; in replay() 0")
         .within(ranges::not_negative),
     setting(&ForceSettings::stale_after, "stale_after", "s",
-            "A longer time between two states of the device is a pause")
+            "A longer time between two readings of the device is a pause")
         .titled("stale time")
         .within(ranges::limit),
     setting(
@@ -185,19 +189,21 @@ inline constexpr auto settings_of<ForceSettings> = std::tuple{
 
 template <>
 inline constexpr auto settings_of<DeviceLimits> = std::tuple{
-    setting(&DeviceLimits::maximum_force, "maximum_force", "N", "Never exceeded")
+    setting(&DeviceLimits::maximum_force, "maximum_force", "N",
+            "Largest force that the device may get")
         .titled("maximum force")
         .within(ranges::positive),
-    setting(&DeviceLimits::rate, "rate", "Hz", "Of the servo loop").within(ranges::rate),
-    setting(&DeviceLimits::physical_damping, "physical_damping", "N s/mm", "Of device and hand")
+    setting(&DeviceLimits::rate, "rate", "Hz", "Rate of the servo loop").within(ranges::rate),
+    setting(&DeviceLimits::physical_damping, "physical_damping", "N s/mm",
+            "Damping of device and hand themselves")
         .titled("physical damping")
         .within(ranges::positive),
     setting(&DeviceLimits::maximum_torque, "maximum_torque", "N mm",
-            "Never exceeded (0: the device renders none)")
+            "Largest torque that the device may get (0: it renders none)")
         .titled("maximum torque")
         .within(ranges::not_negative),
     setting(&DeviceLimits::physical_rotational_damping, "physical_rotational_damping", "N mm s/rad",
-            "Of device and hand, against turning")
+            "Damping of device and hand themselves against turning")
         .titled("physical rotational damping")
         .within(ranges::positive)};
 
@@ -212,16 +218,18 @@ inline constexpr auto settings_of<DeviceTransform> =
 
 template <>
 inline constexpr auto settings_of<DensityRange> =
-    std::tuple{setting(&DensityRange::low, "low", "data units", "Least level felt"),
-               setting(&DensityRange::high, "high", "data units", "Greatest level felt")};
+    std::tuple{setting(&DensityRange::low, "low", "data units", "Lowest level that is touched"),
+               setting(&DensityRange::high, "high", "data units", "Highest level that is touched")};
 
 template <>
 inline constexpr auto settings_of<Needle> = std::tuple{
-    setting(&Needle::lateral_stiffness, "lateral_stiffness", "N/mm", "Towards the line")
+    setting(&Needle::lateral_stiffness, "lateral_stiffness", "N/mm",
+            "Stiffness of the pull to the needle's line")
         .within(ranges::not_negative),
-    setting(&Needle::static_ratio, "static_ratio", "", "Friction at rest, of that in motion")
+    setting(&Needle::static_ratio, "static_ratio", "",
+            "Friction at rest, as a multiple of that in motion")
         .within(ranges::at_least_1),
-    setting(&Needle::stick_speed, "stick_speed", "mm/s", "Slower than this the shaft sticks")
+    setting(&Needle::stick_speed, "stick_speed", "mm/s", "Speed below which the shaft sticks")
         .within(ranges::limit_or_zero)};
 
 template <>
