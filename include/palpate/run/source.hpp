@@ -55,8 +55,6 @@ struct Source {
     bool prefilter = false;  ///< after all that, see sharpened()
 };
 
-/// Names of http, https and s3.
-bool is_web_address(const std::string& name);
 /// As people write it: "head.nrrd", "synthetic:torus", "live:frames.shm".
 std::string name_of(const Source& source);
 /// The inverse, with everything else as its default.
