@@ -250,14 +250,14 @@ PALPATE_API void palpate_renderer_destroy(palpate_renderer *renderer);
  *   `force.stiffness` [N/mm] Stiffness (default: 0.5).
  *   `force.damping` [N s/mm] Damping along the contact normal (default: 0).
  *   `force.viscosity` [N s/mm] Viscosity of the medium (default: 0).
- *   `force.magnet.distance` [device mm] Distance at which it ends (0: off) (default: 0).
- *   `force.magnet.peak` [N] Its force halfway (default: 0).
- *   `force.texture.amplitude` [mm, physical] Height (0: off) (default: 0).
- *   `force.texture.wavelength` [mm, physical] From bump to bump (default: 2).
+ *   `force.magnet.distance` [device mm] Distance at which the magnet ends (0: off) (default: 0).
+ *   `force.magnet.peak` [N] Force of the magnet at half of that distance (default: 0).
+ *   `force.texture.amplitude` [mm, physical] Height of the bumps (0: off) (default: 0).
+ *   `force.texture.wavelength` [mm, physical] Distance from one bump to the next (default: 2).
  *   `force.limit` [N] Largest force, in addition to the device's limit (default: 3.3).
  *   `force.rate_limit` [N/s] Largest change of force (default: 2000).
  *   `force.ramp` [s] Duration of the rise of the force from zero at the start (default: 0.25).
- *   `force.stale_after` [s] A longer time between two states of the device is a pause (default: 0.02).
+ *   `force.stale_after` [s] A longer time between two readings of the device is a pause (default: 0.02).
  *   `force.start_below` [N] No force after a start or a pause until the computed one is this small (inf:
  *       do not wait) (default: inf).
  *   `force.rotational_stiffness` [N mm/rad] Rotational stiffness of a tool (0: from stiffness and the
@@ -265,14 +265,16 @@ PALPATE_API void palpate_renderer_destroy(palpate_renderer *renderer);
  *   `force.rotational_damping` [N mm s/rad] Rotational damping of a tool (default: 0).
  *   `force.torque_limit` [N mm] Largest torque (default: inf).
  *   `force.torque_rate_limit` [N mm/s] Largest change of torque (default: 200000).
- *   `friction.static_coefficient` Pull along the surface that moves a resting proxy, of that into it (0:
- *       none) (default: 0).
- *   `friction.dynamic_coefficient` The same of a moving proxy, at most the static one (default: 0).
- *   `limits.maximum_force` [N] Never exceeded (default: 3.3).
- *   `limits.rate` [Hz] Of the servo loop (default: 1000).
- *   `limits.physical_damping` [N s/mm] Of device and hand (default: 0.0025).
- *   `limits.maximum_torque` [N mm] Never exceeded (0: the device renders none) (default: 0).
- *   `limits.physical_rotational_damping` [N mm s/rad] Of device and hand, against turning (default: 1).
+ *   `friction.static_coefficient` Pull along the surface that moves a resting proxy, as a part of the
+ *       pull into it (0: none) (default: 0).
+ *   `friction.dynamic_coefficient` The same for a moving proxy. At most the static one (default: 0).
+ *   `limits.maximum_force` [N] Largest force that the device may get (default: 3.3).
+ *   `limits.rate` [Hz] Rate of the servo loop (default: 1000).
+ *   `limits.physical_damping` [N s/mm] Damping of device and hand themselves (default: 0.0025).
+ *   `limits.maximum_torque` [N mm] Largest torque that the device may get (0: it renders none) (default:
+ *       0).
+ *   `limits.physical_rotational_damping` [N mm s/rad] Damping of device and hand themselves against
+ *       turning (default: 1).
  */
 typedef struct palpate_setting {
     uint32_t size_of;
