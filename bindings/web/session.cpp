@@ -1,5 +1,5 @@
-// The session of a page. Its settings and commands are JSON with the names of recordings, so that one
-// table declares them.
+// The session of a page. Its settings and commands are JSON with the names of recordings, so that
+// one table declares them.
 #include "bindings/web/session.hpp"
 
 #include <emscripten.h>
