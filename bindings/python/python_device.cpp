@@ -112,13 +112,14 @@ void PythonDevice::step() {
     const std::int64_t now = devices::monotonic_ns();
     if (!unread.empty()) rests_until_ = now + rest;
     const bool rests = now < rests_until_;
+    // Taken after the GIL was waited for, so that an old force is not sent, and before the servo
+    // knows this reading: after a silence the first force is that of a servo that has let go.
+    const Wrench newest = link_.wrench(now);
     if (rests) {
         link_.report(DeviceStatus::fault, now);
     } else {
         link_.report(reading, now);
     }
-    // Taken after the GIL was waited for, so that an old force is not sent.
-    const Wrench newest = link_.wrench(devices::monotonic_ns());
     const std::string unwritten = write_to_device(rests ? Wrench{} : newest);
     if (!unwritten.empty()) rests_until_ = now + rest;
     set_problem(unread.empty() ? unwritten : unread);
