@@ -80,8 +80,10 @@ echo "== palpate demo $*"
 
 case "$viewer" in
     yes)
-        echo "== the demo is done; the viewer is built now, for \`palpate view\` and for installing"
+        echo "== the demo is done; the viewer is built now, for \`palpate view\`"
         install viewer
+        build "-DPALPATE_IO=ON -DPALPATE_PYTHON=ON -DPALPATE_VIEWER=ON" palpate_viewer palpate_io_helpers
+        echo "== \`palpate view\` opens a window from now on; the Python module and the rest are built, for installing"
         build_all ON
         ;;
     no)
