@@ -1,6 +1,7 @@
 // Data with an editor, a player or a streamer.
 #include "palpate/run/data.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <random>
 #include <stdexcept>
@@ -28,6 +29,31 @@ std::vector<std::filesystem::path> places_of_rescue() {
     if (const char* home = std::getenv("HOME")) places.emplace_back(home);
     places.emplace_back(".");
     return places;
+}
+
+/// The file, folder or numbered series of a source; empty if it is none.
+std::filesystem::path place_of(const Source& source) {
+    if (const auto* file = std::get_if<FileSource>(&source.from)) return file->path;
+    if (const auto* live = std::get_if<LiveSource>(&source.from)) return live->path;
+    return {};
+}
+
+/// Writing `path` would change `used`: the same file, one in that folder, the samples of that
+/// header, or of a numbered series any file of its folder.
+bool changes(const std::filesystem::path& path, const std::filesystem::path& used) {
+    namespace fs = std::filesystem;
+    if (io::is_same_file(path, used)) return true;
+    std::error_code error;
+    if (!fs::exists(path, error)) return false;
+    const fs::path folder = fs::absolute(path).parent_path();
+    if (fs::is_directory(used, error)) return fs::equivalent(folder, used, error);
+    if (!fs::equivalent(folder, fs::absolute(used).parent_path(), error)) return false;
+    if (used.filename().string().find('%') != std::string::npos && !fs::exists(used, error)) {
+        return true;
+    }
+    const fs::path header = used.extension();
+    return (header == ".nhdr" || header == ".mhd" || header == ".hdr") &&
+           path.filename().string().starts_with(used.stem().string() + ".");
 }
 
 /// For nobody else: in a folder of temporary files, others could put links in our way.
@@ -128,7 +154,28 @@ std::string Data::problem() const {
     return player_ ? player_->state().problem : editor_->state().problem;
 }
 
+void Data::keep(const std::filesystem::path& path) {
+    const std::lock_guard lock(mutex_);
+    kept_.push_back(path);
+}
+
+void Data::release(const std::filesystem::path& path) {
+    const std::lock_guard lock(mutex_);
+    const auto at = std::find(kept_.begin(), kept_.end(), path);
+    if (at != kept_.end()) kept_.erase(at);
+}
+
+void Data::require_unused(const std::filesystem::path& path) const {
+    const std::filesystem::path own = place_of(loaded_.source);
+    const std::lock_guard lock(mutex_);
+    const auto is_used = [&](const auto& used) { return !used.empty() && changes(path, used); };
+    if (!is_used(own) && std::none_of(kept_.begin(), kept_.end(), is_used)) return;
+    throw std::invalid_argument(path.string() +
+                                " is in use and would be replaced: choose another output");
+}
+
 void Data::check_save_name(const std::string& path) const {
+    require_unused(path);
     if (streamer_) return stream::check_edits_place(path, loaded_.streamed->opened);
     check_volume_name(path, start_->geometry());
     is_zarr(path) ? stream::check_zarr_place(path) : io::check_output(path);
@@ -143,6 +190,7 @@ void Data::require_saving() const {
 
 std::string Data::save(const std::filesystem::path& path, const io::Progress& progress) {
     require_saving();
+    require_unused(path);
     if (streamer_) return save_edits(path, progress);
     Field now(start_);
     update(now);

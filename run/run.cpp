@@ -286,6 +286,7 @@ void Run::use_field(Solid solid, Interpolation interpolation, std::optional<doub
 
 void Run::record(const std::filesystem::path& path) {
     data_->check_recording();
+    data_->require_unused(path);
     const Session session = session_now();
     auto recording = std::make_unique<io::RecordingWriter>(
         path, recording_head(session, device_->info(), data_->loaded().source, setup_.render),
@@ -297,6 +298,8 @@ void Run::record(const std::filesystem::path& path) {
         lost = std::current_exception();
     }
     recording_ = std::move(recording);
+    recorded_as_ = path;
+    data_->keep(path);
     if (running_) record_from_now();
     if (lost) std::rethrow_exception(lost);
 }
@@ -313,6 +316,7 @@ void Run::record_from_now() {
         });
     } catch (...) {
         recording_.reset();
+        data_->release(recorded_as_);
         throw;
     }
 }
@@ -323,6 +327,7 @@ std::int64_t Run::stop_recording() {
     const std::int64_t lost = servo_ ? servo_->report().unrecorded - lost_before_ : 0;
     lost_before_ += lost;
     const auto recording = std::move(recording_);
+    data_->release(recorded_as_);
     recording->finish(lost);
     return recording->ticks();
 }

@@ -1,5 +1,6 @@
 // Warns of options that change nothing.
 #include "apps/options/no_effect.hpp"
+#include "apps/options/say.hpp"
 
 #include <fmt/format.h>
 
@@ -20,8 +21,8 @@ void warn_of_no_effect(const CLI::App& command, std::initializer_list<const char
         if (is_given(command, option)) given.emplace_back(option);
     }
     if (given.empty()) return;
-    fmt::print(stderr, "palpate: warning: {} {} nothing: {}\n", fmt::join(given, ", "),
-               given.size() == 1 ? "does" : "do", why);
+    say("palpate: warning: {} {} nothing: {}\n", fmt::join(given, ", "),
+        given.size() == 1 ? "does" : "do", why);
 }
 
 }  // namespace palpate::app

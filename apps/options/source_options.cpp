@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "apps/options/no_effect.hpp"
+#include "apps/options/say.hpp"
 #include "apps/options/values.hpp"
 #include "palpate/filters/dequantize.hpp"
 #include "palpate/io/address.hpp"
@@ -189,13 +190,13 @@ void warn_of_isovalue(const Field& field, double isovalue) {
     const std::string warning = isovalue_warning(field, isovalue);
     if (warning.empty()) return;
     const Volume& volume = field.volume();
-    fmt::print(stderr, "palpate: warning: isovalue {} (data {} to {}): {}\n", isovalue,
-               volume.minimum(), volume.maximum(), warning);
+    say("palpate: warning: isovalue {} (data {} to {}): {}\n", isovalue, volume.minimum(),
+        volume.maximum(), warning);
 }
 
 void warn_of_layers(const io::LayersFile& layers, const run::LoadedVolume& loaded) {
     const std::string warning = run::layers_warning(layers, loaded);
-    if (!warning.empty()) fmt::print(stderr, "palpate: warning: {}\n", warning);
+    if (!warning.empty()) say("palpate: warning: {}\n", warning);
 }
 
 double required_isovalue(const run::LoadedVolume& loaded, const Field& field,

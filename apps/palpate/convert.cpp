@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "apps/options/no_effect.hpp"
+#include "apps/options/say.hpp"
 #include "apps/options/source_options.hpp"
 #include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
@@ -69,8 +70,7 @@ Taken opened(const ConvertWords& words) {
         }
         if (!words.source.quiet) {
             for (const std::string& note : store->info().notes) {
-                fmt::print(stderr, "palpate: note: {}: {}\n", io::without_secrets(from->address),
-                           note);
+                say("palpate: note: {}: {}\n", io::without_secrets(from->address), note);
             }
         }
         return {std::move(store), from->loader.level};
@@ -89,7 +89,7 @@ void to_zarr(const ConvertWords& words, const Taken& taken) {
         converted = stream::convert_to_zarr(*taken.store, taken.level, words.output, options);
     }
     if (!converted.note.empty() && !words.source.quiet) {
-        fmt::print(stderr, "palpate: note: {}\n", converted.note);
+        say("palpate: note: {}\n", converted.note);
     }
     if (words.json) {
         print_json({{"format", "OME-Zarr " + words.ome_version},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "apps/options/say.hpp"
 #include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/offline_summary.hpp"
@@ -178,7 +179,7 @@ void run_demo(Demo& demo, const DemoOptions& options, const DemoPicture& picture
         picture.draw(folder);
         images += image_html(picture.file, picture.shows, picture.legend);
     } catch (const io::OutputError& e) {
-        if (!quiet) fmt::print(stderr, "palpate: note: {}\n", e.what());
+        if (!quiet) say("palpate: note: {}\n", e.what());
     }
     const bool plotted = plot(demo.rows, folder);
     if (plotted) images += image_html("session.png", "Depth, force and density over time", "");

@@ -16,18 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// True for two names of one file, through links and relative paths. Neither need exist.
+/// As io::is_same_file(), also for the names of standard output.
 bool same_file(const std::string& a, const std::string& b) {
-    std::error_code error;
     if (is_standard_output(a) || is_standard_output(b)) {
         return is_standard_output(a) && is_standard_output(b);
     }
-    if (fs::exists(a, error) && fs::exists(b, error)) {
-        return fs::is_regular_file(a, error) && fs::equivalent(a, b, error);
-    }
-    // Made absolute first: a relative name that does not exist would stay relative.
-    return fs::weakly_canonical(fs::absolute(a), error) ==
-           fs::weakly_canonical(fs::absolute(b), error);
+    return io::is_same_file(a, b);
 }
 
 /// A folder, whose own check comes from what makes it.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "apps/options/say.hpp"
 #include "apps/palpate/commands.hpp"
 
 namespace palpate::app {
@@ -55,7 +56,7 @@ run::LoadedVolume load_for_terminal(const run::Source& source, bool quiet) {
     run::LoadedVolume loaded = run::load(source, [&](double fraction) { bar.at(fraction); });
     if (!quiet) {
         for (const std::string& note : loaded.notes) {
-            fmt::print(stderr, "palpate: note: {}: {}\n", io::without_secrets(loaded.name), note);
+            say("palpate: note: {}: {}\n", io::without_secrets(loaded.name), note);
         }
     }
     return loaded;
@@ -73,7 +74,7 @@ void note_terraces(const run::LoadedVolume& loaded) {
     if (source.dequantize > 0 || source.smooth > 0 || loaded.streamed || loaded.live) return;
     const std::string suggestion = dequantize_suggestion(filters::terraces_of(loaded.volume));
     if (suggestion.empty()) return;
-    fmt::print(stderr, "palpate: note: {}: try {}\n", io::without_secrets(loaded.name), suggestion);
+    say("palpate: note: {}: try {}\n", io::without_secrets(loaded.name), suggestion);
 }
 
 }  // namespace palpate::app

@@ -8,6 +8,7 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "apps/options/say.hpp"
 #include "apps/palpate/commands.hpp"
 #include "palpate/run/labels.hpp"
 #include "palpate/surface.hpp"
@@ -123,16 +124,15 @@ std::unique_ptr<Remote> make_remote(const std::string& listen, const std::string
     try {
         const bridge::Settings settings = bridge::settings_from(client ? connect : listen, client);
         if (!bridge::is_local(settings)) {
-            fmt::print(stderr,
-                       "warning: OpenIGTLink has no passwords and no encryption: everybody who "
-                       "reaches {} can read the session and change volume and level. Use it only "
-                       "in a network of your own, or over ssh: ssh -L 18944:localhost:18944\n",
-                       settings.host);
+            say("warning: OpenIGTLink has no passwords and no encryption: everybody who "
+                "reaches {} can read the session and change volume and level. Use it only "
+                "in a network of your own, or over ssh: ssh -L 18944:localhost:18944\n",
+                settings.host);
         }
         auto remote = std::make_unique<Remote>(settings);
         if (!quiet) {
-            fmt::print(stderr, "OpenIGTLink: {} {}:{}\n", client ? "connecting to" : "waiting at",
-                       settings.host, remote->port());
+            say("OpenIGTLink: {} {}:{}\n", client ? "connecting to" : "waiting at", settings.host,
+                remote->port());
         }
         return remote;
     } catch (const std::runtime_error& e) {

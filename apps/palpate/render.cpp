@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "apps/options/no_effect.hpp"
+#include "apps/options/say.hpp"
 #include "apps/options/source_options.hpp"
 #include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
@@ -166,10 +167,9 @@ Drawing drawing_of(const RenderPictureOptions& options) {
         const int every =
             pictures::add_levels(scene, field, levels, [&](double fraction) { bar.at(fraction); });
         if (every > 1 && !options.source.quiet) {
-            fmt::print(stderr,
-                       "palpate: note: {}: too large for a picture: drawn from one in {} samples "
-                       "along each axis, without finer details\n",
-                       loaded.name, every);
+            say("palpate: note: {}: too large for a picture: drawn from one in {} samples "
+                "along each axis, without finer details\n",
+                loaded.name, every);
         }
     }
     pictures::frame(scene, pictures::rolled(view_of(options, field, contact, path), options.roll),

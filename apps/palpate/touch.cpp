@@ -10,6 +10,7 @@
 
 #include "apps/options/no_effect.hpp"
 #include "apps/options/run_options.hpp"
+#include "apps/options/say.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/live_commands.hpp"
 #include "apps/palpate/live_status.hpp"
@@ -70,9 +71,8 @@ class Terminal {
         watch_device(now->session.device.status);
         watch_files();
         if (line_ && rounds_ % 20 == 0) {
-            fmt::print(stderr, "\r\033[K{}",
-                       status_line(*now, run_.settings().layers.get(), run_.report(),
-                                   terminal_columns() - 1));
+            say("\r\033[K{}", status_line(*now, run_.settings().layers.get(), run_.report(),
+                                          terminal_columns() - 1));
         }
         if (options_.unpaced) queue_.finish();  // what was asked for takes no time of the session
         const bool over = options_.seconds > 0 && now->session.tick.time >= options_.seconds;
@@ -89,9 +89,7 @@ class Terminal {
     }
 
   private:
-    void note(const std::string& text) const {
-        fmt::print(stderr, "{}{}\n", line_ ? "\r\033[K" : "", text);
-    }
+    void note(const std::string& text) const { say("{}{}\n", line_ ? "\r\033[K" : "", text); }
 
     bool is_due(std::size_t i, const Snapshot& now) const {
         return i < requests_.size() && requests_[i].time <= now.session.tick.time;
@@ -224,9 +222,9 @@ void announce(const run::Run& run, const DeviceInfo& device) {
                           std::min(settings.force.limit, settings.device.maximum_force),
                           settings.force.stiffness)
             : "position only, no force";
-    fmt::print(stderr, "isovalue {}\ndevice {} ({}): {}; 1 mm of hand is {:.3g} mm of the volume\n",
-               run.isovalue(), device.name, device.model, force, settings.transform.scale);
-    for (const std::string& sentence : run.privileges()) fmt::print(stderr, "{}\n", sentence);
+    say("isovalue {}\ndevice {} ({}): {}; 1 mm of hand is {:.3g} mm of the volume\n",
+        run.isovalue(), device.name, device.model, force, settings.transform.scale);
+    for (const std::string& sentence : run.privileges()) say("{}\n", sentence);
 }
 
 void print_report(const ServoReport& report, double seconds, const DeviceInfo& device,
@@ -242,7 +240,7 @@ void print_report(const ServoReport& report, double seconds, const DeviceInfo& d
 void save_as_asked(run::Data& data, const RunOptions& options) {
     const bool quiet = options.source.quiet;
     if (!options.save.empty() && data.is_streamed() && !data.editor().state().changed) {
-        if (!quiet) fmt::print(stderr, "nothing was edited, so nothing was saved\n");
+        if (!quiet) say("nothing was edited, so nothing was saved\n");
     } else if (!options.save.empty()) {
         // After Ctrl-C as well: then without a bar, which would cancel it.
         std::string saved;
@@ -254,7 +252,7 @@ void save_as_asked(run::Data& data, const RunOptions& options) {
         }
         if (!quiet) fmt::print(options.json ? stderr : stdout, "{}\n", saved);
     } else if (!data.is_sequence() && data.editor().state().changed && !quiet) {
-        fmt::print(stderr, "the edits were not saved (--save FILE, or the command save FILE)\n");
+        say("the edits were not saved (--save FILE, or the command save FILE)\n");
     }
 }
 
@@ -304,9 +302,8 @@ void start_recording(run::Run& run, const RunOptions& options) {
     if (options.record.empty()) return;
     run.record(options.record);
     if (run.data().loaded().live && !options.source.quiet) {
-        fmt::print(stderr,
-                   "note: the frames of a live source are not recorded: the recording can be "
-                   "plotted, but not rendered again\n");
+        say("note: the frames of a live source are not recorded: the recording can be "
+            "plotted, but not rendered again\n");
     }
 }
 
@@ -375,11 +372,19 @@ void take_up_brush(run::Run& run, LiveCommands& commands, const std::string& wor
     std::get<DataRequest>(brush)(run.data(), run.field(), run.isovalue());
 }
 
+/// What this command reads stays as it is.
+void check_saving(run::Data& data, const TouchOptions& options) {
+    data.keep(options.commands);
+    data.keep(options.render.labels);
+    if (!options.save.empty()) data.check_save_name(options.save);
+}
+
 void touch(const CLI::App& command, const TouchOptions& options) {
     const run::Setup setup = options.setup();
     const std::string flaw = flaw_in_volume_name(options.save);
     if (!flaw.empty()) throw std::invalid_argument(flaw);
-    check_outputs({options.source.name(), options.commands}, {options.record, options.save});
+    check_outputs({options.source.name(), options.commands, options.render.labels},
+                  {options.record, options.save});
     require_no_mouse(setup);
     require_own_time(options, setup);
     if (options.unpaced) {
@@ -391,7 +396,7 @@ void touch(const CLI::App& command, const TouchOptions& options) {
                                             options.unpaced ? Pace::by_steps : Pace::own_thread);
     auto run = std::make_unique<run::Run>(data, setup);
     warn_of_isovalue(run->field(), run->isovalue());
-    if (!options.save.empty()) data->check_save_name(options.save);
+    check_saving(*data, options);
     LiveCommands commands = commands_for(*run);
     std::vector<TimedRequest> requests;
     if (!options.commands.empty()) requests = read_commands(options.commands, commands);

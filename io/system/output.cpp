@@ -64,6 +64,17 @@ void remove_if_there(const std::filesystem::path& file) noexcept {
 
 }  // namespace
 
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (fs::exists(a, error) && fs::exists(b, error)) {
+        return fs::is_regular_file(a, error) && fs::equivalent(a, b, error);
+    }
+    // Made absolute first: a relative name that does not exist would stay relative.
+    return fs::weakly_canonical(fs::absolute(a), error) ==
+           fs::weakly_canonical(fs::absolute(b), error);
+}
+
 void check_output(const std::filesystem::path& path) {
     const std::filesystem::path target = followed(path);
     const auto fail = [&](const std::string& problem) {

@@ -226,6 +226,32 @@ TEST(Touch, an_output_that_cannot_be_is_refused_before_the_session) {
     }
 }
 
+TEST(Touch, a_file_in_use_is_not_saved_over) {
+    const ScratchFolder folder;
+    for (const std::string name : {"in.nrrd", "detached.nhdr"}) {
+        ASSERT_EQ(palpate(folder, "convert " + ball + " -q " + name).status, 0);
+    }
+    const auto save_as = [&](const std::string& name, const std::string& volume) {
+        put_bytes(folder / "c.txt", "0.02 fill 0,0,0:5,5,5 7\n0.05 save " + name + "\n");
+        return palpate(folder, "touch " + volume +
+                                   " -i 50% --device simulated:hand=press --unpaced "
+                                   "--seconds 0.1 --commands c.txt --record rec.nrrd");
+    };
+    for (const auto& [name, volume] : {std::pair{"in.nrrd", "in.nrrd"},
+                                       {"rec.nrrd", "in.nrrd"},
+                                       {"detached.nhdr", "detached.nhdr"},
+                                       {"detached.raw", "detached.nhdr"}}) {
+        SCOPED_TRACE(name);
+        const std::string before = support::bytes_of(folder / volume);
+        const Outcome outcome = save_as(name, volume);
+        EXPECT_NE(outcome.status, 0);
+        EXPECT_TRUE(contains(outcome.err, "in use")) << outcome.err;
+        EXPECT_EQ(support::bytes_of(folder / volume), before);
+        EXPECT_EQ(palpate(folder, "replay rec.nrrd --validate").status, 0);
+    }
+    EXPECT_EQ(save_as("out.nrrd", "in.nrrd").status, 0);
+}
+
 TEST(PacedTouch, feels_frames_that_another_program_pushes) {
     const ScratchFolder folder;
     Geometry geometry;

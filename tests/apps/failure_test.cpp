@@ -148,6 +148,27 @@ TEST(BadOutput, standard_output_that_is_closed_or_full_is_a_failure) {
     EXPECT_EQ(io::read_trace(folder / "a.csv").size(), 6U);
 }
 
+TEST(BadOutput, standard_error_that_is_full_or_closed_loses_words_only) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    for (const std::string line :
+         {"info synthetic:noise:9x9x9", "extract synthetic:sphere:9x9x9 -i 1e9 -o a.ply",
+          "replay synthetic:sphere:24x24x24 -i 1e9 --trajectory t.csv -o a.csv",
+          "touch synthetic:sphere:24x24x24 -i 1e9 --device simulated:hand=press --unpaced "
+          "--seconds 0.1 --record r.csv"}) {
+        const Outcome usual = palpate(folder, line);
+        for (const char* where : {"2>/dev/full", "2>&-"}) {
+            const std::string command =
+                std::string("exec ") + PALPATE_PROGRAM + " " + line + " " + where + " </dev/null";
+            Running running({"-c", command}, folder.path(), Stdout::captured, "/bin/sh");
+            const Outcome outcome = running.finish();
+            EXPECT_EQ(outcome.status, usual.status) << command;
+            EXPECT_EQ(outcome.status, 0) << command;
+        }
+    }
+    EXPECT_EQ(palpate(folder, "replay r.csv --validate").status, 0);
+}
+
 TEST(BadOutput, a_reader_that_has_gone_leaves_no_temporary_file) {
     const ScratchFolder folder;
     put_trajectory(folder);

@@ -14,6 +14,7 @@ TEXT = (".cpp", ".hpp", ".c", ".h", ".py", ".sh", ".cmake", ".txt", ".json", ".m
 COUNTED = (".cpp", ".hpp", ".py", ".sh", ".cmake")
 EMPTY_FOLDERS = {"util", "utils", "common", "misc", "third_party", "thirdparty"}
 EMPTY_CLASS = re.compile(r"^\s*(?:class|struct)\s+(\w*(?:Manager|Helper))\b")
+THROWS = re.compile(r"\bprint\(stderr")
 HOME = re.compile(r"/(?:home|Users)/\w[\w.-]*/|(?<![\w.])/roo[t]/")  # not a hit of its own
 
 # The code is formatted (the format check holds that), so indentation can be trusted: a function
@@ -76,6 +77,8 @@ def check_lines(relative, text, here):
         match = EMPTY_CLASS.match(line) if relative.suffix in repository.CPP else None
         if match:
             yield f"{relative}:{number}: {match.group(1)} does not say what it is"
+        if THROWS.search(line) and relative.parts[0] == "apps":
+            yield f"{relative}:{number}: fmt::print() throws where stderr is full or closed; use say()"
 
 
 def check(root):

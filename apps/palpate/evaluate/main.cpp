@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "apps/options/say.hpp"
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/evaluation.hpp"
 #include "apps/palpate/program.hpp"
@@ -33,7 +34,7 @@ void evaluate(EvaluateOptions& options) {
     }
     chosen.data = options.data;
     chosen.progress = [](double) { stop_if_interrupted(); };
-    chosen.note = [](const std::string& text) { fmt::print(stderr, "palpate: note: {}\n", text); };
+    chosen.note = [](const std::string& text) { say("palpate: note: {}\n", text); };
     const auto found =
         std::ranges::find(evaluation::experiments(), options.name, &evaluation::Experiment::name);
     if (found == evaluation::experiments().end()) {

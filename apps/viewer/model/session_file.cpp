@@ -358,10 +358,6 @@ SessionFile session_from(const Json& json, const std::filesystem::path& folder) 
     reader("solid", solid);
     if (solid != "above" && solid != "below") wrong("solid", "must be above or below");
     session.solid = solid == "above" ? Solid::above : Solid::below;
-    std::string field(name_of(session.interpolation));
-    reader("field", field);
-    if (field != "linear" && field != "cubic") wrong("field", "must be linear or cubic");
-    session.interpolation = interpolation_from(field);
     if (const Json* const settings = reader.find("settings")) {
         if (!settings->is_object()) wrong("settings", "must be an object");
         RendererSettings read;
@@ -376,6 +372,11 @@ SessionFile session_from(const Json& json, const std::filesystem::path& folder) 
     if (device.empty()) wrong("device", "must have a name");
     session.device = devices::parse_device(device);
     session.method = run::named_method(method);
+    // Other methods than the exact one feel the linear field only.
+    std::string field = session.method.method == &update_exact ? "cubic" : "linear";
+    reader("field", field);
+    if (field != "linear" && field != "cubic") wrong("field", "must be linear or cubic");
+    session.interpolation = interpolation_from(field);
     members(reader, session);
     check_session(session);
     if (session.settings) session.settings->method = session.method.method;

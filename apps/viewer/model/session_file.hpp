@@ -15,7 +15,7 @@ namespace palpate::viewer {
 struct SessionFile {
     run::Source source;
     Solid solid = Solid::above;
-    Interpolation interpolation = Interpolation::linear;
+    Interpolation interpolation = Interpolation::cubic;
     std::optional<double> background;  ///< [data units] nothing: the usual one
     double isovalue = 0;               ///< [data units] finite
     devices::DeviceChoice device{"simulated", {}};

@@ -21,6 +21,10 @@ class ReaderGone : public OutputError {
 /// its name. Makes and opens nothing, so a long run can begin with it; a PendingFile does so, too.
 void check_output(const std::filesystem::path& path);
 
+/// True for two names of one file, through links and relative paths. Neither need exist. Devices
+/// and pipes are never the same: they can be shared.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// "a.zarr/" is "a.zarr": the slash that completion puts after a folder.
 inline std::filesystem::path without_slash(const std::filesystem::path& path) {
     return path.has_filename() ? path : path.parent_path();

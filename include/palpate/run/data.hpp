@@ -5,6 +5,8 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <mutex>
+#include <vector>
 
 #include "palpate/run/player.hpp"
 #include "palpate/run/setup.hpp"
@@ -57,15 +59,22 @@ class Data {
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// Why edits or frames do not come; usually empty.
     std::string problem() const;
-    /// Throws std::invalid_argument for a name that save() cannot write to, io::OutputError for a
-    /// place: no such folder, no permission, something else that has this name.
+    /// A file that is in use from now on, such as a recording: nothing is written over it.
+    void keep(const std::filesystem::path& path);
+    /// The end of one keep().
+    void release(const std::filesystem::path& path);
+    /// Throws std::invalid_argument for a file that is in use: of the volume, or given to keep().
+    void require_unused(const std::filesystem::path& path) const;
+    /// Throws as require_unused(), std::invalid_argument for a name that save() cannot write to,
+    /// io::OutputError for a place: no such folder, no permission, something else that has this
+    /// name.
     void check_save_name(const std::string& path) const;
     /// Throws std::invalid_argument, saying why, where save() has nothing to write.
     void require_saving() const;
     /// Writes the samples as they are now (of a sequence, at its moment) to a file or a folder
     /// *.zarr, whole or not at all; of a store what was edited (stream::save_edits()). Returns a
     /// sentence: "saved FILE", and for a raw file how to open it again. Throws io::OutputError, and
-    /// as require_saving().
+    /// as require_saving() and require_unused().
     std::string save(const std::filesystem::path& path, const io::Progress& progress);
 
     /// Saves where there is no choice left: in a new folder that only this user can enter, in that
@@ -82,6 +91,8 @@ class Data {
     std::unique_ptr<Player> player_;
     std::unique_ptr<Streamer> streamer_;
     std::unique_ptr<VolumeEditor> editor_;  // uses the streamer, if there is one
+    mutable std::mutex mutex_;              // of kept_: a window saves on a thread of its own
+    std::vector<std::filesystem::path> kept_;
 };
 
 }  // namespace palpate::run

@@ -97,10 +97,11 @@ class Run {
     void use_field(Solid solid, Interpolation interpolation, std::optional<double> background = {});
 
     /// Records from start() on, or from now on: the session goes on, with its force. Throws
-    /// io::OutputError for a file that cannot be created; and where more edits were made than a
-    /// recording can begin with; then nothing has changed. A recording that was running is
-    /// finished; if that fails io::OutputError says so, but the new one runs. std::runtime_error
-    /// and QueueFull, with an empty recording left, for a session that takes no commands.
+    /// std::invalid_argument for a file in use (Data::require_unused()), io::OutputError for a file
+    /// that cannot be created; and where more edits were made than a recording can begin with; then
+    /// nothing has changed. A recording that was running is finished; if that fails io::OutputError
+    /// says so, but the new one runs. std::runtime_error and QueueFull, with an empty recording
+    /// left, for a session that takes no commands.
     void record(const std::filesystem::path& path);
     /// Ends the recording; the session goes on. Returns its ticks, 0 without a recording.
     /// Throws io::OutputError for what could not be written.
@@ -137,6 +138,7 @@ class Run {
     };
     std::deque<Sent> sent_;
     std::unique_ptr<io::RecordingWriter> recording_;
+    std::filesystem::path recorded_as_;
     std::int64_t lost_before_ = 0;  // events of the recordings of this servo before
     std::unique_ptr<Servo> servo_;  // none before start()
     bool running_ = false;

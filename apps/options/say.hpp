@@ -1,0 +1,20 @@
+// Notes and warnings for people, on standard error.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+namespace palpate::app {
+
+/// Formats to standard error. Where that is full, closed or read by nobody, the words are lost and
+/// the work goes on: fmt::print() would throw.
+template <class... T>
+void say(fmt::format_string<T...> text, T&&... values) {
+    const std::string words = fmt::format(text, std::forward<T>(values)...);
+    std::fwrite(words.data(), 1, words.size(), stderr);
+}
+
+}  // namespace palpate::app
