@@ -170,8 +170,8 @@ void Data::require_unused(const std::filesystem::path& path) const {
     const std::lock_guard lock(mutex_);
     const auto is_used = [&](const auto& used) { return !used.empty() && changes(path, used); };
     if (!is_used(own) && std::none_of(kept_.begin(), kept_.end(), is_used)) return;
-    throw std::invalid_argument(path.string() +
-                                " is in use and would be replaced: choose another output");
+    throw io::OutputError(path.string() +
+                          " is in use and would be replaced: choose another output");
 }
 
 void Data::check_save_name(const std::string& path) const {

@@ -286,7 +286,6 @@ void Run::use_field(Solid solid, Interpolation interpolation, std::optional<doub
 
 void Run::record(const std::filesystem::path& path) {
     data_->check_recording();
-    data_->require_unused(path);
     const Session session = session_now();
     auto recording = std::make_unique<io::RecordingWriter>(
         path, recording_head(session, device_->info(), data_->loaded().source, setup_.render),

@@ -160,6 +160,7 @@ TEST(BadOutput, standard_error_that_is_full_or_closed_loses_words_only) {
         for (const char* where : {"2>/dev/full", "2>&-"}) {
             const std::string command =
                 std::string("exec ") + PALPATE_PROGRAM + " " + line + " " + where + " </dev/null";
+            std::filesystem::remove(folder / "r.csv");
             Running running({"-c", command}, folder.path(), Stdout::captured, "/bin/sh");
             const Outcome outcome = running.finish();
             EXPECT_EQ(outcome.status, usual.status) << command;

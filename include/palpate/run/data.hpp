@@ -63,11 +63,11 @@ class Data {
     void keep(const std::filesystem::path& path);
     /// The end of one keep().
     void release(const std::filesystem::path& path);
-    /// Throws std::invalid_argument for a file that is in use: of the volume, or given to keep().
+    /// Throws io::OutputError for a file that is in use: of the volume, or given to keep().
     void require_unused(const std::filesystem::path& path) const;
-    /// Throws as require_unused(), std::invalid_argument for a name that save() cannot write to,
-    /// io::OutputError for a place: no such folder, no permission, something else that has this
-    /// name.
+    /// Throws std::invalid_argument for a name that save() cannot write to, io::OutputError for a
+    /// place: no such folder, no permission, something else that has this name, and as
+    /// require_unused().
     void check_save_name(const std::string& path) const;
     /// Throws std::invalid_argument, saying why, where save() has nothing to write.
     void require_saving() const;

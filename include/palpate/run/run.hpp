@@ -97,7 +97,7 @@ class Run {
     void use_field(Solid solid, Interpolation interpolation, std::optional<double> background = {});
 
     /// Records from start() on, or from now on: the session goes on, with its force. Throws
-    /// std::invalid_argument for a file in use (Data::require_unused()), io::OutputError for a file
+    /// io::OutputError for a file
     /// that cannot be created; and where more edits were made than a recording can begin with; then
     /// nothing has changed. A recording that was running is finished; if that fails io::OutputError
     /// says so, but the new one runs. std::runtime_error and QueueFull, with an empty recording
