@@ -228,9 +228,13 @@ TEST(Touch, an_output_that_cannot_be_is_refused_before_the_session) {
 
 TEST(Touch, a_file_in_use_is_not_saved_over) {
     const ScratchFolder folder;
-    for (const std::string name : {"in.nrrd", "detached.nhdr"}) {
-        ASSERT_EQ(palpate(folder, "convert " + ball + " -q " + name).status, 0);
-    }
+    ASSERT_EQ(palpate(folder, "convert " + ball + " -q in.nrrd").status, 0);
+    put_bytes(folder / "detached.nhdr",
+              "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nspacings: 1 1 1\n"
+              "encoding: raw\ndata file: detached.raw\n");
+    std::string samples(24 * 24 * 24, 0);
+    std::fill(samples.begin(), samples.begin() + 24 * 24 * 12, char{100});
+    put_bytes(folder / "detached.raw", samples);
     const auto save_as = [&](const std::string& name, const std::string& volume) {
         std::filesystem::remove(folder / "rec.nrrd");
         put_bytes(folder / "c.txt", "0.02 fill 0,0,0:5,5,5 7\n0.05 save " + name + "\n");
@@ -243,11 +247,12 @@ TEST(Touch, a_file_in_use_is_not_saved_over) {
                                        {"detached.nhdr", "detached.nhdr"},
                                        {"detached.raw", "detached.nhdr"}}) {
         SCOPED_TRACE(name);
-        const std::string before = support::bytes_of(folder / volume);
+        const std::string before = bytes_of(folder / volume);
         const Outcome outcome = save_as(name, volume);
         EXPECT_EQ(outcome.status, 5);
         EXPECT_TRUE(contains(outcome.err, "in use")) << outcome.err;
-        EXPECT_EQ(support::bytes_of(folder / volume), before);
+        EXPECT_EQ(bytes_of(folder / volume), before);
+        EXPECT_EQ(bytes_of(folder / "detached.raw"), samples);
         EXPECT_EQ(palpate(folder, "replay rec.nrrd --validate").status, 0);
     }
     EXPECT_EQ(save_as("out.nrrd", "in.nrrd").status, 0);
