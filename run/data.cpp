@@ -38,8 +38,8 @@ std::filesystem::path place_of(const Source& source) {
     return {};
 }
 
-/// Writing `path` would change `used`: the same file, one in that folder, the samples of that
-/// header, or of a numbered series any file of its folder.
+/// Writing `path` would change `used`: the same file, one in that folder, or of a numbered series
+/// any file of its folder. (io::why_not_written() knows whose samples a .raw file has.)
 bool changes(const std::filesystem::path& path, const std::filesystem::path& used) {
     namespace fs = std::filesystem;
     if (io::is_same_file(path, used)) return true;
@@ -47,13 +47,8 @@ bool changes(const std::filesystem::path& path, const std::filesystem::path& use
     if (!fs::exists(path, error)) return false;
     const fs::path folder = fs::absolute(path).parent_path();
     if (fs::is_directory(used, error)) return fs::equivalent(folder, used, error);
-    if (!fs::equivalent(folder, fs::absolute(used).parent_path(), error)) return false;
-    if (used.filename().string().find('%') != std::string::npos && !fs::exists(used, error)) {
-        return true;
-    }
-    const fs::path header = used.extension();
-    return (header == ".nhdr" || header == ".mhd" || header == ".hdr") &&
-           path.filename().string().starts_with(used.stem().string() + ".");
+    return used.filename().string().find('%') != std::string::npos && !fs::exists(used, error) &&
+           fs::equivalent(folder, fs::absolute(used).parent_path(), error);
 }
 
 /// For nobody else: in a folder of temporary files, others could put links in our way.
