@@ -157,9 +157,8 @@ DeviceInfo DhdDevice::ask(const Settings& settings) const {
         info.model += ", serial number " + std::to_string(serial);
     }
     const Model& model = arm_.model;
-    info.limits.maximum_force = model.force;
-    info.limits.maximum_torque = model.torque;
-    info.limits.rate = std::min(settings.rate, 1e9 / period);
+    info.limits =
+        limits_of(model, std::min(settings.rate, 1e9 / period), exchange_delay(1e-9 * period));
     info.stiffness = model.stiffness;
     const Vec3 corner = 0.5 * Vec3(model.width, model.height, model.depth);
     info.workspace_low = arm_.centre - corner;

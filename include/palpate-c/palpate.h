@@ -275,6 +275,12 @@ PALPATE_API void palpate_renderer_destroy(palpate_renderer *renderer);
  *       0).
  *   `limits.physical_rotational_damping` [N mm s/rad] Damping of device and hand themselves against
  *       turning (default: 1).
+ *   `limits.delay` [s] Time from measuring a position until the force for it acts, without the sampling
+ *       (default: 0).
+ *   `limits.continuous_force` [N] Force that the motors can give for hours (inf: all that they can give)
+ *       (default: inf).
+ *   `limits.warming_time` [s] Time in which a constant force brings the motors to 63 % of its warmth
+ *       (default: 60).
  */
 typedef struct palpate_setting {
     uint32_t size_of;
@@ -493,8 +499,8 @@ PALPATE_API palpate_status palpate_run_text(const palpate_run *run, int32_t whic
 PALPATE_API palpate_status palpate_run_get(const palpate_run *run, const char *name, double *value);
 
 /* Commands, carried out within a tick or two. */
-/* A setting by its name. PALPATE_INVALID for a limit that would rise: limits can only be lowered.
- * Since 0.3. */
+/* A setting by its name. PALPATE_INVALID for a limit that would rise: limits can only be lowered, and
+ * the delay only be raised. Since 0.3. */
 PALPATE_API palpate_status palpate_run_set(palpate_run *run, const char *name, double value);
 PALPATE_API palpate_status palpate_run_set_isovalue(palpate_run *run, double isovalue);
 PALPATE_API palpate_status palpate_run_set_forces(palpate_run *run, int32_t on);

@@ -204,7 +204,7 @@ struct RecordingReader::Rows {
         tick.proxy.isovalue = row.isovalue;
         tick.proxy.tetrahedra = row.tetrahedra;
         tick.force = row.force;
-        tick.force_flags = static_cast<std::uint8_t>(code(force_flags, 255));
+        tick.force_flags = static_cast<std::uint16_t>(code(force_flags, 511));
         tick.update_ns = row.update_ns;
         result.device.status = static_cast<DeviceStatus>(
             code(device_status, static_cast<std::int64_t>(DeviceStatus::finished)));
