@@ -60,8 +60,7 @@ std::unique_ptr<Device> open_falcon(const DeviceChoice& choice, const DeviceScen
 }
 
 std::unique_ptr<falcon::FalconDevice> falcon::open(const DeviceChoice& choice,
-                                                   const DeviceScene& scene,
-                                                   const Timing& timing) {
+                                                   const DeviceScene& scene, const Timing& timing) {
     DeviceOptions options(choice, "index");
     const double index = options.number("index", 0, 0, 100);
     if (index != std::floor(index)) {

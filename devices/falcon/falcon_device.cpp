@@ -12,12 +12,12 @@
 namespace palpate::devices::falcon {
 namespace {
 
-constexpr std::int64_t period = 1'000'000;              // [ns]
+constexpr std::int64_t period = 1'000'000;                // [ns]
 constexpr std::int64_t between_attempts = 1'000'000'000;  // [ns]
-constexpr int waits = 5;             // [ms] for an answer
-constexpr int most_unanswered = 10;  // packets until it counts as silent
-constexpr int most_calls = 20;       // packets until it counts as without firmware
-constexpr int most_loads = 3;        // attempts, each of which may fail by chance
+constexpr int waits = 5;                                  // [ms] for an answer
+constexpr int most_unanswered = 10;                       // packets until it counts as silent
+constexpr int most_calls = 20;            // packets until it counts as without firmware
+constexpr int most_loads = 3;             // attempts, each of which may fail by chance
 constexpr double per_newton_metre = 1e4;  // of a motor's value
 
 DeviceInfo info_of(const Settings& settings) {
@@ -26,8 +26,8 @@ DeviceInfo info_of(const Settings& settings) {
     DeviceInfo info;
     info.name = "falcon";
     info.model = "Novint Falcon";
-    info.limits = limits_of(model, std::min(settings.rate, 1e9 / period),
-                            exchange_delay(1e-9 * period));
+    info.limits =
+        limits_of(model, std::min(settings.rate, 1e9 / period), exchange_delay(1e-9 * period));
     info.stiffness = model.stiffness;
     info.workspace_low = -corner;
     info.workspace_high = corner;
@@ -75,10 +75,7 @@ std::array<int, 3> motors_for(const Vec3& force, const Vec3& position) {
 }
 
 FalconDevice::FalconDevice(const std::string& library, Settings settings, const Timing& timing)
-    : timing_(timing),
-      ftdi_(library),
-      settings_(std::move(settings)),
-      info_(info_of(settings_)) {
+    : timing_(timing), ftdi_(library), settings_(std::move(settings)), info_(info_of(settings_)) {
     const int count = ftdi_.count();
     if (count <= static_cast<int>(settings_.index)) {
         throw DeviceError("no device with index=" + std::to_string(settings_.index) + " (" +

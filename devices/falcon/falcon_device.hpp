@@ -85,8 +85,8 @@ class FalconDevice final : public Device {
     // Used by the thread only.
     std::optional<Port> port_;
     ForceGate gate_;
-    Trouble asleep_;                 // why it is not awake
-    bool is_awake_ = false;          // it answers packets
+    Trouble asleep_;         // why it is not awake
+    bool is_awake_ = false;  // it answers packets
     bool is_homed_ = false;
     int unanswered_ = 0;             // packets, in a row
     std::optional<Vec3> position_;   // [m] of the grip, in the legs' frame

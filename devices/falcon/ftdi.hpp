@@ -27,8 +27,8 @@ struct Ftdi {
     void (*free)(void* context);
     int (*find_all)(void* context, void** list, int vendor, int product);
     void (*free_list)(void** list);
-    int (*open)(void* context, int vendor, int product, const char* description,
-                const char* serial, unsigned int index);
+    int (*open)(void* context, int vendor, int product, const char* description, const char* serial,
+                unsigned int index);
     int (*close)(void* context);
     int (*reset)(void* context);
     int (*set_baud_rate)(void* context, int rate);

@@ -11,13 +11,13 @@ namespace palpate::devices::falcon {
 namespace {
 
 // [m]
-constexpr double arm = 0.060;             // a
-constexpr double bar = 0.1025;            // b, the long side of the parallelogram
-constexpr double side = 2 * 0.01125;      // d + e, its two short links
-constexpr double grip_u = 0.014;          // c, from the parallelogram to the middle of the grip
-constexpr double grip_v = -0.025;         // f
-constexpr double base_u = 0.037233758;    // r, from the middle to the motor
-constexpr double base_v = -0.027330909;   // s
+constexpr double arm = 0.060;            // a
+constexpr double bar = 0.1025;           // b, the long side of the parallelogram
+constexpr double side = 2 * 0.01125;     // d + e, its two short links
+constexpr double grip_u = 0.014;         // c, from the parallelogram to the middle of the grip
+constexpr double grip_v = -0.025;        // f
+constexpr double base_u = 0.037233758;   // r, from the middle to the motor
+constexpr double base_v = -0.027330909;  // s
 constexpr double pi = std::numbers::pi;
 constexpr std::array<double, 3> legs{pi / 2 + pi / 12, -pi / 6 + pi / 12, -5 * pi / 6 + pi / 12};
 
@@ -38,10 +38,10 @@ InLeg in_leg(const Vec3& p, double turned) {
 
 /// A leg in its plane u, w: an arm of length a, then the bar's part in the plane.
 struct Leg {
-    double angle;       // of the arm
-    double in_plane;    // sqrt(b^2 - v^2)
-    double reach;       // in_plane + d + e
-    double du, dw;      // from the arm's end to the grip
+    double angle;     // of the arm
+    double in_plane;  // sqrt(b^2 - v^2)
+    double reach;     // in_plane + d + e
+    double du, dw;    // from the arm's end to the grip
 };
 std::optional<Leg> leg_at(const InLeg& at) {
     const double in_plane = std::sqrt(bar * bar - at.v * at.v);
@@ -78,10 +78,10 @@ std::optional<Mat3> angle_gradients(const Vec3& position) {
         if (!(std::abs(by_angle) > least_sine * arm * leg->reach)) return std::nullopt;
         const Vec3 by_leg(leg->du, leg->reach * at.v / leg->in_plane, leg->dw);
         const double c = std::cos(turned), s = std::sin(turned);
-        gradients.row(i) = -Vec3(c * by_leg[0] - s * by_leg[1], s * by_leg[0] + c * by_leg[1],
-                                 by_leg[2])
-                                .transpose() /
-                           by_angle;
+        gradients.row(i) =
+            -Vec3(c * by_leg[0] - s * by_leg[1], s * by_leg[0] + c * by_leg[1], by_leg[2])
+                 .transpose() /
+            by_angle;
     }
     return gradients;
 }

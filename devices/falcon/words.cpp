@@ -7,8 +7,7 @@ std::vector<std::string> library_names() {
     return {"libftdi1.so.2"};
 }
 
-const char* const how_to_install =
-    "sudo apt install libftdi1-2, or tell where it is: library=PATH";
+const char* const how_to_install = "sudo apt install libftdi1-2, or tell where it is: library=PATH";
 
 const char* const how_to_attach =
     "connect it and its power supply; your account must be able to open its USB device "

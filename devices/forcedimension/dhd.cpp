@@ -75,6 +75,7 @@ Dhd::Dhd(const std::string& path)
     library.take(has_wrist, "dhdHasWrist");
     library.take(has_active_wrist, "dhdHasActiveWrist");
     library.take(has_gripper, "dhdHasGripper");
+    library.take(get_gripper_angle, "dhdGetGripperAngleRad");
     library.take(get_max_force, "dhdGetMaxForce");
     library.take(emulate_button, "dhdEmulateButton");
     library.take(enable_expert_mode, "dhdEnableExpertMode");

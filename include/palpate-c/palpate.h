@@ -338,6 +338,7 @@ typedef struct palpate_reading {
     double age;            /* [s] since it was measured; beyond 0.02 it counts as stale */
     uint32_t buttons;      /* bit b: button b is held */
     uint32_t unused;
+    double opening;        /* [rad] of a gripper, 0: closed; with has_gripper. Since 0.3 */
 } palpate_reading;
 
 typedef struct palpate_wrench {
@@ -365,7 +366,7 @@ typedef struct palpate_own_device {
     double workspace_high[3];      /* all 0: 80 */
     double rate;                   /* [Hz] of the callbacks, 50 to 8000; 0: 1000 */
     int32_t has_orientation;
-    int32_t unused;
+    int32_t has_gripper; /* readings have an opening. Since 0.3 */
     /* Fills in *reading (its size is set, the rest 0). Returns 0, or not 0: the device is lost. */
     int32_t (*read)(palpate_reading *reading, void *context);
     /* Returns 0, or not 0: the device is lost. */
@@ -464,6 +465,7 @@ typedef struct palpate_snapshot {
     double moment;             /* [s] of a sequence */
     uint32_t buttons;
     int32_t frozen, clutched, forces_on;
+    double opening;            /* [rad] of a gripper, 0: closed; NaN: it has none. Since 0.3 */
 } palpate_snapshot;
 
 typedef struct palpate_report {

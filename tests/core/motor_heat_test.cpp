@@ -177,7 +177,8 @@ TEST(Delay, leaves_only_stiffnesses_that_are_passive_with_it) {
         limits.rate = random.uniform(250, 4000);
         limits.physical_damping = random.uniform(1e-3, 1e-2);
         limits.delay = random.chance(0.2) ? 0 : random.uniform(0, 5e-3);
-        const double damping = random.chance(0.5) ? 0 : limits.physical_damping * random.uniform(0, 1);
+        const double damping =
+            random.chance(0.5) ? 0 : limits.physical_damping * random.uniform(0, 1);
         const double most = greatest_stiffness(limits, damping);
         const double needed = needed_damping(most, damping, limits.rate, limits.delay);
         ASSERT_LE(needed, limits.physical_damping * (1 + 1e-9)) << i;

@@ -114,7 +114,8 @@ TEST_F(Falcon, gives_the_force_that_is_written_and_none_after_20_ms_without) {
     const auto device = open();
     for (const Vec3& place : {Vec3(0, 0, 0), Vec3(20, -10, 15), Vec3(-30, 20, -20)}) {
         hold(place);
-        for (const Vec3& newtons : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(-1, 2, 0.5)}) {
+        for (const Vec3& newtons :
+             {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(-1, 2, 0.5)}) {
             EXPECT_TRUE(presses(newtons)) << force().transpose();
         }
     }
@@ -126,7 +127,11 @@ TEST_F(Falcon, asks_no_motor_for_too_much_and_keeps_the_direction) {
     const auto device = open();
     hold(Vec3(30, 30, -30));
     ASSERT_TRUE(becomes(DeviceStatus::ready));
-    throughout(40ms, [] { return true; }, [&] { device->write({Vec3(0, 0, 1e6), {}}, 0); });
+    throughout(
+        40ms, [] { return true; },
+        [&] {
+            device->write({Vec3(0, 0, 1e6), {}}, 0);
+        });
     const Vec3 most = force();
     EXPECT_GT(most.norm(), 1);
     EXPECT_LE(most.norm(), 8.01);

@@ -64,8 +64,7 @@ TEST(FalconKinematics, gradients_of_the_angles_are_their_differences) {
             ASSERT_TRUE(above && below);
             differences.col(axis) = (*above - *below) / (2 * step);
         }
-        ASSERT_LT((*gradients - differences).norm(), 1e-4 * gradients->norm())
-            << place.transpose();
+        ASSERT_LT((*gradients - differences).norm(), 1e-4 * gradients->norm()) << place.transpose();
     }
 }
 
@@ -84,7 +83,8 @@ TEST(FalconKinematics, torques_do_the_work_of_the_force) {
 
 TEST(FalconKinematics, what_no_leg_can_reach_has_no_angles) {
     const double nan = support::not_a_number;
-    for (const Vec3& far : {Vec3(0, 0, 0.3), Vec3(0.2, 0, 0.1), Vec3(nan, 0, 0.1), Vec3(0, 0, nan)}) {
+    for (const Vec3& far :
+         {Vec3(0, 0, 0.3), Vec3(0.2, 0, 0.1), Vec3(nan, 0, 0.1), Vec3(0, 0, nan)}) {
         EXPECT_FALSE(angles_at(far)) << far.transpose();
         EXPECT_FALSE(angle_gradients(far)) << far.transpose();
         EXPECT_FALSE(torques_for(Vec3(1, 0, 0), far)) << far.transpose();

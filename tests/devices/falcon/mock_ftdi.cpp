@@ -23,8 +23,8 @@ struct Line {
     int rate = 9600;
     int latency = 16;
     bool dtr = false;
-    bool loads = false;          // the loader was called
-    std::size_t loaded = 0;      // bytes of firmware
+    bool loads = false;      // the loader was called
+    std::size_t loaded = 0;  // bytes of firmware
     bool came_back_wrong = false;
     std::deque<unsigned char> to_host;
 } line;

@@ -22,12 +22,12 @@ struct MockFtdiState {
 
     // How it misbehaves.
     bool refuses_open = false;
-    bool is_unplugged = false;    // every call fails
-    int silent_packets = 0;       // that it does not answer
-    std::string noise;            // before each answer
-    int failing_loads = 0;        // that send a byte back wrong
+    bool is_unplugged = false;  // every call fails
+    int silent_packets = 0;     // that it does not answer
+    std::string noise;          // before each answer
+    int failing_loads = 0;      // that send a byte back wrong
     bool loader_is_dead = false;
-    int split = 0;                // most bytes of a read; 0: any
+    int split = 0;  // most bytes of a read; 0: any
 
     // Called without the lock by a read that brings nothing: its latency [ms] passes there.
     std::function<void(int)> while_waiting;
