@@ -4,6 +4,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "devices/falcon/falcon.hpp"
 #include "devices/forcedimension/forcedimension.hpp"
 #include "devices/haply/haply.hpp"
 #include "devices/openhaptics/openhaptics.hpp"
@@ -22,13 +23,14 @@ struct Backend {
     std::unique_ptr<Device> (*open)(const DeviceChoice&, const DeviceScene&);
 };
 
-constexpr std::array<Backend, 7> backends{{
+constexpr std::array<Backend, 8> backends{{
     {"simulated", &find_simulated, &open_simulated},
     {"recorded", &find_recorded, &open_recorded},
     {"mouse", &find_mouse, &open_mouse},
     {"haply", &find_haply, &open_haply},
     {"openhaptics", &find_openhaptics, &open_openhaptics},
     {"forcedimension", &find_forcedimension, &open_forcedimension},
+    {"falcon", &find_falcon, &open_falcon},
     {"spacenav", &find_spacenav, &open_spacenav},
 }};
 

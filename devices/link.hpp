@@ -59,6 +59,13 @@ class Link {
     mutable std::atomic<int> zeros_{0};  // asked for since stop(), 2 at most
 };
 
+/// [s] of DeviceLimits::delay for a device whose thread steps every `period` [s]: a reading waits
+/// one of them for the servo, at most, and a force as long for the thread. Between them the servo
+/// renders, in 0.1 ms (p99.9 is 0.07 ms: docs/results/soak.md).
+constexpr double exchange_delay(double period) {
+    return 2 * period + 1e-4;
+}
+
 /// What a thread that talks to a device does first. Asks the system to wake it in time: exact
 /// timers, and SCHED_FIFO just above the servo's priority, where that is granted (the servo's
 /// privileges report what was not). Leaves signals to the other threads, but for its own crashes:

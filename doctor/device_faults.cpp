@@ -62,6 +62,8 @@ Fault without_backend(const UsbDevice& device, const KnownUsb& kind,
             fmt::format("{} is plugged in, but its {} does not answer: {}", called(device, kind),
                         by_service ? "service" : "library", finding.missing),
             lacks_terminal_libraries(finding) ? "sudo apt install libncurses5 libtinfo5"
+            : kind.backend == std::string_view("falcon")
+                ? fmt::format("sudo apt install libftdi1-2; {}", kind.firmware)
             : by_service
                 ? "sudo apt install spacenavd; sudo systemctl enable --now spacenavd"
                 : fmt::format("install the vendor's library (docs/devices/{}.md){}{}", kind.backend,

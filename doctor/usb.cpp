@@ -20,8 +20,7 @@ namespace fs = std::filesystem;
 using Through = KnownUsb::Through;
 
 constexpr const char* falcon_firmware =
-    "a Falcon works only with a Force Dimension SDK that supports it and its firmware: run the "
-    "SDK's own example first";
+    "a Falcon needs its vendor's firmware after each power-up: firmware=PATH";
 constexpr const char* touch_firmware =
     "run the vendor's Touch Diagnostic once: it pairs and calibrates the device";
 
@@ -35,7 +34,7 @@ constexpr std::array<KnownUsb, 20> table{{
     {"1451", "0403", "forcedimension", "Force Dimension sigma", Through::usb, dimension_firmware},
     {"1451", "040c", "forcedimension", "Force Dimension lambda", Through::usb, dimension_firmware},
     {"1451", nullptr, "forcedimension", "Force Dimension device", Through::usb, dimension_firmware},
-    {"0403", "cb48", "forcedimension", "Novint Falcon", Through::usb, falcon_firmware},
+    {"0403", "cb48", "falcon", "Novint Falcon", Through::usb, falcon_firmware},
     {"2988", "0304", "openhaptics", "3D Systems Touch (USB)", Through::usb, touch_firmware},
     {"2988", nullptr, "openhaptics", "3D Systems Touch", Through::port, touch_firmware},
     {"0301", "2988", "openhaptics", "3D Systems Touch", Through::port, touch_firmware},

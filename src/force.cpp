@@ -15,15 +15,18 @@ constexpr double velocity_filter = 1 / (2 * std::numbers::pi * 100);
 /// false position would keep the filtered velocity high for tens of ticks.
 constexpr double fastest_hand = 1e4;
 constexpr double fastest_turn = 100;  // [rad/s] the same
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double warm = 0.7;         // MotorHeat::warmth from which on the force is limited
+constexpr double most_power = 1e12;  // of the continuous force's: keeps the warmth finite
 
-ForceResult stop(ForceState& state, std::uint8_t why) {
-    state = ForceState{};
+ForceResult stop(ForceState& state, std::uint16_t why) {
+    restart(state);
     return {Vec3::Zero(), Vec3::Zero(), why};
 }
 
 /// The start, or the first tick after a pause: the ramp begins here, from zero.
 void begin(ForceState& state, const ForceInput& input) {
-    state = ForceState{};
+    restart(state);
     state.started = true;
     state.time = state.ramp_begin = input.time;
     state.hand = input.hand;
@@ -71,7 +74,7 @@ struct Bounds {
 /// The ramp, the maximum and the rate. A setting that is NaN or negative, which check() refuses,
 /// gives no force or a NaN that the caller catches, never a larger force.
 Vec3 within(Vec3 force, const Vec3& before, const Bounds& bounds, double step,
-            std::uint8_t& flags) {
+            std::uint16_t& flags) {
     if (!(bounds.ramp >= 1)) {
         force *= bounds.ramp;
         flags |= force_ramping;
@@ -115,10 +118,14 @@ bool is_finite(const ForceInput& input) {
            input.turn.allFinite() && input.orientation.coeffs().allFinite();
 }
 
-/// One factor <= 1 for a spring and its dampers, with which k / (2 rate) + damping <= physical
-/// damping holds by more than rounding.
+/// [1/s] A spring k is passive for k / this + damping <= physical damping.
+double passive_rate(const DeviceLimits& limits) {
+    return 2 * limits.rate / (1 + 2 * limits.rate * limits.delay);
+}
+
+/// One factor <= 1 for a spring and its dampers, with which that holds by more than rounding.
 double stable_part(double stiffness, double damping, double rate, double physical_damping) {
-    const double used = stiffness / (2 * rate) + damping;
+    const double used = stiffness / rate + damping;
     const double part = physical_damping / used * (1 - 1e-9);
     return part > 0 && part < 1 ? part : 0;
 }
@@ -126,12 +133,12 @@ double stable_part(double stiffness, double damping, double rate, double physica
 }  // namespace
 
 double greatest_stiffness(const DeviceLimits& limits, double damping) {
-    return std::max(0.0, 2 * limits.rate * (limits.physical_damping - damping));
+    return std::max(0.0, passive_rate(limits) * (limits.physical_damping - damping));
 }
 
 /// [N mm/rad] with this damping [N mm s/rad].
 static double greatest_rotational_stiffness(const DeviceLimits& limits, double damping) {
-    return std::max(0.0, 2 * limits.rate * (limits.physical_rotational_damping - damping));
+    return std::max(0.0, passive_rate(limits) * (limits.physical_rotational_damping - damping));
 }
 
 double rotational_stiffness(const ForceSettings& s, const DeviceLimits& limits, double gyration) {
@@ -143,10 +150,45 @@ double rotational_stiffness(const ForceSettings& s, const DeviceLimits& limits, 
 
 DeviceLimits smaller(const DeviceLimits& one, const DeviceLimits& other) noexcept {
     const auto least = [](double a, double b) { return a >= 0 && b >= 0 ? std::min(a, b) : 0.0; };
-    return {least(one.maximum_force, other.maximum_force), least(one.rate, other.rate),
+    const bool are_delays = one.delay >= 0 && other.delay >= 0;
+    return {least(one.maximum_force, other.maximum_force),
+            least(one.rate, other.rate),
             least(one.physical_damping, other.physical_damping),
             least(one.maximum_torque, other.maximum_torque),
-            least(one.physical_rotational_damping, other.physical_rotational_damping)};
+            least(one.physical_rotational_damping, other.physical_rotational_damping),
+            are_delays ? std::max(one.delay, other.delay) : infinity,
+            least(one.continuous_force, other.continuous_force),
+            least(one.warming_time, other.warming_time)};
+}
+
+MotorHeat warmed(MotorHeat heat, const DeviceLimits& limits, double time, double held) noexcept {
+    if (!std::isfinite(time)) return heat;
+    const double passed = time - heat.time;
+    const auto add = [&](double power, double seconds) {
+        const double all = limits.warming_time + seconds;
+        heat.warmth = all > 0 ? (limits.warming_time * heat.warmth + seconds * power) / all : power;
+    };
+    if (passed > 0) {
+        const double ratio = heat.force > 0 ? heat.force / limits.continuous_force : 0;
+        const double acting = std::min(passed, held);
+        add(std::min(ratio * ratio, most_power), acting);
+        if (passed > acting) add(0, passed - acting);
+    }
+    heat.time = time;
+    return heat;
+}
+
+double warm_limit(const DeviceLimits& limits, const MotorHeat& heat) noexcept {
+    if (!(heat.warmth > warm)) return limits.maximum_force;
+    const double continuous = std::min(limits.continuous_force, limits.maximum_force);
+    const double cold = std::max(0.0, (1 - heat.warmth) / (1 - warm));
+    return continuous + cold * (limits.maximum_force - continuous);
+}
+
+void restart(ForceState& state) noexcept {
+    const MotorHeat motors{state.motors.warmth, state.motors.time, 0};
+    state = ForceState{};
+    state.motors = motors;
 }
 
 ForceSettings stable(ForceSettings s, const DeviceLimits& limits) noexcept {
@@ -154,15 +196,15 @@ ForceSettings stable(ForceSettings s, const DeviceLimits& limits) noexcept {
     if (!(damping < limits.physical_damping) ||
         !(s.stiffness <= greatest_stiffness(limits, damping))) {
         const double factor =
-            stable_part(s.stiffness, damping, limits.rate, limits.physical_damping);
+            stable_part(s.stiffness, damping, passive_rate(limits), limits.physical_damping);
         s.stiffness *= factor;
         s.damping *= factor;
         s.viscosity *= factor;
     }
     if (!(s.rotational_damping < limits.physical_rotational_damping) ||
         !(s.rotational_stiffness <= greatest_rotational_stiffness(limits, s.rotational_damping))) {
-        const double factor = stable_part(s.rotational_stiffness, s.rotational_damping, limits.rate,
-                                          limits.physical_rotational_damping);
+        const double factor = stable_part(s.rotational_stiffness, s.rotational_damping,
+                                          passive_rate(limits), limits.physical_rotational_damping);
         s.rotational_stiffness *= factor;
         s.rotational_damping *= factor;
     }
@@ -173,11 +215,12 @@ ForceSettings stable(ForceSettings s, const DeviceLimits& limits) noexcept {
 
 ForceResult render_force(ForceState& state, const ForceSettings& settings,
                          const DeviceLimits& limits, const ForceInput& input) {
+    state.motors = warmed(state.motors, limits, input.time, settings.stale_after);
     if (!input.enabled) return stop(state, force_off);
     if (!input.valid) return stop(state, force_stale);
     if (!is_finite(input)) return stop(state, force_not_finite);
     double step = input.time - state.time;
-    std::uint8_t flags = 0;
+    std::uint16_t flags = 0;
     if (!state.started || !(step <= settings.stale_after)) {
         if (state.started) flags |= force_stale;
         begin(state, input);
@@ -212,15 +255,19 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     }
     const double since = input.time - state.ramp_begin;
     const double ramp = since >= settings.ramp ? 1 : since / settings.ramp;
-    const Bounds of_force{settings.limit, limits.maximum_force, settings.rate_limit, ramp};
+    const double spared = warm_limit(limits, state.motors);
+    const Bounds of_force{settings.limit, spared, settings.rate_limit, ramp};
     const Bounds of_torque{settings.torque_limit, limits.maximum_torque, settings.torque_rate_limit,
                            ramp};
     force = within(force, state.force, of_force, step, flags);
+    const bool is_warm = spared < std::min(settings.limit, limits.maximum_force);
+    if (is_warm && (flags & force_limited)) flags |= force_warm;
     if (turns) torque = within(torque, state.torque, of_torque, step, flags);
     if (!force.allFinite() || !torque.allFinite()) return stop(state, force_not_finite);
     state.time = input.time;
     state.hand = input.hand;
     state.force = force;
+    state.motors.force = force.norm();
     state.turns = input.rotational_stiffness > 0;
     state.orientation = input.orientation;
     state.torque = torque;

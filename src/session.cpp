@@ -277,7 +277,7 @@ SessionTick advance(Session& session, double time, const DeviceReading& reading,
 }
 
 void let_go(Session& session, SessionTick& tick) noexcept {
-    session.renderer.force = ForceState{};
+    restart(session.renderer.force);
     tick.tick.force.setZero();
     tick.tick.torque.setZero();
     tick.tick.force_flags |= force_overrun;

@@ -32,6 +32,13 @@ void check_ranges(const T& settings) {
     });
 }
 
+std::string most_words(double most, const DeviceLimits& limits) {
+    const std::string delay =
+        limits.delay > 0 ? " and a delay of " + text_of(1e3 * limits.delay) + " ms" : "";
+    return "at most " + text_of(most) + " at " + text_of(limits.rate) + " Hz" + delay +
+           " to be rendered stably";
+}
+
 void check_rotation(const ForceSettings& s, const DeviceLimits& limits) {
     if (!(s.rotational_damping < limits.physical_rotational_damping)) {
         refuse("rotational damping [N mm s/rad]", s.rotational_damping,
@@ -42,9 +49,7 @@ void check_rotation(const ForceSettings& s, const DeviceLimits& limits) {
     turning.physical_damping = limits.physical_rotational_damping;
     const double most = greatest_stiffness(turning, s.rotational_damping);
     if (!(s.rotational_stiffness <= most)) {
-        refuse("rotational stiffness [N mm/rad]", s.rotational_stiffness,
-               "at most " + text_of(most) + " at " + text_of(limits.rate) +
-                   " Hz to be rendered stably");
+        refuse("rotational stiffness [N mm/rad]", s.rotational_stiffness, most_words(most, limits));
     }
 }
 
@@ -65,9 +70,7 @@ void check(const ForceSettings& s, const DeviceLimits& limits) {
     }
     const double most = greatest_stiffness(limits, damping);
     if (!(s.stiffness <= most)) {
-        refuse("stiffness [N/mm]", s.stiffness,
-               "at most " + text_of(most) + " at " + text_of(limits.rate) +
-                   " Hz to be rendered stably");
+        refuse("stiffness [N/mm]", s.stiffness, most_words(most, limits));
     }
     check_rotation(s, limits);
     // 4 peak / distance is the magnet's own stiffness where it is steepest.

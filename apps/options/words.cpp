@@ -23,6 +23,7 @@ std::string force_words(const Tick& tick) {
     if (flags & force_overrun) return "too late";
     if (flags & force_waiting) return "waiting";
     if (flags & force_ramping) return "ramp";
+    if (flags & force_warm) return "motors warm";
     if (flags & force_limited) return "limit";
     if (flags & force_rate_limited) return "rate limit";
     return {};

@@ -33,11 +33,12 @@ palpate_status set(palpate_run* run, std::initializer_list<NamedValue> values) n
         RendererSettings settings = now.settings();
         Command command;
         for (const auto& [name, value] : values) {
-            const double before = value_of(settings, name);
             command = change(settings, name, value);
-            if (std::holds_alternative<DeviceLimits>(command) && value > before) {
-                throw std::invalid_argument(std::string(name) +
-                                            ": a limit of a run can only be lowered");
+            const auto* limits = std::get_if<DeviceLimits>(&command);
+            if (limits && smaller(*limits, now.settings().device) != *limits) {
+                throw std::invalid_argument(
+                    std::string(name) +
+                    ": a limit of a run can only be lowered, its delay only be raised");
             }
         }
         return command;

@@ -23,6 +23,7 @@ DeviceInfo info_from(const palpate_own_device& asked) {
     }
     info.renders_torque = asked.maximum_torque > 0;
     info.has_orientation = asked.has_orientation != 0;
+    info.has_gripper = asked.has_gripper != 0;
     info.buttons = asked.buttons;
     return info;
 }
@@ -107,6 +108,7 @@ void OwnDevice::exchange() noexcept {
         measured.orientation = quaternion(reading.orientation).toRotationMatrix();
         measured.buttons = reading.buttons;
         measured.age = reading.age;
+        if (info_.has_gripper) measured.opening = reading.opening;
         measured.status = known ? static_cast<DeviceStatus>(reading.status) : DeviceStatus::fault;
         link_.report(measured, devices::monotonic_ns());
     } catch (...) {

@@ -1,4 +1,6 @@
 // Live runs of the C interface.
+#include <limits>
+
 #include "bindings/c/handles.hpp"
 #include "bindings/c/own_device.hpp"
 #include "bindings/c/structs.hpp"
@@ -56,6 +58,7 @@ palpate_snapshot snapshot_from(const Snapshot& from) {
     to.frozen = tick.frozen;
     to.clutched = tick.clutched;
     to.forces_on = from.forces_on;
+    to.opening = tick.device.opening.value_or(std::numeric_limits<double>::quiet_NaN());
     return to;
 }
 

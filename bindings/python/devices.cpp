@@ -49,6 +49,7 @@ void bind_devices(py::module_& module) {
         .field("renders_force", &I::renders_force, "False: position only.")
         .field("renders_torque", &I::renders_torque, "False: torque is ignored.")
         .field("has_orientation", &I::has_orientation, "Readings turn.")
+        .field("has_gripper", &I::has_gripper, "Readings have an opening.")
         .field("buttons", &I::buttons, "How many.")
         .done();
     using R = DeviceReading;
@@ -58,6 +59,7 @@ void bind_devices(py::module_& module) {
             "orientation_xyzw", [](const R& r) { return Quaternion(r.orientation); }, &turn,
             "Unit quaternion, tool axes to device axes.")
         .field("buttons", &R::buttons, "Bit b is set while button b is held.")
+        .field("opening", &R::opening, "[rad] of a gripper, 0: closed. None: it has none.")
         .field("age", &R::age, "[s] since it was measured")
         .field("status", &R::status,
                "'starting', 'ready', 'uncalibrated', 'stale', 'lost', 'fault', 'finished'.")

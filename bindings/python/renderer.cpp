@@ -111,11 +111,15 @@ py::array_t<double> batch_ns(Renderer& renderer, const Doubles& time, const Doub
 
 void bind_flags(py::module_& module) {
     py::dict flags;
-    const std::pair<const char*, ForceFlag> all[] = {
-        {"limited", force_limited},       {"rate_limited", force_rate_limited},
-        {"ramping", force_ramping},       {"stale", force_stale},
-        {"not_finite", force_not_finite}, {"off", force_off},
-        {"waiting", force_waiting},       {"overrun", force_overrun}};
+    const std::pair<const char*, ForceFlag> all[] = {{"limited", force_limited},
+                                                     {"rate_limited", force_rate_limited},
+                                                     {"ramping", force_ramping},
+                                                     {"stale", force_stale},
+                                                     {"not_finite", force_not_finite},
+                                                     {"off", force_off},
+                                                     {"waiting", force_waiting},
+                                                     {"overrun", force_overrun},
+                                                     {"warm", force_warm}};
     for (const auto& [name, bit] : all) flags[name] = int{bit};
     module.attr("FORCE_FLAGS") = flags;
 }

@@ -46,6 +46,7 @@ Arm arm_of(const Dhd& dhd, char id) {
     if (!model.has_wrist || !is_active || !dhd.has_torque()) model.torque = 0;
     const double limit = dhd.get_max_force ? dhd.get_max_force(id) : -1;
     if (limit > 0) model.force = is_known ? std::min(model.force, limit) : std::min(limit, 20.);
+    model.continuous = std::min(model.continuous, model.force);
     return arm;
 }
 
@@ -74,6 +75,7 @@ Dhd::Dhd(const std::string& path)
     library.take(has_wrist, "dhdHasWrist");
     library.take(has_active_wrist, "dhdHasActiveWrist");
     library.take(has_gripper, "dhdHasGripper");
+    library.take(get_gripper_angle, "dhdGetGripperAngleRad");
     library.take(get_max_force, "dhdGetMaxForce");
     library.take(emulate_button, "dhdEmulateButton");
     library.take(enable_expert_mode, "dhdEnableExpertMode");

@@ -37,7 +37,7 @@ enum class ForceOff : int {
     deadman = 6,   // DHD_FORCE_OFF_DEADMAN
 };
 
-/// The functions. A gripper serves as a button only. Negative results are errors. Positive
+/// The functions. Negative results are errors. Positive
 /// ones are not: they report the time guard (1) or a motor at its limit (2).
 struct Dhd {
     /// Opens `path`; if that is empty, libdrd.so.3, which contains or loads all of libdhd.so.3, or
@@ -72,6 +72,7 @@ struct Dhd {
     bool (*has_wrist)(char id);
     bool (*has_active_wrist)(char id);
     bool (*has_gripper)(char id);
+    int (*get_gripper_angle)(double*, char id);        // [rad]
     double (*get_max_force)(char id);                  // [N] negative: no limit is set
     int (*emulate_button)(unsigned char on, char id);  // closing the gripper is button 0
     int (*enable_expert_mode)();

@@ -3,6 +3,7 @@
 #include "devices/forcedimension/dhd_device.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace palpate::devices::forcedimension {
@@ -157,15 +158,15 @@ DeviceInfo DhdDevice::ask(const Settings& settings) const {
         info.model += ", serial number " + std::to_string(serial);
     }
     const Model& model = arm_.model;
-    info.limits.maximum_force = model.force;
-    info.limits.maximum_torque = model.torque;
-    info.limits.rate = std::min(settings.rate, 1e9 / period);
+    info.limits =
+        limits_of(model, std::min(settings.rate, 1e9 / period), exchange_delay(1e-9 * period));
     info.stiffness = model.stiffness;
     const Vec3 corner = 0.5 * Vec3(model.width, model.height, model.depth);
     info.workspace_low = arm_.centre - corner;
     info.workspace_high = arm_.centre + corner;
     info.has_orientation = model.has_wrist;
     info.renders_torque = renders_torque_;
+    info.has_gripper = model.has_gripper && dhd_.get_gripper_angle;
     info.buttons = arm_.has_button_row ? 4 : (!model.has_gripper || emulates_button_ ? 1 : 0);
     return info;
 }
@@ -321,6 +322,11 @@ Trouble DhdDevice::read_device(DeviceReading& reading) noexcept {
         } else {
             trouble.kind = Trouble::Kind::not_a_rotation;
         }
+    }
+    if (info_.has_gripper) {
+        double opening = unknown;
+        if (dhd_.get_gripper_angle(&opening, id_) < 0) return failure();
+        if (std::isfinite(opening)) reading.opening = opening;
     }
     reading.buttons = dhd_.get_buttons(id_) & 0xFFFFU;
     if (!is_position(reading.position)) trouble.kind = Trouble::Kind::not_a_position;

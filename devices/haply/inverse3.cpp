@@ -132,8 +132,7 @@ void Inverse3::start() {
 DeviceInfo Inverse3::info() const {
     DeviceInfo info;
     info.name = "haply";
-    info.limits.maximum_force = model().force;
-    info.limits.rate = settings_.rate;
+    info.limits = limits_of(model(), settings_.rate, exchange_delay(1e-3));
     info.stiffness = model().stiffness;
     const Vec3 one = settings_.axes * box_low, other = settings_.axes * box_high;
     info.workspace_low = one.cwiseMin(other);

@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::int64_t error_lasts = 1'000'000'000;     // [ns] after it was last reported
 constexpr std::int64_t between_readings = 100'000'000;  // [ns] at the motors
-constexpr double heating_time = 60;                     // [s] assumed; real motors take longer
 constexpr int most_motors = 16;
 constexpr std::int64_t between_updates = 1'000'000'000;  // [ns] of the calibration
 
@@ -85,7 +84,7 @@ unsigned int Frames::frame() noexcept {
     if (error_.kind != Trouble::Kind::none) trouble = error_;
     gate_.note(trouble.kind == Trouble::Kind::none && !last, now);
     const Wrench wanted = link_.wrench(now);
-    const Vec3 force = gate_.pass(wanted.force, motors_.limit(), now);
+    const Vec3 force = gate_.pass(wanted.force, force_limit_, now);
     hd_.set_double(parameter::force, force.data());
     if (setup_.most_torque > 0) {
         const Vec3 torque = gate_.pass(wanted.torque, setup_.most_torque, now);  // N mm are mN m
@@ -94,7 +93,7 @@ unsigned int Frames::frame() noexcept {
     hd_.end_frame(setup_.device);
 
     take_errors();
-    guard_motors(force.norm(), now);
+    guard_motors(now);
     if (error_.kind != Trouble::Kind::none) trouble = error_;
     now = setup_.now();
     reading.age = 1e-9 * static_cast<double>(now - begun);
@@ -162,38 +161,22 @@ void Frames::note_error(unsigned int code) noexcept {
     force_output(false);
 }
 
-void Frames::guard_motors(double force, std::int64_t now) noexcept {
-    if (!tells_temperature_) motors_.rendered(force, 1e-9 * static_cast<double>(now - guarded_));
-    if (tells_temperature_ && now >= guarded_ + between_readings) {
-        std::array<double, most_motors> motors{};
-        hd_.get_double(parameter::motor_temperature, motors.data());
-        const unsigned int code = hd_.take_error();
-        tells_temperature_ = !is_unknown_parameter(code);
-        if (code == 0) {
-            motors_.measured(std::ranges::max(motors));
-        } else if (tells_temperature_) {
-            note_error(code);
-        }
-        guarded_ = now;
+/// As the vendor's sample PreventWarmMotors: the force falls to what the device can render for
+/// hours. Before that the servo's own estimate does the same (MotorHeat), with every driver.
+void Frames::guard_motors(std::int64_t now) noexcept {
+    if (!tells_temperature_ || now < guarded_ + between_readings) return;
+    guarded_ = now;
+    std::array<double, most_motors> motors{};
+    hd_.get_double(parameter::motor_temperature, motors.data());
+    const unsigned int code = hd_.take_error();
+    tells_temperature_ = !is_unknown_parameter(code);
+    if (code != 0) {
+        if (tells_temperature_) note_error(code);
+        return;
     }
-    if (!tells_temperature_) guarded_ = now;
-    const double limit = motors_.limit();
-    warm_limit_.store(limit < setup_.most_force ? limit : 0);
-}
-
-void MotorGuard::measured(double temperature) noexcept {
-    warm_ = temperature > 0.5 ? std::min((temperature - 0.5) / 0.2, 1.) : 0;
-}
-
-void MotorGuard::rendered(double force, double seconds) noexcept {
-    // Motors heat with the square of their current.
-    const double power = force * force / (continuous_ * continuous_);
-    heat_ += (power - heat_) * std::min(seconds / heating_time, 1.);
-    warm_ = std::clamp((heat_ - 0.7) / 0.3, 0., 1.);
-}
-
-double MotorGuard::limit() const noexcept {
-    return most_ + warm_ * (continuous_ - most_);
+    const double warm = std::clamp((std::ranges::max(motors) - 0.5) / 0.2, 0., 1.);
+    force_limit_ = setup_.most_force + warm * (setup_.continuous_force - setup_.most_force);
+    warm_limit_.store(force_limit_ < setup_.most_force ? force_limit_ : 0);
 }
 
 void Frames::force_output(bool on) noexcept {

@@ -32,27 +32,6 @@ struct Trouble {
 };
 DeviceStatus status_of(Trouble::Kind kind);
 
-/// Keeps the motors from overheating. The vendor's sample PreventWarmMotors does the same: the
-/// force falls to what the device can render for hours.
-class MotorGuard {
-  public:
-    /// [N]
-    MotorGuard(double most, double continuous) : most_(most), continuous_(continuous) {}
-
-    /// As the driver tells it: 0 is the room's temperature, 1 too hot.
-    void measured(double temperature) noexcept;
-    /// Where the driver tells none: this force [N] has been rendered for this time [s]. A minute of
-    /// the continuous force counts as nearly hot.
-    void rendered(double force, double seconds) noexcept;
-    /// [N] that may be rendered now.
-    double limit() const noexcept;
-
-  private:
-    double most_, continuous_;
-    double heat_ = 0;  // of `rendered`: 1 is what the continuous force comes to
-    double warm_ = 0;  // 0: all of the force, 1: the continuous one
-};
-
 class Frames {
   public:
     struct Setup {
@@ -65,10 +44,7 @@ class Frames {
         Clock now = &monotonic_ns;
     };
     Frames(std::shared_ptr<const Hd> hd, const Setup& setup)
-        : library_(std::move(hd)),
-          hd_(*library_),
-          setup_(setup),
-          motors_(setup.most_force, setup.continuous_force) {}
+        : library_(std::move(hd)), hd_(*library_), setup_(setup), force_limit_(setup.most_force) {}
 
     /// For the driver's scheduler; `frames` points to one of these.
     static unsigned int callback(void* frames);
@@ -92,7 +68,7 @@ class Frames {
     bool for_good() const noexcept;
     void take_errors() noexcept;
     void note_error(unsigned int code) noexcept;
-    void guard_motors(double force, std::int64_t now) noexcept;
+    void guard_motors(std::int64_t now) noexcept;
     void force_output(bool on) noexcept;
 
     const std::shared_ptr<const Hd> library_;
@@ -108,7 +84,7 @@ class Frames {
     Trouble error_;                 // the worst recent one
     std::int64_t error_until_ = 0;  // [ns] when a passing one is over
     bool force_output_ = true;
-    MotorGuard motors_;
+    double force_limit_;  // [N] lower while the motors are warm
     bool tells_temperature_ = true;
     std::int64_t guarded_ = 0;      // [ns] last, or 0
     std::int64_t next_update_ = 0;  // [ns] of the calibration, not before

@@ -42,12 +42,6 @@ std::string text(const Hd& hd, unsigned int parameter) {
     return words ? words : "";
 }
 
-/// [N] Devices on the market can render a sixth of their greatest force for hours, or more.
-double continuous_force(const Hd& hd, const DeviceInfo& info) {
-    const double most = info.limits.maximum_force;
-    return number(hd, parameter::continuous_force, 0.01 * most, most, most / 6);
-}
-
 void set_workspace(const Hd& hd, DeviceInfo& info) {
     double box[6];
     std::fill(std::begin(box), std::end(box), std::numeric_limits<double>::quiet_NaN());
@@ -71,11 +65,15 @@ DeviceInfo ask(const Hd& hd, double servo_rate) {
     const std::string serial = text(hd, parameter::serial_number);
     if (info.model.empty()) info.model = "OpenHaptics device";
     if (!serial.empty()) info.model += ", serial number " + serial;
-    info.limits.maximum_force = number(hd, parameter::nominal_max_force, 0.1, 50, least.force);
+    const double most = number(hd, parameter::nominal_max_force, 0.1, 50, least.force);
     info.stiffness = number(hd, parameter::nominal_max_stiffness, 0.05, 10, least.stiffness);
     // The slower of the two loops is the one that samples.
     const int rate = whole_number(hd, parameter::update_rate, 100, 10000, 1000);
-    info.limits.rate = std::min<double>(servo_rate, rate);
+    info.limits = limits_of(least, std::min<double>(servo_rate, rate), exchange_delay(1.0 / rate));
+    info.limits.maximum_force = most;
+    // Devices on the market can render a sixth of their greatest force for hours, or more.
+    info.limits.continuous_force =
+        number(hd, parameter::continuous_force, 0.01 * most, most, most / 6);
     set_workspace(hd, info);
     info.has_orientation = whole_number(hd, parameter::input_dof, 1, 7, 6) >= 6;
     info.renders_torque =
@@ -157,7 +155,7 @@ Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& setting
     frames_ = std::make_shared<Frames>(
         attachment_->shared_hd(),
         Frames::Setup{attachment_->device(), info_.limits.maximum_force,
-                      continuous_force(hd, info_), info_.limits.maximum_torque,
+                      info_.limits.continuous_force, info_.limits.maximum_torque,
                       info_.has_orientation, styles_, timing_.now});
     try {
         start();

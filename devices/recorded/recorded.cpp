@@ -26,6 +26,8 @@ class Recorded final : public Device {
         for (const Told& told : told_) any |= told.buttons;
         info_.buttons = static_cast<int>(std::bit_width(any));
         info_.has_orientation = !orientation_.empty();
+        info_.has_gripper =
+            std::ranges::any_of(told_, [](const Told& told) { return told.opening.has_value(); });
     }
 
     DeviceInfo info() const override { return info_; }
@@ -43,6 +45,7 @@ class Recorded final : public Device {
         const Told told = told_.empty() ? Told{} : told_[place.row];
         reading.buttons = told.buttons;
         reading.age = told.age;
+        reading.opening = told.opening;
         reading.status = at_ > path_.end() ? DeviceStatus::finished : told.status;
         return reading;
     }

@@ -2,6 +2,7 @@
 #include "devices/recorded/recording.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -29,7 +30,8 @@ class DeviceColumns {
           z_(rows.column("device_z")),
           status_(column_if_any(rows, "device_status")),
           buttons_(column_if_any(rows, "buttons")),
-          age_(column_if_any(rows, "age")) {
+          age_(column_if_any(rows, "age")),
+          opening_(column_if_any(rows, "opening")) {
         if (!rows.has_column("tool_xx")) return;
         for (const char r : {'x', 'y', 'z'}) {
             for (const char c : {'x', 'y', 'z'}) {
@@ -57,6 +59,8 @@ class DeviceColumns {
         told.status = static_cast<DeviceStatus>(code(rows, status_, ready, last));
         told.buttons = code(rows, buttons_, 0, std::numeric_limits<std::uint32_t>::max());
         if (age_) told.age = rows.number(*age_);
+        const double opening = opening_ ? rows.number(*opening_) : not_there;
+        if (!std::isnan(opening)) told.opening = opening;
         return told;
     }
     bool has_tool() const { return !tool_.empty(); }
@@ -79,7 +83,8 @@ class DeviceColumns {
     }
 
     std::size_t time_, x_, y_, z_;
-    std::optional<std::size_t> status_, buttons_, age_;
+    std::optional<std::size_t> status_, buttons_, age_, opening_;
+    static constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
     std::vector<std::size_t> tool_;
 };
 

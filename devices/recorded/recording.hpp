@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace palpate::devices {
 struct Told {
     DeviceStatus status = DeviceStatus::ready;
     std::uint32_t buttons = 0;
-    double age = 0;  ///< [s]
+    double age = 0;                      ///< [s]
+    std::optional<double> opening = {};  ///< [rad] of a gripper
 };
 
 /// All vectors are as long as `time`, or empty where the file has no such columns.

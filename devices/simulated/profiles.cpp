@@ -20,7 +20,6 @@ struct Row {
     const char* model;
     double mass, damping, friction;   // kg, N s/mm, N
     double encoder_step, force_step;  // mm, N
-    double delay;                     // s
 };
 
 /// Of those that measure the orientation.
@@ -32,19 +31,19 @@ struct TurningRow {
 
 // clang-format off
 constexpr Row rows[] = {
-    // name         model              mass   damping friction encoder force step delay
-    {"omni",        "PHANToM Omni",     0.045, 0.5e-3, 0.26,    0.055,  0.002,     0.5e-3},
-    {"touch",       "Touch",            0.045, 0.5e-3, 0.26,    0.055,  0.002,     1e-3},
-    {"touchx",      "Touch X",          0.045, 0.5e-3, 0.06,    0.023,  0.004,     1e-3},
-    {"omega3",      "omega.3",          0.2,   2e-3,   0.1,     0.01,   0.006,     0.25e-3},
-    {"omega6",      "omega.6",          0.3,   2e-3,   0.1,     0.01,   0.006,     0.25e-3},
-    {"omega7",      "omega.7",          0.35,  2e-3,   0.1,     0.01,   0.006,     0.25e-3},
-    {"sigma7",      "sigma.7",          0.4,   2e-3,   0.1,     0.0015, 0.01,      0.25e-3},
-    {"premium6dof", "Premium 1.5/6DOF", 0.136, 0.5e-3, 0.2,     0.03,   0.004,     0.5e-3},
-    {"falcon",      "Falcon",           0.15,  2e-3,   0.4,     0.0635, 0.01,      1e-3},
-    {"inverse3",    "Inverse3",         0.15,  0.5e-3, 0.15,    0.01,   0.005,     1e-3},
+    // name         model              mass   damping friction encoder force step
+    {"omni",        "PHANToM Omni",     0.045, 0.5e-3, 0.26,    0.055,  0.002},
+    {"touch",       "Touch",            0.045, 0.5e-3, 0.26,    0.055,  0.002},
+    {"touchx",      "Touch X",          0.045, 0.5e-3, 0.06,    0.023,  0.004},
+    {"omega3",      "omega.3",          0.2,   2e-3,   0.1,     0.01,   0.006},
+    {"omega6",      "omega.6",          0.3,   2e-3,   0.1,     0.01,   0.006},
+    {"omega7",      "omega.7",          0.35,  2e-3,   0.1,     0.01,   0.006},
+    {"sigma7",      "sigma.7",          0.4,   2e-3,   0.1,     0.0015, 0.01},
+    {"premium6dof", "Premium 1.5/6DOF", 0.136, 0.5e-3, 0.2,     0.03,   0.004},
+    {"falcon",      "Falcon",           0.15,  2e-3,   0.4,     0.0635, 0.01},
+    {"inverse3",    "Inverse3",         0.15,  0.5e-3, 0.15,    0.01,   0.005},
     {"inverse3_versegrip", "Inverse3 with VerseGrip",
-                                        0.2,   0.5e-3, 0.15,    0.01,   0.005,     1e-3},
+                                        0.2,   0.5e-3, 0.15,    0.01,   0.005},
 };
 constexpr TurningRow turning_rows[] = {
     // name                inertia damping friction step   torque step
@@ -81,7 +80,8 @@ DeviceProfile profile_of(const Row& row) {
     profile.encoder_step = row.encoder_step;
     profile.maximum_force = model.force;
     profile.force_step = row.force_step;
-    profile.delay = row.delay;
+    profile.delay = 1e-3 * model.delay;
+    profile.continuous_force = model.continuous;
     profile.stiffness = model.stiffness;
     profile.has_orientation = model.has_wrist;
     profile.maximum_torque = model.torque;

@@ -12,16 +12,17 @@ namespace palpate::devices {
 
 /// A haptic device as a rigid body at the grip, the same in all directions and about all axes.
 struct DeviceProfile {
-    std::string name;          ///< for the option `profile`
-    std::string model;         ///< as people call it
-    double mass = 0.05;        ///< [kg] apparent at the grip, > 0
-    double damping = 0;        ///< [N s/mm] viscous, of the mechanics
-    double friction = 0;       ///< [N] Coulomb, static and sliding alike
-    double encoder_step = 0;   ///< [mm] positions are read in multiples of it; 0: exactly
-    double maximum_force = 0;  ///< [N]
-    double force_step = 0;     ///< [N] the motors' command has multiples of it; 0: any
-    double delay = 0;          ///< [s] from writing a force until it acts
-    double stiffness = 0;      ///< [N/mm] it is rated for
+    std::string name;             ///< for the option `profile`
+    std::string model;            ///< as people call it
+    double mass = 0.05;           ///< [kg] apparent at the grip, > 0
+    double damping = 0;           ///< [N s/mm] viscous, of the mechanics
+    double friction = 0;          ///< [N] Coulomb, static and sliding alike
+    double encoder_step = 0;      ///< [mm] positions are read in multiples of it; 0: exactly
+    double maximum_force = 0;     ///< [N]
+    double continuous_force = 0;  ///< [N] for hours
+    double force_step = 0;        ///< [N] the motors' command has multiples of it; 0: any
+    double delay = 0;             ///< [s] from writing a force until it acts
+    double stiffness = 0;         ///< [N/mm] it is rated for
     Vec3 workspace_low = Vec3::Zero();
     Vec3 workspace_high = Vec3::Zero();  ///< [device mm]
 

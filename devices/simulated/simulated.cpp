@@ -159,6 +159,8 @@ DeviceInfo info_of(const Choice& choice, double rate) {
     info.model = "simulated " + device.model + ", " + choice.grip + " grip";
     info.limits.maximum_force = device.maximum_force;
     info.limits.rate = rate;
+    info.limits.delay = device.delay;
+    info.limits.continuous_force = device.continuous_force;
     info.limits.physical_damping = device.damping + choice.grip_numbers.damping;
     if (device.has_orientation) {
         info.limits.maximum_torque = device.maximum_torque;

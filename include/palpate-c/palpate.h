@@ -275,6 +275,12 @@ PALPATE_API void palpate_renderer_destroy(palpate_renderer *renderer);
  *       0).
  *   `limits.physical_rotational_damping` [N mm s/rad] Damping of device and hand themselves against
  *       turning (default: 1).
+ *   `limits.delay` [s] Time from measuring a position until the force for it acts, without the sampling
+ *       (default: 0).
+ *   `limits.continuous_force` [N] Force that the motors can give for hours (inf: all that they can give)
+ *       (default: inf).
+ *   `limits.warming_time` [s] Time in which a constant force brings the motors to 63 % of its warmth
+ *       (default: 60).
  */
 typedef struct palpate_setting {
     uint32_t size_of;
@@ -332,6 +338,7 @@ typedef struct palpate_reading {
     double age;            /* [s] since it was measured; beyond 0.02 it counts as stale */
     uint32_t buttons;      /* bit b: button b is held */
     uint32_t unused;
+    double opening;        /* [rad] of a gripper, 0: closed; with has_gripper. Since 0.3 */
 } palpate_reading;
 
 typedef struct palpate_wrench {
@@ -359,7 +366,7 @@ typedef struct palpate_own_device {
     double workspace_high[3];      /* all 0: 80 */
     double rate;                   /* [Hz] of the callbacks, 50 to 8000; 0: 1000 */
     int32_t has_orientation;
-    int32_t unused;
+    int32_t has_gripper; /* readings have an opening. Since 0.3 */
     /* Fills in *reading (its size is set, the rest 0). Returns 0, or not 0: the device is lost. */
     int32_t (*read)(palpate_reading *reading, void *context);
     /* Returns 0, or not 0: the device is lost. */
@@ -458,6 +465,7 @@ typedef struct palpate_snapshot {
     double moment;             /* [s] of a sequence */
     uint32_t buttons;
     int32_t frozen, clutched, forces_on;
+    double opening;            /* [rad] of a gripper, 0: closed; NaN: it has none. Since 0.3 */
 } palpate_snapshot;
 
 typedef struct palpate_report {
@@ -493,8 +501,8 @@ PALPATE_API palpate_status palpate_run_text(const palpate_run *run, int32_t whic
 PALPATE_API palpate_status palpate_run_get(const palpate_run *run, const char *name, double *value);
 
 /* Commands, carried out within a tick or two. */
-/* A setting by its name. PALPATE_INVALID for a limit that would rise: limits can only be lowered.
- * Since 0.3. */
+/* A setting by its name. PALPATE_INVALID for a limit that would rise: limits can only be lowered, and
+ * the delay only be raised. Since 0.3. */
 PALPATE_API palpate_status palpate_run_set(palpate_run *run, const char *name, double value);
 PALPATE_API palpate_status palpate_run_set_isovalue(palpate_run *run, double isovalue);
 PALPATE_API palpate_status palpate_run_set_forces(palpate_run *run, int32_t on);

@@ -33,6 +33,7 @@ struct DeviceInfo {
     bool renders_force = true;                 ///< false: position only
     bool renders_torque = false;               ///< false: the torque of a wrench is ignored
     bool has_orientation = false;
+    bool has_gripper = false;
     int buttons = 0;
 };
 
@@ -41,12 +42,19 @@ struct DeviceReading {
     Vec3 position = Vec3::Zero();         ///< [device mm]
     Mat3 orientation = Mat3::Identity();  ///< tool axes to device axes; identity if not known
     std::uint32_t buttons = 0;            ///< bit b is set while button b is held
+    std::optional<double> opening = {};   ///< [rad] of a gripper, 0: closed. None: it has none
     double age = 0;                       ///< [s] since it was measured. Below 0, NaN, inf: stale
     DeviceStatus status = DeviceStatus::starting;
     /// Limits of a device that learns them only when it connects, in every reading from then on;
     /// none: those that info() gave when the servo was made still hold.
     std::optional<DeviceLimits> limits = std::nullopt;
 };
+
+/// Whether a gripper is so far closed that it counts as holding. A hand without a gripper always
+/// holds.
+constexpr bool holds(const DeviceReading& reading) {
+    return !reading.opening || *reading.opening < 0.1;
+}
 
 /// The side of the body that faces the person at the device. Physical space is LPS (x to the left,
 /// y to the back, z up), so in an anterior view the patient's left is at the right.

@@ -62,13 +62,18 @@ struct DeviceLimits {
     double maximum_force = 3.3;  ///< [N] never exceeded (3.3: Omni, Touch)
     double rate = 1000;          ///< [Hz] of the servo loop
     /// [N s/mm] of device and hand, physical. A sampled spring k is passive for
-    /// k / (2 rate) + damping <= this (Colgate and Schenkel 1994). 2.5 N s/m is a desktop device in
-    /// a light grip.
+    /// k (1 / (2 rate) + delay) + damping <= this (Colgate and Schenkel 1994, Hulin et al. 2014).
+    /// 2.5 N s/m is a desktop device in a light grip.
     double physical_damping = 2.5e-3;
     double maximum_torque = 0;  ///< [N mm] never exceeded. 0: the device renders none
-    /// [N mm s/rad] the same of turning: a sampled rotational spring is passive for
-    /// k / (2 rate) + damping <= this. 1 is `physical_damping` at a lever of 20 mm.
+    /// [N mm s/rad] the same of turning. 1 is `physical_damping` at a lever of 20 mm.
     double physical_rotational_damping = 1;
+    /// [s] from the measurement of a position until the force for it acts, but for the sampling: of
+    /// the device, of its exchange with the servo, and of rendering.
+    double delay = 0;
+    /// [N] that the motors can give for hours (warm_limit()). Infinity: all that they can give.
+    double continuous_force = std::numeric_limits<double>::infinity();
+    double warming_time = 60;  ///< [s] in which a constant force brings them to 63 % of its warmth
 
     bool operator==(const DeviceLimits&) const = default;
 };
@@ -80,7 +85,8 @@ double greatest_stiffness(const DeviceLimits& limits, double damping);
 /// renders no torque it is what the proxy's pose is found with.
 double rotational_stiffness(const ForceSettings& settings, const DeviceLimits& limits,
                             double gyration);
-/// The smaller of both, number by number. A number that is negative or NaN counts as 0: no force.
+/// The smaller of both, number by number, but the larger delay. A number that is negative or NaN
+/// counts as 0, a delay as infinite: no force.
 DeviceLimits smaller(const DeviceLimits& one, const DeviceLimits& other) noexcept;
 /// The settings as these limits can render them stably. Settings that pass check() come back as
 /// they are. Otherwise one factor lowers stiffness, damping and viscosity, which keeps their
@@ -116,7 +122,7 @@ struct ForceInput {
 };
 
 /// Why a force differs from what the settings alone would give. Bits.
-enum ForceFlag : std::uint8_t {
+enum ForceFlag : std::uint16_t {
     force_limited = 1,       ///< cut to the maximum
     force_rate_limited = 2,  ///< change of force cut
     force_ramping = 4,       ///< in the ramp after a start or pause
@@ -125,7 +131,24 @@ enum ForceFlag : std::uint8_t {
     force_off = 32,          ///< switched off: zero
     force_waiting = 64,      ///< released, or waiting for a small force to start with
     force_overrun = 128,     ///< the tick took too long: zero
+    force_warm = 256,        ///< cut because the motors are warm (warm_limit())
 };
+
+/// How warm the motors are, estimated from the forces that they were given. A constant force f
+/// warms them towards (f / continuous_force)^2 as 1 - exp(-t / warming_time): they are one body,
+/// and their power is the square of their current.
+struct MotorHeat {
+    double warmth = 0;  ///< 0: as the room, 1: as warm as the continuous force makes them
+    double time = 0;    ///< [s] of the warmth
+    double force = 0;   ///< [N] that acts since then
+};
+/// The same at a later time [s]. A force acts for `held` [s] at most, then none. A time that is not
+/// finite changes nothing. An implicit step: stable for every time, and never too cold after a
+/// pause.
+MotorHeat warmed(MotorHeat heat, const DeviceLimits& limits, double time, double held) noexcept;
+/// [N] that such motors may be given: the maximum up to a warmth of 0.7, then less, down to the
+/// continuous force at 1. So the warmth never exceeds 1.
+double warm_limit(const DeviceLimits& limits, const MotorHeat& heat) noexcept;
 
 /// State between ticks.
 struct ForceState {
@@ -140,17 +163,21 @@ struct ForceState {
     Quaternion orientation = Quaternion::Identity();
     Vec3 angular_velocity = Vec3::Zero();  ///< [rad/s], low-pass filtered; at most 100 rad/s counts
     Vec3 torque = Vec3::Zero();            ///< [N mm] as rendered
+    MotorHeat motors;                      ///< kept by every stop
 };
+/// No force, and the ramp begins again. The motors stay as warm as they are.
+void restart(ForceState& state) noexcept;
 
 struct ForceResult {
     Vec3 force = Vec3::Zero();   ///< [N], device axes
     Vec3 torque = Vec3::Zero();  ///< [N mm], device axes, about the tool's reference point
-    std::uint8_t flags = 0;      ///< ForceFlag bits
+    std::uint16_t flags = 0;     ///< ForceFlag bits
 };
 
 /// Force and torque of one tick. Never throws. Input that is not valid gives zero at once, and the
-/// ramp starts again. Settings that check() would refuse give no force beyond `limits` either. A
-/// lowered limit holds at once: that fall, and every stop, is exempt from the rate limit.
+/// ramp starts again. Settings that check() would refuse give no force beyond `limits` either. Warm
+/// motors lower the maximum (warm_limit()). A lowered limit holds at once: that fall, and every
+/// stop, is exempt from the rate limit.
 ForceResult render_force(ForceState& state, const ForceSettings& settings,
                          const DeviceLimits& limits, const ForceInput& input);
 

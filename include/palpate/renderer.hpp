@@ -82,11 +82,11 @@ struct ToolFelt {
 
 /// The result of one tick.
 struct Tick {
-    double time = 0;               ///< [s]
-    ProxyUpdate proxy;             ///< HIP, SCP, mode, density, isovalue, ... in physical space
-    Vec3 force = Vec3::Zero();     ///< [N], device axes
-    Vec3 torque = Vec3::Zero();    ///< [N mm], device axes, about the tool's reference point
-    std::uint8_t force_flags = 0;  ///< ForceFlag bits
+    double time = 0;                ///< [s]
+    ProxyUpdate proxy;              ///< HIP, SCP, mode, density, isovalue, ... in physical space
+    Vec3 force = Vec3::Zero();      ///< [N], device axes
+    Vec3 torque = Vec3::Zero();     ///< [N mm], device axes, about the tool's reference point
+    std::uint16_t force_flags = 0;  ///< ForceFlag bits
     LayersFelt layers;
     ToolFelt tool;
     std::int64_t update_ns = 0;  ///< [ns] the proxy update alone, by the caller's clock. 0: none

@@ -205,6 +205,17 @@ inline constexpr auto settings_of<DeviceLimits> = std::tuple{
     setting(&DeviceLimits::physical_rotational_damping, "physical_rotational_damping", "N mm s/rad",
             "Damping of device and hand themselves against turning")
         .titled("physical rotational damping")
+        .within(ranges::positive),
+    setting(&DeviceLimits::delay, "delay", "s",
+            "Time from measuring a position until the force for it acts, without the sampling")
+        .within(ranges::not_negative),
+    setting(&DeviceLimits::continuous_force, "continuous_force", "N",
+            "Force that the motors can give for hours (inf: all that they can give)")
+        .titled("continuous force")
+        .within(ranges::limit),
+    setting(&DeviceLimits::warming_time, "warming_time", "s",
+            "Time in which a constant force brings the motors to 63 % of its warmth")
+        .titled("warming time")
         .within(ranges::positive)};
 
 template <>

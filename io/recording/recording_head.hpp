@@ -7,7 +7,7 @@
 namespace palpate::io {
 
 /// Format 1 had neither tick numbers nor checksums.
-inline constexpr int recording_format = 5;
+inline constexpr int recording_format = 6;
 inline constexpr std::string_view recording_mark = " palpate recording ";  // after the #
 inline constexpr std::string_view command_mark = " command ";
 inline constexpr std::string_view end_mark = " end ";

@@ -69,6 +69,7 @@ struct RecordingReader::Rows {
         std::size_t contacts;
     };
     std::optional<ToolColumns> felt_tool;      // from format 4 on
+    std::optional<std::size_t> opening;        // from format 6 on
     std::optional<std::size_t> number, crc32;  // format 1 does
     std::array<std::size_t, 9> tool;
 
@@ -96,6 +97,7 @@ struct RecordingReader::Rows {
             felt_tool = ToolColumns{QuaternionColumns(csv, ""), QuaternionColumns(csv, "proxy_"),
                                     VectorColumns(csv, "torque"), csv.column("contacts")};
         }
+        if (format > 5) opening = csv.column("opening");
         if (format > 1) {
             number = csv.column("tick");
             crc32 = csv.column("crc32");
@@ -190,6 +192,12 @@ struct RecordingReader::Rows {
                 layer_number((*layers)[2], 0)};
     }
 
+    /// None: NaN.
+    std::optional<double> number_if_any(std::size_t column) const {
+        const double value = csv.number(column);
+        return std::isnan(value) ? std::nullopt : std::optional(value);
+    }
+
     SessionTick tick() const {
         const TraceRow row = trace.read(csv);
         SessionTick result;
@@ -204,7 +212,7 @@ struct RecordingReader::Rows {
         tick.proxy.isovalue = row.isovalue;
         tick.proxy.tetrahedra = row.tetrahedra;
         tick.force = row.force;
-        tick.force_flags = static_cast<std::uint8_t>(code(force_flags, 255));
+        tick.force_flags = static_cast<std::uint16_t>(code(force_flags, 511));
         tick.update_ns = row.update_ns;
         result.device.status = static_cast<DeviceStatus>(
             code(device_status, static_cast<std::int64_t>(DeviceStatus::finished)));
@@ -212,6 +220,7 @@ struct RecordingReader::Rows {
         result.device.buttons =
             static_cast<std::uint32_t>(code(buttons, std::numeric_limits<std::uint32_t>::max()));
         result.device.age = csv.number(age);
+        if (opening) result.device.opening = number_if_any(*opening);
         for (int i = 0; i < 9; ++i) {
             result.device.orientation(i / 3, i % 3) = csv.number(tool[static_cast<std::size_t>(i)]);
         }

@@ -1,6 +1,8 @@
 // Lines of recordings (docs/recordings.md).
 #include "io/recording/recording_text.hpp"
 
+#include <limits>
+
 #include "io/recording/trace_columns.hpp"
 
 namespace palpate::io {
@@ -9,7 +11,7 @@ namespace {
 constexpr std::string_view session_columns =
     ",status,force_flags,device_status,device_x,device_y,device_z,buttons,age,"
     "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched,"
-    "moment,samples,layer_touched,layers_inside,layers_punctured";
+    "moment,samples,layer_touched,layers_inside,layers_punctured,opening";
 constexpr std::string_view check_columns = ",tick,crc32";
 
 /// The cells of a tick that the session gave, without the end of the line.
@@ -29,6 +31,7 @@ void append_session(std::string& text, const SessionTick& tick) {
     append_cell(text, std::int64_t{tick.tick.layers.touched});
     append_cell(text, std::int64_t{tick.tick.layers.inside});
     append_cell(text, std::int64_t{tick.tick.layers.punctured});
+    append_cell(text, tick.device.opening.value_or(std::numeric_limits<double>::quiet_NaN()));
     append_tool(text, trace_row(tick.tick));
 }
 

@@ -62,6 +62,12 @@ static void members(auto& v, Is<Proxy> auto& s) {
     v("ahead", s.ahead);
 }
 
+static void members(auto& v, Is<MotorHeat> auto& s) {
+    v("warmth", s.warmth);
+    v("time", s.time);
+    v("force", s.force);
+}
+
 static void members(auto& v, Is<ForceState> auto& s) {
     v("started", s.started);
     v("waiting", s.waiting);
@@ -74,6 +80,7 @@ static void members(auto& v, Is<ForceState> auto& s) {
     v("orientation", s.orientation);
     v("angular_velocity", s.angular_velocity);
     v("torque", s.torque);
+    v("motors", s.motors);
 }
 
 static void members(auto& v, Is<ContactSpring> auto& s) {

@@ -108,7 +108,9 @@ bool is_possible(const SessionPoint& point, const Tool* tool, const Geometry& gr
 bool is_finite(const ForceState& force) {
     return std::isfinite(force.time) && std::isfinite(force.ramp_begin) && force.hand.allFinite() &&
            force.velocity.allFinite() && force.force.allFinite() && is_unit(force.orientation) &&
-           force.angular_velocity.allFinite() && force.torque.allFinite();
+           force.angular_velocity.allFinite() && force.torque.allFinite() &&
+           force.motors.warmth >= 0 && std::isfinite(force.motors.warmth) &&
+           std::isfinite(force.motors.time) && std::isfinite(force.motors.force);
 }
 
 bool is_of(const NeedleState& needle, int layers) {

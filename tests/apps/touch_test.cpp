@@ -323,8 +323,9 @@ TEST(Devices, lists_each_device_with_what_was_found_or_what_is_missing) {
         EXPECT_FALSE(device[device["found"] ? "what" : "missing"].get<std::string>().empty());
         EXPECT_FALSE(device["options"].get<std::string>().empty());
     }
-    EXPECT_EQ(names, (std::vector<std::string>{"simulated", "recorded", "mouse", "haply",
-                                               "openhaptics", "forcedimension", "spacenav"}));
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"simulated", "recorded", "mouse", "haply", "openhaptics",
+                                        "forcedimension", "falcon", "spacenav"}));
     const Outcome text = palpate(folder, "devices");
     for (const std::string& name : names) EXPECT_TRUE(contains(text.out, name));
 }
@@ -396,7 +397,7 @@ TEST(Validate, says_what_an_old_recording_and_one_that_was_cut_off_cannot_tell) 
     EXPECT_TRUE(contains(old.out, "the same bit for bit"));
     EXPECT_TRUE(contains(old.out, "cannot be known")) << old.out;
     recorded.text = original.substr(0, original.size() / 2);
-    const auto cut = recorded.validate_with("recording 5", "recording 5");
+    const auto cut = recorded.validate_with("recording 6", "recording 6");
     EXPECT_EQ(cut.status, 0) << cut.err;
     EXPECT_TRUE(contains(cut.out, "cut off before its end")) << cut.out;
 }

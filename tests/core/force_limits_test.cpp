@@ -123,6 +123,7 @@ struct Asked {
         limits.maximum_force = random.uniform(0.5, 20);
         limits.rate = random.uniform(250, 8000);
         limits.physical_damping = random.uniform(1e-3, 1e-2);
+        limits.delay = random.below(2) ? random.uniform(0, 3e-3) : 0;
         settings.stiffness = random.uniform(0, 10);
         settings.damping = random.below(2) ? random.uniform(0, 5e-3) : 0;
         settings.viscosity = random.below(2) ? random.uniform(0, 5e-3) : 0;

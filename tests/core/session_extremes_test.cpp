@@ -89,7 +89,8 @@ std::vector<Command> limits_with(double value) {
     std::vector<Command> commands;
     for (double DeviceLimits::*member :
          {&DeviceLimits::maximum_force, &DeviceLimits::rate, &DeviceLimits::physical_damping,
-          &DeviceLimits::maximum_torque, &DeviceLimits::physical_rotational_damping}) {
+          &DeviceLimits::maximum_torque, &DeviceLimits::physical_rotational_damping,
+          &DeviceLimits::delay, &DeviceLimits::continuous_force, &DeviceLimits::warming_time}) {
         DeviceLimits limits;
         limits.*member = value;
         commands.emplace_back(limits);

@@ -14,7 +14,9 @@ TYPES = {"uchar": "unsigned char", "ushort": "unsigned short", "uint": "unsigned
          "HHD": "unsigned int", "HDenum": "unsigned int", "HDerror": "unsigned int", "HDint": "int",
          "HDdouble": "double", "HDstring": "const char*", "HDushort": "unsigned short",
          "HDSchedulerHandle": "unsigned long", "HDErrorInfo": "ErrorInfo", "Handle": "unsigned int",
-         "HDSchedulerCallback": "unsigned int(*)(void*)", "Callback": "unsigned int(*)(void*)"}
+         "HDSchedulerCallback": "unsigned int(*)(void*)", "Callback": "unsigned int(*)(void*)",
+         "ftdi_context": "void", "ftdi_device_list": "void", "ftdi_bits_type": "int",
+         "ftdi_stopbits_type": "int", "ftdi_parity_type": "int"}
 ARGUMENTS = r"((?:[^()]|\([^()]*\))*)"
 
 
@@ -57,7 +59,7 @@ def functions_of_backend(header, loader):
 
 
 def functions_of_stand_in(name):
-    found = re.findall(rf"^MOCK_EXPORT ([\w *:]+?)((?:dhd|drd|hd)[A-Z]\w+)\({ARGUMENTS}\) \{{", source(name), re.M)
+    found = re.findall(rf"^MOCK_EXPORT ([\w *:]+?)((?:dhd|drd|hd)[A-Z]\w+|ftdi_\w+)\({ARGUMENTS}\) \{{", source(name), re.M)
     return {function: signature(result, arguments) for result, function, arguments in found}
 
 
@@ -72,7 +74,7 @@ def constants_of_header(name):
     for line in source(name).splitlines():
         number = re.search(r"\b\w+ = (0x[0-9A-Fa-f]+|\d+)\b", line)
         if number and "// ours" not in line and not re.search(r"^\s*(double|Vec3|bool)\b", line):
-            vendor = re.search(r"// ([A-Z][A-Z0-9]*_\w+)", line)
+            vendor = re.search(r"// ([A-Z][A-Z0-9_]{3,})\b", line)
             assert vendor, f"{name}: no vendor's name beside: {line.strip()}"
             found[vendor.group(1)] = int(number.group(1), 0)
     return found
@@ -81,13 +83,14 @@ def constants_of_header(name):
 class Interface:
     longMessage = True
     maxDiff = None
+    constants = 10  # at least
 
     def test_the_functions_that_are_declared_and_looked_up_are_those_of_the_page(self):
         self.assertGreater(len(functions_of_page(self.name)), 10)
         self.assertEqual(functions_of_backend(self.header, self.loader), functions_of_page(self.name))
 
     def test_the_constants_are_those_of_the_page(self):
-        self.assertGreater(len(constants_of_page(self.name)), 10)
+        self.assertGreater(len(constants_of_page(self.name)), self.constants)
         self.assertEqual(constants_of_header(self.header), constants_of_page(self.name))
 
     def test_the_stand_in_exports_what_the_page_says(self):
@@ -102,6 +105,11 @@ class ForceDimension(Interface, unittest.TestCase):
 class OpenHaptics(Interface, unittest.TestCase):
     name, stand_in = "OpenHaptics", "tests/devices/openhaptics/mock_hd.cpp"
     header, loader = "devices/openhaptics/hd.hpp", "devices/openhaptics/hd.cpp"
+
+
+class Libftdi(Interface, unittest.TestCase):
+    name, stand_in, constants = "libftdi", "tests/devices/falcon/mock_ftdi.cpp", 3
+    header, loader = "devices/falcon/ftdi.hpp", "devices/falcon/ftdi.cpp"
 
 
 class Spacenavd(unittest.TestCase):

@@ -115,6 +115,10 @@ void touch_before_login(M& m) {
 }
 void falcon_without_library(M& m) {
     m.plug("0403", "cb48", "FALCON HAPTIC");
+    m.facts.devices.push_back({"falcon", false, {}, "cannot open its library (libftdi1.so.2)", {}});
+}
+void omega_without_library(M& m) {
+    m.plug("1451", "0402", "omega.x");
     m.not_found("forcedimension", "cannot open its library (libdhd.so.3)");
 }
 void touch_without_terminal_libraries(M& m) {
@@ -196,8 +200,9 @@ const Injection plugged[] = {
     {"device-permission", true, "sudo adduser $USER dialout", closed_touch},
     {"device-permission", true, "log out and in again: you are in group dialout",
      touch_before_login},
+    {"device-library", true, "sudo apt install libftdi1-2", falcon_without_library},
     {"device-library", true, "install the vendor's library (docs/devices/forcedimension.md)",
-     falcon_without_library},
+     omega_without_library},
     {"device-library", true, "sudo apt install libncurses5 libtinfo5",
      touch_without_terminal_libraries},
     {"device-permission", true, "ATTR{idVendor}==\"2988\", ATTR{idProduct}==\"0304\"",
@@ -238,7 +243,7 @@ TEST(Doctor, names_each_device_that_is_plugged_in_and_has_nothing_to_say_about_i
         {"1451", "0403", "sigma.7", "forcedimension", "Force Dimension sigma"},
         {"1451", "040c", "lambda.7", "forcedimension", "Force Dimension lambda"},
         {"1451", "0301", "haptic device", "forcedimension", "Force Dimension device"},
-        {"0403", "cb48", "FALCON HAPTIC", "forcedimension", "Novint Falcon"},
+        {"0403", "cb48", "FALCON HAPTIC", "falcon", "Novint Falcon"},
         {"256f", "c635", "SpaceMouse Compact", "spacenav", "3Dconnexion mouse"},
     };
     for (const auto& device : devices) {

@@ -71,6 +71,7 @@ SessionTick random_tick(Random& random, double time) {
     tick.device.status = static_cast<DeviceStatus>(random.below(7));
     tick.device.position = random.point(-100, 100);
     tick.device.buttons = 0x80000001U;
+    tick.device.opening = 0.1;
     tick.device.age = random.uniform(0, 0.1);
     tick.device.orientation = oblique_direction() * random.uniform(0, 1);
     tick.frozen = random.below(2) == 0;
@@ -192,6 +193,7 @@ TEST(Recording, ticks_hold_what_was_put_in) {
     EXPECT_EQ(back.tick.force_flags, tick.tick.force_flags);
     EXPECT_EQ(back.device.orientation, tick.device.orientation);
     EXPECT_EQ(back.device.buttons, tick.device.buttons);
+    EXPECT_EQ(back.device.opening, tick.device.opening);
     EXPECT_EQ(back.device.age, tick.device.age);
     EXPECT_EQ(back.frozen, tick.frozen);
     EXPECT_FALSE(reader.next());
@@ -239,7 +241,7 @@ TEST(Recording, a_damaged_one_is_an_input_error_that_names_the_file) {
     };
     expect(refusal(""), "is no recording");
     expect(refusal("t,x,y,z\n0,1,2,3\n"), "is no recording");
-    expect(refusal(with("recording 5", "recording 6")), "later version");
+    expect(refusal(with("recording 6", "recording 7")), "later version");
     expect(refusal(with("\"version\": ", "\"version\" ")), "not valid JSON");
     expect(refusal(with("\"version\"", "\"edition\"")), "'version' is missing");
     expect(refusal(with("\"stiffness\": 0.5", "\"stiffness\": \"hard\"")), "'force.stiffness'");

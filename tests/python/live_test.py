@@ -19,6 +19,7 @@ class Still:
 
     def __init__(self, height):
         self.height = height
+        self.opening = None
         self.forces = []
         self.threads = set()
         self.closed = False
@@ -28,7 +29,7 @@ class Still:
 
     def read(self):
         self.threads.add(threading.get_ident())
-        return palpate.DeviceReading(position=(0, 0, self.height), status="ready")
+        return palpate.DeviceReading(position=(0, 0, self.height), status="ready", opening=self.opening)
 
     def write(self, force, torque):
         self.forces.append(numpy.array(force))
@@ -61,6 +62,9 @@ def test_a_device_in_python_is_asked_on_a_thread_of_its_own_and_feels_the_force(
     servo = palpate.Servo(renderer(), device, real_time=False)
     with servo:
         until(lambda: servo.snapshot() and servo.snapshot().device.status == "ready")
+        assert servo.snapshot().device.opening is None
+        device.opening = 0.25
+        until(lambda: servo.snapshot().device.opening == 0.25)
         device.height -= 1.5  # half a millimetre inside
         until(lambda: any(force[2] > 0.2 for force in list(device.forces)))
         snapshot = servo.snapshot()

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "run/run_support.hpp"
 
@@ -14,7 +15,12 @@ struct Pressing {
     LoadedVolume ball = test::loaded("synthetic:sphere");
     Field field{ball.volume};
     double isovalue = *ball.isovalue;
-    support::ScriptedDevice device{[](double) { return support::ready_at({-15, 0, 0}); }};
+    std::optional<double> opening = std::nullopt;  // [rad] of a gripper
+    support::ScriptedDevice device{[this](double) {
+        DeviceReading reading = support::ready_at({-15, 0, 0});
+        reading.opening = opening;
+        return reading;
+    }};
     VolumeEditor editor{field.shared_samples(), Pace::by_steps};
     test::Time time;
     std::unique_ptr<Servo> servo =
@@ -65,6 +71,22 @@ TEST(VolumeEditor, a_brush_that_carves_lets_the_hand_through_and_leaves_what_it_
     EXPECT_GT(work.version, 0U);
     EXPECT_EQ(work.samples->sample({48, 32, 32}), p.ball.volume.sample({48, 32, 32}));
     EXPECT_LT(work.samples->sample({16, 32, 32}), p.isovalue);
+}
+
+TEST(VolumeEditor, a_brush_rests_while_a_gripper_is_open) {
+    Pressing p;
+    p.opening = 0.4;
+    ASSERT_TRUE(p.touches());
+    p.editor.set_brush(HandBrush{.radius = 6, .rate = 30});
+    p.step(500);
+    EXPECT_EQ(p.editor.state().version, 0U);
+    p.opening = 0.05;
+    EXPECT_TRUE(p.until([&] { return p.editor.state().version > 0; }));
+    p.opening = 0.4;
+    p.step(20);
+    const std::uint64_t version = p.editor.state().version;
+    p.step(500);
+    EXPECT_EQ(p.editor.state().version, version);
 }
 
 TEST(VolumeEditor, one_with_the_tools_shape_lets_the_tool_through_and_cuts_nothing_beside_it) {

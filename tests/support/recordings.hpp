@@ -15,7 +15,7 @@ inline std::string as_format_1(const std::string& text) {
         table = table || line.starts_with("t,");
         if (table && !line.starts_with('#')) {
             line.erase(line.rfind(',', line.rfind(',') - 1));
-        } else if (line.starts_with("# palpate recording 5")) {
+        } else if (line.starts_with("# palpate recording 6")) {
             line = "# palpate recording 1";
         } else if (line.starts_with("# end ")) {
             line.replace(line.find(",\"crc32\""), std::string::npos, "}");

@@ -140,8 +140,8 @@ void ForceControls::set_ends(const DeviceLimits& limits) {
     const ForceSettings& force = shown_.force;
     const double most = greatest_stiffness(limits, force.damping + force.viscosity);
     rows_[force_row::stiffness]->set_ends(0, most);
-    const double room =
-        (limits.physical_damping - force.stiffness / (2 * limits.rate)) * just_below;
+    const double room = limits.physical_damping *
+                        (1 - force.stiffness / greatest_stiffness(limits, 0)) * just_below;
     rows_[force_row::damping]->set_ends(0, room - force.viscosity);
     rows_[force_row::viscosity]->set_ends(0, room - force.damping);
     rows_[force_row::dynamic_friction]->set_ends(0, shown_.friction.static_coefficient);

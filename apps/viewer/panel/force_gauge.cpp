@@ -34,6 +34,9 @@ QString meaning_of(const QString& words) {
     if (words == "limit") {
         return ForceGauge::tr("Limit: the computed force is larger than the limit");
     }
+    if (words == "motors warm") {
+        return ForceGauge::tr("Motors warm: the force is limited until they have cooled");
+    }
     if (words == "rate limit") {
         return ForceGauge::tr("Rate limit: the force may not change faster");
     }
@@ -51,6 +54,7 @@ QString shown_words(const QString& words) {
         QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "waiting"),
         QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "ramp"),
         QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "limit"),
+        QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "motors warm"),
         QT_TRANSLATE_NOOP("palpate::viewer::ForceGauge", "rate limit")};
     for (const char* one : known) {
         if (words == one) return ForceGauge::tr(one);

@@ -918,6 +918,10 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <translation>Grenze: Die berechnete Kraft ist größer als die Grenze</translation>
     </message>
     <message>
+        <source>Motors warm: the force is limited until they have cooled</source>
+        <translation>Motoren warm: Die Kraft ist begrenzt, bis sie abgekühlt sind</translation>
+    </message>
+    <message>
         <source>Rate limit: the force may not change faster</source>
         <translation>Ratengrenze: Die Kraft darf sich nicht schneller ändern</translation>
     </message>
@@ -952,6 +956,10 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     <message>
         <source>limit</source>
         <translation>Grenze</translation>
+    </message>
+    <message>
+        <source>motors warm</source>
+        <translation>Motoren warm</translation>
     </message>
     <message>
         <source>rate limit</source>

@@ -39,6 +39,7 @@ int32_t read_hand(palpate_reading* reading, void* context) {
     if (!inside || hand.step > 0) hand.depth = now + hand.step;
     reading->status = PALPATE_DEVICE_READY;
     reading->position[2] = now;
+    reading->opening = 0.25;
     ++hand.reads;
     return hand.lost;
 }
@@ -122,6 +123,21 @@ TEST_F(CRun, an_own_device_feels_the_ball_within_its_limit_on_a_thread_of_its_ow
     EXPECT_EQ(hand_.force, 0);
 }
 
+TEST_F(CRun, the_opening_of_an_own_gripper_shows_in_snapshots) {
+    for (const bool has : {false, true}) {
+        palpate_own_device own = device_of(hand_);
+        own.has_gripper = has;
+        ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+        ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+        EXPECT_TRUE(shows([&](const palpate_snapshot& now) {
+            return now.device_status == PALPATE_DEVICE_READY &&
+                   (has ? now.opening == 0.25 : std::isnan(now.opening));
+        }));
+        palpate_run_destroy(run_);
+        run_ = nullptr;
+    }
+}
+
 TEST_F(CRun, stopping_returns_when_a_slow_device_has_the_zero) {
     palpate_own_device own = device_of(hand_);
     own.rate = 100;
@@ -145,9 +161,13 @@ TEST_F(CRun, what_is_set_by_any_name_is_what_the_run_has_and_renders) {
         ASSERT_EQ(palpate_setting_describe(i, &one), PALPATE_OK);
         double before = NAN, after = NAN;
         ASSERT_EQ(palpate_run_get(run_, one.name, &before), PALPATE_OK) << palpate_last_error();
-        const bool only_falls = std::string(one.name).starts_with("limits.");
-        if (only_falls) {
-            EXPECT_EQ(palpate_run_set(run_, one.name, before + 1), PALPATE_INVALID) << one.name;
+        const std::string name = one.name;
+        if (name == "limits.delay") {  // only rises
+            EXPECT_EQ(palpate_run_set(run_, one.name, before - 1e-4), PALPATE_INVALID);
+        } else if (name.starts_with("limits.")) {  // only falls
+            if (std::isfinite(before)) {
+                EXPECT_EQ(palpate_run_set(run_, one.name, before + 1), PALPATE_INVALID) << name;
+            }
             if (before == 0) continue;
         }
         const double wanted = !std::isfinite(before) ? 7 : before == 0 ? 1e-4 : 0.9 * before;

@@ -142,6 +142,25 @@ TEST_F(ForceDimension, a_gripper_is_a_button_while_the_device_is_open) {
     EXPECT_EQ(open()->info().buttons, 0);
 }
 
+TEST_F(ForceDimension, the_opening_of_a_gripper_comes_with_each_reading) {
+    EXPECT_FALSE(open()->info().has_gripper);
+    with([](auto& dhd) { dhd.type = 35; });
+    const auto device = open();
+    EXPECT_TRUE(device->info().has_gripper);
+    ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
+    EXPECT_EQ(device->read(0).opening, 0.5);
+    EXPECT_FALSE(holds(device->read(0)));
+    with([](auto& dhd) { dhd.opening = 0.02; });
+    step();
+    EXPECT_TRUE(holds(device->read(0)));
+    with([](auto& dhd) { dhd.opening = std::numeric_limits<double>::quiet_NaN(); });
+    step();
+    EXPECT_EQ(device->read(0).opening, std::nullopt);
+    EXPECT_EQ(device->read(0).status, DeviceStatus::ready);
+    with([](auto& dhd) { dhd.opening_error = 2; });
+    EXPECT_TRUE(becomes(*device, DeviceStatus::lost));
+}
+
 TEST_F(ForceDimension, position_and_buttons_come_in_mm_in_our_axes) {
     with([](auto& dhd) {
         dhd.position = {0.01, 0.02, -0.03};

@@ -219,6 +219,13 @@ MOCK_EXPORT bool dhdHasGripper(char id) {
     return has_gripper(mock.state);
 }
 
+MOCK_EXPORT int dhdGetGripperAngleRad(double* angle, char id) {
+    const Call call(id);
+    if (call->opening_error) return fail(call->opening_error);
+    *angle = call->opening;
+    return 0;
+}
+
 MOCK_EXPORT double dhdGetMaxForce(char id) {
     const Call call(id);
     return call->max_force > 0 ? call->max_force : call->limit;

@@ -18,6 +18,8 @@ struct MockDhdState {
     bool initialised = true;           // false: it is in RESET mode and waits for its calibration
     std::array<double, 3> position{};  // [m]
     double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double opening = 0.5;      // [rad] of a gripper
+    int opening_error = 0;     // dhdGetGripperAngleRad fails with this
     unsigned int buttons = 0;  // of a gripper: seen only while a button is emulated
     bool wrist_initialised = true;
     bool active_wrist = false;

@@ -121,6 +121,17 @@ TEST_F(Recorded, a_button_is_held_from_its_row_to_the_next) {
     EXPECT_EQ(play("t,device_x,device_y,device_z\n0,1,2,3\n")->info().buttons, 0);
 }
 
+TEST_F(Recorded, a_gripper_opens_as_it_did) {
+    const auto device =
+        play("t,device_x,device_y,device_z,opening\n0,0,0,0,nan\n1,0,0,0,0.25\n2,0,0,0,0\n");
+    EXPECT_TRUE(device->info().has_gripper);
+    EXPECT_EQ(device->read(0).opening, std::nullopt);
+    EXPECT_EQ(device->read(1).opening, 0.25);
+    EXPECT_EQ(device->read(2).opening, 0);
+    const auto none = play("t,device_x,device_y,device_z,opening\n0,0,0,0,nan\n");
+    EXPECT_FALSE(none->info().has_gripper);
+}
+
 TEST_F(Recorded, plays_status_age_and_tool_of_a_real_recording_row_by_row) {
     io::RecordingHead head;
     head.version = "test";

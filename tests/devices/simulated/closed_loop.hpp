@@ -44,7 +44,8 @@ struct Held {
 };
 
 /// Presses with this stiffness [N/mm] for `seconds`, at the servo rate of the device's limits.
-/// `unchecked` raises the limits first, for stiffnesses that check() would refuse.
+/// `unchecked` raises the limits first, for stiffnesses that check() would refuse: some devices
+/// rest at their rated stiffness in a light grip, although that is not passive with their delay.
 inline Held press(const Body& body, Device& device, double stiffness, double seconds,
                   bool unchecked = false) {
     const DeviceInfo info = device.info();

@@ -23,7 +23,7 @@ TEST_P(EveryProfile, comes_to_rest_at_its_rated_stiffness_in_every_grip) {
         SCOPED_TRACE(grip);
         const auto device = body.open(GetParam() + ",grip=" + grip + hold);
         const double stiffness = device->info().stiffness;
-        const Held held = press(body, *device, stiffness, seconds);
+        const Held held = press(body, *device, stiffness, seconds, true);
         EXPECT_TRUE(held.constrained);
         EXPECT_GT(held.push, 0.25);
         EXPECT_LE(held.position.greatest(), 1.01 * step);
@@ -34,7 +34,7 @@ TEST_P(EveryProfile, comes_to_rest_at_its_rated_stiffness_in_every_grip) {
 TEST_P(EveryProfile, hunts_over_one_encoder_step_or_5_micrometres_at_most_without_friction) {
     const Body body;
     const auto device = body.open(GetParam() + ",friction=no" + hold);
-    const Held held = press(body, *device, device->info().stiffness, seconds);
+    const Held held = press(body, *device, device->info().stiffness, seconds, true);
     EXPECT_TRUE(held.constrained);
     EXPECT_LE(held.position.greatest(), std::max(1.01 * profile(GetParam()).encoder_step, 0.005));
 }

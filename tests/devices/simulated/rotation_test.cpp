@@ -240,7 +240,8 @@ HeldStraight hold_straight(const std::string& options, double part_of_bound, dou
     DeviceLimits raised = limits;
     raised.physical_rotational_damping = 1e6;
     ForceSettings settings;
-    settings.rotational_stiffness = 2 * limits.rate * limits.physical_rotational_damping;
+    settings.rotational_stiffness =
+        (1 - 1e-12) * limits.physical_rotational_damping / (0.5 / limits.rate + limits.delay);
     EXPECT_NO_THROW(check(settings, limits));
     settings.rotational_stiffness *= 1.001;
     EXPECT_THROW(check(settings, limits), std::invalid_argument);
@@ -285,12 +286,13 @@ TEST(ClosedLoopOfRotation, a_delay_takes_its_share_of_the_bound) {
     for (const std::string name : {"sigma7", "premium6dof"}) {
         SCOPED_TRACE(name);
         // A delay d takes as much as d more of half a period: k (T / 2 + d) <= damping.
-        const double left = 0.5e-3 / (0.5e-3 + profile(name).delay);
+        EXPECT_EQ(turning_body().open(name)->info().limits.delay, profile(name).delay);
+        EXPECT_GT(profile(name).delay, 0);
         const double step = std::max(0.01 * degree, profile(name).angle_step);
         const std::string delayed = name + ",friction=no";
-        EXPECT_LE(hold_straight(delayed, 0.9 * left, 1000).movement, 2.01 * step);
-        EXPECT_GT(hold_straight(delayed, 1.25 * left, 1000).movement, 10 * step);
-        EXPECT_EQ(hold_straight(name, 1.25 * left, 1000).movement, 0);  // friction stills it
+        EXPECT_LE(hold_straight(delayed, 0.9, 1000).movement, 2.01 * step);
+        EXPECT_GT(hold_straight(delayed, 1.25, 1000).movement, 10 * step);
+        EXPECT_EQ(hold_straight(name, 1.25, 1000).movement, 0);  // friction stills it
     }
 }
 

@@ -88,7 +88,7 @@ def turned(subject, part, profile, rate, share):
     field, known = subject.field, PROFILES[profile]
     limits = palpate.simulated_info(device, field, subject.isovalue, rate).limits
     damping = limits.physical_rotational_damping
-    bound = damping / (0.5 / rate + (0 if part == "rotation, ideal" else known["delay"]))
+    bound = damping / (0.5 / rate + limits.delay)
     loop = loop_of(field, subject.isovalue, device, rate, 1e6, True, rotational_stiffness=share * bound)
     turns = Rotation.from_quat(loop["orientation_xyzw"][int((SECONDS - 1) * rate):]).inv().as_rotvec(degrees=True)
     moved = numpy.ptp(turns, axis=0).max()
@@ -248,7 +248,7 @@ def rotation_figure(table, plan):
                 limits.append(rests or numpy.nan)
             axes.plot([rate / 1000 for rate in plan.rates], limits, color=colour, marker="o", lw=1, ms=3, label=profile)
         checked = [table.where(part=part, rate_hz=rate)[0]["checked_N_mm_rad"] for rate in plan.rates]
-        axes.plot([rate / 1000 for rate in plan.rates], checked, color=figures.GREY, ls="--", label="check()")
+        axes.plot([rate / 1000 for rate in plan.rates], checked, color=figures.GREY, ls="--", label="check(), no delay")
         axes.set(title=title, yscale="log", ylim=(100, 1e5))
         rate_axis(axes, plan.rates)
     panels[0].set_ylabel("stiffness [N mm/rad]")
@@ -257,7 +257,7 @@ def rotation_figure(table, plan):
     figures.label_ends(panels[2])
     return Figure("rotation", "The largest rotational stiffness at which a simulated device with torque in a light hand comes to rest, "
                   "of those tried up to 2.5 times the bound of the theory. Left: without delay, friction and steps; there the bound is "
-                  "that of check(). Middle: with their delay alone. Right: as they are; friction stills every case that was tried.",
+                  "the dashed one. Middle: with their delay alone. Right: as they are; friction stills every case that was tried.",
                   drawn)
 
 
@@ -288,10 +288,10 @@ def paragraphs_of(table, plan, subject):
             f"to a smaller one in {rest[2]}. Movement by more than 10 steps begins at the same stiffness in {same} of them, later in "
             f"{later}, and in {earlier} earlier, by {most:.1f} N/mm at most.",
             "For rotation, the light hand turns the handle by 20 degrees against a rotational spring that holds it straight. Rest is as "
-            f"above, and a step of angle counts for {LEAST_ANGLE:g} degrees at least. check() accepts 2 x rate x damping, which is where "
-            "a handle without delay begins to shake, because its inertia is large against damping times period. A delay lowers that to "
-            "damping / (period / 2 + delay), of which check() knows nothing: to be stable without friction, a device with a delay of half "
-            "a period takes half of what check() accepts. Friction of the wrist, which is assumed, stills what would shake.",
+            f"above, and a step of angle counts for {LEAST_ANGLE:g} degrees at least. Without a delay, check() accepts 2 x rate x damping. "
+            "There a handle begins to shake, because its inertia is large against damping times period. A delay lowers that to "
+            "damping / (period / 2 + delay), and so does check(): to be stable without friction, a device with a delay of half "
+            "a period takes half of that. Friction of the wrist, which is assumed, stills what would shake.",
             "Everything here is simulated and nothing is random, so there are no intervals. The profiles' masses, frictions and delays "
             "are partly assumed (docs/devices/simulated.md), so the shape of the map is worth more than its numbers."]
 
