@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace palpate {
@@ -34,8 +35,9 @@ void begin(ForceState& state, const ForceInput& input) {
 
 /// The contact force: the spring, turned by the texture, damped along the normal but never pulling
 /// the hand in.
-Vec3 contact_force(const ForceSettings& settings, const ForceInput& input, const Vec3& velocity) {
-    Vec3 force = settings.stiffness * input.pull;
+Vec3 contact_force(const ForceSettings& settings, const ForceInput& input, const Vec3& velocity,
+                   double part) {
+    Vec3 force = part * settings.stiffness * input.pull;
     const double strength = force.norm();
     if (strength == 0) return force;
     const Vec3 outward = force / strength;
@@ -55,8 +57,8 @@ Vec3 magnet_force(const Magnet& magnet, const ForceInput& input) {
 
 /// The spring of rotation, damped but never turning the hand further out of equilibrium.
 Vec3 contact_torque(const ForceSettings& settings, const ForceInput& input,
-                    const Vec3& angular_velocity) {
-    Vec3 torque = input.rotational_stiffness * input.turn;
+                    const Vec3& angular_velocity, double part) {
+    Vec3 torque = part * input.rotational_stiffness * input.turn;
     const double strength = torque.norm();
     if (strength == 0) return torque;
     const Vec3 axis = torque / strength;
@@ -64,12 +66,37 @@ Vec3 contact_torque(const ForceSettings& settings, const ForceInput& input,
     return torque + axis * std::max(against, -strength);
 }
 
+/// The smaller of what is set and what the device takes. A setting that is NaN or negative, which
+/// check() refuses, counts as 0.
+double most_of(double limit, double maximum) {
+    const double least = std::min(limit, maximum);
+    return least > 0 && maximum > 0 ? least : 0;
+}
+
 /// What a force or a torque may be.
 struct Bounds {
-    double limit, maximum;  // as set, and of the device
-    double rate;            // a second
-    double ramp;            // share of it, at most 1
+    double most;
+    double rate;  // a second
+    double ramp;  // share of it, at most 1
 };
+
+/// The part of a tool's two springs that keeps both within their limits: one for both, of the
+/// energy alone, so that the wrench stays the gradient of a potential (docs/force.md).
+/// `most_torque`: infinity where no torque is rendered.
+double part_of_springs(double stiffness, double most_force, double most_torque,
+                       const ForceInput& input) {
+    const double turning = input.rotational_stiffness;
+    if (!(turning > 0) || !input.constrained) return 1;
+    const double twice_energy =
+        stiffness * input.pull.squaredNorm() + turning * input.turn.squaredNorm();
+    const double force = std::sqrt(stiffness * twice_energy);
+    const double torque = std::sqrt(turning * twice_energy);
+    if (!std::isfinite(force + torque)) return std::numeric_limits<double>::quiet_NaN();
+    double part = 1;
+    if (force > most_force) part = most_force / force;
+    if (torque > most_torque) part = std::min(part, most_torque / torque);
+    return part;
+}
 
 /// The ramp, the maximum and the rate. A setting that is NaN or negative, which check() refuses,
 /// gives no force or a NaN that the caller catches, never a larger force.
@@ -79,10 +106,8 @@ Vec3 within(Vec3 force, const Vec3& before, const Bounds& bounds, double step,
         force *= bounds.ramp;
         flags |= force_ramping;
     }
-    const double least = std::min(bounds.limit, bounds.maximum);
-    const double most = least > 0 && bounds.maximum > 0 ? least : 0;
-    if (force.norm() > most) {
-        force *= most / force.norm();
+    if (force.norm() > bounds.most) {
+        force *= bounds.most / force.norm();
         flags |= force_limited;
     }
     const Vec3 change = force - before;
@@ -92,7 +117,7 @@ Vec3 within(Vec3 force, const Vec3& before, const Bounds& bounds, double step,
         flags |= force_rate_limited;
     }
     // Again, because the rate limit keeps a force above a limit that has just been lowered.
-    if (force.norm() > most) force *= most / force.norm();
+    if (force.norm() > bounds.most) force *= bounds.most / force.norm();
     return force;
 }
 
@@ -230,14 +255,19 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     } else {
         update_velocities(state, input, step);
     }
-
-    Vec3 force = input.constrained ? contact_force(settings, input, state.velocity)
+    const bool turns = input.rotational_stiffness > 0 && limits.maximum_torque > 0;
+    const double spared = warm_limit(limits, state.motors);
+    const double most_force = most_of(settings.limit, spared);
+    const double most_torque = turns ? most_of(settings.torque_limit, limits.maximum_torque)
+                                     : std::numeric_limits<double>::infinity();
+    const double part = part_of_springs(settings.stiffness, most_force, most_torque, input);
+    if (part < 1) flags |= force_limited;
+    Vec3 force = input.constrained ? contact_force(settings, input, state.velocity, part)
                                    : magnet_force(settings.magnet, input);
     force -= settings.viscosity * state.velocity;
     Vec3 torque = Vec3::Zero();
-    const bool turns = input.rotational_stiffness > 0 && limits.maximum_torque > 0;
     if (turns && input.constrained) {
-        torque = contact_torque(settings, input, state.angular_velocity);
+        torque = contact_torque(settings, input, state.angular_velocity, part);
     }
     // A force whose square overflows has neither a length nor a direction.
     if (!std::isfinite(force.squaredNorm()) || !std::isfinite(torque.squaredNorm())) {
@@ -246,7 +276,9 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     state.waiting |= input.released;
     if (state.waiting) {
         state.ramp_begin = input.time;
-        state.waiting = input.released || !(force.norm() <= settings.start_below);
+        // What counts is the force without a limit.
+        const bool strong = part > 0 && !(force.norm() <= part * settings.start_below);
+        state.waiting = input.released || strong;
         if (state.waiting) {
             force.setZero();
             torque.setZero();
@@ -255,10 +287,8 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     }
     const double since = input.time - state.ramp_begin;
     const double ramp = since >= settings.ramp ? 1 : since / settings.ramp;
-    const double spared = warm_limit(limits, state.motors);
-    const Bounds of_force{settings.limit, spared, settings.rate_limit, ramp};
-    const Bounds of_torque{settings.torque_limit, limits.maximum_torque, settings.torque_rate_limit,
-                           ramp};
+    const Bounds of_force{most_force, settings.rate_limit, ramp};
+    const Bounds of_torque{most_torque, settings.torque_rate_limit, ramp};
     force = within(force, state.force, of_force, step, flags);
     const bool is_warm = spared < std::min(settings.limit, limits.maximum_force);
     if (is_warm && (flags & force_limited)) flags |= force_warm;

@@ -73,8 +73,29 @@ void count_surfaces(NeedleState& needle, int inside, int nested, const Vec3& tip
     }
 }
 
+std::array<double, 2> parts_within(double limit, const Spring& one, const Spring& other) {
+    // The hand counts as nearer by `shift` times the force, so that the force is on the limit.
+    double shift = 0;
+    std::array<double, 2> parts{1, 1};
+    const auto length = [](double a, double b) { return std::sqrt(a * a + b * b); };
+    if (!(length(one.force, other.force) > limit)) return parts;
+    if (!(limit > 0)) return {0, 0};
+    // Newton's method comes to it from below, for 1 / force is concave in the shift.
+    for (int i = 0; i < 20; ++i) {
+        const double a = parts[0] * one.force, b = parts[1] * other.force;
+        const double force = length(a, b);
+        const double falls =
+            (a * a * parts[0] * one.stiffness + b * b * parts[1] * other.stiffness) /
+            force;  // with the shift
+        if (!(force > limit * (1 + 1e-15)) || !(falls > 0)) break;
+        shift += (force / limit - 1) * force / falls;
+        parts = {1 / (1 + shift * one.stiffness), 1 / (1 + shift * other.stiffness)};
+    }
+    return parts;
+}
+
 double shaft_friction(NeedleState& needle, const Layers& layers, const LayerInput& input,
-                      const Vec3& tip, double period) {
+                      const Vec3& tip, double period, double least, double greatest) {
     const double hand = along_line(needle, input.hip);
     const double speed =
         period > 0 ? std::abs(hand - needle.hand) * input.device_per_volume / period : 0;
@@ -84,12 +105,13 @@ double shaft_friction(NeedleState& needle, const Layers& layers, const LayerInpu
     const double most = needle.slipping ? in_motion : in_motion * layers.needle->static_ratio;
     // The tissue that sticks to the shaft gives a little, as stiff as a surface.
     const double stiffness = input.force.stiffness * input.device_per_volume;
-    const double force = stiffness * (needle.anchor - hand);
-    if (!(std::abs(force) > most)) return force;
+    double force = stiffness * (needle.anchor - hand);
+    if (!(std::abs(force) > most) && force >= least && force <= greatest) return force;
     needle.slipping = true;
-    const double slides = std::copysign(in_motion, force);
-    needle.anchor = stiffness > 0 ? hand + slides / stiffness : hand;
-    return slides;
+    if (std::abs(force) > most) force = std::copysign(in_motion, force);
+    force = std::clamp(force, least, greatest);
+    needle.anchor = stiffness > 0 ? hand + force / stiffness : hand;
+    return force;
 }
 
 }  // namespace palpate

@@ -242,35 +242,53 @@ class LayersTick {
         r.felt = felt_;
         if (!moved()) return r;
         r.force = force();
-        const bool touching = update_.mode == Mode::constrained;
+        const bool touching = update_.mode == Mode::constrained, needle = state_.needle.inserted;
         Vec3 force = Vec3::Zero();
         if (touching && distance_ > 0) {
             const Vec3 pull = (update_.scp - target_of(input_.hip)) * input_.device_per_volume;
             force = pull * (spring_force_ / distance_);
         }
-        if (state_.needle.inserted) {
-            force += needle_force();
+        if (needle) {
             r.force.stiffness = std::max(
                 {r.force.stiffness, layers_.needle->lateral_stiffness, input_.force.stiffness});
         }
-        r.pulls = touching || state_.needle.inserted;
-        if (r.force.stiffness > 0) r.pull = force / r.force.stiffness;
-        if (state_.needle.inserted) r.force = stable(r.force, input_.limits);
+        const double stiffness = r.force.stiffness;
+        if (needle) {
+            r.force = stable(r.force, input_.limits);
+            // What is not stable is lowered after the limit.
+            const double limit = std::min(input_.force.limit, input_.limits.maximum_force);
+            force = needle_force(force, limit * stiffness / r.force.stiffness);
+        }
+        r.pulls = touching || needle;
+        if (stiffness > 0) r.pull = force / stiffness;
         state_.moved = true;
         state_.hip = input_.hip;
         state_.time = input_.time;
         return r;
     }
 
-    /// Towards the line, and along it what the shaft feels.
-    Vec3 needle_force() {
+    /// Along the line what surface and shaft give, and towards it, no more than a limit [N]: both
+    /// springs give way together, and friction before them. `contact`: the surface's force.
+    Vec3 needle_force(Vec3 contact, double limit) {
         NeedleState& needle = state_.needle;
-        const Vec3 aside = aside_of(input_.hip);
+        Vec3 aside = aside_of(input_.hip);
         const double length = aside.norm();
-        const double force = needle.aside.move(length, layers_.needle->lateral_stiffness);
-        const double period = input_.time - state_.time;
-        const double along = shaft_friction(needle, layers_, input_, update_.scp, period);
-        return (length > 0 ? force / length : 0) * aside + along * needle.axis;
+        const double lateral = needle.aside.move(length, layers_.needle->lateral_stiffness);
+        aside *= length > 0 ? lateral / length : 0;
+        const auto parts = parts_within(limit, {contact.norm(), state_.spring.stiffness},
+                                        {lateral, needle.aside.stiffness});
+        contact *= parts[0];
+        aside *= parts[1];
+        const double along = needle.axis.dot(contact);
+        const double room = std::max(std::sqrt(std::max(0.0, limit * limit - aside.squaredNorm())),
+                                     std::abs(along));
+        const double friction =
+            shaft_friction(needle, layers_, input_, update_.scp, input_.time - state_.time,
+                           -room - along, room - along);
+        Vec3 force = contact + (aside + friction * needle.axis);
+        // By rounding it may be below the limit, which the force stage would not report.
+        if (force.norm() >= (1 - 1e-12) * limit) force *= 1 + 1e-9;
+        return force;
     }
 
     const Layers& layers_;

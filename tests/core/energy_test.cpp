@@ -264,5 +264,38 @@ TEST_P(Energy, is_not_made_over_closed_paths_of_the_hand) {
 INSTANTIATE_TEST_SUITE_P(Every, Energy, testing::ValuesIn(all_combinations()),
                          testing::PrintToStringParamName());
 
+/// A block on a plane, where nothing is lost. Loops begin in free space.
+TEST(EnergyAtTheLimit, is_not_made_by_the_two_springs_of_a_tool) {
+    const Field field(volume_of<float>(grid({48, 48, 48}), [](const Index3& i) { return i[2]; }),
+                      Solid::above, 0, Interpolation::cubic);
+    RendererSettings settings =
+        settings_of({Interpolation::cubic, Surfaces::level, Touching::point, Data::plain});
+    settings.tool = std::make_shared<const Tool>(box_tool({20, 10, 5}, 2.5));
+    constexpr int steps = 4000;
+    std::array<double, 2> most{};  // by which limit it is [N mm]
+    std::array<int, 2> limited{};
+    for (std::size_t i = 0; i < 40; ++i) {
+        settings.force.limit = i % 2 == 0 ? 0.4 : 1e6;
+        settings.force.torque_limit = i % 2 == 0 ? 1e6 : 2;
+        Random random(i / 2);
+        const Loop loop(random, Vec3(24, 24, 19));
+        Session session{make_renderer(field, 24, settings), {.fastest_hand = infinity}};
+        Meter meter;
+        for (int k = 0; k <= 2 * steps; ++k) {
+            const DeviceReading reading = loop.at(double(k) / steps);
+            const Tick tick = advance(session, (k + 1) * period, reading).tick;
+            meter.step(tick, reading);
+            limited[i % 2] += tick.force_flags & force_limited;
+        }
+        most[i % 2] = std::max(most[i % 2], meter.most());
+    }
+    std::printf("[ evidence ] at the limit of force %d, of torque %d; gained %.1e and %.1e J\n",
+                limited[0], limited[1], most[0] / 1000, most[1] / 1000);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_LE(most[i] / 1000, 1e-6);
+        EXPECT_GT(limited[i], 10000);
+    }
+}
+
 }  // namespace
 }  // namespace energy

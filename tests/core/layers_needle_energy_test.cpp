@@ -20,7 +20,7 @@ namespace {
 struct NeedleBalance {
     double most_gained = -1e300;  ///< of all loops [J]
     double lost = 0;
-    int inserted = 0, punctures = 0, withdrawn = 0;  ///< ticks, surfaces, loops
+    int inserted = 0, limited = 0, punctures = 0, withdrawn = 0;  ///< ticks, ticks, surfaces, loops
 };
 
 /// A closed path through these points, in straight ways of these many ticks, at rest between them.
@@ -37,10 +37,11 @@ NeedleBalance go_round(const Renderer& begin, const std::vector<Vec3>& corners, 
         last_force = tick.force;
         from = to;
         balance.inserted += renderer.layers.needle.inserted;
+        balance.limited += renderer.layers.needle.inserted && tick.force_flags & force_limited;
         balance.punctures += tick.layers.punctured;
     };
     step(from);
-    const double stored = 0.5 * last_force.dot(renderer.proxy.scp_physical - from);
+    const double stored = last_force.dot(renderer.proxy.scp_physical - from);
     work = 0;
     for (std::size_t i = 1; i <= corners.size(); ++i) {
         const Vec3 a = corners[i - 1], b = corners[i % corners.size()];
@@ -53,13 +54,14 @@ NeedleBalance go_round(const Renderer& begin, const std::vector<Vec3>& corners, 
     return balance;
 }
 
-void never_gains(const TestField& test, LayerPlan plan, double drag_force, std::uint64_t seed) {
+void never_gains(const TestField& test, LayerPlan plan, double drag_force, std::uint64_t seed,
+                 double limit = 1e6) {
     Layers layers = planned_layers(test, plan);
     for (Layer& l : layers.layers) l[drag] = drag_force;
     layers.needle = Needle{};
     RendererSettings settings = at_once();
     settings.layers = std::make_shared<Layers>(layers);
-    settings.force.limit = settings.device.maximum_force = 1e6;
+    settings.force.limit = settings.device.maximum_force = limit;
     settings.device.physical_damping = 1;
     const Renderer begin = make_renderer(test.field, test.isovalue, settings);
     Random random(seed);
@@ -80,16 +82,19 @@ void never_gains(const TestField& test, LayerPlan plan, double drag_force, std::
         all.most_gained = std::max(all.most_gained, one.most_gained);
         all.lost += one.lost;
         all.inserted += one.inserted;
+        all.limited += one.limited;
         all.punctures += one.punctures;
         all.withdrawn += one.withdrawn;
     }
     std::printf(
-        "[ evidence ] %-14s loops %d  ticks with a needle %d  punctures %d  withdrawn %d  most "
+        "[ evidence ] %-14s loops %d  ticks with a needle %d  at the limit %d  punctures %d  "
+        "withdrawn %d  most "
         "gained %.2e J  lost %.2e J\n",
-        test.name.c_str(), loops, all.inserted, all.punctures, all.withdrawn, all.most_gained,
-        all.lost);
+        test.name.c_str(), loops, all.inserted, all.limited, all.punctures, all.withdrawn,
+        all.most_gained, all.lost);
     EXPECT_GT(all.inserted, 200 * loops);
     EXPECT_GT(all.punctures, loops);
+    EXPECT_EQ(all.limited > 200 * loops, limit < 1e6);
 }
 
 TestField on_smooth(const TestField& test) {
@@ -111,4 +116,12 @@ TEST(NeedleEnergy, is_not_made_where_a_soft_surface_lets_in_a_needle_that_points
 }
 TEST(NeedleEnergy, is_not_made_by_much_drag_behind_a_soft_surface) {
     never_gains(on_smooth(marschner_lobb_field()), {{-0.15, 0.1}, {0.2, 0.1}, {0.05, 0.1}}, 1, 94);
+}
+TEST(NeedleEnergy, is_not_made_on_bone_at_the_limit) {
+    never_gains(on_smooth(marschner_lobb_field()), {{-0.15, 0.1}, {0.2, 1e6}, {0.3, 1.5}}, 0, 95,
+                1);
+}
+TEST(NeedleEnergy, is_not_made_by_drag_at_the_limit) {
+    never_gains(on_smooth(marschner_lobb_field()), {{-0.15, 0.1}, {0.2, 1e6}, {0.3, 1.5}}, 0.1, 96,
+                1);
 }
