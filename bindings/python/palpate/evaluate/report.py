@@ -52,8 +52,7 @@ def claims_of(result):
 def files_of(report):
     """(file, caption) of each figure."""
     for figure in report.result.figures:
-        name = f"{report.name}-{figure.suffix}" if figure.suffix else report.name
-        yield figure.file or name + ".svg", figure.caption
+        yield f"{report.name}-{figure.suffix}.svg" if figure.suffix else f"{report.name}.svg", figure.caption
 
 
 def markdown_table(table):
@@ -78,8 +77,7 @@ def markdown(report):
 def write_files(report, folder):
     write_csv(report.result.table, folder / f"{report.name}.csv")
     for figure, (file, _) in zip(report.result.figures, files_of(report)):
-        if figure.drawn is not None:
-            figures.save(figure.drawn, (folder / file).with_suffix(""))
+        figures.save(figure.drawn, (folder / file).with_suffix(""))
     (folder / f"{report.name}.md").write_text(markdown(report), encoding="utf-8")
 
 
@@ -99,10 +97,9 @@ def section(report, folder):
              *(f"<p>{html.escape(text)}</p>\n" for text in report.result.paragraphs),
              html_table(report.result.summary)]
     for file, caption in files_of(report):
-        kind = "svg+xml" if file.endswith(".svg") else "png"
         data = base64.b64encode((folder / file).read_bytes()).decode()
         caption = html.escape(caption)
-        parts.append(f'<figure><img src="data:image/{kind};base64,{data}" alt="{caption}">'
+        parts.append(f'<figure><img src="data:image/svg+xml;base64,{data}" alt="{caption}">'
                      f"<figcaption>{caption}</figcaption></figure>\n")
     parts += [html_table(claims_of(report.result)),
               f"<details><summary>All numbers ({len(report.result.table)} rows)</summary>\n"
