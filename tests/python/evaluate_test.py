@@ -17,7 +17,7 @@ import pytest
 
 from palpate.evaluate import __main__ as program
 from palpate.evaluate import bodies
-from palpate.evaluate import drift, fall_through, fidelity, penetration, report, sampling, walk_through
+from palpate.evaluate import drift, fall_through, fidelity, notice, penetration, report, sampling, walk_through
 from palpate.evaluate.experiment import Claim, Options, Result, Table
 from palpate.evaluate.outside import Outside
 from palpate.evaluate.subjects import Subject, of_text
@@ -27,9 +27,9 @@ from palpate.evaluate.walls import Lines, closed_shell
 # The filter is a newer one in the rows of dequantized data.
 BEFORE = pathlib.Path(__file__).with_name("evaluate")
 MODULES = {"drift": drift, "fall-through": fall_through, "fidelity": fidelity, "penetration": penetration,
-           "walk-through": walk_through}
+           "walk-through": walk_through, "notice": notice}
 CLAIMS = {"drift": 4, "fall-through": 9, "performance": 3, "scaling": 7, "fidelity": 9, "stability": 8, "walk-through": 5,
-          "penetration": 6, "layers": 7, "tools": 5, "streaming": 2}
+          "penetration": 6, "layers": 7, "tools": 5, "streaming": 2, "notice": 4}
 
 
 def evaluate(folder, *words, status=0, environment=None):
@@ -98,7 +98,7 @@ TOLERANCE = {"drift": {"density": 1e-6, "worst_deviation_of_range": 1e-9}, "fall
 @pytest.mark.parametrize("name", [path.stem for path in sorted(BEFORE.glob("*.csv"))])
 def test_the_table_is_that_of_the_program_in_cpp_within_tolerances(quick, name):
     old = rows_of(BEFORE / f"{name}.csv")
-    parts = {row["part"] for row in old} if name in ("layers", "scaling", "tools") else None
+    parts = {row["part"] for row in old} if name in ("layers", "scaling", "stability", "tools") else None
     table = rows_of(quick[1] / f"{name}.csv", parts)
     assert set(old[0]) <= set(table[0])
     table = [row for row in table if "(measured)" not in row.get("mode", "")]
@@ -118,7 +118,7 @@ def test_a_volume_of_the_user_takes_the_place_of_the_experiments_own(name):
     options = Options(quick=True, subjects=(of_text("synthetic:sphere:32x32x32"), of_text("synthetic:torus:32x32x16")))
     result = MODULES[name].run(options)
     assert all(claim.held for claim in result.claims)
-    column = {"fall-through": "wall", "fidelity": "body"}.get(name, "volume")
+    column = {"fall-through": "wall", "fidelity": "body", "notice": "body"}.get(name, "volume")
     assert result.table.distinct(column) == ["sphere", "torus"]
 
 

@@ -17,7 +17,7 @@ if not __package__:  # run as a folder, by the program palpate: this folder's mo
     sys.path[0] = str(Path(__file__).resolve().parents[2])
 
 EXPERIMENTS = ("drift", "fall-through", "performance", "scaling", "fidelity", "stability", "walk-through",
-               "penetration", "layers", "tools", "streaming")  # in the order of docs/evaluation.md
+               "penetration", "layers", "tools", "streaming", "notice")  # in the order of docs/evaluation.md
 MOST_SEEDS = 1000
 METHODS = ("exact", "paper", "gradient", "gradient-improved")
 PACKAGES = ("numpy", "scipy", "matplotlib")  # Debian: python3-NAME
