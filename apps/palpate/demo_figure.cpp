@@ -42,7 +42,7 @@ set ylabel 'force [N]'
 plot $rows using 1:3 with lines lc rgb '#D55E00' lw 2
 set ylabel 'density'
 set xlabel 'time [s]'
-set key top right opaque
+set key outside above right horizontal
 plot $rows using 1:4 with lines lc rgb '#009E73' lw 2 title 'density at the SCP', \
      $rows using 1:5 with lines lc rgb '#000000' lw 2 dt (14,8) title 'isovalue'
 unset multiplot

@@ -286,6 +286,7 @@ def test_a_page_has_no_markup_of_somebody_else_and_a_claim_that_does_not_hold_st
     report.write_html([made], tmp_path, tmp_path / "report.html")
     page, text = (tmp_path / "report.html").read_text(), (tmp_path / "some.md").read_text()
     assert "<script>" not in page and "a &amp; b" in page and "1 of 2 claims hold" in page
+    assert page.index("<h2>Method") < page.index('<h2 id="some"') < page.index("<h2>Threats to validity")
     assert "| it is not | **no** | 3 |" in text and "| it is | yes | 3 |" in text
 
 

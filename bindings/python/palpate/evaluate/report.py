@@ -108,6 +108,18 @@ def section(report, folder):
     return "".join(parts)
 
 
+METHOD = ("Each experiment asks a question and answers it with a table, figures and claims. A claim is a statement that the run checks, "
+          "and it never depends on the speed of the machine. Everything random is seeded. Intervals are at 95 %: exact for shares, and "
+          "by bootstrap for medians and ratios. The same command repeats a section.",)
+THREATS = ("No person and no real device took part. Hands and devices are simulated, with constants that are partly assumed.",
+           "The authors of the program chose the questions, the bodies and the claims. Known surfaces are smooth and few. Real scans are "
+           "fewer still, and show heads and small objects.",
+           "Intervals take cases as independent. Ticks of one hand depend on each other, so their number gives no bound.",
+           "Other programs may share the machine. Times are medians of passes in which the methods take turns, so compare them within a "
+           "table, and not between machines.",
+           "Peers whose rows say (measured) were measured once, on one day and one machine, and are not run here.")
+
+
 def write_html(reports, folder, page):
     """`folder` holds the figures, which are embedded."""
     style = ("body{font-family:sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
@@ -118,5 +130,7 @@ def write_html(reports, folder, page):
                f"({sum(c.held for c in r.claims)} of {len(r.claims)} claims hold)</li>\n" for r in reports]
     page.write_text('<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8">'
                     f"<title>Palpate: the evidence</title>\n<style>{style}</style>\n"
-                    f"<h1>Palpate: the evidence</h1>\n<ul>\n{''.join(entries)}</ul>\n"
-                    f"{''.join(section(report, folder) for report in reports)}</html>\n", encoding="utf-8")
+                    f"<h1>Palpate: the evidence</h1>\n<ul>\n{''.join(entries)}</ul>\n<h2>Method</h2>\n"
+                    f"{''.join(f'<p>{text}</p>{chr(10)}' for text in METHOD)}"
+                    f"{''.join(section(report, folder) for report in reports)}<h2>Threats to validity</h2>\n<ul>\n"
+                    f"{''.join(f'<li>{text}</li>{chr(10)}' for text in THREATS)}</ul>\n</html>\n", encoding="utf-8")
