@@ -150,7 +150,7 @@ def figure_of(table):
     drawn.suptitle("With unrounded or dequantized samples, the smooth field stays below what people notice", x=0.01, ha="left")
     return Figure("", "Strokes at 60 voxels per second and a mean force of 2 N. Left: how much the force changes in a tick, 99th percentile. Middle: the motion "
                   "of a mass of 50 g that the force above 100 Hz drives. Right: the angle to the force of a perfect ball. Dashed: published "
-                  "thresholds, and shaded, what people notice.", drawn)
+                  "thresholds, which are passed in the shaded area.", drawn)
 
 
 def in_short(table):
@@ -181,7 +181,7 @@ def paragraphs_of(table):
             f"of {1000 * MASS:g} g that the force above {FAST} Hz drives. A hand damps it, so it is an upper estimate.",
             "A change in one tick is compared with a threshold for forces that last, which is strict. No person took part.",
             "Rows with (measured) are from 27 November 2026, with Palpate 3688b00, CHAI3D 3.3 (commit 7c76b1f2) and a god object on VTK "
-            "flying edges and Embree 3, on a constant press of 2 N over the bone of a CT head. They are not run again."]
+            "flying edges and Embree 3. There the hand pressed the bone of a CT head with a constant 2 N. These rows are not run again."]
 
 
 def run(options):
