@@ -294,9 +294,11 @@ def claims_of(table, own_volumes):
                       "{:.2g} to {:.2g} voxel")
 
 
-GROWTH = {"speed": ("speed_mm_s", "speed of the hand [mm/s]", "speed"), "voxels-per-mm": ("voxels_per_mm", "voxels per mm of hand",
-          "resolution"), "size": ("edge", "edge of the volume [samples]", "size"), "noise": ("noise_of_range", "noise / range", "noise")}
 NO_NOISE = 0.004  # where 0 is on a logarithmic axis
+GROWTH = {"speed": ("speed_mm_s", "hand [mm/s]", "speed", (10, 100, 1000)), "voxels-per-mm": (
+              "voxels_per_mm", "voxels per mm", "resolution", (0.5, 2, 8)),
+          "size": ("edge", "edge [samples]", "size", (64, 256, 1024)), "noise": (
+              "noise_of_range", "noise / range", "noise", (NO_NOISE, 0.01, 0.1, 1))}
 TIMES = (("p999_ns", "p99.9", figures.ORANGE, "v"), ("p99_ns", "p99", figures.GREEN, "^"), ("mean_ns", "mean", figures.BLACK, "x"),
          ("p50_ns", "p50", figures.BLUE, "o"))
 
@@ -307,7 +309,7 @@ def growth_figure(table):
     drawn, panels = figures.panels(2, len(parts), height=3.8, sharex="col", sharey="row", squeeze=False,
                                    gridspec_kw={"height_ratios": [3, 1.4]})
     for (above, below), part in zip(panels.T, parts):
-        column, axis, title = GROWTH[part]
+        column, axis, title, ticks = GROWTH[part]
         rows = table.where(part=part, volume=table.where(part=part)[0]["volume"])
         exact, smooth = (rows.where(method=name) for name in METHODS)
         x = exact["samples"] ** (1 / 3) if column == "edge" else numpy.maximum(exact[column], NO_NOISE)
@@ -317,10 +319,9 @@ def growth_figure(table):
         below.plot(x, exact["tetrahedra_per_update"], "D-", color=figures.PURPLE)
         above.set(title=title, xscale="log", yscale="log")
         below.set(xlabel=axis, yscale="log")
-        ticks = (64, 128, 256, 512, 1024) if column == "edge" else (NO_NOISE, 0.01, 0.1, 1) if part == "noise" else None
-        if ticks:
-            below.set_xticks(ticks, ["0" if tick == NO_NOISE else f"{tick:g}" for tick in ticks], fontsize=6.5)
-            below.set_xticks([], minor=True)
+        ticks = [tick for tick in ticks if x.min() <= tick <= x.max()]
+        below.set_xticks(ticks, ["0" if tick == NO_NOISE else f"{tick:g}" for tick in ticks])
+        below.set_xticks([], minor=True)
     panels[0, 0].set_ylabel("time of an update [µs]")
     panels[1, 0].set_ylabel("tetrahedra\nper update")
     drawn.suptitle("An update costs the tetrahedra that the proxy passes, whatever the size of the volume", x=0.01, ha="left")
