@@ -16,13 +16,11 @@ struct Use {
     bool essential;
     const char* without;  ///< what does not work
 };
-constexpr std::array<Use, 4> uses{{
+constexpr std::array<Use, 3> uses{{
     {"palpate-io-helper", "helper-io", true, "no volume but synthetic ones can be read or written"},
     {"palpate-picture-helper", "helper-pictures", false, "no picture can be drawn"},
     {"palpate-explicit-helper", "helper-explicit", false,
      "the experiment `palpate evaluate scaling` does not run"},
-    {"palpate-evaluate", "helper-evaluate", false,
-     "the experiments of `palpate evaluate` in C++ do not run"},
 }};
 
 bool draws_by_processor(const std::string& renderer) {

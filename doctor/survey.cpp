@@ -62,7 +62,7 @@ int error_of_locking() {
 }
 
 std::string path_of(const std::string& name, const char* variable) {
-    const char* const set = variable ? std::getenv(variable) : nullptr;
+    const char* const set = std::getenv(variable);
     if (set) return set;
     for (const fs::path& folder : io::helper_folders()) {
         if (access((folder / name).c_str(), X_OK) == 0) return (folder / name).string();
@@ -160,8 +160,7 @@ Facts survey(const std::string& wanted_device) {
                                     "': " + use_one_of(names, wanted_device));
     }
     facts.programs = {reader(), program_named("palpate-picture-helper", "PALPATE_PICTURE_HELPER"),
-                      program_named("palpate-explicit-helper", "PALPATE_EXPLICIT_HELPER"),
-                      program_named("palpate-evaluate", nullptr)};
+                      program_named("palpate-explicit-helper", "PALPATE_EXPLICIT_HELPER")};
     facts.graphics = graphics();
     return facts;
 }

@@ -177,7 +177,8 @@ double miss(const Behaviour& behaviour, const Behaviour& wanted) {
 
 }  // namespace
 
-std::vector<Trajectory> explore(const Subject& subject, const ExploringHand& hand) {
+std::vector<Trajectory> explore(const Subject& subject, const ExploringHand& hand,
+                                const std::function<void()>& alive) {
     Random random(hand.seed);
     const auto starts = places(subject, hand.trajectories, random);
     const auto ticks = static_cast<std::size_t>(hand.trajectory_s * hand.rate_hz);
@@ -188,6 +189,7 @@ std::vector<Trajectory> explore(const Subject& subject, const ExploringHand& han
         trajectory.reserve(ticks + 1);
         for (std::size_t k = 0; k < ticks; ++k) {
             trajectory.push_back(steering.step(static_cast<double>(k) / hand.rate_hz));
+            alive();
         }
         trajectories.push_back(std::move(trajectory));
     }
@@ -206,7 +208,8 @@ Behaviour behaviour_of(const Subject& subject, const std::vector<Trajectory>& tr
     return {path * rate_hz / double(ticks), double(constrained) / double(ticks)};
 }
 
-TunedHand tuned_hand(const Subject& subject, ExploringHand hand, const Behaviour& wanted) {
+TunedHand tuned_hand(const Subject& subject, ExploringHand hand, const Behaviour& wanted,
+                     const std::function<void()>& alive) {
     constexpr int attempts = 24;
     constexpr double near_enough = 0.02;
     TunedHand best;
@@ -214,7 +217,7 @@ TunedHand tuned_hand(const Subject& subject, ExploringHand hand, const Behaviour
     hand.speed_mm_s = wanted.speed_mm_s;
     hand.touching = wanted.constrained_share;
     for (int attempt = 0; attempt < attempts; ++attempt) {
-        auto trajectories = explore(subject, hand);
+        auto trajectories = explore(subject, hand, alive);
         const Behaviour behaviour = behaviour_of(subject, trajectories, hand.rate_hz);
         const bool is_best =
             best.trajectories.empty() || miss(behaviour, wanted) < miss(best.behaviour, wanted);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "evaluation/subject.hpp"
@@ -39,8 +40,9 @@ struct ExploringHand {
 /// The hand's trajectories over a body. The hand keeps to the surface by a proxy of its own (exact)
 /// and bounces off what it meets while it explores, so that thin branches and noise do not stop it.
 /// Throws std::invalid_argument if the body has no surface that can be reached from outside the
-/// grid.
-std::vector<Trajectory> explore(const Subject& subject, const ExploringHand& hand);
+/// grid. `alive` is called after every tick, and may throw to stop it.
+std::vector<Trajectory> explore(
+    const Subject& subject, const ExploringHand& hand, const std::function<void()>& alive = [] {});
 
 /// Mean speed [mm/s, physical] and the share of updates, by the method exact,
 /// that ended constrained.
@@ -61,6 +63,8 @@ struct TunedHand {
 /// the wanted behaviour (a share of at most 1) on this body, or as near as two dozen attempts bring
 /// it. On a body so fine that the hand slips off all the time, it presses half as deep, and half
 /// again.
-TunedHand tuned_hand(const Subject& subject, ExploringHand hand, const Behaviour& wanted);
+TunedHand tuned_hand(
+    const Subject& subject, ExploringHand hand, const Behaviour& wanted,
+    const std::function<void()>& alive = [] {});
 
 }  // namespace palpate::evaluation

@@ -1,8 +1,9 @@
 // Makes or reads the volumes of experiments.
 #include "evaluation/subject.hpp"
 
-#include <array>
+#include <filesystem>
 #include <stdexcept>
+#include <string_view>
 
 #include "palpate/io/level.hpp"
 #include "palpate/io/volume_file.hpp"
@@ -13,35 +14,12 @@ namespace {
 
 constexpr std::string_view synthetic_prefix = "synthetic:";
 
-struct RealVolume {
-    const char* name;
-    const char* file;
-    double isovalue;
-};
-
-constexpr std::array<RealVolume, 2> real_volumes{{
-    {"lobster", "lobster.nrrd", 35},      // shell
-    {"ct-head", "cthead_unc.nrrd", 500},  // skin
-}};
+Subject synthetic(const std::string& specification) {
+    scenes::Scene scene = scenes::make_volume(specification);
+    return {scene.name, Field(std::move(scene.volume)), scene.isovalue};
+}
 
 }  // namespace
-
-Subject synthetic(const std::string& specification, std::optional<double> isovalue,
-                  std::optional<SampleType> type) {
-    scenes::Scene scene = scenes::make_volume(specification, type);
-    return {scene.name, Field(std::move(scene.volume)), isovalue.value_or(scene.isovalue),
-            std::move(scene.exact)};
-}
-
-std::optional<Subject> real(const std::filesystem::path& data, std::string_view name) {
-    for (const RealVolume& known : real_volumes) {
-        if (name != known.name) continue;
-        const auto path = data / known.file;
-        if (data.empty() || !std::filesystem::exists(path)) return {};
-        return Subject{known.name, Field(io::read_volume(path).volume), known.isovalue};
-    }
-    throw std::logic_error("no real volume is known as " + std::string(name));
-}
 
 Subject subject_from(const std::string& text) {
     const std::size_t at = text.rfind('@');

@@ -5,17 +5,16 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 
 #include "apps/options/say.hpp"
 #include "apps/options/values.hpp"
 #include "apps/palpate/commands.hpp"
+#include "apps/palpate/demo_figure.hpp"
 #include "apps/palpate/offline_summary.hpp"
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
-#include "evaluation/figure.hpp"
-#include "evaluation/html.hpp"
-#include "io/recording/plot.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::app {
@@ -60,47 +59,17 @@ void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
     if (path) path->commit();
 }
 
-/// Depth, force and density over time.
-evaluation::Figure figure_of(const std::vector<io::TraceRow>& rows) {
-    using namespace evaluation;
-    constexpr std::size_t most_points = 20'000;  // gnuplot takes a minute for a million
-    Series depth{Draw::line, "", {colours::blue}}, force{Draw::line, "", {colours::vermilion}};
-    Series density{Draw::line, "density at the SCP", {colours::green}};
-    Series isovalue{Draw::line, "isovalue", {.colour = colours::black, .dash = Dash::dashed}};
-    for (std::size_t i = 0; i < rows.size(); i += 1 + rows.size() / most_points) {
-        const io::TraceRow& row = rows[i];
-        depth.rows.push_back({row.t, (row.scp - row.hip).norm()});
-        force.rows.push_back({row.t, row.force.norm()});
-        density.rows.push_back({row.t, row.density});
-        isovalue.rows.push_back({row.t, row.isovalue});
+/// Nothing in it is markup any more.
+std::string html_text(std::string_view text) {
+    std::string html;
+    for (const char c : text) {
+        html += c == '&'   ? "&amp;"
+                : c == '<' ? "&lt;"
+                : c == '>' ? "&gt;"
+                : c == '"' ? "&quot;"
+                           : std::string(1, c);
     }
-    Figure figure;
-    figure.width = 1000;
-    figure.height = 750;
-    const auto add_panel = [&](const char* title, std::vector<Series> series) {
-        Panel& panel = figure.panels.emplace_back();
-        panel.y.title = title;
-        panel.series = std::move(series);
-    };
-    add_panel("depth |SCP - HIP| [mm]", {depth});
-    add_panel("force [N]", {force});
-    add_panel("density", {density, isovalue});
-    figure.panels.back().x.title = "time [s]";
-    return figure;
-}
-
-/// False where gnuplot is missing or fails.
-bool plot(const std::vector<io::TraceRow>& rows, const fs::path& folder) {
-    if (!io::can_plot()) return false;
-    const evaluation::Figure figure = figure_of(rows);
-    try {
-        for (const char* name : {"session.png", "session.svg"}) {
-            evaluation::draw(figure, folder / name);
-        }
-    } catch (const io::OutputError&) {
-        return false;
-    }
-    return true;
+    return html;
 }
 
 std::string image_html(const std::string& file, const std::string& shows,
@@ -121,8 +90,8 @@ std::string report_html(const Demo& demo, const std::string& images) {
         "<pre>{}</pre>\n{}"
         "<p>Data: <a href=\"trajectory.csv\">trajectory.csv</a> (the hand), <a "
         "href=\"trace.csv\">trace.csv</a> (a row a tick){}.</p>\n</html>\n",
-        demo.hand, demo.isovalue, evaluation::html_text(demo.loaded.name), size[0], size[1],
-        size[2], name_of(demo.loaded.volume.type()), summary_text(demo.summary), images, path);
+        demo.hand, demo.isovalue, html_text(demo.loaded.name), size[0], size[1], size[2],
+        name_of(demo.loaded.volume.type()), summary_text(demo.summary), images, path);
 }
 
 }  // namespace
@@ -181,7 +150,7 @@ void run_demo(Demo& demo, const DemoOptions& options, const DemoPicture& picture
     } catch (const io::OutputError& e) {
         if (!quiet) say("palpate: note: {}\n", e.what());
     }
-    const bool plotted = plot(demo.rows, folder);
+    const bool plotted = plot_over_time(demo.rows, folder);
     if (plotted) images += image_html("session.png", "Depth, force and density over time", "");
     if (more) more(folder);
     stop_if_interrupted();

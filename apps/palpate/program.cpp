@@ -32,7 +32,7 @@ int finish_output() {
     return fail("standard output: could not be written", bad_output);
 }
 
-int run(int argc, char** argv, const std::function<void(CLI::App&)>& add_commands) {
+int read_and_run(int argc, char** argv, const std::function<void(CLI::App&)>& add_commands) {
     CLI::App app(
         "Touch the surfaces inside volumetric data.\n\nVOLUME is a file (NRRD, MetaImage, NIfTI, "
         "TIFF, VTI, DICOM, raw), a folder with a DICOM series or a TIFF stack,\nor "
@@ -80,7 +80,7 @@ int run_program(int argc, char** argv, const std::function<void(CLI::App&)>& add
     occupy_closed_streams();
     handle_ends(on_signal);
     try {
-        return run(argc, argv, add_commands);
+        return read_and_run(argc, argv, add_commands);
     } catch (const Interrupted&) {
         return fail("interrupted", status_of_signal(stop_signal));
     } catch (const palpate::io::ReaderGone&) {

@@ -3,6 +3,7 @@
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "devices/simulated/profiles.hpp"
 #include "palpate/devices/devices.hpp"
 #include "palpate/renderer.hpp"
@@ -43,13 +44,14 @@ Wrench straightened(ForceState& state, const Renderer& renderer, const DeviceRea
 }
 
 py::dict closed_loop(const Renderer& renderer, const std::string& text, double seconds, double rate,
-                     bool straight) {
+                     bool straight, const ProgressFunction& progress) {
     if (!(seconds > 0 && rate > 0 && seconds * rate < 1e9)) {
         throw std::invalid_argument("seconds and rate have to be above 0");
     }
     Renderer own = renderer;
     ForceState state;
     std::vector<LoopTick> ticks(static_cast<std::size_t>(seconds * rate));
+    Slices slices(progress, ticks.size(), updates_in_slice);
     {
         const py::gil_scoped_release unlocked;
         const auto device = simulated(text, own.field, own.proxy.isovalue, rate);
@@ -68,6 +70,7 @@ py::dict closed_loop(const Renderer& renderer, const std::string& text, double s
                 t.constrained = tick.proxy.mode == Mode::constrained;
             }
             device->write(t.wrench, time);
+            slices.done_one();
         }
     }
     const auto of = [&](const auto& value) { return column(ticks, value); };
@@ -91,7 +94,8 @@ py::dict dict_of(const DeviceProfile& p) {
 void bind_closed_loop(py::module_& module) {
     module.def(
         "closed_loop", &closed_loop, py::arg("renderer"), py::arg("device"), py::arg("seconds"),
-        py::arg("rate"), py::arg("straight") = false,
+        py::arg("rate"), py::arg("straight") = false, py::kw_only(),
+        py::arg("progress") = py::none(),
         "A simulated device, 'simulated:touch,grip=light,hand=hold', whose workspace the grid "
         "fills, in a\n"
         "closed loop with a copy "
@@ -99,7 +103,10 @@ void bind_closed_loop(py::module_& module) {
         "renderer, as fast as possible and without the GIL: arrays by name, position [device mm],\n"
         "orientation_xyzw, force [N], torque [N mm] and constrained. straight: in place of a "
         "surface,\n"
-        "the rotational spring of the renderer's ForceSettings holds the handle straight.");
+        "the rotational spring of the renderer's ForceSettings holds the handle straight. "
+        "progress: "
+        "called\n"
+        "with the part that is done.");
     module.def(
         "simulated_info",
         [](const std::string& text, const Field& field, double isovalue, double rate) {

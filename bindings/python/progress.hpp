@@ -2,6 +2,7 @@
 // the work.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 
 #include "bindings/python/casters.hpp"
@@ -19,5 +20,25 @@ inline std::function<void(double)> progress_of(const ProgressFunction& function)
         if (function) (*function)(fraction);
     };
 }
+
+/// Long work of many alike items in slices: after each slice, progress_of() is called.
+class Slices {
+  public:
+    /// The function has to outlive it. slice: so many items take milliseconds.
+    Slices(const ProgressFunction& function, std::size_t items, std::size_t slice)
+        : tell_(progress_of(function)), items_(items), slice_(slice) {}
+
+    /// After each item. Throws as progress_of() does.
+    void done_one() {
+        if (++done_ % slice_ == 0) tell_(double(done_) / double(items_));
+    }
+
+  private:
+    std::function<void(double)> tell_;
+    std::size_t items_, slice_, done_ = 0;
+};
+
+/// Updates of a proxy, or ticks; and batches of them, or updates of a tool.
+inline constexpr std::size_t updates_in_slice = 4096, batches_in_slice = 64;
 
 }  // namespace palpate::python

@@ -2,6 +2,8 @@
 // are made of it.
 #include "palpate/proxy.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -10,6 +12,7 @@
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "bindings/python/setup.hpp"
 #include "palpate/baselines/methods.hpp"
 #include "palpate/penetrability.hpp"
@@ -128,7 +131,8 @@ struct PlacedProxy {
 };
 
 ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
-                  const std::optional<PressThrough>& press, double scale, bool with_steps) {
+                  const std::optional<PressThrough>& press, double scale, bool with_steps,
+                  const ProgressFunction& progress) {
     const std::vector<Vec3> points = points_from(hips, "hips");
     if (!(scale > 0)) throw std::invalid_argument("scale: a number above 0 is needed");
     Way way = placed.way;
@@ -146,6 +150,7 @@ ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
                     },
                     &context};
     }
+    Slices slices(progress, points.size(), updates_in_slice);
     {
         const py::gil_scoped_release unlocked;
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -153,15 +158,17 @@ ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
             Clock::duration took{};
             const ProxyUpdate update = way.update(placed.proxy, points[i], observer, took);
             rows.put(i, update, took);
+            slices.done_one();
         }
     }
     if (with_steps) trace.steps = dict_of(steps);
     return trace;
 }
 
-/// One trajectory, whose first place is where the proxy is put.
+/// One trajectory, whose first place is where the proxy is put. each() is called after each update.
+template <class Each>
 void follow_one(const Way& way, const std::vector<Vec3>& hips, std::size_t from, std::size_t to,
-                const Rows& rows) {
+                const Rows& rows, const Each& each) {
     Proxy proxy = way.placed(hips[from]);
     ProxyUpdate start;
     start.scp = proxy.scp_physical;
@@ -172,6 +179,7 @@ void follow_one(const Way& way, const std::vector<Vec3>& hips, std::size_t from,
         Clock::duration took{};
         const ProxyUpdate update = way.update(proxy, hips[i], {}, took);
         rows.put(i, update, took);
+        each();
     }
 }
 
@@ -186,7 +194,8 @@ std::vector<std::size_t> begins_of(const Firsts& firsts, std::size_t rows) {
 }
 
 ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles& hips,
-                       const Firsts& firsts, const std::string& method, int threads) {
+                       const Firsts& firsts, const std::string& method, int threads,
+                       const ProgressFunction& progress) {
     const Way way = way_of(field, level, method);
     const std::vector<Vec3> points = points_from(hips, "hips");
     const std::vector<std::size_t> begins = begins_of(firsts, points.size());
@@ -194,17 +203,24 @@ ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles
     ProxyTrace trace(static_cast<py::ssize_t>(points.size()));
     const Rows rows(trace);
     std::atomic<std::size_t> next{0};
-    const py::gil_scoped_release unlocked;
-    std::vector<std::jthread> running;
+    const auto follow_some = [&](const auto& each) {
+        for (std::size_t i; (i = next++) + 1 < begins.size();) {
+            follow_one(way, points, begins[i], begins[i + 1], rows, each);
+        }
+    };
     const unsigned usual = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);
-    for (unsigned t = 0; t < (threads > 0 ? static_cast<unsigned>(threads) : usual); ++t) {
-        running.emplace_back([&] {
-            for (std::size_t i; (i = next++) + 1 < begins.size();) {
-                follow_one(way, points, begins[i], begins[i + 1], rows);
-            }
-        });
+    const unsigned wanted = threads > 0 ? static_cast<unsigned>(threads) : usual;
+    Slices slices(progress, points.size() / wanted, updates_in_slice);
+    const py::gil_scoped_release unlocked;
+    std::vector<std::jthread> others;
+    for (unsigned t = 1; t < wanted; ++t) others.emplace_back([&] { follow_some([] {}); });
+    try {
+        follow_some([&] { slices.done_one(); });
+    } catch (...) {
+        next = begins.size();  // the others end with the hands that they have
+        throw;
     }
-    running.clear();
+    others.clear();
     return trace;
 }
 
@@ -216,7 +232,8 @@ struct Timed {
 
 /// [ns] per update, in the order of the hands.
 std::vector<double> times_of(const Way& way, const std::vector<Vec3>& hips,
-                             const std::vector<std::size_t>& begins, const Timed& timed) {
+                             const std::vector<std::size_t>& begins, const Timed& timed,
+                             Slices& slices) {
     constexpr std::size_t more_than_caches = std::size_t{48} << 20, line = 64;  // bytes
     std::vector<std::uint8_t> memory(timed.cold > 0 ? more_than_caches : 0, 1);
     volatile std::uint8_t* const walked = memory.data();
@@ -238,6 +255,7 @@ std::vector<double> times_of(const Way& way, const std::vector<Vec3>& hips,
             const std::chrono::duration<double, std::nano> taken = Clock::now() - begin;
             if (counts) times.push_back(taken.count() / double(end - i));
             i = end;
+            slices.done_one();
         }
     }
     return times;
@@ -245,37 +263,101 @@ std::vector<double> times_of(const Way& way, const std::vector<Vec3>& hips,
 
 py::array_t<double> update_times(const Field& field, const io::Level& level, const Doubles& hips,
                                  const Firsts& firsts, const std::string& method, std::size_t batch,
-                                 std::size_t cold) {
+                                 std::size_t cold, const ProgressFunction& progress) {
     const Way way = way_of(field, level, method);
     const std::vector<Vec3> points = points_from(hips, "hips");
     const std::vector<std::size_t> begins = begins_of(firsts, points.size());
+    Slices slices(progress, points.size() / std::max<std::size_t>(1, batch), updates_in_slice);
     std::vector<double> times;
     {
         const py::gil_scoped_release unlocked;
-        times = times_of(way, points, begins, {batch, cold});
+        times = times_of(way, points, begins, {batch, cold}, slices);
     }
     return array_from(std::move(times));
 }
+
+/// What the process has from the heap [bytes].
+double heap_in_use() {
+    const auto info = mallinfo2();
+    return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+}
+
+py::dict follow_levels(const Field& field, const Doubles& hips, const Firsts& firsts,
+                       const Doubles& levels) {
+    const std::vector<Vec3> points = points_from(hips, "hips");
+    const std::vector<std::size_t> begins = begins_of(firsts, points.size());
+    if (levels.ndim() != 1 || levels.size() != py::ssize_t(points.size())) {
+        throw std::invalid_argument("levels: one for each of hips is needed");
+    }
+    const double* const level = levels.data();
+    ProxyTrace trace(static_cast<py::ssize_t>(points.size()));
+    const Rows rows(trace);
+    const ProgressFunction none;
+    Slices slices(none, points.size(), updates_in_slice);
+    double growth = 0;
+    {
+        const py::gil_scoped_release unlocked;
+        const double before = heap_in_use();
+        for (std::size_t hand = 0; hand + 1 < begins.size(); ++hand) {
+            const std::size_t first = begins[hand];
+            const Way way{field, level[first], &update_exact};
+            Proxy proxy = way.placed(points[first]);
+            rows.put(first, {}, {});
+            for (std::size_t i = first + 1; i < begins[hand + 1]; ++i) {
+                proxy.isovalue = level[i];
+                Clock::duration took{};
+                const ProxyUpdate update = way.update(proxy, points[i], {}, took);
+                rows.put(i, update, took);
+                if (level[i] != level[i - 1]) growth = std::max(growth, heap_in_use() - before);
+                slices.done_one();
+            }
+        }
+    }
+    return py::dict(py::arg("trace") = std::move(trace), py::arg("heap_growth_bytes") = growth,
+                    py::arg("state_bytes") = sizeof(Proxy));
+}
+
+struct Rays {
+    std::vector<Vec3> from, to;
+    Rays(const Doubles& starts, const Doubles& ends)
+        : from(points_from(starts, "starts")), to(points_from(ends, "ends")) {
+        if (from.size() != to.size()) {
+            throw std::invalid_argument("as many starts as ends are needed");
+        }
+    }
+};
 
 std::pair<py::array_t<double>, py::array_t<double>> cast_rays(const Field& field,
                                                               const io::Level& level,
                                                               const Doubles& starts,
                                                               const Doubles& ends) {
-    const std::vector<Vec3> from = points_from(starts, "starts"), to = points_from(ends, "ends");
-    if (from.size() != to.size()) throw std::invalid_argument("as many starts as ends are needed");
+    const Rays rays(starts, ends);
     const double isovalue = io::level_in(field.volume(), level);
     const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-    std::vector<Vec3> points(from.size(), none), normals(from.size(), none);
+    std::vector<Vec3> points(rays.from.size(), none), normals(rays.from.size(), none);
     {
         const py::gil_scoped_release unlocked;
-        for (std::size_t i = 0; i < from.size(); ++i) {
-            const RayHit hit = cast_ray(field, isovalue, from[i], to[i]);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const RayHit hit = cast_ray(field, isovalue, rays.from[i], rays.to[i]);
             if (!hit.hit) continue;
             points[i] = hit.point;
             normals[i] = hit.normal;
         }
     }
     return {array_from(std::move(points)), array_from(std::move(normals))};
+}
+
+double ray_ns(const Field& field, const io::Level& level, const Doubles& starts,
+              const Doubles& ends) {
+    const Rays rays(starts, ends);
+    const double isovalue = io::level_in(field.volume(), level);
+    const py::gil_scoped_release unlocked;
+    const auto begin = Clock::now();
+    for (std::size_t i = 0; i < rays.from.size(); ++i) {
+        cast_ray(field, isovalue, rays.from[i], rays.to[i]);
+    }
+    const std::chrono::duration<double, std::nano> taken = Clock::now() - begin;
+    return taken.count() / double(rays.from.size());
 }
 
 void bind_trace(py::module_& module) {
@@ -314,25 +396,36 @@ void bind_proxies(py::module_& module) {
              "Put at `start` [mm, physical], or the nearest free place. method: of methods().")
         .def("follow", &follow, py::arg("hips"), py::kw_only(),
              py::arg("penetrability") = py::none(), py::arg("scale") = 1.0,
-             py::arg("steps") = false,
+             py::arg("steps") = false, py::arg("progress") = py::none(),
              "An update for each place of the hand [mm, physical], shape (n, 3), in order: a\n"
              "ProxyTrace. scale: mm of volume per mm of hand, for the threshold of penetrability.")
         .def_property_readonly("scp", [](const PlacedProxy& p) { return p.proxy.scp_physical; })
         .def("__copy__", [](const PlacedProxy& p) { return p; });
     module.def(
         "follow_each", &follow_each, py::arg("field"), py::arg("isovalue"), py::arg("hips"),
-        py::arg("first"), py::arg("method") = "exact", py::arg("threads") = 0,
+        py::arg("first"), py::arg("method") = "exact", py::arg("threads") = 0, py::kw_only(),
+        py::arg("progress") = py::none(),
         "Many hands, one behind the other in `hips` [mm, physical], shape (n, 3); `first`: the\n"
         "row in which each begins. A proxy of its own is put there and follows to the next\n"
         "hand's row. On all processors, or `threads`; the result does not depend on that.");
     module.def(
         "update_times", &update_times, py::arg("field"), py::arg("isovalue"), py::arg("hips"),
         py::arg("first"), py::arg("method") = "exact", py::arg("batch") = 1, py::arg("cold") = 0,
+        py::kw_only(), py::arg("progress") = py::none(),
         "[ns] per update of hands as for follow_each(), in one thread, measured in C++ over "
         "batches\n"
         "of so many updates. batch=0: the clock's own cost. cold: only every so many updates, "
         "after the\n"
         "processor's caches were emptied.");
+    module.def("follow_levels", &follow_levels, py::arg("field"), py::arg("hips"), py::arg("first"),
+               py::arg("levels"),
+               "Hands as for follow_each(), in one thread, each update at a level of its own [data "
+               "units],\n"
+               "shape (n,). A dict: trace, a ProxyTrace; heap_growth_bytes, the most that the "
+               "process took\n"
+               "from the heap until after an update with another level; state_bytes of a proxy.");
+    module.def("ray_ns", &ray_ns, py::arg("field"), py::arg("isovalue"), py::arg("starts"),
+               py::arg("ends"), "Mean time of a segment of cast_rays() [ns].");
     module.def(
         "cast_rays", &cast_rays, py::arg("field"), py::arg("isovalue"), py::arg("starts"),
         py::arg("ends"),

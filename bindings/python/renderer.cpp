@@ -5,6 +5,7 @@
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "bindings/python/renderer.hpp"
 
 namespace palpate::python {
@@ -60,10 +61,12 @@ std::vector<DeviceState> states_from(const Doubles& time, const Doubles& positio
 }
 
 py::dict follow_ticks(Renderer& renderer, const Doubles& time, const Doubles& position,
-                      const std::optional<Doubles>& pointing, bool alternatives) {
+                      const std::optional<Doubles>& pointing, bool alternatives,
+                      const ProgressFunction& progress) {
     const std::vector<DeviceState> states = states_from(time, position, pointing);
     std::vector<Tick> ticks(states.size());
     Renderer own = renderer;  // other threads may use it
+    Slices slices(progress, ticks.size(), updates_in_slice);
     {
         const py::gil_scoped_release unlocked;
         for (std::size_t i = 0; i < states.size(); ++i) {
@@ -73,6 +76,7 @@ py::dict follow_ticks(Renderer& renderer, const Doubles& time, const Doubles& po
             } else {
                 ticks[i] = render(own, states[i]);
             }
+            slices.done_one();
         }
     }
     renderer = std::move(own);
@@ -90,12 +94,13 @@ py::dict follow_ticks(Renderer& renderer, const Doubles& time, const Doubles& po
 }
 
 py::array_t<double> batch_ns(Renderer& renderer, const Doubles& time, const Doubles& position,
-                             std::size_t batch) {
+                             std::size_t batch, const ProgressFunction& progress) {
     using SteadyClock = std::chrono::steady_clock;
     if (batch == 0) throw std::invalid_argument("batch: at least one tick is needed");
     const std::vector<DeviceState> states = states_from(time, position, std::nullopt);
     std::vector<double> times(states.size() / batch);
     Renderer own = renderer;
+    Slices slices(progress, times.size(), batches_in_slice);
     {
         const py::gil_scoped_release unlocked;
         for (std::size_t i = 0; i < times.size(); ++i) {
@@ -103,6 +108,7 @@ py::array_t<double> batch_ns(Renderer& renderer, const Doubles& time, const Doub
             for (std::size_t k = i * batch; k < (i + 1) * batch; ++k) render(own, states[k]);
             const std::chrono::duration<double, std::nano> taken = SteadyClock::now() - begin;
             times[i] = taken.count() / double(batch);
+            slices.done_one();
         }
     }
     renderer = std::move(own);
@@ -247,12 +253,17 @@ void bind_renderer(py::module_& module) {
         .def(
             "follow", &follow_ticks, py::arg("time"), py::arg("position"), py::kw_only(),
             py::arg("pointing") = py::none(), py::arg("alternatives") = false,
+            py::arg("progress") = py::none(),
             "render() for each row of `time` [s], shape (n,), and `position` [device mm], (n, 3),\n"
             "without the GIL: arrays by name, scp, density, constrained, behind (it holds from\n"
             "inside), force, layer, inside and punctured, as of a Tick. alternatives: each row by "
             "a\n"
-            "copy of the renderer as it is, which stays.")
+            "copy of the renderer as it is, which stays. progress: called with the part that is "
+            "done; "
+            "if it\n"
+            "raises, the renderer is as before.")
         .def("batch_ns", &batch_ns, py::arg("time"), py::arg("position"), py::arg("batch"),
+             py::kw_only(), py::arg("progress") = py::none(),
              "The time of a tick [ns]: the mean of each `batch` ticks, without a clock inside.")
         .def_property_readonly("field", [](const Renderer& r) { return r.field; })
         .def("copy", [](const Renderer& r) { return r; })

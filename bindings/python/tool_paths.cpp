@@ -2,6 +2,7 @@
 // GIL.
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "palpate/baselines/penalty_tool.hpp"
 #include "palpate/io/level.hpp"
 #include "palpate/tool_proxy.hpp"
@@ -34,7 +35,7 @@ std::vector<Pose> poses_from(const Doubles& position, const Doubles& orientation
 }
 
 ToolPath exact_path(const Field& field, double isovalue, std::shared_ptr<const Tool> tool,
-                    const std::vector<Pose>& hands) {
+                    const std::vector<Pose>& hands, Slices& slices) {
     ToolPath path;
     ToolProxy proxy(std::move(tool));
     proxy.isovalue = isovalue;
@@ -45,32 +46,36 @@ ToolPath exact_path(const Field& field, double isovalue, std::shared_ptr<const T
                                 &path};
     for (const Pose& hand : hands) {
         path.updates.push_back(update_tool(proxy, field, hand, {}, observer));
+        slices.done_one();
     }
     return path;
 }
 
 ToolPath penalty_path(const Field& field, double isovalue, std::shared_ptr<const Tool> tool,
-                      const std::vector<Pose>& hands) {
+                      const std::vector<Pose>& hands, Slices& slices) {
     ToolPath path;
     baselines::PenaltyTool state{std::move(tool), isovalue};
     for (const Pose& hand : hands) {
         path.updates.emplace_back().proxy = baselines::update_penalty(state, field, hand).proxy;
+        slices.done_one();
     }
     return path;
 }
 
 py::dict follow_tool(const Field& field, const io::Level& level, std::shared_ptr<Tool> tool,
-                     const Doubles& position, const Doubles& orientation,
-                     const std::string& method) {
+                     const Doubles& position, const Doubles& orientation, const std::string& method,
+                     const ProgressFunction& progress) {
     if (method != "exact" && method != "penalty") {
         throw std::invalid_argument("method: 'exact' or 'penalty'");
     }
     const double isovalue = io::level_in(field.volume(), level);
     const std::vector<Pose> hands = poses_from(position, orientation);
     ToolPath path;
+    Slices slices(progress, hands.size(), batches_in_slice);
     {
         const py::gil_scoped_release unlocked;
-        path = (method == "exact" ? exact_path : penalty_path)(field, isovalue, tool, hands);
+        path =
+            (method == "exact" ? exact_path : penalty_path)(field, isovalue, tool, hands, slices);
     }
     const auto of = [&](const auto& value) { return column(path.updates, value); };
     using Update = ToolUpdate;
@@ -96,7 +101,7 @@ void bind_tool_paths(py::module_& module) {
     module.def(
         "follow_tool", &follow_tool, py::arg("field"), py::arg("isovalue"),
         py::arg("tool").none(false), py::arg("position"), py::arg("orientation_xyzw"),
-        py::arg("method") = "exact",
+        py::arg("method") = "exact", py::kw_only(), py::arg("progress") = py::none(),
         "An update of a tool for each pose of the hand, position [mm, physical], shape (n, 3), "
         "and\n"
         "orientation_xyzw, (n, 4); the tool starts at the first pose. method: 'exact', or "
@@ -105,7 +110,9 @@ void bind_tool_paths(py::module_& module) {
         "rounds\n"
         "and work of each update; pose_tick, pose_position and pose_orientation_xyzw of every pose "
         "on\n"
-        "the way, between which each point of the tool goes straight (exact).");
+        "the way, between which each point of the tool goes straight (exact). progress: called "
+        "with the\n"
+        "part that is done.");
 }
 
 }  // namespace palpate::python

@@ -39,8 +39,8 @@ class MadeUpMachine {
 
         facts.limits = {90, Limits::unlimited, Limits::unlimited, 0, 0, 1, 1};
         facts.account = {1000, "anna", {1000, 29, 105}};
-        for (const char* name : {"palpate-io-helper", "palpate-picture-helper",
-                                 "palpate-explicit-helper", "palpate-evaluate"}) {
+        for (const char* name :
+             {"palpate-io-helper", "palpate-picture-helper", "palpate-explicit-helper"}) {
             facts.programs.push_back({name, std::string("/usr/libexec/palpate/") + name, {}});
         }
         facts.graphics = {"llvmpipe (LLVM 15.0.6)", "AMD Radeon RX 6600", {}, true};

@@ -1,14 +1,15 @@
-// The hand that explores, and how updates are timed.
+// The hand that explores.
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "evaluation/exploring_hand.hpp"
-#include "evaluation/timing.hpp"
 
 namespace palpate::evaluation {
 namespace {
 
 TEST(ExploringHand, comes_within_two_percent_of_the_wanted_speed_and_share) {
-    const Subject torus = synthetic("torus");
+    const Subject torus = subject_from("synthetic:torus");
     for (const double share : {0.3, 0.8}) {
         ExploringHand hand;
         hand.trajectories = 4;
@@ -21,7 +22,7 @@ TEST(ExploringHand, comes_within_two_percent_of_the_wanted_speed_and_share) {
 }
 
 TEST(ExploringHand, is_never_faster_than_its_swelling_speed) {
-    const Subject noise = synthetic("noise:24x24x24");
+    const Subject noise = subject_from("synthetic:noise:24x24x24");
     ExploringHand hand;
     hand.trajectories = 2;
     for (const Trajectory& trajectory : explore(noise, hand)) {
@@ -37,42 +38,26 @@ TEST(ExploringHand, presses_more_lightly_on_a_body_too_fine_for_it) {
     hand.trajectories = 4;
     hand.speed_mm_s = 150;
     hand.depth_mm = 6;
-    const TunedHand tuned = tuned_hand(synthetic("torus:40x40x20"), hand, {150, 0.9});
+    const TunedHand tuned = tuned_hand(subject_from("synthetic:torus:40x40x20"), hand, {150, 0.9});
     EXPECT_LT(tuned.hand.depth_mm, 6);
     EXPECT_NEAR(tuned.behaviour.constrained_share, 0.9, 0.15 * 0.9);
 }
 
 TEST(ExploringHand, a_level_without_a_surface_is_refused) {
-    EXPECT_THROW(explore(synthetic("sphere", 500), {}), std::invalid_argument);
-    EXPECT_THROW(explore(synthetic("sphere", -5), {}), std::invalid_argument);
+    EXPECT_THROW(explore(subject_from("synthetic:sphere@500"), {}), std::invalid_argument);
+    EXPECT_THROW(explore(subject_from("synthetic:sphere@-5"), {}), std::invalid_argument);
 }
 
-TEST(UpdateTimes, counts_are_the_methods_own_and_percentiles_are_in_order) {
-    const Subject sphere = synthetic("sphere:32x32x32");
-    ExploringHand hand;
-    hand.trajectories = 2;
-    hand.trajectory_s = 0.5;
-    const auto trajectories = explore(sphere, hand);
-    const UpdateTimes times = time_updates(sphere, &update_exact, trajectories, {3, 5});
-    std::int64_t tetrahedra = 0, constrained = 0;
-    for (const Trajectory& trajectory : trajectories) {
-        Proxy proxy;
-        place(proxy, sphere.field, trajectory.front(), sphere.isovalue);
-        for (std::size_t i = 1; i < trajectory.size(); ++i) {
-            const ProxyUpdate update = update_exact(proxy, sphere.field, trajectory[i]);
-            tetrahedra += update.tetrahedra;
-            constrained += update.mode == Mode::constrained;
-        }
-    }
-    EXPECT_EQ(times.updates, 1000);
-    EXPECT_EQ(times.tetrahedra, tetrahedra);
-    EXPECT_EQ(times.constrained, constrained);
-    EXPECT_GT(times.p50_ns, 0);
-    EXPECT_LE(times.p50_ns, times.p99_ns);
-    EXPECT_LE(times.p99_ns, times.p999_ns);
-    EXPECT_LE(times.p999_ns, times.max_ns);
-    EXPECT_LE(times.max_ns, times.interrupted_max_ns);
-    EXPECT_GT(times.cold_p50_ns, 0);
+TEST(ExploringHand, stops_when_it_is_told_so_in_a_tick) {
+    int ticks = 0;
+    const auto alive = [&] {
+        if (++ticks == 100) throw std::runtime_error("stopped");
+    };
+    const Subject sphere = subject_from("synthetic:sphere:24x24x24");
+    EXPECT_THROW(explore(sphere, {}, alive), std::runtime_error);
+    EXPECT_EQ(ticks, 100);
+    EXPECT_THROW(tuned_hand(sphere, {}, {50, 0.6}, [] { throw std::runtime_error("stopped"); }),
+                 std::runtime_error);
 }
 
 }  // namespace

@@ -23,18 +23,5 @@ TEST(Subject, a_file_needs_a_level_and_has_to_be_there) {
     EXPECT_THROW(subject_from("synthetic:nothing"), std::invalid_argument);
 }
 
-TEST(Subject, real_volumes_are_left_out_where_there_are_none) {
-    EXPECT_FALSE(real("", "lobster"));
-    EXPECT_FALSE(real("/nowhere", "lobster"));
-    EXPECT_THROW(real("", "dragon"), std::logic_error);
-}
-
-TEST(Subject, the_lobster_is_felt_at_its_shell) {
-    const auto lobster = real(PALPATE_DATA_FOLDER, "lobster");
-    if (!lobster) GTEST_SKIP() << "the real volumes are not there";
-    EXPECT_EQ(lobster->isovalue, 35);
-    EXPECT_EQ(lobster->field.geometry().size, Index3(301, 324, 56));
-}
-
 }  // namespace
 }  // namespace palpate::evaluation

@@ -39,11 +39,12 @@ MAY_SEE = {
     "pictures": ("include", "io", "io/helper"),
     "pictures/vtk": ("include",),
     "pictures/helper": ("include", "io", "io/helper", "pictures", "pictures/vtk"),
-    "evaluation": ("include", "io", "io/helper", "baselines", "scenes", "filters", "stream", "devices"),
+    "evaluation": ("include", "io", "scenes", "stream", "evaluation/explicit_helper"),
+    "evaluation/explicit_helper": ("include", "io", "io/helper"),
     "doctor": ("include", "io", "scenes", "devices", "run", "pictures"),
     "bridge": ("include",),
     "apps/options": LIBRARIES,
-    "apps/palpate": (*LIBRARIES, "pictures", "evaluation", "doctor", "bridge", "apps/options"),
+    "apps/palpate": (*LIBRARIES, "pictures", "doctor", "bridge", "apps/options"),
     "apps/viewer": (*LIBRARIES, *WINDOW),
     "apps/viewer/model": (*LIBRARIES, "pictures", "apps/options"),
     "apps/viewer/scene": ("include", "pictures", "pictures/vtk", "apps/viewer/model"),
@@ -54,9 +55,9 @@ MAY_SEE = {
     "benchmarks": (*LIBRARIES, *WINDOW, "pictures", "tests"),
     "examples": LIBRARIES,
 }
-# Folders whose inner folders are alternatives, which do not know of each other: the backends, the
-# experiments. The folder itself knows them all: its table lists them.
-ALTERNATIVES = ("devices", "evaluation")
+# Folders whose inner folders are alternatives, which do not know of each other: the backends. The
+# folder itself knows them all: its table lists them.
+ALTERNATIVES = ("devices",)
 # Folders that build from the standard library and Eigen alone.
 PURE = ("include", "src", "baselines", "scenes")
 

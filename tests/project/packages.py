@@ -13,7 +13,7 @@ PACKAGES = {"palpate", "palpate-io-helper", "libpalpate-c0", "libpalpate-dev"}
 FILES = """usr/bin/palpate usr/bin/palpate-viewer usr/libexec/palpate/palpate-io-helper
     usr/libexec/palpate/palpate-io-dicom usr/libexec/palpate/palpate-io-images
     usr/libexec/palpate/palpate-io-itk usr/libexec/palpate/palpate-io-vtk
-    usr/libexec/palpate/palpate-evaluate usr/libexec/palpate/palpate-picture-helper
+    usr/libexec/palpate/palpate-explicit-helper usr/libexec/palpate/palpate-picture-helper
     usr/share/palpate/visible_human_head.nrrd usr/share/palpate/layers/sample-head.json
     usr/share/man/man1/palpate.1.gz usr/share/man/man1/palpate-viewer.1.gz
     usr/share/bash-completion/completions/palpate usr/share/applications/palpate.desktop

@@ -1,11 +1,16 @@
-"""The parts of the experiments layers, tools, stability and performance: phantoms and closed forms, the judge of tools, closed
-loops, and times of updates."""
+"""The parts of the experiments layers, tools, stability, performance and scaling, and long calls that stop."""
+
+import _thread
+import functools
+import itertools
+import operator
+import signal
 
 import numpy
 import palpate
 import pytest
 
-from palpate.evaluate import heads, layers, performance, stability, tissues, tools
+from palpate.evaluate import heads, layers, performance, scaling, stability, tissues, tools
 from palpate.evaluate.experiment import GRANTED, Options, Table
 from palpate.evaluate.subjects import of_text
 
@@ -217,3 +222,107 @@ def test_times_of_updates_are_in_order_and_each_is_measured():
     found = performance.numbers_of(taken, hand, 20)
     assert 0 < found["p50_ns"] <= found["p99_ns"] <= found["p999_ns"] <= found["max_ns"] <= found["interrupted_max_ns"]
     assert found["updates"] == 1006 and found["cold_p50_ns"] > 0
+
+
+def test_a_ball_has_the_same_samples_around_its_centre_in_a_grid_of_any_size():
+    small, large = (scaling.Ball(size).sampled() for size in (64, 80))
+    samples = large.field.volume.array
+    assert (small.field.volume.array == samples[8:72, 8:72, 8:72]).all()
+    assert samples[40, 40, 0] == 0 and samples[40, 40, 40] == 255
+    point, _ = palpate.cast_rays(small.field, small.isovalue, [[40, 0.3, 0.2]], [[0, 0.3, 0.2]])
+    assert numpy.linalg.norm(point) == pytest.approx(22, abs=0.05)
+
+
+def test_noise_is_seeded_and_as_large_as_asked_for():
+    ball = scaling.Ball(32, 10, 8)
+    calm, wild, again = (ball.noisy(*how).field.volume.array for how in ((0, 1), (0.4, 1), (0.4, 1)))
+    assert 0.19 < abs(wild - calm).max() <= 0.2 + 1e-6 and (wild == again).all()
+
+
+def oblique_sphere(kind):
+    z, y, x = numpy.mgrid[:26, :34, :30]
+    depth = 10 - numpy.linalg.norm(numpy.stack([x - 14.5, 0.8 * (y - 16.5), 1.5 * (z - 12.5)]), axis=0)
+    volume = palpate.Volume((100 + 10 * depth).clip(0, 255).astype(kind), spacing=[1, 0.8, 1.5], origin=[-7, 30, 12],
+                            direction=[[0, -1, 0], [0.6, 0, 0.8], [-0.8, 0, 0.6]])
+    return scaling.Subject("sphere", palpate.Field(volume, interpolation="linear"), 100.5)
+
+
+@pytest.mark.parametrize("kind", ["uint8", "int16", "uint16", "float32"])
+def test_the_whole_surface_is_the_one_that_is_felt_on_every_type_and_an_oblique_grid(kind):
+    sphere, plan = oblique_sphere(kind), scaling.Plan(1000, 1)
+    starts, ends = scaling.segments_of(sphere, scaling.over(sphere, scaling.SPEED, scaling.VOXELS, plan.ticks, 1))
+    # A hand that has only just touched may end between the two triangulations.
+    deep = numpy.linalg.norm(ends - starts, axis=1) > 0.6
+    assert deep.sum() > 500
+    found = scaling.explicit_numbers(sphere, (starts[deep], ends[deep]), Options())
+    assert found["one_sided_hits_share"] == 0 and found["hit_difference_voxel"] < 0.2
+    whole = palpate.explicit_surface(sphere.field, sphere.isovalue, starts, ends)
+    # Euler: a closed surface of genus 0 has 2 V - 4 triangles.
+    assert whole["triangles"] == 2 * whole["vertices"] - 4 == found["explicit_triangles"] < whole["tree_bytes"]
+    assert whole["mesh_bytes"] == 12 * (whole["vertices"] + whole["triangles"]) and len(whole["hits"]) == len(starts)
+
+
+def test_scaling_goes_on_without_the_explicit_approach_where_its_program_cannot_be_run(monkeypatch):
+    monkeypatch.setenv("PALPATE_EXPLICIT_HELPER", "/nonexistent/palpate-explicit-helper")
+    notes = []
+    result = scaling.run(Options(quick=True, subjects=(of_text("synthetic:sphere:24x24x24"),), note=notes.append))
+    assert all(claim.held for claim in result.claims) and len(result.claims) == 1
+    assert "left out" in notes[0] and "without the explicit approach on sphere" in notes[1]
+    assert result.table.distinct("volume") == ["sphere"] and not result.table.where(part="noise")
+    assert numpy.isnan(result.table["explicit_triangles"]).all() and result.table[-1]["change_p50_ns"] > 0
+
+
+def test_each_update_is_at_the_level_that_it_is_given():
+    subject = of_text("synthetic:sphere:32x32x32")
+    hand = palpate.explore(subject.field, subject.isovalue, trajectories=2, trajectory_s=0.5)
+    levels, jumped = scaling.levels_of(subject, hand)
+    assert jumped.sum() == 2 * 20 and set(numpy.round(levels[jumped] - subject.isovalue, 9)) >= {0.0}
+    assert len(set(levels)) == 3 and not jumped[hand["first"]].any()
+    found = palpate.follow_levels(subject.field, hand["hips"], hand["first"], levels)
+    trace, moved = found["trace"], scaling.moved_rows(hand)
+    assert (trace.isovalue[moved] == levels[moved]).all() and found["heap_growth_bytes"] == 0
+    held = trace.constrained & moved & ~trace.unfinished
+    assert held[jumped].any() and abs(trace.density - levels)[held].max() <= GRANTED * subject.field.range
+    same = palpate.follow_levels(subject.field, hand["hips"], hand["first"], numpy.full(len(levels), subject.isovalue))["trace"]
+    assert (same.scp == palpate.follow_each(subject.field, subject.isovalue, hand["hips"], hand["first"]).scp)[moved].all()
+    with pytest.raises(ValueError, match="levels"):
+        palpate.follow_levels(subject.field, hand["hips"], hand["first"], levels[1:])
+
+
+def long_calls():
+    """Calls of many updates, by name; each takes `progress`."""
+    sphere = of_text("synthetic:sphere:24x24x24")
+    of, ticks = (sphere.field, sphere.isovalue), 20_000
+    hips = numpy.linspace([-20, 0, 0], [-6, 2, 1], ticks)
+    tool = (palpate.Tool.named("box:2,2,2", 1), hips[::50], numpy.tile([0, 0, 0, 1.0], (400, 1)))
+    setup, time = palpate.Renderer(*of, palpate.RenderSetup(rate=1000)), numpy.arange(1, ticks + 1) / 1000
+    return {"Proxy.follow": functools.partial(palpate.Proxy(*of, hips[0]).follow, hips),
+            "follow_each": functools.partial(palpate.follow_each, *of, hips, [0], threads=2),
+            "update_times": functools.partial(palpate.update_times, *of, hips, [0]),
+            "follow_tool": functools.partial(palpate.follow_tool, *of, *tool),
+            "penalty": functools.partial(palpate.follow_tool, *of, *tool, "penalty"),
+            "Renderer.follow": functools.partial(setup.follow, time, hips),
+            "batch_ns": functools.partial(setup.copy().batch_ns, time, hips, 50),
+            "closed_loop": functools.partial(palpate.closed_loop, setup, "simulated:touch,hand=hold,depth=0,seconds=20", 20, 1000),
+            "explore": functools.partial(palpate.explore, *of),
+            "tuned": functools.partial(palpate.explore, *of, wanted=(50, 0.6)),
+            "streaming_stroke": functools.partial(palpate.streaming_stroke, latency_s=0, failures=0, speed_mm_s=1, coarse_first=True,
+                                                  seconds=2, rate=1000, memory_bytes=64_000_000)}
+
+
+@pytest.mark.parametrize("name", list(long_calls()))
+def test_a_long_call_ends_when_its_progress_raises_and_at_ctrl_c(name):
+    call, parts = long_calls()[name], []
+
+    def stop(part):
+        parts.append(part)
+        raise LookupError("stopped")
+
+    with pytest.raises(LookupError, match="stopped"):
+        call(progress=stop)
+    assert len(parts) == 1 and 0 <= parts[0] < 1
+    # Only C code runs between the signal and the next slice, so that nothing but the call itself can notice it.
+    signals = itertools.repeat(signal.SIGINT, 10)
+    with pytest.raises(KeyboardInterrupt):
+        call(progress=functools.partial(next, map(_thread.interrupt_main, signals)))
+    assert operator.length_hint(signals) == 9

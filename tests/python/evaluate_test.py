@@ -16,20 +16,20 @@ import palpate
 import pytest
 
 from palpate.evaluate import __main__ as program
-from palpate.evaluate import bodies, compiled
-from palpate.evaluate import drift, fall_through, fidelity, penetration, report, sampling, walk_through
+from palpate.evaluate import bodies
+from palpate.evaluate import drift, fall_through, fidelity, notice, penetration, report, sampling, walk_through
 from palpate.evaluate.experiment import Claim, Options, Result, Table
 from palpate.evaluate.outside import Outside
 from palpate.evaluate.subjects import Subject, of_text
 from palpate.evaluate.walls import Lines, closed_shell
 
-# Quick tables of the C++ programs, 28 November 2026: of layers and tools the parts without curves and random numbers. The
-# filter is a newer one in the rows of dequantized data.
+# Quick tables of the C++ programs, 28 November 2026: of layers, tools and scaling the parts without curves and random numbers.
+# The filter is a newer one in the rows of dequantized data.
 BEFORE = pathlib.Path(__file__).with_name("evaluate")
 MODULES = {"drift": drift, "fall-through": fall_through, "fidelity": fidelity, "penetration": penetration,
-           "walk-through": walk_through}
+           "walk-through": walk_through, "notice": notice}
 CLAIMS = {"drift": 4, "fall-through": 9, "performance": 3, "scaling": 7, "fidelity": 9, "stability": 8, "walk-through": 5,
-          "penetration": 6, "layers": 7, "tools": 5, "streaming": 2}
+          "penetration": 6, "layers": 7, "tools": 5, "streaming": 2, "notice": 4}
 
 
 def evaluate(folder, *words, status=0, environment=None):
@@ -53,7 +53,7 @@ def test_claims_hold_in_quick_mode(quick, name):
     claims = experiments[name]["claims"]
     assert len(claims) == CLAIMS[name]
     assert [claim for claim in claims if not claim["holds"]] == []
-    for ending in (".csv", ".svg", ".md", *([] if name in program.COMPILED else [".pdf"])):
+    for ending in (".csv", ".svg", ".md", ".pdf"):
         assert (folder / (name + ending)).exists(), name
 
 
@@ -71,9 +71,15 @@ def rows_of(path, parts=None):
     return [row for row in rows if parts is None or row["part"] in parts]
 
 
+# What depends on the machine: times, and what a stroke in real time gets from its network.
+MEASURED = ("update_median_us", "paper_over_ours", "explicit_peak_bytes", "explicit_tree_bytes", "explicit_kept_bytes",
+            "touching_share", "waiting_share", "coarse_share", "deepest_voxel", "beyond_allowed_voxel", "first_contact_s", "most_mb",
+            "requests", "retries", "read_mb")
+
+
 def tolerance(name, column, was):
     """How far a cell may be from the number before."""
-    if column == "update_median_us" or column.endswith("_ns") or column == "paper_over_ours":
+    if column in MEASURED or column.endswith("_ns") or column.startswith("explicit_") and column.endswith("_s"):
         return numpy.inf
     if name == "fidelity" and was["method"] in ("paper", "gradient-improved"):
         return 0.1 * abs(float(was[column])) + 1e-9  # they amplify the last bits of the hand's position
@@ -85,13 +91,14 @@ def tolerance(name, column, was):
 RANDOM = {"median_path_in_wall_voxel": 1, "inside_while_pressed_share": 0.6, "pressed_share": 0.4,
           "unfelt_share": 0.4, "inside_share": 0, "ticks_per_crossing": 150, "worst_excess_of_range": 0.2}
 TOLERANCE = {"drift": {"density": 1e-6, "worst_deviation_of_range": 1e-9}, "fall-through": RANDOM,
+             "scaling": {"hit_difference_voxel": 0.01, "tetrahedra": 2, "tetrahedra_per_update": 2e-3},
              "layers": {"rms_n": 2e-3, "worst_n": 0.05}, "tools": {"force_n": 1e-8, "force_off_share": 1e-8}}
 
 
 @pytest.mark.parametrize("name", [path.stem for path in sorted(BEFORE.glob("*.csv"))])
 def test_the_table_is_that_of_the_program_in_cpp_within_tolerances(quick, name):
     old = rows_of(BEFORE / f"{name}.csv")
-    parts = {row["part"] for row in old} if name in ("layers", "tools") else None
+    parts = {row["part"] for row in old} if name in ("layers", "scaling", "stability", "tools") else None
     table = rows_of(quick[1] / f"{name}.csv", parts)
     assert set(old[0]) <= set(table[0])
     table = [row for row in table if "(measured)" not in row.get("mode", "")]
@@ -111,7 +118,7 @@ def test_a_volume_of_the_user_takes_the_place_of_the_experiments_own(name):
     options = Options(quick=True, subjects=(of_text("synthetic:sphere:32x32x32"), of_text("synthetic:torus:32x32x16")))
     result = MODULES[name].run(options)
     assert all(claim.held for claim in result.claims)
-    column = {"fall-through": "wall", "fidelity": "body"}.get(name, "volume")
+    column = {"fall-through": "wall", "fidelity": "body", "notice": "body"}.get(name, "volume")
     assert result.table.distinct(column) == ["sphere", "torus"]
 
 
@@ -279,6 +286,7 @@ def test_a_page_has_no_markup_of_somebody_else_and_a_claim_that_does_not_hold_st
     report.write_html([made], tmp_path, tmp_path / "report.html")
     page, text = (tmp_path / "report.html").read_text(), (tmp_path / "some.md").read_text()
     assert "<script>" not in page and "a &amp; b" in page and "1 of 2 claims hold" in page
+    assert page.index("<h2>Method") < page.index('<h2 id="some"') < page.index("<h2>Threats to validity")
     assert "| it is not | **no** | 3 |" in text and "| it is | yes | 3 |" in text
 
 
@@ -318,6 +326,7 @@ def test_all_leaves_out_what_cannot_be_done_on_the_users_volume(tmp_path, monkey
     ("drift --mehtod exact", 2, "there is no option --mehtod: did you mean --method?"),
     ("fall-through --seeds 1001", 2, "--seeds: 1001 is not a whole number from 1 to 1000"),
     ("layers --seeds 0", 2, "from 1 to 1000"), ("tools --volume synthetic:torus", 2, "leave out --volume"),
+    ("streaming --volume synthetic:torus", 2, "leave out --volume"),
     ("drift --seed 1.5", 2, "--seed: '1.5' is not a whole number"), ("drift --seed 1 --seed 2", 2, "more than once"),
     ("drift --seeds", 2, "--seeds needs a value: How many seeds"), ("drift --output=", 2, "--output: the value is empty"),
     ("drift fidelity", 2, "'fidelity' is one argument too many"), ("drift --json=yes", 2, "--json: this option takes no value"),
@@ -340,20 +349,6 @@ def test_an_option_that_changes_nothing_gives_a_warning(capsys, words, warned):
     chosen = program.arguments(words.split())
     program.warn_of_no_effect(chosen, program.EXPERIMENTS if chosen.name == "all" else [chosen.name])
     assert capsys.readouterr().err == "".join(f"palpate: warning: {line}\n" for line in warned)
-
-
-def test_without_gnuplot_what_needs_it_is_refused_before_any_work(tmp_path):
-    ran = evaluate(tmp_path, "all", "--quick", status=5, environment={"PATH": str(tmp_path)})
-    assert ran.stderr.count("\n") == 1 and "scaling" in ran.stderr and "apt install gnuplot-nox" in ran.stderr
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_without_the_program_in_cpp_what_needs_it_is_refused_before_any_work(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(palpate, "__file__", str(tmp_path / "palpate/__init__.py"))
-    with pytest.raises(compiled.Failed, match="palpate-evaluate is missing") as stop:
-        program.evaluate(program.arguments(["all", "--quick"]), [])
-    assert stop.value.status == 5 and list(tmp_path.iterdir()) == []
 
 
 GONE = "exec 3> >(true); wait $!; {} >&3"  # the reader has gone before the program starts

@@ -13,6 +13,7 @@ from typing_extensions import Self
 __version__: str
 _Path = Union[str, Path]
 
+BALL_VOXEL: float
 FORCE_FLAGS: dict[str, int]
 STEP_KINDS: tuple[str, ...]
 SAMPLE_BONE: float

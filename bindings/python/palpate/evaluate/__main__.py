@@ -17,8 +17,7 @@ if not __package__:  # run as a folder, by the program palpate: this folder's mo
     sys.path[0] = str(Path(__file__).resolve().parents[2])
 
 EXPERIMENTS = ("drift", "fall-through", "performance", "scaling", "fidelity", "stability", "walk-through",
-               "penetration", "layers", "tools", "streaming")  # in the order of docs/evaluation.md
-COMPILED = ("scaling", "streaming")  # those that are still C++
+               "penetration", "layers", "tools", "streaming", "notice")  # in the order of docs/evaluation.md
 MOST_SEEDS = 1000
 METHODS = ("exact", "paper", "gradient", "gradient-improved")
 PACKAGES = ("numpy", "scipy", "matplotlib")  # Debian: python3-NAME
@@ -214,16 +213,6 @@ def warn_of_no_effect(chosen, names):
             tell(f"warning: {option} does nothing: it is for {', '.join(users)}")
 
 
-def refuse_without_programs(names):
-    """Before any work, if what experiments in C++ need is missing."""
-    from palpate.evaluate import compiled
-    names = [name for name in names if name in COMPILED]
-    if names:
-        compiled.program()
-        if not shutil.which("gnuplot"):
-            raise Stop(BAD_OUTPUT, f"the figures of {', '.join(names)} need gnuplot: install it (apt install gnuplot-nox)")
-
-
 class Folder:
     """The folder of the results; what is not complete leaves nothing behind. Its names are known before it is made, so
     that close() finds what an interrupt in make() leaves."""
@@ -277,15 +266,12 @@ def command_of(words):
 
 def run(name, chosen, folder, words):
     """The Report of an experiment whose files are written."""
-    from palpate.evaluate import compiled, machine, report
+    from palpate.evaluate import machine, report
     options = options_of(chosen, name)
-    if name in COMPILED:
-        title, result = compiled.TITLES[name], compiled.run(name, options, chosen.volume, folder)
-    else:
-        module = importlib.import_module(f"palpate.evaluate.{name.replace('-', '_')}")
-        title, result = module.TITLE, module.run(options)
+    module = importlib.import_module(f"palpate.evaluate.{name.replace('-', '_')}")
+    result = module.run(options)
     options.progress(1)
-    made = report.Report(name, title, result, f"{machine.described(command_of(words))} Seed {chosen.seed}; " + (
+    made = report.Report(name, module.TITLE, result, f"{machine.described(command_of(words))} Seed {chosen.seed}; " + (
         "quick mode: too short for the times to mean anything." if chosen.quick else "full run."))
     report.write_files(made, folder)
     return made
@@ -304,9 +290,8 @@ def as_json(reports):
 
 
 def evaluate(chosen, words):
-    from palpate.evaluate import compiled, report
+    from palpate.evaluate import report
     names = EXPERIMENTS if chosen.name == "all" else (chosen.name,)
-    refuse_without_programs(names)
     options_of(chosen, chosen.name)  # refuses volumes before any work
     warn_of_no_effect(chosen, names)
     folder, reports = Folder(chosen.output), []
@@ -315,8 +300,8 @@ def evaluate(chosen, words):
         for name in names:
             try:
                 reports.append(run(name, chosen, folder.part, words))
-            except (ValueError, compiled.Failed) as error:
-                if len(names) == 1 or getattr(error, "status", WRONG_USE) != WRONG_USE:
+            except ValueError as error:
+                if len(names) == 1:
                     raise
                 tell(f"note: {name} is left out: {error}")
                 continue

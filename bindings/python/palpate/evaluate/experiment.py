@@ -38,12 +38,11 @@ class Claim:
 
 @dataclasses.dataclass
 class Figure:
-    """suffix: its file is EXPERIMENT-SUFFIX. drawn: of Matplotlib; None where the files are there."""
+    """suffix: its file is EXPERIMENT-SUFFIX. drawn: of Matplotlib."""
 
     suffix: str
     caption: str
-    drawn: Any = None
-    file: str = ""
+    drawn: Any
 
 
 class Table(list):

@@ -20,6 +20,7 @@ SECONDS = 4  # held for; the last second counts
 LARGEST = 3.0  # [N/mm] that is tried
 LEAST_STEP, LEAST_ANGLE = 0.01, 0.02  # [mm], [degrees] the least that a step counts for
 MAP_PROFILE = "touch"
+FASTEST = 8000  # [Hz] for the comparison of Choi and Tan
 PROFILES = palpate.simulated_profiles()
 TORQUE = [name for name, profile in PROFILES.items() if profile["maximum_torque"] > 0]
 # Part of the table: title, whether the mechanics have friction, field.
@@ -109,6 +110,8 @@ def cases_of(subject, plan):
     for part, (_, friction, field) in PARTS.items():
         for name, profile in PROFILES.items():
             cases += each(part, name, friction, field, profile["encoder_step"])
+    cases += [(pressed, (subject, "fastest", MAP_PROFILE, False, "linear", plan.encoders[0], FASTEST, stiffness))
+              for stiffness in plan.stiffnesses]
     cases += [(pressed, (subject, "rated", name, True, "linear", profile["encoder_step"], 1000, profile["stiffness"]))
               for name, profile in PROFILES.items()]
     return cases + [(turned, (subject, part, profile, rate, share)) for part in ROTATION for profile in TORQUE
@@ -274,6 +277,8 @@ def paragraphs_of(table, plan, subject):
         rows = table.where(part="map", encoder_step_mm=encoder)
         maps.append(f"with encoder steps of {encoder:g} mm " +
                     ", ".join(f"{largest_stable(rows, rate):.1f} N/mm at {rate:g} Hz" for rate in plan.rates))
+    slow, fast = (largest_stable(table.where(part=part, encoder_step_mm=plan.encoders[0]), rate)
+                  for part, rate in (("map", plan.rates[0]), ("fastest", FASTEST)))
     parts = list(PARTS)[2:]
     rest = counted(list(compared(table, plan, *parts, 2)))
     wide = list(compared(table, plan, *parts, 10))
@@ -283,6 +288,9 @@ def paragraphs_of(table, plan, subject):
             "counts. It is at rest if its position, as the encoders tell it, moves by two encoder steps at most (a step counts for "
             f"{LEAST_STEP:g} mm at least). The largest stiffness that comes to rest, of those tried up to 3 N/mm, for {MAP_PROFILE} "
             f"without friction in its mechanics, is {'; '.join(maps)}.",
+            f"At {FASTEST:g} Hz, without encoder steps, it is {fast:.1f} N/mm, beside {slow:.1f} N/mm at {plan.rates[0]:g} Hz. In the study of "
+            "Choi and Tan (2004), people held a real device. The largest stiffness of a virtual texture that felt clean to them rose from "
+            "0.325 N/mm at 250 Hz to 0.904 N/mm at 40 kHz. Rest on a sphere is a weaker demand than a clean texture.",
             "Without friction nothing holds a hand sideways, and the smooth field has no facets to rest in. Of "
             f"{sum(rest)} cases (a profile at a rate) it comes to rest up to a larger stiffness than on the linear field in {rest[0]}, up "
             f"to a smaller one in {rest[2]}. Movement by more than 10 steps begins at the same stiffness in {same} of them, later in "

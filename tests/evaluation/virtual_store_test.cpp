@@ -1,16 +1,14 @@
-// streaming in its quick mode; the balls' samples against the judge's formula.
-#include "evaluation/claims.hpp"
-#include "evaluation/streaming/virtual_store.hpp"
+// The samples of the balls against the judge's formula.
+#include "evaluation/virtual_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
 
 namespace palpate::evaluation {
 namespace {
 
-TEST(Streaming, claims_hold_in_quick_mode) {
-    const Result result = quick_result(streaming);
-    EXPECT_EQ(result.table.rows().size(), 8U);
-}
-
-TEST(Streaming, samples_of_the_virtual_store_are_those_that_the_judge_goes_by) {
+TEST(VirtualStore, has_the_samples_that_the_judge_goes_by) {
     const VirtualStore store({}, 1);
     for (const int level : {0, 2, 5}) {
         const Geometry& grid = store.info().levels[std::size_t(level)].geometry;

@@ -1,5 +1,5 @@
 // One hand, one loader, and the judge of where the proxy goes.
-#include "evaluation/streaming/stroke.hpp"
+#include "evaluation/stroke.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -93,7 +93,7 @@ class Judge {
 
 }  // namespace
 
-StrokeResult feel(const Stroke& stroke, const std::function<void()>& alive) {
+StrokeResult feel(const Stroke& stroke, const std::function<void(double)>& progress) {
     using SteadyClock = std::chrono::steady_clock;
     const SteadyClock::time_point opened = SteadyClock::now();
     const auto since_opened = [&] {
@@ -126,7 +126,8 @@ StrokeResult feel(const Stroke& stroke, const std::function<void()>& alive) {
                 field_will_change(renderer.proxy, renderer.field);
                 renderer.field.use(version->samples);
             }
-            if (tick % (20 * looks) == 0) alive();
+            if (tick % (20 * looks) == 0)
+                progress(static_cast<double>(tick) / static_cast<double>(count));
         }
         judge.end_tick(render(renderer, {time, hand, true}, judge.observer()).proxy);
         if (result.first_contact_s < 0 && result.touching > 0) {

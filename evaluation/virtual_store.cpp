@@ -1,5 +1,5 @@
 // The formula of the balls, and waiting as for a network.
-#include "evaluation/streaming/virtual_store.hpp"
+#include "evaluation/virtual_store.hpp"
 
 #include <algorithm>
 #include <chrono>

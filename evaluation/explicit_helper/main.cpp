@@ -1,7 +1,7 @@
-// palpate-explicit-helper: touching a surface that is extracted as a whole. Extracts the isosurface
-// (VTK, flying edges), builds a bounding volume hierarchy on it (Embree) and intersects that with
-// segments; wire.hpp defines what it is sent and what it answers. It is a separate process, so that
-// its memory can be measured.
+// palpate-explicit-helper: touches a surface that is extracted as a whole. It extracts the
+// isosurface (VTK, flying edges), builds a bounding volume hierarchy on it (Embree), and intersects
+// that with segments. wire.hpp defines questions and answers. It is a separate process, so that its
+// memory can be measured.
 #include <embree3/rtcore.h>
 #include <sys/mman.h>
 #include <vtkCellArray.h>
@@ -31,7 +31,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "evaluation/scaling/explicit_helper/wire.hpp"
+#include "evaluation/explicit_helper/wire.hpp"
 #include "io/helper/child.hpp"
 #include "io/helper/report.hpp"
 #include "io/helper/vtk_type.hpp"

@@ -1,9 +1,9 @@
-// A hand that goes through a row of balls while what it feels is being read.
+// A hand that goes through a row of balls while their samples are being read.
 #pragma once
 
 #include <functional>
 
-#include "evaluation/streaming/virtual_store.hpp"
+#include "evaluation/virtual_store.hpp"
 
 namespace palpate::evaluation {
 
@@ -29,8 +29,8 @@ struct StrokeResult {
     stream::Traffic traffic;
 };
 
-/// At the pace of the rate, in real time. `alive` is called ten times a second and may throw to
-/// stop.
-StrokeResult feel(const Stroke& stroke, const std::function<void()>& alive);
+/// At the pace of the rate, in real time. `progress` is called ten times a second with the part
+/// that is done, and may throw to stop.
+StrokeResult feel(const Stroke& stroke, const std::function<void(double)>& progress);
 
 }  // namespace palpate::evaluation
