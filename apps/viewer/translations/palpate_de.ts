@@ -780,6 +780,17 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
     </message>
 </context>
 <context>
+    <name>palpate::viewer::Effect</name>
+    <message>
+        <source>A recording is played: nothing here changes it.</source>
+        <translation>Eine Aufzeichnung läuft: Hier lässt sich nichts an ihr ändern.</translation>
+    </message>
+    <message>
+        <source>layers are felt, not an isovalue: choose No layers to feel one</source>
+        <translation>es werden Schichten gefühlt, kein Isowert: Wählen Sie „Keine Schichten“, um einen zu fühlen</translation>
+    </message>
+</context>
+<context>
     <name>palpate::viewer::FileController</name>
     <message>
         <source>Reading %1</source>
@@ -2319,10 +2330,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>&amp;Gerät</translation>
     </message>
     <message>
-        <source>layers are felt, not an isovalue: choose No layers to feel one</source>
-        <translation>es werden Schichten gefühlt, kein Isowert: Wählen Sie „Keine Schichten“, um einen zu fühlen</translation>
-    </message>
-    <message>
         <source>Tool</source>
         <translation>Werkzeug</translation>
     </message>
@@ -2715,14 +2722,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Felt through the device %1</source>
         <translation>Gefühlt mit dem Gerät %1</translation>
-    </message>
-    <message>
-        <source>A recording is played: nothing here changes it.</source>
-        <translation>Eine Aufzeichnung läuft: Hier lässt sich nichts an ihr ändern.</translation>
-    </message>
-    <message>
-        <source>There is no volume to feel.</source>
-        <translation>Es gibt kein Volumen zu fühlen.</translation>
     </message>
     <message>
         <source>Looking for devices</source>

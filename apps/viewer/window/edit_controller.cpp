@@ -53,17 +53,18 @@ std::size_t write_surface(const Field& field, double isovalue, const std::filesy
 EditController::EditController(Content& content, Panel& panel, Messages& messages, QWidget* window)
     : content_(content), panel_(panel), messages_(messages), window_(window), saving_(messages) {
     connect(&content, &Content::run_changed, this, &EditController::show);
-    connect(&panel, &Panel::brush_changed, this, &EditController::use_brush);
-    connect(&panel, &Panel::undo_asked, this, &EditController::undo);
-    connect(&panel, &Panel::redo_asked, this, &EditController::redo);
-    connect(&panel, &Panel::save_asked, this, [this] { ask_save(); });
+    const BrushControls* controls = &panel.brush_controls();
+    connect(controls, &BrushControls::changed, this, &EditController::use_brush);
+    connect(controls, &BrushControls::undo, this, &EditController::undo);
+    connect(controls, &BrushControls::redo, this, &EditController::redo);
+    connect(controls, &BrushControls::save, this, [this] { ask_save(); });
 }
 
 void EditController::show() {
     panel_.brush_controls().set_reason(
         content_.player() ? tr("A sequence cannot be edited: open one frame of it (--time-step).")
                           : QString());
-    use_brush(panel_.brush());
+    use_brush(panel_.brush_controls().choice());
 }
 
 void EditController::use_brush(const BrushChoice& brush) {
@@ -72,14 +73,15 @@ void EditController::use_brush(const BrushChoice& brush) {
     try {
         editor->set_brush(brush.on && !resting_ ? std::optional<run::HandBrush>(brush)
                                                 : std::nullopt);
+        brush_ = brush;
     } catch (const std::invalid_argument& e) {
-        panel_.show_refused(QString::fromStdString(e.what()));
+        panel_.brush_controls().refuse(brush_, QString::fromStdString(e.what()));
     }
 }
 
 void EditController::rest(bool on) {
     resting_ = on;
-    use_brush(panel_.brush());
+    use_brush(panel_.brush_controls().choice());
 }
 
 void EditController::undo() {

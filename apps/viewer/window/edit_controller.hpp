@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 
+#include "apps/viewer/panel/brush_choice.hpp"
 #include "apps/viewer/window/background_task.hpp"
 #include "palpate/run/data.hpp"
 
@@ -18,7 +19,6 @@ namespace palpate::viewer {
 class Content;
 class Messages;
 class Panel;
-struct BrushChoice;
 
 class EditController : public QObject {
     Q_OBJECT
@@ -70,6 +70,7 @@ class EditController : public QObject {
     BackgroundTask saving_;
     QString problem_;
     bool resting_ = false;
+    BrushChoice brush_;  // the last one that could be
 };
 
 /// Saves edits where run::Data::rescue() finds a place; prints the name on standard error.

@@ -240,11 +240,12 @@ TEST_F(Looks, a_colour_is_chosen_in_a_dialog_and_cancelled) {
 }
 
 TEST_F(Looks, the_panel_can_be_destroyed_during_a_drag_with_a_dialog_open) {
-    auto other = std::make_unique<Panel>();
+    Effect own;
+    auto other = std::make_unique<Panel>(own);
     int heard = 0;
     QObject::connect(&other->look_controls(), &LookControls::look_changed,
                      [&](const Look&) { ++heard; });
-    other->set_session(*field, histogram, 300, {}, desktop_device());
+    own.begin(*field, 300, {}, desktop_device(), histogram, [](const Command&) {});
     other->look_controls().set_look(look);
     other->show();
     wait_until_exposed(*other);

@@ -82,7 +82,7 @@ TEST_F(Files, loading_can_be_cancelled_and_what_was_felt_goes_on) {
 TEST_F(Files, a_volume_is_dequantized_and_felt_at_the_same_level) {
     io::write_volume(scenes::ball(Index3::Constant(40)), scratch_.path() / "ball.nrrd");
     feel(scratch("ball.nrrd").toStdString());
-    window_->run().send(command::Isovalue{100.25});
+    window_->content().effect().request(command::Isovalue{100.25});
     auto& box = part<QCheckBox>("dequantize");
     ASSERT_TRUE(box.isEnabled());
     const auto type = [&] { return window_->live()->field().volume().type(); };
