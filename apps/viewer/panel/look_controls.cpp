@@ -166,7 +166,6 @@ void LookControls::move_surface(int row, double level) {
 
 QWidget* LookControls::make_volume() {
     let_wheel_pass(*preset_);
-    for (const std::string& name : preset_names()) add_choice(*preset_, name);
     point_opacity_->setSingleStep(0.05);
     auto* volume = add_switch("volume", tr("Volume"),
                               tr("Volume rendering by the transfer function"), &Look::volume);
@@ -252,6 +251,11 @@ void LookControls::connect_transfer() {
 
 void LookControls::begin() {
     const run::Histogram& histogram = effect_.histogram();
+    preset_->clear();
+    for (const std::string& name : preset_names(histogram, effect_.field().volume())) {
+        add_choice(*preset_, name);
+    }
+    show_preset();
     editor_->set_data(histogram);
     const LevelAxis axis = axis_of(histogram, QRectF(0, 0, 100, 1));
     point_level_->setSingleStep(axis.step());

@@ -261,6 +261,18 @@
         <source>on %1, from inside</source>
         <translation>auf %1, von innen</translation>
     </message>
+    <message>
+        <source>Dense parts</source>
+        <translation>Dichte Teile</translation>
+    </message>
+    <message>
+        <source>Outer surface</source>
+        <translation>Äußere Oberfläche</translation>
+    </message>
+    <message>
+        <source>Soft parts</source>
+        <translation>Weiche Teile</translation>
+    </message>
 </context>
 <context>
     <name>OverlayWords</name>
