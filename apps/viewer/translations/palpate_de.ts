@@ -790,6 +790,25 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
         <source>: it opens as the edited volume while the original stays where it is</source>
         <translation>: wird als das bearbeitete Volumen geöffnet, solange das Original bleibt, wo es ist</translation>
     </message>
+    <message>
+        <source>Making the surface</source>
+        <translation>Die Oberfläche wird erzeugt</translation>
+    </message>
+    <message numerus="yes">
+        <source>The surface has %Ln triangles, more than many programs can work with. Simplify it to about %L1? It stays closed, and what is left of its points stays on the surface.</source>
+        <translation>
+            <numerusform>Die Oberfläche hat %Ln Dreieck, mehr als viele Programme verarbeiten können. Auf etwa %L1 vereinfachen? Sie bleibt geschlossen, und die Punkte, die übrig bleiben, bleiben auf der Oberfläche.</numerusform>
+            <numerusform>Die Oberfläche hat %Ln Dreiecke, mehr als viele Programme verarbeiten können. Auf etwa %L1 vereinfachen? Sie bleibt geschlossen, und die Punkte, die übrig bleiben, bleiben auf der Oberfläche.</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>Simplify</source>
+        <translation>Vereinfachen</translation>
+    </message>
+    <message>
+        <source>All triangles</source>
+        <translation>Alle Dreiecke</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::Effect</name>
