@@ -237,6 +237,7 @@ void Run::send(const Command& command) {
     sent_.push_back({after, command});
     Session changed{{field_, settings_, {}, {}}, session_settings_};
     changed.renderer.proxy.isovalue = isovalue_;
+    if (settings_.tool) changed.renderer.tool_proxy.emplace(settings_.tool);
     changed.frozen = frozen_;
     apply(changed, command);
     settings_ = changed.renderer.settings;

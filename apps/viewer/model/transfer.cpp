@@ -20,8 +20,9 @@ struct Levels {
 };
 
 bool looks_like_hounsfield(const Volume& volume) {
+    constexpr double least = -4096, air = -500;  // what scanners write outside of their round view
     return (volume.type() == SampleType::int16 || volume.type() == SampleType::float32) &&
-           volume.minimum() <= -500 && volume.maximum() > 0;
+           volume.minimum() >= least && volume.minimum() <= air && volume.maximum() > 0;
 }
 
 /// Whether a is less than b by more than rounding errors.
@@ -122,16 +123,21 @@ Points grey(const Levels& l) {
     return {{l.low, black, 0}, {l.high, white, 0.5}};
 }
 
+enum class For : std::uint8_t { ct, others, all };
 struct Preset {
     const char* name;
     Points (*points)(const Levels&);
+    For data;
 };
-constexpr std::array<Preset, 6> presets{{{"CT bone", &ct_bone},
-                                         {"CT skin", &ct_skin},
-                                         {"CT soft tissue", &ct_soft_tissue},
-                                         {"MR", &mr},
-                                         {"Microscopy", &microscopy},
-                                         {"Grey", &grey}}};
+constexpr std::array<Preset, 9> presets{{{"CT bone", &ct_bone, For::ct},
+                                         {"CT skin", &ct_skin, For::ct},
+                                         {"CT soft tissue", &ct_soft_tissue, For::ct},
+                                         {"Dense parts", &ct_bone, For::others},
+                                         {"Outer surface", &ct_skin, For::others},
+                                         {"Soft parts", &ct_soft_tissue, For::others},
+                                         {"MR", &mr, For::others},
+                                         {"Microscopy", &microscopy, For::others},
+                                         {"Grey", &grey, For::all}}};
 
 ControlPoint mixed(const ControlPoint& a, const ControlPoint& b, double level) {
     const double part = (level - a.level) / (b.level - a.level);
@@ -189,11 +195,18 @@ bool looks_like_shifted_hounsfield(const run::Histogram& histogram, const Levels
     return peak > 850 && peak < 1250;
 }
 
+bool is_ct(const run::Histogram& histogram, const Levels& levels) {
+    return levels.hounsfield || looks_like_shifted_hounsfield(histogram, levels);
+}
+
 }  // namespace
 
-std::vector<std::string> preset_names() {
+std::vector<std::string> preset_names(const run::Histogram& histogram, const Volume& volume) {
+    const bool ct = is_ct(histogram, levels_of(histogram, volume));
     std::vector<std::string> names;
-    for (const Preset& p : presets) names.emplace_back(p.name);
+    for (const Preset& p : presets) {
+        if (p.data != (ct ? For::others : For::ct)) names.emplace_back(p.name);
+    }
     return names;
 }
 
@@ -205,16 +218,17 @@ TransferFunction preset(std::string_view name, const run::Histogram& histogram,
         return {p.name, over_the_data(p.points(levels), levels)};
     }
     throw std::invalid_argument(fmt::format("there is no transfer function '{}'; there are: {}",
-                                            name, fmt::join(preset_names(), ", ")));
+                                            name,
+                                            fmt::join(preset_names(histogram, volume), ", ")));
 }
 
 std::string suggested_preset(const run::Histogram& histogram, const Volume& volume) {
     const Levels levels = levels_of(histogram, volume);
-    if (levels.hounsfield || looks_like_shifted_hounsfield(histogram, levels)) return "CT bone";
+    if (is_ct(histogram, levels)) return "CT bone";
     if (volume.minimum() == volume.maximum()) return "Grey";
     if (volume.type() != SampleType::uint8) return "MR";
     // Stained cells are a few bright voxels in the dark.
-    return share_above(histogram, levels.outer) < 0.05 ? "Microscopy" : "CT bone";
+    return share_above(histogram, levels.outer) < 0.05 ? "Microscopy" : "Dense parts";
 }
 
 ControlPoint sampled(const TransferFunction& transfer, double level) {

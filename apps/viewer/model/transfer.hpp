@@ -10,13 +10,15 @@
 
 namespace palpate::viewer {
 
-/// What preset() knows, in the order in which people are offered them.
-std::vector<std::string> preset_names();
+/// The presets that are made for such data, in the order in which people are offered them: those of
+/// CT where the data look like Hounsfield units (int16 or float from -4096..-500 up), or like those
+/// and 1000 or 1024 more.
+std::vector<std::string> preset_names(const run::Histogram& histogram, const Volume& volume);
 
-/// A transfer function for this volume; its points lie within the data's range. Where the data look
-/// like Hounsfield units (int16 or float, down to -500 or less) the CT presets stand at those of
-/// tissues; else all presets stand at the levels that the histogram suggests. Throws
-/// std::invalid_argument, listing the names, for one that there is not.
+/// A transfer function for this volume; its points lie within the data's range. In Hounsfield units
+/// the CT presets stand at those of tissues; else all presets stand at the levels that the
+/// histogram suggests. Knows all presets, whatever the data. Throws std::invalid_argument, listing
+/// the names, for one that there is not.
 TransferFunction preset(std::string_view name, const run::Histogram& histogram,
                         const Volume& volume);
 

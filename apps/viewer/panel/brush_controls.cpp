@@ -208,6 +208,11 @@ void BrushControls::set_choice(const BrushChoice& choice) {
     show_choice();
 }
 
+void BrushControls::refuse(const BrushChoice& before, const QString& why) {
+    set_choice(before);
+    Q_EMIT nonsense(why);
+}
+
 double BrushControls::fitting() const {
     return choice_.kind == BrushKind::carve ? carve_fits_ : add_fits_;
 }

@@ -34,6 +34,8 @@ class BrushControls : public QWidget {
     /// Shows a choice, even one that the controls would not allow.
     void set_choice(const BrushChoice& choice);
     const BrushChoice& choice() const { return choice_; }
+    /// The change that was emitted last cannot be: shows the choice before, and why.
+    void refuse(const BrushChoice& before, const QString& why);
     /// Off, and the values of all kinds automatic: another volume.
     void reset();
     void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);

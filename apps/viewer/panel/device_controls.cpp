@@ -49,8 +49,9 @@ QString length_text(const Vec3& size) {
 
 }  // namespace
 
-DeviceControls::DeviceControls()
-    : picker_(named(new QComboBox, "devices",
+DeviceControls::DeviceControls(Effect& effect)
+    : effect_(effect),
+      picker_(named(new QComboBox, "devices",
                     tr("Devices; grey: not found, the tip says what was looked for"))),
       options_(named(new QLineEdit, "device_options")),
       refresh_(named(new QPushButton(tr("Look again")), "refresh_devices",
@@ -78,6 +79,7 @@ DeviceControls::DeviceControls()
     scale_->setSingleStep(0.1);
     build();
     connect_inputs();
+    connect_effect();
     set_devices({}, {});
 }
 
@@ -102,7 +104,20 @@ void DeviceControls::connect_inputs() {
     connect(picker_, qOverload<int>(&QComboBox::currentIndexChanged), this,
             &DeviceControls::choose);
     connect(scale_, qOverload<double>(&NumberBox::valueChanged), this,
-            &DeviceControls::scale_wanted);
+            [this](double scale) { effect_.request(command::Scale{scale}); });
+}
+
+void DeviceControls::connect_effect() {
+    connect(&effect_, &Effect::begun, this,
+            [this] { show_device(effect_.device(), DeviceStatus::starting, {}); });
+    connect(&effect_, &Effect::ended, this, &DeviceControls::clear);
+    connect(&effect_, &Effect::changed, this,
+            [this] { scale_->show_value(effect_.settings().transform.scale); });
+    connect(&effect_, &Effect::observed, this, [this](const Snapshot& now) {
+        show_status(now.session.device.status);
+        // A number that is being typed is left alone.
+        if (!scale_->hasFocus()) scale_->show_value(effect_.settings().transform.scale);
+    });
 }
 
 void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& findings,
@@ -193,10 +208,6 @@ void DeviceControls::show_device(const DeviceInfo& info, DeviceStatus status,
                              : tr("gives no force");
     workspace_->setText(
         QString("%1, %2").arg(length_text(info.workspace_high - info.workspace_low), most));
-}
-
-void DeviceControls::show_scale(double scale) {
-    if (!scale_->hasFocus()) scale_->show_value(scale);
 }
 
 void DeviceControls::clear() {

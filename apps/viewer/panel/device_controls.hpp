@@ -9,6 +9,7 @@
 
 #include <vector>
 
+#include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/section.hpp"
 #include "palpate/devices/backend.hpp"
@@ -19,32 +20,29 @@ class DeviceControls : public QWidget {
     Q_OBJECT
 
   public:
-    DeviceControls();
+    explicit DeviceControls(Effect& effect);
 
     /// The devices that were searched. `current` is the option of the device in use
     /// ("haply:port=10001").
     void set_devices(const std::vector<devices::DeviceFinding>& findings, const QString& current);
     void show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem);
-    void show_status(DeviceStatus status);
-    /// Volume mm per mm of the hand; while a number is being typed it is left alone.
-    void show_scale(double scale);
-    void set_scale(double scale) { scale_->show_value(scale); }
-    /// The picker goes back to the device in use.
-    void show_current();
-    void clear();
 
   Q_SIGNALS:
     void chosen(const QString& option);
     void refresh_wanted();
-    void scale_wanted(double scale);
     void nonsense(const QString& why);
 
   private:
     void build();
     void connect_inputs();
+    void connect_effect();
+    void show_status(DeviceStatus status);
+    void clear();
     void choose(int row);
+    void show_current();
     void connect_device();
 
+    Effect& effect_;
     QComboBox* picker_;
     QLineEdit* options_;
     QPushButton *refresh_, *connect_;

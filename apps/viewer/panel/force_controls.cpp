@@ -13,7 +13,7 @@ namespace {
 /// Damping must stay below its end, not on it.
 constexpr double just_below = 1 - 1e-9;
 
-using Settings = ForceControls::Settings;
+using Settings = RendererSettings;
 
 struct ForceRow {
     const char *label, *name, *unit;
@@ -58,12 +58,12 @@ constexpr std::array force_rows{
                                "Of the medium, against all motion, in contact or not [N s/mm]")},
     ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Static friction"),
              "static_friction", "", 1.5, 0.05,
-             [](Settings& s) -> double& { return s.friction.static_coefficient; },
+             [](Settings& s) -> double& { return s.proxy.friction.static_coefficient; },
              QT_TRANSLATE_NOOP("palpate::viewer::ForceControls",
                                "Coefficient past which the proxy begins to slide (no unit)")},
     ForceRow{
         QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Dynamic friction"), "dynamic_friction",
-        "", 1.5, 0.05, [](Settings& s) -> double& { return s.friction.dynamic_coefficient; },
+        "", 1.5, 0.05, [](Settings& s) -> double& { return s.proxy.friction.dynamic_coefficient; },
         QT_TRANSLATE_NOOP("palpate::viewer::ForceControls",
                           "Coefficient while the proxy slides, at most the static one (no unit)")},
     ForceRow{QT_TRANSLATE_NOOP("palpate::viewer::ForceControls", "Texture height"),
@@ -93,7 +93,7 @@ constexpr std::array force_rows{
 
 }  // namespace
 
-ForceControls::ForceControls() {
+ForceControls::ForceControls(Effect& effect) : effect_(effect) {
     auto *plain = new QWidget, *advanced = new QWidget;
     auto *plain_form = new QFormLayout(plain), *advanced_form = new QFormLayout(advanced);
     for (QFormLayout* form : {plain_form, advanced_form}) {
@@ -113,47 +113,49 @@ ForceControls::ForceControls() {
     auto* fold = new Section(tr("Advanced"), "force_advanced", advanced);
     fold->set_open(false);
     column_in(this, {plain, fold});
+    connect(&effect, &Effect::changed, this, &ForceControls::show);
+    for (const auto over : {&Effect::begun, &Effect::ended}) {
+        connect(&effect, over, this, [this] {
+            for (Quantity* quantity : rows_) quantity->drop();
+        });
+    }
 }
 
 void ForceControls::change(std::size_t number, double value) {
-    Settings next = shown_;
+    if (!effect_.there()) return;
+    Settings next = effect_.settings();
     force_rows[number].number(next) = value;
+    Friction& friction = next.proxy.friction;
     if (number == force_row::static_friction) {  // dynamic friction must not exceed it
-        double& dynamic = next.friction.dynamic_coefficient;
-        dynamic = std::min(dynamic, value);
+        friction.dynamic_coefficient = std::min(friction.dynamic_coefficient, value);
     }
-    const bool friction =
-        number == force_row::static_friction || number == force_row::dynamic_friction;
-    Q_EMIT asked(friction ? Command(next.friction) : Command(next.force));
+    const bool rubs = number == force_row::static_friction || number == force_row::dynamic_friction;
+    effect_.request(rubs ? Command(friction) : Command(next.force));
 }
 
-void ForceControls::set_settings(const ForceSettings& force, const Friction& friction,
-                                 const DeviceLimits& limits) {
-    shown_ = {force, friction};
-    set_ends(limits);
+void ForceControls::show() {
+    Settings settings = effect_.settings();
+    set_ends(settings);
     for (std::size_t i = 0; i < force_rows.size(); ++i)
-        rows_[i]->set_value(force_rows[i].number(shown_));
+        rows_[i]->set_value(force_rows[i].number(settings));
 }
 
 /// The limits of check(ForceSettings, DeviceLimits).
-void ForceControls::set_ends(const DeviceLimits& limits) {
-    const ForceSettings& force = shown_.force;
+void ForceControls::set_ends(const RendererSettings& settings) {
+    const ForceSettings& force = settings.force;
+    const DeviceLimits& limits = settings.device;
     const double most = greatest_stiffness(limits, force.damping + force.viscosity);
     rows_[force_row::stiffness]->set_ends(0, most);
     const double room = limits.physical_damping *
                         (1 - force.stiffness / greatest_stiffness(limits, 0)) * just_below;
     rows_[force_row::damping]->set_ends(0, room - force.viscosity);
     rows_[force_row::viscosity]->set_ends(0, room - force.damping);
-    rows_[force_row::dynamic_friction]->set_ends(0, shown_.friction.static_coefficient);
+    rows_[force_row::dynamic_friction]->set_ends(0, settings.proxy.friction.static_coefficient);
     rows_[force_row::wavelength]->set_ends(0.1, 20);
     const double pull =
         force.magnet.distance > 0 ? most * force.magnet.distance / 4 : limits.maximum_force;
     rows_[force_row::peak]->set_ends(0, std::min(limits.maximum_force, pull * just_below));
     rows_[force_row::limit]->set_ends(0, limits.maximum_force);
-}
-
-void ForceControls::drop() {
-    for (Quantity* quantity : rows_) quantity->drop();
 }
 
 }  // namespace palpate::viewer

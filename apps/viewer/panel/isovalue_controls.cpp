@@ -18,8 +18,9 @@ constexpr int snapshots_of_grace = 3;
 
 }  // namespace
 
-IsovalueControls::IsovalueControls()
-    : chart_(new LevelChart),
+IsovalueControls::IsovalueControls(Effect& effect)
+    : effect_(effect),
+      chart_(new LevelChart),
       slider_(named(new QSlider(Qt::Horizontal), "isovalue_slider", tr("Isovalue [data units]"))),
       box_(named(new NumberBox, "isovalue_box",
                  tr("Isovalue [data units]: the level whose surface is felt"))),
@@ -60,6 +61,8 @@ IsovalueControls::IsovalueControls()
                row_of({solid_, smoothness_, dequantize_}, 2), terraces_, warning_, overruled_})
         ->setSpacing(3);
     connect_inputs();
+    connect_effect();
+    clear();
 }
 
 /// The data's axis along the slider.
@@ -81,9 +84,9 @@ void IsovalueControls::connect_inputs() {
         ask(std::clamp(level, axis.low, axis.high));
     });
     connect(box_, qOverload<double>(&NumberBox::valueChanged), this, [this](double level) {
-        set_isovalue(level);
+        show_isovalue(level);
         limiter_.drop();
-        Q_EMIT wanted(level);
+        request(level);
     });
     connect(dequantize_, &QCheckBox::clicked, this, [this](bool on) {
         dequantize_->setChecked(!on);  // until the volume has been read again
@@ -94,30 +97,52 @@ void IsovalueControls::connect_inputs() {
             Q_EMIT field_wanted(
                 solid_->currentIndex() == 0 ? Solid::above : Solid::below,
                 smoothness_->currentIndex() == 0 ? Interpolation::linear : Interpolation::cubic);
+            show_field();  // that of a new session by now, unless it failed
         });
     }
 }
 
-void IsovalueControls::set_data(const Field& field, const run::Histogram& histogram) {
-    field_ = field;
-    chart_->set_data(histogram, run::suggested_isovalues(histogram));
+void IsovalueControls::connect_effect() {
+    connect(&effect_, &Effect::begun, this, &IsovalueControls::begin);
+    connect(&effect_, &Effect::ended, this, &IsovalueControls::clear);
+    connect(&effect_, &Effect::changed, this, &IsovalueControls::show);
+    connect(&effect_, &Effect::observed, this, [this](const Snapshot& now) {
+        show_felt(now.session.tick.proxy.isovalue, now.penetrability_on);
+    });
+}
+
+void IsovalueControls::begin() {
+    limiter_.drop();
+    chart_->set_data(effect_.histogram(), run::suggested_isovalues(effect_.histogram()));
     box_->setSingleStep(chart_->fine_step());
-    set_field(field.solid(), field.interpolation());
+    isovalue_ = effect_.isovalue();
+    show_felt(isovalue_, false);
+    show_field();
+}
+
+void IsovalueControls::show() {
+    show_isovalue(effect_.isovalue());
+    overruled_->say(effect_.settings().penetrability.on
+                        ? tr("The level felt follows the hand: pressing through is on.")
+                        : "");
+    show_layered(effect_.settings().layers);
 }
 
 void IsovalueControls::clear() {
     limiter_.drop();
-    field_.reset();
     chart_->clear();
     felt_->clear();
     overruled_->say({});
+    show_layered(nullptr);
     warning_->say({});
     set_dequantized(false, false, {});
 }
 
-void IsovalueControls::set_field(Solid solid, Interpolation interpolation) {
-    solid_->setCurrentIndex(solid == Solid::above ? 0 : 1);
-    smoothness_->setCurrentIndex(interpolation == Interpolation::linear ? 0 : 1);
+void IsovalueControls::show_field() {
+    if (!effect_.there()) return;
+    const Field& field = effect_.field();
+    solid_->setCurrentIndex(field.solid() == Solid::above ? 0 : 1);
+    smoothness_->setCurrentIndex(field.interpolation() == Interpolation::linear ? 0 : 1);
 }
 
 void IsovalueControls::set_dequantized(bool on, bool possible, const QString& reason) {
@@ -126,13 +151,9 @@ void IsovalueControls::set_dequantized(bool on, bool possible, const QString& re
     terraces_->say(reason.isEmpty() ? "" : tr("Dequantizing is worth it: %1.").arg(reason));
 }
 
-void IsovalueControls::set_overruled(bool overruled) {
-    overruled_->say(overruled ? tr("The level felt follows the hand: pressing through is on.")
-                              : "");
-}
-
-void IsovalueControls::set_layered(bool layered, bool levels) {
-    layered_ = layered;
+/// The isovalue does nothing while layers are felt.
+void IsovalueControls::show_layered(const SharedLayers& layers) {
+    const bool layered = have_surfaces(layers);
     for (QWidget* one : std::initializer_list<QWidget*>{slider_, box_}) one->setEnabled(!layered);
     const QString tip = layered
                             ? tr("Layers are felt, not an isovalue: choose No layers to feel one")
@@ -141,14 +162,16 @@ void IsovalueControls::set_layered(bool layered, bool levels) {
     box_->setToolTip(layered ? tip : tr("Isovalue [data units]: the level whose surface is felt"));
     chart_->set_level_shown(!layered);
     if (layered) {
-        overruled_->say(levels ? tr("Layers have levels of their own: drag their squares.")
-                               : tr("Layers by label are felt, not a level of the densities."));
+        overruled_->say(levels_in(layers) > 0
+                            ? tr("Layers have levels of their own: drag their squares.")
+                            : tr("Layers by label are felt, not a level of the densities."));
     }
     if (layered) warning_->say({});
 }
 
+/// Separately where it differs from the level asked for.
 void IsovalueControls::show_felt(double isovalue, bool penetrability_on) {
-    if (layered_) {
+    if (have_surfaces(effect_.settings().layers)) {
         chart_->set_felt(std::nan(""));
         return felt_->clear();
     }
@@ -160,11 +183,15 @@ void IsovalueControls::show_felt(double isovalue, bool penetrability_on) {
 }
 
 void IsovalueControls::ask(double isovalue) {
-    set_isovalue(isovalue);
-    limiter_.put([this, isovalue] { Q_EMIT wanted(isovalue); });
+    show_isovalue(isovalue);
+    limiter_.put([this, isovalue] { request(isovalue); });
 }
 
-void IsovalueControls::set_isovalue(double isovalue) {
+void IsovalueControls::request(double isovalue) {
+    effect_.request(command::Isovalue{isovalue});
+}
+
+void IsovalueControls::show_isovalue(double isovalue) {
     isovalue_ = isovalue;
     chart_->set_level(isovalue);
     box_->show_value(isovalue);
@@ -172,7 +199,9 @@ void IsovalueControls::set_isovalue(double isovalue) {
         const QSignalBlocker quiet(slider_);
         slider_->setValue(static_cast<int>(std::lround(slider_axis().x_of(isovalue))));
     }
-    warning_->say(field_ ? QString::fromStdString(isovalue_warning(*field_, isovalue)) : QString());
+    warning_->say(effect_.there()
+                      ? QString::fromStdString(isovalue_warning(effect_.field(), isovalue))
+                      : QString());
 }
 
 }  // namespace palpate::viewer

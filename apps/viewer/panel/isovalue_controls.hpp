@@ -7,8 +7,8 @@
 #include <QSlider>
 #include <QWidget>
 
-#include <optional>
-
+#include "apps/viewer/model/layer_set.hpp"
+#include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/rate_limiter.hpp"
@@ -20,37 +20,32 @@ class IsovalueControls : public QWidget {
     Q_OBJECT
 
   public:
-    IsovalueControls();
+    explicit IsovalueControls(Effect& effect);
 
-    void set_data(const Field& field, const run::Histogram& histogram);
-    void clear();
-    /// Shows the level asked for; emits nothing.
-    void set_isovalue(double isovalue);
-    void set_field(Solid solid, Interpolation interpolation);
     /// Whether the samples are dequantized, whether they could be, and why that is worth it (or
     /// nothing).
     void set_dequantized(bool on, bool possible, const QString& reason);
-    /// Whether penetrability sets the level felt.
-    void set_overruled(bool overruled);
-    /// Layers are felt: the isovalue does nothing. `levels`: they have levels of their own. After
-    /// set_overruled().
-    void set_layered(bool layered, bool levels);
-    /// The level felt now; shown separately where it differs from the level asked for.
-    void show_felt(double isovalue, bool penetrability_on);
     LevelChart& chart() { return *chart_; }
-    void drop() { limiter_.drop(); }
 
   Q_SIGNALS:
-    void wanted(double isovalue);  ///< at most 60 a second while something is dragged
     void field_wanted(palpate::Solid solid, palpate::Interpolation interpolation);
     void dequantize_wanted(bool on);  ///< it shows the state before until the next set_dequantized
 
   private:
     void connect_inputs();
+    void connect_effect();
+    void begin();
+    void clear();
+    void show();
+    void show_field();
+    void show_isovalue(double isovalue);
+    void show_layered(const SharedLayers& layers);
+    void show_felt(double isovalue, bool penetrability_on);
+    void request(double isovalue);
     void ask(double isovalue);
     LevelAxis slider_axis() const;
 
-    std::optional<Field> field_;
+    Effect& effect_;
     LevelChart* chart_;
     QSlider* slider_;
     NumberBox* box_;
@@ -58,7 +53,6 @@ class IsovalueControls : public QWidget {
     QCheckBox* dequantize_;
     QLabel* felt_;
     Note *warning_, *overruled_, *terraces_;
-    bool layered_ = false;
     RateLimiter limiter_;
     double isovalue_ = 0;
     int differing_ = 0;  // consecutive snapshots with another level

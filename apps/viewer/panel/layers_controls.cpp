@@ -22,7 +22,6 @@
 namespace palpate::viewer {
 namespace {
 
-/// Changes of the same thing within so long are one step.
 /// [range] Levels stay so far apart.
 constexpr double least_gap = 1e-3;
 constexpr int most_rows = 6;  // of the list without scrolling
@@ -34,8 +33,9 @@ QString wrapped(const QString& text) {
 
 }  // namespace
 
-LayersControls::LayersControls()
-    : choice_(named(new QComboBox, "layers", tr("Layers: several surfaces in one stroke"))),
+LayersControls::LayersControls(Effect& effect)
+    : effect_(effect),
+      choice_(named(new QComboBox, "layers", tr("Layers: several surfaces in one stroke"))),
       open_(named(new QPushButton(tr("Open…")), "open_layers",
                   tr("A set of layers from a file (JSON)"))),
       save_(named(new QPushButton(tr("Save as…")), "save_layers",
@@ -74,6 +74,7 @@ LayersControls::LayersControls()
     body_ = column_of({make_stroke(), make_list()});
     column_in(this, {make_choice(), note_, body_});
     connect_inputs();
+    connect_effect();
     show();
 }
 
@@ -156,11 +157,23 @@ void LayersControls::connect_curve() {
     connect(curve_, &CurveControls::factors_wanted, this, &LayersControls::set_factors);
 }
 
-void LayersControls::set_data(const Volume& volume, Solid solid) {
+void LayersControls::connect_effect() {
+    connect(&effect_, &Effect::begun, this, &LayersControls::begin);
+    connect(&effect_, &Effect::ended, this, &LayersControls::clear);
+    connect(&effect_, &Effect::changed, this, [this] {
+        layers_ = effect_.settings().layers;
+        if (!layers_) plot_->clear();
+        show();
+    });
+}
+
+/// There is nothing to undo.
+void LayersControls::begin() {
     constexpr int bins = 256;
+    const Volume& volume = effect_.field().volume();
+    limiter_.drop();
     low_ = volume.minimum();
     high_ = low_ + volume.range();
-    solid_ = solid;
     curve_->set_data(run::gradients_of(volume, bins));
     history_.clear();
     note_->say({});
@@ -182,13 +195,14 @@ void LayersControls::set_choices(std::vector<LayersChoice> choices) {
     show_choice();
 }
 
-void LayersControls::set_layers(const RendererSettings& settings, double isovalue) {
-    settings_ = settings;
-    isovalue_ = isovalue;
-    const bool others = settings.layers != layers_;
-    layers_ = settings.layers;
-    if (others && !layers_) plot_->clear();
-    show();
+void LayersControls::request(const SharedLayers& layers) {
+    if (!effect_.there()) return;
+    const SharedLayers& before = effect_.settings().layers;
+    // Edited layers keep their names: what gave way stays open.
+    const bool same_surfaces =
+        before && layers &&
+        std::ranges::equal(before->layers, layers->layers, {}, &Layer::name, &Layer::name);
+    effect_.request(command::UseLayers{layers, same_surfaces});
 }
 
 void LayersControls::say(const QString& note) {
@@ -204,7 +218,7 @@ void LayersControls::edit(const SharedLayers& next, const QString& key) {
     since_edit_.start();
     layers_ = next;
     show();
-    limiter_.put([this, next] { Q_EMIT wanted(next); });
+    limiter_.put([this, next] { request(next); });
 }
 
 void LayersControls::change(const QString& key, const std::function<void(Layers&)>& how) {
@@ -253,12 +267,13 @@ void LayersControls::set_factors(const std::vector<Curve::Knot>& knots) {
 void LayersControls::begin_curve() {
     const double middle = rounded_to(0.5 * (low_ + high_), least_gap * (high_ - low_));
     const double at = std::clamp(chosen_level().value_or(middle), low_, high_);
-    set_curve({first_knot(curve_property(), at, settings_)});
+    set_curve({first_knot(curve_property(), at, effect_.settings())});
 }
 
 void LayersControls::add_layer() {
+    if (!effect_.there()) return;
     if (!have_surfaces(layers_)) {
-        Layers first = first_layer(std::clamp(isovalue_, low_, high_));
+        Layers first = first_layer(std::clamp(effect_.isovalue(), low_, high_));
         if (layers_) {  // curves without a surface
             Layers next = *layers_;
             next.layers = first.layers;
@@ -266,7 +281,7 @@ void LayersControls::add_layer() {
         }
         return use(std::make_shared<const Layers>(std::move(first)));
     }
-    auto [next, at] = with_another(*layers_, solid_, low_, high_);
+    auto [next, at] = with_another(*layers_, effect_.field().solid(), low_, high_);
     edit(std::make_shared<const Layers>(std::move(next)), {});
     choose_layer(static_cast<int>(at));
 }
@@ -299,7 +314,7 @@ void LayersControls::step(bool back) {
     note_->say({});
     show();
     limiter_.drop();
-    Q_EMIT wanted(*next);
+    request(*next);
 }
 
 int LayersControls::chosen() const {
@@ -332,7 +347,7 @@ void LayersControls::show() {
     needle_->show_layers(*layers_);
     curve_->show_layers(*layers_);
     if (row < 0) return;
-    editor_->show_layer(*layers_, static_cast<std::size_t>(row), settings_,
+    editor_->show_layer(*layers_, static_cast<std::size_t>(row), effect_.settings(),
                         rounded_to(least_gap * (high_ - low_), 1e-6));
 }
 
@@ -415,10 +430,10 @@ void LayersControls::show_item(int row) {
     item.setIcon(icon);
     QString text = (is_label(*layers_, at) ? tr("%1   label %2") : QString("%1   %2"))
                        .arg(QString::fromStdString(layer.name), number_text(layer.level));
-    const auto lowered = lowered_stiffness(*layers_, at, settings_);
+    const auto lowered = lowered_stiffness(*layers_, at, effect_.settings());
     if (lowered) text += "   ⚠ " + tr("rendered at %1 N/mm").arg(number_text(*lowered, 3));
     item.setText(text);
-    const double asked = property_at(*layers_, at, HapticProperty::stiffness, settings_);
+    const double asked = property_at(*layers_, at, HapticProperty::stiffness, effect_.settings());
     item.setToolTip(lowered ? tr("The device cannot render %1 N/mm stably with this damping "
                                  "and viscosity: it renders %2 N/mm")
                                   .arg(number_text(asked, 3), number_text(*lowered, 3))

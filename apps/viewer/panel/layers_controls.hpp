@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "apps/viewer/model/layer_set.hpp"
+#include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/rate_limiter.hpp"
-#include "palpate/servo.hpp"
 
 namespace palpate::viewer {
 
@@ -37,14 +37,10 @@ class LayersControls : public QWidget {
     Q_OBJECT
 
   public:
-    LayersControls();
+    explicit LayersControls(Effect& effect);
 
-    /// There is nothing to undo.
-    void set_data(const Volume& volume, Solid solid);
-    void clear();
     void set_choices(std::vector<LayersChoice> choices);
-    /// Shows the layers in effect; emits nothing. With none, one can be added at `isovalue`.
-    void set_layers(const RendererSettings& settings, double isovalue);
+    /// As they are shown: those in effect, or asked for in a moment.
     const SharedLayers& layers() const { return layers_; }
     /// Of the layer that is chosen; nothing: there is none, or layers are by label.
     std::optional<double> chosen_level() const;
@@ -60,15 +56,12 @@ class LayersControls : public QWidget {
     HapticProperty curve_property() const;
     void choose_layer(int layer);
     LevelRoom room(int layer) const;
+    /// What moves fast: the force along a stroke. About sixty times a second.
     void show_snapshot(const Snapshot& now);
     /// A change of the same number that comes within `ms` is one step to undo with the one before.
     void set_one_step(int ms) { one_step_ms_ = ms; }
-    /// Forgets a request that waits.
-    void drop() { limiter_.drop(); }
 
   Q_SIGNALS:
-    /// At most 60 a second. Null: none.
-    void wanted(const palpate::viewer::SharedLayers& layers);
     /// The places of its labels are to be looked up, then use().
     void labels_wanted(const palpate::viewer::SharedLayers& layers);
     /// The curve of another property is to be shown.
@@ -83,6 +76,10 @@ class LayersControls : public QWidget {
     void connect_list();
     void connect_curve();
     void connect_inputs();
+    void connect_effect();
+    void begin();
+    void clear();
+    void request(const SharedLayers& layers);
     void edit(const SharedLayers& next, const QString& key);
     void change(const QString& key, const std::function<void(Layers&)>& how);
     void add_layer();
@@ -97,10 +94,9 @@ class LayersControls : public QWidget {
     void show_order();
     int chosen() const;
 
+    Effect& effect_;
     SharedLayers layers_;
-    RendererSettings settings_;
-    double isovalue_ = 0, low_ = 0, high_ = 1;
-    Solid solid_ = Solid::above;
+    double low_ = 0, high_ = 1;
     std::vector<LayersChoice> choices_;
     LayersHistory history_;
     QString last_key_;

@@ -14,8 +14,9 @@
 
 namespace palpate::viewer {
 
-LookControls::LookControls()
-    : surface_colour_(new ColourButton("surface_colour", tr("Colour of the isosurface"))),
+LookControls::LookControls(Effect& effect)
+    : effect_(effect),
+      surface_colour_(new ColourButton("surface_colour", tr("Colour of the isosurface"))),
       point_colour_(new ColourButton("point_colour", tr("Colour of the chosen point"))),
       surface_opacity_(new Quantity("surface_opacity", "", 0, 1, 0.05)),
       preset_(
@@ -46,6 +47,7 @@ LookControls::LookControls()
     });
     connect_surfaces();
     connect_transfer();
+    connect_effect();
     set_look(look_);
     show_point(-1);
 }
@@ -86,7 +88,7 @@ void LookControls::connect_surfaces() {
         changed();
     });
     connect(surfaces_, &SurfaceList::add_wanted, this, &LookControls::add_surface);
-    connect(surfaces_, &SurfaceList::feel_wanted, this, &LookControls::feel_wanted);
+    connect(surfaces_, &SurfaceList::feel_wanted, this, &LookControls::feel);
 }
 
 /// At a suggested level that is not shown yet, else in the middle of the data. What lies outside
@@ -96,12 +98,15 @@ void LookControls::add_surface() {
                                          {0.45, 0.65, 0.35}, {0.80, 0.62, 0.80}, {0.90, 0.80, 0.35},
                                          {0.40, 0.70, 0.70}, {0.60, 0.50, 0.45}};
     constexpr double glass = 0.35;
-    std::vector<double> levels = run::suggested_isovalues(histogram_);
-    const double range = histogram_.high - histogram_.low;
-    levels.push_back(histogram_.low + 0.5 * range);
+    if (!effect_.there()) return;
+    const run::Histogram& histogram = effect_.histogram();
+    const double felt = effect_.isovalue();
+    std::vector<double> levels = run::suggested_isovalues(histogram);
+    const double range = histogram.high - histogram.low;
+    levels.push_back(histogram.low + 0.5 * range);
     const auto is_new = [&](double level) {
         const auto near = [&](double other) { return std::abs(other - level) < 0.02 * range; };
-        return !near(felt_) && std::ranges::none_of(look_.surfaces, [&](const SeenSurface& s) {
+        return !near(felt) && std::ranges::none_of(look_.surfaces, [&](const SeenSurface& s) {
             return near(s.level);
         });
     };
@@ -109,7 +114,7 @@ void LookControls::add_surface() {
     SeenSurface added;
     added.level = found == levels.end() ? levels.back() : *found;
     added.colour = colours[look_.surfaces.size() % std::size(colours)];
-    const bool outside = solid_ == Solid::above ? added.level < felt_ : added.level > felt_;
+    const bool outside = effect_.field().sign() * (added.level - felt) < 0;
     if (outside) added.opacity = glass;
     if (!outside && look_.surface_opacity == 1) look_.surface_opacity = glass;
     look_.surfaces.push_back(added);
@@ -123,19 +128,29 @@ void LookControls::set_overlay_look(const OverlayLook& overlay) {
     changed();
 }
 
-void LookControls::set_layered(bool layered) {
-    surfaces_->set_feelable(!layered,
-                            tr("Layers are felt, not an isovalue: choose No layers to feel one"));
+void LookControls::connect_effect() {
+    const auto show_layered = [this] {
+        surfaces_->set_feelable(
+            !effect_.there() || !have_surfaces(effect_.settings().layers),
+            tr("Layers are felt, not an isovalue: choose No layers to feel one"));
+    };
+    connect(&effect_, &Effect::begun, this, &LookControls::begin);
+    connect(&effect_, &Effect::changed, this, show_layered);
+    connect(&effect_, &Effect::ended, this, show_layered);
+    connect(&effect_, &Effect::ended, this, [this] {
+        limiter_.drop();
+        editor_->set_data({});
+    });
 }
 
-void LookControls::set_felt(double isovalue, Solid solid) {
-    felt_ = isovalue;
-    solid_ = solid;
-}
-
-void LookControls::swap_felt(int row, double isovalue) {
+/// The level of a surface becomes the isovalue, and the felt one takes its place.
+void LookControls::feel(int row) {
+    if (!effect_.there()) return;
+    const double felt = effect_.isovalue();
+    const double level = look_.surfaces.at(static_cast<std::size_t>(row)).level;
+    if (!effect_.request(command::Isovalue{level})) return;
     SeenSurface& surface = look_.surfaces.at(static_cast<std::size_t>(row));
-    surface.level = isovalue;
+    surface.level = felt;
     std::swap(surface.colour, look_.surface_colour);
     std::swap(surface.opacity, look_.surface_opacity);
     const Look look = look_;
@@ -151,7 +166,6 @@ void LookControls::move_surface(int row, double level) {
 
 QWidget* LookControls::make_volume() {
     let_wheel_pass(*preset_);
-    for (const std::string& name : preset_names()) add_choice(*preset_, name);
     point_opacity_->setSingleStep(0.05);
     auto* volume = add_switch("volume", tr("Volume"),
                               tr("Volume rendering by the transfer function"), &Look::volume);
@@ -202,9 +216,9 @@ QWidget* LookControls::make_rest() {
 
 void LookControls::connect_transfer() {
     connect(preset_, qOverload<int>(&QComboBox::activated), this, [this](int at) {
-        if (!volume_) return;
+        if (!effect_.there()) return;
         const std::string name = preset_->itemData(at).toString().toStdString();
-        look_.transfer = preset(name, histogram_, *volume_);
+        look_.transfer = preset(name, effect_.histogram(), effect_.field().volume());
         editor_->set_transfer(look_.transfer);
         changed();
     });
@@ -235,20 +249,17 @@ void LookControls::connect_transfer() {
     });
 }
 
-void LookControls::set_data(const Volume& volume, const run::Histogram& histogram) {
-    volume_ = volume;
-    histogram_ = histogram;
+void LookControls::begin() {
+    const run::Histogram& histogram = effect_.histogram();
+    preset_->clear();
+    for (const std::string& name : preset_names(histogram, effect_.field().volume())) {
+        add_choice(*preset_, name);
+    }
+    show_preset();
     editor_->set_data(histogram);
     const LevelAxis axis = axis_of(histogram, QRectF(0, 0, 100, 1));
     point_level_->setSingleStep(axis.step());
     surfaces_->set_step(axis.step());
-}
-
-void LookControls::clear() {
-    limiter_.drop();
-    volume_.reset();
-    histogram_ = {};
-    editor_->set_data({});
 }
 
 void LookControls::set_look(const Look& look) {

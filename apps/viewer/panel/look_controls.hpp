@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/viewer/panel/colour_button.hpp"
+#include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/quantity.hpp"
 #include "apps/viewer/panel/surface_list.hpp"
 #include "apps/viewer/panel/transfer_editor.hpp"
@@ -19,18 +20,8 @@ class LookControls : public QWidget {
     Q_OBJECT
 
   public:
-    LookControls();
+    explicit LookControls(Effect& effect);
 
-    /// The data for which presets are made.
-    void set_data(const Volume& volume, const run::Histogram& histogram);
-    void clear();
-    /// The level that is felt, and its side that is solid, for surfaces beside it.
-    void set_felt(double isovalue, Solid solid);
-    /// Layers are felt: no other surface can be, until they are gone.
-    void set_layered(bool layered);
-    /// Surface `row` and the felt one, now at `isovalue` and soon at the surface's level, change
-    /// places.
-    void swap_felt(int row, double isovalue);
     /// As by hand.
     void set_overlay_look(const OverlayLook& overlay);
     void move_surface(int row, double level);
@@ -41,8 +32,6 @@ class LookControls : public QWidget {
   Q_SIGNALS:
     void look_changed(const palpate::viewer::Look& look);
     void look_set();
-    /// This surface is to be felt: its level becomes the isovalue.
-    void feel_wanted(int row);
     /// A cut of this kind, for the present view.
     void cut_wanted(palpate::viewer::Cut cut);
 
@@ -52,6 +41,9 @@ class LookControls : public QWidget {
         bool Look::*shown;
     };
 
+    void connect_effect();
+    void begin();
+    void feel(int row);
     QCheckBox* add_switch(const QString& name, const QString& text, const QString& tip,
                           bool Look::*shown);
     QWidget* make_surface();
@@ -65,9 +57,8 @@ class LookControls : public QWidget {
     void show_preset();
     void changed();
 
+    Effect& effect_;
     Look look_;
-    std::optional<Volume> volume_;
-    run::Histogram histogram_;
     std::vector<Switch> switches_;
     ColourButton *surface_colour_, *point_colour_;
     Quantity* surface_opacity_;
@@ -77,8 +68,6 @@ class LookControls : public QWidget {
     TransferEditor* editor_;
     NumberBox *point_level_, *point_opacity_;
     RateLimiter limiter_;
-    double felt_ = 0;
-    Solid solid_ = Solid::above;
 };
 
 }  // namespace palpate::viewer

@@ -14,6 +14,7 @@ struct Names {
     [[maybe_unused]] static constexpr const char* to_translate[] = {
         // transfer functions
         QT_TR_NOOP("CT bone"), QT_TR_NOOP("CT skin"), QT_TR_NOOP("CT soft tissue"),
+        QT_TR_NOOP("Dense parts"), QT_TR_NOOP("Outer surface"), QT_TR_NOOP("Soft parts"),
         QT_TR_NOOP("MR"), QT_TR_NOOP("Microscopy"), QT_TR_NOOP("Grey"),
         // colour maps
         QT_TR_NOOP("grey"), QT_TR_NOOP("hot"), QT_TR_NOOP("bone"), QT_TR_NOOP("viridis"),

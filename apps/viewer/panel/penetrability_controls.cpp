@@ -6,6 +6,7 @@
 #include <QVariant>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "apps/viewer/panel/layout.hpp"
 
@@ -36,8 +37,9 @@ constexpr ModeText mode_texts[] = {
 
 }  // namespace
 
-PenetrabilityControls::PenetrabilityControls(LevelChart& chart)
-    : chart_(&chart),
+PenetrabilityControls::PenetrabilityControls(Effect& effect, LevelChart& chart)
+    : effect_(effect),
+      chart_(&chart),
       modes_(new QButtonGroup(this)),
       threshold_(new Quantity("threshold", "mm", 0, 5, 0.1)),
       minimum_row_(new QWidget),
@@ -85,6 +87,7 @@ PenetrabilityControls::PenetrabilityControls(LevelChart& chart)
     connect(add, &QPushButton::clicked, this, [this] { add_range(room_for_a_range()); });
     connect(remove, &QPushButton::clicked, this, [this] { remove_range(table_->chosen()); });
     connect_inputs();
+    connect_effect();
     show(shown_);
 }
 
@@ -116,7 +119,7 @@ void PenetrabilityControls::connect_inputs() {
         dragging_ = true;
         const PressThrough next = with_bands(shown_, bands, solid_);
         show(next);
-        limiter_.put([this, next] { Q_EMIT wanted(next); });
+        limiter_.put([this, next] { request(next); });
     });
     connect(chart_, &LevelChart::bands_settled, this, [this] {
         limiter_.flush();
@@ -125,22 +128,45 @@ void PenetrabilityControls::connect_inputs() {
     });
 }
 
-void PenetrabilityControls::set_session(const Penetrability& in_use, Solid solid, double isovalue,
-                                        double low, double high) {
+void PenetrabilityControls::connect_effect() {
+    connect(&effect_, &Effect::begun, this, &PenetrabilityControls::begin);
+    connect(&effect_, &Effect::ended, this, [this] {
+        drop();
+        set_layered(false);
+    });
+    connect(&effect_, &Effect::changed, this, [this] {
+        set_layered(have_surfaces(effect_.settings().layers));
+        if (dragging_) return;  // overlapping bands are merged when the drag ends
+        show(shown_from(effect_.settings().penetrability, solid_, shown_));
+    });
+}
+
+/// Modes that are not in use begin at the level and with the range of the data.
+void PenetrabilityControls::begin() {
     drop();
-    solid_ = solid;
-    low_ = low;
-    high_ = high;
+    const Volume& volume = effect_.field().volume();
+    solid_ = effect_.field().solid();
     minimum_->setSingleStep(chart_->fine_step());
-    shown_ = first_press_through(isovalue, low, high, solid);
-    set_in_use(in_use);
+    shown_ = first_press_through(effect_.isovalue(), volume.minimum(),
+                                 volume.minimum() + volume.range(), solid_);
 }
 
-void PenetrabilityControls::set_in_use(const Penetrability& in_use) {
-    if (dragging_) return;  // overlapping bands are merged when the drag ends
-    show(shown_from(in_use, solid_, shown_));
+/// What cannot be is refused there, or here in words.
+void PenetrabilityControls::request(const PressThrough& next) {
+    if (!effect_.there()) return;
+    try {
+        const Penetrability penetrability = penetrability_of(next, solid_);
+        const bool ends = effect_.settings().penetrability.on && !penetrability.on;
+        const bool done = effect_.request(penetrability);
+        // Else the session keeps the level that the hand has reached.
+        if (ends && done) effect_.request(command::Isovalue{effect_.isovalue()});
+    } catch (const std::invalid_argument& error) {
+        Q_EMIT nonsense(QString::fromStdString(error.what()));
+        show(shown_from(effect_.settings().penetrability, solid_, shown_));
+    }
 }
 
+/// Layers are felt: this rests meanwhile.
 void PenetrabilityControls::set_layered(bool layered) {
     setEnabled(!layered);
     setToolTip(layered
@@ -167,7 +193,7 @@ void PenetrabilityControls::drop() {
 void PenetrabilityControls::ask(const PressThrough& next) {
     limiter_.drop();
     show(next);
-    Q_EMIT wanted(next);
+    request(next);
 }
 
 void PenetrabilityControls::show(const PressThrough& next) {
@@ -209,8 +235,9 @@ void PenetrabilityControls::remove_range(int which) {
 
 /// In the middle of the widest gap, a third of it wide at most.
 DensityRange PenetrabilityControls::room_for_a_range() const {
-    DensityRange gap{low_, low_};
-    double end = low_;
+    const LevelAxis whole = chart_->whole_axis();
+    DensityRange gap{whole.low, whole.low};
+    double end = whole.low;
     const auto consider = [&](double from, double to) {
         if (to - from > gap.high - gap.low) gap = {from, to};
     };
@@ -220,7 +247,7 @@ DensityRange PenetrabilityControls::room_for_a_range() const {
             end = std::max(end, range.high);
         }
     }
-    consider(end, high_);
+    consider(end, whole.high);
     const double width = gap.high - gap.low;
     const LevelAxis axis = chart_->axis();
     return {rounded_to(gap.low + width / 3, axis.step()),

@@ -8,6 +8,7 @@
 
 #include <utility>
 
+#include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
 #include "apps/viewer/panel/press_through.hpp"
 #include "apps/viewer/panel/quantity.hpp"
@@ -20,24 +21,17 @@ class PenetrabilityControls : public QWidget {
 
   public:
     /// Shows and reads its bands on the chart, which it does not own.
-    explicit PenetrabilityControls(LevelChart& chart);
-
-    /// A new session: modes that are not in use begin at this level and range [data units]. Emits
-    /// nothing.
-    void set_session(const Penetrability& in_use, Solid solid, double isovalue, double low,
-                     double high);
-    /// Shows the setting in use; emits nothing.
-    void set_in_use(const Penetrability& in_use);
-    /// Layers are felt: this rests meanwhile.
-    void set_layered(bool layered);
-    void drop();
+    PenetrabilityControls(Effect& effect, LevelChart& chart);
 
   Q_SIGNALS:
-    /// What the user asks for, valid or not.
-    void wanted(const palpate::viewer::PressThrough& next);
     void nonsense(const QString& why);
 
   private:
+    void connect_effect();
+    void begin();
+    void drop();
+    void set_layered(bool layered);
+    void request(const PressThrough& next);
     void ask(const PressThrough& next);
     void show(const PressThrough& next);
     void connect_inputs();
@@ -45,6 +39,7 @@ class PenetrabilityControls : public QWidget {
     void remove_range(int which);
     DensityRange room_for_a_range() const;
 
+    Effect& effect_;
     LevelChart* chart_;
     QButtonGroup* modes_;
     Quantity* threshold_;
@@ -55,7 +50,6 @@ class PenetrabilityControls : public QWidget {
     RateLimiter limiter_;
     PressThrough shown_;
     Solid solid_ = Solid::above;
-    double low_ = 0, high_ = 1;
     bool dragging_ = false;  // a band
 };
 

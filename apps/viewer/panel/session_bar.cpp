@@ -5,6 +5,8 @@
 #include <QEvent>
 #include <QVariant>
 
+#include <algorithm>
+
 #include "apps/options/words.hpp"
 #include "apps/viewer/model/hand_state.hpp"
 #include "apps/viewer/panel/layout.hpp"
@@ -14,16 +16,6 @@ namespace palpate::viewer {
 SessionSwitch::SessionSwitch(const QString& on, const QString& off) : on_(on), off_(off) {
     setCheckable(true);
     setText(off_);
-    connect(this, &QPushButton::clicked, this, [this](bool now) {
-        awaited_.begin();
-        setText(now ? on_ : off_);
-        Q_EMIT wanted(now);
-    });
-}
-
-void SessionSwitch::show_state(bool on) {
-    const bool same = on == isChecked();
-    if (!awaited_.passes_over(same) && !same) set_state(on);
 }
 
 bool SessionSwitch::set_on_text(const QString& text) {
@@ -34,13 +26,13 @@ bool SessionSwitch::set_on_text(const QString& text) {
 }
 
 void SessionSwitch::set_state(bool on) {
-    awaited_.end();
     setChecked(on);
     setText(on ? on_ : off_);
 }
 
-SessionBar::SessionBar()
-    : forces_(named(new SessionSwitch(tr("Forces are ON"), tr("Forces are OFF")), "forces",
+SessionBar::SessionBar(Effect& effect)
+    : effect_(effect),
+      forces_(named(new SessionSwitch(tr("Forces are ON"), tr("Forces are OFF")), "forces",
                     tr("Forces on or off (space bar). Off: zero at once; on: they ramp up"))),
       freeze_(named(new SessionSwitch(tr("Frozen"), tr("Freeze")), "freeze",
                     tr("Hand and proxy stand still for the session, forces are let go"))),
@@ -62,13 +54,22 @@ SessionBar::SessionBar()
     auto* switches = column_of({freeze_, clutch_});
     switches->layout()->setSpacing(2);
     column_in(this, {row_of({forces_, switches}, 0), gauge_, contact_});
-    connect(forces_, &SessionSwitch::wanted, this,
-            [this](bool on) { Q_EMIT asked(command::Forces{on}); });
-    connect(freeze_, &SessionSwitch::wanted, this,
-            [this](bool on) { Q_EMIT asked(command::Freeze{on}); });
-    connect(clutch_, &SessionSwitch::wanted, this,
-            [this](bool on) { Q_EMIT asked(command::Clutch{on}); });
+    connect_effect();
     colour_forces();
+    clear();
+}
+
+void SessionBar::connect_effect() {
+    connect(forces_, &QPushButton::clicked, this,
+            [this](bool on) { effect_.request(command::Forces{on}); });
+    connect(freeze_, &QPushButton::clicked, this,
+            [this](bool on) { effect_.request(command::Freeze{on}); });
+    connect(clutch_, &QPushButton::clicked, this,
+            [this](bool on) { effect_.request(command::Clutch{on}); });
+    connect(&effect_, &Effect::begun, this, &SessionBar::begin);
+    connect(&effect_, &Effect::ended, this, &SessionBar::clear);
+    connect(&effect_, &Effect::changed, this, &SessionBar::show_switches);
+    connect(&effect_, &Effect::observed, this, &SessionBar::show_snapshot);
 }
 
 /// On: green, waiting: amber, off: as any button. The text says it, too.
@@ -100,12 +101,20 @@ void SessionBar::show_waiting(const QString& why) {
     colour_forces();
 }
 
-void SessionBar::set_session(const RendererSettings& settings) {
-    forces_->set_state(settings.forces_on);
-    freeze_->set_state(false);
-    clutch_->set_state(false);
+void SessionBar::show_switches() {
+    const Session& session = effect_.session();
+    forces_->set_state(effect_.settings().forces_on);
+    freeze_->set_state(session.frozen);
+    clutch_->set_state(session.clutched);
+}
+
+double SessionBar::limit() const {
+    return std::min(effect_.settings().force.limit, effect_.settings().device.maximum_force);
+}
+
+void SessionBar::begin() {
     contact_->setText(tr("no tick yet"));
-    gauge_->set_force(0, std::min(settings.force.limit, settings.device.maximum_force), {});
+    gauge_->set_force(0, limit(), {});
 }
 
 void SessionBar::clear() {
@@ -115,16 +124,14 @@ void SessionBar::clear() {
     contact_->clear();
 }
 
-void SessionBar::show_snapshot(const Snapshot& now, double limit) {
-    forces_->show_state(now.forces_on);
+void SessionBar::show_snapshot(const Snapshot& now) {
+    show_switches();
     const std::string words = app::force_words(now.session.tick);
     show_waiting(words == "no input"   ? tr("no input from the device")
                  : waits_for_hand(now) ? tr("withdraw a little")
                                        : QString());
-    freeze_->show_state(now.session.frozen);
-    clutch_->show_state(now.session.clutched);
     const Tick& tick = now.session.tick;
-    gauge_->set_force(tick.force.norm(), limit, QString::fromStdString(words));
+    gauge_->set_force(tick.force.norm(), limit(), QString::fromStdString(words));
     const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
     const bool touching = tick.proxy.mode == palpate::Mode::constrained;
     QString text = (touching ? tr("In contact, pull %1 mm (%2 mm in the volume)")

@@ -12,8 +12,9 @@
 
 namespace palpate::viewer {
 
-ToolControls::ToolControls()
-    : choice_(named(new QComboBox, "tool",
+ToolControls::ToolControls(Effect& effect)
+    : effect_(effect),
+      choice_(named(new QComboBox, "tool",
                     tr("What touches. No point of a tool ever goes through the surface; it pushes "
                        "and turns the hand. With the mouse, Ctrl and drag in the scene turn it."))),
       open_(named(new QPushButton(tr("Open…")), "open_tool",
@@ -37,9 +38,16 @@ ToolControls::ToolControls()
             [this](int row) { choose(row, 1); });
     connect(scale_, &Quantity::wanted, this, [this](double scale) { choose(shown_.row, scale); });
     connect(open_, &QPushButton::clicked, this, &ToolControls::open_wanted);
+    connect(&effect, &Effect::begun, this, [this] {
+        scale_->drop();
+        set_grid(effect_.field().geometry());
+    });
+    connect(&effect, &Effect::ended, this, &ToolControls::clear);
+    connect(&effect, &Effect::changed, this, [this] { set_tool(effect_.settings().tool); });
     show({});
 }
 
+/// Of another volume: sizes suit it. Tools of files stay.
 void ToolControls::set_grid(const Geometry& geometry) {
     if (geometry.size == geometry_.size && geometry.spacing == geometry_.spacing) return;
     const QString names[] = {tr("Point"), tr("Ball"), tr("Rod"),      tr("Needle"),
@@ -58,7 +66,7 @@ void ToolControls::set_grid(const Geometry& geometry) {
 }
 
 void ToolControls::clear() {
-    drop();
+    scale_->drop();
     before_ = {};
     show({});
 }
@@ -94,9 +102,10 @@ void ToolControls::choose(int row, double scale) {
     }
     before_ = shown_;
     show(next);
-    Q_EMIT wanted(next.tool);
+    effect_.request(command::UseTool{next.tool});
 }
 
+/// One that was not made here, such as a session's, is one more choice.
 void ToolControls::set_tool(const std::shared_ptr<const Tool>& tool) {
     if (tool == shown_.tool) return;
     if (tool == before_.tool) return show(Shown(before_));

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/quantity.hpp"
 #include "palpate/io/tool_file.hpp"
 
@@ -18,22 +19,12 @@ class ToolControls : public QWidget {
     Q_OBJECT
 
   public:
-    ToolControls();
+    explicit ToolControls(Effect& effect);
 
-    /// Of another volume: sizes suit it. Tools of files stay.
-    void set_grid(const Geometry& geometry);
-    void clear();
-    /// Shows the tool in effect; emits nothing. One that was not made here, such as a session's, is
-    /// one more choice. Null: a point.
-    void set_tool(const std::shared_ptr<const Tool>& tool);
     /// Another choice, chosen as by hand.
     void add(const QString& name, const io::ToolSpec& spec);
-    /// Forgets a request that waits.
-    void drop() { scale_->drop(); }
 
   Q_SIGNALS:
-    /// Null: a point.
-    void wanted(const std::shared_ptr<const palpate::Tool>& tool);
     /// What was asked for is no tool.
     void nonsense(const QString& why);
     void open_wanted();
@@ -49,9 +40,13 @@ class ToolControls : public QWidget {
         std::shared_ptr<const Tool> tool;
         double spacing = 0;  // [mm] 0: as given
     };
+    void set_grid(const Geometry& geometry);
+    void clear();
+    void set_tool(const std::shared_ptr<const Tool>& tool);
     void choose(int row, double scale);
     void show(const Shown& now);
 
+    Effect& effect_;
     Geometry geometry_{Index3::Zero()};
     std::size_t built_in_ = 0;     // of the choices, the first ones
     std::vector<Choice> choices_;  // then those of files and sessions

@@ -121,7 +121,8 @@ std::vector<Vector3f> facet_normals(SurfaceMesh mesh, const Placing& place) {
 }  // namespace
 
 std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue,
-                                             const Index3& cell, int edge, const Vec3& middle) {
+                                             const Index3& cell, int edge, const Vec3& middle,
+                                             const SurfaceBounds& bounds) {
     // One more cell on every side; a cubic one, round a sample, has samples on both sides.
     const bool is_smooth = field.interpolation() == Interpolation::cubic;
     const int more = is_smooth ? 2 : 1;
@@ -158,7 +159,8 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
         // The facet's where the slope says nothing (plateaus) or something else (thin sheets).
         const Vector3f smooth = (-field.sign() * slope).normalized().cast<float>();
         const Vector3f normal = smooth.dot(facets[v]) > 0.3F ? smooth : facets[v];
-        const Vector3f position = place(index).cast<float>();
+        const Vector3f position =
+            place(index.cwiseMax(bounds.low).cwiseMin(bounds.high)).cast<float>();
         block->positions.insert(block->positions.end(), position.begin(), position.end());
         block->normals.insert(block->normals.end(), normal.begin(), normal.end());
         block->seams.push_back(seams_of(index, cell.cast<double>() + Vec3::Constant(begin), edge));

@@ -73,11 +73,14 @@ std::size_t SurfaceBlocks::outdated() const {
 SurfaceBlocks::Outcome SurfaceBlocks::renew(const Field& field, double isovalue,
                                             const std::function<bool()>& go_on,
                                             std::size_t most_triangles) {
+    // As far out of the full grid as its own surface can be.
+    const SurfaceBounds bounds{Vec3::Constant(double(-reach_) / every_),
+                               (geometry_.size.array() + (reach_ - 1)).cast<double>() / every_};
     std::atomic<std::size_t> triangles{triangle_count(meshes_)};
     std::atomic<bool> too_many{false};
     const bool all = for_each_at_once(zeros_of(fresh_), [&](std::size_t b) {
         if (!go_on()) return false;
-        auto mesh = block_mesh(field, isovalue, first_cell(b), cells, origin_);
+        auto mesh = block_mesh(field, isovalue, first_cell(b), cells, origin_, bounds);
         const auto count = [](const auto& m) { return m ? m->triangle_count() : 0; };
         triangles += count(mesh) - count(meshes_[b]);
         meshes_[b] = std::move(mesh);

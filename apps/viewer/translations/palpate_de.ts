@@ -261,6 +261,18 @@
         <source>on %1, from inside</source>
         <translation>auf %1, von innen</translation>
     </message>
+    <message>
+        <source>Dense parts</source>
+        <translation>Dichte Teile</translation>
+    </message>
+    <message>
+        <source>Outer surface</source>
+        <translation>Äußere Oberfläche</translation>
+    </message>
+    <message>
+        <source>Soft parts</source>
+        <translation>Weiche Teile</translation>
+    </message>
 </context>
 <context>
     <name>OverlayWords</name>
@@ -777,6 +789,36 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
     <message>
         <source>: it opens as the edited volume while the original stays where it is</source>
         <translation>: wird als das bearbeitete Volumen geöffnet, solange das Original bleibt, wo es ist</translation>
+    </message>
+    <message>
+        <source>Making the surface</source>
+        <translation>Die Oberfläche wird erzeugt</translation>
+    </message>
+    <message numerus="yes">
+        <source>The surface has %Ln triangles, more than many programs can work with. Simplify it to about %L1? It stays closed, and what is left of its points stays on the surface.</source>
+        <translation>
+            <numerusform>Die Oberfläche hat %Ln Dreieck, mehr als viele Programme verarbeiten können. Auf etwa %L1 vereinfachen? Sie bleibt geschlossen, und die Punkte, die übrig bleiben, bleiben auf der Oberfläche.</numerusform>
+            <numerusform>Die Oberfläche hat %Ln Dreiecke, mehr als viele Programme verarbeiten können. Auf etwa %L1 vereinfachen? Sie bleibt geschlossen, und die Punkte, die übrig bleiben, bleiben auf der Oberfläche.</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>Simplify</source>
+        <translation>Vereinfachen</translation>
+    </message>
+    <message>
+        <source>All triangles</source>
+        <translation>Alle Dreiecke</translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::Effect</name>
+    <message>
+        <source>A recording is played: nothing here changes it.</source>
+        <translation>Eine Aufzeichnung läuft: Hier lässt sich nichts an ihr ändern.</translation>
+    </message>
+    <message>
+        <source>layers are felt, not an isovalue: choose No layers to feel one</source>
+        <translation>es werden Schichten gefühlt, kein Isowert: Wählen Sie „Keine Schichten“, um einen zu fühlen</translation>
     </message>
 </context>
 <context>
@@ -2327,10 +2369,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>&amp;Gerät</translation>
     </message>
     <message>
-        <source>layers are felt, not an isovalue: choose No layers to feel one</source>
-        <translation>es werden Schichten gefühlt, kein Isowert: Wählen Sie „Keine Schichten“, um einen zu fühlen</translation>
-    </message>
-    <message>
         <source>Tool</source>
         <translation>Werkzeug</translation>
     </message>
@@ -2723,14 +2761,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Felt through the device %1</source>
         <translation>Gefühlt mit dem Gerät %1</translation>
-    </message>
-    <message>
-        <source>A recording is played: nothing here changes it.</source>
-        <translation>Eine Aufzeichnung läuft: Hier lässt sich nichts an ihr ändern.</translation>
-    </message>
-    <message>
-        <source>There is no volume to feel.</source>
-        <translation>Es gibt kein Volumen zu fühlen.</translation>
     </message>
     <message>
         <source>Looking for devices</source>

@@ -30,6 +30,13 @@
             <numerusform>Saved %1, %Ln triangles</numerusform>
         </translation>
     </message>
+    <message numerus="yes">
+        <source>The surface has %Ln triangles, more than many programs can work with. Simplify it to about %L1? It stays closed, and what is left of its points stays on the surface.</source>
+        <translation>
+            <numerusform>The surface has %Ln triangle, more than many programs can work with. Simplify it to about %L1? It stays closed, and what is left of its points stays on the surface.</numerusform>
+            <numerusform>The surface has %Ln triangles, more than many programs can work with. Simplify it to about %L1? It stays closed, and what is left of its points stays on the surface.</numerusform>
+        </translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::LoopView</name>

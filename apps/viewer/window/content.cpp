@@ -5,6 +5,16 @@
 
 namespace palpate::viewer {
 
+/// Before anything else hears of it, the effect is that of the run.
+Content::Content() {
+    connect(this, &Content::run_changed, &effect_, [this] {
+        effect_.begin(live_->field(), live_->isovalue(), live_->settings(), live_->device(),
+                      volume_->histogram, [this](const Command& command) {
+                          if (live_) live_->send(command);
+                      });
+    });
+}
+
 void Content::start_run(std::shared_ptr<Opened> volume, const run::Setup& setup) {
     close();
     auto data = std::make_shared<run::Data>(volume->loaded, setup.playback);
@@ -22,6 +32,12 @@ void Content::start_playback(std::shared_ptr<Opened> volume, Playback playback) 
     volume_ = std::move(volume);
     playback_ = std::move(playback);
     time_ = playback_->begin();
+    const io::RecordingHead& head = playback_->head();
+    DeviceInfo device;
+    device.name = device.model = head.device;
+    device.limits = head.settings.device;
+    effect_.begin(playback_->field(), head.isovalue, head.settings, device, volume_->histogram,
+                  nullptr);
     Q_EMIT playback_started();
 }
 
@@ -34,6 +50,7 @@ void Content::close() {
     overview_.reset();
     saved_.reset();
     session_.clear();
+    effect_.end();
     Q_EMIT closed();
 }
 

@@ -10,6 +10,7 @@
 #include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/model/opening.hpp"
 #include "apps/viewer/model/playback.hpp"
+#include "apps/viewer/panel/effect.hpp"
 #include "palpate/run/run.hpp"
 
 namespace palpate::viewer {
@@ -18,6 +19,7 @@ class Content : public QObject {
     Q_OBJECT
 
   public:
+    Content();
     /// Closes what was open first: a device serves one run. Throws as run::Run; then nothing is
     /// open.
     void start_run(std::shared_ptr<Opened> volume, const run::Setup& setup);
@@ -29,6 +31,8 @@ class Content : public QObject {
     /// Ends the run, forces are zero; emits nothing.
     void end_run() { live_.reset(); }
 
+    /// The settings of the live run, which commands change, or of the recording.
+    Effect& effect() { return effect_; }
     /// Null if nothing is open.
     const std::shared_ptr<Opened>& volume() const { return volume_; }
     /// Where the volume as it is felt can be read again: the file that it was saved to last, else
@@ -95,6 +99,7 @@ class Content : public QObject {
     void renamed();
 
   private:
+    Effect effect_;
     std::shared_ptr<Opened> volume_;
     std::optional<run::Source> saved_;
     QString session_;

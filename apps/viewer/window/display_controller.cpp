@@ -65,7 +65,6 @@ void DisplayController::clear() {
     overlays_.set_layers(nullptr);
     next_level_.reset();
     views_.clear();
-    panel_.clear();
 }
 
 void DisplayController::show_field(const Field& field, double isovalue) {

@@ -12,6 +12,7 @@
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/scene/decimated.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/messages.hpp"
@@ -34,18 +35,14 @@ run::Source source_of(const QString& path, const Volume& volume) {
     return source;
 }
 
-/// Returns the number of triangles.
-std::size_t write_surface(const Field& field, double isovalue, const std::filesystem::path& file,
-                          const io::Progress& progress) {
+SurfaceMesh surface_of(const Field& field, double isovalue, const io::Progress& progress) {
     SurfaceOptions options;
     options.normals = true;
     options.progress = [&](double fraction) {
         progress(fraction);
         return true;
     };
-    const SurfaceMesh mesh = extract_surface(field, isovalue, options);
-    io::write_mesh(mesh, file);
-    return mesh.triangles.size();
+    return extract_surface(field, isovalue, options);
 }
 
 }  // namespace
@@ -53,17 +50,18 @@ std::size_t write_surface(const Field& field, double isovalue, const std::filesy
 EditController::EditController(Content& content, Panel& panel, Messages& messages, QWidget* window)
     : content_(content), panel_(panel), messages_(messages), window_(window), saving_(messages) {
     connect(&content, &Content::run_changed, this, &EditController::show);
-    connect(&panel, &Panel::brush_changed, this, &EditController::use_brush);
-    connect(&panel, &Panel::undo_asked, this, &EditController::undo);
-    connect(&panel, &Panel::redo_asked, this, &EditController::redo);
-    connect(&panel, &Panel::save_asked, this, [this] { ask_save(); });
+    const BrushControls* controls = &panel.brush_controls();
+    connect(controls, &BrushControls::changed, this, &EditController::use_brush);
+    connect(controls, &BrushControls::undo, this, &EditController::undo);
+    connect(controls, &BrushControls::redo, this, &EditController::redo);
+    connect(controls, &BrushControls::save, this, [this] { ask_save(); });
 }
 
 void EditController::show() {
     panel_.brush_controls().set_reason(
         content_.player() ? tr("A sequence cannot be edited: open one frame of it (--time-step).")
                           : QString());
-    use_brush(panel_.brush());
+    use_brush(panel_.brush_controls().choice());
 }
 
 void EditController::use_brush(const BrushChoice& brush) {
@@ -72,14 +70,15 @@ void EditController::use_brush(const BrushChoice& brush) {
     try {
         editor->set_brush(brush.on && !resting_ ? std::optional<run::HandBrush>(brush)
                                                 : std::nullopt);
+        brush_ = brush;
     } catch (const std::invalid_argument& e) {
-        panel_.show_refused(QString::fromStdString(e.what()));
+        panel_.brush_controls().refuse(brush_, QString::fromStdString(e.what()));
     }
 }
 
 void EditController::rest(bool on) {
     resting_ = on;
-    use_brush(panel_.brush());
+    use_brush(panel_.brush_controls().choice());
 }
 
 void EditController::undo() {
@@ -170,13 +169,38 @@ void EditController::save_surface(const QString& path) {
     const Field field = content_.seen(content_.felt());
     const double isovalue =
         panel_.layers_controls().chosen_level().value_or(content_.live()->isovalue());
-    auto triangles = std::make_shared<std::size_t>(0);
+    const auto mesh = std::make_shared<SurfaceMesh>();
+    saving_.start(
+        tr("Making the surface"),
+        [=](const io::Progress& progress) { *mesh = surface_of(field, isovalue, progress); },
+        [this, path, mesh] { write_surface(path, mesh); });
+}
+
+/// Offers to simplify a large one.
+void EditController::write_surface(const QString& path, const std::shared_ptr<SurfaceMesh>& mesh) {
+    std::size_t most = mesh->triangles.size();
+    if (most > many_triangles_) {
+        QMessageBox box(QMessageBox::Question, "Palpate",
+                        tr("The surface has %Ln triangles, more than many programs can work with. "
+                           "Simplify it to about %L1? It stays closed, and what is left of its "
+                           "points stays on the surface.",
+                           nullptr, static_cast<int>(most))
+                            .arg(many_triangles_),
+                        QMessageBox::Yes | QMessageBox::No | QMessageBox::Cancel, window_);
+        box.setObjectName("simplify");
+        box.button(QMessageBox::Yes)->setText(tr("Simplify"));
+        box.button(QMessageBox::No)->setText(tr("All triangles"));
+        const int answer = messages_.answer_to(box);
+        if (answer == QMessageBox::Cancel) return;
+        if (answer == QMessageBox::Yes) most = many_triangles_;
+    }
     const auto write = [=](const io::Progress& progress) {
-        *triangles = write_surface(field, isovalue, file, progress);
+        if (most < mesh->triangles.size()) *mesh = decimated(*mesh, most, progress);
+        io::write_mesh(*mesh, path.toStdString());
     };
-    saving_.start(tr("Saving %1").arg(path), write, [this, path, triangles] {
-        messages_.show_done(
-            tr("Saved %1, %Ln triangles", nullptr, static_cast<int>(*triangles)).arg(path));
+    saving_.start(tr("Saving %1").arg(path), write, [this, path, mesh] {
+        const auto triangles = static_cast<int>(mesh->triangles.size());
+        messages_.show_done(tr("Saved %1, %Ln triangles", nullptr, triangles).arg(path));
     });
 }
 

@@ -7,8 +7,10 @@
 #include <functional>
 #include <memory>
 
+#include "apps/viewer/panel/brush_choice.hpp"
 #include "apps/viewer/window/background_task.hpp"
 #include "palpate/run/data.hpp"
+#include "palpate/surface.hpp"
 
 class QMessageBox;
 class QWidget;
@@ -18,7 +20,6 @@ namespace palpate::viewer {
 class Content;
 class Messages;
 class Panel;
-struct BrushChoice;
 
 class EditController : public QObject {
     Q_OBJECT
@@ -40,9 +41,11 @@ class EditController : public QObject {
     /// this name. Errors are shown.
     void save(const QString& path, std::function<void()> then = {});
     /// Asks for a name, and saves the surface that is felt as a watertight mesh (.ply, .stl, .obj,
-    /// .vtp) in the background. Errors are shown.
+    /// .vtp) in the background. Offers to simplify one with many triangles. Errors are shown.
     void ask_save_surface();
     void save_surface(const QString& path);
+    /// More triangles than this are many.
+    void set_many_triangles(std::size_t triangles) { many_triangles_ = triangles; }
     bool saving() const { return saving_.busy(); }
 
     /// True if there are no unsaved edits, or the user goes on without them. Offers to save them,
@@ -61,6 +64,7 @@ class EditController : public QObject {
   private:
     bool go_on(QMessageBox& question, const std::function<void()>& once_saved);
     void show();
+    void write_surface(const QString& path, const std::shared_ptr<SurfaceMesh>& mesh);
     void step(bool (run::VolumeEditor::*take)(), const QString& if_none);
 
     Content& content_;
@@ -70,6 +74,8 @@ class EditController : public QObject {
     BackgroundTask saving_;
     QString problem_;
     bool resting_ = false;
+    std::size_t many_triangles_ = 1000000;
+    BrushChoice brush_;  // the last one that could be
 };
 
 /// Saves edits where run::Data::rescue() finds a place; prints the name on standard error.

@@ -258,7 +258,7 @@ void FileController::leave_playback() {
     const SharedLayers layers = content_.layers();
     feel_session(content_.volume(), session, run_.take_request());
     if (!layers || !content_.live()) return;
-    run_.send(command::UseLayers{layers});
+    content_.effect().request(command::UseLayers{layers});
     Q_EMIT content_.run_changed();
 }
 

@@ -21,7 +21,9 @@
 #include <utility>
 
 #include "apps/viewer/model/hand_state.hpp"
+#include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
+#include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/panel/panel.hpp"
@@ -53,7 +55,7 @@ constexpr int give_back_ms = 2000;
 MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
     : views_(new Views(std::move(make_painter), this)),
       welcome_(new Welcome(this)),
-      panel_(new Panel(this)),
+      panel_(new Panel(content_.effect(), this)),
       timeline_(new Timeline(this)),
       streaming_(new QLabel),
       readout_(new QLabel),
@@ -66,7 +68,7 @@ MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
       run_(request, content_, *panel_, messages_),
       layers_(content_, overlays_, *panel_, messages_),
       tools_(content_, *panel_, messages_),
-      recordings_(content_, *panel_, messages_),
+      recordings_(content_, messages_),
       probe_(content_, run_, *views_, messages_),
       editing_(content_, *panel_, messages_, this),
       playing_(content_, *timeline_, messages_),
@@ -89,6 +91,7 @@ MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
 MainWindow::~MainWindow() {
     timer_.stop();
     content_.end_run();  // before anything that takes time
+    delete panel_;       // it may still ask for something when it loses the focus
 }
 
 void MainWindow::build() {
@@ -107,7 +110,6 @@ void MainWindow::build() {
     dock->setObjectName("dock");
     dock->setWidget(panel_);
     addDockWidget(Qt::RightDockWidgetArea, dock);
-    panel_->clear();
     streaming_->setObjectName("streaming");
     statusBar()->addPermanentWidget(streaming_);
     readout_->setObjectName("readout");
@@ -129,11 +131,11 @@ void MainWindow::connect_parts() {
     connect(&views_->scene(), &Scene::problem, this,
             [this](const QString& what) { messages_.show_problem(what); });
     const auto outline_brush = [this] {
-        const BrushChoice& brush = panel_->brush();
+        const BrushChoice& brush = panel_->brush_controls().choice();
         const bool ball = content_.editor() && brush.on && !brush.as_tool;  // a tool is drawn
         views_->set_brush(ball ? brush.radius : 0);
     };
-    connect(panel_, &Panel::brush_changed, this, outline_brush);
+    connect(&panel_->brush_controls(), &BrushControls::changed, this, outline_brush);
     connect(&probe_, &ProbeController::lifted, &editing_, &EditController::rest);
     connect(&content_, &Content::run_changed, this, outline_brush);
     connect(&content_, &Content::closed, this, outline_brush);
@@ -270,10 +272,10 @@ void MainWindow::tick() {
     details_.observe(now);
     rest_or_wake(now);
     probe_.observe();
-    hints_.observe(now, content_.editor() && panel_->brush().on);
-    if (now) panel_->show_stroke(*now);
+    hints_.observe(now, content_.editor() && panel_->brush_controls().choice().on);
+    if (now) panel_->layers_controls().show_snapshot(*now);
     if (now && rounds_ % panel_rounds == 0) {
-        panel_->show_snapshot(*now);
+        content_.effect().observe(*now);
         show_readout(*now);
         editing_.observe();
         playing_.observe();

@@ -101,13 +101,13 @@ class MainWindow : public QMainWindow {
     void show_streaming();
     void rest_or_wake(const std::optional<Snapshot>& now);
 
+    Content content_;
     Views* views_;
     Welcome* welcome_;
     Panel* panel_;
     Timeline* timeline_;
     QLabel *streaming_, *readout_, *frame_time_;
     Messages messages_;
-    Content content_;
     MeasureController measuring_;
     OverlayController overlays_;
     DisplayController display_;

@@ -115,40 +115,35 @@ void add_recording_actions(MainWindow& window, Actions& actions, QMenu* menu) {
 void make_session_menu(MainWindow& window, Actions& actions) {
     QMenu* menu = window.menuBar()->addMenu(MainWindow::tr("&Session"));
     const auto live = [&window] { return window.live() != nullptr; };
-    const auto send = [&window](const Command& command) { window.run().send(command); };
+    Effect& effect = window.content().effect();
+    const auto send = [&effect](const Command& command) { effect.request(command); };
     actions.add_switch(
         menu, "forces", MainWindow::tr("&Forces on"), QKeySequence(Qt::Key_Space),
         [send](bool on) { send(command::Forces{on}); },
-        [&window] { return window.live() && window.live()->settings().forces_on; }, live);
+        [&effect] { return effect.there() && effect.settings().forces_on; }, live);
     actions.add_switch(
         menu, "freeze", MainWindow::tr("Free&ze"), QKeySequence("F"),
         [send](bool on) { send(command::Freeze{on}); },
-        [&window] { return window.live() && window.live()->frozen(); }, live);
+        [&effect] { return effect.there() && effect.session().frozen; }, live);
     actions.add_switch(
         menu, "clutch", MainWindow::tr("&Clutch: the volume follows the hand"), QKeySequence("C"),
         [send](bool on) { send(command::Clutch{on}); },
-        [&window] {
-            const auto now = window.live() ? window.live()->snapshot() : std::nullopt;
-            return now && now->session.clutched;
-        },
-        live);
+        [&effect] { return effect.there() && effect.session().clutched; }, live);
     actions.add_switch(
         menu, "pointer", MainWindow::tr("&Mouse moves the probe"), QKeySequence("H"),
         [&window](bool on) { window.probe().set_pointing(on); },
         [&window] { return window.probe().pointing(); },
         [&window] { return window.probe().possible(); });
     menu->addSeparator();
-    const auto raise = [&window](double percent) {
-        return [&window, percent] {
-            const double range = window.content().felt().volume().range();
-            const double level = window.panel().isovalue() + 0.01 * percent * range;
-            window.panel().request(command::Isovalue{level});
+    const auto raise = [&effect](double percent) {
+        return [&effect, percent] {
+            const double range = effect.field().volume().range();
+            effect.request(command::Isovalue{effect.isovalue() + 0.01 * percent * range});
         };
     };
-    const auto scale = [&window](double factor) {
-        return [&window, factor] {
-            const double now = window.panel().settings().transform.scale;
-            window.panel().request(command::Scale{factor * now});
+    const auto scale = [&effect](double factor) {
+        return [&effect, factor] {
+            effect.request(command::Scale{factor * effect.settings().transform.scale});
         };
     };
     actions.add(menu, "level_up", MainWindow::tr("Isovalue &up by 1 %"), QKeySequence("+"),

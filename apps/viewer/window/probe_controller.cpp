@@ -35,7 +35,7 @@ constexpr double hold_seconds = 0.6, press_speed = 3;
 
 ProbeController::ProbeController(Content& content, RunController& run, Views& views,
                                  Messages& messages)
-    : content_(content), run_(run), views_(views), messages_(messages) {
+    : content_(content), views_(views), messages_(messages) {
     connect(&views, &Views::probe_dragged, this, [this](const Vec3& by) {
         forget_press();
         move_by(by);
@@ -203,7 +203,7 @@ void ProbeController::travel(const Snapshot& now) {
     const Vec3 away = now.session.device.position - content_.live()->mouse()->aimed();
     if (away.norm() > arrived_mm) return;
     // In front of the volume nothing is in the way of the proxy, whatever held it.
-    if (route_.size() == 2) run_.send(command::Lift{});
+    if (route_.size() == 2) content_.effect().request(command::Lift{});
     if (route_.size() == 1) return end_route();
     route_.pop_back();
     aim(now.session.transform, route_.back());

@@ -64,7 +64,6 @@ class ProbeController : public QObject {
     Vec3 before_far_side(const Vec3& from, const Vec3& by);
 
     Content& content_;
-    RunController& run_;
     Views& views_;
     Messages& messages_;
     bool pointing_ = false;

@@ -1,18 +1,17 @@
-// Starts and ends recordings; describes one that is played.
+// Starts and ends recordings, and tells what is special about one that is played.
 #include "apps/viewer/window/recording_controller.hpp"
 
 #include <utility>
 
-#include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
 
 namespace palpate::viewer {
 
-RecordingController::RecordingController(Content& content, Panel& panel, Messages& messages)
-    : content_(content), panel_(panel), messages_(messages) {
+RecordingController::RecordingController(Content& content, Messages& messages)
+    : content_(content), messages_(messages) {
     connect(&content, &Content::closing, this, &RecordingController::stop);
-    connect(&content, &Content::playback_started, this, &RecordingController::show_playback);
+    connect(&content, &Content::playback_started, this, &RecordingController::tell_playback);
 }
 
 void RecordingController::start(const QString& path) {
@@ -43,15 +42,8 @@ void RecordingController::check() {
     if (recording() && !content_.live()->recording()->problem().empty()) stop();
 }
 
-void RecordingController::show_playback() {
+void RecordingController::tell_playback() {
     const Playback& playback = *content_.playback();
-    const io::RecordingHead& head = playback.head();
-    DeviceInfo device;
-    device.name = device.model = head.device;
-    device.limits = head.settings.device;
-    panel_.set_session(playback.field(), content_.volume()->histogram, head.isovalue, head.settings,
-                       device);
-    panel_.set_observing(true);
     QStringList words{tr("%n ticks", nullptr, static_cast<int>(playback.ticks()))};
     if (!playback.complete()) words << tr("the recording was cut off before its end");
     if (playback.different() > 0) {

@@ -1,4 +1,4 @@
-// Records the live run; shows in the panel what a recording was made with.
+// Records the live run.
 #pragma once
 
 #include <QObject>
@@ -8,13 +8,12 @@ namespace palpate::viewer {
 
 class Content;
 class Messages;
-class Panel;
 
 class RecordingController : public QObject {
     Q_OBJECT
 
   public:
-    RecordingController(Content& content, Panel& panel, Messages& messages);
+    RecordingController(Content& content, Messages& messages);
 
     /// Errors are shown.
     void start(const QString& path);
@@ -29,10 +28,9 @@ class RecordingController : public QObject {
     void changed();
 
   private:
-    void show_playback();
+    void tell_playback();
 
     Content& content_;
-    Panel& panel_;
     Messages& messages_;
     int exit_status_ = 0;
 };

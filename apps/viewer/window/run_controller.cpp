@@ -1,10 +1,11 @@
-// Commands and devices: from the panel and the menus to the live run, and back to the panel.
+// Starts runs, restores their settings, finds and changes devices.
 #include "apps/viewer/window/run_controller.hpp"
 
 #include <utility>
 
 #include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
+#include "apps/viewer/panel/loop_view.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
@@ -14,12 +15,12 @@ namespace palpate::viewer {
 RunController::RunController(const RunRequest& request, Content& content, Panel& panel,
                              Messages& messages)
     : request_(request), content_(content), panel_(panel), messages_(messages), search_(messages) {
-    connect(&content, &Content::run_changed, this, &RunController::show_settings);
-    connect(&panel, &Panel::asked, this, &RunController::send);
-    connect(&panel, &Panel::device_chosen, this, &RunController::use_device);
+    connect(&content, &Content::run_changed, this, &RunController::show_terraces);
+    connect(&panel.device_controls(), &DeviceControls::chosen, this, &RunController::use_device);
     connect(&panel.device_controls(), &DeviceControls::refresh_wanted, this,
             &RunController::find_devices);
-    connect(&panel, &Panel::field_chosen, this, &RunController::use_field);
+    connect(&panel.isovalue_controls(), &IsovalueControls::field_wanted, this,
+            &RunController::use_field);
     since_report_.start();
 }
 
@@ -60,22 +61,8 @@ void RunController::start(std::shared_ptr<Opened> volume, const run::Setup& setu
     Q_EMIT device_changed();
 }
 
-void RunController::send(const Command& command) {
-    run::Run* live = content_.live();
-    if (!live) {
-        panel_.show_refused(content_.playback()
-                                ? tr("A recording is played: nothing here changes it.")
-                                : tr("There is no volume to feel."));
-        return;
-    }
-    try {
-        live->send(command);
-    } catch (const std::invalid_argument& e) {
-        panel_.show_refused(QString::fromStdString(e.what()));
-    }
-}
-
 void RunController::restore(const RendererSettings& settings) {
+    const auto send = [this](const Command& command) { content_.effect().request(command); };
     if (!settings.tool) send(command::UseTool{nullptr});  // beside one, other things are refused
     send(settings.force);
     send(settings.proxy.friction);
@@ -109,10 +96,7 @@ void RunController::show_devices() {
     status_.reset();
 }
 
-void RunController::show_settings() {
-    const run::Run& live = *content_.live();
-    panel_.set_session(live.field(), content_.volume()->histogram, live.isovalue(), live.settings(),
-                       live.device());
+void RunController::show_terraces() {
     const Opened& opened = *content_.volume();
     const bool on = opened.loaded.source.dequantize > 0;
     panel_.isovalue_controls().set_dequantized(
@@ -153,7 +137,7 @@ void RunController::observe(const Snapshot& now) {
     if (status == status_ && problem == problem_) return;
     status_ = status;
     problem_ = problem;
-    panel_.show_device(live->device(), status, problem);
+    panel_.device_controls().show_device(live->device(), status, problem);
 }
 
 void RunController::show_report() {
@@ -162,7 +146,8 @@ void RunController::show_report() {
     const double seconds = 1e-3 * static_cast<double>(since_report_.restart());
     const std::int64_t ticks = report.ticks - std::exchange(reported_ticks_, report.ticks);
     // Fewer than before: another servo.
-    if (ticks >= 0 && seconds > 0) panel_.show_report(report, static_cast<double>(ticks) / seconds);
+    if (ticks < 0 || !(seconds > 0)) return;
+    panel_.loop_view().show_report(report, static_cast<double>(ticks) / seconds);
 }
 
 }  // namespace palpate::viewer

@@ -1,5 +1,4 @@
-// The live run and its device: carries out what the panel and the keys ask of the run, lists
-// devices, changes to another one.
+// The live run and its device: lists devices, changes to another one, or to another field.
 #pragma once
 
 #include <QElapsedTimer>
@@ -48,10 +47,8 @@ class RunController : public QObject {
     /// Feels the volume. Throws as Content::start_run.
     void start(std::shared_ptr<Opened> volume, const run::Setup& setup);
 
-    /// A command that cannot be carried out is refused in the panel.
-    void send(const Command& command);
-    /// Sends those of the settings for which there are commands; the panel shows the result. Not
-    /// layers that lack_labels().
+    /// Requests those of the settings for which there are commands. Not layers that
+    /// lack_labels().
     void restore(const RendererSettings& settings);
 
     void find_devices();
@@ -69,7 +66,7 @@ class RunController : public QObject {
 
   private:
     void show_devices();
-    void show_settings();
+    void show_terraces();
 
     RunRequest request_;
     Content& content_;

@@ -66,7 +66,8 @@ TEST(Transfer, presets_of_any_data_are_valid_and_lie_within_the_data) {
         const Volume volume = any_volume(random);
         const int bins = std::uniform_int_distribution(1, 300)(random);
         const run::Histogram histogram = run::histogram_of(volume, bins);
-        for (const std::string& name : preset_names()) {
+        const auto names = preset_names(histogram, volume);
+        for (const std::string& name : names) {
             const TransferFunction transfer = preset(name, histogram, volume);
             ASSERT_TRUE(is_valid(transfer)) << name << ", round " << round;
             EXPECT_EQ(transfer.preset, name);
@@ -74,7 +75,6 @@ TEST(Transfer, presets_of_any_data_are_valid_and_lie_within_the_data) {
             EXPECT_GE(transfer.points.back().level, volume.maximum());
             EXPECT_GT(transfer.points.back().level, transfer.points.front().level);
         }
-        const auto names = preset_names();
         EXPECT_NE(std::ranges::find(names, suggested_preset(histogram, volume)), names.end());
     }
 }
@@ -116,11 +116,31 @@ TEST(Transfer, without_hounsfield_units_the_classes_of_the_histogram_count) {
     const run::Histogram histogram = run::histogram_of(volume, 256);
     EXPECT_EQ(sampled(preset("CT bone", histogram, volume), 300).opacity, 0);
     EXPECT_GT(sampled(preset("CT bone", histogram, volume), 690).opacity, 0.5);
-    for (const std::string& name : preset_names()) {
+    for (const std::string& name : preset_names(histogram, volume)) {
         if (name == "Grey") continue;  // a plain ramp
         EXPECT_EQ(sampled(preset(name, histogram, volume), 5).opacity, 0) << name;
         EXPECT_GT(sampled(preset(name, histogram, volume), 700).opacity, 0.2) << name;
     }
+}
+
+TEST(Transfer, presets_of_ct_are_for_data_that_look_like_hounsfield_units) {
+    const auto offers_ct = [](const Volume& volume) {
+        const auto names = preset_names(run::histogram_of(volume, 256), volume);
+        const auto count = std::ranges::count_if(
+            names, [](const std::string& name) { return name.starts_with("CT"); });
+        EXPECT_TRUE(count == 0 || count == 3);
+        return count > 0;
+    };
+    EXPECT_TRUE(offers_ct(volume_of<std::int16_t>({-1024, -1000, 0, 40, 900})));
+    EXPECT_TRUE(offers_ct(volume_of<float>({-3024, -1000, 0, 40, 900})));
+    std::vector<std::uint16_t> shifted(3000, 0);
+    shifted.insert(shifted.end(), 1500, 1040);
+    shifted.push_back(3000);
+    EXPECT_TRUE(offers_ct(volume_of(shifted)));
+    EXPECT_FALSE(offers_ct(volume_of<std::uint8_t>({0, 20, 200, 255})));
+    EXPECT_FALSE(offers_ct(volume_of<float>({0, 0.4F, 0.6F, 1})));
+    EXPECT_FALSE(offers_ct(volume_of<std::int16_t>({0, 300, 1200}))) << "MR";
+    EXPECT_FALSE(offers_ct(volume_of<std::int16_t>({-32768, -900, 0, 32767}))) << "seismic";
 }
 
 TEST(Transfer, suggestions_follow_the_kind_of_data) {

@@ -21,9 +21,10 @@ constexpr double at_once = std::numeric_limits<double>::infinity();
 class Brushes : public PanelFixture {
   protected:
     Brushes() {
-        QObject::connect(&panel, &Panel::brush_changed, [this](const BrushChoice& brush) {
+        BrushControls* controls = &panel.brush_controls();
+        QObject::connect(controls, &BrushControls::changed, [=, this](const BrushChoice& brush) {
             choices.push_back(brush);
-            if (!refuse_with.isEmpty()) panel.show_refused(refuse_with);
+            if (!refuse_with.isEmpty()) controls->refuse(kept, refuse_with);
         });
     }
     /// What has been chosen since the last look, and nothing that waits.
@@ -34,10 +35,11 @@ class Brushes : public PanelFixture {
     /// A grid of 32 mm: radius from 1 to 8 mm.
     void edit(const BrushChoice& brush = {}) {
         set();
-        panel.set_brush(brush);
+        panel.brush_controls().set_choice(brush);
         choices.clear();
     }
     std::vector<BrushChoice> choices;
+    BrushChoice kept;  // where one is refused
 };
 
 TEST_F(Brushes, each_control_changes_its_part_of_the_choice_and_emits_once) {
@@ -71,16 +73,17 @@ TEST_F(Brushes, each_control_changes_its_part_of_the_choice_and_emits_once) {
         const auto asked = chosen();
         ASSERT_EQ(asked.size(), 1U);
         EXPECT_EQ(asked.front(), expected);
-        EXPECT_EQ(panel.brush(), expected);
+        EXPECT_EQ(brush(), expected);
         EXPECT_TRUE(commands.empty());
     }
 }
 
 TEST_F(Brushes, setters_show_and_emit_nothing) {
     set();
-    QSignalSpy undo(&panel, &Panel::undo_asked), redo(&panel, &Panel::redo_asked),
-        save(&panel, &Panel::save_asked);
-    panel.set_brush({BrushKind::smooth, 7, 0.3, 12, 100.0, false, true});
+    const auto* controls = &panel.brush_controls();
+    QSignalSpy undo(controls, &BrushControls::undo), redo(controls, &BrushControls::redo),
+        save(controls, &BrushControls::save);
+    panel.brush_controls().set_choice({BrushKind::smooth, 7, 0.3, 12, 100.0, false, true});
     panel.brush_controls().set_history(3, 1, true);
     panel.brush_controls().set_reason("A sequence cannot be edited.");
     panel.brush_controls().set_reason({});
@@ -90,7 +93,7 @@ TEST_F(Brushes, setters_show_and_emit_nothing) {
     EXPECT_EQ(find<NumberBox>("brush_hardness_box")->value(), 0.3);
     EXPECT_EQ(find<NumberBox>("brush_rate_box")->value(), 12);
     EXPECT_FALSE(find<QWidget>("brush_value")->isEnabled()) << "smoothing has no value";
-    panel.set_brush({BrushKind::carve, 5, 1, at_once, {}, false});
+    panel.brush_controls().set_choice({BrushKind::carve, 5, 1, at_once, {}, false});
     EXPECT_TRUE(find<QCheckBox>("brush_at_once")->isChecked());
     EXPECT_FALSE(find<QWidget>("brush_rate")->isEnabled());
     set();  // another volume
@@ -136,7 +139,7 @@ TEST_F(Brushes, the_radius_goes_from_a_voxel_to_a_quarter_of_the_grid_by_factors
     asked = chosen();
     ASSERT_FALSE(asked.empty());
     EXPECT_NEAR(asked.back().radius, std::sqrt(8.0), 0.25);
-    EXPECT_EQ(panel.brush(), asked.back());
+    EXPECT_EQ(brush(), asked.back());
 }
 
 TEST_F(Brushes, values_out_of_range_are_refused_with_the_reason) {
@@ -151,7 +154,7 @@ TEST_F(Brushes, values_out_of_range_are_refused_with_the_reason) {
     type("brush_rate_box", "0.5");
     EXPECT_TRUE(message("edit_part").contains("from 1 to 100 /s"));
     EXPECT_TRUE(chosen().empty());
-    EXPECT_EQ(panel.brush(), start);
+    EXPECT_EQ(brush(), start);
     type("brush_radius_box", "6");
     EXPECT_EQ(message("edit_part"), "");
 }
@@ -179,9 +182,9 @@ TEST_F(Brushes, a_typed_value_is_remembered_for_its_kind) {
     edit();
     type("brush_value", "-900");
     press("brush_add");
-    EXPECT_FALSE(panel.brush().value) << "what carves does not fit to add";
+    EXPECT_FALSE(brush().value) << "what carves does not fit to add";
     press("brush_carve");
-    EXPECT_EQ(panel.brush().value, -900);
+    EXPECT_EQ(brush().value, -900);
     EXPECT_FALSE(find<QCheckBox>("brush_automatic")->isChecked());
     EXPECT_EQ(chosen().size(), 3U);
 }
@@ -208,8 +211,9 @@ TEST_F(Brushes, the_rate_comes_back_when_it_is_not_at_once_any_more) {
 
 TEST_F(Brushes, undo_redo_and_save_ask_once_a_press_and_say_how_many_steps_there_are) {
     set();
-    QSignalSpy undo(&panel, &Panel::undo_asked), redo(&panel, &Panel::redo_asked),
-        save(&panel, &Panel::save_asked);
+    const auto* controls = &panel.brush_controls();
+    QSignalSpy undo(controls, &BrushControls::undo), redo(controls, &BrushControls::redo),
+        save(controls, &BrushControls::save);
     press("undo");
     press("redo");
     EXPECT_EQ(undo.count() + redo.count(), 0) << "there is nothing to undo";
@@ -258,25 +262,26 @@ TEST_F(Brushes, another_volume_begins_with_the_brush_off_and_a_radius_that_fits)
     Geometry small;
     small.size = {12, 12, 12};
     const Field other(Volume(small, std::vector<std::uint8_t>(12 * 12 * 12, 9)));
-    panel.set_session(other, run::histogram_of(other.volume(), 16), 4, {}, desktop_device());
-    EXPECT_FALSE(panel.brush().on);
-    EXPECT_FALSE(panel.brush().value);
-    EXPECT_EQ(panel.brush().radius, 4);  // a thin grid leaves four voxels
-    EXPECT_EQ(panel.brush().hardness, 0.5);
+    begin(other, 4);
+    EXPECT_FALSE(brush().on);
+    EXPECT_FALSE(brush().value);
+    EXPECT_EQ(brush().radius, 4);  // a thin grid leaves four voxels
+    EXPECT_EQ(brush().hardness, 0.5);
     EXPECT_FALSE(find<QPushButton>("undo")->isEnabled());
     EXPECT_TRUE(chosen().empty());
 }
 
 TEST_F(Brushes, a_refused_choice_goes_back_and_says_why) {
     edit();
+    kept = brush();
     refuse_with = "nothing to edit here";
     press("brush");
-    EXPECT_FALSE(panel.brush().on);
+    EXPECT_FALSE(brush().on);
     EXPECT_FALSE(find<QPushButton>("brush")->isChecked());
     EXPECT_EQ(message("edit_part"), "nothing to edit here");
     refuse_with.clear();
     panel.brush_controls().toggle();
-    EXPECT_TRUE(panel.brush().on);
+    EXPECT_TRUE(brush().on);
     EXPECT_EQ(message("edit_part"), "");
     EXPECT_EQ(chosen().size(), 2U);
 }
@@ -313,10 +318,10 @@ TEST_F(Brushes, one_with_the_shape_of_the_tool_needs_a_tool_and_is_a_ball_again_
 TEST_F(Brushes, without_a_volume_or_while_looking_at_a_recording_nothing_can_be_edited) {
     panel.brush_controls().toggle();
     edit();
-    panel.set_observing(true);
+    effect.begin(*field, 300, {}, desktop_device(), histogram, nullptr);
     press("brush");
     panel.brush_controls().toggle();
-    panel.clear();
+    effect.end();
     panel.brush_controls().toggle();
     EXPECT_TRUE(chosen().empty());
 }

@@ -6,6 +6,7 @@
 #include <QPushButton>
 #include <QToolButton>
 
+#include "apps/viewer/panel/loop_view.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/section.hpp"
 
@@ -20,10 +21,8 @@ const std::vector<devices::DeviceFinding> findings{
 class Devices : public PanelFixture {
   protected:
     Devices() {
-        QObject::connect(&panel, &Panel::device_chosen, [this](const QString& option) {
-            chosen.push_back(option);
-            if (!refuse_with.isEmpty()) panel.show_refused(refuse_with);
-        });
+        QObject::connect(&panel.device_controls(), &DeviceControls::chosen,
+                         [this](const QString& option) { chosen.push_back(option); });
     }
     QComboBox* picker() { return find<QComboBox>("devices"); }
     QStringList chosen;
@@ -92,12 +91,11 @@ TEST_F(Devices, an_unavailable_device_leaves_the_old_one) {
     panel.device_controls().set_devices(findings, "simulated:seed=7");
     picker()->setFocus();
     QTest::keyClick(picker(), Qt::Key_Down);
-    refuse_with = "the mouse is gone";
     press("connect_device");
     EXPECT_EQ(chosen.size(), 1);
+    panel.device_controls().set_devices(findings, "simulated:seed=7");
     EXPECT_TRUE(picker()->currentText().startsWith("simulated"));
     EXPECT_EQ(find<QLineEdit>("device_options")->text(), "seed=7");
-    EXPECT_EQ(message("device_part"), "the mouse is gone");
 }
 
 TEST_F(Devices, the_button_requests_a_new_search) {
@@ -115,19 +113,20 @@ TEST_F(Devices, the_device_state_is_shown_with_what_to_do) {
     info.workspace_low = Vec3(-70, 0, -50);
     info.workspace_high = Vec3(70, 100, 50);
     info.limits.maximum_force = 4;
-    panel.show_device(info, DeviceStatus::uncalibrated, "move the arm to its corner");
+    panel.device_controls().show_device(info, DeviceStatus::uncalibrated,
+                                        "move the arm to its corner");
     EXPECT_EQ(find<QLabel>("device_state")->text(), "needs calibration");
     EXPECT_EQ(find<QLabel>("device_problem")->text(), "move the arm to its corner");
     EXPECT_TRUE(find<QLabel>("device_problem")->isVisible());
     EXPECT_EQ(find<QLabel>("device_model")->text(), "haply, Inverse3 0A1B");
     EXPECT_EQ(find<QLabel>("device_workspace")->text(), "140 x 100 x 100 mm, up to 4 N");
     const QColor amber = find<QLabel>("device_dot")->palette().color(QPalette::WindowText);
-    panel.show_device(info, DeviceStatus::ready, {});
+    panel.device_controls().show_device(info, DeviceStatus::ready, {});
     EXPECT_FALSE(find<QLabel>("device_problem")->isVisible());
     EXPECT_NE(find<QLabel>("device_dot")->palette().color(QPalette::WindowText), amber);
     Snapshot now;
     now.session.device.status = DeviceStatus::lost;
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_EQ(find<QLabel>("device_state")->text(), "connection lost");
 }
 
@@ -142,9 +141,13 @@ TEST_F(Devices, the_scale_of_the_hand_is_requested_and_followed) {
     EXPECT_NE(message("device_part"), "");
     panel.setFocus();
     Snapshot now;
-    now.session.transform.scale = 1.75;
-    panel.show_snapshot(now);
-    EXPECT_EQ(find<NumberBox>("scale")->value(), 1.75);
+    effect.observe(now);
+    EXPECT_EQ(find<NumberBox>("scale")->value(), 2.5) << "the snapshot is older";
+    for (const double scale : {2.5, 1.75}) {
+        now.session.transform.scale = scale;
+        effect.observe(now);
+        EXPECT_EQ(find<NumberBox>("scale")->value(), scale);
+    }
     EXPECT_EQ(of<command::Scale>().size(), 1U);
 }
 
@@ -157,7 +160,7 @@ TEST_F(Devices, the_loops_figures_are_shown_with_their_units) {
     report.lateness = {5000, 12000, 40000, 150000, 2100000};
     report.compute = {5000, 800, 2500, 6000, 30000};
     report.worst = {17, 2100000, 50000, 30000, TickCause::machine};
-    panel.show_report(report, 998.6);
+    panel.loop_view().show_report(report, 998.6);
     EXPECT_EQ(find<QLabel>("loop_rate")->text(), "999 Hz");
     EXPECT_EQ(find<QLabel>("loop_missed")->text(), "3 of 5000 ticks, 1 forces taken back");
     EXPECT_EQ(find<QLabel>("lateness_p50")->text(), "12 us");

@@ -74,7 +74,7 @@ TEST_F(Forces, each_number_changes_its_setting_and_nothing_else) {
         const auto asked = of<ForceSettings>();
         ASSERT_EQ(asked.size(), 1U);
         expect_same(asked.front(), expected);
-        expect_same(panel.settings().force, expected);
+        expect_same(effect.settings().force, expected);
         EXPECT_EQ(commands.size(), 1U);
     }
 }
@@ -162,7 +162,7 @@ TEST_F(Forces, snapshots_move_the_gauge_and_say_what_holds_the_force_back) {
     auto* gauge = find<ForceGauge>("force_gauge");
     Snapshot now;
     now.session.tick.force = Vec3(0, 1.2, 0.5);
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_DOUBLE_EQ(gauge->force(), 1.3);
     EXPECT_EQ(gauge->limit(), 2.5);
     EXPECT_DOUBLE_EQ(gauge->filled(), 1.3 / 2.5);
@@ -170,20 +170,20 @@ TEST_F(Forces, snapshots_move_the_gauge_and_say_what_holds_the_force_back) {
     const QImage before = gauge->grab().toImage();
     now.session.tick.force = Vec3(0, 2.5, 0);
     now.session.tick.force_flags = force_limited;
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_EQ(gauge->filled(), 1);
     EXPECT_EQ(gauge->words(), "limit");
     EXPECT_NE(gauge->grab().toImage(), before);
     now.session.tick.force_flags = force_waiting;
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_EQ(gauge->words(), "waiting");
     now.session.tick.force_flags = force_stale;
     now.forces_on = true;
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_EQ(gauge->words(), "no input");
     EXPECT_EQ(find<QPushButton>("forces")->text(), "Forces WAIT\nno input from the device");
     now.session.tick.force_flags = force_off;
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_EQ(gauge->words(), "off");
 }
 
@@ -191,7 +191,7 @@ TEST_F(Forces, the_gauge_ends_at_the_devices_limit_where_that_is_less) {
     RendererSettings settings = unusual();
     settings.force.limit = 8;
     set(settings);
-    panel.show_snapshot({});
+    effect.observe({});
     EXPECT_EQ(find<ForceGauge>("force_gauge")->limit(), 3.3);
 }
 
@@ -202,7 +202,7 @@ TEST_F(Forces, the_pull_is_shown_in_millimetres_of_hand_and_volume) {
     now.session.tick.proxy.hip = Vec3(0, 3, 0);
     now.session.tick.proxy.scp = Vec3(0, 0, 0);
     now.session.transform.scale = 2;
-    panel.show_snapshot(now);
+    effect.observe(now);
     const QString text = find<QLabel>("contact")->text();
     EXPECT_TRUE(text.contains("1.50 mm")) << text.toStdString();
     EXPECT_TRUE(text.contains("3.00 mm")) << text.toStdString();
@@ -218,13 +218,13 @@ TEST_F(Forces, switches_request_the_opposite_and_show_the_state_in_snapshots) {
     EXPECT_FALSE(of<command::Forces>().back().on);
     EXPECT_EQ(forces->text(), "Forces are OFF");
     Snapshot now;  // taken before the command was obeyed
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_FALSE(forces->isChecked()) << "it must not flicker";
     now.forces_on = false;
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_FALSE(forces->isChecked());
     now.forces_on = true;  // somebody else switched them on
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_TRUE(forces->isChecked());
     press("forces");
     EXPECT_EQ(of<command::Forces>().size(), 2U);
@@ -234,7 +234,7 @@ TEST_F(Forces, a_switch_without_effect_goes_back) {
     set();
     press("freeze");
     EXPECT_TRUE(of<command::Freeze>().back().on);
-    for (int i = 0; i < 10; ++i) panel.show_snapshot({});
+    for (int i = 0; i < 10; ++i) effect.observe({});
     EXPECT_FALSE(find<QPushButton>("freeze")->isChecked());
 }
 
@@ -243,7 +243,7 @@ TEST_F(Forces, freeze_and_clutch_are_shown_as_the_session_has_them) {
     Snapshot now;
     now.session.frozen = true;
     now.session.clutched = true;  // by a button of the device
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_TRUE(find<QPushButton>("freeze")->isChecked());
     EXPECT_TRUE(find<QPushButton>("clutch")->isChecked());
     press("clutch");
@@ -258,14 +258,19 @@ TEST_F(Forces, a_refused_switch_goes_back_and_says_why) {
     EXPECT_EQ(message("session_part"), "too many commands at once");
 }
 
-TEST_F(Forces, a_refusal_that_comes_later_undoes_the_last_request) {
+TEST_F(Forces, what_somebody_else_asks_for_is_shown_and_refused_where_it_belongs) {
     set(unusual());
-    type("stiffness_box", "1");
-    type("stiffness_box", "1.5");
-    panel.show_refused("not this one");
+    ForceSettings force = unusual().force;
+    force.stiffness = 1;
+    EXPECT_TRUE(effect.request(force));
     EXPECT_EQ(find<NumberBox>("stiffness_box")->value(), 1);
-    EXPECT_EQ(panel.settings().force.stiffness, 1);
-    EXPECT_EQ(message("force_part"), "not this one");
+    force.stiffness = -1;
+    EXPECT_FALSE(effect.request(force));
+    EXPECT_EQ(find<NumberBox>("stiffness_box")->value(), 1);
+    EXPECT_EQ(effect.settings().force.stiffness, 1);
+    EXPECT_FALSE(message("force_part").isEmpty());
+    EXPECT_TRUE(effect.request(command::Isovalue{77}));
+    EXPECT_EQ(find<NumberBox>("isovalue_box")->value(), 77);
 }
 
 TEST_F(Forces, return_presses_a_button_that_has_the_focus) {

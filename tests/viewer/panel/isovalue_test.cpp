@@ -49,15 +49,16 @@ TEST_F(Isovalue, a_session_is_shown_and_nothing_is_emitted) {
     int looks = 0;
     QObject::connect(&panel.look_controls(), &LookControls::look_changed,
                      [&](const Look&) { ++looks; });
-    QSignalSpy device(&panel, &Panel::device_chosen);
+    QSignalSpy device(&panel.device_controls(), &DeviceControls::chosen);
     int sides = 0;
-    QObject::connect(&panel, &Panel::field_chosen, [&](Solid, Interpolation) { ++sides; });
+    QObject::connect(&panel.isovalue_controls(), &IsovalueControls::field_wanted,
+                     [&](Solid, Interpolation) { ++sides; });
     set(settings, 412.5);
     set(settings, 300, Solid::below);
     set({}, 412.5);
     panel.look_controls().set_look({});
     panel.device_controls().set_devices({}, "mouse");
-    panel.show_snapshot({});
+    effect.observe({});
     settle();
     EXPECT_TRUE(commands.empty());
     EXPECT_EQ(looks + device.count() + sides, 0);
@@ -73,7 +74,7 @@ TEST_F(Isovalue, dragging_the_line_asks_for_the_levels_under_the_pointer) {
     for (std::size_t i = 1; i < asked.size(); ++i) EXPECT_GT(asked[i], asked[i - 1]);
     EXPECT_GE(asked.front(), 300);
     EXPECT_NEAR(asked.back(), 1200, pixel());
-    EXPECT_EQ(panel.isovalue(), asked.back());
+    EXPECT_EQ(effect.isovalue(), asked.back());
     EXPECT_EQ(find<NumberBox>("isovalue_box")->value(), asked.back());
 }
 
@@ -190,52 +191,49 @@ TEST_F(Isovalue, a_refused_level_goes_back_and_says_why) {
     EXPECT_EQ(levels().size(), 1U);
     EXPECT_EQ(find<NumberBox>("isovalue_box")->value(), 300);
     EXPECT_EQ(chart()->level(), 300);
-    EXPECT_EQ(panel.isovalue(), 300);
+    EXPECT_EQ(effect.isovalue(), 300);
     EXPECT_EQ(message("isovalue_part"), "too many commands at once");
     refuse_with.clear();
     type("isovalue_box", "800");
     EXPECT_EQ(message("isovalue_part"), "");
-    EXPECT_EQ(panel.isovalue(), 800);
+    EXPECT_EQ(effect.isovalue(), 800);
 }
 
 TEST_F(Isovalue, the_level_felt_is_a_second_marker_while_it_differs) {
     set();
     Snapshot now;
     now.session.tick.proxy.isovalue = 300;
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_TRUE(std::isnan(chart()->felt()));
     now.penetrability_on = true;
     now.session.tick.proxy.isovalue = 640;
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_EQ(chart()->felt(), 640);
     EXPECT_EQ(chart()->level(), 300);
     EXPECT_EQ(find<QLabel>("felt")->text(), "felt 640");
     now.session.tick.proxy.isovalue = std::numeric_limits<double>::infinity();
-    panel.show_snapshot(now);
+    effect.observe(now);
     EXPECT_EQ(find<QLabel>("felt")->text(), "felt inf");
 }
 
 TEST_F(Isovalue, choosing_the_other_side_is_emitted_once) {
     set();
     std::vector<Solid> chosen;
-    QObject::connect(&panel, &Panel::field_chosen,
+    QObject::connect(&panel.isovalue_controls(), &IsovalueControls::field_wanted,
                      [&](Solid solid, Interpolation) { chosen.push_back(solid); });
     auto* box = find<QComboBox>("solid");
     box->setFocus();
     QTest::keyClick(box, Qt::Key_Down);
     EXPECT_EQ(chosen, (std::vector{Solid::below}));
     EXPECT_EQ(box->currentIndex(), 0) << "nobody has put a session in with the other side";
-    panel.show_refused("this field is solid all over");
-    EXPECT_EQ(box->currentIndex(), 0);
-    EXPECT_EQ(message("isovalue_part"), "this field is solid all over");
 }
 
 TEST_F(Isovalue, choosing_the_smooth_field_is_emitted_with_the_side_that_is_solid) {
     set();
     std::vector<std::pair<Solid, Interpolation>> chosen;
-    QObject::connect(&panel, &Panel::field_chosen, [&](Solid solid, Interpolation interpolation) {
-        chosen.emplace_back(solid, interpolation);
-    });
+    const auto* controls = &panel.isovalue_controls();
+    QObject::connect(controls, &IsovalueControls::field_wanted,
+                     [&](Solid solid, Interpolation as) { chosen.emplace_back(solid, as); });
     auto* box = find<QComboBox>("field");
     box->setFocus();
     QTest::keyClick(box, Qt::Key_Down);
@@ -299,8 +297,7 @@ TEST_F(Isovalue, any_data_can_be_shown_and_stepped_through) {
         Geometry geometry;
         geometry.size = {static_cast<int>(samples.size()), 1, 1};
         const Field data(Volume(geometry, samples));
-        histogram = run::histogram_of(data.volume(), 64);
-        panel.set_session(data, histogram, data.volume().minimum(), {}, desktop_device());
+        begin(data, data.volume().minimum());
         commands.clear();
         chart()->setFocus();
         chart()->grab();
@@ -321,11 +318,11 @@ TEST_F(Isovalue, any_data_can_be_shown_and_stepped_through) {
 TEST_F(Isovalue, without_a_volume_nothing_can_be_asked_for) {
     drag(chart(), QPointF(50, 30), QPointF(200, 30));
     set();
-    panel.clear();
+    effect.end();
     QTest::mouseClick(chart(), Qt::LeftButton, {}, QPoint(80, 30));
     press("forces");
     QTest::keyClick(chart(), Qt::Key_Right);
-    panel.show_snapshot({});
+    effect.observe({});
     settle();
     EXPECT_TRUE(commands.empty());
 }
@@ -333,7 +330,7 @@ TEST_F(Isovalue, without_a_volume_nothing_can_be_asked_for) {
 TEST_F(Isovalue, clearing_in_the_middle_of_a_drag_is_safe) {
     set();
     drag(chart(), over(300), over(900), Qt::NoModifier, false);
-    panel.clear();
+    effect.end();
     const std::size_t before = commands.size();
     QTest::mouseRelease(chart(), Qt::LeftButton, {}, over(900).toPoint());
     settle();

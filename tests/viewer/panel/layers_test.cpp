@@ -35,7 +35,7 @@ TEST_F(LayersPart, a_choice_is_one_command_and_none_goes_back_to_the_isovalue) {
     choose(0);
     EXPECT_EQ(of<command::UseLayers>().back().layers, nullptr);
     EXPECT_TRUE(of<command::Isovalue>().empty()) << "the run goes back to it";
-    EXPECT_EQ(panel.isovalue(), 300);
+    EXPECT_EQ(effect.isovalue(), 300);
     EXPECT_TRUE(find<QWidget>("isovalue_box")->isEnabled());
     EXPECT_TRUE(find<QLabel>("layers_note")->text().isEmpty());
 }
@@ -45,7 +45,7 @@ TEST_F(LayersPart, a_refused_set_is_not_shown_as_chosen) {
     choose(1);
     EXPECT_EQ(find<QComboBox>("layers")->currentIndex(), 0);
     EXPECT_EQ(message("layers_part"), refuse_with);
-    EXPECT_FALSE(panel.settings().layers);
+    EXPECT_FALSE(effect.settings().layers);
 }
 
 TEST_F(LayersPart, each_property_of_the_chosen_layer_can_be_set) {
@@ -83,7 +83,7 @@ TEST_F(LayersPart, a_value_is_cleared_back_to_the_curve_or_the_session) {
     press("layer_stiffness_clear");
     settle();
     EXPECT_FALSE(layer(0)[stiffness]);
-    EXPECT_EQ(box->value(), panel.settings().force.stiffness) << "what then counts";
+    EXPECT_EQ(box->value(), effect.settings().force.stiffness) << "what then counts";
     EXPECT_TRUE(box->font().italic());
     EXPECT_FALSE(clear->isEnabled());
     press("start_curve");
@@ -171,11 +171,11 @@ TEST_F(LayersPart, what_has_no_effect_meanwhile_is_disabled_and_says_why) {
     drag(&chart, {40, y}, {120, y}, Qt::ShiftModifier);
     chart.setFocus();
     QTest::keyClick(&chart, Qt::Key_Right);
-    Q_EMIT panel.isovalue_controls().wanted(500);
+    effect.request(command::Isovalue{500});  // as by a key
     EXPECT_TRUE(of<Penetrability>().empty());
     EXPECT_TRUE(of<command::Isovalue>().empty());
     EXPECT_TRUE(message("isovalue_part").contains("No layers"));
-    EXPECT_EQ(panel.isovalue(), 300);
+    EXPECT_EQ(effect.isovalue(), 300);
 }
 
 TEST_F(LayersPart, every_control_has_a_name_of_its_own_and_a_tip) {
@@ -225,7 +225,7 @@ TEST_F(LayersPart, closing_and_the_numbers_of_a_needle_can_be_set) {
     EXPECT_EQ(asked()->needle->stick_speed, 3);
     type("needle_static_ratio_box", "0.5");
     EXPECT_TRUE(message("layers_part").contains("static friction"));
-    EXPECT_EQ(panel.settings().layers->needle->static_ratio, 1.5);
+    EXPECT_EQ(effect.settings().layers->needle->static_ratio, 1.5);
     EXPECT_EQ(find<NumberBox>("needle_static_ratio_box")->value(), 1.5);
     tick("needle");
     EXPECT_FALSE(asked()->needle);
@@ -373,7 +373,7 @@ TEST_F(LayersPart, what_is_touched_is_named_and_plotted) {
         now.session.tick.proxy.hip = Vec3(0, 0, -0.1 * i);
         now.session.tick.force = Vec3(0, 0, 0.04 * (through ? 1.5 * (i - 30) : i));
         now.session.tick.layers = {std::int8_t(through ? 1 : 0), std::int8_t(through ? 1 : 0), 0};
-        panel.show_stroke(now);
+        panel.layers_controls().show_snapshot(now);
     }
     EXPECT_EQ(find<QLabel>("touched_layers")->text(), "on bone, in skin");
     EXPECT_EQ(find<StrokePlot>("stroke_plot")->stroke().points().size(), 60U);

@@ -21,23 +21,23 @@ class WithLive : public PanelFixture {
         live = std::make_unique<run::Run>(std::make_shared<run::Data>(run::load(source)), setup);
         live->start();
         histogram = run::histogram_of(live->field().volume(), 256);
-        panel.set_session(live->field(), histogram, live->isovalue(), live->settings(),
-                          live->device());
-        QObject::connect(&panel, &Panel::asked, [this](const Command& command) {
-            try {
-                live->send(command);
-            } catch (const std::invalid_argument& error) {
-                refusals.push_back(error.what());
-                panel.show_refused(error.what());
-            }
-        });
+        effect.begin(live->field(), live->isovalue(), live->settings(), live->device(), histogram,
+                     [this](const Command& command) {
+                         commands.push_back(command);
+                         try {
+                             live->send(command);
+                         } catch (const std::invalid_argument& error) {
+                             refusals.push_back(error.what());
+                             throw;
+                         }
+                     });
         QApplication::processEvents();
     }
 
     void expect_agreement() {
-        const RendererSettings& a = panel.settings();
+        const RendererSettings& a = effect.settings();
         const RendererSettings& b = live->settings();
-        EXPECT_EQ(panel.isovalue(), live->isovalue());
+        EXPECT_EQ(effect.isovalue(), live->isovalue());
         EXPECT_EQ(a.force.stiffness, b.force.stiffness);
         EXPECT_EQ(a.force.damping, b.force.damping);
         EXPECT_EQ(a.force.limit, b.force.limit);
@@ -91,7 +91,7 @@ TEST_F(WithLive, random_requests_by_mouse_and_keys_are_all_carried_out) {
             const Qt::Key keys[] = {Qt::Key_PageUp, Qt::Key_PageDown, Qt::Key_Home, Qt::Key_End};
             if (slider->isEnabled()) QTest::keyClick(slider, keys[random() % 4]);
         }
-        if (const auto now = live->snapshot()) panel.show_snapshot(*now);
+        if (const auto now = live->snapshot()) effect.observe(*now);
     }
     settle();
     EXPECT_TRUE(refusals.empty()) << refusals.front();
@@ -109,7 +109,7 @@ TEST_F(WithLive, switches_show_in_the_sessions_own_snapshots) {
         return now && !now->forces_on && now->stiffness == 0.25 &&
                now->session.transform.scale == 3;
     });
-    panel.show_snapshot(*now);
+    effect.observe(*now);
     EXPECT_FALSE(find<QPushButton>("forces")->isChecked());
     EXPECT_EQ(find<QLabel>("device_state")->text(), "ready");
 }

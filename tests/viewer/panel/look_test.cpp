@@ -126,13 +126,13 @@ TEST_F(Looks, a_look_that_is_set_is_shown_and_emits_nothing) {
     other.surface = false;
     other.surface_opacity = 0.4;
     other.volume = true;
-    other.transfer = preset("MR", histogram, field->volume());
+    other.transfer = preset("CT skin", histogram, field->volume());
     panel.look_controls().set_look(other);
     settle();
     EXPECT_TRUE(looks.empty());
     EXPECT_FALSE(find<QCheckBox>("show_surface")->isChecked());
     EXPECT_EQ(find<NumberBox>("surface_opacity_box")->value(), 0.4);
-    EXPECT_EQ(find<QComboBox>("preset")->currentText(), "MR");
+    EXPECT_EQ(find<QComboBox>("preset")->currentText(), "CT skin");
     EXPECT_EQ(panel.look_controls().look(), other);
 }
 
@@ -240,11 +240,12 @@ TEST_F(Looks, a_colour_is_chosen_in_a_dialog_and_cancelled) {
 }
 
 TEST_F(Looks, the_panel_can_be_destroyed_during_a_drag_with_a_dialog_open) {
-    auto other = std::make_unique<Panel>();
+    Effect own;
+    auto other = std::make_unique<Panel>(own);
     int heard = 0;
     QObject::connect(&other->look_controls(), &LookControls::look_changed,
                      [&](const Look&) { ++heard; });
-    other->set_session(*field, histogram, 300, {}, desktop_device());
+    own.begin(*field, 300, {}, desktop_device(), histogram, [](const Command&) {});
     other->look_controls().set_look(look);
     other->show();
     wait_until_exposed(*other);
@@ -285,6 +286,38 @@ TEST_F(Looks, random_edits_always_leave_a_valid_function) {
         ASSERT_TRUE(is_valid(editor()->transfer())) << i;
     }
     EXPECT_EQ(last().transfer, editor()->transfer());
+}
+
+class Presets : public PanelFixture {
+  protected:
+    /// As the keys go through them.
+    QStringList offered() {
+        auto* box = find<QComboBox>("preset");
+        box->setFocus();
+        QTest::keyClick(box, Qt::Key_Home);
+        QStringList names{box->currentText()};
+        for (int i = 1; i < box->count(); ++i) {
+            QTest::keyClick(box, Qt::Key_Down);
+            names << box->currentText();
+        }
+        settle();
+        return names;
+    }
+};
+
+TEST_F(Presets, those_of_ct_are_offered_for_hounsfield_units_only) {
+    set();
+    EXPECT_EQ(offered(), (QStringList{"CT bone", "CT skin", "CT soft tissue", "Grey"}));
+    EXPECT_EQ(panel.look_controls().look().transfer.preset, "Grey");
+    std::vector<std::uint8_t> cells(1000, 3);
+    cells.resize(1728, 190);
+    Geometry geometry;
+    geometry.size = {12, 12, 12};
+    begin(Field(Volume(geometry, cells)), 90);
+    EXPECT_EQ(offered(), (QStringList{"Dense parts", "Outer surface", "Soft parts", "MR",
+                                      "Microscopy", "Grey"}));
+    set();
+    EXPECT_EQ(offered().front(), "CT bone");
 }
 
 using FeltSurfaces = PanelFixture;

@@ -1,4 +1,4 @@
-// A fixture: a panel that shows a live run, and the commands that it emits.
+// A fixture: a panel that shows a session, and the commands that it asks for.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,6 +13,7 @@
 
 #include <optional>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 #include "apps/viewer/panel/brush_controls.hpp"
@@ -56,23 +57,29 @@ inline DeviceInfo desktop_device() {
 class PanelFixture : public testing::Test {
   protected:
     PanelFixture() {
-        QObject::connect(&panel, &Panel::asked, [this](const Command& command) {
-            commands.push_back(command);
-            if (!refuse_with.isEmpty()) panel.show_refused(refuse_with);
-        });
         for (Section* section : panel.findChildren<Section*>()) section->set_open(true);
         panel.resize(400, 1450);
         panel.show();
         activate(panel);
     }
 
+    /// A session that carries out all commands that can be, unless they are refused.
+    void begin(const Field& of, double isovalue, const RendererSettings& settings = {}) {
+        histogram = run::histogram_of(of.volume(), 256);
+        effect.begin(of, isovalue, settings, desktop_device(), histogram,
+                     [this](const Command& command) {
+                         commands.push_back(command);
+                         if (refuse_with.isEmpty()) return;
+                         throw std::invalid_argument(refuse_with.toStdString());
+                     });
+        QApplication::processEvents();
+    }
+
     void set(const RendererSettings& settings = {}, double isovalue = 300,
              Solid solid = Solid::above) {
         session_settings = settings;
         field.emplace(head_like(), solid);
-        histogram = run::histogram_of(field->volume(), 256);
-        panel.set_session(*field, histogram, isovalue, settings, desktop_device());
-        QApplication::processEvents();
+        begin(*field, isovalue, settings);
     }
 
     /// Until nothing is held back any more.
@@ -135,13 +142,16 @@ class PanelFixture : public testing::Test {
         return find<QLabel>((std::string(part) + "_message").c_str())->text();
     }
 
-    // The order counts: what the panel tells on its way out is still heard.
+    const BrushChoice& brush() { return panel.brush_controls().choice(); }
+
+    // The order counts: what the panel asks for on its way out is still heard.
     std::vector<Command> commands;
     QString refuse_with;
     RendererSettings session_settings;
     std::optional<Field> field;
     run::Histogram histogram;
-    Panel panel;
+    Effect effect;
+    Panel panel{effect};
 };
 
 }  // namespace palpate::viewer

@@ -229,8 +229,8 @@ TEST_F(Pressing, switched_off_the_isovalue_that_was_chosen_counts_again) {
     Snapshot now;
     now.penetrability_on = true;
     now.session.tick.proxy.isovalue = 812;
-    panel.show_snapshot(now);
-    const double chosen = panel.isovalue();
+    effect.observe(now);
+    const double chosen = effect.isovalue();
     press("penetrability_off");
     EXPECT_FALSE(last().on);
     ASSERT_EQ(of<command::Isovalue>().size(), 1U);

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/loop_view.hpp"
 #include "palpate/run/source.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
@@ -59,14 +60,14 @@ class Pictures : public PanelFixture {
         now.session.device.status = DeviceStatus::ready;
         now.session.tick.force_flags = force_ramping;
         now.penetrability_on = true;
-        panel.show_snapshot(now);
+        effect.observe(now);
         ServoReport report;
         report.ticks = 20000;
         report.missed = 2;
         report.lateness = {20000, 11000, 45000, 120000, 2300000};
         report.compute = {20000, 900, 4100, 7000, 31000};
         report.worst = {77, 2300000, 30000, 21000, TickCause::machine};
-        panel.show_report(report, 999.8);
+        panel.loop_view().show_report(report, 999.8);
         QApplication::processEvents();
     }
 
@@ -101,7 +102,8 @@ TEST_F(Pictures, show_a_narrow_panel_with_a_threshold_and_refusals) {
     press("penetrability_threshold");
     type("stiffness_box", "99");
     DeviceInfo info = desktop_device();
-    panel.show_device(info, DeviceStatus::uncalibrated, "Put the handle into its holder once.");
+    panel.device_controls().show_device(info, DeviceStatus::uncalibrated,
+                                        "Put the handle into its holder once.");
     press("forces");
     panel.resize(panel.minimumSizeHint().width() + 4, 1700);
     EXPECT_LE(panel.minimumSizeHint().width(), 26 * panel.fontMetrics().height());
@@ -117,7 +119,7 @@ TEST_F(Pictures, real_volumes_get_a_preset_that_shows_something) {
         field.emplace(run::load(run::source_named(file)).volume);
         histogram = run::histogram_of(field->volume(), 256);
         const double isovalue = run::suggested_isovalues(histogram).front();
-        panel.set_session(*field, histogram, isovalue, {}, desktop_device());
+        begin(*field, isovalue);
         Look look;
         look.volume = true;
         look.transfer =

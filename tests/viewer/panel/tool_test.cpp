@@ -17,9 +17,7 @@ class PanelTool : public PanelFixture {
     void set_smooth(const RendererSettings& settings) {
         session_settings = settings;
         field.emplace(head_like(), Solid::above, std::nullopt, Interpolation::cubic);
-        histogram = run::histogram_of(field->volume(), 256);
-        panel.set_session(*field, histogram, 300, settings, desktop_device());
-        QApplication::processEvents();
+        begin(*field, 300, settings);
     }
     void choose(int row) {
         auto* choice = find<QComboBox>("tool");
@@ -41,7 +39,7 @@ TEST_F(PanelTool, asks_for_the_tool_that_is_chosen_in_the_size_that_is_set) {
     ASSERT_TRUE(last_tool());
     const double radius = last_tool()->radius();
     EXPECT_GT(radius, 1);
-    EXPECT_EQ(panel.settings().tool, last_tool());
+    EXPECT_EQ(effect.settings().tool, last_tool());
     EXPECT_TRUE(find<QLabel>("tool_about")->text().contains("points"));
     find<NumberBox>("tool_scale_box")->setValue(2);
     settle();
@@ -58,7 +56,7 @@ TEST_F(PanelTool, goes_back_where_the_session_refuses) {
     const auto burr = last_tool();
     refuse_with = "no";
     choose(1);
-    EXPECT_EQ(panel.settings().tool, burr);
+    EXPECT_EQ(effect.settings().tool, burr);
     EXPECT_EQ(find<QComboBox>("tool")->currentIndex(), 4);
     refuse_with.clear();
     // On the linear field tools are refused in words.

@@ -70,6 +70,22 @@ int rims(const RenderMesh& mesh) {
         std::ranges::count_if(triangles, [](const auto& edge) { return edge.second == 1; }));
 }
 
+/// How far the surface reaches out of the grid's samples at most [samples].
+double overhang(const Field& field, double isovalue, int every) {
+    const Geometry& g = field.geometry();
+    const SurfaceBlocks blocks = blocks_of(field, isovalue, every);
+    const auto mesh = joined(blocks.meshes());
+    if (!mesh) return 0;
+    double most = -g.size.cast<double>().maxCoeff();
+    for (std::size_t v = 0; v < mesh->vertex_count(); ++v) {
+        const Point p = point(mesh->positions, static_cast<std::int32_t>(v));
+        const Vec3 index = index_from_physical(g, physical_centre(g) + Vec3(p[0], p[1], p[2]));
+        const Vec3 behind = index - (g.size - Index3::Ones()).cast<double>();
+        most = std::max({most, behind.maxCoeff(), (-index).maxCoeff()});
+    }
+    return most;
+}
+
 void expect_same(const SurfaceBlocks& a, const SurfaceBlocks& b) {
     ASSERT_EQ(a.meshes().size(), b.meshes().size());
     for (std::size_t i = 0; i < a.meshes().size(); ++i) {
@@ -271,6 +287,21 @@ TEST(SampleBlock, changes_between_versions_are_found_by_their_bricks) {
               whole_box(first.geometry()));
     EXPECT_EQ(changed_between(first, Field(first.shared_samples(), Solid::below, -77)),
               whole_box(first.geometry()));
+}
+
+TEST(SurfaceBlocks, coarse_ones_reach_no_farther_out_of_the_grid_than_the_surface_does) {
+    Geometry g = support::grid({23, 18, 30});
+    g.spacing = {3.2, 3.2, 3.6};
+    for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
+        const Field full(Volume(g, std::vector<std::uint8_t>(23 * 18 * 30, 200)), Solid::above, 0,
+                         interpolation);
+        const int reach = interpolation == Interpolation::cubic ? 2 : 1;
+        for (int every = 1; every <= 7; ++every) {
+            SCOPED_TRACE(every);
+            EXPECT_GT(overhang(full, 100, every), 0.1) << "it is closed outside of the samples";
+            EXPECT_LT(overhang(full, 100, every), reach + 0.001);
+        }
+    }
 }
 
 }  // namespace

@@ -251,7 +251,7 @@ TEST_F(ChangingData, a_sequence_plays_steps_and_is_sought_with_the_timeline) {
     press(Qt::Key_B);
     EXPECT_TRUE(window_->statusBar()->currentMessage().contains("cannot be edited"));
     EXPECT_TRUE(window_->statusBar()->toolTip().contains("cannot be edited"));
-    EXPECT_FALSE(window_->panel().brush().on);
+    EXPECT_FALSE(window_->panel().brush_controls().choice().on);
     press(Qt::Key_K);
     wait_until([&] { return now().speed == 1; });
     feel("synthetic:sphere:32x32x32");

@@ -141,9 +141,8 @@ TEST_F(Controllers, actions_follow_what_is_possible_and_on) {
 }
 
 TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played_by_the_timeline) {
-    Panel panel;
     Timeline timeline;
-    RecordingController recordings(content, panel, messages);
+    RecordingController recordings(content, messages);
     TimelineController playing(content, timeline, messages);
     feel("synthetic:sphere:24x24x24");
     EXPECT_TRUE(timeline.isHidden());
@@ -173,7 +172,7 @@ TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played
 }
 
 TEST_F(Controllers, without_edits_nothing_is_unsaved_and_nothing_can_be_undone) {
-    Panel panel;
+    Panel panel(content.effect());
     EditController editing(content, panel, messages, &parent);
     EXPECT_TRUE(editing.may_lose_edits({}));
     editing.undo();

@@ -32,7 +32,7 @@ TEST_F(Failures, an_unavailable_device_is_reported_wherever_it_is_requested) {
 
 TEST_F(Failures, leaving_a_recording_keeps_level_and_view) {
     feel(sphere);
-    Q_EMIT window_->panel().asked(command::Isovalue{110});
+    window_->content().effect().request(command::Isovalue{110});
     wait_until([&] { return now().session.tick.proxy.isovalue == 110; });
     window_->recordings().start(scratch("a.csv"));
     wait_until([&] { return window_->live()->recording()->ticks() > 50; });

@@ -139,11 +139,11 @@ TEST_F(Window, a_click_frees_a_probe_that_is_caught_in_a_closed_shell) {
     const auto outer = surface_under(window_->live()->field(), level, Vec3::Zero(), towards);
     for (const bool presses : {false, true}) {
         // Into the shell while nothing is solid.
-        window_->run().send(command::Isovalue{1e9});
+        window_->content().effect().request(command::Isovalue{1e9});
         wait_for_ticks(4);
         window_->probe().move_to(Vec3::Zero());
         wait_for_hand();
-        window_->run().send(command::Isovalue{level});
+        window_->content().effect().request(command::Isovalue{level});
         wait_for_ticks(4);
         if (presses) {  // the inner wall at the back, below the point that is clicked
             window_->probe().move_by(-20 * towards);
@@ -166,7 +166,7 @@ TEST_F(Window, plus_and_minus_change_the_panel_too) {
     wait_until([&] { return window_->live()->isovalue() > before; });
     const auto shown = [&] { return part<QDoubleSpinBox>("isovalue_box").value(); };
     EXPECT_NEAR(shown(), window_->live()->isovalue(), 1e-3);
-    EXPECT_EQ(window_->panel().isovalue(), window_->live()->isovalue());
+    EXPECT_EQ(window_->content().effect().isovalue(), window_->live()->isovalue());
     press(Qt::Key_Minus);
     press(Qt::Key_Minus);
     wait_until([&] { return window_->live()->isovalue() < before; });
@@ -214,7 +214,7 @@ TEST_F(Window, forces_that_wait_say_so_where_the_eye_is) {
     EXPECT_FALSE(part<QLabel>("hint").isVisible());
     ForceSettings force = window_->live()->settings().force;
     force.start_below = 0.3;
-    Q_EMIT window_->panel().asked(force);
+    window_->content().effect().request(force);
     press_until_force();
     turn_wheel(window_->views().scene(), 5);
     press(Qt::Key_Space);
@@ -351,8 +351,8 @@ TEST_F(Window, a_session_file_brings_back_what_was_set) {
     feel(large_sphere);
     ForceSettings force = window_->live()->settings().force;
     force.stiffness = 0.31;
-    Q_EMIT window_->panel().asked(force);
-    Q_EMIT window_->panel().asked(command::Isovalue{100});
+    window_->content().effect().request(force);
+    window_->content().effect().request(command::Isovalue{100});
     window_->views().scene().look_from(pictures::view_named("left"));
     Look look = window_->panel().look_controls().look();
     look.surface_opacity = 0.5;
@@ -372,13 +372,13 @@ TEST_F(Window, a_session_file_brings_back_what_was_set) {
 
 TEST_F(Window, another_device_takes_over_with_what_was_set) {
     feel(large_sphere);
-    Q_EMIT window_->panel().asked(command::Isovalue{90});
-    Q_EMIT window_->panel().device_chosen("simulated:hand=press");
+    window_->content().effect().request(command::Isovalue{90});
+    Q_EMIT window_->panel().device_controls().chosen("simulated:hand=press");
     ASSERT_NE(window_->live(), nullptr);
     EXPECT_EQ(window_->live()->mouse(), nullptr);
     EXPECT_EQ(window_->live()->isovalue(), 90);
     wait_until([&] { return force() > 0.2; });
-    Q_EMIT window_->panel().device_chosen("nonsense");
+    Q_EMIT window_->panel().device_controls().chosen("nonsense");
     EXPECT_TRUE(window_->messages().problem().contains("nonsense"));
     EXPECT_EQ(run::text_of(window_->live()->setup().device), "simulated:hand=press");
 }

@@ -5,6 +5,7 @@
 #include <QDialog>
 #include <QDragEnterEvent>
 #include <QDropEvent>
+#include <QFile>
 #include <QLabel>
 #include <QMenu>
 #include <QMimeData>
@@ -18,6 +19,7 @@
 #include "apps/options/view_options.hpp"
 #include "apps/viewer/window/screenshot.hpp"
 #include "io/volume_dicom_slice.hpp"
+#include "palpate/io/mesh_file.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "viewer/window/window_fixture.hpp"
 
@@ -82,7 +84,7 @@ TEST_F(Files, loading_can_be_cancelled_and_what_was_felt_goes_on) {
 TEST_F(Files, a_volume_is_dequantized_and_felt_at_the_same_level) {
     io::write_volume(scenes::ball(Index3::Constant(40)), scratch_.path() / "ball.nrrd");
     feel(scratch("ball.nrrd").toStdString());
-    window_->run().send(command::Isovalue{100.25});
+    window_->content().effect().request(command::Isovalue{100.25});
     auto& box = part<QCheckBox>("dequantize");
     ASSERT_TRUE(box.isEnabled());
     const auto type = [&] { return window_->live()->field().volume().type(); };
@@ -191,6 +193,38 @@ TEST_F(Files, the_surface_is_saved_as_a_mesh) {
     EXPECT_GT(triangles, 1000);
     EXPECT_EQ(vertices - triangles / 2, 2) << "a closed surface without handles";
     EXPECT_EQ(normals, vertices);
+}
+
+TEST_F(Files, a_surface_of_many_triangles_is_simplified_if_one_likes) {
+    feel("synthetic:torus:48x48x24");
+    EditController& editing = window_->editing();
+    const auto saved = [&](const char* name) {
+        wait_until([&] { return !editing.saving(); });
+        return io::read_mesh(scratch(name).toStdString());
+    };
+    const auto handles = [](const SurfaceMesh& mesh) {  // of a closed surface
+        const auto vertices = static_cast<int>(mesh.vertices.size());
+        return 1 - (vertices - static_cast<int>(mesh.triangles.size()) / 2) / 2;
+    };
+    editing.save_surface(scratch("without-a-question.ply"));
+    const SurfaceMesh all = saved("without-a-question.ply");
+    const std::size_t many = all.triangles.size() / 4;
+    editing.set_many_triangles(many);
+    answer(QMessageBox::Yes);
+    editing.save_surface(scratch("simple.ply"));
+    const SurfaceMesh simple = saved("simple.ply");
+    EXPECT_LT(simple.triangles.size(), 1.05 * double(many));
+    EXPECT_GT(simple.triangles.size(), 0.9 * double(many));
+    EXPECT_EQ(handles(all), 1);
+    EXPECT_EQ(handles(simple), 1);
+    EXPECT_NEAR(enclosed_volume(simple) / enclosed_volume(all), 1, 0.02);
+    answer(QMessageBox::No);
+    editing.save_surface(scratch("all.ply"));
+    EXPECT_EQ(saved("all.ply").triangles, all.triangles);
+    answer(QMessageBox::Cancel);
+    editing.save_surface(scratch("none.ply"));
+    wait_until([&] { return !editing.saving(); });
+    EXPECT_FALSE(QFile::exists(scratch("none.ply")));
 }
 
 TEST_F(Files, a_single_slice_is_seen_face_on) {

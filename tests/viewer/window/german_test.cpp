@@ -200,7 +200,7 @@ TEST_F(German, qt_s_own_buttons_are_german) {
 TEST_F(German, numbers_in_files_keep_their_point) {
     open_german();
     feel("synthetic:sphere:32x32x32");
-    window_->run().send(command::Isovalue{window_->live()->isovalue() + 0.25});
+    window_->content().effect().request(command::Isovalue{window_->live()->isovalue() + 0.25});
     const double level = window_->live()->isovalue();
     window_->files().save_session(scratch("session.json"));
     feel("synthetic:sphere:48x48x48");

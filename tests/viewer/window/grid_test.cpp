@@ -42,7 +42,7 @@ TEST_F(Grid, that_is_not_oriented_is_shown_with_neutral_names_until_it_is_assign
     EXPECT_EQ(badge().text(), "No orientation in the file");
     EXPECT_EQ(part<QAction>("view_front").text(), "From -Y");
     const double level = window_->live()->isovalue() + 3;
-    window_->run().send(command::Isovalue{level});
+    window_->content().effect().request(command::Isovalue{level});
     wait_for_ticks(3);
     QTest::mouseClick(&badge(), Qt::LeftButton);
     auto& dialog = part<QDialog>("grid");

@@ -197,7 +197,7 @@ TEST_F(Looking, an_overlay_that_cannot_be_read_is_reported_and_the_one_before_st
 TEST_F(Looking, pressing_through_shows_what_is_felt_and_not_a_body_in_pieces) {
     feel("synthetic:sphere:48x48x48");
     const double level = window_->display().isovalue().value();
-    window_->run().send(Command(penetrability_threshold(0.3, level)));
+    window_->content().effect().request(Command(penetrability_threshold(0.3, level)));
     Scene& scene = window_->views().scene();
     ASSERT_TRUE(press_until([&] { return now().session.tick.proxy.isovalue > level + 20; }));
     EXPECT_EQ(window_->display().isovalue(), level) << "the whole surface stays";

@@ -59,7 +59,7 @@ TEST_F(DrawnStreaming, a_store_looks_like_the_same_volume_in_memory) {
     camera.half_height = 80;
     // The overview suggests another level and other greys.
     const auto look = [&] {
-        window_->run().send(command::Isovalue{60});
+        window_->content().effect().request(command::Isovalue{60});
         window_->views().set_window(0, 240);
         scene.set_camera(camera);
         wait_until_settled();
@@ -104,7 +104,7 @@ class StreamingEdits : public Streaming {
     }
     /// The same level, greys and view, whatever is open.
     void look() {
-        window_->run().send(command::Isovalue{60});
+        window_->content().effect().request(command::Isovalue{60});
         window_->views().set_window(0, 240);
         set_camera();
         wait_until_settled();

@@ -129,7 +129,7 @@ TEST_F(ToolInWindow, drills_with_its_own_shape) {
     EXPECT_GT(value_at(Field(edits().samples->volume()), tick.proxy.scp), tick.proxy.isovalue);
     save("tool-drilled");
     choose("Point");
-    EXPECT_FALSE(window_->panel().brush().as_tool);
+    EXPECT_FALSE(window_->panel().brush_controls().choice().as_tool);
 }
 
 TEST_F(ToolInWindow, that_cannot_be_read_is_said_and_changes_nothing) {

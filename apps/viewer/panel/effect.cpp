@@ -1,0 +1,70 @@
+// Carries out commands, and keeps their effects.
+#include "apps/viewer/panel/effect.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+namespace palpate::viewer {
+
+void Effect::begin(const Field& field, double isovalue, const RendererSettings& settings,
+                   const DeviceInfo& device, const run::Histogram& histogram, CarryOut carry_out) {
+    session_ = Session{{field, settings, {}, {}}, {}};
+    session_->renderer.proxy.isovalue = isovalue;
+    if (settings.tool) session_->renderer.tool_proxy.emplace(settings.tool);
+    device_ = device;
+    histogram_ = histogram;
+    carry_out_ = std::move(carry_out);
+    awaited_.end();
+    Q_EMIT begun();
+    Q_EMIT changed();
+}
+
+void Effect::end() {
+    session_.reset();
+    carry_out_ = nullptr;
+    Q_EMIT ended();
+}
+
+bool Effect::request(const Command& command) {
+    if (!there()) return false;
+    const QString why = refusal_of(command);
+    Q_EMIT answered(command, why);
+    if (there()) Q_EMIT changed();
+    return why.isEmpty();
+}
+
+/// Empty: it was carried out.
+QString Effect::refusal_of(const Command& command) {
+    if (!carry_out_) return tr("A recording is played: nothing here changes it.");
+    if (std::holds_alternative<command::Isovalue>(command) && have_surfaces(settings().layers)) {
+        return tr("layers are felt, not an isovalue: choose No layers to feel one");
+    }
+    try {
+        Session next = *session_;
+        apply(next, command);
+        carry_out_(command);
+        session_ = std::move(next);
+        awaited_.begin();
+    } catch (const std::invalid_argument& error) {
+        return QString::fromStdString(error.what());
+    }
+    return {};
+}
+
+void Effect::observe(const Snapshot& snapshot) {
+    if (!there()) return;
+    RendererSettings& settings = session_->renderer.settings;
+    const SessionTick& now = snapshot.session;
+    const bool same = session_->frozen == now.frozen && session_->clutched == now.clutched &&
+                      settings.forces_on == snapshot.forces_on &&
+                      settings.transform.scale == now.transform.scale;
+    if (!awaited_.passes_over(same)) {
+        session_->frozen = now.frozen;
+        session_->clutched = now.clutched;
+        settings.forces_on = snapshot.forces_on;
+        settings.transform = now.transform;
+    }
+    Q_EMIT observed(snapshot);
+}
+
+}  // namespace palpate::viewer
