@@ -246,7 +246,7 @@ std::shared_ptr<const Store> open_with_original(const std::stop_token& stop,
         throw io::InputError(folder + ": is of a volume that is of edits itself: it is damaged");
     }
     auto original = open_original(stop, folder, note);
-    auto chunks = open_zarr(folder_objects(folder), folder, {});
+    auto chunks = open_zarr(folder_objects(folder, stop), folder, {});
     try {
         check_content(stop, *original, note);
         if (!chunks) throw std::invalid_argument("is there, but the edited chunks are not");
