@@ -1,11 +1,19 @@
 // Boxes of samples: their bytes, x fastest, and the pieces that they lie in. Private to stream/.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "palpate/samples.hpp"
 
 namespace palpate::stream {
+
+/// An order of places, for maps and sets.
+struct ByPlace {
+    bool operator()(const Index3& a, const Index3& b) const {
+        return std::ranges::lexicographical_compare(a, b);
+    }
+};
 
 std::uint64_t bytes_of(const SampleBox& box, SampleType type);
 

@@ -184,13 +184,7 @@ void PendingFile::write(std::string_view bytes) {
 }
 
 void PendingFile::flush() {
-    std::string_view left = buffer_;
-    while (!left.empty()) {
-        const auto written = ::write(descriptor_, left.data(), left.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) fail_to_write(errno);
-        left.remove_prefix(static_cast<std::size_t>(written));
-    }
+    if (!write_all(descriptor_, buffer_)) fail_to_write(errno);
     buffer_.clear();
 }
 

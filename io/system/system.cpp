@@ -73,7 +73,26 @@ int create_to_write(const std::filesystem::path& path) {
 }
 
 std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at) {
-    return ::pread(descriptor, to, bytes, static_cast<off_t>(at));
+    std::size_t done = 0;
+    while (done < bytes) {
+        const ssize_t got = ::pread(descriptor, static_cast<std::byte*>(to) + done, bytes - done,
+                                    static_cast<off_t>(at + done));
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return -1;
+        if (got == 0) break;
+        done += static_cast<std::size_t>(got);
+    }
+    return static_cast<std::ptrdiff_t>(done);
+}
+
+bool write_all(int descriptor, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t put = ::write(descriptor, bytes.data(), bytes.size());
+        if (put < 0 && errno == EINTR) continue;
+        if (put < 0) return false;
+        bytes.remove_prefix(static_cast<std::size_t>(put));
+    }
+    return true;
 }
 
 bool synchronise(int descriptor) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 namespace palpate::io {
 
@@ -37,8 +38,10 @@ int open_standard_output();
 /// Of a file that is not there yet.
 int create_to_write(const std::filesystem::path& path);
 
-/// How many bytes were read from a place of a file; below 0 on an error.
+/// How many bytes were read from a place of a file, fewer only at its end; below 0 on an error.
 std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at);
+/// Writes them all, where a file or stream is written next.
+bool write_all(int descriptor, std::string_view bytes);
 /// The file's content to the disk. File systems without this say so; that is no loss of data.
 bool synchronise(int descriptor);
 /// The same for an open folder and all below it (or more: the whole file system).

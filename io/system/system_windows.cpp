@@ -8,6 +8,7 @@
 #include <io.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <new>
 
@@ -41,6 +42,11 @@ int number_of(DWORD error) {
         default:
             return EIO;
     }
+}
+
+/// As many bytes as are read or written at a time.
+unsigned part_of(std::size_t bytes) {
+    return static_cast<unsigned>(std::min<std::size_t>(bytes, 1 << 30));
 }
 
 bool done(BOOL result) {
@@ -104,19 +110,33 @@ int create_to_write(const std::filesystem::path& path) {
 }
 
 std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at) {
-    constexpr std::size_t most = std::size_t{1} << 30;
-    OVERLAPPED place{};
-    place.Offset = static_cast<DWORD>(at);
-    place.OffsetHigh = static_cast<DWORD>(at >> 32);
-    DWORD got = 0;
     const auto file = reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor));
-    if (::ReadFile(file, to, static_cast<DWORD>(bytes < most ? bytes : most), &got, &place)) {
-        return static_cast<std::ptrdiff_t>(got);
+    std::size_t taken = 0;
+    while (taken < bytes) {
+        OVERLAPPED place{};
+        place.Offset = static_cast<DWORD>(at + taken);
+        place.OffsetHigh = static_cast<DWORD>((at + taken) >> 32);
+        DWORD got = 0;
+        if (!::ReadFile(file, static_cast<std::byte*>(to) + taken, part_of(bytes - taken), &got,
+                        &place)) {
+            const DWORD error = ::GetLastError();
+            if (error == ERROR_HANDLE_EOF) break;
+            errno = number_of(error);
+            return -1;
+        }
+        if (got == 0) break;
+        taken += got;
     }
-    const DWORD error = ::GetLastError();
-    if (error == ERROR_HANDLE_EOF) return 0;
-    errno = number_of(error);
-    return -1;
+    return static_cast<std::ptrdiff_t>(taken);
+}
+
+bool write_all(int descriptor, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const int put = ::_write(descriptor, bytes.data(), part_of(bytes.size()));
+        if (put < 0) return false;
+        bytes.remove_prefix(static_cast<std::size_t>(put));
+    }
+    return true;
 }
 
 bool synchronise(int descriptor) {

@@ -29,14 +29,6 @@ double rough_product(std::span<const std::int64_t> sizes) {
     return count;
 }
 
-std::uint64_t entry_at(const Bytes& bytes, std::size_t at) {
-    std::uint64_t number = 0;
-    for (std::size_t i = 8; i-- > 0;) {
-        number = number << 8 | std::to_integer<std::uint64_t>(bytes[at + i]);
-    }
-    return number;
-}
-
 /// Also an index that is not there takes some memory.
 std::size_t numbers_in(const std::shared_ptr<const std::vector<std::uint64_t>>& index) {
     return 64 + (index ? index->size() : 0);
@@ -203,7 +195,9 @@ ChunkReader::Index ChunkReader::fetched_index(const std::string& shard,
         try {
             const Bytes plain = decoded(array_.shards->index_codecs, *std::move(bytes), size);
             auto places = std::make_shared<std::vector<std::uint64_t>>(size / 8);
-            for (std::size_t i = 0; i < places->size(); ++i) (*places)[i] = entry_at(plain, 8 * i);
+            for (std::size_t i = 0; i < places->size(); ++i) {
+                (*places)[i] = little_endian(std::span(plain).subspan(8 * i, 8));
+            }
             return places;
         } catch (const DamagedChunk& e) {
             if (attempt < attempts_at_damage) continue;

@@ -45,6 +45,8 @@ class ChunkedStore : public Store {
     ChunkedStore(std::shared_ptr<const Objects> objects, ChunkedVolume volume,
                  std::uint64_t unpacking)
         : objects_(std::move(objects)), volume_(std::move(volume)), room_(unpacking) {
+        const std::string note = objects_->note();
+        if (!note.empty()) volume_.info.notes.push_back(note);
         for (const ChunkedArray& array : volume_.arrays) {
             readers_.push_back(std::make_unique<ChunkReader>(objects_, array));
             layouts_.push_back(layout_of(array, volume_));

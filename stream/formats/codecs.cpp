@@ -5,6 +5,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/crc.hpp>
 #include <cstdint>
@@ -81,16 +82,6 @@ Bytes unblosc(std::span<const std::byte> packed, std::size_t most) {
     return out;
 }
 
-Bytes checked_crc32c(Bytes bytes) {
-    if (bytes.size() < 4) throw DamagedChunk("is too short for its checksum");
-    const std::size_t size = bytes.size() - 4;
-    if (crc32c_of({bytes.data(), size}) != little_endian_at(bytes, size)) {
-        throw DamagedChunk("does not have its checksum");
-    }
-    bytes.resize(size);
-    return bytes;
-}
-
 Bytes undone(Codec codec, Bytes bytes, std::size_t most, const SampleRows& rows) {
     switch (codec) {
         case Codec::gzip:
@@ -113,11 +104,18 @@ Bytes undone(Codec codec, Bytes bytes, std::size_t most, const SampleRows& rows)
             undo_differences(bytes, rows.each, rows.row, rows.swapped);
             return bytes;
         case Codec::fletcher32:
-            return checked_fletcher32(std::move(bytes));
+            return without_checksum(std::move(bytes), fletcher32_of);
         case Codec::crc32c:
             break;
     }
-    return checked_crc32c(std::move(bytes));
+    return without_checksum(std::move(bytes), crc32c_of);
+}
+
+using Name = std::pair<std::string_view, Codec>;
+
+std::optional<Codec> named(std::string_view name, std::span<const Name> codecs) {
+    const auto found = std::ranges::find(codecs, name, &Name::first);
+    return found == codecs.end() ? std::nullopt : std::optional(found->second);
 }
 
 }  // namespace
@@ -127,44 +125,49 @@ void unpacks_too_long(std::size_t most) {
                        " bytes that its metadata declare");
 }
 
-std::uint32_t little_endian_at(std::span<const std::byte> bytes, std::size_t at) {
-    std::uint32_t number = 0;
-    for (std::size_t i = 4; i-- > 0;) {
-        number = number << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
+std::uint64_t big_endian(std::span<const std::byte> bytes) {
+    std::uint64_t number = 0;
+    for (const std::byte byte : bytes) number = number << 8 | std::to_integer<std::uint64_t>(byte);
+    return number;
+}
+
+std::uint64_t little_endian(std::span<const std::byte> bytes) {
+    std::uint64_t number = 0;
+    for (std::size_t i = bytes.size(); i-- > 0;) {
+        number = number << 8 | std::to_integer<std::uint64_t>(bytes[i]);
     }
     return number;
+}
+
+Bytes without_checksum(Bytes bytes, std::uint32_t (*sum_of)(std::span<const std::byte>)) {
+    if (bytes.size() < 4) throw DamagedChunk("is too short for its checksum");
+    const std::size_t size = bytes.size() - 4;
+    if (sum_of({bytes.data(), size}) != little_endian(std::span(bytes).subspan(size))) {
+        throw DamagedChunk("does not have its checksum");
+    }
+    bytes.resize(size);
+    return bytes;
 }
 
 std::optional<Codec> codec_named(std::string_view name) {
     constexpr std::string_view prefix = "numcodecs.";
     if (name.starts_with(prefix)) name.remove_prefix(prefix.size());
-    static constexpr std::array<std::pair<std::string_view, Codec>, 6> codecs = {
-        {{"gzip", Codec::gzip},
-         {"zlib", Codec::gzip},
-         {"zstd", Codec::zstd},
-         {"blosc", Codec::blosc},
-         {"lz4", Codec::lz4},
-         {"crc32c", Codec::crc32c}}};
-    for (const auto& [known, codec] : codecs) {
-        if (name == known) return codec;
-    }
-    return std::nullopt;
+    static constexpr std::array codecs = {Name{"gzip", Codec::gzip}, Name{"zlib", Codec::gzip},
+                                          Name{"zstd", Codec::zstd}, Name{"blosc", Codec::blosc},
+                                          Name{"lz4", Codec::lz4},   Name{"crc32c", Codec::crc32c}};
+    return named(name, codecs);
 }
 
 std::optional<Codec> codec_in_file(std::string_view name) {
-    static constexpr std::array<std::pair<std::string_view, Codec>, 8> codecs = {
-        {{"gzip", Codec::gzip},
-         {"zstd", Codec::zstd},
-         {"blosc", Codec::blosc},
-         {"lzw", Codec::lzw},
-         {"difference", Codec::difference},
-         {"shuffle", Codec::shuffle},
-         {"fletcher32", Codec::fletcher32},
-         {"hdf5_lz4", Codec::hdf5_lz4}}};
-    for (const auto& [known, codec] : codecs) {
-        if (name == known) return codec;
-    }
-    return std::nullopt;
+    static constexpr std::array codecs = {Name{"gzip", Codec::gzip},
+                                          Name{"zstd", Codec::zstd},
+                                          Name{"blosc", Codec::blosc},
+                                          Name{"lzw", Codec::lzw},
+                                          Name{"difference", Codec::difference},
+                                          Name{"shuffle", Codec::shuffle},
+                                          Name{"fletcher32", Codec::fletcher32},
+                                          Name{"hdf5_lz4", Codec::hdf5_lz4}};
+    return named(name, codecs);
 }
 
 Bytes decoded(std::span<const Codec> codecs, Bytes packed, std::size_t size,

@@ -48,8 +48,13 @@ class DamagedChunk : public std::runtime_error {
 /// Throws DamagedChunk: a chunk unpacks to more than `most` bytes.
 [[noreturn]] void unpacks_too_long(std::size_t most);
 
-/// A number of four bytes.
-std::uint32_t little_endian_at(std::span<const std::byte> bytes, std::size_t at);
+/// A number of at most eight bytes.
+std::uint64_t little_endian(std::span<const std::byte> bytes);
+std::uint64_t big_endian(std::span<const std::byte> bytes);
+
+/// Bytes without their checksum, the last four, little-endian. Throws DamagedChunk.
+std::vector<std::byte> without_checksum(std::vector<std::byte> bytes,
+                                        std::uint32_t (*sum_of)(std::span<const std::byte>));
 
 /// Undoes `codecs`, the first one first. The result has `size` bytes, or DamagedChunk is thrown.
 std::vector<std::byte> decoded(std::span<const Codec> codecs, std::vector<std::byte> packed,

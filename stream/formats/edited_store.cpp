@@ -113,7 +113,7 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
         if (numbers.size() % 3 != 0) throw std::invalid_argument("not three numbers a chunk");
         ChunkSet& chunks = note.chunks.emplace_back();
         for (std::size_t i = 0; i < numbers.size(); i += 3) {
-            chunks.insert({numbers[i], numbers[i + 1], numbers[i + 2]});
+            chunks.insert(Index3(numbers[i], numbers[i + 1], numbers[i + 2]));
         }
     }
     return note;
@@ -140,12 +140,10 @@ void check_chunks(const EditsNote& note, const StoreInfo& original) {
     }
     for (std::size_t i = 0; i < note.chunks.size(); ++i) {
         const Index3& size = original.levels[level + i].geometry.size;
-        for (const auto& chunk : note.chunks[i]) {
-            for (int a = 0; a < 3; ++a) {
-                const int at = chunk[static_cast<std::size_t>(a)];
-                if (at < 0 || at > (size[a] - 1) / EditsNote::chunk) {
-                    throw std::invalid_argument("has another size now");
-                }
+        const Index3 last = (size.array() - 1) / EditsNote::chunk;
+        for (const Index3& chunk : note.chunks[i]) {
+            if (chunk.minCoeff() < 0 || (chunk.array() > last.array()).any()) {
+                throw std::invalid_argument("has another size now");
             }
         }
     }
@@ -161,8 +159,8 @@ void check_content(const std::stop_token& stop, const Store& original, const Edi
 
 }  // namespace
 
-SampleBox chunk_box(const std::array<int, 3>& chunk, const Geometry& grid) {
-    const Index3 low = EditsNote::chunk * Index3(chunk[0], chunk[1], chunk[2]);
+SampleBox chunk_box(const Index3& chunk, const Geometry& grid) {
+    const Index3 low = EditsNote::chunk * chunk;
     return {low,
             (low + Index3::Constant(EditsNote::chunk - 1)).cwiseMin(grid.size - Index3::Ones())};
 }
@@ -248,7 +246,7 @@ std::shared_ptr<const Store> open_with_original(const std::stop_token& stop,
         throw io::InputError(folder + ": is of a volume that is of edits itself: it is damaged");
     }
     auto original = open_original(stop, folder, note);
-    auto chunks = open_zarr(folder_objects(folder), folder, {});
+    auto chunks = open_zarr(folder_objects(folder, stop), folder, {});
     try {
         check_content(stop, *original, note);
         if (!chunks) throw std::invalid_argument("is there, but the edited chunks are not");

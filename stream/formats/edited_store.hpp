@@ -1,7 +1,6 @@
 // A store with edits on top: chunks of an OME-Zarr in place of the original's. Private to stream/.
 #pragma once
 
-#include <array>
 #include <set>
 
 #include "palpate/stream/edits.hpp"
@@ -10,7 +9,7 @@
 namespace palpate::stream {
 
 /// Chunks of one level, cubes of EditsNote::chunk samples.
-using ChunkSet = std::set<std::array<int, 3>>;
+using ChunkSet = std::set<Index3, ByPlace>;
 
 /// What a folder of edits says beside its chunks.
 struct EditsNote {
@@ -26,14 +25,11 @@ struct EditsNote {
 };
 
 /// The samples of a chunk that lie in the grid.
-SampleBox chunk_box(const std::array<int, 3>& chunk, const Geometry& grid);
+SampleBox chunk_box(const Index3& chunk, const Geometry& grid);
 /// Calls visit(chunk, box) for each chunk that holds samples of `box`, with those that it holds.
 template <class Visit>
 void for_each_chunk(const SampleBox& box, Visit&& visit) {
-    for_each_piece(Index3::Constant(EditsNote::chunk), box,
-                   [&](const Index3& at, const SampleBox& part) {
-                       visit(std::array{at[0], at[1], at[2]}, part);
-                   });
+    for_each_piece(Index3::Constant(EditsNote::chunk), box, visit);
 }
 
 /// The levels of the original from the edited one on.

@@ -5,9 +5,7 @@
 #include <cstdint>
 
 namespace palpate::stream {
-namespace {
 
-/// Of big-endian words of 16 bits, as HDF5 computes it.
 std::uint32_t fletcher32_of(std::span<const std::byte> bytes) {
     constexpr std::size_t words_before_overflow = 360;
     std::uint32_t sum = 0, sum_of_sums = 0;
@@ -33,8 +31,6 @@ std::uint32_t fletcher32_of(std::span<const std::byte> bytes) {
     return sum_of_sums << 16 | sum;
 }
 
-}  // namespace
-
 std::vector<std::byte> unshuffled(std::span<const std::byte> bytes, std::size_t each) {
     const std::size_t samples = bytes.size() / each;
     std::vector<std::byte> out(bytes.begin(), bytes.end());
@@ -42,16 +38,6 @@ std::vector<std::byte> unshuffled(std::span<const std::byte> bytes, std::size_t 
         for (std::size_t i = 0; i < samples; ++i) out[i * each + b] = bytes[b * samples + i];
     }
     return out;
-}
-
-std::vector<std::byte> checked_fletcher32(std::vector<std::byte> bytes) {
-    if (bytes.size() < 4) throw DamagedChunk("is too short for its checksum");
-    const std::size_t size = bytes.size() - 4;
-    if (fletcher32_of({bytes.data(), size}) != little_endian_at(bytes, size)) {
-        throw DamagedChunk("does not have its checksum");
-    }
-    bytes.resize(size);
-    return bytes;
 }
 
 }  // namespace palpate::stream

@@ -36,7 +36,7 @@ struct Lz4Block {
     static constexpr std::size_t header_bytes = 21;
     bool stored_plain;  ///< without compression
     std::size_t packed_size, size;
-    std::uint32_t checksum;
+    std::uint64_t checksum;
 };
 
 Lz4Block lz4_block_at(std::span<const std::byte> packed) {
@@ -46,8 +46,8 @@ Lz4Block lz4_block_at(std::span<const std::byte> packed) {
         throw DamagedChunk("is no whole stream of lz4 blocks");
     }
     const unsigned method = std::to_integer<unsigned>(packed[8]) & 0xF0U;
-    const Lz4Block block{method == 0x10, little_endian_at(packed, 9), little_endian_at(packed, 13),
-                         little_endian_at(packed, 17)};
+    const auto number_at = [&](std::size_t at) { return little_endian(packed.subspan(at, 4)); };
+    const Lz4Block block{method == 0x10, number_at(9), number_at(13), number_at(17)};
     if ((method != 0x10 && method != 0x20) ||
         block.packed_size > packed.size() - Lz4Block::header_bytes ||
         (block.stored_plain && block.packed_size != block.size)) {
@@ -56,17 +56,11 @@ Lz4Block lz4_block_at(std::span<const std::byte> packed) {
     return block;
 }
 
-std::uint64_t big_endian(std::span<const std::byte> bytes) {
-    std::uint64_t number = 0;
-    for (const std::byte byte : bytes) number = number << 8 | std::to_integer<std::uint64_t>(byte);
-    return number;
-}
-
 }  // namespace
 
 Bytes unlz4(std::span<const std::byte> packed, std::size_t most) {
     if (packed.size() < 4) throw DamagedChunk("is too short for lz4");
-    const std::size_t size = little_endian_at(packed, 0);
+    const std::size_t size = little_endian(packed.first(4));
     if (size > most) unpacks_too_long(most);
     Bytes out(size);
     unpack_block(packed.subspan(4), out);

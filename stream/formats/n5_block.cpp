@@ -6,14 +6,6 @@
 namespace palpate::stream {
 namespace {
 
-std::uint32_t big_endian_at(std::span<const std::byte> bytes, std::size_t at, std::size_t length) {
-    std::uint32_t number = 0;
-    for (std::size_t i = 0; i < length; ++i) {
-        number = number << 8 | std::to_integer<std::uint32_t>(bytes[at + i]);
-    }
-    return number;
-}
-
 /// Mode, number of axes, and the size along each, the fastest first.
 struct N5Header {
     std::size_t bytes;
@@ -24,17 +16,17 @@ N5Header header_of(const ChunkedArray& array, std::span<const std::byte> block) 
     const std::size_t axes = array.axes();
     N5Header header{4 + 4 * axes, std::vector<std::int64_t>(axes)};
     if (block.size() < header.bytes) throw DamagedChunk("is too short for the header of a block");
-    const std::uint32_t mode = big_endian_at(block, 0, 2);
+    const std::uint64_t mode = big_endian(block.first(2));
     if (mode != 0) {
         throw DamagedChunk("has a block of mode " + std::to_string(mode) +
                            " instead of 0: of varying length or of objects");
     }
-    if (big_endian_at(block, 2, 2) != axes) {
+    if (big_endian(block.subspan(2, 2)) != axes) {
         throw DamagedChunk("has a block with another number of axes than its array");
     }
     for (std::size_t i = 0; i < axes; ++i) {
         const std::size_t a = axes - 1 - i;
-        header.size[a] = big_endian_at(block, 4 + 4 * i, 4);
+        header.size[a] = static_cast<std::int64_t>(big_endian(block.subspan(4 + 4 * i, 4)));
         if (header.size[a] < 1 || header.size[a] > array.chunk[a]) {
             throw DamagedChunk("has a block of a size that is not possible");
         }

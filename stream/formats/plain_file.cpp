@@ -130,17 +130,12 @@ class PlainFile : public Store {
         const std::uint64_t sample =
             (static_cast<std::uint64_t>(from[2]) * ny + static_cast<std::uint64_t>(from[1])) * nx +
             static_cast<std::uint64_t>(from[0]);
-        std::uint64_t at = first_ + sample * bytes_.size();
-        for (std::span<std::byte> left = raw; !left.empty();) {
-            const std::ptrdiff_t got = io::read_at(file_.number(), left.data(), left.size(), at);
-            if (got < 0 && errno == EINTR) continue;
-            if (got <= 0) {
-                throw io::InputError(info_.address + ": " +
-                                     (got < 0 ? io::reason(errno) : "is shorter than when opened") +
-                                     "; check the disk, and that nothing writes to the file");
-            }
-            left = left.subspan(static_cast<std::size_t>(got));
-            at += static_cast<std::uint64_t>(got);
+        const std::ptrdiff_t got =
+            io::read_at(file_.number(), raw.data(), raw.size(), first_ + sample * bytes_.size());
+        if (got != std::ssize(raw)) {
+            throw io::InputError(info_.address + ": " +
+                                 (got < 0 ? io::reason(errno) : "is shorter than when opened") +
+                                 "; check the disk, and that nothing writes to the file");
         }
         traffic_.request(raw.size());
     }

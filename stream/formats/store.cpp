@@ -122,7 +122,7 @@ std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::
     }
     if (holds_edits(address)) return open_edits(stop, address, options);
     if (is_chunked_folder(address)) {
-        return open_chunked(folder_objects(address), address, options);
+        return open_chunked(folder_objects(address, stop), address, options);
     }
     if (is_located(address, options)) return open_located(stop, address, options);
     return open_plain_file(address, options);

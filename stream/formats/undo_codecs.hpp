@@ -1,5 +1,5 @@
 // Undoes compressions and filters that no library undoes by one call. None unpacks more than `most`
-// bytes. All but unshuffled() and undo_differences() throw DamagedChunk. Private to stream/.
+// bytes. Those with `most` throw DamagedChunk. Private to stream/.
 #pragma once
 
 #include "stream/formats/codecs.hpp"
@@ -17,8 +17,8 @@ std::vector<std::byte> unhdf5_lz4(std::span<const std::byte> packed, std::size_t
 /// Of HDF5. Puts the bytes of samples of `each` bytes together again; what is no whole sample stays
 /// at the end.
 std::vector<std::byte> unshuffled(std::span<const std::byte> bytes, std::size_t each);
-/// Of HDF5. Without its checksum, the last four bytes.
-std::vector<std::byte> checked_fletcher32(std::vector<std::byte> bytes);
+/// The checksum of HDF5: of big-endian words of 16 bits.
+std::uint32_t fletcher32_of(std::span<const std::byte> bytes);
 
 /// Of TIFF.
 std::vector<std::byte> unlzw(std::span<const std::byte> packed, std::size_t most);

@@ -4,19 +4,6 @@
 #include "stream/box_bytes.hpp"
 
 namespace palpate::stream {
-namespace {
-
-/// Calls `work(place, box)` for each piece of a level that holds samples of `box`.
-template <class Work>
-void for_each_whole(const Level& grid, const SampleBox& box, Work&& work) {
-    const Index3 last = grid.geometry.size - Index3::Ones();
-    for_each_piece(grid.chunk, box, [&](const Index3& at, const SampleBox&) {
-        const Index3 low = at.cwiseProduct(grid.chunk);
-        work(at, SampleBox{low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)});
-    });
-}
-
-}  // namespace
 
 Blocks::Blocks(const Store& store, std::uint64_t most_bytes, std::shared_ptr<Loader> loader,
                For whom)
@@ -27,31 +14,56 @@ Blocks::~Blocks() {
     for (const Key& key : ages_) loader_->kept_.erase(key);
 }
 
+/// Calls `work(piece)` for each piece that holds samples of a box. If pieces are not kept, the box
+/// itself is one.
+template <class Work>
+void Blocks::for_each_stored(int level, const SampleBox& box, Work&& work) const {
+    if (!keeps(level)) return work(box);
+    for_each_piece(grid_of(level).chunk, box,
+                   [&](const Index3&, const SampleBox& part) { work(whole(level, part)); });
+}
+
 void Blocks::read(int level, const SampleBox& box, const SampleBox& room, std::span<std::byte> out,
-                  std::stop_token stop) {
-    const SampleType type = store_.info().type;
-    const auto put = [&](const SampleBox& own, const std::vector<std::byte>& bytes) {
-        copy_box(own, bytes.data(), room, out.data(), size_of(type));
-    };
-    if (keeps(level)) {
-        load(level, box, stop);
-        for_each_whole(grid_of(level), box, [&](const Index3& at, const SampleBox& own) {
-            put(own, *block(level, at, own, stop));
-        });
-    } else if (box == room) {
-        store_.read(level, box, out, stop);
-    } else {
-        std::vector<std::byte> bytes(bytes_of(box, type));
-        store_.read(level, box, bytes, stop);
-        put(box, bytes);
-    }
+                  const std::stop_token& stop) {
+    load(level, box, stop);
+    for_each_stored(level, box, [&](const SampleBox& part) {
+        const StoredPiece stored = piece(level, part, stop);
+        copy_box(stored.box, stored.samples->data(), room, out.data(), size_of(store_.info().type));
+    });
 }
 
 void Blocks::load(int level, const SampleBox& box, const std::stop_token& stop) {
     if (!keeps(level)) return;
-    for_each_whole(grid_of(level), box, [&](const Index3& at, const SampleBox& own) {
-        if (!has(level, at)) block(level, at, own, stop);
+    for_each_stored(level, box, [&](const SampleBox& piece) {
+        if (!has(level, piece)) block(level, piece, stop);
     });
+}
+
+StoredPiece Blocks::piece(int level, const SampleBox& part, const std::stop_token& stop) {
+    if (!keeps(level)) return {part, read_now(level, part, stop)};
+    const SampleBox box = whole(level, part);
+    return {box, block(level, box, stop)};
+}
+
+StoredPiece Blocks::kept(int level, const SampleBox& part) {
+    const SampleBox box = whole(level, part);
+    const std::scoped_lock lock(loader_->pieces_mutex_);
+    const auto found = loader_->kept_.find(key_of(level, box));
+    if (found == loader_->kept_.end() ||
+        found->second.bytes.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+        return {};
+    }
+    use(found->second);
+    return {box, found->second.bytes.get()};
+}
+
+std::optional<SampleBox> Blocks::unread(int level, const SampleBox& box) const {
+    std::optional<SampleBox> found;
+    if (!keeps(level)) return found;
+    for_each_stored(level, box, [&](const SampleBox& piece) {
+        if (!found && !has(level, piece)) found = piece;
+    });
+    return found;
 }
 
 const Level& Blocks::grid_of(int level) const {
@@ -66,44 +78,28 @@ bool Blocks::keeps(int level) const {
     return !is_row && bytes_of(piece, store_.info().type) <= most_bytes_ / 4;
 }
 
-bool Blocks::has_all(int level, const SampleBox& box) const {
-    bool all = keeps(level);
-    if (!all) return false;
-    const std::scoped_lock lock(loader_->pieces_mutex_);
-    for_each_whole(grid_of(level), box, [&](const Index3& at, const SampleBox&) {
-        const auto kept = loader_->kept_.find({level, at[0], at[1], at[2]});
-        all = all && kept != loader_->kept_.end() &&
-              kept->second.bytes.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    });
-    return all;
-}
-
-bool Blocks::has_unread(int level, const SampleBox& box) const {
-    bool unread = false;
-    if (!keeps(level)) return unread;
-    for_each_whole(grid_of(level), box,
-                   [&](const Index3& at, const SampleBox&) { unread = unread || !has(level, at); });
-    return unread;
-}
-
-void Blocks::read_one(int level, const SampleBox& box, std::stop_token stop) {
-    bool found = false;
-    for_each_whole(grid_of(level), box, [&](const Index3& at, const SampleBox& own) {
-        if (found || has(level, at)) return;
-        found = true;
-        block(level, at, own, stop);
-    });
+/// The piece that a part lies in.
+SampleBox Blocks::whole(int level, const SampleBox& part) const {
+    const Level& grid = grid_of(level);
+    const Index3 low = part.low.cwiseQuotient(grid.chunk).cwiseProduct(grid.chunk);
+    const Index3 last = grid.geometry.size - Index3::Ones();
+    return {low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)};
 }
 
 /// True for a piece that is kept or that a thread reads now.
-bool Blocks::has(int level, const Index3& at) const {
+bool Blocks::has(int level, const SampleBox& box) const {
     const std::scoped_lock lock(loader_->pieces_mutex_);
-    return loader_->kept_.contains({level, at[0], at[1], at[2]});
+    return loader_->kept_.contains(key_of(level, box));
 }
 
-Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
-                            std::stop_token stop) {
-    const Key key{level, at[0], at[1], at[2]};
+Blocks::Bytes Blocks::read_now(int level, const SampleBox& box, const std::stop_token& stop) const {
+    auto bytes = std::make_shared<std::vector<std::byte>>(bytes_of(box, store_.info().type));
+    store_.read(level, box, *bytes, stop);
+    return bytes;
+}
+
+Blocks::Bytes Blocks::block(int level, const SampleBox& box, const std::stop_token& stop) {
+    const Key key = key_of(level, box);
     std::promise<Bytes> promise;
     std::shared_future<Bytes> others;
     {
@@ -120,11 +116,6 @@ Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
         }
         forget_old(key);
     }
-    const auto read = [&] {
-        auto bytes = std::make_shared<std::vector<std::byte>>(bytes_of(box, store_.info().type));
-        store_.read(level, box, *bytes, stop);
-        return bytes;
-    };
     if (others.valid()) {
         constexpr std::chrono::milliseconds between{20};
         while (others.wait_for(between) != std::future_status::ready) {
@@ -133,10 +124,10 @@ Blocks::Bytes Blocks::block(int level, const Index3& at, const SampleBox& box,
         if (Bytes bytes = others.get()) return bytes;
         // It failed; but another caller may have cancelled it, or it began before its cause was
         // mended.
-        return read();
+        return read_now(level, box, stop);
     }
     try {
-        const Bytes bytes = read();
+        const Bytes bytes = read_now(level, box, stop);
         promise.set_value(bytes);
         return bytes;
     } catch (...) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 
 #include "stream/loader/loader.hpp"
 
@@ -10,6 +11,12 @@ namespace palpate::stream {
 
 /// What could not be had is tried again after this long.
 constexpr std::chrono::seconds pause_after_failure{2};
+
+/// The samples of a box, x fastest, shared by all who hold them.
+struct StoredPiece {
+    SampleBox box = {};
+    std::shared_ptr<const std::vector<std::byte>> samples = {};  ///< null: not in memory
+};
 
 /// The pieces of a store that one reader of it keeps. Readers with the same Loader read none that
 /// another one keeps or is reading. Each has a bound of its own, and what a hand uses counts as the
@@ -21,22 +28,19 @@ class Blocks {
     Blocks(const Blocks&) = delete;
     Blocks& operator=(const Blocks&) = delete;
 
-    /// As Store::read(). Pieces small enough to keep are read whole, and each by one thread; first
-    /// those that no other thread reads, so that threads with neighbouring boxes share the work.
-    void read(int level, const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
-        read(level, box, box, out, std::move(stop));
-    }
-    /// The same to their places in a box `room`, whose samples `out` holds.
+    /// As Store::read(), to the places of the samples in a box `room`, which `out` holds. Pieces
+    /// small enough to keep are read whole, and each by one thread; first those that no other
+    /// thread reads, so that threads with neighbouring boxes share the work.
     void read(int level, const SampleBox& box, const SampleBox& room, std::span<std::byte> out,
-              std::stop_token stop);
+              const std::stop_token& stop);
     /// So that read() finds them, unless they are dropped meanwhile.
     void load(int level, const SampleBox& box, const std::stop_token& stop);
-    /// True if all pieces of a box are here, so that read() waits for nothing.
-    bool has_all(int level, const SampleBox& box) const;
-    /// True if some piece of a box is neither kept nor being read.
-    bool has_unread(int level, const SampleBox& box) const;
-    /// Reads one such piece, if there is one.
-    void read_one(int level, const SampleBox& box, std::stop_token stop);
+    /// The piece that holds `part`, or `part` alone if pieces of the level are not kept.
+    StoredPiece piece(int level, const SampleBox& part, const std::stop_token& stop);
+    /// The same, without samples unless they are in memory: waits for nothing.
+    StoredPiece kept(int level, const SampleBox& part);
+    /// A piece of a box that is neither kept nor being read.
+    std::optional<SampleBox> unread(int level, const SampleBox& box) const;
     /// Of the pieces that count as its own.
     std::uint64_t bytes() const;
 
@@ -45,8 +49,16 @@ class Blocks {
     using Bytes = Loader::Bytes;
     using Kept = Loader::Kept;
 
-    Bytes block(int level, const Index3& at, const SampleBox& box, std::stop_token stop);
-    bool has(int level, const Index3& at) const;
+    static Key key_of(int level, const SampleBox& piece) {
+        return {level, piece.low[0], piece.low[1], piece.low[2]};
+    }
+
+    template <class Work>
+    void for_each_stored(int level, const SampleBox& box, Work&& work) const;
+    SampleBox whole(int level, const SampleBox& part) const;
+    Bytes read_now(int level, const SampleBox& box, const std::stop_token& stop) const;
+    Bytes block(int level, const SampleBox& box, const std::stop_token& stop);
+    bool has(int level, const SampleBox& box) const;
     bool keeps(int level) const;
     const Level& grid_of(int level) const;
     void use(Kept& kept);

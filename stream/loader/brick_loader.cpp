@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
-#include "stream/box_bytes.hpp"
 #include "stream/loader/interest.hpp"
 
 namespace palpate::stream {
@@ -50,10 +50,6 @@ std::size_t most_bricks(const Store& store, std::uint64_t memory) {
             " MB of memory are needed to feel " + io::without_secrets(store.info().address));
     }
     return count;
-}
-
-std::array<int, 3> array_of(const Index3& at) {
-    return {at[0], at[1], at[2]};
 }
 
 /// Of metadata of a kilobyte, a table of bricks can have gigabytes.
@@ -122,7 +118,7 @@ std::optional<BrickVersion> BrickLoader::Parts::take() {
     if (events_.empty()) return std::nullopt;
     std::vector<ResidentBricks::Change> changes;
     for (const BrickEvent& event : events_) {
-        const auto held = held_.find({array_of(event.brick)});
+        const auto held = held_.find(event.brick);
         changes.push_back({event.brick, held == held_.end() ? Brick{} : held->second});
     }
     bricks_ = bricks_.with(changes);
@@ -149,7 +145,7 @@ void BrickLoader::Parts::wait_for(const Vec3& centre, double radius, const std::
         for (const Waiting& other : waiting_) bricks += other.needed.size();
         return waiting_.empty() || bricks <= room;
     });
-    for (const Index3& brick : needed) failed_.erase({array_of(brick)});
+    for (const Index3& brick : needed) failed_.erase(brick);
     const auto own = waiting_.insert(waiting_.end(), {std::move(needed), ++waits_, {}});
     want({});
     wake();
@@ -171,7 +167,7 @@ BrickLoaderStatus BrickLoader::Parts::status() const {
     status.resident = held_.size();
     status.wanted = wanted_.size();
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
-        const bool missing = !held_.contains({array_of(wanted_[i])});
+        const bool missing = !held_.contains(wanted_[i]);
         status.missing += missing;
         status.urgent += missing && i < most_urgent;
     }
@@ -242,20 +238,18 @@ int BrickLoader::Parts::for_eyes() const {
 std::optional<BrickLoader::Parts::Job> BrickLoader::Parts::job_for(const Index3& brick, int level,
                                                                    Clock::time_point now) const {
     if (has(brick, level)) return std::nullopt;
-    const Place place{array_of(brick)};
-    const auto failed = failed_.find(place);
+    const auto failed = failed_.find(brick);
     if (failed != failed_.end() && now < failed->second) return std::nullopt;
-    const auto read = in_flight_.find(place);
+    const auto read = in_flight_.find(brick);
     if (read == in_flight_.end()) return Job{brick, level, false};
     const int coarser = read->second;
-    if (!blocks_->has_unread(settings_.level + coarser, source_of(brick, coarser)))
-        return std::nullopt;
+    if (!blocks_->unread(settings_.level + coarser, source_of(brick, coarser))) return std::nullopt;
     return Job{brick, coarser, true};
 }
 
 /// Needs the lock. Whether a brick is in memory at a level, or at a finer one.
 bool BrickLoader::Parts::has(const Index3& brick, int level) const {
-    const auto held = held_.find({array_of(brick)});
+    const auto held = held_.find(brick);
     return held != held_.end() && held->second.level <= level;
 }
 
@@ -287,21 +281,20 @@ Turn BrickLoader::Parts::next(bool urgent) {
         turn.job = [this, job = *job, waits = waits_](const std::stop_token& stop) {
             make(job, waits, stop);
         };
-        in_flight_[{array_of(job->brick)}] = job->coarser;
+        in_flight_[job->brick] = job->coarser;
     }
     return turn;
 }
 
 /// `waits`: calls of wait_for() before this began.
 void BrickLoader::Parts::make(const Job& job, std::uint64_t waits, const std::stop_token& stop) {
-    const Place place{array_of(job.brick)};
     const Clock::time_point begin = Clock::now();
     std::optional<Brick> brick;
     std::string problem;
     bool is_kept = false, failed = false;
     try {
         is_kept =
-            !blocks_->has_unread(settings_.level + job.coarser, source_of(job.brick, job.coarser));
+            !blocks_->unread(settings_.level + job.coarser, source_of(job.brick, job.coarser));
         brick = read(job.brick, job.coarser, stop);
     } catch (const Cancelled&) {  // the loader ends
     } catch (const std::exception& e) {
@@ -309,7 +302,7 @@ void BrickLoader::Parts::make(const Job& job, std::uint64_t waits, const std::st
         problem = text_of(e);
     }
     const std::scoped_lock lock(mutex_);
-    in_flight_.erase(place);
+    in_flight_.erase(job.brick);
     if (brick) {
         if (!is_kept) {
             const double took = std::chrono::duration<double>(Clock::now() - begin).count();
@@ -317,30 +310,32 @@ void BrickLoader::Parts::make(const Job& job, std::uint64_t waits, const std::st
         }
         put(job, *brick);
     } else if (failed) {
-        fail(place, problem, waits);
+        fail(job.brick, problem, waits);
     }
     wake();
 }
 
 /// Needs the lock. Tells those who waited for the brick when its read began, after `begun` calls of
 /// wait_for(). For those who came later it is tried again at once.
-void BrickLoader::Parts::fail(const Place& place, const std::string& problem, std::uint64_t begun) {
+void BrickLoader::Parts::fail(const Index3& brick, const std::string& problem,
+                              std::uint64_t begun) {
     bool again = false;
     for (Waiting& waiting : waiting_) {
-        const auto is_it = [&](const Index3& brick) { return array_of(brick) == place.at; };
-        if (std::ranges::none_of(waiting.needed, is_it)) continue;
+        if (std::ranges::count(waiting.needed, brick) == 0) continue;
         if (waiting.number <= begun) waiting.problem = problem;
         again |= waiting.number > begun;
     }
     if (again) return;
-    failed_[place] = Clock::now() + pause_after_failure;
+    failed_[brick] = Clock::now() + pause_after_failure;
     problem_ = problem;
 }
 
 /// What fails here fails for the thread that makes the brick, too, which says so.
 void BrickLoader::Parts::help(const Job& job, const std::stop_token& stop) const {
+    const int level = settings_.level + job.coarser;
     try {
-        blocks_->read_one(settings_.level + job.coarser, source_of(job.brick, job.coarser), stop);
+        const auto piece = blocks_->unread(level, source_of(job.brick, job.coarser));
+        if (piece) blocks_->piece(level, *piece, stop);
     } catch (const Cancelled&) {
     } catch (const std::exception&) {
     }
@@ -348,10 +343,9 @@ void BrickLoader::Parts::help(const Job& job, const std::stop_token& stop) const
 
 /// Needs the lock.
 void BrickLoader::Parts::put(const Job& job, const Brick& brick) {
-    const Place place{array_of(job.brick)};
-    failed_.erase(place);
+    failed_.erase(job.brick);
     if (failed_.empty()) problem_.clear();
-    held_[place] = brick;
+    held_[job.brick] = brick;
     newest_ = Clock::now();
     events_.push_back({job.brick, job.coarser});
     ++loaded_;
@@ -363,13 +357,11 @@ void BrickLoader::Parts::put(const Job& job, const Brick& brick) {
 void BrickLoader::Parts::make_room() {
     count_process();
     if (held_.size() <= most_bricks_) return;
-    std::map<Place, int> wanted;
-    for (const Index3& brick : wanted_) wanted[{array_of(brick)}] = 1;
+    const std::set<Index3, ByPlace> wanted(wanted_.begin(), wanted_.end());
     const Index3 centre = wanted_.empty() ? Index3(Index3::Zero()) : wanted_.front();
     std::vector<std::pair<std::int64_t, Index3>> idle;
-    for (const auto& [place, held] : held_) {
-        const Index3 brick(place.at[0], place.at[1], place.at[2]);
-        if (wanted.contains(place)) continue;
+    for (const auto& [brick, held] : held_) {
+        if (wanted.contains(brick)) continue;
         idle.emplace_back((brick - centre).cast<std::int64_t>().squaredNorm(), brick);
     }
     const auto farther = [](const auto& a, const auto& b) { return a.first > b.first; };
@@ -378,7 +370,7 @@ void BrickLoader::Parts::make_room() {
     const std::size_t enough = most_bricks_ - most_bricks_ / 8;
     for (const auto& [distance, brick] : idle) {
         if (held_.size() <= enough) break;
-        held_.erase({array_of(brick)});
+        held_.erase(brick);
         events_.push_back({brick, -1});
         ++dropped_;
     }
@@ -390,18 +382,18 @@ std::uint64_t BrickLoader::Parts::bytes() const {
 }
 
 void BrickLoader::Parts::read(const SampleBox& box, std::span<std::byte> out,
-                              std::stop_token stop) {
+                              const std::stop_token& stop) {
     const Index3 at = ResidentBricks::brick_of(box.low);
     Brick held;
     {
         const std::scoped_lock lock(mutex_);
-        if (const auto brick = held_.find({array_of(at)}); brick != held_.end()) {
+        if (const auto brick = held_.find(at); brick != held_.end()) {
             held = brick->second;
         }
     }
     const SampleBox has = ResidentBricks::box_of(at, geometry_.size);
     if (!held || held.level != 0 || (box.high.array() > has.high.array()).any()) {
-        blocks_->read(settings_.level, box, out, std::move(stop));
+        blocks_->read(settings_.level, box, box, out, stop);
         return;
     }
     copy_box(room_of(at), held.samples.get(), box, out.data(), size_of(overview_.type()));
@@ -451,13 +443,13 @@ BrickLoaderStatus BrickLoader::status() const {
     return parts_->status();
 }
 void BrickLoader::read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
-    parts_->read(box, out, std::move(stop));
+    parts_->read(box, out, stop);
 }
 void BrickLoader::leave_room(std::uint64_t bytes) {
     parts_->leave_room(bytes);
 }
 Brick BrickLoader::read(const Index3& brick, int coarser, std::stop_token stop) {
-    return parts_->read(brick, coarser, std::move(stop));
+    return parts_->read(brick, coarser, stop);
 }
 
 }  // namespace palpate::stream

@@ -8,16 +8,13 @@
 #include <mutex>
 
 #include "palpate/stream/loader.hpp"
+#include "stream/box_bytes.hpp"
 #include "stream/loader/blocks.hpp"
 #include "stream/loader/brick_memory.hpp"
 
 namespace palpate::stream {
 
 struct BrickLoader::Parts {
-    struct Place {
-        std::array<int, 3> at;
-        auto operator<=>(const Place&) const = default;
-    };
     struct Job {
         Index3 brick;
         int coarser;
@@ -37,9 +34,9 @@ struct BrickLoader::Parts {
     std::optional<BrickVersion> take();
     void wait_for(const Vec3& centre, double radius, const std::stop_token& stop);
     BrickLoaderStatus status() const;
-    void read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop);
+    void read(const SampleBox& box, std::span<std::byte> out, const std::stop_token& stop);
     void leave_room(std::uint64_t bytes);
-    Brick read(const Index3& brick, int coarser, std::stop_token stop);
+    Brick read(const Index3& brick, int coarser, const std::stop_token& stop);
 
     Turn next(bool urgent);
     void make(const Job& job, std::uint64_t waits, const std::stop_token& stop);
@@ -53,7 +50,7 @@ struct BrickLoader::Parts {
     void want(std::vector<Index3> bricks);
     void wake();
     void put(const Job& job, const Brick& brick);
-    void fail(const Place& place, const std::string& problem, std::uint64_t begun);
+    void fail(const Index3& brick, const std::string& problem, std::uint64_t begun);
     void make_room();
     void choose_levels(std::span<const Interest> hands, Clock::time_point now);
     std::uint64_t bytes() const;
@@ -76,13 +73,13 @@ struct BrickLoader::Parts {
     const std::unique_ptr<BrickMemory> memory_;
 
     mutable std::mutex mutex_;
-    std::condition_variable_any changed_;        // for who waits
-    ResidentBricks bricks_;                      // as taken last
-    std::map<Place, Brick> held_;                // in memory now
-    Clock::time_point newest_{};                 // when the last of those came
-    std::map<Place, int> in_flight_;             // level that is being read
-    std::map<Place, Clock::time_point> failed_;  // not tried again before
-    std::vector<Index3> wanted_;                 // most urgent first
+    std::condition_variable_any changed_;                  // for who waits
+    ResidentBricks bricks_;                                // as taken last
+    std::map<Index3, Brick, ByPlace> held_;                // in memory now
+    Clock::time_point newest_{};                           // when the last of those came
+    std::map<Index3, int, ByPlace> in_flight_;             // level that is being read
+    std::map<Index3, Clock::time_point, ByPlace> failed_;  // not tried again before
+    std::vector<Index3> wanted_;                           // most urgent first
     std::array<std::size_t, 4> begun_{};  // of each of next_job()'s rounds: all before is there
     std::list<Waiting> waiting_;
     std::uint64_t waits_ = 0;     // calls of wait_for() so far

@@ -12,7 +12,6 @@
 #include "stream/box_bytes.hpp"
 #include "stream/loader/blocks.hpp"
 #include "stream/loader/upsample.hpp"
-#include "stream/sample_bytes.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -28,14 +27,6 @@ constexpr int piece_of_rows = 64;
 
 const Geometry& grid_of(const Store& store, const DetailBox& of) {
     return store.info().levels[static_cast<std::size_t>(of.level)].geometry;
-}
-
-Index3 size_of(const SampleBox& box) {
-    return box.high - box.low + Index3::Ones();
-}
-
-std::size_t count_of(const SampleBox& box) {
-    return static_cast<std::size_t>(size_of(box).cast<std::int64_t>().prod());
 }
 
 void check(const Store& store, const DetailBox& of) {
@@ -69,8 +60,8 @@ struct Piece {
 
     SampleBox box;  // of the level's grid
     State state = State::waiting;
-    Clock::time_point again = {};         // failed: not tried before
-    std::vector<std::byte> samples = {};  // read
+    Clock::time_point again = {};  // failed: not tried before
+    StoredPiece stored = {};       // read
     // Of the reader's thread:
     bool copied = false;  // its samples are in the box
     bool based = false;   // samples interpolated from the newest base are
@@ -84,9 +75,6 @@ struct Work {
         std::vector<Piece> pieces;
         std::vector<std::byte> samples;  // of the reader's thread
 
-        bool has(Piece::State state) const {
-            return std::ranges::any_of(pieces, [&](const Piece& p) { return p.state == state; });
-        }
         std::size_t count(Piece::State state) const {
             return static_cast<std::size_t>(std::ranges::count(pieces, state, &Piece::state));
         }
@@ -97,7 +85,6 @@ struct Work {
     std::size_t stage = 0;      // whose pieces are read, once those of the last that are kept are
     bool has_new = false;       // not published yet
     bool looked = false;        // for pieces of the last stage that are kept
-    std::vector<std::pair<Stage*, Piece*>> read = {};  // not copied yet
     // Of the reader's thread:
     Clock::time_point published = Clock::now();
     std::optional<Volume> base;  // of a coarser stage; none: the overview
@@ -111,8 +98,9 @@ struct Work {
     /// All of a coarse stage has come that will.
     bool has_base() const {
         const Stage& now = stages[stage];
-        return !complete() && stage + 1 < stages.size() && !now.has(Piece::State::waiting) &&
-               !now.has(Piece::State::reading) && !now.has(Piece::State::read);
+        return !complete() && stage + 1 < stages.size() &&
+               now.count(Piece::State::there) + now.count(Piece::State::failed) ==
+                   now.pieces.size();
     }
 };
 
@@ -123,7 +111,7 @@ void interpolate_into(const Volume& coarse, const Geometry& grid, const SampleBo
                       std::byte* out) {
     const std::ptrdiff_t row = grid.size[0], slice = row * grid.size[1];
     const std::ptrdiff_t first = box.low[0] + box.low[1] * row + box.low[2] * slice;
-    const auto each = static_cast<std::ptrdiff_t>(palpate::size_of(coarse.type()));
+    const auto each = static_cast<std::ptrdiff_t>(size_of(coarse.type()));
     upsample(coarse.geometry(), static_cast<const std::byte*>(coarse.data()), coarse.type(), grid,
              box, {out + first * each, row, slice});
 }
@@ -183,8 +171,10 @@ struct DetailReader::Parts {
         const std::scoped_lock lock(mutex_);
         const Clock::time_point now = Clock::now();
         for (const auto& [viewer, work] : work_) {
-            if (!work->looked || work->complete() || work->read.size() >= most_read) continue;
             Work::Stage& stage = work->stages[work->stage];
+            if (!work->looked || work->complete() || stage.count(Piece::State::read) >= most_read) {
+                continue;
+            }
             for (Piece& piece : stage.pieces) {
                 const bool again = piece.state == Piece::State::failed && piece.again <= now &&
                                    work->stage + 1 == work->stages.size();
@@ -192,7 +182,7 @@ struct DetailReader::Parts {
                 Turn turn;
                 // clang 14 captures no name of a structured binding.
                 turn.job = [this, held = work, &stage, &piece](const std::stop_token& stop) {
-                    read(*held, stage, piece, stop);
+                    read(stage, piece, stop);
                 };
                 piece.state = Piece::State::reading;
                 return turn;
@@ -205,7 +195,7 @@ struct DetailReader::Parts {
         std::unique_lock lock(mutex_);
         while (!stop.stop_requested()) {
             const std::uint64_t known = news_;
-            if (step(lock, stop)) continue;
+            if (step(lock)) continue;
             const bool has_new =
                 std::ranges::any_of(work_, [](const auto& each) { return each.second->has_new; });
             changed_.wait_for(lock, stop, has_new ? look_again : idle,
@@ -214,8 +204,8 @@ struct DetailReader::Parts {
     }
 
     /// Needs the lock. Does one thing that waits for no read: copies a piece that was read,
-    /// publishes, makes the base of a stage, or takes a piece of the last stage that is kept.
-    bool step(std::unique_lock<std::mutex>& lock, const std::stop_token& stop) {
+    /// publishes, makes the base of a stage, or takes pieces of the last stage that are kept.
+    bool step(std::unique_lock<std::mutex>& lock) {
         const auto unlocked = [&](const auto& what) {
             lock.unlock();
             bool done = false;
@@ -229,16 +219,17 @@ struct DetailReader::Parts {
         };
         for (const auto& [viewer, held] : work_) {
             const std::shared_ptr<Work> work = held;
-            if (!work->read.empty()) {
-                const auto [stage, piece] = work->read.back();
-                work->read.pop_back();
-                if (unlocked([&, to = stage, from = piece] { put(*work, *to, *from); })) {
+            for (Work::Stage& stage : work->stages) {
+                const auto piece =
+                    std::ranges::find(stage.pieces, Piece::State::read, &Piece::state);
+                if (piece == stage.pieces.end()) continue;
+                if (unlocked([&] { put(*work, stage, *piece); })) {
                     piece->state = Piece::State::there;
-                    work->has_new = work->has_new || stage == &work->last();
+                    work->has_new = work->has_new || &stage == &work->last();
                 } else {
                     fail(*piece, "no memory");  // so short that it needs none
                 }
-                if (work->read.size() + 1 == most_read) loader_->wake();
+                if (stage.count(Piece::State::read) + 1 == most_read) loader_->wake();
                 return true;
             }
             const bool waited = Clock::now() - work->published >= work->interval;
@@ -256,52 +247,43 @@ struct DetailReader::Parts {
                 return true;
             }
             if (work->looked) continue;
-            if (Piece* const piece = kept_piece(*work)) {
-                piece->state = Piece::State::reading;
-                unlocked([&] { read(*work, work->last(), *piece, stop); });
-                return true;
-            }
+            if (take_kept(work->last())) return true;
             work->looked = true;
             loader_->wake();
         }
         return false;
     }
 
-    /// Needs the lock.
-    Piece* kept_piece(Work& work) const {
-        for (Piece& piece : work.last().pieces) {
-            if (piece.state != Piece::State::waiting) continue;
-            if (blocks_.has_all(work.last().of.level, piece.box)) return &piece;
+    /// Needs the lock. Some pieces that are in memory, if there are any: nothing is read for them,
+    /// even if they are dropped meanwhile.
+    bool take_kept(Work::Stage& stage) {
+        std::size_t taken = 0;
+        for (Piece& piece : stage.pieces) {
+            if (piece.state != Piece::State::waiting || taken == most_read) continue;
+            piece.stored = blocks_.kept(stage.of.level, piece.box);
+            if (!piece.stored.samples) continue;
+            piece.state = Piece::State::read;
+            ++taken;
         }
-        return nullptr;
+        return taken > 0;
     }
 
-    void read(Work& work, Work::Stage& stage, Piece& piece, const std::stop_token& stop) {
-        const SampleType type = store_->info().type;
-        std::vector<std::byte> samples;
+    void read(const Work::Stage& stage, Piece& piece, const std::stop_token& stop) {
+        StoredPiece stored;
         std::string problem;
-        bool failed = false;
         try {
-            samples.resize(count_of(piece.box) * palpate::size_of(type));
-            blocks_.read(stage.of.level, piece.box, samples, stop);
-            make_finite(type, samples, overview_.minimum());
+            stored = blocks_.piece(stage.of.level, piece.box, stop);
         } catch (const Cancelled&) {
             return;  // the reader ends
         } catch (const std::exception& e) {
-            failed = true;
             problem = text_of(e);
         }
         const std::scoped_lock lock(mutex_);
-        try {
-            if (!failed) work.read.emplace_back(&stage, &piece);
-        } catch (const std::bad_alloc&) {
-            failed = true;
-        }
-        if (failed) {
-            fail(piece, std::move(problem));
-        } else {
-            piece.samples = std::move(samples);
+        if (stored.samples) {
+            piece.stored = std::move(stored);
             piece.state = Piece::State::read;
+        } else {
+            fail(piece, std::move(problem));
         }
         ++news_;
         changed_.notify_all();
@@ -316,10 +298,10 @@ struct DetailReader::Parts {
 
     /// Of a piece that was read.
     void put(Work& work, Work::Stage& stage, Piece& piece) const {
-        const auto samples = std::move(piece.samples);
-        const std::size_t each = palpate::size_of(store_->info().type);
-        stage.samples.resize(count_of(stage.of.box) * each);
-        copy_box(piece.box, samples.data(), stage.of.box, stage.samples.data(), each);
+        const StoredPiece stored = std::move(piece.stored);
+        stage.samples.resize(bytes_of(stage.of.box, store_->info().type));
+        copy_box(stored.box, stored.samples->data(), stage.of.box, stage.samples.data(),
+                 size_of(store_->info().type));
         piece.copied = true;
         if (&stage == &work.last()) work.changed = united(work.changed, piece.box);
     }
@@ -340,7 +322,7 @@ struct DetailReader::Parts {
     std::size_t fill(const Work& work, Work::Stage& stage) const {
         const Geometry grid = geometry_of(grid_of(*store_, stage.of), stage.of.box);
         const Index3 low = stage.of.box.low;
-        stage.samples.resize(count_of(stage.of.box) * palpate::size_of(store_->info().type));
+        stage.samples.resize(bytes_of(stage.of.box, store_->info().type));
         std::size_t missing = 0;
         for (Piece& piece : stage.pieces) {
             missing += !piece.copied;

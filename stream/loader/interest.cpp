@@ -85,7 +85,7 @@ std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
     // Ties by place, so that the order does not depend on the library.
     std::ranges::sort(scored, [](const Scored& a, const Scored& b) {
         if (a.score != b.score) return a.score < b.score;
-        return std::ranges::lexicographical_compare(a.brick, b.brick);
+        return ByPlace{}(a.brick, b.brick);
     });
     std::vector<Index3> wanted;
     for (const Scored& s : scored) {

@@ -12,7 +12,6 @@
 #include "stream/box_bytes.hpp"
 #include "stream/loader/brick_loader.hpp"
 #include "stream/loader/upsample.hpp"
-#include "stream/sample_bytes.hpp"
 #include "stream/while_telling.hpp"
 
 namespace palpate::stream {
@@ -23,12 +22,6 @@ constexpr int threads = 32;
 /// Most reads for an overview of a level that is too large to be read whole: of rows, or of pieces.
 constexpr std::int64_t most_rows = 4096;
 constexpr std::int64_t most_pieces = 512;
-
-Volume finite_volume(const Geometry& geometry, SampleType type, std::vector<std::byte> bytes) {
-    const float least = finite_samples(type, bytes).least;
-    make_finite(type, bytes, std::isfinite(least) ? least : 0);
-    return volume_from(geometry, type, std::move(bytes));
-}
 
 /// By several threads, piece by piece, each of which says what part is made.
 Volume whole_level(const Store& store, int level, const std::stop_token& stop,
@@ -47,7 +40,7 @@ Volume whole_level(const Store& store, int level, const std::stop_token& stop,
         copy_box(pieces[i], bytes.data(), box, all.data(), size_of(info.type));
         if (made) made(static_cast<double>(++done) / static_cast<double>(pieces.size()));
     });
-    return finite_volume(geometry, info.type, std::move(all));
+    return volume_from(geometry, info.type, std::move(all));
 }
 
 /// Every n-th sample along each axis of the coarsest level.
@@ -92,7 +85,7 @@ Volume thinned_level(const Store& store, std::int64_t samples, std::stop_token s
             }
         }
     });
-    return finite_volume(geometry, info.type, std::move(bytes));
+    return volume_from(geometry, info.type, std::move(bytes));
 }
 
 }  // namespace
@@ -148,7 +141,7 @@ SampleBox BrickLoader::Parts::source_of(const Index3& brick, int coarser) const 
     return {inside(a.cwiseMin(b).array().floor()), inside(a.cwiseMax(b).array().ceil())};
 }
 
-Brick BrickLoader::Parts::read(const Index3& brick, int coarser, std::stop_token stop) {
+Brick BrickLoader::Parts::read(const Index3& brick, int coarser, const std::stop_token& stop) {
     const SampleType type = overview_.type();
     const std::size_t each = size_of(type);
     const SampleBox box = ResidentBricks::box_of(brick, geometry_.size);
@@ -161,12 +154,10 @@ Brick BrickLoader::Parts::read(const Index3& brick, int coarser, std::stop_token
         const std::shared_ptr<std::byte[]> samples = memory_->take();
         const std::span<std::byte> all(samples.get(), ResidentBricks::per_brick * each);
         blocks_->read(level, from, room_of(brick), all, stop);
-        make_finite(type, all, empty_->minimum());
         return {samples, 0};
     }
     std::vector<std::byte> bytes(bytes_of(from, type));
-    blocks_->read(level, from, bytes, stop);
-    make_finite(type, bytes, empty_->minimum());
+    blocks_->read(level, from, from, bytes, stop);
     const std::shared_ptr<std::byte[]> samples = memory_->take();
     const Index3 place = box.low - room_of(brick).low;
     const std::ptrdiff_t first =

@@ -24,6 +24,7 @@ class CachedObjects : public Objects {
     }
 
     std::string version() const override { return objects_->version(); }
+    std::string note() const override { return cache_.problem(); }
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
         if (!wanted.lasting) return objects_->get(wanted, std::move(stop));

@@ -8,12 +8,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <vector>
 
 #include "io/process/helper_process.hpp"
 #include "io/system/leftovers.hpp"
 #include "io/system/open_file.hpp"
+#include "io/system/system.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -48,22 +51,13 @@ std::string hex(std::uint64_t number) {
     return text;
 }
 
-bool read_all(int file, void* to, std::size_t bytes) {
-    for (std::size_t at = 0; at < bytes;) {
-        const ssize_t got = ::read(file, static_cast<char*>(to) + at, bytes - at);
-        if (got <= 0) return false;
-        at += static_cast<std::size_t>(got);
-    }
-    return true;
+bool read_all(int file, void* to, std::size_t bytes, std::uint64_t at) {
+    return io::read_at(file, to, bytes, at) == static_cast<std::ptrdiff_t>(bytes);
 }
 
-bool write_all(int file, const void* from, std::size_t bytes) {
-    for (std::size_t at = 0; at < bytes;) {
-        const ssize_t put = ::write(file, static_cast<const char*>(from) + at, bytes - at);
-        if (put <= 0) return false;
-        at += static_cast<std::size_t>(put);
-    }
-    return true;
+template <class T>
+std::string_view as_text(const T* first, std::size_t count) {
+    return {reinterpret_cast<const char*>(first), count * sizeof(T)};
 }
 
 /// The bytes of an open entry, or nothing if it is not whole or another's.
@@ -71,7 +65,7 @@ std::optional<Bytes> entry_of(int file, const std::string& name) {
     struct stat status {};
     EntryHead head;
     const EntryHead right;
-    if (fstat(file, &status) != 0 || !read_all(file, &head, sizeof head)) return std::nullopt;
+    if (fstat(file, &status) != 0 || !read_all(file, &head, sizeof head, 0)) return std::nullopt;
     const auto size = static_cast<std::uint64_t>(status.st_size);
     if (head.magic != right.magic || head.name_bytes != name.size() || head.bytes > size ||
         size != sizeof head + head.name_bytes + head.bytes) {
@@ -79,12 +73,16 @@ std::optional<Bytes> entry_of(int file, const std::string& name) {
     }
     std::string stored(head.name_bytes, '\0');
     Bytes bytes(head.bytes);
-    if (!read_all(file, stored.data(), stored.size()) ||
-        !read_all(file, bytes.data(), bytes.size()) || stored != name ||
-        checksum_of(name, bytes) != head.checksum) {
+    if (!read_all(file, stored.data(), stored.size(), sizeof head) ||
+        !read_all(file, bytes.data(), bytes.size(), sizeof head + stored.size()) ||
+        stored != name || checksum_of(name, bytes) != head.checksum) {
         return std::nullopt;
     }
     return bytes;
+}
+
+int new_file(const fs::path& path) {
+    return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
 }
 
 struct Entry {
@@ -127,7 +125,7 @@ std::vector<Entry> entries_in(const fs::path& folder) {
 void remove_entry(const fs::path& path) {
     const io::Descriptor file(io::open_file_in(AT_FDCWD, path.string()));
     EntryHead head;
-    if (read_all(file.number(), &head.magic, sizeof head.magic) &&
+    if (read_all(file.number(), &head.magic, sizeof head.magic, 0) &&
         head.magic == EntryHead{}.magic) {
         ::unlink(path.c_str());
     }
@@ -140,6 +138,13 @@ DiskCache::DiskCache(fs::path folder, std::uint64_t most_bytes)
     std::error_code error;
     fs::create_directories(folder_, error);
     if (!error) io::remove_leftovers(folder_);
+    const fs::path probe = io::temporary_in(folder_);
+    if (io::Descriptor(new_file(probe)).number() < 0) {
+        problem_ = "nothing is kept in the cache " + folder_.string() + " (" + io::reason(errno) +
+                   "); choose a folder that you may write to";
+    } else {
+        ::unlink(probe.c_str());
+    }
 }
 
 fs::path DiskCache::path_of(const std::string& name) const {
@@ -179,16 +184,15 @@ void DiskCache::write(const std::string& name, const Bytes& bytes) const {
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
     const fs::path temporary = io::temporary_in(folder_);
-    io::Descriptor file(
-        ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR));
+    const io::Descriptor file(new_file(temporary));
     if (file.number() < 0) return;
     EntryHead head;
     head.bytes = bytes.size();
     head.name_bytes = static_cast<std::uint32_t>(name.size());
     head.checksum = checksum_of(name, bytes);
-    const bool whole = write_all(file.number(), &head, sizeof head) &&
-                       write_all(file.number(), name.data(), name.size()) &&
-                       write_all(file.number(), bytes.data(), bytes.size());
+    const bool whole = io::write_all(file.number(), as_text(&head, 1)) &&
+                       io::write_all(file.number(), name) &&
+                       io::write_all(file.number(), as_text(bytes.data(), bytes.size()));
     if (whole) fs::rename(temporary, path, error);
     if (!whole || error) ::unlink(temporary.c_str());
 }

@@ -18,6 +18,8 @@ class DiskCache {
   public:
     DiskCache(std::filesystem::path folder, std::uint64_t most_bytes);
 
+    /// Why nothing is kept, in a sentence; empty if files can be made in the folder.
+    const std::string& problem() const { return problem_; }
     std::optional<Bytes> find(const std::string& name) const noexcept;
     void put(const std::string& name, const Bytes& bytes) const noexcept;
 
@@ -28,6 +30,7 @@ class DiskCache {
 
     std::filesystem::path folder_;
     std::uint64_t most_;
+    std::string problem_;
     mutable std::mutex mutex_;
     mutable std::uint64_t counted_ = 0;  ///< bytes when last counted
     mutable std::uint64_t added_ = 0;    ///< bytes since then, by this process

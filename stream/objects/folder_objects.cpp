@@ -1,6 +1,5 @@
 // Objects that are files in a folder.
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <stdexcept>
@@ -15,8 +14,8 @@ namespace {
 
 class FolderObjects : public Objects {
   public:
-    FolderObjects(std::filesystem::path folder, std::filesystem::path name)
-        : folder_(std::move(folder)), name_(std::move(name)) {}
+    FolderObjects(std::filesystem::path folder, std::filesystem::path name, std::stop_token stop)
+        : folder_(std::move(folder)), name_(std::move(name)), stop_(std::move(stop)) {}
 
     std::string name_of(const std::string& key) const override {
         return (key.empty() ? name_ : name_ / key).string();
@@ -29,7 +28,7 @@ class FolderObjects : public Objects {
     }
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
-        if (stop.stop_requested()) throw Cancelled{};
+        if (stop.stop_requested() || stop_.stop_requested()) throw Cancelled{};
         const io::Descriptor file(io::open_to_read(folder_ / wanted.key));
         if (file.number() < 0) {
             if (errno == ENOENT || errno == ENOTDIR || errno == EISDIR) return std::nullopt;
@@ -59,19 +58,15 @@ class FolderObjects : public Objects {
 
     Bytes read(const std::string& key, int file, const ByteRange& range) const {
         Bytes bytes(range.length);
-        for (std::size_t at = 0; at < bytes.size();) {
-            const ssize_t got = ::pread(file, bytes.data() + at, bytes.size() - at,
-                                        static_cast<off_t>(range.offset + at));
-            if (got < 0 && errno == EINTR) continue;
-            if (got < 0) fail(key, io::reason(errno) + "; check the disk");
-            if (got == 0) fail(key, "became shorter while it was read; try again");
-            at += static_cast<std::size_t>(got);
-        }
+        const auto got = io::read_at(file, bytes.data(), bytes.size(), range.offset);
+        if (got < 0) fail(key, io::reason(errno) + "; check the disk");
+        if (got < std::ssize(bytes)) fail(key, "became shorter while it was read; try again");
         traffic_.request(bytes.size());
         return bytes;
     }
 
     std::filesystem::path folder_, name_;
+    std::stop_token stop_;
     mutable TrafficCount traffic_;
 };
 
@@ -84,11 +79,12 @@ std::vector<std::optional<Bytes>> Objects::get_all(std::span<const Wanted> wante
     return all;
 }
 
-std::shared_ptr<const Objects> folder_objects(const std::filesystem::path& folder) {
+std::shared_ptr<const Objects> folder_objects(const std::filesystem::path& folder,
+                                              std::stop_token stop) {
     // Absolute, so that it is found when the working folder has gone.
     std::error_code error;
     const std::filesystem::path whole = std::filesystem::absolute(folder, error);
-    return std::make_shared<FolderObjects>(error ? folder : whole, folder);
+    return std::make_shared<FolderObjects>(error ? folder : whole, folder, std::move(stop));
 }
 
 std::string key_below(const std::string& folder, const std::string& name) {

@@ -8,6 +8,7 @@
 #include <cerrno>
 
 #include "io/system/open_file.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::stream {
@@ -17,17 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr int as_held_folder = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
 
-/// 0, or the error number, as those below.
-int write_bytes(int file, std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-        const ssize_t put = ::write(file, bytes.data(), bytes.size());
-        if (put < 0 && errno == EINTR) continue;
-        if (put < 0) return errno;
-        bytes = bytes.subspan(static_cast<std::size_t>(put));
-    }
-    return 0;
-}
-
+/// 0, or the error number, as put_below().
 int put_in(int folder, const std::string& name, std::span<const std::byte> bytes,
            const std::string& temporary) {
     const std::string before = name + temporary;
@@ -37,7 +28,8 @@ int put_in(int folder, const std::string& name, std::span<const std::byte> bytes
         file = ::openat(folder, before.c_str(), as_new, 0666);  // of a run that was ended
     }
     if (file < 0) return errno;
-    int problem = write_bytes(file, bytes);
+    const auto* const text = reinterpret_cast<const char*>(bytes.data());
+    int problem = io::write_all(file, {text, bytes.size()}) ? 0 : errno;
     if (::close(file) != 0 && problem == 0) problem = errno;
     if (problem != 0) return problem;
     return ::renameat(folder, before.c_str(), folder, name.c_str()) == 0 ? 0 : errno;

@@ -53,9 +53,13 @@ class Objects {
     /// Of an object among all that have had its name; changes when what was read each time, not
     /// lasting, has changed: its bytes, or its version or time as a server tells them.
     virtual std::string version() const { return {}; }
+    /// A sentence for people, about how the objects are had. Usually empty.
+    virtual std::string note() const { return {}; }
 };
 
-std::shared_ptr<const Objects> folder_objects(const std::filesystem::path& folder);
+/// `stop`: of requests that have no token of their own.
+std::shared_ptr<const Objects> folder_objects(const std::filesystem::path& folder,
+                                              std::stop_token stop = {});
 
 /// The key of something below `folder`, which may be empty. Throws std::invalid_argument for a
 /// name that leads out of it.

@@ -87,7 +87,7 @@ class Saving {
 
   private:
     void write_level(std::size_t level, const std::vector<SampleBox>& changed) {
-        std::map<std::array<int, 3>, std::vector<SampleBox>> parts;
+        std::map<Index3, std::vector<SampleBox>, ByPlace> parts;
         for (const auto& chunk : note_.chunks[level]) parts[chunk];
         for (const SampleBox& box : changed) {
             for_each_chunk(box, [&](const auto& chunk, const SampleBox& part) {
@@ -108,8 +108,7 @@ class Saving {
             const SampleBox all{box.low, box.low + edge - Index3::Ones()};
             Bytes whole(bytes_of(all, type()));
             copy_box(box, samples.data(), all, whole.data(), size_of(type()));
-            const Index3 at(chunk[0], chunk[1], chunk[2]);
-            writer_.write_chunk(static_cast<int>(level), at, whole);
+            writer_.write_chunk(static_cast<int>(level), chunk, whole);
             note_.chunks[level].insert(chunk);
             ++done;
             if (level == 0) made_ = double(done) / double(parts.size());

@@ -231,11 +231,7 @@ std::optional<Bytes> ZarrWriter::written_chunk(int level, const Index3& chunk) c
     const auto size = static_cast<std::size_t>(about.st_size);
     if (size > packed_at_most(array.bytes_in_chunk())) return std::nullopt;
     Bytes bytes(size);
-    for (std::size_t at = 0; at < size;) {
-        const auto got = io::read_at(file.number(), bytes.data() + at, size - at, at);
-        if (got <= 0) return std::nullopt;
-        at += static_cast<std::size_t>(got);
-    }
+    if (io::read_at(file.number(), bytes.data(), size, 0) != about.st_size) return std::nullopt;
     try {
         return decoded(array.codecs, std::move(bytes), array.bytes_in_chunk());
     } catch (const DamagedChunk&) {

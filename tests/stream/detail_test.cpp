@@ -209,6 +209,32 @@ TEST(DetailReader, what_is_no_longer_wanted_is_not_read_and_what_is_kept_is_not_
     EXPECT_EQ(seen.of(1).size(), 1U) << "nothing coarse where all is kept";
 }
 
+TEST(DetailReader,
+     the_thread_that_puts_pictures_together_reads_nothing_of_what_is_dropped_meanwhile) {
+    // Large pieces, so that one is often dropped between being found and being copied.
+    const Volume volume = noise_of(SampleType::float32, grid({256, 64, 128}), 9);
+    const auto store = store_in_pieces(volume, cube(64));
+    std::atomic<std::thread::id> composer{};
+    std::atomic<int> read_there{0};
+    store->before_read = [&](int, const SampleBox&, const std::stop_token&) {
+        read_there += std::this_thread::get_id() == composer.load();
+    };
+    Seen seen;
+    DetailSettings settings = settings_of(2);
+    settings.memory = 4 * bytes_of(noise_of(SampleType::float32, grid(cube(64)), 1)).size();
+    settings.begin_thread = [&] { composer = std::this_thread::get_id(); };
+    DetailReader reader(store, overview_of(*store, 4000), settings, seen.made());
+    const auto count = [&](int viewer) { return seen.of(viewer).size(); };
+    for (int round = 0; round < 60; ++round) {
+        const std::size_t before = count(0), others = count(1);
+        const int x = 64 * (round % 4);
+        reader.want(1, {{0, whole_box(volume.geometry())}}, std::chrono::hours(1));
+        reader.want(0, {{0, {{x, 0, 0}, {x + 63, 63, 127}}}}, std::chrono::hours(1));
+        ASSERT_TRUE(comes_true([&] { return count(0) > before && count(1) > others; }));
+    }
+    EXPECT_EQ(read_there, 0);
+}
+
 TEST(DetailReader, refuses_boxes_that_are_not_in_the_store) {
     const auto store = std::make_shared<VolumesStore>(ramps(), cube(16));
     DetailReader reader(store, ramps().back(), settings_of(1), [](int, const Detail&) {});

@@ -306,13 +306,23 @@ TEST(DiskCache, survives_processes_that_are_killed_while_they_use_it) {
     }
 }
 
-TEST(DiskCache, a_folder_that_cannot_be_written_is_no_error) {
+TEST(DiskCache, a_folder_that_cannot_be_written_is_no_error_but_noted) {
     const ScratchFolder folder;
     put_bytes(folder / "file", "x");
     const VolumeServer server;
-    const auto store =
-        open_store(server.address("virtual.zarr"), cached(folder / "file/cache", 1 << 20));
-    expect_formula(*store, 0, at_a_surface);
+    const auto notes_with = [&](const fs::path& cache) {
+        const auto store = open_store(server.address("virtual.zarr"), cached(cache, 1 << 20));
+        expect_formula(*store, 0, at_a_surface);
+        std::vector<std::string> notes;
+        for (const std::string& note : store->info().notes) {
+            if (contains(note, cache.string())) notes.push_back(note);
+        }
+        return notes;
+    };
+    EXPECT_EQ(notes_with(folder / "cache").size(), 0U);
+    const auto notes = notes_with(folder / "file/cache");
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_TRUE(contains(notes[0], "Not a directory")) << notes[0];
 }
 
 TEST(DiskCache, a_store_that_is_written_anew_does_not_meet_the_old_entries) {

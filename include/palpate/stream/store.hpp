@@ -76,8 +76,9 @@ class Store {
     virtual ~Store() = default;
     virtual const StoreInfo& info() const = 0;
     /// Reads a box of samples, both corners in it, all inside the level's grid, into `out`
-    /// (size_of(type) bytes a sample, x fastest). Blocks. Throws io::InputError if a piece is
-    /// damaged or, after all attempts, cannot be had; Cancelled as soon as `stop` is requested.
+    /// (size_of(type) bytes a sample, x fastest). All of them are finite. Blocks. Throws
+    /// io::InputError if a piece is damaged or, after all attempts, cannot be had; Cancelled as
+    /// soon as `stop` is requested.
     virtual void read(int level, const SampleBox& box, std::span<std::byte> out,
                       std::stop_token stop) const = 0;
     virtual Traffic traffic() const = 0;
