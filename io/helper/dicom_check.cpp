@@ -195,7 +195,8 @@ class Walk {
             *size = number<std::uint16_t>(at);
             return;
         }
-        const std::string digits = text(at, e);
+        std::string digits = text(at, e);
+        if (digits.starts_with('+')) digits.erase(0, 1);
         const auto [end, error] =
             std::from_chars(digits.data(), digits.data() + digits.size(), extent_.frames);
         const bool is_number = error == std::errc{} && end == digits.data() + digits.size();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
+#include <limits>
 
 #include "io/helper/headers.hpp"
 
@@ -12,14 +12,6 @@ namespace {
 
 gdcm::Tag tag_of(DicomTag tag) {
     return {tag.group, tag.element};
-}
-
-/// Binary values as GDCM holds them: in this machine's order.
-template <class T>
-std::vector<T> values_in(const std::string& bytes) {
-    std::vector<T> values(bytes.size() / sizeof(T));
-    if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
-    return values;
 }
 
 }  // namespace
@@ -60,17 +52,31 @@ double DicomGroup::number(DicomTag tag, double otherwise) const {
     return all.empty() || !(std::abs(all[0]) < 1e9) ? otherwise : all[0];
 }
 
+double DicomGroup::optional_number(DicomTag tag) const {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    try {
+        return number(tag, none);
+    } catch (const Failure&) {
+        return none;
+    }
+}
+
+double DicomGroup::real(DicomTag tag) const {
+    const auto all = binary<double>(tag);
+    return all.empty() ? std::numeric_limits<double>::quiet_NaN() : all[0];
+}
+
 std::vector<std::uint32_t> DicomGroup::counts(DicomTag tag) const {
     // Without a representation (implicit little endian) the length of a single value tells.
     const std::string raw = bytes(tag);
     const std::string vr = representation(tag);
-    if (vr == "UL" || (vr.empty() && raw.size() == 4)) return values_in<std::uint32_t>(raw);
-    const auto narrow = values_in<std::uint16_t>(raw);
+    if (vr == "UL" || (vr.empty() && raw.size() == 4)) return binary<std::uint32_t>(tag);
+    const auto narrow = binary<std::uint16_t>(tag);
     return {narrow.begin(), narrow.end()};
 }
 
 std::vector<DicomTag> DicomGroup::tags(DicomTag tag) const {
-    const auto parts = values_in<std::uint16_t>(bytes(tag));
+    const auto parts = binary<std::uint16_t>(tag);
     std::vector<DicomTag> all;
     for (std::size_t i = 0; i + 1 < parts.size(); i += 2) all.push_back({parts[i], parts[i + 1]});
     return all;

@@ -6,6 +6,7 @@
 #include <gdcmSequenceOfItems.h>
 
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +31,18 @@ class DicomGroup {
     std::vector<double> numbers(DicomTag tag) const;
     /// The first of them, if it is within +-1e9.
     double number(DicomTag tag, double otherwise) const;
+    /// The first of them; NaN if there is none, or if it makes no sense.
+    double optional_number(DicomTag tag) const;
+    /// Binary ones of the type that the standard gives the tag (US, UL, FD).
+    template <class T>
+    std::vector<T> binary(DicomTag tag) const {
+        const std::string raw = bytes(tag);
+        std::vector<T> values(raw.size() / sizeof(T));
+        if (!values.empty()) std::memcpy(values.data(), raw.data(), values.size() * sizeof(T));
+        return values;
+    }
+    /// The first of them (FD), or NaN.
+    double real(DicomTag tag) const;
     /// Unsigned binary ones (US, UL).
     std::vector<std::uint32_t> counts(DicomTag tag) const;
     /// Tags (AT).
@@ -39,6 +52,7 @@ class DicomGroup {
     std::vector<DicomGroup> items(DicomTag tag) const;
 
   private:
+    /// As GDCM holds them: numbers in this machine's order.
     std::string bytes(DicomTag tag) const;
     std::string representation(DicomTag tag) const;
     const gdcm::DataSet* data_;

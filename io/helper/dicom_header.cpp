@@ -11,11 +11,11 @@
 #include <array>
 #include <cmath>
 #include <new>
-#include <sstream>
 #include <utility>
 
 #include "io/helper/dicom_check.hpp"
 #include "io/helper/dicom_group.hpp"
+#include "io/helper/dicom_kinds.hpp"
 #include "io/helper/headers.hpp"
 
 namespace palpate::io {
@@ -27,12 +27,11 @@ constexpr DicomTag position_tag{0x0020, 0x0032}, orientation_tag{0x0020, 0x0037}
     pixel_tag{0x0028, 0x0030}, thickness_tag{0x0018, 0x0050}, between_tag{0x0018, 0x0088},
     intercept_tag{0x0028, 0x1052}, slope_tag{0x0028, 0x1053};
 
-void set_place(DicomSlice& s, const DicomGroup& position, const DicomGroup& orientation) {
-    if (const auto p = position.numbers(position_tag); p.size() == 3) {
+void set_place(DicomSlice& s, const std::vector<double>& p, const std::vector<double>& axes) {
+    if (p.size() == 3) {
         for (const double c : p) check_coordinate(c, "DICOM tag ImagePositionPatient");
         s.position = Vec3(p[0], p[1], p[2]);
     }
-    const auto axes = orientation.numbers(orientation_tag);
     if (axes.size() != 6) return;
     s.row = Vec3(axes[0], axes[1], axes[2]);
     s.column = Vec3(axes[3], axes[4], axes[5]);
@@ -40,6 +39,10 @@ void set_place(DicomSlice& s, const DicomGroup& position, const DicomGroup& orie
         if (direction->norm() > 0.5 && direction->norm() < 2) continue;
         throw Failure("its DICOM tag ImageOrientationPatient has no unit vectors; correct it");
     }
+}
+
+void set_place(DicomSlice& s, const DicomGroup& group) {
+    set_place(s, group.numbers(position_tag), group.numbers(orientation_tag));
 }
 
 void set_pixel(DicomSlice& s, const DicomGroup& measures) {
@@ -90,25 +93,6 @@ void set_window(DicomSlice& s, const DicomGroup& group) {
     if (width > 0) s.values.window = ValueWindow{centre, width};
 }
 
-/// The groups of attributes that a frame has of its own or shares with all.
-class FunctionalGroups {
-  public:
-    FunctionalGroups(const DicomGroup& frame, const DicomGroup* shared)
-        : frame_(frame), shared_(shared) {}
-
-    /// What `use` makes of the first item of the group, if there is one.
-    template <class F>
-    void with(DicomTag group, F&& use) const {
-        auto items = frame_.items(group);
-        if (items.empty() && shared_ != nullptr) items = shared_->items(group);
-        if (!items.empty()) use(items.front());
-    }
-
-  private:
-    const DicomGroup& frame_;
-    const DicomGroup* shared_;
-};
-
 /// The table that stands in place of slope and intercept (PS3.3 C.11.1).
 void set_table(DicomSlice& s, const DicomGroup& data) {
     const auto items = data.items({0x0028, 0x3000});
@@ -139,27 +123,26 @@ void set_padding(DicomSlice& s, const DicomGroup& data) {
     s.values.padding = s.slope * value + s.intercept;
 }
 
-DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGroups& groups) {
+DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGroups& groups,
+                          const Segments& segments) {
     DicomSlice s = file;
-    s.frame = number;
-    s.instance = number;
+    s.frame = s.order = number;
+    s.keys[frame_number] = number;
     s.own_values = true;
     groups.with({0x0028, 0x9110}, [&](const DicomGroup& g) { set_pixel(s, g); });
-    groups.with({0x0020, 0x9113}, [&](const DicomGroup& g) { set_place(s, g, g); });
-    groups.with({0x0020, 0x9116}, [&](const DicomGroup& g) { set_place(s, g, g); });
+    groups.with({0x0020, 0x9113}, [&](const DicomGroup& g) { set_place(s, g); });
+    groups.with({0x0020, 0x9116}, [&](const DicomGroup& g) { set_place(s, g); });
     groups.with({0x0028, 0x9145}, [&](const DicomGroup& g) { set_rescale(s, g); });
     groups.with({0x0028, 0x9132}, [&](const DicomGroup& g) { set_window(s, g); });
-    groups.with({0x0020, 0x9111}, [&](const DicomGroup& g) {
-        s.stack = g.text({0x0020, 0x9056});
-        if (const auto moment = g.counts({0x0020, 0x9128}); !moment.empty()) {
-            s.acquisition = static_cast<int>(moment[0]);
-        }
+    groups.with({0x0020, 0x930e}, [&](const DicomGroup& g) {
+        set_place(s, g.binary<double>({0x0020, 0x9301}), {});
+        s.in_patient = false;
     });
-    for (const std::uint16_t element : {0x9226, 0x9329}) {  // of MR and CT
-        groups.with({0x0018, element}, [&](const DicomGroup& g) {
-            s.image_type = g.text({0x0008, 0x9007});
-        });
-    }
+    groups.with({0x0020, 0x930f}, [&](const DicomGroup& g) {
+        set_place(s, {}, g.binary<double>({0x0020, 0x9302}));
+    });
+    set_kind(s, groups, segments);
+    set_moment(s, groups);
     return s;
 }
 
@@ -171,30 +154,37 @@ std::vector<DicomSlice> enhanced_frames(const DicomSlice& file, const DicomGroup
                       "; copy or export it again");
     }
     const auto shared = data.items({0x5200, 0x9229});
+    const Segments segments = segments_in(data);
     std::vector<DicomSlice> slices;
     for (int i = 0; i < file.frames; ++i) {
         const FunctionalGroups groups(frames[static_cast<std::size_t>(i)],
                                       shared.empty() ? nullptr : &shared.front());
-        slices.push_back(enhanced_frame(file, i, groups));
+        slices.push_back(enhanced_frame(file, i, groups, segments));
     }
     return slices;
 }
 
 /// What FrameIncrementPointer counts the frames by.
-enum class Counted { by_nothing, by_time, by_slice, by_offset, otherwise };
+enum class Counted { by_nothing, by_time, by_slice, by_offset, by_location, otherwise };
+
+constexpr DicomTag grid_offsets{0x3004, 0x000c}, locations{0x0018, 0x2005}, pages{0x0018, 0x2001};
 
 Counted counted(const DicomGroup& data) {
     const auto pointers = data.tags({0x0028, 0x0009});
     if (pointers.empty()) {
         const bool has_time = data.has({0x0018, 0x1063}) || data.has({0x0018, 0x1065});
-        return has_time ? Counted::by_time : Counted::by_nothing;
+        return has_time                 ? Counted::by_time
+               : data.has(grid_offsets) ? Counted::by_offset
+                                        : Counted::by_nothing;
     }
     if (pointers.size() > 1) return Counted::otherwise;
     if (pointers[0] == DicomTag{0x0018, 0x1063} || pointers[0] == DicomTag{0x0018, 0x1065}) {
         return Counted::by_time;
     }
     if (pointers[0] == DicomTag{0x0054, 0x0080}) return Counted::by_slice;
-    if (pointers[0] == DicomTag{0x3004, 0x000c}) return Counted::by_offset;
+    if (pointers[0] == grid_offsets) return Counted::by_offset;
+    if (pointers[0] == locations) return Counted::by_location;
+    if (pointers[0] == pages) return Counted::by_nothing;
     return Counted::otherwise;
 }
 
@@ -237,11 +227,12 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
     // Nuclear medicine keeps the place of its slices with the detector.
     const auto detectors = data.items({0x0054, 0x0022});
     if (!detectors.empty() && !file.position) {
-        set_place(file, detectors.front(), detectors.front());
+        set_place(file, detectors.front());
     }
     std::vector<DicomSlice> slices(static_cast<std::size_t>(file.frames), file);
     for (std::size_t i = 0; i < slices.size(); ++i) {
-        slices[i].frame = slices[i].instance = static_cast<int>(i);
+        slices[i].frame = slices[i].order = static_cast<int>(i);
+        slices[i].keys[frame_number] = static_cast<double>(i);
     }
     const auto note = [&](const std::string& text) {
         for (DicomSlice& s : slices) s.notes.push_back(text);
@@ -261,16 +252,19 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
         }
         return slices;
     }
-    if (by == Counted::by_offset) {
-        const auto offsets = data.numbers({0x3004, 0x000c});
-        for (const double offset : offsets) check_coordinate(offset, "GridFrameOffsetVector");
+    if (by == Counted::by_offset || by == Counted::by_location) {
+        const bool is_grid = by == Counted::by_offset;
+        const auto offsets = data.numbers(is_grid ? grid_offsets : locations);
+        for (const double offset : offsets) {
+            check_coordinate(offset, is_grid ? "GridFrameOffsetVector" : "SliceLocationVector");
+        }
         if (offsets.size() == slices.size()) {
             place_behind(slices, offsets);
             return slices;
         }
     }
     const std::vector<int> order = order_of(file, data);
-    for (std::size_t i = 0; i < slices.size(); ++i) slices[i].instance = order[i];
+    for (std::size_t i = 0; i < slices.size(); ++i) slices[i].order = order[i];
     const double between = data.number(between_tag, 0);  // negative: against the normal
     check_coordinate(between, "DICOM tag SpacingBetweenSlices");
     if (between != 0) {
@@ -281,21 +275,6 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
     place_behind(slices, even_distances(order, step));
     note(all + "do not say where they lie: taken as slices " + text_of(step) + " mm apart");
     return slices;
-}
-
-/// What tells images of one place in one series apart: magnitude or phase (the third value of
-/// ImageType), and the echo.
-std::string kind_of(const DicomGroup& data) {
-    std::istringstream values(data.text({0x0008, 0x0008}));
-    std::string kind;
-    for (int i = 0; i < 3; ++i) {
-        if (!std::getline(values, kind, '\\')) kind.clear();
-    }
-    kind = trimmed(kind);
-    if (const auto echo = data.numbers({0x0018, 0x0081}); !echo.empty()) {
-        kind += (kind.empty() ? "" : ", ") + ("echo time " + text_of(echo[0]) + " ms");
-    }
-    return kind;
 }
 
 DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const DicomGroup& data) {
@@ -312,13 +291,12 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     s.instance_uid = data.text({0x0008, 0x0018});
     s.series_uid = data.text({0x0020, 0x000e});
     s.description = data.text({0x0008, 0x103e});
-    s.image_type = kind_of(data);
+    set_kind(s, data);
+    set_moment(s, data);
     s.patient = data.text({0x0010, 0x0010});
     s.study = data.text({0x0008, 0x1030});
     s.values.modality = data.text({0x0008, 0x0060});
-    s.instance = static_cast<int>(data.number({0x0020, 0x0013}, 0));
-    s.acquisition = static_cast<int>(data.number({0x0020, 0x0012}, 0));
-    set_place(s, data, data);
+    set_place(s, data);
     set_pixel(s, data);
     if (s.values.modality == "CT") s.values.units = "HU";
     set_rescale(s, data);
@@ -332,12 +310,14 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     }
     const std::string colours = data.text({0x0028, 0x0004});
     s.has_colours = !colours.empty() && lower(colours).find("monochrome") != 0;
+    constexpr DicomTag location_tag{0x0020, 0x1041};
     if (!s.position || !s.row || !s.column) {
-        if (const auto location = data.numbers({0x0020, 0x1041}); location.size() == 1) {
-            check_coordinate(location[0], "DICOM tag SliceLocation");
-            s.location = location[0];
+        for (const double at : data.numbers(location_tag)) {
+            check_coordinate(at, "DICOM tag SliceLocation");
         }
     }
+    const double location = data.optional_number(location_tag);
+    if (std::isfinite(location)) s.location = location;
     if (constexpr DicomTag dose{0x3004, 0x000e}; data.has(dose)) {
         s.slope = data.number(dose, 1);
         s.own_values = true;

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <map>
 
+#include "io/helper/dicom_moments.hpp"
+
 namespace palpate::io {
 namespace {
 
@@ -14,8 +16,8 @@ constexpr double even_part = 0.02;     // of the spacing
 constexpr double shift_pixels = 0.05;  // more is gantry tilt
 
 std::string key_of(const DicomSlice& s) {
-    std::string key = s.series_uid + "|" + s.stack + "|" + s.image_type + "|" +
-                      std::to_string(s.rows) + "x" + std::to_string(s.columns);
+    std::string key = s.series_uid + "|" + s.stack + "|" + s.kind + "|" + std::to_string(s.rows) +
+                      "x" + std::to_string(s.columns);
     // Moments of different places, which are not known, make no volume.
     if (s.is_moment && !s.position) key += "|" + s.instance_uid;
     return key;
@@ -35,12 +37,12 @@ bool lie_alike(const DicomSlice& a, const DicomSlice& b) {
 /// [mm] nearer slices lie at one place. Some scanners have pixels of 1 um.
 double same_place_mm(const DicomSeries& series) {
     const auto& pixel = series.slices.front().pixel;
-    return std::min(0.005, 0.02 * (pixel ? pixel->head<2>().minCoeff() : 1));
+    return std::min(0.05, 0.05 * (pixel ? pixel->head<2>().minCoeff() : 0.1));
 }
 
 /// [mm] along the normal; the number of a slice without a place.
 double place_along(const DicomSlice& s) {
-    if (!s.position || !s.row || !s.column) return s.instance;
+    if (!s.position || !s.row || !s.column) return s.frames > 1 ? s.order : s.instance;
     return s.row->cross(*s.column).dot(*s.position);
 }
 
@@ -55,34 +57,24 @@ std::vector<double> places_along(const DicomSeries& series) {
     return along;
 }
 
-/// The slices in order along the normal; all those at one place are one group.
-using Groups = std::vector<std::vector<PlacedSlice>>;
-
-Groups groups_of(const DicomSeries& series, const Vec3& normal) {
+SliceGroups groups_of(const DicomSeries& series, const Vec3& normal) {
     std::vector<PlacedSlice> placed;
     for (std::size_t i = 0; i < series.slices.size(); ++i) {
         placed.push_back({i, normal.dot(*series.slices[i].position), 0, 0});
     }
     std::stable_sort(placed.begin(), placed.end(),
                      [](const auto& a, const auto& b) { return a.along < b.along; });
-    Groups groups;
+    SliceGroups groups;
     for (const PlacedSlice& p : placed) {
         if (groups.empty() || p.along - groups.back().front().along > same_place_mm(series)) {
             groups.emplace_back();
         }
         groups.back().push_back(p);
     }
-    for (auto& group : groups) {
-        std::stable_sort(group.begin(), group.end(), [&](const auto& a, const auto& b) {
-            const auto& x = series.slices[a.slice];
-            const auto& y = series.slices[b.slice];
-            return std::pair(x.acquisition, x.instance) < std::pair(y.acquisition, y.instance);
-        });
-    }
     return groups;
 }
 
-void choose_time_step(const DicomSeries& series, const Groups& groups, const Request& request,
+void choose_time_step(const DicomSeries& series, SliceGroups groups, const Request& request,
                       Stack& stack) {
     const std::size_t steps = groups.front().size();
     for (const auto& group : groups) {
@@ -91,6 +83,7 @@ void choose_time_step(const DicomSeries& series, const Groups& groups, const Req
                       " here, " + std::to_string(steps) +
                       " there): the series is incomplete or mixed; export it again");
     }
+    sort_by_moment(series, groups, stack.notes);
     const int step = checked_time_step(request, static_cast<std::int64_t>(steps));
     stack.time_steps = static_cast<int>(steps);
     for (const auto& group : groups) stack.slices.push_back(group[static_cast<std::size_t>(step)]);
@@ -224,12 +217,14 @@ struct Locations {
 /// standard leaves open.
 Locations locations_of(const std::vector<DicomSlice>& slices) {
     Locations found;
-    if (std::ranges::all_of(slices, [](const DicomSlice& s) { return s.position.has_value(); })) {
-        Vec3 line = Vec3::Zero();
-        for (const DicomSlice& s : slices) {
-            const Vec3 way = *s.position - *slices.front().position;
-            if (way.norm() > line.norm()) line = way;
-        }
+    Vec3 line = Vec3::Zero();
+    for (const DicomSlice& s : slices) {
+        if (!s.position || !slices.front().position) continue;
+        const Vec3 way = *s.position - *slices.front().position;
+        if (way.norm() > line.norm()) line = way;
+    }
+    const auto has_position = [](const DicomSlice& s) { return s.position.has_value(); };
+    if (std::ranges::all_of(slices, has_position) && line.norm() > 0) {
         int longest = 0;
         line.cwiseAbs().maxCoeff(&longest);
         if (line[longest] < 0) line = -line;
@@ -244,9 +239,17 @@ Locations locations_of(const std::vector<DicomSlice>& slices) {
     return found;
 }
 
-/// Places slices that lack a position or an orientation, if each has a place of its own.
+/// Places slices that lack a position or an orientation, or all have the same position, if each has
+/// a place of its own.
 void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
-    if (std::ranges::all_of(series.slices, is_placed)) return;
+    const bool placed = std::ranges::all_of(series.slices, [&](const DicomSlice& s) {
+        return is_placed(s) && is_placed(series.slices.front());
+    });
+    if (placed && std::ranges::any_of(series.slices, [&](const DicomSlice& s) {
+            return *s.position != *series.slices.front().position;
+        })) {
+        return;
+    }
     const Locations locations = locations_of(series.slices);
     std::vector<double> sorted = locations.along;
     std::ranges::sort(sorted);
@@ -259,11 +262,14 @@ void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
             s.row = Vec3::UnitX();
             s.column = Vec3::UnitY();
         }
-        s.position = s.row->cross(*s.column) * locations.along[i];
+        const Vec3 normal = s.row->cross(*s.column);
+        const Vec3 in_plane =
+            placed ? Vec3(*s.position - normal * normal.dot(*s.position)) : Vec3(0, 0, 0);
+        s.position = in_plane + normal * locations.along[i];
     }
-    notes.emplace_back(
-        std::string("its slices lack a position or an orientation: they were placed by their ") +
-        locations.source + ", along their normal");
+    notes.emplace_back(std::string(placed ? "its slices all have one position"
+                                          : "its slices lack a position or an orientation") +
+                       ": they were placed by their " + locations.source + ", along their normal");
 }
 
 /// Slices without position or orientation, stacked in the order of their numbers, or moments of
@@ -272,7 +278,9 @@ void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
     std::vector<PlacedSlice> slices;
     for (std::size_t i = 0; i < series.slices.size(); ++i) slices.push_back({i, 0, 0, 0});
     std::stable_sort(slices.begin(), slices.end(), [&](const auto& a, const auto& b) {
-        return series.slices[a.slice].instance < series.slices[b.slice].instance;
+        const auto& x = series.slices[a.slice];
+        const auto& y = series.slices[b.slice];
+        return std::pair(x.instance, x.order) < std::pair(y.instance, y.order);
     });
     if (series.slices.front().is_moment) {
         choose_time_step(series, {slices}, request, stack);
@@ -288,6 +296,28 @@ void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
                           text_of(stack.geometry.spacing[2]) + " mm apart");
 }
 
+bool has_several_at_one_place(const DicomSeries& series) {
+    const std::vector<double> along = places_along(series);
+    const double least = same_place_mm(series);
+    return std::ranges::adjacent_find(along, [&](double a, double b) { return b - a <= least; }) !=
+           along.end();
+}
+
+/// Contrasts (water, fat) apart, where there are several at one place.
+std::vector<DicomSeries> by_contrast(DicomSeries series) {
+    if (!has_several_at_one_place(series)) return {std::move(series)};
+    std::map<std::string, DicomSeries> contrasts;
+    for (DicomSlice& s : series.slices) {
+        DicomSeries& one = contrasts[s.contrast];
+        one.uid = series.uid;
+        s.kind += (s.kind.empty() || s.contrast.empty() ? "" : ", ") + s.contrast;
+        one.slices.push_back(std::move(s));
+    }
+    std::vector<DicomSeries> all;
+    for (auto& [name, one] : contrasts) all.push_back(std::move(one));
+    return all;
+}
+
 }  // namespace
 
 std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
@@ -300,7 +330,11 @@ std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
         series->slices.push_back(std::move(s));
     }
     std::vector<DicomSeries> all;
-    for (auto& [key, alike] : sorted) std::ranges::move(alike, std::back_inserter(all));
+    for (auto& [key, alike] : sorted) {
+        for (DicomSeries& one : alike) {
+            std::ranges::move(by_contrast(std::move(one)), std::back_inserter(all));
+        }
+    }
     return all;
 }
 
@@ -347,9 +381,9 @@ const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std:
     std::vector<SeriesInfo> list;
     for (const DicomSeries& series : all) {
         list.push_back(info_of(series));
-        const std::string& kind = series.slices.front().image_type;
+        const std::string& kind = series.slices.front().kind;
         const auto differs = [&](const DicomSeries& other) {
-            return other.uid == series.uid && other.slices.front().image_type != kind;
+            return other.uid == series.uid && other.slices.front().kind != kind;
         };
         if (std::ranges::any_of(all, differs) && !kind.empty()) {
             std::string& text = list.back().description;
@@ -371,8 +405,8 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
     }
     stack.geometry.spacing.head<2>() = scaled.slices.front().pixel->head<2>();
     if (scaled.slices.size() > 1) place_by_location(scaled, stack.notes);
-    stack.geometry.oriented =
-        std::ranges::all_of(series.slices, [](const DicomSlice& s) { return s.row && s.column; });
+    stack.geometry.oriented = std::ranges::all_of(
+        series.slices, [](const DicomSlice& s) { return s.row && s.column && s.in_patient; });
     if (!std::ranges::all_of(scaled.slices, is_placed)) {
         pile_up(scaled, request, stack);
         stack.geometry.size[2] = static_cast<int>(stack.slices.size());

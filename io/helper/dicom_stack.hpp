@@ -14,18 +14,36 @@ struct ValueTable {
     std::vector<std::uint16_t> values;
 };
 
+/// What tells moments of one place apart, the most telling first; DimensionIndexValues follow.
+enum DicomKey : std::size_t {
+    file_number,  ///< of files with several frames, InstanceNumber
+    temporal_position,
+    trigger_time,
+    cardiac_phase,
+    reference_time,
+    acquisition_time,
+    content_time,
+    acquisition_number,
+    frame_number,  ///< or InstanceNumber of a file with one
+    first_dimension
+};
+
 /// What the header of one slice says.
 struct DicomSlice {
     std::filesystem::path file;
     std::string series_uid, instance_uid, description;
     std::string patient, study;
-    std::string stack, image_type;  ///< stacks of one file; magnitude, phase, echoes ...
+    std::string stack, kind;  ///< stacks of one file; magnitude, phase, echoes, segments ...
+    std::string contrast;     ///< what else may tell images of one place apart: water, fat ...
     ValueInfo values;
     int rows = 0, columns = 0;
-    int frames = 1, frame = 0;  ///< how many its file has, and which of them it is
-    int instance = 0, acquisition = 0;
+    int frames = 1, frame = 0;        ///< how many its file has, and which of them it is
+    int instance = 0;                 ///< InstanceNumber of its file
+    int order = 0;                    ///< of the frames of a file
+    std::vector<double> keys;         ///< by DicomKey; NaN or missing where the header does not say
     std::optional<Vec3> position;     ///< [mm, LPS] centre of the first pixel
-    std::optional<double> location;   ///< [mm] SliceLocation, for slices that are not placed
+    bool in_patient = true;           ///< or in the space of a transducer
+    std::optional<double> location;   ///< [mm] SliceLocation
     std::optional<Vec3> row, column;  ///< unit vectors along a row and along a column
     std::optional<Vec3> pixel;        ///< [mm] between columns, between rows, 0
     double thickness = 0;             ///< [mm] between slices or of one; 0 if not given

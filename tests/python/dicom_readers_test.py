@@ -1,0 +1,222 @@
+"""Families of DICOM files that pydicom writes: time steps, frames, kinds of images, values. Each is compared with the arrays
+it was made of, or with pydicom."""
+
+import random
+
+import numpy
+import palpate
+import pytest
+from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
+
+from readers_test import noted, ramp, refused, save, slice_of, stack
+
+
+def items(**values):
+    """A sequence of one item."""
+    one = Dataset()
+    for name, value in values.items():
+        setattr(one, name, value)
+    return [one]
+
+
+# Time steps of files with one frame -----------------------------------------------------------------
+
+PLACES, STEPS = 5, 3
+NUMBERS = {"by time": lambda t, z: t * PLACES + z + 1, "by place": lambda t, z: z * STEPS + t + 1,
+           "repeated": lambda t, z: z + 1, "shuffled": lambda t, z: (t * PLACES + z) * 7 % 16 + 1}
+KEYS = {"temporal position": lambda t, z: {"TemporalPositionIdentifier": t + 1},
+        "trigger time": lambda t, z: {"TriggerTime": 30.5 * t},
+        "acquisition time": lambda t, z: {"AcquisitionTime": f"1159{57 + t}.5"},
+        "acquisition of each slice": lambda t, z: {"AcquisitionDate": "20260101", "AcquisitionTime": f"10{t:02}{z:02}"},
+        "acquisition number": lambda t, z: {"AcquisitionNumber": t + 1},
+        "nothing": lambda t, z: {}}
+
+
+def played(folder, key, numbers, places=PLACES):
+    """`STEPS` volumes whose samples are 1000 apart, in files of random names."""
+    rng = random.Random(1)
+    slices = []
+    for t in range(STEPS):
+        for z in range(places):
+            more = key(t, z)
+            data = slice_of(ramp("i2")[z] + 1000 * t, numbers(t, z), (1, 2, 3 + 2 * z), **more)
+            data.SOPInstanceUID = f"1.2.3.{t}.{z}"
+            slices.append(data)
+    rng.shuffle(slices)
+    folder.mkdir()
+    for i, data in enumerate(slices):
+        save(folder / str(i), [data])
+        (folder / str(i) / f"{data.InstanceNumber:03}.dcm").rename(folder / f"{i:03}.dcm")
+        (folder / str(i)).rmdir()
+    return folder
+
+
+def expect_steps(path, steps=STEPS, array=None):
+    array = ramp("i2") if array is None else array
+    for t in range(steps):
+        loaded = palpate.load(path, frame=t)
+        assert loaded.time_steps == steps
+        assert numpy.array_equal(loaded.volume.array, array + 1000 * t), t
+
+
+@pytest.mark.parametrize("numbers", NUMBERS)
+@pytest.mark.parametrize("key", KEYS)
+def test_a_time_step_is_one_moment_at_every_place(tmp_path, key, numbers):
+    folder = played(tmp_path / "a", KEYS[key], NUMBERS[numbers])
+    if key == "nothing" and numbers in ("repeated", "shuffled"):
+        return refused(folder, "belong together")
+    expect_steps(folder)
+
+
+def test_places_of_different_moments_are_refused_or_noted(tmp_path):
+    apart = played(tmp_path / "a", lambda t, z: {"TemporalPositionIdentifier": t + 1 + (z == 2)}, NUMBERS["by place"])
+    refused(apart, "belong together")
+    late = played(tmp_path / "b", lambda t, z: {"TriggerTime": 30 * (t + (z == 2))}, NUMBERS["by place"])
+    noted(late, "TriggerTime is not the same at every place")
+
+
+def test_steps_of_a_moving_table_are_at_one_place(tmp_path):
+    slices = []
+    for t in range(2):
+        for data in stack(ramp("i2") + 1000 * t, start=3 + 0.01 * t):
+            data.InstanceNumber += 5 * t
+            data.SOPInstanceUID += f".{t}"
+            slices.append(data)
+    expect_steps(save(tmp_path / "a", slices), 2)
+
+
+def test_slices_of_one_position_lie_at_their_slice_location(tmp_path):
+    slices = [slice_of(plane, i + 1, (1, 2, 3), SliceLocation=20 - 3 * i) for i, plane in enumerate(ramp("i2"))]
+    volume = noted(save(tmp_path / "a", slices), "all have one position")
+    assert volume.geometry.spacing[2] == 3 and numpy.array_equal(volume.array, ramp("i2")[::-1])
+
+
+@pytest.mark.parametrize("kinds", ({"ImageType": "DERIVED\\PRIMARY\\DIXON\\WATER"}, {"ImageType": "DERIVED\\PRIMARY\\DIXON\\FAT"}),
+                         ids=("water", "fat"))
+def test_contrasts_of_one_series_are_chosen_and_not_played(tmp_path, kinds):
+    other = {"ImageType": "DERIVED\\PRIMARY\\DIXON\\IN_PHASE"}
+    slices = stack(ramp("i2"), change=lambda i: other) + stack(ramp("i2") + 1000, change=lambda i: kinds)
+    expect_two_series(numbered(tmp_path / "a", slices), kinds["ImageType"].split("\\")[-1])
+
+
+def test_a_type_of_one_slice_makes_no_series_where_no_place_has_two(tmp_path):
+    change = lambda i: {"ImageType": "ORIGINAL\\PRIMARY\\AXIAL" + ("\\FIRST" if i == 0 else "")}
+    assert numpy.array_equal(palpate.load(save(tmp_path / "a", stack(ramp("i2"), change=change))).volume.array, ramp("i2"))
+
+
+def numbered(folder, slices):
+    for number, data in enumerate(slices):
+        data.InstanceNumber, data.SOPInstanceUID = number + 1, f"1.2.3.{number}"
+    return save(folder, slices)
+
+
+def expect_two_series(path, word):
+    with pytest.raises(palpate.SeriesChoice) as caught:
+        palpate.load(path)
+    assert any(word in series["description"] for series in caught.value.series), caught.value.series
+    volumes = [palpate.load(path, series=str(number)).volume.array for number in (1, 2)]
+    volumes.sort(key=lambda array: array.min())
+    assert numpy.array_equal(volumes[0], ramp("i2")) and numpy.array_equal(volumes[1], ramp("i2") + 1000)
+
+
+# Enhanced files: many frames with functional groups -------------------------------------------------
+
+SHUFFLED = numpy.random.default_rng(3).permutation(2 * PLACES)
+
+
+def enhanced(path, planes, places, group, syntax="explicit", number=1, volume=False, **changes):
+    """`group(i)` are functional groups of frame i."""
+    data = slice_of(planes[0], number, (0, 0, 0), NumberOfFrames=len(planes), PixelData=numpy.stack(planes).tobytes(),
+                    SOPClassUID="1.2.840.10008.5.1.4.1.1.4.1", Modality="MR", **changes)
+    for name in ("ImagePositionPatient", "ImageOrientationPatient", "PixelSpacing", "SliceThickness"):
+        delattr(data, name)
+    shared = Dataset()
+    shared.PixelMeasuresSequence = items(PixelSpacing=[0.5, 0.25], SliceThickness=2)
+    axes = [1, 0, 0, 0, 1, 0]
+    if volume:
+        shared.PlaneOrientationVolumeSequence = items(ImageOrientationVolume=axes)
+    else:
+        shared.PlaneOrientationSequence = items(ImageOrientationPatient=axes)
+    data.SharedFunctionalGroupsSequence = [shared]
+    frames = []
+    for i, z in enumerate(places):
+        frame = Dataset()
+        if volume:
+            frame.PlanePositionVolumeSequence = items(ImagePositionVolume=[1.0, 2.0, 3.0 + 2 * z])
+        else:
+            frame.PlanePositionSequence = items(ImagePositionPatient=[1, 2, 3 + 2 * int(z)])
+        frame.FrameContentSequence = items(StackID="1")
+        for name, value in group(i).items():
+            setattr(frame.FrameContentSequence[0] if name in CONTENT else frame, name, value)
+        frames.append(frame)
+    data.PerFrameFunctionalGroupsSequence = frames
+    return save(path, [data], syntax)
+
+
+CONTENT = ("DimensionIndexValues", "TemporalPositionIndex", "FrameAcquisitionDateTime")
+FRAMES = numpy.concatenate([ramp("u2"), ramp("u2") + 1000])
+MOMENTS = {"dimensions": lambda t, z: {"DimensionIndexValues": [z + 1, t + 1]},
+           "temporal position": lambda t, z: {"TemporalPositionIndex": t + 1},
+           "trigger delay": lambda t, z: {"CardiacSynchronizationSequence": items(NominalCardiacTriggerDelayTime=10.0 + 500 * t)},
+           "time": lambda t, z: {"FrameAcquisitionDateTime": f"20260101235959.{5 * t}"},
+           "offset": lambda t, z: {"TemporalPositionSequence": items(TemporalPositionTimeOffset=1.5 * t)}}
+KINDS = {"b-value 1000": lambda t: {"MRDiffusionSequence": items(DiffusionBValue=1000.0 * t)},
+         "echo time 9": lambda t: {"MREchoSequence": items(EffectiveEchoTime=2.0 + 7 * t)},
+         "segment 2 liver": lambda t: {"SegmentIdentificationSequence": items(ReferencedSegmentNumber=t + 1)}}
+
+
+@pytest.mark.parametrize("syntax", ("explicit", "implicit", "big"))
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_frames_of_one_moment_are_one_time_step(tmp_path, moment, syntax):
+    group = lambda i: MOMENTS[moment](int(SHUFFLED[i] // PLACES), int(SHUFFLED[i] % PLACES))
+    expect_steps(enhanced(tmp_path / "a", FRAMES[SHUFFLED], SHUFFLED % PLACES, group, syntax), 2)
+
+
+@pytest.mark.parametrize("dimensions", (True, False))
+@pytest.mark.parametrize("kind", KINDS)
+def test_frames_of_another_kind_are_a_series_of_their_own(tmp_path, kind, dimensions):
+    group = lambda i: {**KINDS[kind](int(SHUFFLED[i] // PLACES)), **(
+        {"DimensionIndexValues": [int(SHUFFLED[i] // PLACES) + 1, int(SHUFFLED[i] % PLACES) + 1]} if dimensions else {})}
+    segments = [items(SegmentNumber=n, SegmentLabel=name)[0] for n, name in ((1, "bone"), (2, "liver"))]
+    expect_two_series(enhanced(tmp_path / "a", FRAMES[SHUFFLED], SHUFFLED % PLACES, group, SegmentSequence=segments), kind)
+
+
+def test_files_of_many_frames_are_in_the_order_of_their_numbers(tmp_path):
+    folder = tmp_path / "a"
+    folder.mkdir()
+    for t, name in ((0, "z"), (1, "b")):
+        part = enhanced(tmp_path / name, ramp("u2") + 1000 * t, range(PLACES), lambda i: {}, number=t + 1)
+        (part / f"{t + 1:03}.dcm").rename(folder / name)
+    expect_steps(folder, 2)
+
+
+# Frames without functional groups --------------------------------------------------------------------
+
+
+def frames_of(array, **changes):
+    return slice_of(array[0], 1, (1, 2, 3), NumberOfFrames=len(array), PixelData=array.tobytes(), **changes)
+
+
+@pytest.mark.parametrize("pointer", (0x3004000C, None))
+def test_a_dose_grid_lies_at_its_offsets_with_and_without_a_pointer_to_them(tmp_path, pointer):
+    data = frames_of(ramp("u2"), Modality="RTDOSE", SOPClassUID="1.2.840.10008.5.1.4.1.1.481.2", SliceThickness=None,
+                     GridFrameOffsetVector=[0, 2.5, 5, 7.5, 10], DoseGridScaling=2, DoseUnits="GY")
+    if pointer:
+        data.FrameIncrementPointer = pointer
+    loaded = palpate.load(save(tmp_path / "a", [data]))
+    assert loaded.volume.geometry.spacing[2] == 2.5 and not loaded.notes
+    assert numpy.array_equal(loaded.volume.array, ramp("u2") * 2)
+
+
+def test_frames_counted_by_location_or_page_are_slices(tmp_path):
+    for name, tag, more in (("a", 0x00182005, {"SliceLocationVector": [5, 6.5, 8, 9.5, 11]}),
+                            ("b", 0x00182001, {"PageNumberVector": [1, 2, 3, 4, 5], "SliceThickness": 1.5})):
+        volume = palpate.load(save(tmp_path / name, [frames_of(ramp("u2"), FrameIncrementPointer=tag, **more)])).volume
+        assert volume.geometry.spacing[2] == 1.5 and numpy.array_equal(volume.array, ramp("u2"))
+
+
+def test_a_number_of_frames_may_have_a_sign(tmp_path):
+    folder = save(tmp_path / "a", [frames_of(ramp("u2"), SpacingBetweenSlices=2)])
+    path = folder / "001.dcm"
+    path.write_bytes(path.read_bytes().replace(b"\x28\x00\x08\x00IS\x02\x005 ", b"\x28\x00\x08\x00IS\x02\x00+5"))
+    assert numpy.array_equal(palpate.load(folder).volume.array, ramp("u2"))
