@@ -238,6 +238,15 @@ ForceSettings stable(ForceSettings s, const DeviceLimits& limits) noexcept {
     return s;
 }
 
+/// From a release until the force is small again. Then the ramp begins.
+static bool waits(ForceState& state, const ForceInput& input, bool is_strong) {
+    state.waiting |= input.released;
+    if (!state.waiting) return false;
+    state.ramp_begin = input.time;
+    state.waiting = input.released || is_strong;
+    return state.waiting;
+}
+
 ForceResult render_force(ForceState& state, const ForceSettings& settings,
                          const DeviceLimits& limits, const ForceInput& input) {
     state.motors = warmed(state.motors, limits, input.time, settings.stale_after);
@@ -273,17 +282,12 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     if (!std::isfinite(force.squaredNorm()) || !std::isfinite(torque.squaredNorm())) {
         return stop(state, force_not_finite);
     }
-    state.waiting |= input.released;
-    if (state.waiting) {
-        state.ramp_begin = input.time;
-        // What counts is the force without a limit.
-        const bool strong = part > 0 && !(force.norm() <= part * settings.start_below);
-        state.waiting = input.released || strong;
-        if (state.waiting) {
-            force.setZero();
-            torque.setZero();
-            flags |= force_waiting;
-        }
+    // What counts is the force without a limit.
+    const bool strong = part > 0 && !(force.norm() <= part * settings.start_below);
+    if (waits(state, input, strong)) {
+        force.setZero();
+        torque.setZero();
+        flags |= force_waiting;
     }
     const double since = input.time - state.ramp_begin;
     const double ramp = since >= settings.ramp ? 1 : since / settings.ramp;

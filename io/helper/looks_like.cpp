@@ -29,13 +29,25 @@ bool begins_with_elements(const char* bytes, std::size_t size) {
 
 }  // namespace
 
-bool looks_like_dicom(const fs::path& file) {
+bool is_hidden(const fs::path& file) {
+    return file.filename().native().starts_with('.');
+}
+
+bool is_shown_file(const fs::directory_entry& entry) {
+    return entry.is_regular_file() && !is_hidden(entry.path());
+}
+
+bool begins_as_dicom(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     char start[256] = {};
     in.read(start, sizeof start);
     const auto size = static_cast<std::size_t>(in.gcount());
     if (size >= 132 && std::memcmp(start + 128, "DICM", 4) == 0) return true;
     return size == sizeof start && begins_with_elements(start, size);
+}
+
+bool looks_like_dicom(const fs::path& file) {
+    return !is_hidden(file) && begins_as_dicom(file);
 }
 
 bool has_dicom_index(const fs::path& folder) {

@@ -6,11 +6,23 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <sstream>
 
 namespace palpate::io {
 namespace {
+
+/// A vector of a space: its part among places [mm], and what is beyond (time, in the header's
+/// unit).
+struct SpaceVector {
+    Vec3 place = Vec3::Zero();
+    std::vector<double> beyond;
+
+    double length_beyond() const {
+        return std::sqrt(std::inner_product(beyond.begin(), beyond.end(), beyond.begin(), 0.0));
+    }
+};
 
 /// Fields that have one entry for each axis; an entry that is missing or left open is nothing.
 struct Axis {
@@ -18,7 +30,7 @@ struct Axis {
     std::string kind = "???";
     std::optional<double> spacing, minimum, maximum;
     std::string center = "???";  ///< "node": minimum and maximum are samples, not ends of cells
-    std::optional<Vec3> direction;
+    std::optional<SpaceVector> direction;
     std::string unit;
 
     double cells() const { return static_cast<double>(center == "node" ? size - 1 : size); }
@@ -79,6 +91,7 @@ struct Space {
     std::size_t dimension = 0;   ///< 0: the header gives none
     Vec3 to_lps = Vec3::Ones();  ///< factors to left, posterior, superior [mm]
     bool is_body = false;        ///< its axes are the patient's
+    std::string time_unit = {};  ///< of the fourth dimension
 };
 
 Space named_space(const HeaderFields& fields) {
@@ -132,6 +145,7 @@ Space space_of(const HeaderFields& fields, std::vector<std::string>& notes) {
     for (std::size_t i = 0; i < std::min<std::size_t>(3, units.size()); ++i) {
         space.to_lps[static_cast<Eigen::Index>(i)] *= length_unit(units[i], notes);
     }
+    if (units.size() > 3) space.time_unit = lower(units[3]);
     return space;
 }
 
@@ -148,17 +162,19 @@ std::vector<double> next_vector(const std::string& text, std::size_t& at,
     return numbers_in(inside, field);
 }
 
-Vec3 vector_in(const std::vector<double>& numbers, const Space& space, const std::string& field) {
+SpaceVector vector_in(const std::vector<double>& numbers, const Space& space,
+                      const std::string& field) {
     if (numbers.size() != space.dimension) {
         throw Failure("its header field '" + field +
                       "' and its space do not agree; correct the "
                       "header");
     }
-    Vec3 v = Vec3::Zero();
-    for (std::size_t i = 0; i < std::min<std::size_t>(3, numbers.size()); ++i) {
-        v[static_cast<Eigen::Index>(i)] = numbers[i];
-    }
-    return v.cwiseProduct(space.to_lps);
+    SpaceVector v;
+    const std::size_t places = std::min<std::size_t>(3, numbers.size());
+    for (std::size_t i = 0; i < places; ++i) v.place[static_cast<Eigen::Index>(i)] = numbers[i];
+    v.place = v.place.cwiseProduct(space.to_lps);
+    v.beyond.assign(numbers.begin() + static_cast<std::ptrdiff_t>(places), numbers.end());
+    return v;
 }
 
 void read_directions(const HeaderFields& fields, const Space& space, std::vector<Axis>& axes) {
@@ -173,7 +189,8 @@ void read_directions(const HeaderFields& fields, const Space& space, std::vector
             continue;
         }
         axis.direction = vector_in(next_vector(text, at, field), space, field);
-        check_spacing(axis.direction->norm(), "header field '" + field + "'");
+        check_spacing(std::hypot(axis.direction->place.norm(), axis.direction->length_beyond()),
+                      "header field '" + field + "'");
     }
     if (fields.has(field)) check_count(count, axes.size(), field);
 }
@@ -226,18 +243,30 @@ std::vector<Axis> spatial_axes(const std::vector<Axis>& axes, VolumeHeader& head
     return spatial;
 }
 
-/// A space has as many dimensions as there are axes, or lacks time.
+/// A space has at least as many dimensions as there are axes (a slice lies in space), or lacks
+/// time.
 void check_dimensions(const Space& space, const std::vector<Axis>& spatial) {
     if (spatial.empty()) throw Failure("it has no axis of space; give a volume");
     const bool timeless = space.dimension == 3 && spatial.size() == 4 && !spatial[3].direction;
-    if (space.dimension == 0 || space.dimension == spatial.size() || timeless) return;
-    throw Failure("its header gives a space of " + std::to_string(space.dimension) +
-                  " dimensions for " + std::to_string(spatial.size()) +
-                  " axes; correct the header");
+    if (space.dimension != 0 && space.dimension < spatial.size() && !timeless) {
+        throw Failure("its header gives a space of " + std::to_string(space.dimension) +
+                      " dimensions for " + std::to_string(spatial.size()) +
+                      " axes; correct the header");
+    }
+    for (std::size_t a = 0; a < spatial.size(); ++a) {
+        const auto& direction = spatial[a].direction;
+        if (!direction || (a < 3 ? direction->length_beyond() : direction->place.norm()) == 0) {
+            continue;
+        }
+        throw Failure(
+            "its header field 'space directions' leads an axis through places and times at once, "
+            "or has a time before the last axis; save one volume of it");
+    }
 }
 
 /// Axes beyond the third count volumes.
-void take_steps(std::vector<Axis>& spatial, VolumeHeader& header) {
+void take_steps(const Space& space, const SpaceVector& origin, std::vector<Axis>& spatial,
+                VolumeHeader& header) {
     if (spatial.size() <= 3) {
         if (header.steps == 1) header.together = static_cast<std::int64_t>(header.samples());
         return;
@@ -250,8 +279,11 @@ void take_steps(std::vector<Axis>& spatial, VolumeHeader& header) {
     header.together = static_cast<std::int64_t>(header.samples()) / header.steps;
     if (spatial.size() == 4) {
         const Axis& time = spatial[3];
-        header.times = frame_times(time.spacing.value_or(0), time.minimum.value_or(0),
-                                   lower(time.unit), header.notes);
+        const bool in_space = time.direction && !origin.beyond.empty();
+        header.times =
+            frame_times(in_space ? time.direction->beyond[0] : time.spacing.value_or(0),
+                        in_space ? origin.beyond[0] : time.minimum.value_or(0),
+                        time.unit.empty() ? space.time_unit : lower(time.unit), header.notes);
     }
     spatial.resize(3);
 }
@@ -310,8 +342,18 @@ void complete_directions(const std::vector<Axis>& spatial, Mat3& direction) {
         direction.col((last + 1) % 3).cross(direction.col((last + 2) % 3)).normalized();
 }
 
-Geometry geometry_of(const HeaderFields& fields, const Space& space, std::vector<Axis>& spatial,
-                     std::vector<std::string>& notes) {
+/// Where the first sample lies; 0 where the header does not say.
+SpaceVector origin_of(const HeaderFields& fields, const Space& space) {
+    const std::string field = "space origin";
+    SpaceVector none;
+    none.beyond.resize(space.dimension > 3 ? space.dimension - 3 : 0, 0.0);
+    if (space.dimension == 0 || !fields.has(field)) return none;
+    std::size_t at = 0;
+    return vector_in(next_vector(fields.value(field), at, field), space, field);
+}
+
+Geometry geometry_of(const HeaderFields& fields, const Space& space, const SpaceVector& origin,
+                     std::vector<Axis>& spatial, std::vector<std::string>& notes) {
     Geometry g;
     g.size = Index3::Ones();
     for (std::size_t a = 0; a < spatial.size(); ++a) {
@@ -333,8 +375,8 @@ Geometry geometry_of(const HeaderFields& fields, const Space& space, std::vector
             add_note(notes, "its header has a space: the units of its axes were ignored");
         }
         if (axis.direction) {
-            g.spacing[i] = axis.direction->norm();
-            g.direction.col(i) = *axis.direction / g.spacing[i];
+            g.spacing[i] = axis.direction->place.norm();
+            g.direction.col(i) = axis.direction->place / g.spacing[i];
         }
         if (!axis.spacing && !axis.direction) {
             add_note(notes, "its header gives no spacing: 1 mm was taken");
@@ -344,12 +386,7 @@ Geometry geometry_of(const HeaderFields& fields, const Space& space, std::vector
     const bool directed = std::ranges::any_of(spatial, [](const Axis& a) { return !!a.direction; });
     g.oriented = space.is_body && directed;
     complete_directions(spatial, g.direction);
-    if (space.dimension > 0 && fields.has("space origin")) {
-        std::size_t at = 0;
-        const Vec3 origin = vector_in(next_vector(fields.value("space origin"), at, "space origin"),
-                                      space, "space origin");
-        if (!std::isnan(origin[0])) g.origin = origin;
-    }
+    if (space.dimension > 0 && !std::isnan(origin.place[0])) g.origin = origin.place;
     return g;
 }
 
@@ -359,8 +396,9 @@ void take_axes(const HeaderFields& fields, VolumeHeader& header) {
     const Space space = space_of(fields, header.notes);
     std::vector<Axis> spatial = spatial_axes(axes_of(fields, header.sizes, space), header);
     check_dimensions(space, spatial);
-    take_steps(spatial, header);
-    header.geometry = geometry_of(fields, space, spatial, header.notes);
+    const SpaceVector origin = origin_of(fields, space);
+    take_steps(space, origin, spatial, header);
+    header.geometry = geometry_of(fields, space, origin, spatial, header.notes);
 }
 
 }  // namespace palpate::io

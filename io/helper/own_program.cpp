@@ -62,7 +62,7 @@ const char* program_for_folder(const fs::path& folder) {
     std::vector<std::string> volumes;
     for (const auto& entry : fs::directory_iterator(folder)) {
         folders |= entry.is_directory();
-        if (!entry.is_regular_file()) continue;
+        if (!is_shown_file(entry)) continue;
         if (names_a_volume(entry.path())) volumes.push_back(entry.path().filename().string());
         // Not every one of ten thousand has to be looked into.
         dicoms += dicoms < 2 && looks_like_dicom(entry.path());
@@ -86,7 +86,7 @@ const char* program_for_file(const fs::path& path) {
     if (extension == ".vti") return vtk;
     if (extension == ".tif" || extension == ".tiff") return images;
     if (extension == ".dcm" || extension == ".dicom" || extension == ".ima" ||
-        looks_like_dicom(path)) {
+        begins_as_dicom(path)) {
         return dicom;
     }
     throw Failure(

@@ -24,7 +24,14 @@ PlainLayout nrrd_samples(const Request& request);
 PlainLayout meta_image_samples(const Request& request);
 PlainLayout nifti_samples(const Request& request);
 
+/// Whether a name begins with a point: no slice of a folder, such as the "._a.tif" that macOS keeps
+/// beside "a.tif" on disks of others, and half a copy of rsync's.
+bool is_hidden(const std::filesystem::path& file);
+/// Whether a folder shows it as a file.
+bool is_shown_file(const std::filesystem::directory_entry& entry);
 /// DICOM's four letters after 128 bytes, or, without these, elements as files begin with.
+bool begins_as_dicom(const std::filesystem::path& file);
+/// The same for a file in a folder, where hidden ones do not count.
 bool looks_like_dicom(const std::filesystem::path& file);
 /// Whether a folder is a disc's: its slices are in folders of folders.
 bool has_dicom_index(const std::filesystem::path& folder);

@@ -1,11 +1,11 @@
 // Reads TIFF stacks with libtiff: one file of many pages, or a folder of numbered slices. ITK's
 // reader accepts a cut-off file as complete; libtiff reports it.
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <fstream>
 #include <memory>
 
+#include "io/helper/numbered_names.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/tiff_layout.hpp"
 #include "io/helper/tiff_page.hpp"
@@ -153,60 +153,6 @@ void note_stick(Result& result) {
                            "(ImageJ: Image > Properties, frames) and it is a sequence");
 }
 
-bool is_digit(char c) {
-    return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
-
-/// slice2 before slice10.
-bool numbered_before(const fs::path& a, const fs::path& b) {
-    const std::string x = a.filename().string(), y = b.filename().string();
-    std::size_t i = 0, j = 0;
-    while (i < x.size() && j < y.size()) {
-        if (is_digit(x[i]) && is_digit(y[j])) {
-            const auto number = [](const std::string& s, std::size_t& at) {
-                while (at < s.size() && s[at] == '0') ++at;
-                const std::size_t begin = at;
-                while (at < s.size() && is_digit(s[at])) ++at;
-                return s.substr(begin, at - begin);
-            };
-            const std::string m = number(x, i), n = number(y, j);
-            if (m.size() != n.size()) return m.size() < n.size();
-            if (m != n) return m < n;
-        } else {
-            if (x[i] != y[j]) return x[i] < y[j];
-            ++i;
-            ++j;
-        }
-    }
-    return x.size() - i < y.size() - j;
-}
-
-/// The last number in a name, or -1.
-long number_of(const fs::path& file) {
-    const std::string stem = file.stem().string();
-    const auto end = stem.find_last_of("0123456789");
-    if (end == std::string::npos) return -1;
-    std::size_t begin = end;
-    while (begin > 0 && is_digit(stem[begin - 1])) --begin;
-    return end - begin > 8 ? -1 : std::stol(stem.substr(begin, end - begin + 1));
-}
-
-void note_gaps(const std::vector<fs::path>& files, std::vector<std::string>& notes) {
-    long missing = 0;
-    for (std::size_t i = 1; i < files.size(); ++i) {
-        const long step = number_of(files[i]) - number_of(files[i - 1]);
-        if (step > 1) missing += step - 1;
-    }
-    // A constant step (every second number) is a way of naming, not a gap.
-    const long all = number_of(files.back()) - number_of(files.front());
-    const auto gaps = static_cast<long>(files.size()) - 1;
-    if (missing > 0 && gaps > 0 && all != gaps * (number_of(files[1]) - number_of(files[0]))) {
-        notes.push_back(std::to_string(missing) +
-                        " numbers are missing among its slices' names: the slices were put "
-                        "together without a gap, so lengths across it are too short");
-    }
-}
-
 /// What the first file of a folder says of spacing and values; the files' names say the order.
 TiffLayout layout_of_folder(const fs::path& first, std::vector<std::string>& notes) {
     const Tiff tiff = open_to_read(first);
@@ -243,26 +189,27 @@ Result read_tiff_file(const Request& request) {
 Result read_tiff_folder(const Request& request) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(request.path)) {
-        if (entry.is_regular_file() && looks_like_tiff(entry.path())) files.push_back(entry.path());
+        if (is_shown_file(entry) && looks_like_tiff(entry.path())) files.push_back(entry.path());
     }
-    std::sort(files.begin(), files.end(), numbered_before);
+    const NumberedSlices numbered = numbered_slices(std::move(files));
+    const auto times = static_cast<std::int64_t>(numbered.times.size());
+    const int step = checked_time_step(request, times);
     std::vector<Slice> slices;
-    for (const fs::path& file : files) {
+    for (const fs::path& file : numbered.times[static_cast<std::size_t>(step)]) {
         const auto pages = pages_of(open_to_read(file).get(), file).whole;
-        if (pages.size() != 1 && files.size() > 1) {
+        if (pages.size() != 1 && numbered.times[0].size() * numbered.times.size() > 1) {
             throw Failure(quoted(file) + " has " + std::to_string(pages.size()) +
                           " pages in a folder of slices; give that file alone");
         }
         for (const std::uint32_t page : pages) slices.push_back({file, page});
     }
-    checked_time_step(request, 1);
-    std::vector<std::string> notes;
-    const TiffLayout layout = layout_of_folder(files.front(), notes);
+    std::vector<std::string> notes = numbered.notes;
+    const TiffLayout layout = layout_of_folder(slices.front().file, notes);
     Result result = read_slices(slices, layout, request);
     result.format = "TIFF slices";
     result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+    take_step(request, times, {}, result);
     note_stick(result);
-    note_gaps(files, result.notes);
     return result;
 }
 

@@ -1,0 +1,278 @@
+#include "io/helper/numbered_names.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+
+#include "io/system/number.hpp"
+
+namespace palpate::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_digit(char c) {
+    return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+/// A number in a name, as text ("007", "2.5"), or the text between two numbers.
+struct NamePart {
+    std::string text;
+    bool is_number = false;
+
+    bool operator==(const NamePart&) const = default;
+};
+
+/// 2 before 10, 1.25 before 1.5, numbers before text.
+bool is_before(const NamePart& a, const NamePart& b) {
+    if (a.is_number != b.is_number) return a.is_number;
+    if (!a.is_number) return a.text < b.text;
+    const auto whole = [](const std::string& text) {
+        const auto begin = std::min(text.find_first_not_of('0'), text.size());
+        const auto end = std::min(text.find('.'), text.size());
+        return begin < end ? text.substr(begin, end - begin) : std::string();
+    };
+    const std::string x = whole(a.text), y = whole(b.text);
+    if (x.size() != y.size()) return x.size() < y.size();
+    if (x != y) return x < y;
+    const auto fraction = [](const std::string& text) {
+        return text.substr(std::min(text.find('.'), text.size()));
+    };
+    return fraction(a.text) < fraction(b.text);
+}
+
+using Name = std::vector<NamePart>;
+
+/// A point between two numbers belongs to them, unless there are more points: "1.5", not "1.5.2".
+Name parts_of(const fs::path& file) {
+    const std::string stem = file.stem().string();
+    Name parts;
+    for (std::size_t at = 0; at < stem.size();) {
+        const bool number = is_digit(stem[at]);
+        std::size_t end = at;
+        while (end < stem.size() && is_digit(stem[end]) == number) ++end;
+        const std::string text = stem.substr(at, end - at);
+        const bool fraction = number && parts.size() >= 2 && parts.back().text == "." &&
+                              parts[parts.size() - 2].text.find('.') == std::string::npos &&
+                              (end == stem.size() || stem[end] != '.');
+        if (fraction && (parts.size() < 3 || parts[parts.size() - 3].text.back() != '.')) {
+            parts.pop_back();
+            parts.back().text += "." + text;
+        } else {
+            parts.push_back({text, number});
+        }
+        at = end;
+    }
+    return parts;
+}
+
+struct NamedFile {
+    fs::path path;
+    Name name;
+};
+
+bool comes_before(const NamedFile& a, const NamedFile& b) {
+    if (std::ranges::lexicographical_compare(a.name, b.name, is_before)) return true;
+    return !std::ranges::lexicographical_compare(b.name, a.name, is_before) && a.path < b.path;
+}
+
+/// What a number counts.
+enum class Counts { slices, channels, times, unknown };
+
+/// By the letters before it.
+Counts counted_by(const std::string& before) {
+    static const std::map<std::string, Counts> marks = {
+        {"z", Counts::slices},        {"slice", Counts::slices},  {"section", Counts::slices},
+        {"plane", Counts::slices},    {"c", Counts::channels},    {"ch", Counts::channels},
+        {"chan", Counts::channels},   {"w", Counts::channels},    {"channel", Counts::channels},
+        {"t", Counts::times},         {"time", Counts::times},    {"tp", Counts::times},
+        {"timepoint", Counts::times},
+    };
+    const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+    std::size_t end = before.size();
+    while (end > 0 && !is_letter(before[end - 1])) --end;
+    std::size_t begin = end;
+    while (begin > 0 && is_letter(before[begin - 1])) --begin;
+    const auto found = marks.find(lower(before.substr(begin, end - begin)));
+    return found == marks.end() ? Counts::unknown : found->second;
+}
+
+/// A part of the names that differs from file to file.
+struct Field {
+    std::size_t part = 0;
+    Counts counts = Counts::unknown;
+    std::vector<NamePart> values;  ///< in their order, each once
+
+    bool is_of_slices() const { return counts == Counts::slices; }
+    bool is_of_others() const { return counts == Counts::channels || counts == Counts::times; }
+};
+
+/// None if the names are not alike: some have more parts than others, or text where others have
+/// a number.
+std::vector<Field> fields_of(const std::vector<NamedFile>& files) {
+    const Name& first = files.front().name;
+    std::vector<Field> fields;
+    for (std::size_t p = 0; p < first.size(); ++p) {
+        Field field{p, Counts::unknown, {}};
+        for (const NamedFile& file : files) {
+            if (file.name.size() != first.size() || file.name[p].is_number != first[p].is_number) {
+                return {};
+            }
+            field.values.push_back(file.name[p]);
+        }
+        std::ranges::sort(field.values, is_before);
+        const auto same = std::ranges::unique(field.values);
+        field.values.erase(same.begin(), same.end());
+        if (field.values.size() < 2) continue;
+        if (first[p].is_number && p > 0) field.counts = counted_by(first[p - 1].text);
+        fields.push_back(std::move(field));
+    }
+    return fields;
+}
+
+/// "'_z000' to '_z009', '_ch00' to '_ch01'"
+std::string text_of(const std::vector<Field>& fields, const Name& name) {
+    std::string text;
+    for (const Field& field : fields) {
+        const std::string before = field.part > 0 ? name[field.part - 1].text : "";
+        text += (text.empty() ? "'" : ", '") + before + field.values.front().text + "' to '" +
+                before + field.values.back().text + "'";
+    }
+    return text;
+}
+
+[[noreturn]] void fail_unclear(const std::vector<Field>& fields, const Name& name) {
+    throw Failure("the names of its slices differ in more than one place (" +
+                  text_of(fields, name).substr(0, 200) +
+                  "), and which of them counts slices is not certain; put the slices of one volume "
+                  "into a folder of their own, or write z, c and t before the numbers");
+}
+
+/// A field for slices, channels and times each, where there is one; the only one that is not known
+/// is for slices.
+std::map<Counts, Field> roles_of(const std::vector<Field>& fields, const Name& name) {
+    std::map<Counts, Field> roles;
+    for (const Field& field : fields) {
+        if (!roles.emplace(field.counts, field).second) fail_unclear(fields, name);
+    }
+    if (const auto open = roles.find(Counts::unknown); open != roles.end()) {
+        if (!name[open->second.part].is_number) fail_unclear(fields, name);
+        if (!roles.emplace(Counts::slices, open->second).second) fail_unclear(fields, name);
+        roles.erase(Counts::unknown);
+    }
+    if (!roles.contains(Counts::slices)) fail_unclear(fields, name);
+    return roles;
+}
+
+/// How many numbers are missing between the first and the last. A constant step (every second
+/// number) is a way of naming, not a gap.
+long missing_in(const Field& field) {
+    std::vector<long> numbers;
+    for (const NamePart& value : field.values) {
+        const auto number = value.is_number ? number_from<long>(value.text) : std::nullopt;
+        if (!number) return 0;
+        numbers.push_back(*number);
+    }
+    const auto gaps = static_cast<long>(numbers.size()) - 1;
+    const long span = numbers.back() - numbers.front();
+    return span == gaps * (numbers[1] - numbers[0]) ? 0 : span - gaps;
+}
+
+void note_missing(long missing, std::vector<std::string>& notes) {
+    if (missing == 0) return;
+    notes.push_back(std::to_string(missing) +
+                    " numbers are missing among its slices' names: the slices were put together "
+                    "without a gap, so lengths across it are too short");
+}
+
+/// All files, in the order of their names.
+NumberedSlices one_stack(const std::vector<NamedFile>& files, const std::vector<Field>& fields) {
+    NumberedSlices slices;
+    slices.times.emplace_back();
+    for (const NamedFile& file : files) slices.times[0].push_back(file.path);
+    if (fields.empty() && files.size() > 1) {
+        slices.notes.emplace_back(
+            "the names of its slices are not alike: they were put together in the order of their "
+            "names");
+    }
+    std::optional<long> missing;  // of numbers that go together, one may be a time of day
+    for (const Field& field : fields) {
+        if (field.values.size() != files.size()) continue;
+        missing = std::min(missing.value_or(missing_in(field)), missing_in(field));
+    }
+    note_missing(missing.value_or(0), slices.notes);
+    if (fields.size() == 1 && fields[0].is_of_others()) {
+        slices.notes.push_back(
+            "the numbers in its names (" + text_of(fields, files.front().name).substr(0, 100) +
+            ") seem to count " + (fields[0].counts == Counts::times ? "times" : "channels") +
+            ": they were taken as slices");
+    }
+    return slices;
+}
+
+/// Files of every slice for every channel and time: those of the first channel.
+NumberedSlices first_channel(std::vector<NamedFile> files, const std::vector<Field>& fields) {
+    const Name first = files.front().name;
+    const std::map<Counts, Field> roles = roles_of(fields, first);
+    std::size_t all = 1;
+    for (const auto& [counts, field] : roles) all *= field.values.size();
+    if (all != files.size()) {
+        throw Failure("it has " + std::to_string(files.size()) + " slices where their names (" +
+                      text_of(fields, first).substr(0, 200) + ") count " + std::to_string(all) +
+                      "; copy the missing ones, or put those of one volume into a folder of their "
+                      "own");
+    }
+    NumberedSlices slices;
+    const auto channels = roles.find(Counts::channels), times = roles.find(Counts::times);
+    if (channels != roles.end()) {
+        const Field& field = channels->second;
+        std::erase_if(files, [&](const NamedFile& file) {
+            return file.name[field.part] != field.values.front();
+        });
+        slices.notes.push_back("by the names of its slices it has " +
+                               std::to_string(field.values.size()) + " channels: '" +
+                               first[field.part - 1].text + field.values.front().text +
+                               "' was taken; put the slices of another one into a folder of "
+                               "their own");
+    }
+    const Field& z = roles.at(Counts::slices);
+    std::ranges::stable_sort(files, [&](const NamedFile& a, const NamedFile& b) {
+        return is_before(a.name[z.part], b.name[z.part]);
+    });
+    slices.times.resize(times == roles.end() ? 1 : times->second.values.size());
+    for (const NamedFile& file : files) {
+        std::size_t time = 0;
+        if (times != roles.end()) {
+            const auto& values = times->second.values;
+            const auto found = std::ranges::find(values, file.name[times->second.part]);
+            time = static_cast<std::size_t>(found - values.begin());
+        }
+        slices.times[time].push_back(file.path);
+    }
+    note_missing(missing_in(z), slices.notes);
+    return slices;
+}
+
+}  // namespace
+
+NumberedSlices numbered_slices(std::vector<fs::path> paths) {
+    std::vector<NamedFile> files;
+    for (fs::path& path : paths) {
+        Name name = parts_of(path);
+        files.push_back({std::move(path), std::move(name)});
+    }
+    std::ranges::sort(files, comes_before);
+    const std::vector<Field> fields = fields_of(files);
+    std::vector<Field> shared;  // with values that several files have
+    bool told = fields.empty();
+    for (const Field& field : fields) {
+        if (field.values.size() != files.size()) shared.push_back(field);
+        told |= field.values.size() == files.size() && field.is_of_slices();
+    }
+    const bool others = std::ranges::any_of(shared, &Field::is_of_others);
+    const bool alone = shared.size() < fields.size() && !others;
+    return told || alone ? one_stack(files, fields) : first_channel(std::move(files), shared);
+}
+
+}  // namespace palpate::io
