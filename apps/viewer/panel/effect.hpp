@@ -12,8 +12,8 @@
 
 namespace palpate::viewer {
 
-/// Whoever shows a setting reads it here, and whoever changes one asks here. Nobody keeps a copy, so
-/// nothing has to be undone after a refusal. GUI thread only.
+/// Whoever shows a setting reads it here, and whoever changes one asks here. Nobody keeps a copy,
+/// so nothing has to be undone after a refusal. GUI thread only.
 class Effect : public QObject {
     Q_OBJECT
 
