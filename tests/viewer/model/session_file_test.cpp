@@ -130,6 +130,7 @@ TEST(SessionFile, a_volume_and_a_level_are_enough) {
     EXPECT_EQ(read.isovalue, 300);
     EXPECT_EQ(read.look, Look{});
     EXPECT_EQ(read.device, SessionFile{}.device);
+    EXPECT_EQ(read.interpolation, Interpolation::cubic);  // as of a volume without a session
     EXPECT_FALSE(read.background || read.settings || read.camera || read.crosshair);
     // And as little comes back.
     write_session(folder / "again.json", read);
