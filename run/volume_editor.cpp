@@ -330,7 +330,7 @@ void VolumeEditor::brush(Hand& hand, std::chrono::steady_clock::time_point now) 
     if (session.tick.proxy.mode == Mode::free) hand.resting = false;
     const bool works = !hand.resting && session.device.status == DeviceStatus::ready &&
                        !session.frozen && !session.clutched && felt->forces_on &&
-                       holds(session.device) && session.tick.proxy.mode == Mode::constrained &&
+                       grasps(session.device) && session.tick.proxy.mode == Mode::constrained &&
                        session.tick.proxy.status == UpdateStatus::done;
     if (!works) return hand.touch.reset();
     const Touch to{

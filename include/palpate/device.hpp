@@ -50,9 +50,9 @@ struct DeviceReading {
     std::optional<DeviceLimits> limits = std::nullopt;
 };
 
-/// Whether a gripper is so far closed that it counts as holding. A hand without a gripper always
-/// holds.
-constexpr bool holds(const DeviceReading& reading) {
+/// Whether a gripper is so far closed that it grasps something. A hand without a gripper always
+/// does.
+constexpr bool grasps(const DeviceReading& reading) {
     return !reading.opening || *reading.opening < 0.1;
 }
 

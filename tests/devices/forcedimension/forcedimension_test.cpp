@@ -149,10 +149,10 @@ TEST_F(ForceDimension, the_opening_of_a_gripper_comes_with_each_reading) {
     EXPECT_TRUE(device->info().has_gripper);
     ASSERT_TRUE(becomes(*device, DeviceStatus::ready));
     EXPECT_EQ(device->read(0).opening, 0.5);
-    EXPECT_FALSE(holds(device->read(0)));
+    EXPECT_FALSE(grasps(device->read(0)));
     with([](auto& dhd) { dhd.opening = 0.02; });
     step();
-    EXPECT_TRUE(holds(device->read(0)));
+    EXPECT_TRUE(grasps(device->read(0)));
     with([](auto& dhd) { dhd.opening = std::numeric_limits<double>::quiet_NaN(); });
     step();
     EXPECT_EQ(device->read(0).opening, std::nullopt);
