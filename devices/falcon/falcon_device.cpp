@@ -114,11 +114,12 @@ void FalconDevice::run() noexcept {
 }
 
 void FalconDevice::step() noexcept {
-    const std::int64_t begun = timing_.now();
+    std::int64_t begun = timing_.now();
     DeviceReading reading;
     std::optional<Trouble> trouble;
     try {
         if (!is_awake_ && begun >= next_attempt_) wake(begun);
+        begun = timing_.now();
         trouble = is_awake_ ? converse(reading) : asleep_;
     } catch (const std::exception& error) {
         lose(error.what(), timing_.now());

@@ -26,6 +26,11 @@ using support::pass;
 
 class Falcon : public support::SteppedDevice {
   protected:
+    template <class F>
+    auto with(F act) const {
+        const std::lock_guard lock(mock_->mutex);
+        return act(mock_->state);
+    }
     Falcon() {
         MockFtdi* (*plug_in)() = nullptr;
         VendorLibrary({MOCK_FTDI}, "build it").need(plug_in, "mock_ftdi");
@@ -54,11 +59,6 @@ class Falcon : public support::SteppedDevice {
     }
     std::string refusal(const std::string& options = "") {
         return message_of<DeviceError>([&] { open(options); });
-    }
-    template <class F>
-    auto with(F act) const {
-        const std::lock_guard lock(mock_->mutex);
-        return act(mock_->state);
     }
     /// The person holds the grip there [device mm].
     void hold(const Vec3& position) {
@@ -291,6 +291,11 @@ TEST_F(Falcon, that_is_not_there_or_taken_is_refused_with_a_remedy) {
     EXPECT_TRUE(contains(found.what, "2 devices"));
     const DeviceFinding none = falcon::find("/nowhere/libftdi1.so.2");
     EXPECT_TRUE(contains(none.missing, "libftdi1-2")) << none.missing;
+}
+
+TEST(FalconLibrary, of_the_system_has_every_function_if_it_is_installed) {
+    const DeviceFinding finding = falcon::find("");
+    EXPECT_FALSE(contains(finding.missing, "has no function")) << finding.missing;
 }
 
 class PacedFalcon : public Falcon {};

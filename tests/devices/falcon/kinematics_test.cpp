@@ -46,7 +46,9 @@ TEST(FalconKinematics, the_position_with_the_angles_of_a_place_is_that_place) {
         ASSERT_TRUE(from_centre) << place.transpose();
         ASSERT_LT((*from_centre - place).norm(), 1e-8) << place.transpose();
         const auto from_near = position_with(*angles, place + random.point(-0.01, 0.01));
-        if (from_near) ASSERT_LT((*from_near - place).norm(), 1e-8) << place.transpose();
+        if (from_near) {
+            ASSERT_LT((*from_near - place).norm(), 1e-8) << place.transpose();
+        }
     }
 }
 
