@@ -16,10 +16,16 @@ namespace {
 
 constexpr DeviceLimits touch{.maximum_force = 3.3, .continuous_force = 0.88, .warming_time = 60};
 
+ForceSettings with_stiffness(double stiffness) {
+    ForceSettings settings;
+    settings.stiffness = stiffness;
+    return settings;
+}
+
 /// A hand that presses with a pull of its own each tick.
 struct PressingHand {
     DeviceLimits limits = touch;
-    ForceSettings settings{.stiffness = 1};
+    ForceSettings settings = with_stiffness(1);
     ForceState state{};
     double time = 0;
 
@@ -192,7 +198,7 @@ TEST(Delay, is_named_where_it_refuses_a_stiffness_and_the_longer_one_counts) {
     DeviceLimits limits;
     limits.delay = 2e-3;
     EXPECT_DOUBLE_EQ(greatest_stiffness(limits, 0), 1);
-    const ForceSettings stiff{.stiffness = 2};
+    const ForceSettings stiff = with_stiffness(2);
     try {
         check(stiff, limits);
         ADD_FAILURE() << "accepted";
