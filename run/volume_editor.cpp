@@ -140,9 +140,9 @@ void VolumeEditor::set_brush(const std::optional<HandBrush>& brush) {
     set_problem({});
 }
 
-void VolumeEditor::apply(const Edit& asked) {
+void VolumeEditor::apply(const Edit& asked, const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
-    with_samples(lock, [&] {
+    with_samples(lock, stop, [&] {
         edit(asked, EditStep::own);
         new_step_ = true;
     });
@@ -254,7 +254,8 @@ void VolumeEditor::send(const command::Samples& command) {
 /// the lock: a network must hold nobody up who holds or needs it. They are of this call alone, so
 /// that nobody else's edit can take them away.
 template <class Work>
-void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, Work&& work) {
+void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, const std::stop_token& stop,
+                                Work&& work) {
     Fetched fetched;
     while (true) {
         fetched_ = &fetched;
@@ -264,7 +265,7 @@ void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, Work&& work)
             const std::shared_ptr<const Samples> samples = editor_.samples();
             lock.unlock();
             try {
-                fetch(samples, lacking.edit, fetched);
+                fetch(samples, lacking.edit, fetched, stop);
             } catch (...) {
                 lock.lock();
                 throw;
@@ -274,15 +275,18 @@ void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, Work&& work)
     }
 }
 
-/// Without the lock: all that an edit of these samples reads.
+/// Without the lock: all that an edit of these samples reads. Stops with the caller or the editor.
 void VolumeEditor::fetch(const std::shared_ptr<const Samples>& samples, const Edit& asked,
-                         Fetched& fetched) const {
+                         Fetched& fetched, const std::stop_token& stop) const {
+    std::stop_source either;
+    const auto end = [&] { either.request_stop(); };
+    const std::stop_callback with_editor(reading_.get_token(), end), with_caller(stop, end);
     std::uint64_t bytes = bytes_of_edits(*samples);
     (void)edited(samples, asked, [&](const SampleBox& box, std::span<std::byte> out) {
         count_brick(bytes, *samples, memory_);
         std::vector<std::byte>& read = fetched[{box.low[0], box.low[1], box.low[2]}];
         if (read.size() != out.size()) {
-            streamer_->read(box, out, reading_.get_token());
+            streamer_->read(box, out, either.get_token());
             read.assign(out.begin(), out.end());
         }
         std::ranges::copy(read, out.begin());
@@ -311,7 +315,7 @@ void VolumeEditor::run(const std::stop_token& stop) {
 void VolumeEditor::step(std::chrono::steady_clock::time_point now) {
     std::unique_lock lock(mutex_);
     try {
-        with_samples(lock, [&] {
+        with_samples(lock, {}, [&] {
             for (Hand& hand : hands_) brush(hand, now);
         });
     } catch (const stream::Cancelled&) {  // the editor ends

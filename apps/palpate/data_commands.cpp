@@ -44,7 +44,7 @@ std::array<Vec3, 2> two_points(const CommandWords& words) {
 /// A request that has nothing to say.
 template <class Change>
 DataRequest silent(Change change) {
-    return [change](run::Data& data, const Field&, double) {
+    return [change](run::Data& data, const Field&, double, const std::stop_token&) {
         change(data);
         return std::string();
     };
@@ -59,13 +59,14 @@ DataRequest stroke(const CommandWords& words, const Volume& volume) {
     run::check(hand);
     const auto ends = two_points(words);
     if (!ends[0].allFinite() || !ends[1].allFinite()) words.refuse();
-    return [hand, ends](run::Data& data, const Field& field, double isovalue) {
+    return [hand, ends](run::Data& data, const Field& field, double isovalue,
+                        const std::stop_token& stop) {
         if (!std::isfinite(isovalue))
             throw std::invalid_argument(
                 "there is no surface to touch now, so the brush has nothing to work on");
         Brush brush = brush_for(hand.kind, field, isovalue, hand.radius);
         if (hand.value) brush.value = *hand.value;
-        data.editor().apply(edit::Stroke{brush, ends[0], ends[1]});
+        data.editor().apply(edit::Stroke{brush, ends[0], ends[1]}, stop);
         return std::string();
     };
 }
@@ -77,13 +78,18 @@ DataRequest fill(const CommandWords& words, const Volume& volume) {
     if (!(most <= 1 << 20)) words.refuse();
     const SampleBox box{low.cwiseMin(high).cast<int>(), low.cwiseMax(high).cast<int>()};
     const edit::Fill fill{box, io::level_from_text(words[2], volume)};
-    return silent([fill](run::Data& data) { data.editor().apply(fill); });
+    return [fill](run::Data& data, const Field&, double, const std::stop_token& stop) {
+        data.editor().apply(fill, stop);
+        return std::string();
+    };
 }
 
 DataRequest save(const CommandWords& words, const Volume& volume) {
     const std::string path = words.expect(2)[1];
     run::check_volume_name(path, volume.geometry());
-    return [path](run::Data& data, const Field&, double) { return data.save(path, {}); };
+    return [path](run::Data& data, const Field&, double, const std::stop_token&) {
+        return data.save(path, {});
+    };
 }
 
 DataRequest seek(const CommandWords& words) {
@@ -140,7 +146,7 @@ std::optional<run::HandBrush> brush_from(const CommandWords& words, const Volume
 }
 
 DataRequest set_brush(const std::optional<run::HandBrush>& brush) {
-    return [brush](run::Data& data, const Field&, double) {
+    return [brush](run::Data& data, const Field&, double, const std::stop_token&) {
         data.editor().set_brush(brush);
         if (!brush) return std::string("brush: off");
         return fmt::format("brush: {}, {:g} mm{}", name_of(brush->kind), brush->radius,
@@ -149,13 +155,13 @@ DataRequest set_brush(const std::optional<run::HandBrush>& brush) {
 }
 
 DataRequest undo() {
-    return [](run::Data& data, const Field&, double) {
+    return [](run::Data& data, const Field&, double, const std::stop_token&) {
         return data.editor().undo() ? "" : "there is nothing to undo";
     };
 }
 
 DataRequest redo() {
-    return [](run::Data& data, const Field&, double) {
+    return [](run::Data& data, const Field&, double, const std::stop_token&) {
         return data.editor().redo() ? "" : "there is nothing to redo";
     };
 }

@@ -77,7 +77,8 @@ void Remote::send_surface(const run::Run& run, const Snapshot& now, RequestQueue
     if (surface_under_way_.exchange(true)) {
         throw std::invalid_argument("another surface is being made: ask again");
     }
-    queue.put([this, field = run.field_now(), level = now.session.tick.proxy.isovalue, peer] {
+    queue.put([this, field = run.field_now(), level = now.session.tick.proxy.isovalue,
+               peer](const std::stop_token&) {
         try {
             SurfaceOptions options;
             options.progress = [](double) { return !interrupted(); };

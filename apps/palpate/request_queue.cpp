@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "apps/palpate/commands.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::app {
@@ -22,8 +23,11 @@ std::vector<RequestQueue::Message> RequestQueue::messages() {
 }
 
 void RequestQueue::finish() {
+    constexpr std::chrono::milliseconds between{20};
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return waiting_.empty() && !busy_; });
+    const auto is_done = [&] { return waiting_.empty() && !busy_; };
+    while (!interrupted() && !changed_.wait_for(lock, between, is_done)) {
+    }
 }
 
 std::string RequestQueue::unsaved() const {
@@ -39,16 +43,17 @@ void RequestQueue::run(const std::stop_token& stop) {
         waiting_.pop_front();
         busy_ = true;
         lock.unlock();
-        do_one(next);
+        do_one(next, stop);
         lock.lock();
         busy_ = false;
         changed_.notify_all();
     }
 }
 
-void RequestQueue::do_one(const Work& work) {
+void RequestQueue::do_one(const Work& work, const std::stop_token& stop) {
     try {
-        say(work(), false);
+        say(work(stop), false);
+    } catch (const io::Cancelled&) {  // the session ends
     } catch (const io::OutputError& e) {
         say(std::string("palpate: ") + e.what(), true);
         const std::scoped_lock lock(mutex_);

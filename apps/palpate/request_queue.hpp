@@ -6,16 +6,18 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
 namespace palpate::app {
 
-/// Returns a sentence for the person who asked, or nothing; what it throws is reported.
-using Work = std::function<std::string()>;
+/// Returns a sentence for the person who asked, or nothing. What it throws is reported, except for
+/// io::Cancelled, once `stop` is requested.
+using Work = std::function<std::string(const std::stop_token& stop)>;
 
-/// The destructor waits for the work under way and drops the rest.
+/// The destructor stops the work under way, waits for its end and drops the rest.
 class RequestQueue {
   public:
     RequestQueue() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -27,14 +29,14 @@ class RequestQueue {
     };
     /// Sentences for the person who asked, since the last call.
     std::vector<Message> messages();
-    /// Waits until all is done.
+    /// Waits until all is done, or for Ctrl-C.
     void finish();
     /// Why a volume could not be written; empty if all could.
     std::string unsaved() const;
 
   private:
     void run(const std::stop_token& stop);
-    void do_one(const Work& work);
+    void do_one(const Work& work, const std::stop_token& stop);
     void say(const std::string& text, bool is_problem);
 
     mutable std::mutex mutex_;

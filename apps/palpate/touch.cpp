@@ -82,7 +82,7 @@ class Terminal {
     /// Waits for the requests so far, except after Ctrl-C. Returns why a volume could not be
     /// written; empty if all could.
     std::string finish() {
-        if (!interrupted()) queue_.finish();
+        queue_.finish();
         print_messages();
         tell_what_was_left_out();
         return queue_.unsaved();
@@ -126,8 +126,8 @@ class Terminal {
             [&](Help) { note(LiveCommands::key_help()); },
             [&](const DataRequest& data) {
                 const double isovalue = now.session.tick.proxy.isovalue;
-                queue_.put([this, data, isovalue] {
-                    return data(run_.data(), run_.field_now(), isovalue);
+                queue_.put([this, data, isovalue](const std::stop_token& stop) {
+                    return data(run_.data(), run_.field_now(), isovalue, stop);
                 });
             },
             [&](const Command& command) { run_.send(command); },
@@ -369,7 +369,7 @@ LiveCommands commands_for(const run::Run& run) {
 
 void take_up_brush(run::Run& run, LiveCommands& commands, const std::string& words) {
     const Request brush = commands.from_words("brush " + words);
-    std::get<DataRequest>(brush)(run.data(), run.field(), run.isovalue());
+    std::get<DataRequest>(brush)(run.data(), run.field(), run.isovalue(), {});
 }
 
 /// What this command reads stays as it is.

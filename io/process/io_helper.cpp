@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "io/system/system.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::io {
@@ -27,6 +28,11 @@ void check_readable(const fs::path& path) {
     const std::string name = path.empty() ? "(no name)" : path.string();
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found && is_web_address(name)) {
+        throw InputError(name +
+                         ": is a web address, and this reads files only; make a file of it "
+                         "with palpate convert");
+    }
     if (status.type() == fs::file_type::not_found && name.find("://") != std::string::npos) {
         throw InputError(name + ": begins with none of http://, https:// and s3://");
     }

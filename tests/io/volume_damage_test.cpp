@@ -110,6 +110,8 @@ TEST(read_volume, says_what_is_wrong_with_a_path) {
     EXPECT_TRUE(contains(refusal(folder / "missing.nrrd"), "does not exist"));
     EXPECT_TRUE(contains(refusal(""), "does not exist"));
     EXPECT_TRUE(contains(refusal("/dev/null"), "neither a file nor a folder"));
+    EXPECT_TRUE(contains(refusal("HTTPS://host/v.zarr"), "is a web address"));
+    EXPECT_TRUE(contains(refusal("ftp://host/v.zarr"), "begins with none of http://"));
     EXPECT_TRUE(contains(refusal(folder.path()), "no DICOM or TIFF slices"));
     std::filesystem::create_directory(folder / "inner");
     EXPECT_TRUE(contains(refusal(folder.path()), "give one of the folders in it"));

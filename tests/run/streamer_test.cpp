@@ -241,6 +241,28 @@ TEST(Streamed, undo_and_brush_do_not_wait_for_the_samples_of_an_edit) {
     EXPECT_EQ(data.editor().state().undo_steps, 1U);
 }
 
+TEST(Streamed, an_edit_that_waits_for_samples_stops_when_asked_to_and_changes_nothing) {
+    const auto store = stream::store_in_pieces(scenes::make_volume("sphere:128x126x125").volume);
+    Data data(loaded_of(store), {}, Pace::by_steps);
+    std::atomic<bool> reads{false}, hangs{true};
+    store->before_read = [&](int, const SampleBox&, const std::stop_token& asked) {
+        reads = true;
+        while (hangs && !asked.stop_requested()) std::this_thread::yield();
+        if (asked.stop_requested()) throw stream::Cancelled{};
+    };
+    std::stop_source stop;
+    const edit::Fill fill{{{90, 90, 90}, {99, 99, 99}}, 80};
+    std::jthread other(
+        [&] { EXPECT_THROW(data.editor().apply(fill, stop.get_token()), stream::Cancelled); });
+    ASSERT_TRUE(support::comes_true([&] { return reads.load(); }));
+    stop.request_stop();
+    other.join();
+    EXPECT_FALSE(data.editor().state().changed);
+    hangs = false;
+    data.editor().apply(fill);
+    EXPECT_EQ(data.editor().state().samples->sample({95, 95, 95}), 80);
+}
+
 TEST(Streamed, edits_have_a_quarter_of_the_memory_and_say_so) {
     ScratchFolder folder;
     const std::string path = (folder.path() / "large.raw").string();

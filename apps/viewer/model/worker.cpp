@@ -38,4 +38,16 @@ bool Worker::finish() const {
     return done_;
 }
 
+void NewestWorker::start(Worker::Task task, std::function<void()> changed) {
+    cancel();
+    newest_ = std::make_unique<Worker>(std::move(task), std::move(changed));
+}
+
+void NewestWorker::cancel() {
+    std::erase_if(cancelled_, [](const auto& worker) { return worker->ended(); });
+    if (!newest_) return;
+    newest_->cancel();
+    cancelled_.push_back(std::move(newest_));
+}
+
 }  // namespace palpate::viewer

@@ -4,7 +4,9 @@
 #include <atomic>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <thread>
+#include <vector>
 
 #include "palpate/io/volume_file.hpp"
 
@@ -38,6 +40,20 @@ class Worker {
     bool done_ = false;  // before ended_
     std::exception_ptr error_;
     std::jthread thread_;
+};
+
+/// The newest of several tasks. Earlier ones are cancelled, but may notice it late, for example
+/// when a disk hangs: only the destructor waits for them.
+class NewestWorker {
+  public:
+    void start(Worker::Task task, std::function<void()> changed);
+    void cancel();
+    /// False after cancel(), too.
+    bool ended() const { return newest_ && newest_->ended(); }
+
+  private:
+    std::unique_ptr<Worker> newest_;
+    std::vector<std::unique_ptr<Worker>> cancelled_;
 };
 
 }  // namespace palpate::viewer

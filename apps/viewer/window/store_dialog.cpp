@@ -97,7 +97,7 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
     // Return in the line looks; it must not open what was found at another address.
     for (auto* button : findChildren<QPushButton*>()) button->setAutoDefault(false);
     connect(address_, &QLineEdit::textEdited, this, [this] {
-        worker_.reset();
+        worker_.cancel();
         looking_ = found_ = nullptr;
         show_found();
     });
@@ -125,7 +125,7 @@ void StoreDialog::look() {
     found_.reset();
     show_found();
     verdict_->setText(tr("Looking …"));
-    worker_ = std::make_unique<Worker>(
+    worker_.start(
         [found, address, is_known = address == known_.address](const io::Progress& progress) {
             try {
                 if (!is_known) {
@@ -147,7 +147,7 @@ void StoreDialog::look() {
 
 /// Unless another address was asked for since.
 void StoreDialog::take(const std::shared_ptr<Found>& found) {
-    if (found != looking_ || !worker_->ended()) return;
+    if (found != looking_ || !worker_.ended()) return;
     if (found->problem.isEmpty()) found_ = found;
     show_found();
     if (!found->problem.isEmpty()) verdict_->setText(found->problem);

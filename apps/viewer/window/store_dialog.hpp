@@ -50,7 +50,7 @@ class StoreDialog : public QDialog {
     int first_level_ = 0, first_channel_ = 0, first_time_ = 0;  // as they are felt now
     run::StoreSource known_;
     std::shared_ptr<Found> looking_, found_;  // asked last; what can be opened
-    std::unique_ptr<Worker> worker_;          // that looks
+    NewestWorker worker_;                     // that looks
 };
 
 /// "0: 512 x 512 x 234, every 1 x 1 x 2 mm, 61 MB".

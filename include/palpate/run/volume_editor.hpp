@@ -78,8 +78,9 @@ class VolumeEditor {
     void set_brush(const std::optional<HandBrush>& brush);
     /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does and for
     /// one that takes more memory than there is, std::runtime_error for a servo that takes no
-    /// commands, and io::InputError for samples that cannot be read.
-    void apply(const Edit& edit);
+    /// commands, and io::InputError for samples that cannot be read. Throws stream::Cancelled if it
+    /// waits for samples when `stop` is requested.
+    void apply(const Edit& edit, const std::stop_token& stop = {});
     /// False if there is nothing to undo, or redo. A brush that touches then rests until it has
     /// been in the air, or was taken up again: else it would undo the undo.
     bool undo();
@@ -121,9 +122,9 @@ class VolumeEditor {
                  Pace pace, std::size_t most_versions);
     void forget_versions();
     template <class Work>
-    void with_samples(std::unique_lock<std::mutex>& lock, Work&& work);
-    void fetch(const std::shared_ptr<const Samples>& samples, const Edit& edit,
-               Fetched& fetched) const;
+    void with_samples(std::unique_lock<std::mutex>& lock, const std::stop_token& stop, Work&& work);
+    void fetch(const std::shared_ptr<const Samples>& samples, const Edit& edit, Fetched& fetched,
+               const std::stop_token& stop) const;
     void read(const SampleBox& box, std::span<std::byte> out);
     void run(const std::stop_token& stop);
     void brush(Hand& hand, std::chrono::steady_clock::time_point now);

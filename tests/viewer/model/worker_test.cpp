@@ -89,6 +89,29 @@ TEST(Worker, destroying_it_cancels_the_task) {
     EXPECT_TRUE(left);
 }
 
+TEST(NewestWorker, waits_for_no_earlier_task_that_notices_late_that_it_was_cancelled) {
+    std::atomic<bool> hangs{true}, begun{false};
+    std::atomic<int> ended{0};
+    {
+        NewestWorker worker;
+        const auto hang = [&](const io::Progress&) {
+            begun = true;
+            while (hangs) std::this_thread::sleep_for(1ms);
+            ++ended;
+        };
+        worker.start(hang, [] {});
+        ASSERT_TRUE(support::comes_true([&] { return begun.load(); }));
+        worker.start([](const io::Progress&) {}, [] {});
+        EXPECT_TRUE(support::comes_true([&] { return worker.ended(); }));
+        worker.start(hang, [] {});
+        worker.cancel();
+        EXPECT_FALSE(worker.ended());
+        EXPECT_EQ(ended, 0);
+        hangs = false;
+    }
+    EXPECT_GE(ended, 1) << "the first; the second may have been cancelled before it began";
+}
+
 TEST(Worker, one_that_opens_a_volume_of_a_silent_server_ends_when_it_is_cancelled) {
     const support::SilentServer server;
     const run::Source source = run::source_from({{"volume", server.address()}});
