@@ -22,8 +22,8 @@ std::string block_of(const std::vector<io::TraceRow>& rows) {
     for (std::size_t i = 0; i < rows.size(); i += 1 + rows.size() / most_points) {
         const io::TraceRow& row = rows[i];
         text += number(row.t) + " " + number((row.scp - row.hip).norm()) + " " +
-                number(row.force.norm()) + " " + number(row.density) + " " +
-                number(row.isovalue) + "\n";
+                number(row.force.norm()) + " " + number(row.density) + " " + number(row.isovalue) +
+                "\n";
     }
     return text + "EOD\n";
 }
