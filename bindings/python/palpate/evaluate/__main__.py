@@ -271,8 +271,8 @@ def run(name, chosen, folder, words):
     module = importlib.import_module(f"palpate.evaluate.{name.replace('-', '_')}")
     result = module.run(options)
     options.progress(1)
-    made = report.Report(name, module.TITLE, result, f"{machine.described(command_of(words))} Seed {chosen.seed}; " + (
-        "quick mode: too short for the times to mean anything." if chosen.quick else "full run."))
+    made = report.Report(name, module.TITLE, result, f"{machine.described(command_of(words))} Seed {chosen.seed}, " + (
+        "quick mode (too short for the times to mean anything)." if chosen.quick else "full run."))
     report.write_files(made, folder)
     return made
 

@@ -87,7 +87,7 @@ def figure_of(table, last):
     drawn.canvas.draw()
     for axes in (left, right):
         figures.label_ends(axes)
-    return Figure("", "Left: density at the SCP after each turn, at 200 mm/s and 1 kHz; the isovalue is "
+    return Figure("", "Left: density at the SCP after each turn, at 200 mm/s and 1 kHz. The isovalue is "
                   "dashed. Right: the largest deviation from the isovalue in any update, over all volumes "
                   "and speeds.", drawn)
 
@@ -134,7 +134,7 @@ def run(options):
         f"A hand goes around each body {turns} times, 2 voxels below its surface, with penetrability off. "
         f"There are {len(subjects)} volumes, {len(speeds)} speeds of the hand and {len(rates)} update "
         "rates. The deviation is the distance of the density at the SCP from the isovalue, as a part of "
-        "the data's range; a proxy that is free counts only if it is in the solid.",
+        "the data's range. A proxy that is free counts only if it is in the solid.",
         "The exact method and the method of the paper move inside linear pieces, so only rounding errors "
         "are left, however far the hand moves per tick. On the smooth field, the deviation is the "
         "accuracy of the computed roots. The gradient method follows a plane and leaves the surface. "

@@ -327,10 +327,10 @@ def growth_figure(table):
     drawn.suptitle("An update costs the tetrahedra that the proxy passes, whatever the size of the volume", x=0.01, ha="left")
     drawn.canvas.draw()
     figures.label_ends(panels[0, -1])
-    return Figure("", "Above: the time of an update over four things: the speed of the hand; the voxels per millimetre of hand, the "
-                  "same ball sampled more finely; the edge of the volume, the same motion in the same samples; white noise added to "
-                  "the ball, as a part of its range. The lines are the linear field, and the mean on the smooth field. Below: "
-                  "tetrahedra that the proxy moves through per update on the linear field.", drawn)
+    return Figure("", "Above: the time of an update on the linear field, and its mean on the smooth field. Below: tetrahedra that the "
+                  "proxy moves through per update on the linear field. From left to right: speed of the hand, voxels per millimetre of "
+                  "hand (the same ball sampled more finely), edge of the volume (the same motion in the same samples), and white noise "
+                  "on the ball, as a part of its range.", drawn)
 
 
 APPROACHES = (  # panel, column, unit, label, colour, marker, dash
@@ -367,10 +367,9 @@ def explicit_figure(table):
     drawn.canvas.draw()
     for axes in panels:
         figures.label_ends(axes)
-    return Figure("explicit", "After a change of the isovalue by a tenth of the data's range: the explicit approach extracts the whole "
-                  "isosurface (VTK, flying edges) and builds a bounding volume hierarchy on it (Embree), the dynamic approach updates "
-                  "its proxy. Left: the time until the new surface is felt. Right: the memory that it takes. Lines: a ball that grows "
-                  "with the volume; open marks: other volumes.", drawn)
+    return Figure("explicit", "After a change of the isovalue by a tenth of the data's range. The explicit approach extracts the whole "
+                  "isosurface and builds a hierarchy on it, and ours updates its proxy. Left: the time until the new surface is felt. "
+                  "Right: the memory that this takes. Lines are a ball that grows with the volume, and open marks other volumes.", drawn)
 
 
 def time_text(seconds):
@@ -402,8 +401,8 @@ def paragraphs_of(table, own_volumes):
     def mean(part, method="exact"):
         return span(table.where(part=part, method=method)["mean_ns"])
 
-    text = [f"How the time of an update grows, at {RATE} Hz, in contact {DEPTH:g} mm of hand below the surface. Unless that is what "
-            f"grows, the hand moves at {SPEED} mm/s and {VOXELS} voxels per mm. The mean with the speed of the hand: {mean('speed')}, on "
+    text = [f"How the time of an update grows, at {RATE} Hz, in contact {DEPTH:g} mm of hand below the surface. Otherwise the "
+            f"hand moves at {SPEED} mm/s and {VOXELS} voxels per mm. The mean with the speed of the hand: {mean('speed')}, on "
             f"the smooth field {mean('speed', 'smooth')}. With the voxels per millimetre of hand: {mean('voxels-per-mm')}, on the smooth "
             f"field {mean('voxels-per-mm', 'smooth')}."]
     if own_volumes:
@@ -415,8 +414,8 @@ def paragraphs_of(table, own_volumes):
                     f"{moved.min():.2g} tetrahedra per update.")
     rows = table.where(part="explicit")
     text.append("The explicit approach extracts the whole isosurface (VTK, flying edges) and builds a bounding volume hierarchy on it "
-                "(Embree), both on all processors, before the first touch, and does both again when the level changes (the fastest of "
-                f"three runs). The dynamic approach does nothing before, and keeps {rows[0]['state_bytes']:g} bytes. Here the level "
+                "(Embree), before the first touch and again when the level changes. Both use all processors, and the fastest of three "
+                f"runs counts. Our approach does nothing before, and keeps {rows[0]['state_bytes']:g} bytes. Here the level "
                 "jumps by a tenth of the data's range, to and fro. Both approaches need the samples in memory.")
     if not numpy.isnan(rows["explicit_segment_ns"]).all():
         text.append("Once the hierarchy is built, an explicit proxy pays at least one segment query per tick, "

@@ -12,7 +12,7 @@ import palpate
 from scipy.spatial.transform import Rotation
 
 from . import figures
-from .experiment import Claim, Figure, Result, Table, in_parallel
+from .experiment import Claim, Figure, Result, Table, in_parallel, largest
 from .subjects import synthetic
 
 TITLE = "How stiff may a surface be before it buzzes?"
@@ -153,7 +153,7 @@ def counted(found):
 
 def rated_claim(table):
     rows = table.where(part="rated")
-    said = ", ".join(f"{r['profile']} {r['stiffness_N_mm']:g} N/mm: {r['position_peak_to_peak_mm']:.2g} mm" for r in rows)
+    said = f"at most {largest(rows['position_peak_to_peak_mm']):.2g} mm peak to peak, {len(rows)} profiles"
     return Claim("every profile comes to rest at its rated stiffness at 1 kHz, to two encoder steps",
                  all(r["at_rest"] == r["in_contact"] == "yes" for r in rows), said)
 
@@ -232,9 +232,9 @@ def profile_figure(table, plan):
         axes.set_yticks(range(len(PROFILES)), PROFILES)
         axes.grid(False)
     drawn.suptitle("Friction of the mechanics stills what would buzz", x=0.01, ha="left")
-    return Figure("profiles", "The largest stiffness [N/mm], of those tried up to 3, at which a simulated device in a light hand comes to "
-                  "rest, with its own encoders and delay: with its friction and without it, which stills small limit cycles, on the "
-                  "linear and on the smooth field.", drawn)
+    return Figure("profiles", "The largest stiffness up to 3 N/mm at which a simulated device in a light hand comes to rest. It has its "
+                  "own encoders and delay, with its friction and without it, on the linear and on the smooth field. Friction stills "
+                  "small limit cycles.", drawn)
 
 
 def rotation_figure(table, plan):
@@ -259,24 +259,24 @@ def rotation_figure(table, plan):
     drawn.canvas.draw()
     figures.label_ends(panels[2])
     return Figure("rotation", "The largest rotational stiffness at which a simulated device with torque in a light hand comes to rest, "
-                  "of those tried up to 2.5 times the bound of the theory. Left: without delay, friction and steps; there the bound is "
-                  "the dashed one. Middle: with their delay alone. Right: as they are; friction stills every case that was tried.",
+                  "of those tried up to 2.5 times the bound of the theory. Left: without delay, friction and steps, where the bound is "
+                  "the dashed one. Middle: with their delay alone. Right: as they are. Friction stills every case that was tried.",
                   drawn)
 
 
 def summary_of(table, plan):
+    """The largest stiffness at rest [N/mm] at each rate: of the map, and of the profiles."""
+    def row(what, part, **cells):
+        rows = table.where(part=part, **cells)
+        return {"device": what, **{f"{rate:g} Hz": round(largest_stable(rows, rate), 1) for rate in plan.rates}}
+
+    for encoder in plan.encoders:
+        yield row(f"{MAP_PROFILE}, no friction, encoder steps of {encoder:g} mm", "map", encoder_step_mm=encoder)
     for profile in PROFILES:
-        yield {"profile": profile, "rated [N/mm]": PROFILES[profile]["stiffness"],
-               **{f"at rest up to [N/mm], {title}, 1 kHz": largest_stable(table.where(part=part, profile=profile), 1000)
-                  for part, (title, *_) in PARTS.items()}}
+        yield {**row(profile, "profiles", profile=profile), "rated": PROFILES[profile]["stiffness"]}
 
 
 def paragraphs_of(table, plan, subject):
-    maps = []
-    for encoder in plan.encoders:
-        rows = table.where(part="map", encoder_step_mm=encoder)
-        maps.append(f"with encoder steps of {encoder:g} mm " +
-                    ", ".join(f"{largest_stable(rows, rate):.1f} N/mm at {rate:g} Hz" for rate in plan.rates))
     slow, fast = (largest_stable(table.where(part=part, encoder_step_mm=plan.encoders[0]), rate)
                   for part, rate in (("map", plan.rates[0]), ("fastest", FASTEST)))
     parts = list(PARTS)[2:]
@@ -284,22 +284,23 @@ def paragraphs_of(table, plan, subject):
     wide = list(compared(table, plan, *parts, 10))
     later, same, earlier = counted(wide)
     most = max(max(linear - smooth for *_, linear, smooth in wide), 0)
-    return [f"A simulated device in a light hand is pressed into {subject.name} and held for {SECONDS} s, of which the last second "
-            "counts. It is at rest if its position, as the encoders tell it, moves by two encoder steps at most (a step counts for "
-            f"{LEAST_STEP:g} mm at least). The largest stiffness that comes to rest, of those tried up to 3 N/mm, for {MAP_PROFILE} "
-            f"without friction in its mechanics, is {'; '.join(maps)}.",
-            f"At {FASTEST:g} Hz, without encoder steps, it is {fast:.1f} N/mm, beside {slow:.1f} N/mm at {plan.rates[0]:g} Hz. In the study of "
-            "Choi and Tan (2004), people held a real device. The largest stiffness of a virtual texture that felt clean to them rose from "
-            "0.325 N/mm at 250 Hz to 0.904 N/mm at 40 kHz. Rest on a sphere is a weaker demand than a clean texture.",
-            "Without friction nothing holds a hand sideways, and the smooth field has no facets to rest in. Of "
-            f"{sum(rest)} cases (a profile at a rate) it comes to rest up to a larger stiffness than on the linear field in {rest[0]}, up "
-            f"to a smaller one in {rest[2]}. Movement by more than 10 steps begins at the same stiffness in {same} of them, later in "
-            f"{later}, and in {earlier} earlier, by {most:.1f} N/mm at most.",
+    return [f"A simulated device in a light hand is pressed into the volume {subject.name} and held for {SECONDS} s, of which the last second counts. "
+            "It is at rest if its position moves by two encoder steps at most, as the encoders tell it. A step counts for "
+            f"{LEAST_STEP:g} mm at least. Stiffnesses up to {LARGEST:g} N/mm were tried. The first rows of the table have {MAP_PROFILE} "
+            "without friction in its mechanics, for each encoder step, and the others each profile as it is.",
+            f"At {FASTEST:g} Hz, without friction and encoder steps, {MAP_PROFILE} is at rest up to {fast:.1f} N/mm, beside {slow:.1f} N/mm at "
+            f"{plan.rates[0]:g} Hz. In the study of Choi and Tan (2004), people held a real device. The largest stiffness of a virtual "
+            "texture that felt clean to them rose from 0.325 N/mm at 250 Hz to 0.904 N/mm at 40 kHz. Rest on a sphere is a weaker demand "
+            "than a clean texture.",
+            "Without friction nothing holds a hand sideways, and the smooth field has no facets to rest in. There are "
+            f"{sum(rest)} cases, each a profile at a rate. On the smooth field it comes to rest up to a larger stiffness than on the linear "
+            f"field in {rest[0]}, and up to a smaller one in {rest[2]}. Movement by more than 10 steps begins at the same stiffness in "
+            f"{same} of them, later in {later}, and earlier in {earlier}, by {most:.1f} N/mm at most.",
             "For rotation, the light hand turns the handle by 20 degrees against a rotational spring that holds it straight. Rest is as "
-            f"above, and a step of angle counts for {LEAST_ANGLE:g} degrees at least. Without a delay, check() accepts 2 x rate x damping. "
-            "There a handle begins to shake, because its inertia is large against damping times period. A delay lowers that to "
-            "damping / (period / 2 + delay), and so does check(): to be stable without friction, a device with a delay of half "
-            "a period takes half of that. Friction of the wrist, which is assumed, stills what would shake.",
+             f"above, and a step of angle counts for {LEAST_ANGLE:g} degrees at least. Without a delay, check() accepts 2 x rate x damping. "
+             "A handle begins to shake there, because its inertia is large against damping times period. A delay lowers that to "
+             "damping / (period / 2 + delay), and check() includes it. Without friction, a device with a delay of half a period takes "
+             "half of the stiffness. Friction of the wrist, which is assumed, stills such shaking.",
             "Everything here is simulated and nothing is random, so there are no intervals. The profiles' masses, frictions and delays "
             "are partly assumed (docs/devices/simulated.md), so the shape of the map is worth more than its numbers."]
 
