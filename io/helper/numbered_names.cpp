@@ -83,10 +83,10 @@ enum class Counts { slices, channels, times, unknown };
 /// By the letters before it.
 Counts counted_by(const std::string& before) {
     static const std::map<std::string, Counts> marks = {
-        {"z", Counts::slices},        {"slice", Counts::slices},  {"section", Counts::slices},
-        {"plane", Counts::slices},    {"c", Counts::channels},    {"ch", Counts::channels},
-        {"chan", Counts::channels},   {"w", Counts::channels},    {"channel", Counts::channels},
-        {"t", Counts::times},         {"time", Counts::times},    {"tp", Counts::times},
+        {"z", Counts::slices},        {"slice", Counts::slices}, {"section", Counts::slices},
+        {"plane", Counts::slices},    {"c", Counts::channels},   {"ch", Counts::channels},
+        {"chan", Counts::channels},   {"w", Counts::channels},   {"channel", Counts::channels},
+        {"t", Counts::times},         {"time", Counts::times},   {"tp", Counts::times},
         {"timepoint", Counts::times},
     };
     const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
