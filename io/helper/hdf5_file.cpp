@@ -112,6 +112,18 @@ bool Hdf5File::has(const std::string& path) const {
     return H5Oexists_by_name(file_, path.c_str(), H5P_DEFAULT) > 0;
 }
 
+std::vector<std::string> Hdf5File::names() const {
+    std::vector<std::string> names;
+    const auto take = [](hid_t, const char* name, const H5L_info_t*, void* to) -> herr_t {
+        static_cast<std::vector<std::string>*>(to)->emplace_back(name);
+        return 0;
+    };
+    if (H5Literate(file_, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, take, &names) < 0) {
+        throw Failure("is damaged; copy it again");
+    }
+    return names;
+}
+
 int Hdf5File::count(const std::function<std::string(int)>& name) const {
     constexpr int most = 1 << 20;
     int known = 0;

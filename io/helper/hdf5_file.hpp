@@ -47,6 +47,8 @@ class Hdf5File {
 
     /// True if each part of a path, which begins at the root, is there.
     bool has(const std::string& path) const;
+    /// Of all groups and datasets at the root.
+    std::vector<std::string> names() const;
     /// How many of PREFIX0, PREFIX1, ... there are: `name` makes each from its number.
     int count(const std::function<std::string(int)>& name) const;
     /// An attribute that is a text or, as Imaris writes it, a list of characters; empty if there is

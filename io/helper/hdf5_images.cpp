@@ -177,19 +177,37 @@ std::string resolutions_of(int setup) {
     return with_number("/s%02d/resolutions", setup);
 }
 
-/// The numbers of those in the file, which may begin anywhere and have gaps.
-std::vector<int> setups_of(const Hdf5File& file) {
-    constexpr int most = 1000;
-    std::vector<int> setups;
-    for (int s = 0; s < most; ++s) {
-        if (file.has(resolutions_of(s))) setups.push_back(s);
+/// The numbers N of the groups sN or tN in the file, which may begin anywhere and have gaps.
+std::vector<int> numbers_of(const Hdf5File& file, char letter) {
+    std::vector<int> numbers;
+    for (const std::string& name : file.names()) {
+        if (name[0] != letter) continue;
+        const auto number = number_from<int>(name.substr(1));
+        if (number && *number >= 0) numbers.push_back(*number);
     }
+    std::ranges::sort(numbers);
+    return numbers;
+}
+
+std::vector<int> setups_of(const Hdf5File& file) {
+    std::vector<int> setups = numbers_of(file, 's');
+    std::erase_if(setups, [&](int s) { return !file.has(resolutions_of(s)); });
     return setups;
 }
 
-std::map<int, BdvSetup> setups_in(const std::filesystem::path& xml) {
+/// Whether registrations only stretch the axes, as the voxel size does.
+bool only_stretches(const XmlElement& root) {
+    for (const XmlElement* one : root.all("ViewRegistrations/ViewRegistration/ViewTransform")) {
+        const std::vector<double> rows = numbers_in(one->text_of("affine"), "affine");
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (i % 5 != 0 && rows[i] != 0) return false;
+        }
+    }
+    return true;
+}
+
+std::map<int, BdvSetup> setups_in(const XmlElement& root) {
     std::map<int, BdvSetup> all;
-    const XmlElement root = read_xml(xml);
     for (const XmlElement* setup : root.all("SequenceDescription/ViewSetups/ViewSetup")) {
         const auto id = number_from<int>(trimmed(setup->text_of("id")));
         if (!id) continue;
@@ -221,11 +239,20 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
     ChunkedImage image;
     image.format = "BigDataViewer HDF5";
     const std::vector<int> setups = setups_of(file);
-    image.times = file.count([](int t) { return with_number("/t%05d", t); });
+    const std::vector<int> times = numbers_of(file, 't');
+    image.times = static_cast<int>(times.size());
     auto xml = path;
     xml.replace_extension(".xml");
     std::map<int, BdvSetup> all;
-    if (std::filesystem::exists(xml)) all = setups_in(xml);
+    if (std::filesystem::exists(xml)) {
+        const XmlElement root = read_xml(xml);
+        all = setups_in(root);
+        if (!only_stretches(root)) {
+            image.notes.emplace_back(
+                "the ViewRegistrations in its XML file move or turn its images: they are not "
+                "applied");
+        }
+    }
     for (const int s : setups) {
         if (setups.size() == 1) break;
         const std::string& name = all[s].name;
@@ -243,10 +270,17 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
     } else if (setup.unit.empty()) {
         image.notes.emplace_back("its XML file gives no unit of length: millimetres were taken");
     }
-    const std::string moment = bdv_moment(time, id);
+    const int timepoint = times[static_cast<std::size_t>(time)];
+    const std::string moment = bdv_moment(timepoint, id);
     if (!file.has(moment)) {
         throw Failure("has no setup " + std::to_string(id) + " at time " + std::to_string(time) +
                       "; choose another");
+    }
+    if (timepoint != time) {
+        image.notes.push_back("its times are numbered from " + std::to_string(times.front()) +
+                              " to " + std::to_string(times.back()) + ": time " +
+                              std::to_string(time) + " is its timepoint " +
+                              std::to_string(timepoint));
     }
     const auto factors = rows_of(file, resolutions_of(id));
     for (std::size_t l = 0; l < factors.size(); ++l) {

@@ -10,6 +10,7 @@
 
 #include "palpate/io/error.hpp"
 #include "stream/formats/metadata_files.hpp"
+#include "stream/formats/zarr_metadata.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -117,22 +118,75 @@ Numbers factors_by_size(std::span<const ChunkedArray> arrays, std::size_t at) {
     return factors;
 }
 
+/// Where a level lies along axes that have names.
+struct NamedPlace {
+    std::vector<ImageAxis> axes;
+    Numbers scale, translation;
+};
+
+std::string axis_name(const Json& name) {
+    std::string text = name.is_string() ? name.get<std::string>() : "";
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return io::one_line(text.substr(0, 40));
+}
+
 /// Janelia's: {"axes": ["z", "y", "x"], "scale": [..], "translate": [..], "units": [..]}, in any
-/// order of the axes. True if it names every axis of the image.
-bool take_transform(const Json& transform, Image& image, ImageLevel& level) {
-    if (!transform.is_object() || !transform.contains("axes")) return false;
-    const Json& names = transform["axes"];
-    std::size_t found = 0;
-    for (std::size_t i = 0; i < names.size() && names.is_array(); ++i) {
-        for (std::size_t a = 0; a < image.axes.size(); ++a) {
-            if (names[i] != image.axes[a].name) continue;
-            level.scale[a] = transform.at("scale").at(i).get<double>();
-            level.translation[a] = transform.at("translate").at(i).get<double>();
-            image.axes[a].unit = transform.at("units").at(i).get<std::string>();
-            ++found;
-        }
+/// order of the axes.
+std::optional<NamedPlace> transform_of(const Json& object) {
+    const Json transform = object.is_object() ? object.value("transform", Json()) : Json();
+    if (!transform.is_object() || !transform.contains("axes")) return std::nullopt;
+    const Json translate = transform.value("translate", Json::array()),
+               units = transform.value("units", Json::array());
+    NamedPlace place;
+    for (const Json& name : transform["axes"]) {
+        const std::size_t i = place.axes.size();
+        const bool has_unit = units.is_array() && i < units.size() && units[i].is_string();
+        place.axes.push_back({axis_name(name), has_unit ? units[i].get<std::string>() : ""});
+        place.scale.push_back(transform.at("scale").at(i).get<double>());
+        place.translation.push_back(translate.empty() ? 0 : translate.at(i).get<double>());
     }
-    return found == image.axes.size();
+    return place;
+}
+
+/// What the `multiscales` of a group say of a level in this folder: Janelia's transform, or the
+/// transformations of OME-NGFF.
+std::optional<NamedPlace> multiscale_of(std::span<const Json> groups, const std::string& folder) {
+    const Json& all = attribute(groups, "multiscales");
+    if (!all.is_array() || all.empty() || !all[0].is_object()) return std::nullopt;
+    const Json datasets = all[0].value("datasets", Json::array());
+    const auto last_name = [](const std::string& path) {
+        return path.substr(path.find_last_of('/') + 1);
+    };
+    for (std::size_t i = 0; datasets.is_array() && i < datasets.size(); ++i) {
+        const Json path = datasets[i].is_object() ? datasets[i].value("path", Json()) : Json();
+        if (!path.is_string() || last_name(path.get<std::string>()) != last_name(folder)) continue;
+        if (auto place = transform_of(datasets[i])) return place;
+        if (!all[0].contains("axes")) return std::nullopt;
+        const auto image = ome_image(Json{{"multiscales", all}});
+        NamedPlace place{image->axes, image->levels[i].scale, image->levels[i].translation};
+        for (ImageAxis& axis : place.axes) axis.name = axis_name(axis.name);
+        return place;
+    }
+    return std::nullopt;
+}
+
+/// True if it names every axis of space.
+bool take_place(const std::optional<NamedPlace>& place, Image& image, ImageLevel& level) {
+    if (!place) return false;
+    std::size_t open = 0;
+    for (std::size_t a = 0; a < image.axes.size(); ++a) {
+        const std::string& name = image.axes[a].name;
+        const auto found = std::ranges::find(place->axes, name, &ImageAxis::name);
+        if (found == place->axes.end()) {
+            open += name == "z" || name == "y" || name == "x";
+            continue;
+        }
+        const auto i = static_cast<std::size_t>(found - place->axes.begin());
+        level.scale[a] = place->scale[i];
+        level.translation[a] = place->translation[i];
+        image.axes[a].unit = found->unit;
+    }
+    return open == 0;
 }
 
 /// The names in `axes`, the fastest first, or the usual ones.
@@ -142,9 +196,7 @@ std::vector<ImageAxis> n5_axes(std::span<const Json> groups, const Json& finest,
     const Json& names = finest.contains("axes") ? finest["axes"] : attribute(groups, "axes");
     if (!names.is_array() || names.size() != count) return axes;
     for (std::size_t i = 0; i < count; ++i) {
-        std::string name = names[i].is_string() ? names[i].get<std::string>() : "";
-        std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-        axes[count - 1 - i].name = io::one_line(name.substr(0, 40));
+        axes[count - 1 - i].name = axis_name(names[i]);
     }
     return axes;
 }
@@ -189,9 +241,12 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
     for (const ChunkedArray& array : arrays) {
         if (array.axes() != axes) throw BadMetadata("its levels have different axes");
     }
+    bool placed = false;  // the finest level, by the names of its axes
     for (std::size_t i = 0; i < levels.size(); ++i) {
         ImageLevel level{"", Numbers(axes, 1), Numbers(axes, 0)};
-        if (take_transform(levels[i].value("transform", Json()), image, level)) {
+        if (take_place(transform_of(levels[i]), image, level) ||
+            take_place(multiscale_of(groups, arrays[i].folder), image, level)) {
+            placed |= i == 0;
             image.levels.push_back(level);
             continue;
         }
@@ -202,13 +257,16 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
                       "it does not tell the scales of its levels: their sizes were compared");
         }
         for (std::size_t a = 0; a < axes; ++a) {
-            const double spacing = resolution ? resolution->spacing[a] : 1;
+            const double spacing = placed       ? image.levels[0].scale[a]
+                                   : resolution ? resolution->spacing[a]
+                                                : 1;
+            const double first = placed ? image.levels[0].translation[a] : 0;
             level.scale[a] = spacing * (*factors)[a];
-            level.translation[a] = spacing * ((*factors)[a] - 1) / 2;
-            image.axes[a].unit = resolution ? resolution->units[a] : "millimeter";
+            level.translation[a] = first + spacing * ((*factors)[a] - 1) / 2;
+            if (!placed) image.axes[a].unit = resolution ? resolution->units[a] : "millimeter";
         }
-        image.measured = resolution.has_value();
-        if (!resolution) note_once(notes, "it does not tell its spacing: 1 mm was taken");
+        image.measured = placed || resolution;
+        if (!image.measured) note_once(notes, "it does not tell its spacing: 1 mm was taken");
         image.levels.push_back(level);
     }
     return image;

@@ -25,25 +25,27 @@ class N5Opening {
     std::optional<ChunkedVolume> volume(const std::string& address) {
         volume_.info.address = address;
         volume_.info.format = "N5";
-        const auto first = attributes_of({"", "s0", "timepoint0/s0", "setup0", "c0/s0"});
+        const auto first = attributes_of({"", "s0", "c0/s0", "setup0", "timepoint0/s0"});
+        const bool is_n5 =
+            std::ranges::any_of(first, [](const Json& one) { return one != Json(); });
         if (is_dataset(first[0])) {
             take_levels({}, {first[0]}, {""});
         } else if (is_dataset(first[1])) {
             take_group("", {first[0]});
         } else if (is_dataset(first[2])) {
-            take_moment("", {first[0]});
-        } else if (!first[3].is_null()) {
-            const std::string setup = chosen_channel("setup", "", "setup ");
-            take_moment(setup, {attributes_of({setup})[0], first[0]});
-        } else if (is_dataset(first[4])) {
-            const std::string channel = chosen_channel("c", "/s0", "channel ");
+            const std::string channel = chosen_channel("c", numbers_of("c", "/s0"), "channel ");
             take_group(channel, {attributes_of({channel})[0], first[0]});
-        } else if (!first[0].is_null()) {
+        } else if (!is_n5) {
+            return std::nullopt;
+        } else if (const auto setups = numbers_of("setup", ""); !setups.empty()) {
+            const std::string setup = chosen_channel("setup", setups, "setup ");
+            take_moment(setup, {attributes_of({setup})[0], first[0]});
+        } else if (!numbers_of("timepoint", "/s0").empty()) {
+            take_moment("", {first[0]});
+        } else {
             throw BadMetadata(
                 "is a group of N5 without samples of its own; give the folder of a dataset or of "
                 "levels s0, s1, ... below it");
-        } else {
-            return std::nullopt;
         }
         return std::move(volume_);
     }
@@ -63,43 +65,60 @@ class N5Opening {
         return attributes;
     }
 
-    /// How many folders PREFIX0, PREFIX1, ... have attributes in PREFIXnSUFFIX: asks for a few,
-    /// then for more and more at once.
-    int count_of(const std::string& prefix, const std::string& suffix) const {
+    /// The numbers N of the folders PREFIXN that have attributes in PREFIXNSUFFIX: asks for a few,
+    /// then for more and more at once, while there are some near the end of those. They may begin
+    /// above 0 (below 80) and have gaps.
+    std::vector<int> numbers_of(const std::string& prefix, const std::string& suffix) const {
         constexpr int most = 1 << 16;
-        int known = 0;
-        for (int batch = 16; known < most; known += batch, batch *= 4) {
+        std::vector<int> numbers;
+        int asked = 0;
+        for (int batch = 16; asked < most; batch *= 4) {
             std::vector<Wanted> wanted;
             for (int i = 0; i < batch; ++i) {
-                const std::string folder = prefix + std::to_string(known + i) + suffix;
+                const std::string folder = prefix + std::to_string(asked + i) + suffix;
                 wanted.push_back(metadata_file(folder, "attributes.json"));
             }
             const auto all = objects_.get_all(wanted, {});
-            const auto missing = std::ranges::find(all, std::optional<Bytes>());
-            if (missing != all.end()) return known + static_cast<int>(missing - all.begin());
+            for (int i = 0; i < batch; ++i) {
+                if (all[static_cast<std::size_t>(i)]) numbers.push_back(asked + i);
+            }
+            asked += batch;
+            if (numbers.empty() ? asked > 16 : numbers.back() < asked - batch / 4) break;
         }
-        return known;
+        return numbers;
     }
 
     /// The folder of the channel that is asked for.
-    std::string chosen_channel(const std::string& prefix, const std::string& suffix,
+    std::string chosen_channel(const std::string& prefix, const std::vector<int>& numbers,
                                const std::string& name) {
-        const int count = count_of(prefix, suffix);
-        for (int i = 0; count > 1 && i < count; ++i) {
-            volume_.info.channels.push_back(name + std::to_string(i));
+        for (std::size_t i = 0; numbers.size() > 1 && i < numbers.size(); ++i) {
+            volume_.info.channels.push_back(name + std::to_string(numbers[i]));
         }
         StoreOptions chosen;  // the times are not known yet
         chosen.channel = options_.channel;
         check_choice(volume_.info, chosen);
-        return prefix + std::to_string(options_.channel);
+        return prefix + std::to_string(numbers.at(static_cast<std::size_t>(options_.channel)));
     }
 
     /// The time that is asked for, of a setup of BigDataViewer.
     void take_moment(const std::string& setup, std::vector<Json> groups) {
         const std::string prefix = key_below(setup, "timepoint");
-        volume_.info.times = std::max(1, count_of(prefix, "/s0"));
+        const std::vector<int> numbers = numbers_of(prefix, "/s0");
+        if (numbers.empty()) {
+            throw BadMetadata("its '" + prefix +
+                              "' of times, with a level s0, is not there; copy "
+                              "it again");
+        }
+        volume_.info.times = static_cast<int>(numbers.size());
         check_choice(volume_.info, options_);
-        const std::string folder = prefix + std::to_string(options_.time);
+        const int number = numbers[static_cast<std::size_t>(options_.time)];
+        if (number != options_.time) {
+            volume_.info.notes.push_back(
+                "its times are numbered from " + std::to_string(numbers.front()) + " to " +
+                std::to_string(numbers.back()) + ": time " + std::to_string(options_.time) +
+                " is its timepoint " + std::to_string(number));
+        }
+        const std::string folder = prefix + std::to_string(number);
         groups.insert(groups.begin(), attributes_of({folder})[0]);
         take_group(folder, groups);
     }

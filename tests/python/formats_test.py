@@ -1,9 +1,12 @@
 """Files as other programs write them, written by hand or with other libraries: each was once refused or misread. Samples
 and places are compared with those that were written."""
 
+import json
 import os
+import struct
 import subprocess
 
+import h5py
 import numpy
 import palpate
 import pytest
@@ -120,3 +123,72 @@ def test_hidden_files_are_no_slices(tmp_path):
     path = save(tmp_path / "c", [slice_of(ramp("i2")[z], z, (0, 0, z)) for z in range(3)])
     (path / ".002.dcm.x7Gf2").write_bytes((path / "002.dcm").read_bytes()[:700])  # as rsync writes it
     assert numpy.array_equal(palpate.load(path).volume.array, ramp("i2")[:3])
+
+
+# BigDataViewer and N5 -----------------------------------------------------------------------------------
+
+
+def n5_array(path, data):
+    """One block, not compressed."""
+    path.mkdir(parents=True)
+    size = list(data.shape[::-1])
+    (path / "attributes.json").write_text(json.dumps(
+        {"dimensions": size, "blockSize": size, "dataType": data.dtype.name, "compression": {"type": "raw"}}))
+    (path / "0/0").mkdir(parents=True)
+    (path / "0/0/0").write_bytes(struct.pack(">HHIII", 0, 3, *size) + data.astype(data.dtype.newbyteorder(">")).tobytes())
+
+
+def bdv_n5(path, setup, time, data):
+    n5_array(path / f"setup{setup}/timepoint{time}/s0", data)
+    for place in (path, path / f"setup{setup}"):
+        (place / "attributes.json").write_text(json.dumps({"n5": "2.5.0", "downsamplingFactors": [[1, 1, 1]]}))
+
+
+def bdv_hdf5(path, setup, time, data):
+    with h5py.File(path, "a") as file:
+        if f"s{setup:02}" not in file:
+            file[f"s{setup:02}/resolutions"], file[f"s{setup:02}/subdivisions"] = [[1.0, 1, 1]], [[4, 3, 2]]
+        file.create_dataset(f"t{time:05}/s{setup:02}/0/cells", data=data, chunks=(2, 3, 4))
+
+
+@pytest.mark.parametrize("write, name", ((bdv_n5, "a.n5"), (bdv_hdf5, "a.h5")))
+@pytest.mark.parametrize("setups, times", (((0,), (1, 2)), ((1, 4), (0,)), ((3,), (5, 7, 14)), ((0, 2), (0, 1))))
+def test_setups_and_times_of_big_data_viewer_begin_anywhere(tmp_path, write, name, setups, times):
+    for setup in setups:
+        for time in times:
+            write(tmp_path / name, setup, time, ramp("u2", first=100 * setup + 1000 * time))
+    for channel, setup in enumerate(setups):
+        for index, time in enumerate(times):
+            store = palpate.open_store(str(tmp_path / name), channel=channel, time=index)
+            assert numpy.array_equal(store.read((0, 0, 0), (6, 4, 5)).array, ramp("u2", first=100 * setup + 1000 * time))
+            assert any(f"is its timepoint {time}" in note for note in store.notes) == (time != index)
+    for wrong in {"time": len(times)}, {"channel": len(setups)}:
+        with pytest.raises(palpate.InputError, match="there is no"):
+            palpate.open_store(str(tmp_path / name), **wrong)
+
+
+@pytest.mark.parametrize("affine, is_noted", (("2 0 0 0 0 3 0 0 0 0 4 0", False), ("2 0 0 9 0 3 0 0 0 0 4 0", True)))
+def test_registrations_of_big_data_viewer_that_move_are_noted(tmp_path, affine, is_noted):
+    bdv_hdf5(tmp_path / "a.h5", 0, 0, ramp("u2"))
+    (tmp_path / "a.xml").write_text(f"""<SpimData><SequenceDescription><ViewSetups><ViewSetup><id>0</id><voxelSize><unit>um
+        </unit><size>2 3 4</size></voxelSize></ViewSetup></ViewSetups></SequenceDescription><ViewRegistrations>
+        <ViewRegistration><ViewTransform type="affine"><affine>{affine}</affine></ViewTransform></ViewRegistration>
+        </ViewRegistrations></SpimData>""")
+    assert any("not applied" in note for note in palpate.open_store(str(tmp_path / "a.h5")).notes) == is_noted
+
+
+JANELIA = {"axes": ["z", "y", "x"], "scale": [4, 3, 2], "translate": [40, 30, 20], "units": ["nm", "nm", "nm"]}
+NGFF = [{"type": "scale", "scale": [2, 3, 4]}, {"type": "translation", "translation": [20, 30, 40]}]
+NAMED_AXES = [{"name": name, "type": "space", "unit": "nanometer"} for name in "xyz"]
+
+
+@pytest.mark.parametrize("image", ({"datasets": [{"path": "s0", "transform": JANELIA}]},
+                                   {"axes": NAMED_AXES, "datasets": [{"path": "s0", "coordinateTransformations": NGFF}]}))
+def test_multiscales_of_an_n5_group_place_its_levels(tmp_path, image):
+    n5_array(tmp_path / "s0", ramp("u2"))
+    n5_array(tmp_path / "s1", ramp("u2")[:3, :2, :3])  # not in the list
+    (tmp_path / "attributes.json").write_text(json.dumps({"multiscales": [image]}))
+    store = palpate.open_store(str(tmp_path))
+    assert numpy.allclose(store.levels[0].spacing, (2e-6, 3e-6, 4e-6), rtol=1e-9, atol=0)
+    assert numpy.allclose(store.levels[0].origin, (2e-5, 3e-5, 4e-5), rtol=1e-9, atol=0)
+    assert numpy.allclose(store.levels[1].spacing, (4e-6, 6e-6, 8e-6), rtol=1e-9, atol=0) and not store.notes[:-1]
