@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -20,6 +21,11 @@ void become_evaluation(char** argv) {
         std::vector<char*> words{python.data(), without_files.data(), experiments.data()};
         for (char** word = argv + 2; *word; ++word) words.push_back(*word);
         words.push_back(nullptr);
+        // Signals wait until Python's part can handle them.
+        sigset_t ends;
+        sigemptyset(&ends);
+        for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaddset(&ends, number);
+        ::sigprocmask(SIG_BLOCK, &ends, nullptr);
         ::execv(python.c_str(), words.data());
     }
 }

@@ -387,6 +387,20 @@ def test_a_missing_package_is_one_line_that_says_what_to_install(tmp_path, monke
     assert stop.value.status == 5
 
 
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_before_its_modules_are_loaded_ends_it_with_one_line(tmp_path, end):
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [end])  # inherited, so that it arrives before the first line runs
+    try:
+        running = subprocess.Popen([os.environ["PALPATE"], "evaluate", "drift", "--output", "found"], cwd=tmp_path,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        running.send_signal(end)
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    assert running.communicate()[1].strip().endswith("interrupted")
+    assert running.returncode == 128 + end
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_nothing_half_written_is_left_when_interrupted(tmp_path):
     running = subprocess.Popen([os.environ["PALPATE"], "evaluate", "drift", "--output", "found"], cwd=tmp_path,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

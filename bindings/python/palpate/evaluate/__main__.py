@@ -24,6 +24,7 @@ PACKAGES = ("numpy", "scipy", "matplotlib")  # Debian: python3-NAME
 USERS = {"--range": ("penetration",), "--seeds": ("fall-through", "layers", "tools"), "--method": ("walk-through",),
          "--seed": ("fall-through", "performance", "scaling", "layers", "tools", "streaming")}  # of options that few use
 CLAIMS_BROKEN, WRONG_USE, BAD_INPUT, BAD_OUTPUT, READER_GONE = 1, 2, 3, 5, 141  # exit status, docs/command_line.md
+ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 HELP = f"""Run experiments, each with a table, figures and checked claims
 
 Usage: palpate evaluate [OPTIONS] EXPERIMENT
@@ -326,9 +327,18 @@ def interrupt(number, frame):
     raise Stop(128 + number, "interrupted")
 
 
+def load(names):
+    """Imports everything that the experiments use."""
+    for name in ("report", "machine", "figures", *names):
+        importlib.import_module(f"palpate.evaluate.{name.replace('-', '_')}")
+
+
 def main(words):
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
+    for number in ENDS:
         signal.signal(number, interrupt)
+    # An interrupt while NumPy or a module of pybind11 is imported would come out of it as an ImportError, or not at all.
+    # So the signals wait; the program palpate has blocked them before it became this one.
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, ENDS)
     # Closed streams: what is written fails for standard output, and is lost for standard error.
     sys.stdout = sys.stdout or open(os.open(os.devnull, os.O_RDONLY), "w", encoding="utf-8")
     sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
@@ -342,6 +352,8 @@ def main(words):
             return 0
         chosen = arguments(words)
         import palpate
+        load(EXPERIMENTS if chosen.name == "all" else (chosen.name,))
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDS)
         try:
             evaluate(chosen, words)
         except palpate.InputError as error:
@@ -354,6 +366,8 @@ def main(words):
         if error.status != READER_GONE:
             tell(error)
         return error.status
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
     return 0
 
 
