@@ -92,8 +92,43 @@ void Field::cover(const std::shared_ptr<const Field>& labels, std::uint32_t soli
     background_ = (solid_labels & 1U) != 0 ? solid : cover_.background;
 }
 
+template <int count>
+Field::Run Field::stored_run(const Index3& low) const {
+    const Index3 high(low[0] + count - 1, low[1] + count - 1, low[2] + count - 1);
+    if (!has_sample(low) || !has_sample(high)) return {};
+    const std::size_t bytes = size_of(type_);
+    const auto in = [&](const Brick& brick, std::ptrdiff_t place, std::ptrdiff_t row) {
+        return Run{brick.samples.get() + static_cast<std::size_t>(place) * bytes, row, row * row,
+                   false};
+    };
+    // A block of three lies in the resident brick of its middle, one of two in that of its corner.
+    const Index3 owner = count == 3 ? Index3(low[0] + 1, low[1] + 1, low[2] + 1) : low;
+    const Brick* const resident = resident_ ? resident_->of_sample(owner) : nullptr;
+    if (resident_ && !resident) return {};
+    if (bricks_) {
+        const Brick* const first = bricks_->of_sample(low);
+        const Index3 end = low - Bricks::edge * Bricks::brick_of(low) + Index3::Constant(count - 1);
+        const bool in_one = end.maxCoeff() <= Bricks::edge;
+        if (in_one && first) return in(*first, Bricks::place_of(low), Bricks::row);
+        // Across bricks, samples of any edited one count.
+        for (int i = 0; !in_one && i < 8; ++i) {
+            const Index3 corner(i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1],
+                                i & 4 ? high[2] : low[2]);
+            if (bricks_->of_sample(corner)) return {};
+        }
+    }
+    if (resident) {
+        constexpr std::ptrdiff_t row = ResidentBricks::row, slice = ResidentBricks::slice;
+        const std::ptrdiff_t back = count == 3 ? 1 + row + slice : 0;
+        return in(*resident, ResidentBricks::place_of(owner) - back, row);
+    }
+    const std::ptrdiff_t place = low[0] + low[1] * row_ + low[2] * slice_;
+    return {static_cast<const std::byte*>(data_) + static_cast<std::size_t>(place) * bytes, row_,
+            slice_, true};
+}
+
 /// Of a sample, from the labels that cover it.
-int Field::label_at(const Index3& at) const noexcept {
+std::uint8_t Field::label_at(const Index3& at) const noexcept {
     if (!has_sample(at)) return 0;
     const Field& labels = *cover_.labels;
     Index3 there = at;
@@ -106,21 +141,29 @@ int Field::label_at(const Index3& at) const noexcept {
         labels.data_)[there[0] + there[1] * labels.row_ + there[2] * labels.slice_];
 }
 
-/// Whether a sample of a block has such a label.
-bool Field::is_labelled(const Index3& low, int count) const noexcept {
-    int any = 0;
-    if (const Run run = cover_.same_grid ? cover_.labels->run_of(low, count) : Run{}; run.first) {
-        const auto* const label = static_cast<const std::uint8_t*>(run.first);
-        for (int z = 0; z < count; ++z) {
-            for (int y = 0; y < count; ++y) {
-                for (int x = 0; x < count; ++x) any |= label[x + y * run.row + z * run.slice];
+/// Of a block of samples.
+template <int count>
+std::array<std::uint8_t, count * count * count> Field::labels_of(const Index3& low) const noexcept {
+    std::array<std::uint8_t, count * count * count> labels;
+    std::uint8_t* out = labels.data();
+    const Run run = cover_.same_grid ? cover_.labels->stored_run<count>(low) : Run{};
+    const auto* const label = static_cast<const std::uint8_t*>(run.first);
+    for (int z = 0; z < count; ++z) {
+        for (int y = 0; y < count; ++y) {
+            for (int x = 0; x < count; ++x) {
+                *out++ = label ? label[x + y * run.row + z * run.slice]
+                               : label_at(low + Index3(x, y, z));
             }
         }
-        return any != 0;
     }
-    for (int i = 0; i < count * count * count && any == 0; ++i) {
-        any = label_at(low + Index3(i % count, i / count % count, i / (count * count)));
-    }
+    return labels;
+}
+
+/// Whether a sample of a block has such a label.
+template <int count>
+bool Field::is_labelled(const Index3& low) const noexcept {
+    std::uint8_t any = 0;
+    for (const std::uint8_t label : labels_of<count>(low)) any |= label;
     return any != 0;
 }
 
@@ -148,48 +191,15 @@ void Field::look() noexcept {
     highest_ = (high - offset_) + range_;
 }
 
-Field::Run Field::run_of(const Index3& low, int count) const {
-    const Index3 high(low[0] + count - 1, low[1] + count - 1, low[2] + count - 1);
-    if (!has_sample(low) || !has_sample(high) || offset_ != 0 || moment_.weight > 0) return {};
-    const bool may_be_solid = cover_.labels && (cover_.solid_labels & 1U) != 0;
-    if (may_be_solid || (cover_.labels && is_labelled(low, count))) return {};
-    const std::size_t bytes = size_of(type_);
-    const auto in = [&](const Brick& brick, std::ptrdiff_t place, std::ptrdiff_t row) {
-        return Run{brick.samples.get() + static_cast<std::size_t>(place) * bytes, row, row * row};
-    };
-    // A block of three lies in the resident brick of its middle, one of two in that of its corner.
-    const Index3 owner = count == 3 ? Index3(low[0] + 1, low[1] + 1, low[2] + 1) : low;
-    const Brick* const resident = resident_ ? resident_->of_sample(owner) : nullptr;
-    if (resident_ && !resident) return {};
-    if (bricks_) {
-        const Brick* const first = bricks_->of_sample(low);
-        const Index3 end = low - Bricks::edge * Bricks::brick_of(low) + Index3::Constant(count - 1);
-        const bool in_one = end.maxCoeff() <= Bricks::edge;
-        if (in_one && first) return in(*first, Bricks::place_of(low), Bricks::row);
-        // Across bricks, samples of any edited one count.
-        for (int i = 0; !in_one && i < 8; ++i) {
-            const Index3 corner(i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1],
-                                i & 4 ? high[2] : low[2]);
-            if (bricks_->of_sample(corner)) return {};
-        }
-    }
-    if (resident) {
-        constexpr std::ptrdiff_t row = ResidentBricks::row, slice = ResidentBricks::slice;
-        const std::ptrdiff_t back = count == 3 ? 1 + row + slice : 0;
-        return in(*resident, ResidentBricks::place_of(owner) - back, row);
-    }
-    const std::ptrdiff_t place = low[0] + low[1] * row_ + low[2] * slice_;
-    return {static_cast<const std::byte*>(data_) + static_cast<std::size_t>(place) * bytes, row_,
-            slice_};
+template <int count>
+Field::Run Field::run_of(const Index3& low) const {
+    if (offset_ != 0 || moment_.weight > 0) return {};
+    if (cover_.labels && ((cover_.solid_labels & 1U) != 0 || is_labelled<count>(low))) return {};
+    return stored_run<count>(low);
 }
 
 template <class T>
 double Field::sample_at(const Index3& at) const {
-    if (cover_.labels) {
-        const int label = label_at(at);
-        if (cover_.solid_labels >> label & 1U) return cover_.solid;
-        if (label > 0) return cover_.open;
-    }
     if (!has_sample(at)) return background_ - offset_;
     if (resident_ && !resident_->of_sample(at)) {
         return (sign_ > 0 ? samples_->maximum() : samples_->minimum()) - offset_;
@@ -197,26 +207,54 @@ double Field::sample_at(const Index3& at) const {
     return samples_->sample_as<T>(at, moment_) - offset_;
 }
 
-template <std::size_t count>
+template <int count>
 std::array<double, count * count * count> Field::gathered(const Index3& low) const {
-    return with_type(type_, [&](auto zero) {
-        constexpr int side = static_cast<int>(count);
-        std::array<double, count * count * count> samples;
+    std::array<double, count * count * count> samples;
+    with_type(type_, [&](auto zero) {
+        using T = decltype(zero);
+        const Run run = stored_run<count>(low);
+        const T* const from = static_cast<const T*>(run.first);
+        const double weight = run.in_frame ? moment_.weight : 0;
+        const T* to = from;
+        if (weight > 0) {
+            to = static_cast<const T*>(samples_->frames()[moment_.to].volume.data()) +
+                 (from - static_cast<const T*>(data_));
+        }
         double* out = samples.data();
-        for (int z = low[2]; z < low[2] + side; ++z) {
-            for (int y = low[1]; y < low[1] + side; ++y) {
-                for (int x = low[0]; x < low[0] + side; ++x) {
-                    *out++ = sample_at<decltype(zero)>({x, y, z});
+        for (int z = 0; z < count; ++z) {
+            for (int y = 0; y < count; ++y) {
+                for (int x = 0; x < count; ++x, ++out) {
+                    const std::ptrdiff_t at = x + y * run.row + z * run.slice;
+                    if (!from) {
+                        *out = sample_at<T>({low[0] + x, low[1] + y, low[2] + z});
+                    } else if (weight > 0) {
+                        *out = (1 - weight) * double(from[at]) + weight * double(to[at]) - offset_;
+                    } else {
+                        *out = double(from[at]) - offset_;
+                    }
                 }
             }
         }
-        return samples;
     });
+    if (!cover_.labels) return samples;
+    const auto labels = labels_of<count>(low);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (cover_.solid_labels >> labels[i] & 1U) {
+            samples[i] = cover_.solid;
+        } else if (labels[i] > 0) {
+            samples[i] = cover_.open;
+        }
+    }
+    return samples;
 }
+// What the header and layers use.
+template Field::Run Field::run_of<3>(const Index3&) const;
 template std::array<double, 27> Field::gathered<3>(const Index3&) const;
+template std::array<std::uint8_t, 27> Field::labels_of<3>(const Index3&) const noexcept;
+template bool Field::is_labelled<3>(const Index3&) const noexcept;
 
 CellSamples Field::other_cell(const Index3& cell) const {
-    const Run run = run_of(cell, 2);
+    const Run run = run_of<2>(cell);
     if (!run.first) return gathered<2>(cell);
     return with_type(type_, [&](auto zero) -> CellSamples {
         const auto* p = static_cast<const decltype(zero)*>(run.first);

@@ -13,30 +13,23 @@ constexpr double around = 3;
 /// How often a pull is halved.
 constexpr int most_halvings = 6;
 
-/// The box of samples round a ball, clipped to the grid; empty if it is background.
-SampleBox box_round(const Field& field, const Vec3& centre, double radius) {
-    const Vec3 at = index_from_physical(field.geometry(), centre);
-    const Vec3 reach = radius * field.voxels_per_mm() + Vec3::Constant(around);
-    const Index3& size = field.geometry().size;
-    SampleBox box;
-    for (int a = 0; a < 3; ++a) {
-        const double low = at[a] - reach[a], high = at[a] + reach[a], last = size[a] - 1;
-        if (!(low <= last && high >= 0)) return {};
-        // Not below 0, so that cutting the digits off is rounding down.
-        box.low[a] = static_cast<int>(std::max(low, 0.0));
-        box.high[a] = std::min(static_cast<int>(std::min(high, last)) + 1, size[a] - 1);
-    }
-    return box;
-}
-
 }  // namespace
 
 bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept {
     const ResidentBricks* resident = field.samples().resident();
     if (!resident) return true;
-    const SampleBox box = box_round(field, centre, radius);
-    if (box.empty()) return true;
-    const Index3 low = ResidentBricks::brick_of(box.low), high = ResidentBricks::brick_of(box.high);
+    const Vec3 at = index_from_physical(field.geometry(), centre);
+    const Index3& size = field.geometry().size;
+    Index3 low, high;  // samples round the ball, and the bricks that they lie in
+    for (int a = 0; a < 3; ++a) {
+        const double reach = radius * field.voxels_per_mm()[a] + around, last = size[a] - 1;
+        if (!(at[a] - reach <= last && at[a] + reach >= 0)) return true;  // background
+        // Not below 0, so that cutting the digits off is rounding down.
+        low[a] = static_cast<int>(std::max(at[a] - reach, 0.0));
+        high[a] = std::min(static_cast<int>(std::min(at[a] + reach, last)) + 1, size[a] - 1);
+    }
+    low = ResidentBricks::brick_of(low);
+    high = ResidentBricks::brick_of(high);
     for (int k = low[2]; k <= high[2]; ++k) {
         for (int j = low[1]; j <= high[1]; ++j) {
             for (int i = low[0]; i <= high[0]; ++i) {

@@ -129,27 +129,38 @@ class Field {
 
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
-    /// Samples that lie in one array as they are felt: the first of them, and how far apart
-    /// neighbours in y and z are. Null: they do not.
+    /// Samples that lie in one array: the first of them, and how far apart neighbours in y and z
+    /// are. Null: they do not.
     struct Run {
         const void* first = nullptr;
         std::ptrdiff_t row = 0, slice = 0;
+        bool in_frame = false;  ///< of the moment, not in a brick
     };
-    /// For a block of count^3 samples, 2 or 3 along each axis.
-    Run run_of(const Index3& low, int count) const;
-    /// One sample anywhere in space, less offset(). All that is not in one array comes from here.
+    /// For a block of count^3 samples, 2 or 3 along each axis: as they are stored, or null unless
+    /// they are felt like that.
+    template <int count>
+    Run stored_run(const Index3& low) const;
+    template <int count>
+    Run run_of(const Index3& low) const;
+    /// One sample anywhere in space but for its label, less offset().
     template <class T>
     double sample_at(const Index3& at) const;
-    template <std::size_t count>
+    template <int count>
     std::array<double, count * count * count> gathered(const Index3& low) const;
     CellSamples other_cell(const Index3& cell) const;
     bool has_sample(const Index3& at) const {
-        return (at.array() >= 0).all() && (at.array() < size_.array()).all();
+        const auto inside = [&](int a) {
+            return static_cast<unsigned>(at[a]) < static_cast<unsigned>(size_[a]);
+        };
+        return inside(0) && inside(1) && inside(2);
     }
     void cover(const std::shared_ptr<const Field>& labels, std::uint32_t solid_labels, double open,
                double solid) noexcept;
-    int label_at(const Index3& at) const noexcept;
-    bool is_labelled(const Index3& low, int count) const noexcept;
+    std::uint8_t label_at(const Index3& at) const noexcept;
+    template <int count>
+    std::array<std::uint8_t, count * count * count> labels_of(const Index3& low) const noexcept;
+    template <int count>
+    bool is_labelled(const Index3& low) const noexcept;
     void look() noexcept;
 
     std::shared_ptr<const Samples> samples_;
@@ -210,7 +221,7 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit, Gathered& kept)
         });
     }
     const Index3 low(at[0] - 1, at[1] - 1, at[2] - 1);
-    if (const Run run = kept.done ? Run{} : run_of(low, 3); run.first) {
+    if (const Run run = kept.done ? Run{} : run_of<3>(low); run.first) {
         return with_type(type_, [&](auto zero) {
             const auto* first = static_cast<const decltype(zero)*>(run.first);
             return visit(first + 1 + run.row + run.slice, run.row, run.slice);

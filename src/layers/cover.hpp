@@ -17,11 +17,13 @@ struct LabelCover {
     }
     /// Null without put().
     static const Field* of(const Field& field) noexcept { return field.cover_.labels.get(); }
-    /// The label of the sample `at`, from the labels that cover it.
-    static int label(const Field& field, const Index3& at) noexcept { return field.label_at(at); }
+    /// The labels of the sample `at` and its neighbours, placed like Neighbours.
+    static std::array<std::uint8_t, 27> around(const Field& field, const Index3& at) noexcept {
+        return field.labels_of<3>(at - Index3::Ones());
+    }
     /// Whether the sample `at` or one of its neighbours has such a label.
     static bool is_near(const Field& field, const Index3& at) noexcept {
-        return field.is_labelled(at - Index3::Ones(), 3);
+        return field.is_labelled<3>(at - Index3::Ones());
     }
 };
 

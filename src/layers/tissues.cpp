@@ -147,6 +147,7 @@ Tissues::Shares Tissues::shares_at(const Vec3& physical) const {
     const Index3 nearest = nearest_sample(now, physical);
     Neighbours densities{};
     if (levels_ > 0) densities = density_.around(nearest);
+    const auto labels = LabelCover::around(now, nearest);
     const double ahead = bounds().ahead;
     Mat3 along;  // of the three samples along each axis
     for (int a = 0; a < 9; ++a) {
@@ -157,10 +158,8 @@ Tissues::Shares Tissues::shares_at(const Vec3& physical) const {
     for (int i = 0; i < 27; ++i) {
         const double weight = along(i % 3, 0) * along(i / 3 % 3, 1) * along(i / 9, 2);
         if (weight == 0) continue;
-        const int label =
-            LabelCover::label(now, nearest + Index3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-        shares.of[static_cast<std::size_t>(label)] += weight;
-        if (label > 0 || levels_ == 0) continue;
+        shares.of[labels[i]] += weight;
+        if (labels[i] > 0 || levels_ == 0) continue;
         const double density = density_.with_offset(densities[static_cast<std::size_t>(i)]);
         if (density_.sign() * (density - ahead) > 0) shares.beyond += weight;
         shares.inside[static_cast<std::size_t>(inside_at(density))] += weight;
