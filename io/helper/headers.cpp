@@ -64,4 +64,15 @@ std::int64_t whole_number_in(const std::string& text, const std::string& field, 
     return static_cast<std::int64_t>(numbers[0]);
 }
 
+bool names_several_files(const std::string& name) {
+    if (name.starts_with("LIST") && name.find_first_not_of(" \t0123456789", 4) == name.npos) {
+        return true;
+    }
+    for (std::size_t at = 0; (at = name.find('%', at)) != name.npos; ++at) {
+        const std::size_t letter = name.find_first_not_of("0123456789", at + 1);
+        if (letter != name.npos && name[letter] == 'd') return true;
+    }
+    return false;
+}
+
 }  // namespace palpate::io

@@ -79,4 +79,8 @@ std::vector<std::int64_t> sizes_in(const std::string& text, const std::string& f
 /// The same for a field of one whole number of at least `least`.
 std::int64_t whole_number_in(const std::string& text, const std::string& field, double least);
 
+/// Whether a header's name of its data file stands for several: "LIST", "LIST 2", or a pattern with
+/// %d in it.
+bool names_several_files(const std::string& name);
+
 }  // namespace palpate::io

@@ -40,8 +40,9 @@ void check_written(const std::filesystem::path& path, const std::string& extensi
                                   : meta_image_header(request);
         stream_samples(header, {});
         written = header.samples();
-    } catch (const Failure&) {
-        throw Failure("was not written whole; is the disk full?");
+    } catch (const Failure& e) {
+        throw Failure(
+            "was not written whole; is the disk full? (read again: " + std::string(e.what()) + ")");
     }
     if (written != static_cast<std::uint64_t>(samples))
         throw Failure("is too large for this format; write .nrrd instead");

@@ -63,7 +63,7 @@ DataPlace place_of(const HeaderFields& fields, const std::filesystem::path& path
     if (lower(name) == "local") {
         place.file = path;
         place.offset = fields.data_offset;
-    } else if (name.rfind("LIST", 0) == 0 || name.find('%') != std::string::npos) {
+    } else if (names_several_files(name)) {
         throw Failure(
             "its samples are spread over several files, which is not read; save it as "
             "one file (.mha)");

@@ -244,11 +244,22 @@ bool is_placed(const Header& header) {
            header.number<std::int16_t>(sform_code) > 0;
 }
 
+bool is_empty_sform(const Header& header) {
+    for (std::size_t i = 0; i < 12; ++i) {
+        if (i % 4 != 3 && header.number<float>(280 + 4 * i) != 0) return false;
+    }
+    return true;
+}
+
 /// The sform goes before the qform, unless it is sheared, which a grid cannot be.
 Transform transform_of(const Header& header, std::vector<std::string>& notes) {
     const double unit = unit_of_length(header, notes);
     const bool has_qform = header.number<std::int16_t>(qform_code) > 0;
-    const bool has_sform = header.number<std::int16_t>(sform_code) > 0;
+    bool has_sform = header.number<std::int16_t>(sform_code) > 0;
+    if (has_sform && has_qform && is_empty_sform(header)) {
+        notes.emplace_back("its sform has nothing but zeros: its qform was taken");
+        has_sform = false;
+    }
     if (!is_placed(header)) {
         notes.push_back(
             "its header says nothing of its orientation in the body (no sform, no "

@@ -156,7 +156,7 @@ DataPlace place_of(const HeaderFields& fields, const std::filesystem::path& path
     place.offset = fields.data_offset;
     if (fields.has("data file")) {
         const std::string name = fields.value("data file");
-        if (name.rfind("LIST", 0) == 0 || name.find('%') != std::string::npos) {
+        if (names_several_files(name)) {
             throw Failure(
                 "its samples are spread over several files, which is not read; save it as one "
                 "(unu save -f nrrd)");

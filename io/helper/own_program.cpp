@@ -89,6 +89,11 @@ const char* program_for_file(const fs::path& path) {
         begins_as_dicom(path)) {
         return dicom;
     }
+    if (extension == ".hdr" || extension == ".img") {
+        throw Failure(
+            "is one of a pair of files (.hdr and .img), which is not read; save the pair as one "
+            ".nii file (3D Slicer does)");
+    }
     throw Failure(
         "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, dcm, tif, vti); if "
         "it holds nothing but samples, give its dims and type");

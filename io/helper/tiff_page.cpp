@@ -19,7 +19,8 @@ Stored stored_from(std::uint16_t bits, std::uint16_t format, const fs::path& fil
         if (bits == 32) return is_signed ? Stored::int32 : Stored::uint32;
     }
     throw Failure(quoted(file) + " has samples of " + std::to_string(bits) +
-                  " bits of a kind that is not read; save it with 8 or 16 bits");
+                  " bits of a kind that is not read; save it " +
+                  (format == SAMPLEFORMAT_IEEEFP ? "as 32-bit float" : "with 8 or 16 bits"));
 }
 
 }  // namespace

@@ -108,15 +108,23 @@ Stored stored_from(int type) {
     }
 }
 
-/// The active scalars, else the first array with one value a sample.
+/// Whether an array marks samples that do not count, in VTK's own use.
+bool is_ghosts(vtkDataArray* array) {
+    return array != nullptr && array->GetName() != nullptr &&
+           std::string(array->GetName()).starts_with("vtkGhost");
+}
+
+/// The active scalars, else the first array with one value a sample, else one to be refused with
+/// a reason.
 vtkDataArray* choose_array(vtkDataSetAttributes* data, std::vector<std::string>& notes) {
-    vtkDataArray* chosen = data->GetScalars();
-    for (int i = 0; chosen == nullptr && i < data->GetNumberOfArrays(); ++i) {
-        vtkDataArray* const array = data->GetArray(i);
-        if (array != nullptr && array->GetNumberOfComponents() == 1) chosen = array;
-    }
-    if (chosen == nullptr) chosen = data->GetArray(0);  // to be refused with a reason
-    if (chosen != nullptr && data->GetNumberOfArrays() > 1) {
+    std::vector<vtkDataArray*> arrays{data->GetScalars()};
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i) arrays.push_back(data->GetArray(i));
+    std::erase_if(arrays, [](vtkDataArray* one) { return one == nullptr || is_ghosts(one); });
+    if (arrays.empty()) return nullptr;
+    const auto found = std::ranges::find_if(
+        arrays, [](vtkDataArray* one) { return one->GetNumberOfComponents() == 1; });
+    vtkDataArray* const chosen = found == arrays.end() ? arrays.front() : *found;
+    if (data->GetNumberOfArrays() > 1) {
         notes.push_back("it has " + std::to_string(data->GetNumberOfArrays()) + " arrays; '" +
                         (chosen->GetName() ? chosen->GetName() : "") + "' was taken");
     }
@@ -144,8 +152,7 @@ Geometry geometry_of(vtkImageData& image, bool at_cells) {
 }
 
 void check_size(vtkXMLImageDataReader& reader, const Request& request) {
-    int extent[6];
-    reader.UpdateInformation();
+    int extent[6] = {0, -1, 0, -1, 0, -1};  // VTK leaves it alone where the file has none
     reader.GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
     std::vector<std::int64_t> sizes;
     for (int a = 0; a < 3; ++a) {
@@ -162,8 +169,9 @@ Result read_vti(const Request& request) {
     vtkOutputWindow::SetInstance(errors);
     const vtkNew<vtkXMLImageDataReader> reader;
     reader->SetFileName(request.path.c_str());
-    check_size(*reader, request);
+    reader->UpdateInformation();
     check_errors(*errors);
+    check_size(*reader, request);
     reader->Update();
     check_errors(*errors);
     say_progress(0.7);

@@ -7,6 +7,7 @@ import struct
 import subprocess
 
 import h5py
+import nibabel
 import numpy
 import palpate
 import pytest
@@ -192,3 +193,75 @@ def test_multiscales_of_an_n5_group_place_its_levels(tmp_path, image):
     assert numpy.allclose(store.levels[0].spacing, (2e-6, 3e-6, 4e-6), rtol=1e-9, atol=0)
     assert numpy.allclose(store.levels[0].origin, (2e-5, 3e-5, 4e-5), rtol=1e-9, atol=0)
     assert numpy.allclose(store.levels[1].spacing, (4e-6, 6e-6, 8e-6), rtol=1e-9, atol=0) and not store.notes[:-1]
+
+
+# Names of data files, and headers that are half filled ---------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ("50%.raw", "LISTEN.raw", "%.raw", "100%x.raw"))
+def test_names_of_data_files_that_look_like_patterns(tmp_path, name):
+    (tmp_path / name).write_bytes(ramp("<i2").tobytes())
+    (tmp_path / "a.nhdr").write_text("NRRD0004\ntype: short\ndimension: 3\nsizes: 6 4 5\nendian: little\nencoding: raw\n"
+                                     f"spacings: 1 1 1\ndata file: {name}\n")
+    (tmp_path / "a.mhd").write_text(f"NDims = 3\nDimSize = 6 4 5\nElementType = MET_SHORT\nElementDataFile = {name}\n")
+    for header in ("a.nhdr", "a.mhd"):
+        assert numpy.array_equal(palpate.load(tmp_path / header).volume.array, ramp("i2"))
+    for several in ("a%d.raw 1 5 1", "a%03d.raw 1 5 1", "LIST", "LIST 2"):
+        path = tmp_path / "a.mhd"
+        path.write_text(f"NDims = 3\nDimSize = 6 4 5\nElementType = MET_SHORT\nElementDataFile = {several}\n1.raw\n")
+        refused(path, "several files")
+
+
+@pytest.mark.parametrize("name", ("90%.nhdr", "90%.mhd", "LISTE.mhd", "LISTE.nhdr"))
+def test_such_names_are_written_and_read_again(tmp_path, name):
+    palpate.write(palpate.Volume(ramp("i2")), tmp_path / name)
+    assert numpy.array_equal(palpate.load(tmp_path / name).volume.array, ramp("i2"))
+
+
+def test_a_nifti_whose_sform_is_empty_has_its_qform(tmp_path):
+    image = nibabel.Nifti1Image(ramp("i2").T, numpy.diag([-2, -3, 4, 1]))
+    image.set_qform(numpy.diag([-2, -3, 4, 1]), code=1)
+    nibabel.save(image, path := tmp_path / "a.nii")
+    data = bytearray(path.read_bytes())
+    data[254:256], data[280:328] = struct.pack("<h", 1), bytes(48)
+    path.write_bytes(data)
+    geometry = noted(path, "qform was taken").geometry
+    assert numpy.allclose(geometry.spacing, (2, 3, 4)) and geometry.oriented
+
+
+# VTI ------------------------------------------------------------------------------------------------------
+
+VTI = ('<?xml version="1.0"?><VTKFile type="ImageData" version="0.1" byte_order="LittleEndian"><ImageData '
+       'WholeExtent="0 5 0 3 0 4" Origin="1 2 3" Spacing="1 2 3"><Piece Extent="0 5 0 3 0 4"><PointData Scalars="{active}">'
+       '{arrays}</PointData></Piece></ImageData></VTKFile>')
+
+
+def vti_array(name, data, components=1):
+    kind = {"i2": "Int16", "u1": "UInt8"}[data.dtype.str[1:]]
+    return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="ascii">'
+            f'{" ".join(map(str, data.ravel()))}</DataArray>')
+
+
+def test_a_vti_that_vtk_cannot_parse_is_refused_for_that(tmp_path):
+    (tmp_path / "a.vti").write_text(VTI.format(active="a & b", arrays=vti_array("a & b", ramp("i2"))))
+    for _ in range(3):
+        refused(tmp_path / "a.vti", "damaged or no VTI file")
+
+
+@pytest.mark.parametrize("active", ("vector", "", "density"))
+def test_scalars_of_a_vti_are_found_beside_vectors_and_ghosts(tmp_path, active):
+    arrays = (vti_array("vtkGhostType", numpy.zeros(SHAPE, "u1")) + vti_array("vector", numpy.zeros((120, 3), "i2"), 3) +
+              vti_array("density", ramp("i2")))
+    (tmp_path / "a.vti").write_text(VTI.format(active=active, arrays=arrays))
+    assert numpy.array_equal(noted(tmp_path / "a.vti", "'density' was taken").array, ramp("i2"))
+
+
+# What to do instead -----------------------------------------------------------------------------------------
+
+
+def test_messages_say_what_to_do(tmp_path):
+    for name in ("a.hdr", "a.img"):
+        (tmp_path / name).write_bytes(bytes(348))
+        refused(tmp_path / name, "save the pair as one .nii file")
+    tifffile.imwrite(tmp_path / "a.tif", ramp("f4").astype("f2"), photometric="minisblack")
+    refused(tmp_path / "a.tif", "16 bits", "as 32-bit float")
