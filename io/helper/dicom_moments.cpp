@@ -29,9 +29,9 @@ class Moments {
     }
 
   private:
-    static constexpr const char* const names[] = {
-        "", "TemporalPositionIdentifier", "TriggerTime", "NominalPercentageOfCardiacPhase",
-        "FrameReferenceTime"};
+    static constexpr const char* const names[] = {"", "TemporalPositionIdentifier", "TriggerTime",
+                                                  "NominalPercentageOfCardiacPhase",
+                                                  "FrameReferenceTime"};
 
     [[noreturn]] void fail() const {
         throw Failure("there are " + std::to_string(groups_.front().size()) +
