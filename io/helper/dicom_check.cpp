@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
-#include <map>
 #include <set>
 
 #include "io/helper/dicom_bytes.hpp"
@@ -17,10 +15,11 @@ namespace {
 
 constexpr std::uint32_t undefined_length = 0xffffffff;
 constexpr std::uint32_t item = 0xfffee000, item_end = 0xfffee00d, sequence_end = 0xfffee0dd;
-constexpr std::uint32_t pixel_data = 0x7fe00010;
+constexpr std::uint32_t pixel_data = 0x7fe00010, float_pixels = 0x7fe00008,
+                        double_pixels = 0x7fe00009;
 constexpr int deepest = 64;
 constexpr std::uint64_t most_beside_pixels = std::uint64_t{64} << 20;  // of a deflated file
-constexpr std::size_t most_changes = 10000;  // 16 overlays have some 20 elements each
+constexpr int most_repeated = 10000;
 const char* const deflated_syntax = "1.2.840.10008.1.2.1.99";
 
 struct Element {
@@ -28,6 +27,17 @@ struct Element {
     std::uint32_t length = 0;
     std::string vr;
 };
+
+/// A number of bits from the bit `first` on, the lowest of each byte first (PS3.5, 8.1.1).
+std::vector<std::byte> one_byte_each(std::span<const std::byte> bytes, std::uint64_t first,
+                                     std::uint64_t count) {
+    std::vector<std::byte> all(count);
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const std::uint64_t bit = first + i;
+        all[i] = bytes[bit / 8] >> static_cast<int>(bit % 8) & std::byte{1};
+    }
+    return all;
+}
 
 class Walk {
   public:
@@ -39,10 +49,8 @@ class Walk {
             begin_data_set(syntax);
             walk(data_set_, UINT64_MAX, syntax != "1.2.840.10008.1.2", 0);
             if (extent_.sop_class.empty()) fail("is cut off in its first lines, or damaged there");
-            take_out_overlays();
-            take_high_bit();
-            extent_.needs_copy = extent_.deflated || !changes_.empty();
             if (extent_.rows > 0 && extent_.columns > 0) check_pixels(syntax);
+            take_header(syntax);
         } catch (const DamagedStream& e) {
             fail(std::string("is damaged (") + e.what() + ")");
         }
@@ -50,37 +58,27 @@ class Walk {
     }
 
     /// After whole_file().
-    std::vector<std::byte> tidied() {
-        const auto all =
-            extent_.deflated ? bytes_.unpacked() : bytes_.view(0, bytes_.mapped_size());
-        std::vector<std::byte> tidy;
-        tidy.reserve(all.size());
-        std::uint64_t from = 0;
-        const auto copy_up_to = [&](std::uint64_t end) {
-            tidy.insert(tidy.end(), all.begin() + static_cast<std::ptrdiff_t>(from),
-                        all.begin() + static_cast<std::ptrdiff_t>(end));
-        };
-        if (extent_.deflated) {
-            // One UID is the beginning of the other; the rest is padding.
-            changes_.push_back({syntax_at_ + 19, 3, std::string(3, '\0')});
+    void read_frames(const std::vector<int>& wanted, const UseFrame& use) {
+        if (!pixels_.plain) {
+            const auto streams = frames_of(bytes_, pixels_, extent_);
+            for (const int frame : wanted) use(frame, streams.at(static_cast<std::size_t>(frame)));
+            return;
         }
-        std::ranges::sort(changes_, {}, &Change::at);
-        for (const Change& change : changes_) {
-            copy_up_to(change.at);
-            for (const char c : change.put) tidy.push_back(static_cast<std::byte>(c));
-            from = change.at + change.removed;
+        const auto samples = static_cast<std::uint64_t>(extent_.rows * extent_.columns);
+        const auto bits = samples * static_cast<std::uint64_t>(extent_.bits * extent_.components);
+        for (const int frame : wanted) {
+            const std::uint64_t first = static_cast<std::uint64_t>(frame) * bits;
+            const auto bytes =
+                bytes_.view(pixels_.at + first / 8, (first + bits + 7) / 8 - first / 8);
+            if (extent_.bits == 1) {
+                use(frame, one_byte_each(bytes, first % 8, bits));
+            } else {
+                use(frame, bytes);
+            }
         }
-        copy_up_to(all.size());
-        return tidy;
     }
 
   private:
-    /// Bytes in place of others.
-    struct Change {
-        std::uint64_t at = 0, removed = 0;
-        std::string put;
-    };
-
     [[noreturn]] void fail(const std::string& what) const {
         throw Failure(quoted(file_) + " " + what + "; copy or export it again");
     }
@@ -114,8 +112,8 @@ class Walk {
 
     void begin_data_set(const std::string& syntax) {
         if (syntax == "1.2.840.10008.1.2.2") bytes_.set_swapped();
-        extent_.deflated = syntax == deflated_syntax;
-        if (!extent_.deflated) return;
+        extent_.syntax = syntax;
+        if (syntax != deflated_syntax) return;
         bytes_.deflated_from(data_set_, most_beside_pixels);
         extent_.compression = "deflate";
     }
@@ -181,6 +179,12 @@ class Walk {
                 return &extent_.columns;
             case 0x00280100:
                 return &extent_.bits;
+            case 0x00280101:
+                return &extent_.stored_bits;
+            case 0x00280102:
+                return &extent_.high_bit;
+            case 0x00280103:
+                return &extent_.representation;
             default:
                 return nullptr;
         }
@@ -214,14 +218,22 @@ class Walk {
             if (!bytes_.reaches(at + 8)) fail("is cut off");
             const std::uint64_t start = at;
             const Element e = element(at, is_explicit);
-            const std::uint64_t value = at;
             if (e.tag == item_end || e.tag == sequence_end) return at;
-            if (depth == 0) take_size(at, e);
-            const bool pixels = e.tag == pixel_data && depth == 0;
-            if (pixels) begin_pixels(e);
+            if (depth == 0) {
+                if (e.tag != 0 && e.tag == last_tag_ && ++repeated_ > most_repeated) {
+                    fail("is damaged (it has elements again and again that an image has once)");
+                }
+                last_tag_ = e.tag;
+                take_size(at, e);
+            }
+            if (depth == 0 && e.tag == 0x00080016 && extent_.sop_class.empty()) {
+                extent_.sop_class = text(at, e);
+            }
+            const bool is_real = e.tag == float_pixels || e.tag == double_pixels;
+            const bool pixels = (e.tag == pixel_data || is_real) && depth == 0;
+            if (pixels) begin_pixels(start, at, e, is_real);
             if (e.length != undefined_length) {
                 at = past_value(at, e);
-                if (depth == 0) tidy_up(start, value, e);
             } else {
                 // A sequence of unknown type is always implicit (PS3.5, 6.2.2).
                 at = items(at, is_explicit && e.vr != "UN", pixels, depth);
@@ -238,123 +250,31 @@ class Walk {
         for (end = at; bytes_.reaches(end + 1); ++end) {
             if (number<char>(end) != 0) return false;
         }
-        change({at, end - at, ""});  // GDCM aborts on some of them
         extent_.notes.push_back("there are " + std::to_string(end - at) +
                                 " zero bytes after its last element: they were ignored");
         return true;
     }
 
-    std::string bytes_of(std::uint16_t number) const {
-        const char low = static_cast<char>(number & 0xff), high = static_cast<char>(number >> 8);
-        return bytes_.swapped() ? std::string{high, low} : std::string{low, high};
+    /// All that libraries see of the file, but for frames that they unpack.
+    void take_header(const std::string& syntax) {
+        if (!pixels_.found) return;
+        const auto bytes = bytes_.view(0, pixels_.element);
+        extent_.header.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        // One UID is the beginning of the other; the rest is padding.
+        if (syntax == deflated_syntax) extent_.header.replace(syntax_at_ + 19, 3, 3, '\0');
     }
 
-    void change(Change what) {
-        count_change();
-        changes_.push_back(std::move(what));
-    }
-
-    /// They would need more memory than the elements themselves if there were as many.
-    void count_change() {
-        if (++counted_changes_ > most_changes) {
-            fail("is damaged (it has elements again and again that an image has once)");
-        }
-    }
-
-    /// What a library is to be given instead of an element of the data set, which is all there.
-    void tidy_up(std::uint64_t start, std::uint64_t at, const Element& e) {
-        // Of PixelSpacing and other lengths, positions and slopes.
-        static const std::set<std::uint32_t> numbers = {
-            0x00180050, 0x00180088, 0x00181164, 0x00200032, 0x00200037,
-            0x00280030, 0x00182010, 0x00201041, 0x00281052, 0x00281053};
-        if (e.tag == 0x00080016 && extent_.sop_class.empty()) extent_.sop_class = text(at, e);
-        if (e.tag == 0x00280101 && e.length == 2) stored_at_ = at;
-        if (e.tag == 0x00280102 && e.length == 2) high_bit_ = number<std::uint16_t>(at);
-        if (e.tag == 0x00280004 && text(at, e) == "MONOCHROME1") {
-            std::uint64_t one = at;
-            while (number<char>(one) != '1') ++one;
-            change({one, 1, "2"});
-            add_note(extent_.notes,
-                     "its MONOCHROME1 says that greater values are shown darker: "
-                     "values were taken as they are stored");
-        }
-        if (e.tag >> 24 == 0x60) {
-            count_change();
-            Overlay& overlay = overlays_[e.tag >> 16];
-            overlay.elements.push_back({start, at + e.length - start, ""});
-            overlay.has_data |= (e.tag & 0xffff) == 0x3000;
-        }
-        if (numbers.contains(e.tag) && e.length <= 1024) tidy_number(start, at, e);
-    }
-
-    /// Samples above the lowest of their bits, as old files may have them. GDCM would take some of
-    /// their bits off: for it, they use the bits below as well.
-    void take_high_bit() {
-        if (stored_at_ == 0 || high_bit_ > 31 || !pixels_.plain) return;
-        const int stored = number<std::uint16_t>(stored_at_), used = high_bit_ + 1;
-        if (stored == 0 || used <= stored) return;
-        extent_.shift = used - stored;
-        change({stored_at_, 2, bytes_of(static_cast<std::uint16_t>(used))});
-        add_note(extent_.notes, "its samples lie " + std::to_string(extent_.shift) +
-                                    " bits above the lowest (HighBit): they were shifted down");
-    }
-
-    /// Numbers of a binary type where a text is usual, which GDCM aborts on; empty for texts.
-    std::string binary_as_text(std::uint64_t at, const Element& e) {
-        std::string text;
-        const auto append = [&](auto zero) {
-            using T = decltype(zero);
-            for (std::uint64_t i = 0; i + sizeof(T) <= e.length; i += sizeof(T)) {
-                if (!text.empty()) text += '\\';
-                append_number(text, static_cast<double>(number<T>(at + i)));
-            }
-        };
-        if (e.vr == "FD") append(double{});
-        if (e.vr == "FL") append(float{});
-        if (e.vr == "SS") append(std::int16_t{});
-        if (e.vr == "US") append(std::uint16_t{});
-        if (e.vr == "SL") append(std::int32_t{});
-        if (e.vr == "UL") append(std::uint32_t{});
-        return text;
-    }
-
-    void tidy_number(std::uint64_t start, std::uint64_t at, const Element& e) {
-        std::string value = binary_as_text(at, e);
-        const bool is_binary = !value.empty();
-        for (std::uint64_t i = 0; i < e.length && !is_binary; ++i) value += number<char>(at + i);
-        value = trimmed(value.substr(0, value.find('\0')));
-        const bool one_length = e.tag == 0x00280030 && !value.empty() &&
-                                value.find_first_of("\\,") == std::string::npos;
-        if (one_length) {
-            value += '\\' + value;
-            add_note(extent_.notes,
-                     "its PixelSpacing has one number, which was taken for rows "
-                     "and columns");
-        }
-        static const std::set<std::string> texts = {"UT", "UC", "LT", "ST", "LO", "SH", "CS"};
-        const bool other_type = texts.contains(e.vr);
-        if (!one_length && !other_type && !is_binary) return;
-        if (value.size() % 2 == 1) value += ' ';
-        const auto length = static_cast<std::uint16_t>(value.size());
-        // Without types, the length has four bytes.
-        const std::string head = !e.vr.empty()      ? "DS" + bytes_of(length)
-                                 : bytes_.swapped() ? bytes_of(0) + bytes_of(length)
-                                                    : bytes_of(length) + bytes_of(0);
-        change({start + 4, at + e.length - start - 4, head + value});
-    }
-
-    /// Overlays without data of their own lie in bits that the samples do not use.
-    void take_out_overlays() {
-        for (auto& [group, overlay] : overlays_) {
-            if (overlay.has_data) continue;
-            std::ranges::move(overlay.elements, std::back_inserter(changes_));
-            add_note(extent_.notes, "overlays in unused bits of its samples were ignored");
-        }
-    }
-
-    void begin_pixels(const Element& e) {
+    void begin_pixels(std::uint64_t element, std::uint64_t at, const Element& e, bool is_real) {
         if (pixels_.found) fail("is damaged (it has its samples twice)");
-        pixels_.found = true;
+        pixels_.found = extent_.has_image = true;
+        pixels_.element = element;
+        pixels_.at = at;
+        extent_.is_real = is_real;
+        if (bytes_.swapped() && e.vr != "OB") {
+            extent_.swapped_bytes =
+                static_cast<std::size_t>(std::max<std::int64_t>(2, extent_.bits / 8));
+        }
+        if (is_real) extent_.bits = e.tag == float_pixels ? 32 : 64;
         if (e.length == undefined_length) return;
         pixels_.plain = e.length;
         // Before as much is unpacked. Samples of no declared size are allowed no memory.
@@ -382,7 +302,7 @@ class Walk {
     }
 
     void check_pixels(const std::string& syntax) {
-        if (!pixels_.found) return;  // GDCM says so
+        if (!pixels_.found) return;
         if (pixels_.plain) {
             if (const auto note = check_plain_pixels(file_, *pixels_.plain, extent_)) {
                 extent_.notes.push_back(*note);
@@ -397,19 +317,20 @@ class Walk {
     DicomExtent extent_;
     DicomPixels pixels_;
     std::set<std::uint32_t> taken_;
-    std::vector<Change> changes_;
-    std::size_t counted_changes_ = 0;
-    struct Overlay {
-        std::vector<Change> elements;
-        bool has_data = false;
-    };
-    std::map<std::uint32_t, Overlay> overlays_;  // by group
-    std::uint64_t syntax_at_ = 0, data_set_ = 0, stored_at_ = 0;
-    std::uint16_t high_bit_ = 0;
+    std::uint32_t last_tag_ = 0;
+    int repeated_ = 0;
+    std::uint64_t syntax_at_ = 0, data_set_ = 0;
     std::uint64_t zeros_end_ = 0;  // where the last run of zeros that was looked at ends
 };
 
 }  // namespace
+
+int DicomExtent::shift() const {
+    const bool makes_sense = stored_bits > 0 && high_bit >= stored_bits && high_bit < bits;
+    return makes_sense && !is_real && !is_encapsulated()
+               ? static_cast<int>(high_bit + 1 - stored_bits)
+               : 0;
+}
 
 std::uint64_t DicomExtent::bytes() const {
     return (static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(columns) *
@@ -423,10 +344,11 @@ DicomExtent check_dicom(const std::filesystem::path& file) {
     return Walk(file).whole_file();
 }
 
-std::vector<std::byte> tidied_dicom(const std::filesystem::path& file) {
+void read_frames(const std::filesystem::path& file, const std::vector<int>& frames,
+                 const std::function<void(const DicomExtent&)>& begin, const UseFrame& use) {
     Walk walk(file);
-    walk.whole_file();
-    return walk.tidied();
+    begin(walk.whole_file());
+    walk.read_frames(frames, use);
 }
 
 bool has_no_image(const std::string& sop_class) {

@@ -1,6 +1,9 @@
-// Checks a DICOM file before GDCM reads it: GDCM reads a cut-off file as a complete one, allocates
-// whatever a damaged length says, and believes Rows and Columns more than the compressed image.
+// Walks through a DICOM file before GDCM reads any of it. GDCM reads a cut-off file as a complete
+// one and allocates whatever a damaged length says. It believes Rows and Columns more than the
+// compressed image.
 #pragma once
+
+#include <functional>
 
 #include "io/helper/decode.hpp"
 
@@ -11,16 +14,24 @@ struct DicomExtent {
     std::string sop_class;  ///< from the file's meta information
     std::int64_t rows = 0, columns = 0;
     std::int64_t frames = 1;
-    std::int64_t components = 1;  ///< values a pixel
-    std::int64_t bits = 16;       ///< allocated for a value
-    int shift = 0;                ///< unused bits below the samples
-    bool deflated = false;        ///< the data set as a whole
-    bool needs_copy = false;      ///< a library is to be given tidied_dicom() instead
-    std::string compression;      ///< "JPEG 2000", "deflate", ...; empty if there is none
+    std::int64_t components = 1;              ///< values a pixel
+    std::int64_t bits = 16;                   ///< allocated for a value
+    std::int64_t stored_bits = 0;             ///< used of these; 0 if not given
+    std::int64_t high_bit = -1;               ///< the highest of them; -1 if not given
+    std::int64_t representation = 0;          ///< 1: signed
+    bool has_image = false, is_real = false;  ///< is_real: Float or Double Float Pixel Data
+    std::size_t swapped_bytes = 1;            ///< of a big-endian word of samples; 1: none
+    std::string syntax;                       ///< UID
+    std::string compression;  ///< "JPEG 2000", "deflate", ...; empty if there is none
+    std::string header;       ///< the file up to its pixels, never deflated
     std::vector<std::string> notes;
 
     /// Bytes of all frames, not compressed.
     std::uint64_t bytes() const;
+    /// Unused bits below the samples of files that are not compressed.
+    int shift() const;
+    /// The samples are frames of a code stream.
+    bool is_encapsulated() const { return !compression.empty() && compression != "deflate"; }
 };
 
 /// Throws Failure, which names the file, if
@@ -30,14 +41,13 @@ struct DicomExtent {
 /// - the deflated data are damaged, or unpack to more than the header declares.
 DicomExtent check_dicom(const std::filesystem::path& file);
 
+/// Hands over frames as they are stored, in the order that is asked for: a code stream, or samples,
+/// of which those of one bit have a byte each, 0 or 1.
+using UseFrame = std::function<void(int frame, std::span<const std::byte> bytes)>;
+void read_frames(const std::filesystem::path& file, const std::vector<int>& frames,
+                 const std::function<void(const DicomExtent&)>& begin, const UseFrame& use);
+
 /// True for classes of objects that are known to have no image: reports, plans, the folder's index.
 bool has_no_image(const std::string& sop_class);
-
-/// The file as libraries read it as it is meant: a deflated one unpacked, in explicit little
-/// endian; MONOCHROME1, which is about display only, as MONOCHROME2, so that no value is turned;
-/// samples above the lowest of their bits with those below;
-/// numbers of lengths as text of the usual type; without overlays that lie in unused bits of the
-/// samples.
-std::vector<std::byte> tidied_dicom(const std::filesystem::path& file);
 
 }  // namespace palpate::io

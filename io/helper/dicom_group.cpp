@@ -40,6 +40,17 @@ std::string DicomGroup::text(DicomTag tag) const {
 }
 
 std::vector<double> DicomGroup::numbers(DicomTag tag) const {
+    const auto reals = [&](auto zero) {
+        const auto values = binary<decltype(zero)>(tag);
+        return std::vector<double>(values.begin(), values.end());
+    };
+    const std::string vr = representation(tag);
+    if (vr == "FD") return reals(double{});
+    if (vr == "FL") return reals(float{});
+    if (vr == "SS") return reals(std::int16_t{});
+    if (vr == "US") return reals(std::uint16_t{});
+    if (vr == "SL") return reals(std::int32_t{});
+    if (vr == "UL") return reals(std::uint32_t{});
     std::string value = text(tag);
     std::replace(value.begin(), value.end(), '\\', ' ');
     char name[40];

@@ -1,16 +1,13 @@
 // Reads headers with GDCM, those of files with several frames through their functional groups.
 #include "io/helper/dicom_header.hpp"
 
-#include <fcntl.h>
 #include <gdcmReader.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <new>
+#include <sstream>
 #include <utility>
 
 #include "io/helper/dicom_check.hpp"
@@ -51,8 +48,13 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
          {{0x0018, 0x1164}, "at the detector (ImagerPixelSpacing)"},
          {{0x0018, 0x2010}, "of a scanned image (NominalScannedPixelSpacing)"}}};
     for (const auto& [tag, where] : tags) {
-        const auto pixel = measures.numbers(tag);
+        auto pixel = measures.numbers(tag);
         if (pixel.empty()) continue;
+        if (pixel.size() == 1 && tag == pixel_tag) {
+            pixel.push_back(pixel[0]);
+            add_note(s.notes,
+                     "its PixelSpacing has one number, which was taken for rows and columns");
+        }
         if (pixel.size() != 2) {
             if (tag != pixel_tag) continue;
             throw Failure("its DICOM tag PixelSpacing has " + std::to_string(pixel.size()) +
@@ -79,7 +81,6 @@ void set_rescale(DicomSlice& s, const DicomGroup& transformation) {
         add_note(s.notes, "its " + std::string(name) + " is " + text_of(number) +
                               ", which makes no sense: " + text_of(with) + " was taken");
         number = with;
-        s.own_values = true;
     };
     replace(s.slope, s.slope != 0 && std::isfinite(s.slope), "RescaleSlope", 1);
     replace(s.intercept, std::isfinite(s.intercept), "RescaleIntercept", 0);
@@ -128,7 +129,6 @@ DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGr
     DicomSlice s = file;
     s.frame = s.order = number;
     s.keys[frame_number] = number;
-    s.own_values = true;
     groups.with({0x0028, 0x9110}, [&](const DicomGroup& g) { set_pixel(s, g); });
     groups.with({0x0020, 0x9113}, [&](const DicomGroup& g) { set_place(s, g); });
     groups.with({0x0020, 0x9116}, [&](const DicomGroup& g) { set_place(s, g); });
@@ -277,14 +277,23 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
     return slices;
 }
 
+/// Overlays without data of their own lie in bits that the samples do not use.
+void note_overlays(DicomSlice& s, const DicomGroup& data) {
+    for (std::uint16_t group = 0x6000; group < 0x6020; group += 2) {
+        if (!data.has({group, 0x0010}) || data.has({group, 0x3000})) continue;
+        add_note(s.notes, "overlays in unused bits of its samples were ignored");
+    }
+}
+
 DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const DicomGroup& data) {
     DicomSlice s;
     s.file = file;
-    s.needs_copy = extent.needs_copy;
     s.compression = extent.compression;
-    s.shift = extent.shift;
-    s.own_values = extent.shift > 0;
     s.notes = extent.notes;
+    if (extent.shift() > 0) {
+        add_note(s.notes, "its samples lie " + std::to_string(extent.shift()) +
+                              " bits above the lowest (HighBit): they were shifted down");
+    }
     s.rows = static_cast<int>(extent.rows);
     s.columns = static_cast<int>(extent.columns);
     s.frames = static_cast<int>(extent.frames);
@@ -309,6 +318,12 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
                  "RescaleIntercept");
     }
     const std::string colours = data.text({0x0028, 0x0004});
+    if (colours == "MONOCHROME1") {
+        add_note(s.notes,
+                 "its MONOCHROME1 says that greater values are shown darker: "
+                 "values were taken as they are stored");
+    }
+    note_overlays(s, data);
     s.has_colours = !colours.empty() && lower(colours).find("monochrome") != 0;
     constexpr DicomTag location_tag{0x0020, 0x1041};
     if (!s.position || !s.row || !s.column) {
@@ -320,51 +335,35 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     if (std::isfinite(location)) s.location = location;
     if (constexpr DicomTag dose{0x3004, 0x000e}; data.has(dose)) {
         s.slope = data.number(dose, 1);
-        s.own_values = true;
         s.values.units = data.text({0x3004, 0x0002});  // GY
     }
     return s;
 }
 
-}  // namespace
-
-LibraryFile::LibraryFile(const fs::path& file, bool needs_copy) : path_(file) {
-    if (!needs_copy) return;
-    const auto bytes = tidied_dicom(file);
-    memory_ = memfd_create("palpate-dicom", MFD_CLOEXEC);
-    for (std::size_t at = 0; at < bytes.size();) {
-        const ssize_t written = write(memory_, bytes.data() + at, bytes.size() - at);
-        if (written <= 0) throw std::bad_alloc();
-        at += static_cast<std::size_t>(written);
-    }
-    path_ = "/proc/self/fd/" + std::to_string(memory_);
-}
-
-LibraryFile::~LibraryFile() {
-    if (memory_ >= 0) close(memory_);
-}
-
-namespace {
-
 std::vector<DicomSlice> slices_of(const fs::path& file) {
     const DicomExtent extent = check_dicom(file);
     // Reports, plans and the folder's index have no rows; an image that has none is cut off.
     if (extent.rows < 1 && has_no_image(extent.sop_class)) return {};
-    const LibraryFile readable(file, extent.needs_copy);
-    const MemoryBound bound(8 * fs::file_size(file) + 2 * extent.bytes());
+    if (extent.rows < 1 || extent.columns < 1) {
+        throw Failure(quoted(file) +
+                      " gives no size of its image; it is cut off or damaged: copy "
+                      "or export it again");
+    }
+    if (!extent.has_image) {
+        throw Failure(quoted(file) +
+                      " has no samples (pixel data), but says how large its image is; copy or "
+                      "export it again, or remove it from the folder");
+    }
+    const MemoryBound bound(8 * extent.header.size());
+    std::istringstream header(extent.header);
     gdcm::Reader reader;
-    reader.SetFileName(readable.name().c_str());
-    if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0010), {})) {
+    reader.SetStream(header);
+    if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0008), {})) {
         throw Failure(quoted(file) +
                       " is no DICOM file or is damaged in its header; copy it again");
     }
     const DicomGroup data(reader.GetFile().GetDataSet());
     const DicomSlice slice = file_as_slice(file, extent, data);
-    if (slice.rows < 1 || slice.columns < 1) {
-        throw Failure(quoted(file) +
-                      " gives no size of its image; it is cut off or damaged: copy "
-                      "or export it again");
-    }
     // Siemens packs a whole volume into one flat image, side by side.
     if (data.text({0x0008, 0x0008}).find("MOSAIC") != std::string::npos) {
         throw Failure(quoted(file) +

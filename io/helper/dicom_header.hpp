@@ -11,18 +11,4 @@ namespace palpate::io {
 /// and others lie one behind the other. Throws Failure.
 std::vector<DicomSlice> slices_from(const std::filesystem::path& file);
 
-/// What GDCM is given: the file itself, or its tidied_dicom() in memory.
-class LibraryFile {
-  public:
-    LibraryFile(const std::filesystem::path& file, bool needs_copy);
-    ~LibraryFile();
-    LibraryFile(const LibraryFile&) = delete;
-    LibraryFile& operator=(const LibraryFile&) = delete;
-    std::string name() const { return path_.string(); }
-
-  private:
-    std::filesystem::path path_;
-    int memory_ = -1;
-};
-
 }  // namespace palpate::io

@@ -1,6 +1,7 @@
-// Reads samples through ITK, which applies slope and intercept. See the header.
+// Reads samples and applies slope and intercept. See the header.
 #include <fcntl.h>
-#include <itkGDCMImageIO.h>
+#include <gdcmImage.h>
+#include <gdcmSequenceOfFragments.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -11,7 +12,8 @@
 #include <new>
 #include <optional>
 
-#include "io/helper/dicom_header.hpp"
+#include "io/helper/code_stream.hpp"
+#include "io/helper/dicom_check.hpp"
 #include "io/helper/dicom_library.hpp"
 #include "io/helper/library_words.hpp"
 
@@ -57,99 +59,110 @@ class DecoderWords {
     int before_[2];
 };
 
-Stored stored_from(itk::IOComponentEnum type) {
-    switch (type) {
-        case itk::IOComponentEnum::UCHAR:
-            return Stored::uint8;
-        case itk::IOComponentEnum::CHAR:
-            return Stored::int8;
-        case itk::IOComponentEnum::USHORT:
-            return Stored::uint16;
-        case itk::IOComponentEnum::SHORT:
-            return Stored::int16;
-        case itk::IOComponentEnum::UINT:
-            return Stored::uint32;
-        case itk::IOComponentEnum::INT:
-            return Stored::int32;
-        case itk::IOComponentEnum::FLOAT:
-            return Stored::float32;
-        case itk::IOComponentEnum::DOUBLE:
-            return Stored::float64;
-        default:
-            throw Failure("its sample type is not read; export it again");
-    }
-}
-
-[[noreturn]] void throw_colours(const fs::path& file) {
-    throw Failure(quoted(file) + " has colours; give a series with one value a sample");
-}
-
-/// All frames of a slice's file, the slope and intercept of the first one applied.
-Decoded decode_file(const DicomSlice& slice, const Request& request) {
-    say_doing(slice.file.filename().string());
-    if (slice.has_colours) throw_colours(slice.file);  // GDCM aborts where their table is missing
-    const LibraryFile readable(slice.file, slice.needs_copy);
-    const auto io = itk::GDCMImageIO::New();
-    io->SetFileName(readable.name());
-    io->ReadImageInformation();
-    if (io->GetNumberOfComponents() != 1) throw_colours(slice.file);
-    Decoded decoded;
-    decoded.stored = stored_from(io->GetComponentType());
-    itk::ImageIORegion region(io->GetNumberOfDimensions());
-    std::vector<std::int64_t> sizes;
-    for (unsigned a = 0; a < io->GetNumberOfDimensions(); ++a) {
-        region.SetSize(a, io->GetDimensions(a));
-        sizes.push_back(static_cast<std::int64_t>(io->GetDimensions(a)));
-    }
-    const std::int64_t frames = sizes.size() > 2 ? sizes[2] : 1;
-    if (sizes.size() < 2 || sizes.size() > 3 || sizes[0] != slice.columns ||
-        sizes[1] != slice.rows || frames != slice.frames) {
-        throw Failure(quoted(slice.file) + " contradicts itself about its size; copy it again");
-    }
-    decoded.samples.resize(
-        checked_bytes(sizes, size_of(decoded.stored), fs::file_size(slice.file), request));
-    io->SetIORegion(region);
-    std::optional<DecoderWords> words;
-    if (!slice.compression.empty()) words.emplace();
-    const MemoryBound bound(4 * fs::file_size(slice.file) + 4 * decoded.samples.size());
-    try {
-        io->Read(decoded.samples.data());
-    } catch (const std::bad_alloc&) {
+/// A frame of one value a pixel, unpacked by GDCM into words as wide as its stream asks for.
+std::vector<std::byte> unpacked(const DicomExtent& extent, std::span<const std::byte> stream) {
+    const auto size = code_stream_size(stream);  // RLE has none
+    const auto bits = static_cast<std::uint16_t>(size ? size->bits : extent.bits);
+    const auto word = static_cast<std::uint16_t>(bits <= 8 ? 8 : bits <= 16 ? 16 : 32);
+    gdcm::Fragment fragment;
+    fragment.SetByteValue(reinterpret_cast<const char*>(stream.data()),
+                          static_cast<std::uint32_t>(stream.size()));
+    const gdcm::SmartPointer<gdcm::SequenceOfFragments> fragments = new gdcm::SequenceOfFragments;
+    fragments->AddFragment(fragment);
+    gdcm::DataElement pixels(gdcm::Tag(0x7fe0, 0x0010), 0, gdcm::VR::OB);
+    pixels.SetValue(*fragments);
+    gdcm::Image image;
+    image.SetNumberOfDimensions(2);
+    image.SetDimension(0, static_cast<unsigned>(extent.columns));
+    image.SetDimension(1, static_cast<unsigned>(extent.rows));
+    image.SetPixelFormat(gdcm::PixelFormat(1, word, bits, static_cast<std::uint16_t>(bits - 1),
+                                           static_cast<std::uint16_t>(extent.representation == 1)));
+    image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
+    image.SetTransferSyntax(gdcm::TransferSyntax::GetTSType(extent.syntax.c_str()));
+    image.SetDataElement(pixels);
+    std::vector<std::byte> samples(static_cast<std::size_t>(extent.rows * extent.columns) * word /
+                                   8);
+    if (image.GetBufferLength() != samples.size() ||
+        !image.GetBuffer(reinterpret_cast<char*>(samples.data()))) {
         throw Failure(
-            quoted(slice.file) +
-            " needs far more memory to unpack than its samples do; it is damaged: copy or "
-            "export it again");
+            "has a " + extent.compression +
+            " image that cannot be unpacked; it is damaged, or of a kind that is not read: "
+            "export it again without compression");
     }
-    if (words) decoded.decoder_said = words->said();
-    decoded.slope = io->GetRescaleSlope();
-    decoded.intercept = io->GetRescaleIntercept();
-    return decoded;
+    return samples;
 }
 
-/// Slope and intercept that have been applied replaced by the frame's own.
-void rescale(Decoded& frame, const DicomSlice& own) {
-    const auto applied = std::pair(frame.slope, frame.intercept);
-    if (applied == std::pair(own.slope, own.intercept) && own.shift == 0) return;
-    if (applied.first == 0) throw Failure("its frames have slopes of 0; export it again");
+std::vector<std::byte> in_our_order(std::span<const std::byte> bytes, std::size_t word) {
+    std::vector<std::byte> samples(bytes.begin(), bytes.end());
+    if (samples.size() % word != 0) throw Failure("has big-endian samples of less than a word");
+    for (std::size_t at = 0; word > 1 && at < samples.size(); at += word) {
+        std::reverse(samples.begin() + static_cast<std::ptrdiff_t>(at),
+                     samples.begin() + static_cast<std::ptrdiff_t>(at + word));
+    }
+    return samples;
+}
+
+/// Moves samples to the lowest bits of their words, clears the others, and extends the sign.
+template <class Word>
+void tidy_bits(std::vector<std::byte>& bytes, int stored, int shift, bool is_signed) {
+    auto* const samples = reinterpret_cast<Word*>(bytes.data());
+    const auto mask = static_cast<Word>((std::uint64_t{1} << stored) - 1);
+    const auto sign = static_cast<Word>(std::uint64_t{1} << (stored - 1));
+    for (std::size_t i = 0; i < bytes.size() / sizeof(Word); ++i) {
+        auto value = static_cast<Word>(samples[i] >> shift & mask);
+        if (is_signed && (value & sign) != 0) value = static_cast<Word>(value | ~mask);
+        samples[i] = value;
+    }
+}
+
+/// A frame as it is stored, in words of this machine.
+Decoded frame_from(const DicomExtent& extent, std::span<const std::byte> bytes) {
+    Decoded frame;
+    frame.samples = extent.is_encapsulated() ? unpacked(extent, bytes)
+                                             : in_our_order(bytes, extent.swapped_bytes);
+    if (extent.is_real) {
+        frame.stored = extent.bits == 32 ? Stored::float32 : Stored::float64;
+        return frame;
+    }
+    const auto pixels = static_cast<std::size_t>(extent.rows * extent.columns);
+    const auto word = static_cast<int>(8 * frame.samples.size() / pixels);
+    const bool is_given = extent.stored_bits > 0 && extent.stored_bits <= extent.bits;
+    const int stored = is_given ? static_cast<int>(extent.stored_bits) : word;
+    // A stream of fewer bits than the header says has no sign.
+    const bool is_signed = extent.representation == 1 && stored <= word;
+    const int used = std::min(stored, word), shift = extent.shift();
+    frame.stored = word == 8    ? is_signed ? Stored::int8 : Stored::uint8
+                   : word == 16 ? is_signed ? Stored::int16 : Stored::uint16
+                   : is_signed  ? Stored::int32
+                                : Stored::uint32;
+    if (used == word && shift == 0) return frame;
+    if (word == 8) tidy_bits<std::uint8_t>(frame.samples, used, shift, is_signed);
+    if (word == 16) tidy_bits<std::uint16_t>(frame.samples, used, shift, is_signed);
+    if (word == 32) tidy_bits<std::uint32_t>(frame.samples, used, shift, is_signed);
+    return frame;
+}
+
+/// Slope and intercept applied: whole numbers, if these are.
+void rescale(Decoded& frame, double slope, double intercept) {
+    if (slope == 1 && intercept == 0) return;
     const std::size_t count = frame.samples.size() / size_of(frame.stored);
     std::vector<std::byte> values(count * sizeof(double));
     auto* const to = reinterpret_cast<double*>(values.data());
+    bool whole = true;
     with_stored(frame.stored, [&](auto zero) {
         const auto* from = reinterpret_cast<const decltype(zero)*>(frame.samples.data());
         for (std::size_t i = 0; i < count; ++i) {
-            const double stored =
-                std::round((static_cast<double>(from[i]) - applied.second) / applied.first);
-            to[i] = std::floor(std::ldexp(stored, -own.shift)) * own.slope + own.intercept;
+            to[i] = static_cast<double>(from[i]) * slope + intercept;
+            constexpr double most = 2147483647;
+            whole = whole && to[i] == std::floor(to[i]) && std::abs(to[i]) <= most;
         }
     });
     frame.stored = Stored::float64;
-    constexpr double most = 2147483647;
-    const auto is_whole = [](double v) { return v == std::floor(v) && std::abs(v) <= most; };
-    if (std::all_of(to, to + count, is_whole)) {
+    if (whole) {
         frame.stored = Stored::int32;
-        std::vector<std::byte> whole(count * sizeof(std::int32_t));
-        std::copy_n(to, count, reinterpret_cast<std::int32_t*>(whole.data()));
-        values = std::move(whole);
+        std::vector<std::byte> integers(count * sizeof(std::int32_t));
+        std::copy_n(to, count, reinterpret_cast<std::int32_t*>(integers.data()));
+        values = std::move(integers);
     }
     frame.samples = std::move(values);
 }
@@ -171,17 +184,54 @@ void look_up(Decoded& frame, const ValueTable& table) {
     frame.samples = std::move(values);
 }
 
-Decoded frame_of(const Decoded& file, const DicomSlice& slice) {
-    Decoded frame;
-    frame.stored = file.stored;
-    frame.decoder_said = file.decoder_said;
-    frame.slope = file.slope;
-    frame.intercept = file.intercept;
-    const std::size_t bytes = file.samples.size() / static_cast<std::size_t>(slice.frames);
-    const auto begin = file.samples.begin() +
-                       static_cast<std::ptrdiff_t>(static_cast<std::size_t>(slice.frame) * bytes);
-    frame.samples.assign(begin, begin + static_cast<std::ptrdiff_t>(bytes));
-    return frame;
+void check_kind(const DicomExtent& extent, const DicomSlice& slice) {
+    if (slice.has_colours || extent.components != 1) {
+        throw Failure("has colours; give a series with one value a sample");
+    }
+    const bool is_read = extent.is_real || extent.bits == 1 || extent.bits == 8 ||
+                         extent.bits == 16 || extent.bits == 32;
+    if (!is_read) {
+        throw Failure("has samples of " + std::to_string(extent.bits) +
+                      " bits, which are not read; export it again");
+    }
+    if (extent.rows != slice.rows || extent.columns != slice.columns ||
+        extent.frames != slice.frames) {
+        throw Failure("has changed while it was read; open it again");
+    }
+}
+
+/// The slices of one file, by their places in `slices`.
+void decode_file(const std::vector<DicomSlice>& slices, const std::vector<std::size_t>& members,
+                 const Request& request, std::vector<Decoded>& decoded) {
+    const DicomSlice& one = slices[members.front()];
+    say_doing(one.file.filename().string());
+    const auto file_bytes = fs::file_size(one.file);
+    std::vector<int> frames;
+    for (const std::size_t i : members) frames.push_back(slices[i].frame);
+    DicomExtent extent;
+    std::optional<MemoryBound> bound;
+    const auto begin = [&](const DicomExtent& found) {
+        extent = found;
+        check_kind(extent, one);
+        const std::int64_t sizes[] = {extent.columns, extent.rows,
+                                      static_cast<std::int64_t>(frames.size())};
+        const auto word = static_cast<std::size_t>(extent.bits + 7) / 8;
+        bound.emplace(4 * file_bytes + 24 * checked_bytes(sizes, word, file_bytes, request));
+    };
+    auto next = members.begin();
+    read_frames(one.file, frames, begin, [&](int, std::span<const std::byte> bytes) {
+        std::optional<DecoderWords> words;
+        if (extent.is_encapsulated()) words.emplace();
+        Decoded& frame = decoded[*next];
+        const DicomSlice& slice = slices[*next++];
+        frame = frame_from(extent, bytes);
+        if (words) frame.decoder_said = words->said();
+        if (slice.table) {
+            look_up(frame, *slice.table);
+        } else {
+            rescale(frame, slice.slope, slice.intercept);
+        }
+    });
 }
 
 }  // namespace
@@ -192,11 +242,16 @@ std::vector<Decoded> decode(const std::vector<DicomSlice>& slices, const Request
     std::vector<Decoded> decoded(slices.size());
     std::size_t done = 0;
     for (const auto& [path, members] : by_file) {
-        Decoded file = decode_file(slices[members.front()], request);
-        for (const std::size_t i : members) {
-            decoded[i] = slices[i].frames == 1 ? std::move(file) : frame_of(file, slices[i]);
-            if (slices[i].own_values) rescale(decoded[i], slices[i]);
-            if (slices[i].table) look_up(decoded[i], *slices[i].table);
+        try {
+            decode_file(slices, members, request, decoded);
+        } catch (const std::bad_alloc&) {
+            throw Failure(quoted(path) +
+                          " needs far more memory to unpack than its samples do; it is damaged: "
+                          "copy or export it again");
+        } catch (const Failure& e) {
+            const std::string what = e.what();
+            throw Failure(what.find(quoted(path)) == std::string::npos ? quoted(path) + " " + what
+                                                                       : what);
         }
         say_progress(0.1 + 0.8 * static_cast<double>(++done) / static_cast<double>(by_file.size()));
     }

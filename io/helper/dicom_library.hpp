@@ -1,4 +1,5 @@
-// DICOM files through ITK, one at a time, after dicom_check.hpp and within bounds of memory.
+// The samples of DICOM files, after dicom_check.hpp: of plain ones by ourselves, of compressed ones
+// through GDCM, which sees a frame at a time and no header, within bounds of memory.
 #pragma once
 
 #include "io/helper/dicom_stack.hpp"
@@ -9,12 +10,11 @@ namespace palpate::io {
 struct Decoded {
     Stored stored = Stored::uint8;
     std::vector<std::byte> samples;
-    std::string decoder_said;         ///< warnings of the decoder of a compressed image, one line
-    double slope = 1, intercept = 0;  ///< that have been applied
+    std::string decoder_said;  ///< warnings of the decoder of a compressed image, one line
 };
 
-/// The samples of some slices, each with its own slope and intercept applied. A file with several
-/// frames is decoded once. Throws Failure, or the library's exception.
+/// The samples of some slices, each with its own slope and intercept, or its table, applied. A file
+/// with several frames is opened once. Throws Failure, or the library's exception.
 std::vector<Decoded> decode(const std::vector<DicomSlice>& slices, const Request& request);
 
 }  // namespace palpate::io

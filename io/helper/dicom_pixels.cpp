@@ -24,20 +24,6 @@ std::string compression_of(const std::string& syntax) {
     return rest.rfind("4.", 0) == 0 ? "JPEG" : "";
 }
 
-/// The fragments of each frame joined.
-std::vector<std::vector<std::byte>> frames_of(const DicomBytes& bytes, const DicomPixels& pixels,
-                                              std::size_t frames, bool one_each) {
-    std::vector<std::vector<std::byte>> all;
-    for (std::size_t i = 1; i < pixels.fragments.size(); ++i) {
-        const auto fragment = bytes.view(pixels.fragments[i].at, pixels.fragments[i].length);
-        const bool next = all.empty() || one_each || pixels.fragments.size() == frames + 1 ||
-                          begins_code_stream(fragment);
-        if (next) all.emplace_back();
-        all.back().insert(all.back().end(), fragment.begin(), fragment.end());
-    }
-    return all;
-}
-
 std::string size_text(std::int64_t columns, std::int64_t rows, std::int64_t components,
                       std::int64_t bits) {
     return std::to_string(columns) + "x" + std::to_string(rows) + " pixels" +
@@ -49,10 +35,8 @@ void check_code_stream(const std::filesystem::path& file, std::span<const std::b
                        const std::string& name, const DicomExtent& declared) {
     const auto size = code_stream_size(stream);
     if (!size) fail(file, "has a " + name + " image without a size that can be read");
-    const auto sample_bytes = [](std::int64_t bits) { return (bits + 7) / 8; };
     if (size->columns != declared.columns || size->rows != declared.rows ||
-        size->components != declared.components ||
-        sample_bytes(size->bits) != sample_bytes(declared.bits)) {
+        size->components != declared.components || size->bits > declared.bits) {
         fail(file,
              "has a " + name + " image of " +
                  size_text(size->columns, size->rows, size->components, size->bits) +
@@ -63,6 +47,26 @@ void check_code_stream(const std::filesystem::path& file, std::span<const std::b
 }
 
 }  // namespace
+
+std::vector<std::vector<std::byte>> frames_of(const DicomBytes& bytes, const DicomPixels& pixels,
+                                              const DicomExtent& declared) {
+    const auto frames = static_cast<std::size_t>(declared.frames);
+    const bool is_rle = compression_of(declared.syntax) == "RLE";
+    std::vector<std::vector<std::byte>> all;
+    for (std::size_t i = 1; i < pixels.fragments.size(); ++i) {
+        const auto fragment = bytes.view(pixels.fragments[i].at, pixels.fragments[i].length);
+        const bool next = all.empty() || is_rle || pixels.fragments.size() == frames + 1 ||
+                          begins_code_stream(fragment);
+        if (next) all.emplace_back();
+        all.back().insert(all.back().end(), fragment.begin(), fragment.end());
+    }
+    for (auto& stream : all) {
+        while (!is_rle && ends_code_stream(stream) && stream.back() == std::byte{0}) {
+            stream.pop_back();
+        }
+    }
+    return all;
+}
 
 std::optional<std::string> check_plain_pixels(const std::filesystem::path& file,
                                               std::uint64_t bytes, const DicomExtent& declared) {
@@ -88,8 +92,9 @@ std::string check_compressed_pixels(const std::filesystem::path& file, const std
     if (name == "video") {
         throw Failure(quoted(file) + " is a video; export it as a series of images");
     }
+    if (declared.bits % 8 != 0) fail(file, "has compressed samples of single bits");
     const auto wanted = static_cast<std::size_t>(declared.frames);
-    const auto frames = frames_of(bytes, pixels, wanted, name == "RLE");
+    const auto frames = frames_of(bytes, pixels, declared);
     if (frames.size() != wanted) {
         fail(file, "has " + std::to_string(frames.size()) + " compressed images, its header says " +
                        std::to_string(wanted));

@@ -10,6 +10,7 @@ namespace palpate::io {
 /// Where the pixels lie.
 struct DicomPixels {
     bool found = false;
+    std::uint64_t element = 0, at = 0;   ///< where the element and its value begin
     std::optional<std::uint64_t> plain;  ///< bytes, if they are not compressed
     struct Fragment {
         std::uint64_t at, length;
@@ -20,6 +21,10 @@ struct DicomPixels {
 /// Bytes that are not compressed; a note if there are a few more than declared. Throws Failure.
 std::optional<std::string> check_plain_pixels(const std::filesystem::path& file,
                                               std::uint64_t bytes, const DicomExtent& declared);
+
+/// The code stream of each frame: its fragments joined, without padding.
+std::vector<std::vector<std::byte>> frames_of(const DicomBytes& bytes, const DicomPixels& pixels,
+                                              const DicomExtent& declared);
 
 /// Every frame's own size and end; returns the name of the compression. Throws Failure.
 std::string check_compressed_pixels(const std::filesystem::path& file, const std::string& syntax,

@@ -48,13 +48,10 @@ struct DicomSlice {
     std::optional<Vec3> pixel;        ///< [mm] between columns, between rows, 0
     double thickness = 0;             ///< [mm] between slices or of one; 0 if not given
     double slope = 1, intercept = 0;  ///< of the values [units]
-    int shift = 0;                    ///< unused bits below the samples (HighBit)
     bool has_colours = false;
-    bool own_values = false;  ///< these hold, not what a library takes for the whole file
-    bool is_moment = false;   ///< the frames of its file are one place at several times
-    double seconds = 0;       ///< from one of them to the next; 0 if not given
+    bool is_moment = false;  ///< the frames of its file are one place at several times
+    double seconds = 0;      ///< from one of them to the next; 0 if not given
     std::shared_ptr<const ValueTable> table = {};  ///< of the values; null: slope and intercept
-    bool needs_copy = false;         ///< libraries are given a tidied copy of the file
     std::string compression;         ///< "JPEG 2000", "deflate", ...; empty if there is none
     std::vector<std::string> notes;  ///< on the file
 };

@@ -34,6 +34,7 @@ SampleType common_type(const std::vector<Decoded>& slices, std::vector<std::stri
     if (same && kept_as(first) != SampleType::float32) return kept_as(first);
     if (!floats && low >= -32768 && high <= 32767) return SampleType::int16;
     if (!floats && low >= 0 && high <= 65535) return SampleType::uint16;
+    if (same && first == Stored::float32) return SampleType::float32;
     notes.push_back(floats ? "its slope or intercept is not a whole number: samples became float32"
                            : "its values go from " + text_of(low) + " to " + text_of(high) +
                                  ", beyond 16 bits: samples became float32");

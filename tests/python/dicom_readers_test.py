@@ -1,14 +1,17 @@
 """Families of DICOM files that pydicom writes: time steps, frames, kinds of images, values. Each is compared with the arrays
 it was made of, or with pydicom."""
 
+import io
 import random
 
 import numpy
 import palpate
 import pytest
+from PIL import Image
+from pydicom.encaps import encapsulate
 from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
 
-from readers_test import noted, ramp, refused, save, slice_of, stack
+from readers_test import SYNTAXES, noted, ramp, refused, save, slice_of, stack
 
 
 def items(**values):
@@ -190,6 +193,14 @@ def test_files_of_many_frames_are_in_the_order_of_their_numbers(tmp_path):
     expect_steps(folder, 2)
 
 
+def test_frames_of_an_ultrasound_volume_lie_in_its_space(tmp_path):
+    group = lambda i: MOMENTS["offset"](int(SHUFFLED[i] // PLACES), 0)
+    folder = enhanced(tmp_path / "a", FRAMES[SHUFFLED], SHUFFLED % PLACES, group, volume=True)
+    expect_steps(folder, 2)
+    geometry = palpate.load(folder).volume.geometry
+    assert numpy.allclose(geometry.origin, (1, 2, 3)) and geometry.spacing[2] == 2 and not geometry.oriented
+
+
 # Frames without functional groups --------------------------------------------------------------------
 
 
@@ -220,3 +231,77 @@ def test_a_number_of_frames_may_have_a_sign(tmp_path):
     path = folder / "001.dcm"
     path.write_bytes(path.read_bytes().replace(b"\x28\x00\x08\x00IS\x02\x005 ", b"\x28\x00\x08\x00IS\x02\x00+5"))
     assert numpy.array_equal(palpate.load(folder).volume.array, ramp("u2"))
+
+
+# Samples ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shape", ((4, 8, 8), (3, 13, 12), (4, 5, 3)))
+def test_samples_of_one_bit_are_zero_or_one_in_each_slice_and_each_frame(tmp_path, shape):
+    mask = numpy.random.default_rng(0).integers(0, 2, shape).astype("u1")
+    bits = lambda array: numpy.packbits(array.ravel(), bitorder="little").tobytes()
+    single = {"BitsAllocated": 1, "BitsStored": 1, "HighBit": 0}
+    slices = stack(mask, change=lambda i: {**single, "PixelData": bits(mask[i]) + b"\0" * (len(bits(mask[i])) % 2)})
+    frames = slice_of(mask[0], 1, (1, 2, 3), **single, NumberOfFrames=len(mask), SpacingBetweenSlices=2,
+                      PixelData=bits(mask) + b"\0" * (len(bits(mask)) % 2))
+    for name, files in (("slices", slices), ("frames", [frames])):
+        assert numpy.array_equal(palpate.load(save(tmp_path / name, files)).volume.array, mask), name
+
+
+@pytest.mark.parametrize("stored, intercept", ((16, 32768), (12, 2048), (12, 8192), (16, 40000), (16, -1e6)))
+def test_signed_samples_are_rescaled_whatever_their_range(tmp_path, stored, intercept):
+    array = ramp("i2") - 300
+    change = lambda i: {"BitsStored": stored, "HighBit": stored - 1, "RescaleIntercept": intercept}
+    assert numpy.array_equal(palpate.load(save(tmp_path / "a", stack(array, change=change))).volume.array,
+                             array.astype("i8") + int(intercept))
+
+
+@pytest.mark.parametrize("dtype", ("u2", "i2"))
+def test_bits_that_are_not_stored_do_not_count(tmp_path, dtype):
+    array = ramp(dtype) - (100 if dtype == "i2" else 0)
+    slices = stack((array.view("u2") & 0x0FFF | 0xA000).view(dtype), change=lambda i: {"BitsStored": 12, "HighBit": 11})
+    assert numpy.array_equal(palpate.load(save(tmp_path / "a", slices)).volume.array, array)
+
+
+@pytest.mark.parametrize("kind", ("1.3.46.670589.11.0.0.12.2", "1.2.840.10008.5.1.4.1.1.66.7", "1.2.840.10008.5.1.4.1.1.30"))
+def test_classes_of_objects_that_no_library_knows_are_read(tmp_path, kind):
+    slices = stack(ramp("i2"), change=lambda i: {"SOPClassUID": kind})
+    assert numpy.array_equal(palpate.load(save(tmp_path / "a", slices)).volume.array, ramp("i2"))
+
+
+@pytest.mark.parametrize("name, dtype", (("FloatPixelData", "f4"), ("DoubleFloatPixelData", "f8")))
+def test_samples_that_are_not_whole_numbers_are_read(tmp_path, name, dtype):
+    real = lambda i: {name: (ramp(dtype)[i] / 7).tobytes(), "BitsAllocated": 8 * numpy.dtype(dtype).itemsize,
+                      "PixelData": None, "BitsStored": None, "HighBit": None, "PixelRepresentation": None}
+    volume = palpate.load(save(tmp_path / "a", stack(ramp("i2"), change=real))).volume
+    assert numpy.array_equal(volume.array, (ramp(dtype) / 7).astype("f4"))
+
+
+def test_an_image_without_samples_is_named(tmp_path):
+    refused(save(tmp_path / "a", stack(ramp("i2"), change=lambda i: {"PixelData": None} if i == 2 else {})), "003.dcm", "no samples")
+
+
+def coded(folder, array, fragments, **changes):
+    """JPEG 2000 without loss, each frame in a number of fragments."""
+    SYNTAXES["JPEG 2000"] = "1.2.840.10008.1.2.4.90"
+    slices = stack(array, change=lambda i: changes)
+    for data, plane in zip(slices, array):
+        out = io.BytesIO()
+        Image.fromarray(plane).save(out, "JPEG2000", irreversible=False, no_jp2=True)
+        data.PixelData = encapsulate([out.getvalue()], fragments_per_frame=fragments)
+        data["PixelData"].is_undefined_length = True
+    return save(folder, slices, "JPEG 2000")
+
+
+@pytest.mark.parametrize("fragments", (1, 3))
+def test_streams_with_padding_or_in_fragments_are_not_called_damaged(tmp_path, fragments):
+    for size in range(40, 48):  # of odd and even length
+        array = numpy.random.default_rng(size).integers(0, 4096, (2, size, 20)).astype("u2")
+        loaded = palpate.load(coded(tmp_path / str(size), array, fragments, BitsStored=12, HighBit=11))
+        assert numpy.array_equal(loaded.volume.array, array) and not any("warned" in note for note in loaded.notes), loaded.notes
+
+
+def test_a_stream_of_fewer_bits_than_are_allocated_is_read(tmp_path):
+    array = ramp("u1", (2, 40, 20))
+    folder = coded(tmp_path / "a", array, 1, BitsAllocated=16, BitsStored=16, HighBit=15)
+    assert numpy.array_equal(palpate.load(folder).volume.array, array)
