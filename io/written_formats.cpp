@@ -55,6 +55,9 @@ std::string why_not_written(const std::filesystem::path& path, const Geometry& g
     if (extension.starts_with(".nii") && geometry.size.maxCoeff() > 32767) {
         return path.string() + ": NIfTI holds at most 32767 samples along an axis: name it .nrrd";
     }
+    if (extension == ".mhd" && path.stem().string().find('%') != std::string::npos) {
+        return path.string() + ": in a .mhd, % stands for numbered files: name it .mha";
+    }
     const bool placed =
         geometry.origin != Vec3::Zero() || geometry.direction != Eigen::Matrix3d::Identity();
     if (placed && (extension == ".raw" || extension == ".tif" || extension == ".tiff")) {

@@ -212,10 +212,15 @@ def test_names_of_data_files_that_look_like_patterns(tmp_path, name):
         refused(path, "several files")
 
 
-@pytest.mark.parametrize("name", ("90%.nhdr", "90%.mhd", "LISTE.mhd", "LISTE.nhdr"))
+@pytest.mark.parametrize("name", ("90%.nhdr", "90%.mha", "LISTE.mhd", "LISTE.nhdr"))
 def test_such_names_are_written_and_read_again(tmp_path, name):
     palpate.write(palpate.Volume(ramp("i2")), tmp_path / name)
     assert numpy.array_equal(palpate.load(tmp_path / name).volume.array, ramp("i2"))
+
+
+def test_a_mhd_whose_name_would_mean_numbered_files_is_not_written(tmp_path):
+    with pytest.raises((ValueError, palpate.OutputError), match="name it .mha"):
+        palpate.write(palpate.Volume(ramp("i2")), tmp_path / "90%.mhd")
 
 
 def test_a_nifti_whose_sform_is_empty_has_its_qform(tmp_path):
