@@ -170,6 +170,21 @@ std::optional<MeshFormat> format_of(const std::filesystem::path& path) {
     return {};
 }
 
+/// Throws OutputError for vertices that a reader would refuse.
+void check_vertices(const SurfaceMesh& mesh, MeshFormat format) {
+    const double most = format == MeshFormat::stl ? std::numeric_limits<float>::max()
+                                                  : std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        if (mesh.vertices[i].cwiseAbs().maxCoeff() <= most && mesh.vertices[i].allFinite())
+            continue;
+        throw OutputError("vertex " + std::to_string(i) +
+                          (mesh.vertices[i].allFinite()
+                               ? " is too far away for the 32-bit numbers of an STL file: write a "
+                                 "PLY or VTP"
+                               : " is not finite"));
+    }
+}
+
 }  // namespace
 
 MeshFormat mesh_format_from(const std::filesystem::path& path) {
@@ -188,6 +203,7 @@ void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path) {
 }
 
 void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path, MeshFormat format) {
+    check_vertices(mesh, format);
     PendingFile file(path);
     switch (format) {
         case MeshFormat::ply:

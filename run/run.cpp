@@ -96,13 +96,13 @@ Run::~Run() {
 }
 
 void Run::start() {
-    if (servo_) throw std::logic_error("a run starts once");
+    if (servo_) throw WrongState("a run starts once");
     launch(session_now());
 }
 
 void Run::step() {
     if (!running_ || data_->pace() != Pace::by_steps) {
-        throw std::logic_error("a run is stepped on data of that pace, from start() to stop()");
+        throw WrongState("a run is stepped on data of that pace, from start() to stop()");
     }
     servo_->step(std::llround(1e9 * period_ * static_cast<double>(steps_++)));
     time_ += period_;
@@ -122,6 +122,11 @@ void Run::stop() {
         std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
     running_ = false;
+}
+
+Servo& Run::started_servo() const {
+    if (!servo_) throw WrongState("the run was not started");
+    return *servo_;
 }
 
 void Run::hold(std::unique_ptr<Device> device) {
@@ -198,7 +203,7 @@ Session Run::session_from(double isovalue, const DeviceTransform& transform,
 }
 
 std::int64_t Run::last_tick() const {
-    const auto now = servo_->snapshot();
+    const auto now = snapshot();
     return now ? now->number : -1;
 }
 
@@ -228,9 +233,17 @@ std::string Run::device_problem() const {
 }
 
 void Run::send(const Command& command) {
+    Servo& servo = started_servo();
     check(command, settings_, kind_of(field_));
+    if (const auto* limits = std::get_if<DeviceLimits>(&command)) {
+        if (*limits != settings_.device && smaller(settings_.device, *limits) == settings_.device) {
+            throw std::invalid_argument(
+                "limits of a run can only be lowered, and the delay raised: none of these does "
+                "it");
+        }
+    }
     const std::int64_t after = last_tick();
-    if (!servo_->send(command)) {
+    if (!servo.send(command)) {
         throw QueueFull("too many commands at once: one was left out");
     }
     while (!sent_.empty() && sent_.front().after + Servo::sure_after <= after) sent_.pop_front();
@@ -249,6 +262,7 @@ void Run::send(const Command& command) {
 }
 
 void Run::use_device(const devices::DeviceChoice& device) {
+    started_servo();  // throws before anything has changed
     Setup setup = setup_;
     setup.device = device;
     // A simulated hand goes for the surface that is felt now.
@@ -276,6 +290,7 @@ void Run::use_device(const devices::DeviceChoice& device) {
 }
 
 void Run::use_field(Solid solid, Interpolation interpolation, std::optional<double> background) {
+    started_servo();
     Field field(data_->start(), solid, background, interpolation);
     stop_recording();
     stop_servo();

@@ -155,7 +155,7 @@ RendererSettings render_settings(const RenderSetup& setup, const Field& field, d
     settings.force.limit = setup.limit.value_or(settings.force.limit);
     settings.force.stiffness = setup.stiffness.value_or(settings.force.stiffness);
     settings.device = limits;
-    settings.device.rate = setup.rate.value_or(usual_rate);
+    settings.device.rate = setup.rate.value_or(limits.rate);
     settings.transform.scale = setup.scale.value_or(1);
     check(settings);
     return settings;

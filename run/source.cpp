@@ -6,6 +6,7 @@
 #include "palpate/filters/dequantize.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/io/orientation.hpp"
 #include "palpate/scenes/beating.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "stream/while_telling.hpp"
@@ -93,6 +94,8 @@ LoadedVolume one_frame_of(const FileSource& file, const Source& source, io::Read
 }
 
 LoadedVolume loaded_of(const FileSource& file, const Source& source, const io::Progress& progress) {
+    // Here, because the helper process would call it a fault of the file.
+    if (!file.orientation.empty()) (void)io::direction_from(file.orientation);
     io::SequenceOptions options;
     options.interval = source.frame_interval.value_or(0);
     options.read.raw = file.raw;
@@ -281,6 +284,10 @@ std::shared_ptr<const Samples> start_samples(const LoadedVolume& loaded) {
 }
 
 LoadedVolume load(const Source& source, const io::Progress& progress) {
+    if (source.frame.value_or(0) < 0) {
+        throw std::invalid_argument("frame " + std::to_string(*source.frame) +
+                                    ": frames are numbered from 0");
+    }
     const Preparation prepare(source);
     LoadedVolume loaded = std::visit(
         [&](const auto& from) { return loaded_of(from, source, prepare.reading(progress)); },

@@ -34,5 +34,4 @@ struct palpate_run {
     mutable std::mutex mutex;
     std::shared_ptr<palpate::run::Data> data;
     std::unique_ptr<palpate::run::Run> run;
-    bool started = false;
 };

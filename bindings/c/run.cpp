@@ -62,7 +62,7 @@ palpate_snapshot snapshot_from(const Snapshot& from) {
     return to;
 }
 
-std::string text_of(const run::Run& run, bool started, std::int32_t which) {
+std::string text_of(const run::Run& run, std::int32_t which) {
     std::string text;
     if (which == PALPATE_TEXT_DEVICE) return run.device().model;
     if (which == PALPATE_TEXT_PROBLEM) {
@@ -71,15 +71,10 @@ std::string text_of(const run::Run& run, bool started, std::int32_t which) {
         if (text.empty() && run.recording()) text = run.recording()->problem();
     } else if (which != PALPATE_TEXT_PRIVILEGES) {
         throw std::invalid_argument("which: there is no such text");
-    } else if (started) {
+    } else if (run.started()) {
         for (const std::string& line : run.privileges()) text += line + '\n';
     }
     return text;
-}
-
-const palpate_run& started(const palpate_run* run) {
-    if (!given(run, "run").started) throw WrongState("the run was not started");
-    return *run;
 }
 
 }  // namespace
@@ -101,9 +96,7 @@ extern "C" PALPATE_API palpate_status palpate_run_create(palpate_data* data,
 extern "C" PALPATE_API palpate_status palpate_run_start(palpate_run* run) {
     return guarded([&] {
         const std::scoped_lock lock(given(run, "run").mutex);
-        if (run->started) throw WrongState("a run starts once");
         run->run->start();
-        run->started = true;
     });
 }
 
@@ -125,7 +118,7 @@ extern "C" PALPATE_API palpate_status palpate_run_snapshot(const palpate_run* ru
         std::optional<Snapshot> snapshot;
         {
             const std::scoped_lock lock(given(run, "run").mutex);
-            snapshot = started(run).run->snapshot();
+            snapshot = run->run->snapshot();
         }
         if (!snapshot) throw NothingYet("there was no tick yet");
         give(out, "out", snapshot_from(*snapshot));
@@ -136,7 +129,7 @@ extern "C" PALPATE_API palpate_status palpate_run_report(const palpate_run* run,
                                                          palpate_report* out) {
     return guarded([&] {
         const std::scoped_lock lock(given(run, "run").mutex);
-        const ServoReport from = started(run).run->report();
+        const ServoReport from = run->run->report();
         auto to = sized<palpate_report>();
         to.device_failed = static_cast<std::int32_t>(run->run->device_failure());
         to.ticks = from.ticks;
@@ -157,7 +150,7 @@ extern "C" PALPATE_API palpate_status palpate_run_text(const palpate_run* run, i
                                                        char* buffer, size_t size, size_t* needed) {
     return guarded([&] {
         const std::scoped_lock lock(given(run, "run").mutex);
-        const std::string text = text_of(*run->run, run->started, which);
+        const std::string text = text_of(*run->run, which);
         if (size > 0) {
             const std::size_t length = std::min(text.size(), size - 1);
             std::memcpy(&given(buffer, "buffer"), text.data(), length);
@@ -170,7 +163,7 @@ extern "C" PALPATE_API palpate_status palpate_run_text(const palpate_run* run, i
 extern "C" PALPATE_API palpate_status palpate_run_use_device(palpate_run* run, const char* device) {
     return guarded([&] {
         const std::scoped_lock lock(given(run, "run").mutex);
-        started(run).run->use_device(devices::parse_device(&given(device, "device")));
+        run->run->use_device(devices::parse_device(&given(device, "device")));
     });
 }
 

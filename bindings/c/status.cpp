@@ -10,7 +10,6 @@
 
 #include "palpate/devices/error.hpp"
 #include "palpate/io/error.hpp"
-#include "palpate/run/run.hpp"
 
 namespace palpate::c {
 namespace {

@@ -6,14 +6,12 @@
 #include <string>
 
 #include "palpate-c/palpate.h"
+#include "palpate/run/run.hpp"
 
 namespace palpate::c {
 
-/// Not possible now.
-class WrongState : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
-};
+using run::WrongState;
+
 /// There was no tick yet.
 class NothingYet : public std::runtime_error {
   public:

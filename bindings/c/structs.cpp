@@ -124,7 +124,7 @@ palpate_felt felt_from(const Tick& tick) {
 }
 
 static_assert(static_cast<int>(Mode::constrained) == PALPATE_CONSTRAINED);
-static_assert(static_cast<int>(UpdateStatus::not_finite) == PALPATE_NOT_FINITE);
+static_assert(static_cast<int>(UpdateStatus::waiting) == PALPATE_WAITING);
 static_assert(static_cast<int>(DeviceStatus::finished) == PALPATE_DEVICE_FINISHED);
 static_assert(static_cast<int>(SampleType::float32) == PALPATE_FLOAT32);
 static_assert(static_cast<int>(Solid::below) == PALPATE_SOLID_BELOW);

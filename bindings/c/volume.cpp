@@ -80,6 +80,7 @@ extern "C" PALPATE_API palpate_status palpate_volume_load(const char* name,
         run::Source source = run::source_named(&given(name, "name"));
         source.smooth = asked.smooth;
         source.dequantize = asked.dequantize;
+        if (asked.frame < 0) throw std::invalid_argument("frame is 0, or a number from 1");
         if (asked.frame != 0) source.frame = asked.frame - 1;
         if (asked.series) {
             auto* file = std::get_if<run::FileSource>(&source.from);
@@ -109,7 +110,7 @@ extern "C" PALPATE_API palpate_status palpate_volume_describe(const palpate_volu
         info.maximum = loaded.volume.maximum();
         info.isovalue =
             usual_isovalue(loaded, {}).value_or(std::numeric_limits<double>::quiet_NaN());
-        info.frames = static_cast<std::int32_t>(std::max(1, loaded.time_steps));
+        info.frames = static_cast<std::int32_t>(std::max(1, loaded.sequence.count()));
         give(out, "out", info);
     });
 }

@@ -37,17 +37,10 @@ std::shared_ptr<const void> kept_by(py::object owner, const void* data) {
             }};
 }
 
-/// Masked elements have numbers below their mask that nobody meant.
-void refuse_masked(const py::array& given) {
-    if (!py::hasattr(given, "mask")) return;
-    if (!py::module_::import("numpy").attr("any")(given.attr("mask")).cast<bool>()) return;
-    throw std::invalid_argument(
-        "the array has masked elements; give them a value first, with array.filled(value)");
-}
-
 }  // namespace
 
-Volume volume_from(const py::array& given, const Geometry& geometry_but_size, bool copy) {
+Volume volume_from(const py::array& given, const Geometry& geometry_but_size,
+                   std::optional<bool> copy) {
     refuse_masked(given);
     if (given.ndim() != 3) {
         throw std::invalid_argument("a volume's array has three axes, z, y and x; this one has " +
@@ -61,12 +54,12 @@ Volume volume_from(const py::array& given, const Geometry& geometry_but_size, bo
                                     "them with astype(), or use palpate.as_volume()");
     }
     py::array array = given;
-    if (const std::string why = why_not_shared(given); !why.empty()) {
-        if (!copy) {
-            throw std::invalid_argument(
-                why + "; pass copy=True or numpy.ascontiguousarray(array) for a copy");
-        }
+    const std::string why = why_not_shared(given);
+    if (copy.value_or(!why.empty())) {
         array = py::module_::import("numpy").attr("array")(given, py::arg("order") = "C");
+    } else if (!why.empty()) {
+        throw std::invalid_argument(
+            why + "; pass copy=True or numpy.ascontiguousarray(array) for a copy");
     }
     Geometry geometry = geometry_but_size;
     for (const int axis : {0, 1, 2}) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bindings/python/casters.hpp"
@@ -9,12 +10,14 @@
 
 namespace palpate::python {
 
-/// Doubles in C order; other arrays and lists are converted.
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+/// Numbers in C order. Other arrays and lists are converted, if they hold numbers
+/// (bindings/python/numbers.hpp).
+using Doubles = Numbers<double>;
 
-/// Shares the array's samples [z, y, x], without a copy; `copy` makes one where they cannot be
-/// shared. Throws std::invalid_argument, saying what is wrong and what to do.
-Volume volume_from(const py::array& array, const Geometry& geometry_but_size, bool copy);
+/// The array's samples [z, y, x]: copied, shared, or, without `copy`, shared where they can be.
+/// Throws std::invalid_argument, saying what is wrong and what to do.
+Volume volume_from(const py::array& array, const Geometry& geometry_but_size,
+                   std::optional<bool> copy);
 /// A view of the samples, [z, y, x], that cannot be written to and keeps them alive.
 py::array array_of(const Volume& volume);
 

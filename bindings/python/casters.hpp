@@ -2,8 +2,6 @@
 // numbers or "53%" for levels. Every source of the module includes this.
 #pragma once
 
-#include <pybind11/eigen.h>
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -13,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "bindings/python/numbers.hpp"
 #include "palpate/device.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/io/level.hpp"
@@ -20,8 +19,6 @@
 #include "palpate/names.hpp"
 
 namespace palpate::python {
-
-namespace py = pybind11;
 
 template <class E>
 using Names = std::pair<const char*, E>;
@@ -62,7 +59,8 @@ struct Named<UpdateStatus> {
                                                      {"out_of_budget", UpdateStatus::out_of_budget},
                                                      {"recovering", UpdateStatus::recovering},
                                                      {"refused", UpdateStatus::refused},
-                                                     {"not_finite", UpdateStatus::not_finite}};
+                                                     {"not_finite", UpdateStatus::not_finite},
+                                                     {"waiting", UpdateStatus::waiting}};
 };
 template <>
 struct Named<BrushKind> {

@@ -4,9 +4,9 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/progress.hpp"
+#include "bindings/python/renderer.hpp"
 #include "devices/simulated/profiles.hpp"
 #include "palpate/devices/devices.hpp"
-#include "palpate/renderer.hpp"
 
 namespace palpate::python {
 namespace {
@@ -43,8 +43,8 @@ Wrench straightened(ForceState& state, const Renderer& renderer, const DeviceRea
     return {result.force, result.torque};
 }
 
-py::dict closed_loop(const Renderer& renderer, const std::string& text, double seconds, double rate,
-                     bool straight, const ProgressFunction& progress) {
+py::dict closed_loop(const SharedRenderer& renderer, const std::string& text, double seconds,
+                     double rate, bool straight, const ProgressFunction& progress) {
     if (!(seconds > 0 && rate > 0 && seconds * rate < 1e9)) {
         throw std::invalid_argument("seconds and rate have to be above 0");
     }

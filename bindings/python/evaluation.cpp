@@ -1,7 +1,10 @@
 // The parts of the experiments in C++: subjects by name, the hand that explores, the explicit
 // surface, and a stroke through a volume that is read meanwhile.
+#include <cmath>
+
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/hands.hpp"
 #include "bindings/python/progress.hpp"
 #include "evaluation/explicit_surface.hpp"
 #include "evaluation/exploring_hand.hpp"
@@ -15,6 +18,8 @@ namespace {
 using evaluation::Subject;
 using Wanted = std::optional<std::pair<double, double>>;
 
+/// That an exploring hand may take in all [s].
+constexpr double most_seconds = 24 * 3600;
 constexpr const char* on_smooth_field = "smooth";  // a contestant that is no method
 
 py::dict explore(const Subject& subject, evaluation::ExploringHand hand, const Wanted& wanted,
@@ -52,6 +57,14 @@ void bind_explore(py::module_& module) {
         [](const Field& field, double isovalue, const std::string& name, double speed,
            double touching, double depth, int trajectories, double seconds, std::uint64_t seed,
            const Wanted& wanted, const ProgressFunction& progress) {
+            if (!(speed > 0 && std::isfinite(speed)) || !(touching >= 0 && touching <= 1) ||
+                !(depth >= 0 && std::isfinite(depth)) || trajectories < 1 ||
+                !(seconds > 0 && seconds * trajectories <= most_seconds)) {
+                throw std::invalid_argument(
+                    "a hand has a speed above 0, touches for 0 to 1 of its time, presses 0 mm or "
+                    "more deep, and follows a trajectory or more for at most a day");
+            }
+            felt_level(field, isovalue, "exact");
             return explore({name, field, isovalue},
                            {.speed_mm_s = speed,
                             .touching = touching,

@@ -3,6 +3,7 @@
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/hands.hpp"
 #include "bindings/python/progress.hpp"
 #include "bindings/python/renderer.hpp"
 #include "bindings/python/trace_table.hpp"
@@ -32,23 +33,6 @@ py::dict columns_of(const std::vector<io::TraceRow>& rows) {
 
 namespace {
 
-io::Trajectory trajectory_from(const Doubles& time, const Doubles& position,
-                               const std::optional<Doubles>& orientation) {
-    if (time.ndim() != 1) throw std::invalid_argument("time: an array of shape (n,) is needed");
-    std::vector<Quaternion> turns;
-    if (orientation) {
-        if (orientation->ndim() != 2 || orientation->shape(1) != 4) {
-            throw std::invalid_argument("orientation_xyzw: an array of shape (n, 4) is needed");
-        }
-        for (py::ssize_t i = 0; i < orientation->shape(0); ++i) {
-            const double* q = orientation->data(i, 0);
-            turns.emplace_back(q[3], q[0], q[1], q[2]);
-        }
-    }
-    return io::checked_trajectory({time.data(), time.data() + time.size()},
-                                  points_from(position, "position"), std::move(turns));
-}
-
 /// The columns of a palpate.Trace.
 class Table {
   public:
@@ -58,7 +42,8 @@ class Table {
     py::ssize_t rows() const { return rows_; }
     /// Throws std::invalid_argument for another shape than (rows, width), or (rows,).
     Doubles column(const char* name, py::ssize_t width) const {
-        auto array = columns_[name].cast<Doubles>();
+        const auto array = numbers_from<double>(columns_[name]);
+        if (!array) throw std::invalid_argument(std::string(name) + ": numbers are needed");
         if (array.size() != rows_ * width) {
             throw std::invalid_argument(std::string(name) + ": the shape is " +
                                         std::string(py::str(array.attr("shape"))) +

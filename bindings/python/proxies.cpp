@@ -12,6 +12,7 @@
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/hands.hpp"
 #include "bindings/python/progress.hpp"
 #include "bindings/python/setup.hpp"
 #include "palpate/baselines/methods.hpp"
@@ -21,7 +22,9 @@ namespace palpate::python {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Firsts = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+/// Of follow_each(), whatever it is asked for.
+constexpr std::size_t most_threads = 256;
+using Firsts = Numbers<std::int64_t>;
 
 /// Arrays with a row per tick.
 struct ProxyTrace {
@@ -121,7 +124,7 @@ struct Way {
 };
 
 Way way_of(const Field& field, const io::Level& level, const std::string& method) {
-    return {field, io::level_in(field.volume(), level), baselines::method_named(method)};
+    return {field, felt_level(field, level, method), baselines::method_named(method)};
 }
 
 /// A proxy and what it moves in.
@@ -133,7 +136,7 @@ struct PlacedProxy {
 ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
                   const std::optional<PressThrough>& press, double scale, bool with_steps,
                   const ProgressFunction& progress) {
-    const std::vector<Vec3> points = points_from(hips, "hips");
+    const std::vector<Vec3> points = hips_from(hips);
     if (!(scale > 0)) throw std::invalid_argument("scale: a number above 0 is needed");
     Way way = placed.way;
     way.scale = scale;
@@ -186,7 +189,7 @@ void follow_one(const Way& way, const std::vector<Vec3>& hips, std::size_t from,
 std::vector<std::size_t> begins_of(const Firsts& firsts, std::size_t rows) {
     std::vector<std::size_t> begins(firsts.data(), firsts.data() + firsts.size());
     begins.push_back(rows);
-    if (begins.front() != 0 ||
+    if (firsts.size() == 0 || begins.front() != 0 ||
         std::ranges::adjacent_find(begins, std::greater_equal<>{}) != begins.end()) {
         throw std::invalid_argument("first: rows of hips, rising, from 0, are needed");
     }
@@ -196,8 +199,9 @@ std::vector<std::size_t> begins_of(const Firsts& firsts, std::size_t rows) {
 ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles& hips,
                        const Firsts& firsts, const std::string& method, int threads,
                        const ProgressFunction& progress) {
+    if (threads < 0) throw std::invalid_argument("threads: a number from 0 is needed");
     const Way way = way_of(field, level, method);
-    const std::vector<Vec3> points = points_from(hips, "hips");
+    const std::vector<Vec3> points = hips_from(hips);
     const std::vector<std::size_t> begins = begins_of(firsts, points.size());
     (void)way.placed(points.front());  // throws here, not in a thread
     ProxyTrace trace(static_cast<py::ssize_t>(points.size()));
@@ -209,11 +213,12 @@ ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles
         }
     };
     const unsigned usual = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);
-    const unsigned wanted = threads > 0 ? static_cast<unsigned>(threads) : usual;
+    const std::size_t wanted = std::min(
+        {threads > 0 ? static_cast<std::size_t>(threads) : usual, begins.size() - 1, most_threads});
     Slices slices(progress, points.size() / wanted, updates_in_slice);
     const py::gil_scoped_release unlocked;
     std::vector<std::jthread> others;
-    for (unsigned t = 1; t < wanted; ++t) others.emplace_back([&] { follow_some([] {}); });
+    for (std::size_t t = 1; t < wanted; ++t) others.emplace_back([&] { follow_some([] {}); });
     try {
         follow_some([&] { slices.done_one(); });
     } catch (...) {
@@ -265,7 +270,7 @@ py::array_t<double> update_times(const Field& field, const io::Level& level, con
                                  const Firsts& firsts, const std::string& method, std::size_t batch,
                                  std::size_t cold, const ProgressFunction& progress) {
     const Way way = way_of(field, level, method);
-    const std::vector<Vec3> points = points_from(hips, "hips");
+    const std::vector<Vec3> points = hips_from(hips);
     const std::vector<std::size_t> begins = begins_of(firsts, points.size());
     Slices slices(progress, points.size() / std::max<std::size_t>(1, batch), updates_in_slice);
     std::vector<double> times;
@@ -407,7 +412,9 @@ void bind_proxies(py::module_& module) {
         py::arg("progress") = py::none(),
         "Many hands, one behind the other in `hips` [mm, physical], shape (n, 3); `first`: the\n"
         "row in which each begins. A proxy of its own is put there and follows to the next\n"
-        "hand's row. On all processors, or `threads`; the result does not depend on that.");
+        "hand's row. On all processors, or `threads`, at most 256; the result does not depend on "
+        "that.\n"
+        "ValueError, as of Proxy and update_times(), for what replay() refuses.");
     module.def(
         "update_times", &update_times, py::arg("field"), py::arg("isovalue"), py::arg("hips"),
         py::arg("first"), py::arg("method") = "exact", py::arg("batch") = 1, py::arg("cold") = 0,

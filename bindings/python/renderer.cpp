@@ -11,9 +11,9 @@
 namespace palpate::python {
 namespace {
 
-Renderer live_renderer(const Field& field, const io::Level& level, const RenderSetup& setup,
-                       const DeviceLimits& limits,
-                       const std::optional<DeviceTransform>& transform) {
+SharedRenderer live_renderer(const Field& field, const io::Level& level, const RenderSetup& setup,
+                             const DeviceLimits& limits,
+                             const std::optional<DeviceTransform>& transform) {
     const double isovalue = io::level_in(field.volume(), level);
     ForceSettings usual;
     usual.limit = limits.maximum_force;
@@ -21,24 +21,25 @@ Renderer live_renderer(const Field& field, const io::Level& level, const RenderS
         run::render_settings(setup_of(setup, usual), field, isovalue, limits);
     if (const auto tool = tool_in(setup)) settings.tool = tool;
     if (transform) settings.transform = *transform;
-    return make_renderer(field, isovalue, settings);
+    return SharedRenderer(make_renderer(field, isovalue, settings));
 }
 
 /// What can be rendered, or std::invalid_argument and nothing has changed.
 template <class Change>
-void change(Renderer& renderer, const Change& how) {
+void change(SharedRenderer& renderer, const Change& how) {
+    renderer.changeable();
     RendererSettings settings = renderer.settings;
     how(settings);
     check(settings);
     renderer.settings = std::move(settings);
 }
 
-Tick tick(Renderer& renderer, double time, const Vec3& position,
+Tick tick(SharedRenderer& renderer, double time, const Vec3& position,
           const std::optional<Quaternion>& orientation, bool valid, bool armed, bool released,
           const Vec3& pointing) {
     DeviceState state{time, position, valid, armed, released, pointing};
     if (orientation) state.orientation = orientation->normalized().toRotationMatrix();
-    return render(renderer, state);
+    return render(renderer.changeable(), state);
 }
 
 /// The hand of many ticks, which point nowhere unless that is given.
@@ -60,26 +61,45 @@ std::vector<DeviceState> states_from(const Doubles& time, const Doubles& positio
     return states;
 }
 
-py::dict follow_ticks(Renderer& renderer, const Doubles& time, const Doubles& position,
+/// Calls move(copy) without the GIL. Afterwards the renderer is as that copy; if it throws, as
+/// before.
+template <class Move>
+void moved_without_gil(SharedRenderer& renderer, const Move& move) {
+    Renderer own = renderer.changeable();
+    struct Moving {
+        bool& moves;
+        explicit Moving(bool& now) : moves(now) { moves = true; }
+        ~Moving() { moves = false; }
+    } const moving(renderer.moves);
+    {
+        const py::gil_scoped_release unlocked;
+        move(own);
+    }
+    static_cast<Renderer&>(renderer) = std::move(own);
+}
+
+py::dict follow_ticks(SharedRenderer& renderer, const Doubles& time, const Doubles& position,
                       const std::optional<Doubles>& pointing, bool alternatives,
                       const ProgressFunction& progress) {
     const std::vector<DeviceState> states = states_from(time, position, pointing);
     std::vector<Tick> ticks(states.size());
-    Renderer own = renderer;  // other threads may use it
     Slices slices(progress, ticks.size(), updates_in_slice);
-    {
+    if (alternatives) {
+        const Renderer own = renderer;  // other threads may use it
         const py::gil_scoped_release unlocked;
         for (std::size_t i = 0; i < states.size(); ++i) {
-            if (alternatives) {
-                Renderer copy = own;
-                ticks[i] = render(copy, states[i]);
-            } else {
-                ticks[i] = render(own, states[i]);
-            }
+            Renderer copy = own;
+            ticks[i] = render(copy, states[i]);
             slices.done_one();
         }
+    } else {
+        moved_without_gil(renderer, [&](Renderer& own) {
+            for (std::size_t i = 0; i < states.size(); ++i) {
+                ticks[i] = render(own, states[i]);
+                slices.done_one();
+            }
+        });
     }
-    renderer = std::move(own);
     const auto of = [&](const auto& value) { return column(ticks, value); };
     return py::dict(
         py::arg("scp") = of([](const Tick& t) { return t.proxy.scp; }),
@@ -93,16 +113,14 @@ py::dict follow_ticks(Renderer& renderer, const Doubles& time, const Doubles& po
         py::arg("punctured") = of([](const Tick& t) { return int{t.layers.punctured}; }));
 }
 
-py::array_t<double> batch_ns(Renderer& renderer, const Doubles& time, const Doubles& position,
+py::array_t<double> batch_ns(SharedRenderer& renderer, const Doubles& time, const Doubles& position,
                              std::size_t batch, const ProgressFunction& progress) {
     using SteadyClock = std::chrono::steady_clock;
     if (batch == 0) throw std::invalid_argument("batch: at least one tick is needed");
     const std::vector<DeviceState> states = states_from(time, position, std::nullopt);
     std::vector<double> times(states.size() / batch);
-    Renderer own = renderer;
     Slices slices(progress, times.size(), batches_in_slice);
-    {
-        const py::gil_scoped_release unlocked;
+    moved_without_gil(renderer, [&](Renderer& own) {
         for (std::size_t i = 0; i < times.size(); ++i) {
             const auto begin = SteadyClock::now();
             for (std::size_t k = i * batch; k < (i + 1) * batch; ++k) render(own, states[k]);
@@ -110,8 +128,7 @@ py::array_t<double> batch_ns(Renderer& renderer, const Doubles& time, const Doub
             times[i] = taken.count() / double(batch);
             slices.done_one();
         }
-    }
-    renderer = std::move(own);
+    });
     return array_from(std::move(times));
 }
 
@@ -142,7 +159,8 @@ void bind_tick(py::module_& module) {
             "mode", [](const Tick& t) { return t.proxy.mode; }, "'free' or 'constrained'.")
         .def_property_readonly(
             "status", [](const Tick& t) { return t.proxy.status; },
-            "'done', 'out_of_budget', 'recovering', 'refused', 'not_finite'.")
+            "'done', 'out_of_budget', 'recovering', 'refused', 'not_finite', or 'waiting' for\n"
+            "samples of a store.")
         .def_property_readonly(
             "density", [](const Tick& t) { return t.proxy.density; }, "At the SCP [data units].")
         .def_property_readonly(
@@ -181,39 +199,40 @@ void bind_tick(py::module_& module) {
         });
 }
 
-void bind_changes(py::class_<Renderer>& renderer) {
+void bind_changes(py::class_<SharedRenderer>& renderer) {
+    using R = SharedRenderer;
     renderer
         .def_property(
-            "isovalue", [](const Renderer& r) { return r.proxy.isovalue; },
-            [](Renderer& r, const io::Level& level) {
+            "isovalue", [](const R& r) { return r.proxy.isovalue; },
+            [](R& r, const io::Level& level) {
                 const double isovalue = io::level_in(r.field.volume(), level);
                 check_isovalue(isovalue, r.field.solid());
-                use_isovalue(r, isovalue);
+                use_isovalue(r.changeable(), isovalue);
             },
             "Level felt [data units]; may be changed between ticks.")
         .def_property(
-            "force", [](const Renderer& r) { return AskedForce(r.settings.force); },
-            [](Renderer& r, const AskedForce& asked) {
+            "force", [](const R& r) { return AskedForce(r.settings.force); },
+            [](R& r, const AskedForce& asked) {
                 change(r, [&](RendererSettings& s) { s.force = force_of(asked, s.force); });
             },
             "ForceSettings; ValueError for what cannot be rendered, as of the next two.")
         .def_property(
-            "friction", [](const Renderer& r) { return r.settings.proxy.friction; },
-            [](Renderer& r, const Friction& friction) {
+            "friction", [](const R& r) { return r.settings.proxy.friction; },
+            [](R& r, const Friction& friction) {
                 change(r, [&](RendererSettings& s) { s.proxy.friction = friction; });
             },
             "Friction")
         .def_property(
-            "transform", [](const Renderer& r) { return r.settings.transform; },
-            [](Renderer& r, const DeviceTransform& transform) {
+            "transform", [](const R& r) { return r.settings.transform; },
+            [](R& r, const DeviceTransform& transform) {
                 change(r, [&](RendererSettings& s) { s.transform = transform; });
             },
             "DeviceTransform")
         .def_property_readonly(
-            "limits", [](const Renderer& r) { return r.settings.device; }, "DeviceLimits")
+            "limits", [](const R& r) { return r.settings.device; }, "DeviceLimits")
         .def_property(
-            "forces_on", [](const Renderer& r) { return r.settings.forces_on; },
-            [](Renderer& r, bool on) { r.settings.forces_on = on; });
+            "forces_on", [](const R& r) { return r.settings.forces_on; },
+            [](R& r, bool on) { r.changeable().settings.forces_on = on; });
 }
 
 }  // namespace
@@ -229,9 +248,10 @@ Renderer offline_renderer(const Field& field, const io::Level& level, const Rend
 void bind_renderer(py::module_& module) {
     bind_flags(module);
     bind_tick(module);
-    py::class_<Renderer> renderer(module, "Renderer",
-                                  "Renders ticks. A value: a copy goes on exactly as its original.",
-                                  py::dynamic_attr());
+    using R = SharedRenderer;
+    py::class_<R> renderer(module, "Renderer",
+                           "Renders ticks. A value: a copy goes on exactly as its original.",
+                           py::dynamic_attr());
     renderer
         .def(py::init(&live_renderer), py::arg("field"), py::arg("isovalue"),
              py::arg_v("setup", RenderSetup{}, "RenderSetup()"),
@@ -249,7 +269,8 @@ void bind_renderer(py::module_& module) {
              "armed=False: a dead-man switch is open; released: no force, within the rate limit.\n"
              "pointing: unit, to a needle's tip. Takes microseconds and keeps the GIL, so threads "
              "may\n"
-             "share a Renderer.")
+             "share a Renderer. RuntimeError, as of all changes, while another thread is in "
+             "follow().")
         .def(
             "follow", &follow_ticks, py::arg("time"), py::arg("position"), py::kw_only(),
             py::arg("pointing") = py::none(), py::arg("alternatives") = false,
@@ -265,10 +286,10 @@ void bind_renderer(py::module_& module) {
         .def("batch_ns", &batch_ns, py::arg("time"), py::arg("position"), py::arg("batch"),
              py::kw_only(), py::arg("progress") = py::none(),
              "The time of a tick [ns]: the mean of each `batch` ticks, without a clock inside.")
-        .def_property_readonly("field", [](const Renderer& r) { return r.field; })
-        .def("copy", [](const Renderer& r) { return r; })
-        .def("__copy__", [](const Renderer& r) { return r; })
-        .def("__repr__", [](const Renderer& r) {
+        .def_property_readonly("field", [](const R& r) { return r.field; })
+        .def("copy", &R::copied)
+        .def("__copy__", &R::copied)
+        .def("__repr__", [](const R& r) {
             return py::str("Renderer({!r}, isovalue={:g})")
                 .format(py::cast(r.field), r.proxy.isovalue);
         });

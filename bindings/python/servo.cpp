@@ -5,6 +5,7 @@
 #include "bindings/python/commands.hpp"
 #include "bindings/python/own_process.hpp"
 #include "bindings/python/python_device.hpp"
+#include "bindings/python/renderer.hpp"
 #include "bindings/python/without_gil.hpp"
 #include "palpate/devices/error.hpp"
 
@@ -69,8 +70,8 @@ void destroy(DeviceServo* servo) {
     end();
 }
 
-Held make_servo(const Renderer& renderer, const py::object& device, double rate, bool real_time,
-                double device_rate) {
+Held make_servo(const SharedRenderer& renderer, const py::object& device, double rate,
+                bool real_time, double device_rate) {
     if (!py::hasattr(device, "info") || !py::hasattr(device, "read")) {
         throw py::type_error("a device needs the functions info() and read()");
     }

@@ -11,7 +11,7 @@ namespace palpate::python {
 namespace {
 
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+using Indices = Numbers<std::uint32_t>;
 
 SurfaceMesh extract(const Field& field, const io::Level& level, double tolerance, bool normals,
                     const ProgressFunction& progress) {

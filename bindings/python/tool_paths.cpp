@@ -2,9 +2,10 @@
 // GIL.
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/hands.hpp"
 #include "bindings/python/progress.hpp"
 #include "palpate/baselines/penalty_tool.hpp"
-#include "palpate/io/level.hpp"
+#include "palpate/proxy.hpp"
 #include "palpate/tool_proxy.hpp"
 
 namespace palpate::python {
@@ -20,22 +21,8 @@ struct ToolPath {
     std::vector<NumberedPose> poses;
 };
 
-std::vector<Pose> poses_from(const Doubles& position, const Doubles& orientation) {
-    const std::vector<Vec3> places = points_from(position, "position");
-    if (orientation.ndim() != 2 || orientation.shape(1) != 4 ||
-        orientation.shape(0) != py::ssize_t(places.size())) {
-        throw std::invalid_argument("orientation_xyzw: an array of shape (n, 4) is needed");
-    }
-    std::vector<Pose> poses(places.size());
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-        const double* q = orientation.data(py::ssize_t(i), 0);
-        poses[i] = {places[i], Quaternion(q[3], q[0], q[1], q[2]).normalized()};
-    }
-    return poses;
-}
-
 ToolPath exact_path(const Field& field, double isovalue, std::shared_ptr<const Tool> tool,
-                    const std::vector<Pose>& hands, Slices& slices) {
+                    const io::Trajectory& hands, Slices& slices) {
     ToolPath path;
     ToolProxy proxy(std::move(tool));
     proxy.isovalue = isovalue;
@@ -44,7 +31,8 @@ ToolPath exact_path(const Field& field, double isovalue, std::shared_ptr<const T
                                     made.poses.push_back({std::ssize(made.updates), pose});
                                 },
                                 &path};
-    for (const Pose& hand : hands) {
+    for (std::size_t i = 0; i < hands.time.size(); ++i) {
+        const Pose hand{hands.position[i], hands.orientation[i]};
         path.updates.push_back(update_tool(proxy, field, hand, {}, observer));
         slices.done_one();
     }
@@ -52,10 +40,11 @@ ToolPath exact_path(const Field& field, double isovalue, std::shared_ptr<const T
 }
 
 ToolPath penalty_path(const Field& field, double isovalue, std::shared_ptr<const Tool> tool,
-                      const std::vector<Pose>& hands, Slices& slices) {
+                      const io::Trajectory& hands, Slices& slices) {
     ToolPath path;
     baselines::PenaltyTool state{std::move(tool), isovalue};
-    for (const Pose& hand : hands) {
+    for (std::size_t i = 0; i < hands.time.size(); ++i) {
+        const Pose hand{hands.position[i], hands.orientation[i]};
         path.updates.emplace_back().proxy = baselines::update_penalty(state, field, hand).proxy;
         slices.done_one();
     }
@@ -68,10 +57,13 @@ py::dict follow_tool(const Field& field, const io::Level& level, std::shared_ptr
     if (method != "exact" && method != "penalty") {
         throw std::invalid_argument("method: 'exact' or 'penalty'");
     }
-    const double isovalue = io::level_in(field.volume(), level);
-    const std::vector<Pose> hands = poses_from(position, orientation);
+    const double isovalue = felt_level(field, level, "exact", tool);
+    const io::Trajectory hands = poses_from(position, orientation);
+    if (Proxy proxy; !place(proxy, field, hands.position.front(), isovalue)) {
+        throw std::invalid_argument("all of space is solid at this isovalue");
+    }
     ToolPath path;
-    Slices slices(progress, hands.size(), batches_in_slice);
+    Slices slices(progress, hands.time.size(), batches_in_slice);
     {
         const py::gil_scoped_release unlocked;
         path =
@@ -112,7 +104,7 @@ void bind_tool_paths(py::module_& module) {
         "on\n"
         "the way, between which each point of the tool goes straight (exact). progress: called "
         "with the\n"
-        "part that is done.");
+        "part that is done. ValueError for what replay() refuses.");
 }
 
 }  // namespace palpate::python

@@ -18,6 +18,13 @@ Geometry geometry_of(const std::optional<Vec3>& spacing, const Vec3& origin,
     return geometry;
 }
 
+/// The same samples in another place.
+Volume placed(const Volume& volume, const Geometry& geometry) {
+    const auto kept = std::make_shared<const Volume>(volume);
+    return {geometry, volume.type(), std::shared_ptr<const void>(kept, kept->data()),
+            volume.bytes()};
+}
+
 py::object text_of_volume(const py::object& self) {
     const auto& volume = self.cast<const Volume&>();
     const Index3& size = volume.geometry().size;
@@ -61,7 +68,8 @@ void bind_volumes(py::module_& module) {
     copied_as_itself(volume)
         .def(
             py::init([](const py::array& array, const std::optional<Vec3>& spacing,
-                        const Vec3& origin, const std::optional<Mat3>& direction, bool copy) {
+                        const Vec3& origin, const std::optional<Mat3>& direction,
+                        std::optional<bool> copy) {
                 return volume_from(array, geometry_of(spacing, origin, direction), copy);
             }),
             py::arg("array"), py::arg("spacing") = py::none(), py::arg("origin") = Vec3(0, 0, 0),
@@ -69,7 +77,8 @@ void bind_volumes(py::module_& module) {
             "Shares the samples of an array of shape (z, y, x) of uint8, int16, uint16 or "
             "float32,\n"
             "without a copy: do not write to it afterwards. An array that is not C-contiguous is\n"
-            "a ValueError; with copy=True it is copied. spacing and origin in mm (x, y, z), LPS.\n"
+            "a ValueError. copy=True copies any array, copy=None those that cannot be shared. "
+            "spacing and origin in mm (x, y, z), LPS.\n"
             "Without a direction the geometry is not `oriented`: nothing says which side is left.\n"
             "Without a spacing, 1 mm is assumed and it is not `measured`.\n"
             "as_volume() converts other types and understands nibabel and zarr.")
@@ -92,6 +101,7 @@ void bind_volumes(py::module_& module) {
                            : py::object(array.attr("astype")(dtype, py::arg("copy") = false));
             },
             py::arg("dtype") = py::none(), "For numpy.asarray(): shared and read-only.")
+        .def("_placed", &placed, py::arg("geometry"), py::call_guard<py::gil_scoped_release>())
         .def("__repr__", &text_of_volume)
         .def(py::pickle(
             [](const Volume& self) {
@@ -99,7 +109,7 @@ void bind_volumes(py::module_& module) {
                 return py::make_tuple(array_of(self), g);
             },
             [](const py::tuple& state) {
-                return volume_from(state[0].cast<py::array>(), state[1].cast<Geometry>(), true);
+                return volume_from(state[0].cast<py::array>(), state[1].cast<Geometry>(), {});
             }));
 }
 

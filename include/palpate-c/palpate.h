@@ -214,7 +214,8 @@ enum {
     PALPATE_OUT_OF_BUDGET = 1,
     PALPATE_RECOVERING = 2,
     PALPATE_REFUSED = 3,
-    PALPATE_NOT_FINITE = 4
+    PALPATE_NOT_FINITE = 4,
+    PALPATE_WAITING = 5 /* for samples of a store: no force */
 };
 
 typedef struct palpate_felt {

@@ -293,14 +293,15 @@ def long_calls():
     """Calls of many updates, by name; each takes `progress`."""
     sphere = of_text("synthetic:sphere:24x24x24")
     of, ticks = (sphere.field, sphere.isovalue), 20_000
+    smooth = (palpate.Field(sphere.field.volume), sphere.isovalue)  # for tools
     hips = numpy.linspace([-20, 0, 0], [-6, 2, 1], ticks)
     tool = (palpate.Tool.named("box:2,2,2", 1), hips[::50], numpy.tile([0, 0, 0, 1.0], (400, 1)))
     setup, time = palpate.Renderer(*of, palpate.RenderSetup(rate=1000)), numpy.arange(1, ticks + 1) / 1000
     return {"Proxy.follow": functools.partial(palpate.Proxy(*of, hips[0]).follow, hips),
             "follow_each": functools.partial(palpate.follow_each, *of, hips, [0], threads=2),
             "update_times": functools.partial(palpate.update_times, *of, hips, [0]),
-            "follow_tool": functools.partial(palpate.follow_tool, *of, *tool),
-            "penalty": functools.partial(palpate.follow_tool, *of, *tool, "penalty"),
+            "follow_tool": functools.partial(palpate.follow_tool, *smooth, *tool),
+            "penalty": functools.partial(palpate.follow_tool, *smooth, *tool, "penalty"),
             "Renderer.follow": functools.partial(setup.follow, time, hips),
             "batch_ns": functools.partial(setup.copy().batch_ns, time, hips, 50),
             "closed_loop": functools.partial(palpate.closed_loop, setup, "simulated:touch,hand=hold,depth=0,seconds=20", 20, 1000),

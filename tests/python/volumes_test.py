@@ -50,6 +50,41 @@ def test_a_volume_of_an_array_says_what_of_its_place_is_assumed():
         assert not palpate.as_volume(image).geometry.oriented
 
 
+def test_a_copy_is_one_and_is_made_unasked_only_where_samples_cannot_be_shared():
+    array = samples("uint8")
+    for given, shared in (({}, True), ({"copy": True}, False), ({"copy": None}, True)):
+        assert (address(palpate.Volume(array, **given).array) == address(array)) == shared
+    strided = array[:, ::2]
+    assert numpy.array_equal(palpate.Volume(strided, copy=None).array, strided)
+    assert address(palpate.as_volume(array).array) == address(array)
+
+
+def test_what_is_given_goes_before_what_a_volume_says():
+    volume = palpate.Volume(samples("uint8"), origin=(1, 2, 3))
+    assert palpate.as_volume(volume) is volume
+    moved = palpate.as_volume(volume, origin=(4, 5, 6))
+    assert list(moved.geometry.origin) == [4, 5, 6] and not moved.geometry.measured
+    wider = palpate.as_volume(volume, spacing=(1, 2, 3), direction=numpy.diag([-1, -1, 1]))
+    assert list(wider.geometry.spacing) == [1, 2, 3] and list(wider.geometry.origin) == [1, 2, 3]
+    assert wider.geometry.measured and wider.geometry.oriented
+    assert address(wider.array) == address(volume.array) and (wider.minimum, wider.maximum) == (
+        volume.minimum, volume.maximum)
+    with pytest.raises(ValueError, match="no frames"):
+        palpate.as_volume(volume, frame=0)
+
+
+@pytest.mark.parametrize("as_given", [numpy.asarray, numpy.ndarray.tolist])
+def test_a_frame_is_chosen_by_its_number(as_given):
+    array = numpy.stack([samples("uint8", seed) for seed in (1, 2)])
+    data = as_given(array)
+    assert numpy.array_equal(palpate.as_volume(data, frame=1).array, array[1])
+    for frame in (-1, 2):
+        with pytest.raises(ValueError, match="there are 2, from 0"):
+            palpate.as_volume(data, frame=frame)
+    with pytest.raises(TypeError):
+        palpate.as_volume(data, frame=0.5)
+
+
 def test_samples_live_as_long_as_somebody_holds_them():
     array = samples("float32")
     expected = array.copy()

@@ -63,6 +63,15 @@ def _inside(kind):
     return _split(kind[kind.index("[") + 1:-1])
 
 
+def _holds(dtype, numbers):
+    """Whether an argument of this type takes these numbers (bindings/python/numbers.hpp)."""
+    if not dtype.startswith(("int", "uint")):
+        return numbers.dtype.kind in "biuf"
+    limits = numpy.iinfo(dtype)
+    return numbers.dtype.kind in "iuf" and bool(numpy.all(
+        (numbers >= limits.min) & (numbers <= limits.max) & (numbers == numpy.trunc(numbers))))
+
+
 def _fits(value, kind):
     if kind.startswith("Optional["):
         return value is None or _fits(value, _inside(kind)[0])
@@ -77,8 +86,10 @@ def _fits(value, kind):
                 and all(map(_fits, value, kinds)))
     if array := _ARRAY.fullmatch(kind):
         try:
-            got = numpy.asarray(value, dtype=array[1])
+            got = numpy.asarray(value)
         except (TypeError, ValueError):
+            return False
+        if not _holds(array[1], got):
             return False
         shape = [side.strip() for side in (array[2] or "").split(",") if side.strip()]
         shape = shape[:1] if shape[1:] == ["1"] else shape
@@ -109,10 +120,11 @@ def _expected(kind):
         return f"({', '.join(map(_expected, _inside(kind)))})"
     if array := _ARRAY.fullmatch(kind):
         sides = [side.strip() for side in (array[2] or "").split(",") if side.strip()]
+        numbers = {"i": "whole numbers", "u": "whole numbers from 0"}.get(array[1][0], "numbers")
         if not sides:
-            return "an array of numbers"
+            return f"an array of {numbers}"
         if len(sides) == 1 or sides[1] == "1":
-            return f"{sides[0]} numbers"
+            return f"{sides[0]} {numbers}"
         return f"an array of shape ({', '.join(sides)})"
     return {"numpy.ndarray": "an array", "str": "text", "bool": "True or False", "float": "a number",
             "int": "a whole number", "os.PathLike": "a path", "function": "a function"}.get(
@@ -123,6 +135,8 @@ def _given(value):
     if isinstance(value, (str, int, float, type(None))):
         text = repr(value)
         return text if len(text) <= 40 else text[:37] + "..."
+    if isinstance(value, tuple) and len(repr(value)) <= 40:
+        return repr(value)
     shape = f" of shape {value.shape}" if isinstance(value, numpy.ndarray) else ""
     return type(value).__name__ + shape
 

@@ -1,5 +1,7 @@
 """Volumes from arrays of any kind, by what they can do: NumPy, nibabel, zarr, h5py, dask."""
 
+import copy
+import operator
 import warnings
 
 import numpy
@@ -23,29 +25,42 @@ def as_volume(data, spacing=None, origin=None, direction=None, frame=None):
     frame: of four-dimensional data this one, from 0; an axis in front ([t, z, y, x]), in nibabel
     the last.
     """
+    given = {"spacing": spacing, "origin": origin, "direction": direction}
+    given = {name: value for name, value in given.items() if value is not None}
     if isinstance(data, Volume):
-        return data
+        if frame is not None:
+            raise ValueError("a Volume has three axes, so it has no frames")
+        return _placed(data, given) if given else data
     if hasattr(data, "affine") and hasattr(data, "dataobj"):
         samples, place = _from_nibabel(data, frame)
     else:
         samples, place = _frame_of(data, frame, axis=0), {}
-    given = {"spacing": spacing, "origin": origin, "direction": direction}
-    place.update({name: value for name, value in given.items() if value is not None})
-    return Volume(_kept(numpy.asanyarray(samples)), copy=True, **place)
+    return Volume(_kept(numpy.asanyarray(samples)), copy=None, **{**place, **given})
+
+
+def _placed(volume, given):
+    """The same samples, with this in place of what the volume says."""
+    place = copy.copy(volume.geometry)
+    for name, value in given.items():
+        setattr(place, name, value)
+    place.measured |= "spacing" in given
+    place.oriented |= "direction" in given
+    return volume._placed(place)
 
 
 def _frame_of(data, frame, axis):
-    axes = len(getattr(data, "shape", numpy.shape(data)))
+    data = data if hasattr(data, "shape") else numpy.asanyarray(data)
+    axes = len(data.shape)
     if axes == 4 and frame is None:
         raise ValueError("the data have four axes: choose a frame")
     if axes == 4:
-        count = data.shape[axis]
+        frame, count = operator.index(frame), data.shape[axis]
         if not 0 <= frame < count:
             raise ValueError(f"frame {frame}: there are {count}, from 0")
         return data[frame] if axis == 0 else data[..., frame]
     if frame is not None:
         raise ValueError(f"the data have {axes} axes, so they have no frames")
-    return data[...] if hasattr(data, "__getitem__") and hasattr(data, "shape") else data
+    return data[...] if hasattr(data, "__getitem__") else data
 
 
 def _from_nibabel(image, frame):

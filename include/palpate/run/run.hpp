@@ -29,6 +29,12 @@ class QueueFull : public std::invalid_argument {
     using std::invalid_argument::invalid_argument;
 };
 
+/// Not possible now: the run was not started, or was started before.
+class WrongState : public std::logic_error {
+  public:
+    using std::logic_error::logic_error;
+};
+
 /// Snapshots come out, commands go in. One thread owns it; data() may be used by any.
 class Run {
   public:
@@ -41,12 +47,14 @@ class Run {
     Run(const Run&) = delete;
     Run& operator=(const Run&) = delete;
 
-    /// Starts the servo, once. Throws std::system_error if the system gives no thread.
+    /// Starts the servo. Throws WrongState the second time, std::system_error if the system gives
+    /// no thread.
     void start();
+    bool started() const { return servo_ != nullptr; }  ///< also after stop()
     /// On data with Pace::by_steps, whose servo has no thread: one tick, a period after the one
     /// before, and what is due for the data and the recording. The same steps and commands give the
-    /// same ticks, as far as the data is in memory. Throws std::logic_error for other data, and
-    /// before start().
+    /// same ticks, as far as the data is in memory. Throws WrongState for other data, and before
+    /// start().
     void step();
     double period() const { return period_; }  ///< [s] of its ticks; from start() on
     /// Forces go to zero and the servo ends, for good. Waits until the device has sent the zero,
@@ -65,19 +73,20 @@ class Run {
     /// The device, if it is a mouse that the application moves; else null.
     devices::Mouse* mouse() const { return mouse_; }
 
-    // From start() on:
+    // From start() on. Before, all but device_failure() throw WrongState:
     /// What the system granted of real time, and what not.
-    const std::vector<std::string>& privileges() const { return servo_->privileges(); }
+    const std::vector<std::string>& privileges() const { return started_servo().privileges(); }
     /// Throws std::invalid_argument, saying what is wrong, for a command that cannot be carried
-    /// out; QueueFull for one that comes too fast. While layers have surfaces an isovalue waits;
-    /// when they are taken away, the one asked for last is felt.
+    /// out, and for DeviceLimits that lower nothing; QueueFull for one that comes too fast. While
+    /// layers have surfaces an isovalue waits; when they are taken away, the one asked for last is
+    /// felt.
     void send(const Command& command);
     /// Commands that were sent and not carried out yet.
-    std::int64_t waiting() const { return servo_->waiting(); }
+    std::int64_t waiting() const { return started_servo().waiting(); }
     /// Other than none: the device has failed, its force is zero and the session has ended.
     DeviceFailure device_failure() const;
-    std::optional<Snapshot> snapshot() const { return servo_->snapshot(); }
-    ServoReport report() const { return servo_->report(); }
+    std::optional<Snapshot> snapshot() const { return started_servo().snapshot(); }
+    ServoReport report() const { return started_servo().report(); }
 
     /// As the commands sent so far have left them.
     const RendererSettings& settings() const { return settings_; }
@@ -87,7 +96,8 @@ class Run {
     bool frozen() const { return frozen_; }
 
     /// Goes on with another device, fitted to it, with everything that was asked for so far. Throws
-    /// as the constructor does; the old device then goes on. A recording is finished before.
+    /// as the constructor does; the old device then goes on. A recording is finished before. Throws
+    /// WrongState before start(), as does use_field().
     void use_device(const devices::DeviceChoice& device);
     /// Goes on with this side solid, this interpolation, this background outside the grid. The
     /// session starts anew with everything that was asked for except penetrability, which is
@@ -110,6 +120,7 @@ class Run {
     const io::RecordingWriter* recording() const { return recording_.get(); }
 
   private:
+    Servo& started_servo() const;
     void hold(std::unique_ptr<Device> device);
     void take(const Session& session);
     void launch(Session session);

@@ -85,6 +85,26 @@ TEST(CVolume, a_file_that_is_not_there_is_an_input_error_that_names_it) {
     EXPECT_NE(std::strstr(palpate_last_error(), "nowhere.nrrd"), nullptr);
 }
 
+TEST(CVolume, a_frame_of_a_sequence_is_loaded_by_its_number_from_1_and_counts_as_one) {
+    const auto frames = [](std::int32_t frame) {
+        PALPATE_STRUCT(palpate_load_options, options);
+        options.frame = frame;
+        palpate_volume* volume = nullptr;
+        const auto status = palpate_volume_load("synthetic:beating:16x16x16", &options, &volume);
+        PALPATE_STRUCT(palpate_volume_info, info);
+        if (status == PALPATE_OK) {
+            EXPECT_EQ(palpate_volume_describe(volume, &info), PALPATE_OK);
+        }
+        palpate_volume_destroy(volume);
+        return std::pair(status, info.frames);
+    };
+    EXPECT_EQ(frames(0), std::pair(PALPATE_OK, 20));
+    EXPECT_EQ(frames(1), std::pair(PALPATE_OK, 1));
+    EXPECT_EQ(frames(20), std::pair(PALPATE_OK, 1));
+    EXPECT_EQ(frames(21).first, PALPATE_INVALID);
+    EXPECT_EQ(frames(-1).first, PALPATE_INVALID);
+}
+
 TEST(CStructs, of_an_earlier_version_are_filled_as_far_as_they_go) {
     palpate_volume* volume = ball();
     struct {
