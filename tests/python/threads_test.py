@@ -31,8 +31,8 @@ class Tired(live_test.Still):
             self.servo = None
         return super().read()
     def close(self):
-        super().close()
         print("closed", self.forces[-1].any(), max(f[2] for f in self.forces) > 0)
+        super().close()
 device = Tired(live_test.surface_height() - 0.5)
 device.servo = palpate.Servo(live_test.renderer(), device, real_time=False)
 device.servo.start()
