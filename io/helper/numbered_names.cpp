@@ -122,8 +122,9 @@ std::vector<Field> fields_of(const std::vector<NamedFile>& files) {
             field.values.push_back(file.name[p]);
         }
         std::ranges::sort(field.values, is_before);
-        const auto same = std::ranges::unique(field.values);
-        field.values.erase(same.begin(), same.end());
+        // (clang 14 cannot read libstdc++'s std::ranges::unique)
+        field.values.erase(std::unique(field.values.begin(), field.values.end()),
+                           field.values.end());
         if (field.values.size() < 2) continue;
         if (first[p].is_number && p > 0) field.counts = counted_by(first[p - 1].text);
         fields.push_back(std::move(field));

@@ -33,7 +33,7 @@ FAULTS = {
     ("recordings", "every recording is the same", "validates as the same"):
         "sys.exit(0 if '--validate' in words else real(words))",
     ("services", "forces go beyond the limit", "a force of"):
-        "words = ['20' if w == '4.0' else '1' if w == '0.5' else w for w in words]\nsys.exit(real(words))",
+        "words = ['20' if w == '4.0' else '0.69' if w == '0.5' else w for w in words]\nsys.exit(real(words))",
     ("signals", "no signal is passed on", "does not end|status"):
         "import signal\nfor s in range(1, 32):\n  if s not in (9, 19): signal.signal(s, signal.SIG_IGN)\n"
         "p = subprocess.Popen([%(program)r, *words])\n"
