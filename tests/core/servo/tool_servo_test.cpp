@@ -78,9 +78,9 @@ TEST(ToolServo, torque_reaches_the_device_within_its_limits) {
     // the force, meets its limit.
     ForceSettings force;
     force.stiffness = 4;
-    force.rotational_stiffness = 8;
+    force.rotational_stiffness = 4;
     ASSERT_TRUE(live.servo.send(force));
-    const auto arm = std::make_shared<const Tool>(std::vector<Vec3>{{6, 0, 0}}, 20.0);
+    const auto arm = std::make_shared<const Tool>(std::vector<Vec3>{{3, 3, 0}}, 20.0);
     ASSERT_TRUE(live.servo.send(command::UseTool{arm}));
     EXPECT_TRUE(live.becomes([&] { return live.device.largest_torque() > 1.9; }));
     live.servo.stop();
