@@ -143,8 +143,9 @@ std::uint8_t Field::label_at(const Index3& at) const noexcept {
 
 /// Of a block of samples.
 template <int count>
-std::array<std::uint8_t, count * count * count> Field::labels_of(const Index3& low) const noexcept {
-    std::array<std::uint8_t, count * count * count> labels;
+std::array<std::uint8_t, std::size_t{count} * count * count> Field::labels_of(
+    const Index3& low) const noexcept {
+    std::array<std::uint8_t, std::size_t{count} * count * count> labels;
     std::uint8_t* out = labels.data();
     const Run run = cover_.same_grid ? cover_.labels->stored_run<count>(low) : Run{};
     const auto* const label = static_cast<const std::uint8_t*>(run.first);
@@ -208,8 +209,8 @@ double Field::sample_at(const Index3& at) const {
 }
 
 template <int count>
-std::array<double, count * count * count> Field::gathered(const Index3& low) const {
-    std::array<double, count * count * count> samples;
+std::array<double, std::size_t{count} * count * count> Field::gathered(const Index3& low) const {
+    std::array<double, std::size_t{count} * count * count> samples;
     with_type(type_, [&](auto zero) {
         using T = decltype(zero);
         const Run run = stored_run<count>(low);

@@ -146,7 +146,7 @@ class Field {
     template <class T>
     double sample_at(const Index3& at) const;
     template <int count>
-    std::array<double, count * count * count> gathered(const Index3& low) const;
+    std::array<double, std::size_t{count} * count * count> gathered(const Index3& low) const;
     CellSamples other_cell(const Index3& cell) const;
     bool has_sample(const Index3& at) const {
         const auto inside = [&](int a) {
@@ -158,7 +158,8 @@ class Field {
                double solid) noexcept;
     std::uint8_t label_at(const Index3& at) const noexcept;
     template <int count>
-    std::array<std::uint8_t, count * count * count> labels_of(const Index3& low) const noexcept;
+    std::array<std::uint8_t, std::size_t{count} * count * count> labels_of(
+        const Index3& low) const noexcept;
     template <int count>
     bool is_labelled(const Index3& low) const noexcept;
     void look() noexcept;

@@ -135,9 +135,8 @@ class Rounds {
             tangents[i] = {{row_of(touches_[i].arm, along), row_of(touches_[i].arm, across)}};
         }
         const auto held = [&](double coefficient) {
-            const Held found =
-                held_by_friction(pull_, rows_.data(), tangents.data(), count, coefficient,
-                                 1e-9 * std::max(length, voxel_), at_rest);
+            Held found = held_by_friction(pull_, rows_.data(), tangents.data(), count, coefficient,
+                                          1e-9 * std::max(length, voxel_), at_rest);
             around_.spend(found.work);
             return found;
         };
@@ -268,7 +267,7 @@ class Rounds {
     }
 
     Nearest nearest_to(const Six& to) const {
-        const Nearest found = nearest(to, rows_.data(), proxy_.contact_count, 1e-13 * voxel_);
+        Nearest found = nearest(to, rows_.data(), proxy_.contact_count, 1e-13 * voxel_);
         around_.spend(found.work);
         return found;
     }
