@@ -30,6 +30,7 @@ Vec3 ForceGate::pass(const Vec3& force, double most, std::int64_t now) const noe
         return Vec3::Zero();
     }
     const double size = force.norm();
+    if (!(most > 0)) return Vec3::Zero();
     return size > most ? Vec3(force * (most / size)) : force;
 }
 

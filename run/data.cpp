@@ -45,7 +45,7 @@ bool changes(const std::filesystem::path& path, const std::filesystem::path& use
     if (io::is_same_file(path, used)) return true;
     std::error_code error;
     if (!fs::exists(path, error)) return false;
-    const fs::path folder = fs::absolute(path).parent_path();
+    const fs::path folder = fs::weakly_canonical(path, error).parent_path();  // through links
     if (fs::is_directory(used, error)) return fs::equivalent(folder, used, error);
     return used.filename().string().find('%') != std::string::npos && !fs::exists(used, error) &&
            fs::equivalent(folder, fs::absolute(used).parent_path(), error);

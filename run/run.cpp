@@ -210,8 +210,11 @@ std::int64_t Run::last_tick() const {
 /// As the servo that has stopped left it.
 Session Run::session_stopped() const {
     const Renderer& last = servo_->session().renderer;
-    return session_from(last.isovalue_without_layers.value_or(last.proxy.isovalue),
-                        last.settings.transform, last_tick());
+    Session session = session_from(last.isovalue_without_layers.value_or(last.proxy.isovalue),
+                                   last.settings.transform, last_tick());
+    // The time of a session begins at 0. Its motors are as warm as they were.
+    session.renderer.force.motors.warmth = last.force.motors.warmth;
+    return session;
 }
 
 /// As the running servo has it now, or as the first one will begin.
@@ -320,7 +323,6 @@ void Run::record(const std::filesystem::path& path) {
 }
 
 /// Where the session takes no commands, an empty recording is left.
-
 void Run::record_from_now() {
     try {
         data_->record(*servo_, [this](const std::vector<Command>& history) {

@@ -295,7 +295,7 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     const Bounds of_torque{most_torque, settings.torque_rate_limit, ramp};
     force = within(force, state.force, of_force, step, flags);
     const bool is_warm = spared < std::min(settings.limit, limits.maximum_force);
-    if (is_warm && (flags & force_limited)) flags |= force_warm;
+    if (is_warm && !(force.norm() < spared * (1 - 1e-9))) flags |= force_warm;
     if (turns) torque = within(torque, state.torque, of_torque, step, flags);
     if (!force.allFinite() || !torque.allFinite()) return stop(state, force_not_finite);
     state.time = input.time;

@@ -156,12 +156,16 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
     }
     Moved moved{};
     if (settings.layers) {
+        DeviceLimits limits = settings.device;
+        const double held = settings.force.stale_after;
+        limits.maximum_force =
+            warm_limit(limits, warmed(renderer.force.motors, limits, device.time, held));
         const DeviceTransform& transform = settings.transform;
         const LayerInput input{.method = settings.method,
                                .hip = hip,
                                .proxy = settings.proxy,
                                .force = settings.force,
-                               .limits = settings.device,
+                               .limits = limits,
                                .device_per_volume = 1 / transform.scale,
                                .time = device.time,
                                .pointing = transform.rotation * device.pointing};

@@ -30,6 +30,11 @@ void RequestQueue::finish() {
     }
 }
 
+void RequestQueue::end() {
+    thread_.request_stop();
+    if (thread_.joinable()) thread_.join();
+}
+
 std::string RequestQueue::unsaved() const {
     const std::scoped_lock lock(mutex_);
     return unsaved_;

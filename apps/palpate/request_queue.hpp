@@ -17,7 +17,7 @@ namespace palpate::app {
 /// io::Cancelled, once `stop` is requested.
 using Work = std::function<std::string(const std::stop_token& stop)>;
 
-/// The destructor stops the work under way, waits for its end and drops the rest.
+/// The destructor is as end().
 class RequestQueue {
   public:
     RequestQueue() : thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -31,6 +31,8 @@ class RequestQueue {
     std::vector<Message> messages();
     /// Waits until all is done, or for Ctrl-C.
     void finish();
+    /// Stops the work under way, waits for its end and drops the rest.
+    void end();
     /// Why a volume could not be written; empty if all could.
     std::string unsaved() const;
 

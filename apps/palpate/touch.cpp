@@ -83,6 +83,7 @@ class Terminal {
     /// written; empty if all could.
     std::string finish() {
         queue_.finish();
+        queue_.end();  // after Ctrl-C a volume may still be written, or fail to be
         print_messages();
         tell_what_was_left_out();
         return queue_.unsaved();

@@ -2,6 +2,7 @@
 // the work.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 
@@ -30,7 +31,9 @@ class Slices {
 
     /// After each item. Throws as progress_of() does.
     void done_one() {
-        if (++done_ % slice_ == 0) tell_(double(done_) / double(items_));
+        if (++done_ % slice_ == 0) {
+            tell_(std::min(1.0, double(done_) / double(std::max<std::size_t>(1, items_))));
+        }
     }
 
   private:

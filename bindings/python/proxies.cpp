@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <thread>
 
@@ -289,12 +290,15 @@ double heap_in_use() {
 
 py::dict follow_levels(const Field& field, const Doubles& hips, const Firsts& firsts,
                        const Doubles& levels) {
-    const std::vector<Vec3> points = points_from(hips, "hips");
+    const std::vector<Vec3> points = hips_from(hips);
     const std::vector<std::size_t> begins = begins_of(firsts, points.size());
     if (levels.ndim() != 1 || levels.size() != py::ssize_t(points.size())) {
         throw std::invalid_argument("levels: one for each of hips is needed");
     }
     const double* const level = levels.data();
+    if (!std::all_of(level, level + levels.size(), [](double one) { return std::isfinite(one); })) {
+        throw std::invalid_argument("levels have to be finite");
+    }
     ProxyTrace trace(static_cast<py::ssize_t>(points.size()));
     const Rows rows(trace);
     const ProgressFunction none;

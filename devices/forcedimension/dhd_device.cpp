@@ -326,7 +326,8 @@ Trouble DhdDevice::read_device(DeviceReading& reading) noexcept {
     if (info_.has_gripper) {
         double opening = unknown;
         if (dhd_.get_gripper_angle(&opening, id_) < 0) return failure();
-        if (std::isfinite(opening)) reading.opening = opening;
+        // Left-handed devices count it below 0.
+        if (std::isfinite(opening)) reading.opening = std::abs(opening);
     }
     reading.buttons = dhd_.get_buttons(id_) & 0xFFFFU;
     if (!is_position(reading.position)) trouble.kind = Trouble::Kind::not_a_position;

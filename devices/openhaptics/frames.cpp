@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace palpate::devices::openhaptics {
@@ -174,7 +175,11 @@ void Frames::guard_motors(std::int64_t now) noexcept {
         if (tells_temperature_) note_error(code);
         return;
     }
-    const double warm = std::clamp((std::ranges::max(motors) - 0.5) / 0.2, 0., 1.);
+    // A temperature that is no number counts as too hot.
+    const bool are_numbers =
+        std::ranges::all_of(motors, [](double one) { return std::isfinite(one); });
+    const double hottest = are_numbers ? std::ranges::max(motors) : 1;
+    const double warm = std::clamp((hottest - 0.5) / 0.2, 0., 1.);
     force_limit_ = setup_.most_force + warm * (setup_.continuous_force - setup_.most_force);
     warm_limit_.store(force_limit_ < setup_.most_force ? force_limit_ : 0);
 }

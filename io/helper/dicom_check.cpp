@@ -327,9 +327,7 @@ class Walk {
 
 int DicomExtent::shift() const {
     const bool makes_sense = stored_bits > 0 && high_bit >= stored_bits && high_bit < bits;
-    return makes_sense && !is_real && !is_encapsulated()
-               ? static_cast<int>(high_bit + 1 - stored_bits)
-               : 0;
+    return makes_sense && !is_real ? static_cast<int>(high_bit + 1 - stored_bits) : 0;
 }
 
 std::uint64_t DicomExtent::bytes() const {

@@ -11,6 +11,9 @@
 namespace palpate::io {
 namespace {
 
+constexpr std::size_t most_dimensions =
+    64;  // of a frame; keys are compared in time that rises with them
+
 /// [s] of a date (YYYYMMDD) and a time (HHMMSS.FFFFFF), or of both in one (DT); NaN if a part is
 /// missing. The date counts from any day.
 double moment_of(const std::string& date, std::string time) {
@@ -129,6 +132,9 @@ void set_moment(DicomSlice& s, const FunctionalGroups& groups) {
         s.keys[reference_time] = moment_of(g.text({0x0018, 0x9151}));
         s.keys[acquisition_time] = moment_of(g.text({0x0018, 0x9074}));
         const auto dimensions = g.binary<std::uint32_t>({0x0020, 0x9157});
+        if (dimensions.size() > most_dimensions) {
+            throw Failure("has too many dimensions (DimensionIndexValues); export it again");
+        }
         s.keys.insert(s.keys.end(), dimensions.begin(), dimensions.end());
     });
     groups.with({0x0018, 0x9118}, [&](const DicomGroup& g) {

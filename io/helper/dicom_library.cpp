@@ -94,7 +94,9 @@ std::vector<std::byte> unpacked(const DicomExtent& extent, std::span<const std::
 
 std::vector<std::byte> in_our_order(std::span<const std::byte> bytes, std::size_t word) {
     std::vector<std::byte> samples(bytes.begin(), bytes.end());
-    if (samples.size() % word != 0) throw Failure("has big-endian samples of less than a word");
+    if (samples.size() % word != 0) {
+        throw Failure("has big-endian samples of less than a word; export it again, little-endian");
+    }
     for (std::size_t at = 0; word > 1 && at < samples.size(); at += word) {
         std::reverse(samples.begin() + static_cast<std::ptrdiff_t>(at),
                      samples.begin() + static_cast<std::ptrdiff_t>(at + word));
@@ -115,26 +117,38 @@ void tidy_bits(std::vector<std::byte>& bytes, int stored, int shift, bool is_sig
     }
 }
 
+/// As many bytes as its kind of samples has: what follows trusts it.
+Decoded checked(Decoded frame, std::size_t pixels) {
+    if (frame.samples.size() != pixels * size_of(frame.stored)) {
+        throw Failure("is damaged (its samples have another size than its header says)");
+    }
+    return frame;
+}
+
 /// A frame as it is stored, in words of this machine.
 Decoded frame_from(const DicomExtent& extent, std::span<const std::byte> bytes) {
     Decoded frame;
     frame.samples = extent.is_encapsulated() ? unpacked(extent, bytes)
                                              : in_our_order(bytes, extent.swapped_bytes);
+    const auto pixels = static_cast<std::size_t>(extent.rows * extent.columns);
     if (extent.is_real) {
         frame.stored = extent.bits == 32 ? Stored::float32 : Stored::float64;
-        return frame;
+        return checked(std::move(frame), pixels);
     }
-    const auto pixels = static_cast<std::size_t>(extent.rows * extent.columns);
     const auto word = static_cast<int>(8 * frame.samples.size() / pixels);
     const bool is_given = extent.stored_bits > 0 && extent.stored_bits <= extent.bits;
     const int stored = is_given ? static_cast<int>(extent.stored_bits) : word;
     // A stream of fewer bits than the header says has no sign.
     const bool is_signed = extent.representation == 1 && stored <= word;
-    const int used = std::min(stored, word), shift = extent.shift();
+    // A stream of no more bits than are stored begins at the lowest.
+    const auto stream = extent.is_encapsulated() ? code_stream_size(bytes) : std::nullopt;
+    const bool is_shifted = (stream ? stream->bits : extent.bits) > extent.high_bit;
+    const int used = std::min(stored, word), shift = is_shifted ? extent.shift() : 0;
     frame.stored = word == 8    ? is_signed ? Stored::int8 : Stored::uint8
                    : word == 16 ? is_signed ? Stored::int16 : Stored::uint16
                    : is_signed  ? Stored::int32
                                 : Stored::uint32;
+    frame = checked(std::move(frame), pixels);
     if (used == word && shift == 0) return frame;
     if (word == 8) tidy_bits<std::uint8_t>(frame.samples, used, shift, is_signed);
     if (word == 16) tidy_bits<std::uint16_t>(frame.samples, used, shift, is_signed);
@@ -190,6 +204,12 @@ void check_kind(const DicomExtent& extent, const DicomSlice& slice) {
     }
     const bool is_read = extent.is_real || extent.bits == 1 || extent.bits == 8 ||
                          extent.bits == 16 || extent.bits == 32;
+    if (extent.is_real && (extent.is_encapsulated() || slice.table)) {
+        throw Failure("has floating-point samples in a form that is not read; export it again");
+    }
+    if (extent.bits == 1 && extent.swapped_bytes > 1) {
+        throw Failure("has big-endian samples of one bit; export it again, little-endian");
+    }
     if (!is_read) {
         throw Failure("has samples of " + std::to_string(extent.bits) +
                       " bits, which are not read; export it again");

@@ -13,6 +13,8 @@
 namespace palpate::io {
 namespace {
 
+constexpr std::size_t most_space_dimensions = 8;  // NRRD_SPACE_DIM_MAX of teem
+
 /// A vector of a space: its part among places [mm], and what is beyond (time, in the header's
 /// unit).
 struct SpaceVector {
@@ -124,6 +126,9 @@ Space named_space(const HeaderFields& fields) {
     if (fields.has("space dimension")) {
         space.dimension = static_cast<std::size_t>(
             whole_number_in(fields.value("space dimension"), "space dimension", 1));
+        if (space.dimension > most_space_dimensions) {
+            throw Failure("its header field 'space dimension' is beyond 8; correct the header");
+        }
     }
     return space;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -39,7 +40,8 @@ bool is_before(const NamePart& a, const NamePart& b) {
     const auto fraction = [](const std::string& text) {
         return text.substr(std::min(text.find('.'), text.size()));
     };
-    return fraction(a.text) < fraction(b.text);
+    if (fraction(a.text) != fraction(b.text)) return fraction(a.text) < fraction(b.text);
+    return a.text < b.text;  // 01 and 1 are two names
 }
 
 using Name = std::vector<NamePart>;
@@ -166,8 +168,8 @@ std::map<Counts, Field> roles_of(const std::vector<Field>& fields, const Name& n
     return roles;
 }
 
-/// How many numbers are missing between the first and the last. A constant step (every second
-/// number) is a way of naming, not a gap.
+/// How many numbers are missing between the first and the last, in least steps. A constant step
+/// (every second number) is a way of naming, not a gap.
 long missing_in(const Field& field) {
     std::vector<long> numbers;
     for (const NamePart& value : field.values) {
@@ -175,9 +177,13 @@ long missing_in(const Field& field) {
         if (!number) return 0;
         numbers.push_back(*number);
     }
-    const auto gaps = static_cast<long>(numbers.size()) - 1;
+    long step = std::numeric_limits<long>::max();
+    for (std::size_t i = 1; i < numbers.size(); ++i) {
+        step = std::min(step, numbers[i] - numbers[i - 1]);
+    }
+    if (step < 1) return 0;  // two spellings of a number
     const long span = numbers.back() - numbers.front();
-    return span == gaps * (numbers[1] - numbers[0]) ? 0 : span - gaps;
+    return span / step - (static_cast<long>(numbers.size()) - 1);
 }
 
 void note_missing(long missing, std::vector<std::string>& notes) {

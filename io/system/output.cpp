@@ -71,8 +71,8 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
         return fs::is_regular_file(a, error) && fs::equivalent(a, b, error);
     }
     // Made absolute first: a relative name that does not exist would stay relative.
-    return fs::weakly_canonical(fs::absolute(a), error) ==
-           fs::weakly_canonical(fs::absolute(b), error);
+    const fs::path whole = fs::weakly_canonical(fs::absolute(a), error);
+    return !whole.empty() && whole == fs::weakly_canonical(fs::absolute(b), error);
 }
 
 void check_output(const std::filesystem::path& path) {

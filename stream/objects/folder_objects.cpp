@@ -28,7 +28,8 @@ class FolderObjects : public Objects {
     }
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
-        if (stop.stop_requested() || stop_.stop_requested()) throw Cancelled{};
+        if (!stop.stop_possible()) stop = stop_;
+        if (stop.stop_requested()) throw Cancelled{};
         const io::Descriptor file(io::open_to_read(folder_ / wanted.key));
         if (file.number() < 0) {
             if (errno == ENOENT || errno == ENOTDIR || errno == EISDIR) return std::nullopt;

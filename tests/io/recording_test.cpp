@@ -66,7 +66,7 @@ SessionTick random_tick(Random& random, double time) {
     tick.tick.force = random.point(-3, 3);
     tick.tick.torque = random.point(-300, 300);
     tick.tick.tool = {random.orientation(), random.orientation(), random.below(30)};
-    tick.tick.force_flags = static_cast<std::uint8_t>(random.below(256));
+    tick.tick.force_flags = static_cast<std::uint16_t>(random.below(512));
     tick.tick.update_ns = random.below(100000);
     tick.device.status = static_cast<DeviceStatus>(random.below(7));
     tick.device.position = random.point(-100, 100);

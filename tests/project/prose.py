@@ -138,6 +138,7 @@ def main():
             if len(places) > allowed:
                 problems += [f"{name}:{line}: {rule} ({len(places)}, at most {allowed}): {RULES[rule][0]}\n    {text[:100]}"
                              for line, text in places]
+    problems += [f"prose_counts.json: {name} is no file: prose.py ROOT --write" for name in before if name not in now]
     if write:
         rows = (f"{json.dumps(name)}: {json.dumps(counts)}" for name, counts in sorted(now.items()) if counts)
         COUNTS.write_text("{\n" + ",\n".join(rows) + "\n}\n", encoding="utf-8")

@@ -305,3 +305,43 @@ def test_a_stream_of_fewer_bits_than_are_allocated_is_read(tmp_path):
     array = ramp("u1", (2, 40, 20))
     folder = coded(tmp_path / "a", array, 1, BitsAllocated=16, BitsStored=16, HighBit=15)
     assert numpy.array_equal(palpate.load(folder).volume.array, array)
+
+
+# Headers and samples that do not fit ----------------------------------------------------------------
+
+def test_bits_above_the_stored_ones_are_shifted_down_in_run_lengths_too(tmp_path):
+    array = ramp("u2")
+    slices = stack(array << 4, change=lambda i: {"BitsStored": 12, "HighBit": 15})
+    for syntax in ("explicit", "RLE"):
+        assert numpy.array_equal(noted(save(tmp_path / syntax, slices), "shifted down").array, array)
+
+
+def test_real_numbers_in_a_code_stream_are_refused(tmp_path):
+    folder = coded(tmp_path / "a", ramp("u1", (2, 40, 20)), 1)
+    for path in folder.iterdir():
+        data = path.read_bytes()  # FloatPixelData of one byte a sample, where four are trusted
+        path.write_bytes(data.replace(b"\xe0\x7f\x10\x00OB", b"\xe0\x7f\x08\x00OF"))
+    refused(folder, "export it again")
+
+
+def test_real_numbers_of_a_size_that_comes_after_them_are_refused(tmp_path):
+    slices = stack(ramp("u1"), change=lambda i: {"FloatPixelData": bytes(24), "PixelData": None})
+    folder = save(tmp_path / "a", slices)
+    for path in folder.iterdir():
+        data = path.read_bytes()
+        at, pixels = data.index(b"\x28\x00\x10\x00US"), data.index(b"\xe0\x7f\x08\x00OF")
+        path.write_bytes(data[:at] + data[pixels:] + data[at:pixels])
+    refused(folder)
+
+
+def test_single_bits_in_big_endian_words_are_refused(tmp_path):
+    one_bit = {"BitsAllocated": 1, "BitsStored": 1, "HighBit": 0, "PixelData": bytes(32), "Rows": 16, "Columns": 16}
+    refused(save(tmp_path / "a", stack(ramp("u1"), change=lambda i: one_bit), "big"), "little-endian")
+
+
+def test_real_numbers_are_not_looked_up_in_a_table(tmp_path):
+    table = items(LUTDescriptor=[256, 0, 16], LUTData=list(range(256)))
+    real = lambda i: {"FloatPixelData": numpy.full((4, 6), numpy.nan, "f4").tobytes(), "BitsAllocated": 32, "PixelData": None,
+                      "BitsStored": None, "HighBit": None, "PixelRepresentation": None, "ModalityLUTSequence": table,
+                      "RescaleSlope": None, "RescaleIntercept": None}
+    refused(save(tmp_path / "a", stack(ramp("i2"), change=real)), "export it again")

@@ -107,7 +107,9 @@ def test_names_of_slices_that_leave_a_doubt_are_refused(tmp_path, names, words):
     (["a9", "a10", "a11"], ""), (["s1_1", "s1_2", "s2_3", "s2_4"], ""), (["0001_z1.25", "0001_z1.5", "0001_z2.0"], ""),
     (["20240101_120301_001", "20240101_120305_002", "20240101_120311_003"], ""), (["scan.001.0001", "scan.001.0002"], ""),
     (["z1_t1200", "z2_t1200", "z3_t1201"], ""), (["a", "b", "c"], ""), (["one", "slice1", "slice2"], "not alike"),
-    (["t1", "t2", "t3"], "count times"), (["1", "2", "4"], "1 numbers are missing"), (["1", "3", "5"], "")))
+    (["t1", "t2", "t3"], "count times"), (["1", "2", "4"], "1 numbers are missing"),
+    (["2", "4", "8"], "1 numbers are missing"), (["1", "01", "2"], ""), (["1", "3", "5"], ""),
+    (["1", "9000000000000000000", "9000000000000000001"], "numbers are missing")))
 def test_numbers_that_go_together_are_slices(tmp_path, names, note):
     values, notes = slices_of(folder(tmp_path / "a", names))
     assert values == list(range(len(names)))
@@ -270,3 +272,9 @@ def test_messages_say_what_to_do(tmp_path):
         refused(tmp_path / name, "save the pair as one .nii file")
     tifffile.imwrite(tmp_path / "a.tif", ramp("f4").astype("f2"), photometric="minisblack")
     refused(tmp_path / "a.tif", "16 bits", "as 32-bit float")
+
+
+def test_a_space_of_absurd_dimensions_is_refused(tmp_path):
+    path = tmp_path / "a.nrrd"
+    path.write_bytes(b"NRRD0005\ntype: uint8\ndimension: 3\nspace dimension: 2000000000\nsizes: 2 2 2\nencoding: raw\n\n" + bytes(8))
+    refused(path, "beyond 8")

@@ -169,7 +169,7 @@ void LayersController::restore(const SharedLayers& layers, const QString& file) 
         },
         [this, read] {
             if (!content_.live()) return;
-            content_.live()->send(command::UseLayers{*read});
+            content_.effect().request(command::UseLayers{*read});
             Q_EMIT content_.run_changed();
         });
 }
