@@ -335,12 +335,14 @@ def test_real_numbers_of_a_size_that_comes_after_them_are_refused(tmp_path):
 
 
 def test_single_bits_in_big_endian_words_are_refused(tmp_path):
-    one_bit = {"BitsAllocated": 1, "BitsStored": 1, "HighBit": 0, "PixelData": bytes(32), "Rows": 16, "Columns": 16}
-    refused(save(tmp_path / "a", stack(ramp("u1"), change=lambda i: one_bit), "big"), "little-endian")
+    slices = stack(ramp("u1"), change=lambda i: {"BitsAllocated": 1, "BitsStored": 1, "HighBit": 0, "Rows": 16, "Columns": 16})
+    for data in slices:
+        data.add_new((0x7fe0, 0x0010), "OW", bytes(32))
+    refused(save(tmp_path / "a", slices, "big"), "little-endian")
 
 
 def test_real_numbers_are_not_looked_up_in_a_table(tmp_path):
-    table = items(LUTDescriptor=[256, 0, 16], LUTData=list(range(256)))
+    table = items(LUTDescriptor=[256, 0, 16], LUTData=numpy.arange(256, dtype="u2").tobytes())
     real = lambda i: {"FloatPixelData": numpy.full((4, 6), numpy.nan, "f4").tobytes(), "BitsAllocated": 32, "PixelData": None,
                       "BitsStored": None, "HighBit": None, "PixelRepresentation": None, "ModalityLUTSequence": table,
                       "RescaleSlope": None, "RescaleIntercept": None}
