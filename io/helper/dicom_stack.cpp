@@ -386,8 +386,8 @@ const DicomSeries& choose_series(const std::vector<DicomSeries>& all, const std:
             return other.uid == series.uid && other.slices.front().kind != kind;
         };
         if (std::ranges::any_of(all, differs) && !kind.empty()) {
-            std::string& text = list.back().description;
-            text += (text.empty() ? "" : ", ") + kind;
+            std::string& about = list.back().description;
+            about += (about.empty() ? "" : ", ") + kind;
         }
     }
     throw ChooseSeries(text + "; choose one by its number or UID", std::move(list));
