@@ -20,6 +20,7 @@ constexpr std::array<unsigned char, 3> greeting{0x0a, 0x43, 0x0d};
 constexpr std::size_t greeting_answer = 4;
 constexpr std::array<unsigned char, 1> loader_call{0x41};
 constexpr std::size_t loader_answer = 2;
+constexpr std::size_t most_at_once = 8 * packet_size;
 constexpr std::size_t block = 62;  // of a USB packet of 64 bytes, two are the converter's
 
 }  // namespace
@@ -73,16 +74,35 @@ std::vector<unsigned char> Port::read(std::size_t size, int most_waits) {
     return bytes;
 }
 
+/// Taken for the answer to the next packet, it would make every later reading a packet old.
+void Port::forget_late_answer() {
+    std::array<unsigned char, most_at_once> bytes{};
+    for (std::size_t count = 0; count < most_at_once;) {  // noise must not hold it up
+        const int got = ftdi_.read(context_, bytes.data(), static_cast<int>(bytes.size()));
+        check(got, "reading");
+        if (got == 0) break;
+        count += static_cast<std::size_t>(got);
+    }
+    answers_ = {};
+}
+
 std::optional<FromDevice> Port::exchange(const ToDevice& message, int most_waits) {
+    if (!is_answered_) forget_late_answer();
+    is_answered_ = false;
     write(packed(message));
     // More than one packet may have come while nobody read: the newest counts.
-    std::array<unsigned char, 8 * packet_size> bytes{};
+    std::array<unsigned char, most_at_once> bytes{};
+    std::size_t count = 0;
     for (int waits = 0; waits < most_waits;) {
         const int got = ftdi_.read(context_, bytes.data(), static_cast<int>(bytes.size()));
         check(got, "reading");
         const auto size = std::min(static_cast<std::size_t>(got), bytes.size());
-        if (const auto answer = answers_.take(std::span(bytes).first(size))) return answer;
-        ++waits;  // bytes that are no answer must not hold it up either
+        if (const auto answer = answers_.take(std::span(bytes).first(size))) {
+            is_answered_ = true;
+            return answer;
+        }
+        count += size;
+        if (size == 0 || count > most_at_once) ++waits;  // noise must not hold it up
     }
     return std::nullopt;
 }

@@ -46,9 +46,12 @@ class Port {
     std::vector<unsigned char> read(std::size_t size, int most_waits);
     bool starts_loader();
 
+    void forget_late_answer();
+
     const Ftdi& ftdi_;
     void* context_;
     Answers answers_;
+    bool is_answered_ = true;  // the last packet
 };
 
 }  // namespace palpate::devices::falcon

@@ -251,6 +251,20 @@ TEST_F(Falcon, a_few_missing_answers_are_borne_and_many_end_the_force) {
     EXPECT_TRUE(presses(Vec3(1, 0, 0)));
 }
 
+TEST_F(Falcon, an_answer_that_comes_late_is_not_taken_for_that_of_the_next_packet) {
+    const auto device = open();
+    with([](auto& falcon) { falcon.answers_after = 1; });
+    ASSERT_TRUE(becomes(DeviceStatus::ready, 5ms));
+    with([](auto& falcon) { falcon.answers_after = 5; });  // just after it was given up
+    step();
+    with([](auto& falcon) { falcon.answers_after = 1; });
+    for (const Vec3& place : {Vec3(10, 0, 0), Vec3(0, 20, 0), Vec3(0, 0, -20)}) {
+        hold(place);
+        step();
+        EXPECT_LT((device->read(0).position - place).norm(), 0.1);
+    }
+}
+
 TEST_F(Falcon, that_is_unplugged_while_pressed_is_lost_and_comes_back) {
     const auto device = open();
     ASSERT_TRUE(presses(Vec3(1, 0, 0)));

@@ -27,6 +27,11 @@ struct Line {
     std::size_t loaded = 0;  // bytes of firmware
     bool came_back_wrong = false;
     std::deque<unsigned char> to_host;
+    struct Later {
+        int reads;  // empty ones, until then
+        std::deque<unsigned char> bytes;
+    };
+    std::deque<Later> later;  // answers
 } line;
 
 void send(std::initializer_list<int> bytes) {
@@ -39,7 +44,7 @@ int number_at(const unsigned char* bytes) {
     return value >= 32768 ? value - 65536 : value;
 }
 
-void answer() {
+void answer_now() {
     for (const char c : mock.state.noise) line.to_host.push_back(static_cast<unsigned char>(c));
     send({'<'});
     for (const int encoder : mock.state.encoders) {
@@ -48,6 +53,24 @@ void answer() {
     }
     const unsigned homed = mock.state.is_homed ? 7U << 4U : 0U;
     send({'A' + static_cast<int>(mock.state.buttons | homed), 'A', '>'});
+}
+
+void answer() {
+    std::deque<unsigned char> before;
+    before.swap(line.to_host);
+    answer_now();
+    before.swap(line.to_host);
+    line.later.push_back({mock.state.answers_after, before});
+}
+
+/// What is due goes on the line.
+void arrive(int empty_reads) {
+    for (auto& one : line.later) one.reads -= empty_reads;
+    while (!line.later.empty() && line.later.front().reads <= 0) {
+        const auto& bytes = line.later.front().bytes;
+        line.to_host.insert(line.to_host.end(), bytes.begin(), bytes.end());
+        line.later.pop_front();
+    }
 }
 
 void take_packet(const unsigned char* bytes, int size) {
@@ -181,6 +204,7 @@ MOCK_EXPORT int ftdi_read_data(void*, unsigned char* bytes, int size) {
     {
         const std::lock_guard lock(mock.mutex);
         if (mock.state.is_unplugged) return no_device;
+        arrive(0);
         if (!line.to_host.empty()) {
             const int most = mock.state.split > 0 ? std::min(size, mock.state.split) : size;
             const int got = std::min(most, static_cast<int>(line.to_host.size()));
@@ -188,6 +212,7 @@ MOCK_EXPORT int ftdi_read_data(void*, unsigned char* bytes, int size) {
             line.to_host.erase(line.to_host.begin(), line.to_host.begin() + got);
             return got;
         }
+        arrive(1);
         waits = mock.state.while_waiting;
         latency = line.latency;
     }

@@ -24,6 +24,7 @@ struct MockFtdiState {
     bool refuses_open = false;
     bool is_unplugged = false;  // every call fails
     int silent_packets = 0;     // that it does not answer
+    int answers_after = 0;      // so many empty reads
     std::string noise;          // before each answer
     int failing_loads = 0;      // that send a byte back wrong
     bool loader_is_dead = false;
