@@ -6,12 +6,12 @@
 #include <string>
 #include <thread>
 
-#include "devices/link.hpp"
+#include "devices/linked_device.hpp"
 #include "palpate-c/palpate.h"
 
 namespace palpate::c {
 
-class OwnDevice final : public Device {
+class OwnDevice final : public devices::LinkedDevice {
   public:
     /// Throws std::invalid_argument for numbers that no device has, std::system_error without a
     /// thread.
@@ -21,12 +21,6 @@ class OwnDevice final : public Device {
 
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
-    DeviceReading read(double) noexcept override { return link_.read(devices::monotonic_ns()); }
-    void write(const Wrench& wrench, double) noexcept override {
-        link_.write(wrench, devices::monotonic_ns());
-    }
-    void stop() noexcept override { link_.stop(); }
-    bool is_stopping() const noexcept override { return link_.stopping(); }
 
   private:
     void run() noexcept;
@@ -34,7 +28,6 @@ class OwnDevice final : public Device {
 
     const palpate_own_device callbacks_;
     DeviceInfo info_;
-    devices::Link link_;
     std::atomic<bool> lost_{false}, done_{false};
     std::thread thread_;  // last: it uses all of the above
 };

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "bindings/python/casters.hpp"
-#include "devices/link.hpp"
+#include "devices/linked_device.hpp"
 
 namespace palpate::python {
 
@@ -22,7 +22,7 @@ T returned_by(const char* function, const py::object& returned) {
                                 ", not " + std::string(py::repr(returned)));
 }
 
-class PythonDevice final : public Device {
+class PythonDevice final : public devices::LinkedDevice {
   public:
     /// `self` has read() and may have write(force, torque) and close(). Starts the thread, which
     /// calls them `rate` [Hz] times a second. With the GIL. Throws std::invalid_argument.
@@ -41,12 +41,6 @@ class PythonDevice final : public Device {
     DeviceInfo info() const override { return info_; }
     /// What its functions raised.
     std::string problem() const override;
-    DeviceReading read(double) noexcept override { return link_.read(devices::monotonic_ns()); }
-    void write(const Wrench& wrench, double) noexcept override {
-        link_.write(wrench, devices::monotonic_ns());
-    }
-    void stop() noexcept override { link_.stop(); }
-    bool is_stopping() const noexcept override { return link_.stopping(); }
 
   private:
     void run();
@@ -59,7 +53,6 @@ class PythonDevice final : public Device {
     py::object self_;  // used with the GIL
     const DeviceInfo info_;
     const double rate_;
-    devices::Link link_;
     mutable std::mutex mutex_;  // of problem_
     std::string problem_;
     std::int64_t rests_until_ = 0;  // [ns, monotonic] the device's thread's: a fault until then

@@ -75,7 +75,10 @@ std::array<int, 3> motors_for(const Vec3& force, const Vec3& position) {
 }
 
 FalconDevice::FalconDevice(const std::string& library, Settings settings, const Timing& timing)
-    : timing_(timing), ftdi_(library), settings_(std::move(settings)), info_(info_of(settings_)) {
+    : LinkedDevice(timing),
+      ftdi_(library),
+      settings_(std::move(settings)),
+      info_(info_of(settings_)) {
     const int count = ftdi_.count();
     if (count <= static_cast<int>(settings_.index)) {
         throw DeviceError("no device with index=" + std::to_string(settings_.index) + " (" +
@@ -100,17 +103,7 @@ FalconDevice::~FalconDevice() {
 }
 
 void FalconDevice::start() {
-    thread_ = std::thread([this] { run(); });
-}
-
-void FalconDevice::run() noexcept {
-    prepare_device_thread();
-    std::int64_t next = timing_.now();
-    while (!quit_) {
-        step();
-        next = std::max(next + period, timing_.now());
-        timing_.sleep_until(next);
-    }
+    thread_ = std::thread([this] { keep_stepping(period, timing_, quit_, [this] { step(); }); });
 }
 
 void FalconDevice::step() noexcept {

@@ -11,6 +11,7 @@
 
 #include "devices/falcon/port.hpp"
 #include "devices/latest_trouble.hpp"
+#include "devices/linked_device.hpp"
 
 namespace palpate::devices::falcon {
 
@@ -44,7 +45,7 @@ std::array<int, 3> motors_for(const Vec3& force, const Vec3& position);
 /// The greatest that a motor is asked for.
 constexpr int most_of_motor = 4096;
 
-class FalconDevice final : public Device {
+class FalconDevice final : public LinkedDevice {
   public:
     FalconDevice(const std::string& library, Settings settings, const Timing& timing = {});
     /// Ends the thread. The last packet asks for no force.
@@ -58,27 +59,18 @@ class FalconDevice final : public Device {
 
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
-    DeviceReading read(double) noexcept override { return link_.read(timing_.now()); }
-    void write(const Wrench& wrench, double) noexcept override {
-        link_.write(wrench, timing_.now());
-    }
-    void stop() noexcept override { link_.stop(); }
-    bool is_stopping() const noexcept override { return link_.stopping(); }
 
   private:
     // Called by the thread only.
-    void run() noexcept;
     void wake(std::int64_t now);
     std::optional<Trouble> converse(DeviceReading& reading);
     Trouble take(const FromDevice& answer, DeviceReading& reading);
     ToDevice next_message(std::int64_t now);
     void lose(const std::string& why, std::int64_t now) noexcept;
 
-    const Timing timing_;
     const Ftdi ftdi_;
     const Settings settings_;
     const DeviceInfo info_;
-    Link link_;
     LatestTrouble<Trouble> trouble_;
     std::atomic<bool> quit_{false};
 

@@ -108,7 +108,7 @@ Opened::~Opened() {
 }
 
 DhdDevice::DhdDevice(const std::string& library, const Settings& settings, const Timing& timing)
-    : timing_(timing),
+    : LinkedDevice(timing),
       dhd_(library),
       opened_(dhd_, settings),
       id_(opened_.id()),
@@ -145,7 +145,7 @@ DhdDevice::~DhdDevice() {
 }
 
 void DhdDevice::start() {
-    thread_ = std::thread([this] { run(); });
+    thread_ = std::thread([this] { keep_stepping(period, timing_, quit_, [this] { step(); }); });
 }
 
 DeviceInfo DhdDevice::ask(const Settings& settings) const {
@@ -169,16 +169,6 @@ DeviceInfo DhdDevice::ask(const Settings& settings) const {
     info.has_gripper = model.has_gripper && dhd_.get_gripper_angle;
     info.buttons = arm_.has_button_row ? 4 : (!model.has_gripper || emulates_button_ ? 1 : 0);
     return info;
-}
-
-void DhdDevice::run() noexcept {
-    prepare_device_thread();
-    std::int64_t next = timing_.now();
-    while (!quit_) {
-        step();
-        next = std::max(next + period, timing_.now());
-        timing_.sleep_until(next);
-    }
 }
 
 void DhdDevice::initialise() noexcept {
@@ -326,8 +316,7 @@ Trouble DhdDevice::read_device(DeviceReading& reading) noexcept {
     if (info_.has_gripper) {
         double opening = unknown;
         if (dhd_.get_gripper_angle(&opening, id_) < 0) return failure();
-        // Left-handed devices count it below 0.
-        if (std::isfinite(opening)) reading.opening = std::abs(opening);
+        reading.opening = std::abs(opening);  // left-handed devices count it below 0
     }
     reading.buttons = dhd_.get_buttons(id_) & 0xFFFFU;
     if (!is_position(reading.position)) trouble.kind = Trouble::Kind::not_a_position;

@@ -10,6 +10,7 @@
 
 #include "devices/forcedimension/dhd.hpp"
 #include "devices/latest_trouble.hpp"
+#include "devices/linked_device.hpp"
 
 namespace palpate::devices::forcedimension {
 
@@ -57,7 +58,7 @@ class Opened {
     char id_ = 0;
 };
 
-class DhdDevice final : public Device {
+class DhdDevice final : public LinkedDevice {
   public:
     DhdDevice(const std::string& library, const Settings& settings, const Timing& timing = {});
     /// Ends the thread. The last force is zero.
@@ -71,18 +72,11 @@ class DhdDevice final : public Device {
 
     DeviceInfo info() const override { return info_; }
     std::string problem() const override;
-    DeviceReading read(double) noexcept override { return link_.read(timing_.now()); }
-    void write(const Wrench& wrench, double) noexcept override {
-        link_.write(wrench, timing_.now());
-    }
-    void stop() noexcept override { link_.stop(); }
-    bool is_stopping() const noexcept override { return link_.stopping(); }
 
   private:
     DeviceInfo ask(const Settings& settings) const;
 
     // Called by the thread only.
-    void run() noexcept;
     void initialise() noexcept;
     void centre_wrist() noexcept;
     void moves_by_itself() noexcept;
@@ -93,7 +87,6 @@ class DhdDevice final : public Device {
     Trouble read_device(DeviceReading& reading) noexcept;
     Trouble failure() const noexcept;
 
-    const Timing timing_;
     const Dhd dhd_;
     const Opened opened_;
     const char id_;
@@ -101,7 +94,6 @@ class DhdDevice final : public Device {
     const bool renders_torque_;
     const bool emulates_button_;
     const DeviceInfo info_;
-    Link link_;
     LatestTrouble<Trouble> trouble_;
     std::atomic<bool> quit_{false};
     std::atomic<bool> has_watchdog_{false};  // the device drops a force that is not renewed

@@ -98,7 +98,7 @@ Clock::duration Questions::behind(Clock::time_point now) const {
 }
 
 Inverse3::Inverse3(Settings settings, Address address, Talk talk, const Timing& timing)
-    : timing_(timing),
+    : LinkedDevice(timing),
       settings_(std::move(settings)),
       address_(std::move(address)),
       service_(service_at(address_)),

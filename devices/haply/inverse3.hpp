@@ -11,7 +11,7 @@
 
 #include "devices/haply/protocol.hpp"
 #include "devices/haply/socket.hpp"
-#include "devices/link.hpp"
+#include "devices/linked_device.hpp"
 #include "devices/models.hpp"
 #include "devices/vendor_library.hpp"
 
@@ -65,7 +65,7 @@ class Questions {
     Clock::time_point last_, behind_since_;
 };
 
-class Inverse3 final : public Device {
+class Inverse3 final : public LinkedDevice {
   public:
     /// `talk` has found the device. Its channel keeps the time of `timing`.
     Inverse3(Settings settings, Address address, Talk talk, const Timing& timing = {});
@@ -80,12 +80,6 @@ class Inverse3 final : public Device {
 
     DeviceInfo info() const override;
     std::string problem() const override;
-    DeviceReading read(double) noexcept override { return link_.read(timing_.now()); }
-    void write(const Wrench& wrench, double) noexcept override {
-        link_.write(wrench, timing_.now());
-    }
-    void stop() noexcept override { link_.stop(); }
-    bool is_stopping() const noexcept override { return link_.stopping(); }
 
   private:
     // Called by the thread only.
@@ -116,12 +110,10 @@ class Inverse3 final : public Device {
         bool has_grip;
     };
 
-    const Timing timing_;
     const Settings settings_;
     const Address address_;
     const std::string service_;  // in words
     const bool is_minverse_;
-    Link link_;
     Newest<Problem> problem_;
     Newest<Identity> identity_;
     std::atomic<bool> quit_{false};
