@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 namespace palpate::devices {
@@ -33,6 +34,7 @@ void Link::report(const DeviceReading& reading, std::int64_t now) noexcept {
     last_ = reading;
     // An age below 0 would come to look fresh when time is added to it.
     if (!(last_.age >= 0)) last_.age = std::numeric_limits<double>::quiet_NaN();
+    if (last_.opening && !std::isfinite(*last_.opening)) last_.opening.reset();
     reading_.put({last_, now});
 }
 

@@ -153,6 +153,9 @@ TEST_F(ForceDimension, the_opening_of_a_gripper_comes_with_each_reading) {
     with([](auto& dhd) { dhd.opening = 0.02; });
     step();
     EXPECT_TRUE(grasps(device->read(0)));
+    with([](auto& dhd) { dhd.opening = -0.4; });  // of a left-handed device
+    step();
+    EXPECT_EQ(device->read(0).opening, 0.4);
     with([](auto& dhd) { dhd.opening = std::numeric_limits<double>::quiet_NaN(); });
     step();
     EXPECT_EQ(device->read(0).opening, std::nullopt);

@@ -344,8 +344,11 @@ class OpenHapticsMotors : public OpenHaptics {
 
 TEST_F(OpenHapticsMotors, that_are_warm_are_asked_for_less_until_the_continuous_force_is_left) {
     device_ = open();
-    for (const auto& [temperature, newtons] :
-         {std::pair(0.5, 3.3), {0.6, 0.5 * (3.3 + 0.88)}, {0.9, 0.88}, {0.1, 3.3}}) {
+    for (const auto& [temperature, newtons] : {std::pair(0.5, 3.3),
+                                               {0.6, 0.5 * (3.3 + 0.88)},
+                                               {0.9, 0.88},
+                                               {0.1, 3.3},
+                                               {std::nan(""), 0.88}}) {
         with([warm = temperature](MockHd& hd) { hd.temperature = warm; });
         EXPECT_NEAR(after(150ms, 3.3), newtons, 1e-9);
         EXPECT_EQ(contains(device_->problem(), "motors are warm"), newtons < 3.3);
