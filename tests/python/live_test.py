@@ -194,15 +194,15 @@ def test_the_servo_ticks_on_while_a_python_thread_holds_the_gil():
     servo = palpate.Servo(renderer(), device)
     with servo:
         until(lambda: servo.snapshot() and servo.snapshot().number > 50)
-        before, asked = servo.snapshot().number, []
+        at_last_write = {}
 
         def has_ticked():
-            asked.append(len(device.forces))
-            return servo.snapshot().number > before + 1000
+            """1000 ticks since the device's thread had the GIL for the last time."""
+            now = servo.snapshot().number
+            return now > at_last_write.setdefault(len(device.forces), now) + 1000
 
-        # A servo that needed the GIL would stand still. The device's thread may have been about to get it.
+        # A servo that needed the GIL would stand still.
         assert with_the_gil(has_ticked)
-        assert asked[-1] <= asked[0] + 1, "the GIL was released"
         assert servo.report().compute["p999"] < 1e6  # ns
 
 
