@@ -287,6 +287,9 @@ void Run::use_device(const devices::DeviceChoice& device) {
     stop_recording();
     stop_servo();
     device_->stop();
+    if (device == setup_.device) {  // its motors are as warm as they were
+        session.renderer.force.motors.warmth = servo_->session().renderer.force.motors.warmth;
+    }
     setup_ = std::move(setup);
     hold(std::move(opened));
     launch(std::move(session));

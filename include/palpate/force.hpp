@@ -147,7 +147,8 @@ struct MotorHeat {
 /// pause.
 MotorHeat warmed(MotorHeat heat, const DeviceLimits& limits, double time, double held) noexcept;
 /// [N] that such motors may be given: the maximum up to a warmth of 0.7, then less, down to the
-/// continuous force at 1. So the warmth never exceeds 1.
+/// continuous force at 1. So the warmth does not exceed 1 while a tick adds little to it, as with
+/// every device in devices/models.cpp.
 double warm_limit(const DeviceLimits& limits, const MotorHeat& heat) noexcept;
 
 /// State between ticks.

@@ -17,6 +17,8 @@ using enum HapticProperty;
 
 namespace {
 
+constexpr double no_limit = 1e6;  // [N]
+
 struct NeedleBalance {
     double most_gained = -1e300;  ///< of all loops [J]
     double lost = 0;
@@ -41,7 +43,9 @@ NeedleBalance go_round(const Renderer& begin, const std::vector<Vec3>& corners, 
         balance.punctures += tick.layers.punctured;
     };
     step(from);
-    const double stored = last_force.dot(renderer.proxy.scp_physical - from);
+    // Half of it in a spring, at most all of it in one that is limited.
+    const double part = renderer.settings.force.limit < no_limit ? 1 : 0.5;
+    const double stored = part * last_force.dot(renderer.proxy.scp_physical - from);
     work = 0;
     for (std::size_t i = 1; i <= corners.size(); ++i) {
         const Vec3 a = corners[i - 1], b = corners[i % corners.size()];
@@ -55,7 +59,7 @@ NeedleBalance go_round(const Renderer& begin, const std::vector<Vec3>& corners, 
 }
 
 void never_gains(const TestField& test, LayerPlan plan, double drag_force, std::uint64_t seed,
-                 double limit = 1e6) {
+                 double limit = no_limit) {
     Layers layers = planned_layers(test, plan);
     for (Layer& l : layers.layers) l[drag] = drag_force;
     layers.needle = Needle{};
