@@ -4,6 +4,7 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/commands.hpp"
+#include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 #include "bindings/python/without_gil.hpp"
 
@@ -108,8 +109,12 @@ void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
 void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
     using R = LiveRun;
     run.def(
-           "edit", [](R& r, const Edit& edit) { r.data().editor().apply(edit); }, py::arg("edit"),
-           Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
+           "edit",
+           [](R& r, const Edit& edit) {
+               until_ctrl_c(
+                   [&](const std::stop_token& stop) { r.data().editor().apply(edit, stop); });
+           },
+           py::arg("edit"), Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
         .def(
             "undo", [](R& r) { return r.data().editor().undo(); }, Unlocked(),
             "False if there is nothing to undo.")
@@ -123,7 +128,11 @@ void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
             },
             py::arg("brush"), Unlocked(), "A HandBrush that follows the proxy; None: only feel.")
         .def(
-            "save", [](R& r, const fs::path& path) { return r.data().save(path, {}); },
+            "save",
+            [](R& r, const fs::path& path) {
+                const ProgressFunction none;
+                return r.data().save(path, progress_of(none));
+            },
             py::arg("path"), Unlocked(), "Writes the samples as they are now. Raises OutputError.");
 }
 
