@@ -324,7 +324,8 @@ std::vector<std::int64_t> sizes_of(const Header& header) {
     }
     std::vector<std::int64_t> sizes;
     for (std::size_t a = 0; a < static_cast<std::size_t>(axes); ++a) {
-        sizes.push_back(header.number<std::int16_t>(42 + 2 * a));
+        const auto size = header.number<std::int16_t>(42 + 2 * a);
+        sizes.push_back(size == 0 && a > 2 ? 1 : size);  // as the reference library takes it
     }
     while (sizes.size() > 3 && sizes.back() == 1) sizes.pop_back();
     return sizes;
@@ -351,7 +352,8 @@ VolumeHeader nifti_header(const Request& request) {
     check_kind(bytes);
     VolumeHeader header;
     header.stored = stored_from(bytes.number<std::int16_t>(70));
-    if (bytes.number<std::int16_t>(72) != static_cast<int>(8 * size_of(header.stored))) {
+    const int bits = bytes.number<std::int16_t>(72);  // some programs leave it out
+    if (bits != 0 && bits != static_cast<int>(8 * size_of(header.stored))) {
         throw Failure("its header's bits a sample do not fit its type; the header is damaged");
     }
     header.sizes = sizes_of(bytes);

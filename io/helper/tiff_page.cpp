@@ -1,8 +1,6 @@
 // A page of a TIFF file. See the header.
 #include "io/helper/tiff_page.hpp"
 
-#include <algorithm>
-
 namespace palpate::io {
 
 namespace fs = std::filesystem;
@@ -42,7 +40,10 @@ Tiff open_to_read(const fs::path& file, const std::string& more) {
 
 std::string text_of(const TiffPage& page) {
     return std::to_string(page.width) + "x" + std::to_string(page.height) + " of " +
-           name_of(page.stored);
+           name_of(page.stored) +
+           (page.orientation == ORIENTATION_TOPLEFT
+                ? ""
+                : " (Orientation " + std::to_string(page.orientation) + ")");
 }
 
 TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
@@ -75,10 +76,13 @@ TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
                       " values a sample, PhotometricInterpretation " + std::to_string(photometric) +
                       "); save it in grey");
     }
-    const char* const white = "its zero means white: values were taken as they are";
-    if (photometric == PHOTOMETRIC_MINISWHITE &&
-        std::find(notes.begin(), notes.end(), white) == notes.end()) {
-        notes.emplace_back(white);
+    if (photometric == PHOTOMETRIC_MINISWHITE) {
+        add_note(notes, "its zero means white: values were taken as they are");
+    }
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_ORIENTATION, &page.orientation);
+    if (page.orientation != ORIENTATION_TOPLEFT) {
+        add_note(notes, "its Orientation " + std::to_string(page.orientation) +
+                            " was not applied: rows and columns were taken as they are stored");
     }
     page.stored = stored_from(bits, format, file);
     return page;
