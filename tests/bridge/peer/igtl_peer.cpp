@@ -1,6 +1,7 @@
 // A client or server made of OpenIGTLink's own library, as 3D Slicer is: igtl_peer connect|listen
-// PORT ACTION...; actions: poses COUNT (of each kind), status TEXT (until it has it), string TEXT,
-// image NAME SIZE LEVEL, surface, await TYPE, garbage. Prints a line a message, but for poses.
+// PORT ACTION... Prints a line a message, but for poses.
+// Actions: poses COUNT (until so many of each kind have come), status TEXT (until a status has it),
+// await TYPE, string TEXT, image NAME SIZE LEVEL, surface, garbage.
 #include <igtlClientSocket.h>
 #include <igtlImageMessage.h>
 #include <igtlPolyDataMessage.h>
