@@ -72,3 +72,10 @@ def save(figure, path):
     path.with_name(path.name + ".svg").write_text(one_line, encoding="utf-8")
     figure.savefig(path.with_name(path.name + ".pdf"), metadata={"CreationDate": None})
     matplotlib.pyplot.close(figure)
+
+
+def pixels(figure):
+    """As PNG, for paper."""
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="png")
+    return drawn.getvalue()
