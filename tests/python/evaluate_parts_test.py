@@ -410,3 +410,14 @@ def test_a_needle_in_the_wrong_tissue_is_counted_as_an_error():
     table = needle.rows_of([needle.path(random) for _ in range(4)], {needle.TRUTH: truth, needle.RAW: softer})
     assert (table.where(scan=needle.TRUTH)["rms_n"] == 0).all() and (table.where(scan=needle.RAW)["rms_n"] > 0.02).all()
     assert (table.where(scan=needle.TRUTH)["punctures"] == 4).all() and (table.where(scan=needle.RAW)["punctures"] < 4).all()
+
+
+def test_a_trembling_hand_feels_a_surface_that_is_too_stiff_buzz():
+    subject = of_text("synthetic:sphere")
+    calm, wild = (stability.trembled(subject, "trembling", "touch", 250, stiffness) for stiffness in (0.4, 20))
+    assert calm["in_contact"] == "yes" and calm["above_20_hz_percent"] < 1 < stability.FORCE < wild["above_20_hz_percent"]
+    row = {"part": "trembling", "rate_hz": 1000, **{name: calm[name] for name in ("in_contact", "above_20_hz_percent")}}
+    for change, held in (({}, True), ({"above_20_hz_percent": 8}, False), ({"in_contact": "no"}, False)):
+        claim, = stability.trembling_claim(Table([{**row, **change}]))
+        assert claim.held == held
+    assert not list(stability.trembling_claim(Table()))
