@@ -303,7 +303,6 @@ def rotation_figure(table, plan):
         rate_axis(axes, plan.rates)
     panels[0].set_ylabel("stiffness [N mm/rad]")
     drawn.suptitle("A delay lowers the rotational stiffness that is stable", x=0.01, ha="left")
-    drawn.canvas.draw()
     figures.label_ends(panels[2])
     return Figure("rotation", "The largest rotational stiffness at which a simulated device with torque in a light hand comes to rest, "
                   "of those tried up to 2.5 times the bound of the theory. Left: without delay, friction and steps, where the bound is "

@@ -398,7 +398,6 @@ def hostile_figure(table):
         axes.set(title=name, xscale="log", xlabel="points of the tool")
     panels[0].set_ylabel("deepest point [voxel]")
     drawn.suptitle("The exact method keeps every point outside; a penalty does not", x=0.01, ha="left")
-    drawn.canvas.draw()
     figures.label_ends(panels[2])
     return Figure("", "Depth of the deepest point of a tool, for tools of more and more points (the scalpel has 528), in three scenes. "
                   "In noise and salt, depths are cut off at 10 voxels. In the shell, depth counts from the ideal inner radius, which "
