@@ -39,7 +39,7 @@ Options:
   --version                   Display program version information and exit
   -o,--output FOLDER          Folder for the results [palpate-evaluation]
   --volume VOLUME@ISOVALUE    Volume to use instead of the experiment's own. May be given again
-  --data FOLDER               Folder with the real volumes that some experiments use, such as lobster.nrrd (default: environment PALPATE_DATA)
+  --data FOLDER               Folder with the real volumes that some experiments use, such as lobster.nrrd, and with recordings, such as plane0/probe.traj (default: environment PALPATE_DATA)
   --method {{{','.join(METHODS)}}}
                               Proxy method, for walk-through [exact]
   --seed UINT                 Seed of everything random [1]
