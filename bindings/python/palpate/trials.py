@@ -11,9 +11,14 @@ import dataclasses
 import math
 import sys
 import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any, Optional, Union
 
 import numpy
+
+_Path = Union[str, Path]
+_Row = dict[str, float]
 
 COLUMNS = ("trial", "difference", "first", "second", "answer", "correct")
 GUESS, LAPSE = 0.5, 0.02  # of two alternatives; answers beside the question, assumed
@@ -30,11 +35,11 @@ class Plan:
 
     standard: float
     difference: float = 0.5
-    differences: tuple = ()
+    differences: Sequence[float] = ()
     repeats: int = 20
     seed: int = 1
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not (self.standard > 0 and all(0 < d < math.inf for d in (self.difference, *self.differences)) and self.repeats > 0):
             raise ValueError("standard, differences and repeats have to be above 0")
 
@@ -47,7 +52,7 @@ class Trial:
     second: float
 
 
-def staircase(difference, correct):
+def staircase(difference: float, correct: Sequence[float]) -> tuple[float, list[float]]:
     """(the next difference, the differences at reversals) after answers that were right or not."""
     reversals, row, way = [], 0, 0
     for right in correct:
@@ -61,10 +66,10 @@ def staircase(difference, correct):
     return difference, reversals
 
 
-def next_trial(plan, correct):
+def next_trial(plan: Plan, correct: Sequence[float]) -> Optional[Trial]:
     """The trial after these answers, or None at the end: the same for the same plan and answers, so that a session continues."""
     done = len(correct)
-    if plan.differences:
+    if len(plan.differences):
         every = numpy.repeat(plan.differences, plan.repeats)
         if done == len(every):
             return None
@@ -79,14 +84,16 @@ def next_trial(plan, correct):
     return Trial(done, difference, *pair)
 
 
-def read(path, plan=None):
+def read(path: _Path, plan: Optional[Plan] = None) -> list[_Row]:
     """Rows of a session: dicts of numbers. With a plan, they have to be its trials. Raises ValueError."""
     with open(path, encoding="utf-8", newline="") as file:
         lines = list(csv.reader(file))
     rows = []
     for number, line in enumerate(lines[1:], 2):
         try:
-            row = dict(zip(COLUMNS, map(float, line), strict=True))
+            row = dict(zip(COLUMNS, map(float, line)))
+            if len(line) != len(COLUMNS):
+                raise ValueError
         except ValueError as error:
             raise ValueError(f"{path}, line {number}: {len(COLUMNS)} numbers are needed") from error
         trial = next_trial(plan, [r["correct"] for r in rows]) if plan else None
@@ -98,7 +105,7 @@ def read(path, plan=None):
     return rows
 
 
-def session(path, plan, ask):
+def session(path: _Path, plan: Plan, ask: Callable[[Trial], int]) -> list[_Row]:
     """Asks all trials that are missing in the file. ask(trial): 1 or 2, the touch that had more. Every answer is in the file before the
     next trial begins."""
     path = Path(path)
@@ -114,13 +121,13 @@ def session(path, plan, ask):
     return rows
 
 
-def psychometric(difference, threshold, slope):
+def psychometric(difference: Any, threshold: float, slope: float) -> Any:
     """The part of right answers: a Weibull function of log difference, which is 79.4 % at the threshold without lapses."""
     reach = -numpy.log(2 * (1 - AT))
     return GUESS + (1 - GUESS - LAPSE) * (1 - numpy.exp(-reach * (numpy.asarray(difference) / threshold)**slope))
 
 
-def fit(rows, resamples=200, seed=1):
+def fit(rows: Sequence[_Row], resamples: int = 200, seed: int = 1) -> tuple[float, float, float, float]:
     """(threshold, low, high, slope): of highest likelihood, with the 95 % interval of a bootstrap by trials. Raises ValueError."""
     from scipy.optimize import minimize  # not needed to run a session
     difference, correct = (numpy.array([row[name] for row in rows], dtype=float) for name in ("difference", "correct"))
@@ -143,15 +150,15 @@ def fit(rows, resamples=200, seed=1):
 class Observer:
     """Answers like a person with a known threshold and slope."""
 
-    def __init__(self, threshold, slope=2.0, seed=1):
+    def __init__(self, threshold: float, slope: float = 2.0, seed: int = 1) -> None:
         self.threshold, self.slope, self.random = threshold, slope, numpy.random.default_rng(seed)
 
-    def __call__(self, trial):
+    def __call__(self, trial: Trial) -> int:
         right = self.random.random() < psychometric(trial.difference, self.threshold, self.slope)
         return 2 if right == (trial.second > trial.first) else 1
 
 
-def put(render, name, value):
+def put(render: Any, name: str, value: float) -> None:
     """A setting by its name in RenderSetup, such as stiffness or force.damping. Raises ValueError."""
     *path, last = name.split(".")
     owner = render
@@ -162,7 +169,8 @@ def put(render, name, value):
     setattr(owner, last, value)
 
 
-def touching(volume, level, device, name, seconds, key=input):
+def touching(volume: _Path, level: float, device: str, name: str, seconds: float,
+             key: Callable[[str], str] = input) -> Callable[[Trial], int]:
     """Asks by two touches of a device, one after the other, and a key."""
     import palpate
     loaded = palpate.load(volume)
@@ -183,7 +191,7 @@ def touching(volume, level, device, name, seconds, key=input):
     return ask
 
 
-def main(words=None):
+def main(words: Optional[Sequence[str]] = None) -> int:
     parser = argparse.ArgumentParser(prog="python3 -m palpate.trials", description="Two-alternative trials over a setting of touch")
     commands = parser.add_subparsers(dest="command", required=True)
     run = commands.add_parser("run", help="ask the trials that are missing in FILE; it continues after an interruption")
