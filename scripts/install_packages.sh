@@ -16,7 +16,7 @@ groups (default: all)
   program  core, and what reads and writes files and reaches devices: ITK, VTK, CLI11, fmt, JSON,
            EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, oneTBB, codecs of
            chunks, libcurl
-  io       program; for the Python module pybind11, NumPy, SciPy, Matplotlib, Dask, pip, nibabel; for tests zarr, h5py, pydicom, tifffile, teem
+  io       program; for the Python module pybind11, NumPy, SciPy, Matplotlib, WeasyPrint, Dask, pip, nibabel; for tests zarr, h5py, pydicom, tifffile, teem
            and OpenIGTLink
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
   package  what scripts/package.sh uses in addition to viewer
@@ -33,7 +33,7 @@ TEXT
 core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev python3 git)
 python=(python3-dev pybind11-dev python3-numpy python3-pytest python3-nibabel python3-zarr
         python3-h5py python3-pydicom python3-tifffile teem-apps python3-setuptools python3-wheel
-        python3-pip python3-dask python3-distributed python3-scipy python3-matplotlib mypy)
+        python3-pip python3-dask python3-distributed python3-scipy python3-matplotlib weasyprint mypy)
 program=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
     libgdcm-dev libhdf5-dev libtiff-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
     libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev)
