@@ -8,14 +8,12 @@ namespace fs = std::filesystem;
 namespace {
 
 Stored stored_from(std::uint16_t bits, std::uint16_t format, const fs::path& file) {
-    const bool is_signed = format == SAMPLEFORMAT_INT;
-    if (format == SAMPLEFORMAT_IEEEFP && bits == 32) return Stored::float32;
-    if (format == SAMPLEFORMAT_IEEEFP && bits == 64) return Stored::float64;
-    if (is_signed || format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID) {
-        if (bits == 8) return is_signed ? Stored::int8 : Stored::uint8;
-        if (bits == 16) return is_signed ? Stored::int16 : Stored::uint16;
-        if (bits == 32) return is_signed ? Stored::int32 : Stored::uint32;
-    }
+    const std::string kind = format == SAMPLEFORMAT_IEEEFP                                ? "float"
+                             : format == SAMPLEFORMAT_INT                                 ? "int"
+                             : format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID ? "uint"
+                                                                                          : "";
+    const auto stored = stored_named(kind + std::to_string(bits));
+    if (stored && (bits <= 32 || *stored == Stored::float64)) return *stored;
     throw Failure(quoted(file) + " has samples of " + std::to_string(bits) +
                   " bits of a kind that is not read; save it " +
                   (format == SAMPLEFORMAT_IEEEFP ? "as 32-bit float" : "with 8 or 16 bits"));
