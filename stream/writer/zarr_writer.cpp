@@ -218,7 +218,7 @@ SampleBox ZarrWriter::whole(const Index3& chunk) const {
 }
 
 SampleBox ZarrWriter::box_of(int level, const Index3& chunk) const {
-    const Index3& size = levels_[static_cast<std::size_t>(level)].geometry.size;
+    const Index3& size = levels_.at(static_cast<std::size_t>(level)).geometry.size;
     const auto [low, high] = whole(chunk);
     return {low, high.cwiseMin(size - Index3::Ones())};
 }
