@@ -47,6 +47,8 @@ class PythonDevice final : public devices::LinkedDevice {
     DeviceInfo info() const override { return info_; }
     /// What its functions raised.
     std::string problem() const override;
+    /// Not to its own thread, which would wait for itself.
+    bool is_stopping() const noexcept override { return !is_own_thread() && link_.stopping(); }
 
   private:
     void run();

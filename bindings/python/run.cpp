@@ -8,6 +8,7 @@
 #include "bindings/python/python_device.hpp"
 #include "bindings/python/record.hpp"
 #include "bindings/python/without_gil.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::python {
 namespace {
@@ -72,10 +73,16 @@ struct LiveRun : run::Run {
     LiveRun(std::shared_ptr<run::Data> data, const run::Setup& setup, PythonDevice* its_device)
         : Run(std::move(data), setup), python_device(its_device) {}
 
-    /// False if the device's thread goes on for good (PythonDevice::finish()).
+    /// False if the device's thread goes on for good (PythonDevice::finish()). A recording ends in
+    /// any case.
     bool finish() {
         stop();
-        return !python_device || python_device->finish();
+        if (!python_device || python_device->finish()) return true;
+        try {
+            stop_recording();
+        } catch (const io::OutputError&) {  // it is cut off
+        }
+        return false;
     }
 
     OwnProcess process;
@@ -187,8 +194,8 @@ void bind_run(py::module_& module) {
              "device; nothing moves before start(). Raises ValueError, InputError, DeviceError.")
         .def("start", &start, "Once.")
         .def("stop", &stop_session<R>, Unlocked(),
-             "Forces go to zero; for good. Raises RuntimeError in a forked child, which has no "
-             "servo.")
+             "Forces go to zero; for good. Raises DeviceError for a device in Python that hangs, "
+             "RuntimeError in a forked child, which has no servo.")
         .def("send", &send, py::arg("command"), Unlocked(),
              "As Servo.send(). Raises ValueError, QueueFull.")
         .def("snapshot", &R::snapshot, "The newest tick, a Snapshot; None before the first.")

@@ -197,19 +197,24 @@ run.start()
     assert ran.stdout.strip() == "closed True True"
 
 
-def test_a_device_may_stop_its_own_servo():
+def run_with(device):
+    return palpate.Run(palpate.load("synthetic:sphere:16x16x16"), palpate.Setup(real_time=False), device=device)
+
+
+@pytest.mark.parametrize("session", [lambda device: palpate.Servo(renderer(), device, real_time=False), run_with])
+def test_a_device_may_stop_its_own_session(session):
     class Tired(Still):
         def read(self):
             if len(self.forces) == 20:
-                self.servo.stop()
+                self.session.stop()
             return super().read()
 
     device = Tired(50)
-    device.servo = palpate.Servo(renderer(), device, real_time=False)
-    device.servo.start()
+    device.session = session(device)
+    device.session.start()
     until(lambda: device.closed)
-    device.servo.stop()
-    del device.servo
+    device.session.stop()
+    del device.session
 
 
 def test_objects_that_are_no_device_are_refused():
