@@ -152,8 +152,9 @@ void tiff_places(const fs::path& path, const ChunkBox& box, std::span<ChunkPlace
     for (std::int64_t z = box.first[0]; z < box.first[0] + box.count[0]; ++z) {
         go_to(tiff.get(), path, layout, page_at(z), level);
         if (!(tiling_of(tiff.get(), path, notes) == usual)) {
-            throw Failure("its plane " + std::to_string(z) +
-                          " has another size or compression than the first; save it again");
+            throw Failure(
+                "its plane " + std::to_string(z) +
+                " has another size, Orientation or compression than the first; save it again");
         }
         for (std::int64_t y = box.first[1]; y < box.first[1] + box.count[1]; ++y) {
             for (std::int64_t x = box.first[2]; x < box.first[2] + box.count[2]; ++x, ++at) {
