@@ -2,6 +2,15 @@
 
 const bins = 160;
 
+export function rangeOf(samples) {
+  let [minimum, maximum] = [Infinity, -Infinity];
+  for (const v of samples) {
+    if (v < minimum) minimum = v;
+    if (v > maximum) maximum = v;
+  }
+  return { minimum, maximum };
+}
+
 /** Counts per bin, and Otsu's threshold between dark and bright. */
 export function histogramOf({ samples, minimum, maximum }) {
   const counts = new Float64Array(bins);
@@ -28,8 +37,9 @@ function sized(canvas, height) {
   return [context, w, h];
 }
 
-export function drawHistogram(canvas, { counts, minimum, maximum }, level) {
-  const drawn = [canvas.clientWidth, minimum, maximum, counts[0], level].join();
+/** `marks` are levels by name. */
+export function drawHistogram(canvas, { counts, minimum, maximum }, level, marks) {
+  const drawn = [canvas.clientWidth, minimum, maximum, counts[0], level, Object.values(marks)].join();
   if (canvas.dataset.drawn === drawn) return;
   canvas.dataset.drawn = drawn;
   const [context, w, h] = sized(canvas, 64);
@@ -39,8 +49,19 @@ export function drawHistogram(canvas, { counts, minimum, maximum }, level) {
     const tall = (h * Math.log1p(n)) / top;
     context.fillRect((i * w) / bins, h - tall, w / bins + 0.5, tall);
   });
+  const at = (value) => ((value - minimum) / (maximum - minimum)) * w;
+  context.fillStyle = context.strokeStyle = getComputedStyle(canvas).color;
+  context.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+  context.setLineDash([3, 3]);
+  for (const [name, value] of Object.entries(marks)) {
+    context.beginPath();
+    context.moveTo(at(value), 0);
+    context.lineTo(at(value), h);
+    context.stroke();
+    context.fillText(name, at(value) + 4 * devicePixelRatio, 12 * devicePixelRatio);
+  }
   context.fillStyle = "#f97316";
-  context.fillRect(((level - minimum) / (maximum - minimum)) * w - 1, 0, 3, h);
+  context.fillRect(at(level) - 1, 0, 3, h);
 }
 
 /** Physical to index. */
@@ -51,7 +72,8 @@ function indexOf({ origin, spacing, direction }, point) {
 
 export function drawSlices(canvas, volume, scp) {
   const edge = Math.floor((canvas.clientWidth - 8) / 3);
-  const { size, samples, minimum, maximum } = volume;
+  const { size, spacing, samples, minimum, maximum } = volume;
+  const longest = Math.max(...size.map((n, a) => n * spacing[a]));
   const at = indexOf(volume, scp).map((v, a) => Math.max(0, Math.min(size[a] - 1, Math.round(v))));
   const drawn = [edge, volume.number, ...at].join();
   if (canvas.dataset.drawn === drawn) return;
@@ -73,11 +95,13 @@ export function drawSlices(canvas, volume, scp) {
     const left = slice * (side + 4);
     const tile = new OffscreenCanvas(size[u], size[v]);
     tile.getContext("2d").putImageData(image, 0, 0);
-    context.drawImage(tile, left, 0, side, side);
+    const [wide, tall] = [u, v].map((a) => (side * size[a] * spacing[a]) / longest);
+    const [dx, dy] = [left + (side - wide) / 2, (side - tall) / 2];
+    context.drawImage(tile, dx, dy, wide, tall);
     context.strokeStyle = "#f97316";
     context.beginPath();
     const y = ((v === 2 ? size[v] - 1 - at[v] : at[v]) + 0.5) / size[v];
-    context.arc(left + ((at[u] + 0.5) / size[u]) * side, y * side, 4, 0, 7);
+    context.arc(dx + ((at[u] + 0.5) / size[u]) * wide, dy + y * tall, 4, 0, 7);
     context.stroke();
   });
 }

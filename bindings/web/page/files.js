@@ -1,13 +1,14 @@
 // Reads NRRD and NIfTI-1 files of one scalar volume into samples and a geometry in LPS.
 
-async function inflated(bytes) {
-  if (!(bytes[0] === 0x1f && bytes[1] === 0x8b)) return bytes;
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+/** `format` as DecompressionStream names it. */
+export async function inflated(bytes, format) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream(format));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
+const unzipped = (bytes) => (bytes[0] === 0x1f && bytes[1] === 0x8b ? inflated(bytes, "gzip") : bytes);
 
 /** Samples of a type that the core has: others become float32. */
-function samplesOf(bytes, type, big, count) {
+export function samplesOf(bytes, type, big, count) {
   const kinds = {
     uint8: ["getUint8", 1, Uint8Array], int8: ["getInt8", 1, Int16Array], int16: ["getInt16", 2, Int16Array],
     uint16: ["getUint16", 2, Uint16Array], int32: ["getInt32", 4, Float32Array], uint32: ["getUint32", 4, Float32Array],
@@ -16,19 +17,20 @@ function samplesOf(bytes, type, big, count) {
   if (!kinds[type]) throw new Error(`samples of type ${type} are not read`);
   const [read, size, Type] = kinds[type];
   if (bytes.byteLength < count * size) throw new Error("the file ends before its samples do");
+  if (!big && Type.name.toLowerCase() === `${type}array`) return new Type(bytes.slice(0, count * size).buffer);
   const view = new DataView(bytes.buffer, bytes.byteOffset);
   return Type.from({ length: count }, (_, i) => view[read](i * size, !big));
 }
 
 const unitsOfLength = new Map([["m", 1000], ["cm", 10], ["mm", 1], ["um", 0.001], ["", 1]]); // [mm]
-function millimetresIn(unit) {
+export function millimetresIn(unit) {
   if (!unitsOfLength.has(unit)) throw new Error(`the unit of length '${unit}' is not read`);
   return unitsOfLength.get(unit);
 }
 
 const length = (v) => Math.hypot(...v);
 /** Geometry from the columns that lead from a sample to the next along each axis. */
-function geometryOf(size, axes, origin) {
+export function geometryOf(size, axes, origin) {
   const spacing = axes.map((axis) => length(axis) || 1);
   const direction = [0, 1, 2].flatMap((row) => axes.map((axis, a) => axis[row] / spacing[a]));
   return { size, spacing, origin, direction };
@@ -63,7 +65,7 @@ async function readNrrd(bytes) {
   const flips = { "right-anterior-superior": [-1, -1, 1], ras: [-1, -1, 1], "left-anterior-superior": [1, -1, 1], las: [1, -1, 1] }[space] ?? [1, 1, 1];
   const units = space ? [...(fields["space units"] ?? "").matchAll(/"([^"]*)"/g)].map((m) => millimetresIn(m[1])) : [];
   const lps = (v) => v.map((x, a) => x * flips[a] * (units[a] ?? 1));
-  const samples = samplesOf(await inflated(rest), types[fields.type] ?? fields.type, fields.endian === "big", size[0] * size[1] * size[2]);
+  const samples = samplesOf(await unzipped(rest), types[fields.type] ?? fields.type, fields.endian === "big", size[0] * size[1] * size[2]);
   return { samples, geometry: geometryOf(size, axes.map(lps), lps(origin)) };
 }
 
@@ -107,9 +109,13 @@ function readNifti(bytes) {
   return { samples, geometry: geometryOf(size, axes.map(lps), lps(origin)) };
 }
 
+export function isDicom(bytes) {
+  return new TextDecoder().decode(bytes.subarray(128, 132)) === "DICM";
+}
+
 /** Throws an Error that says what is wrong. */
 export async function readVolume(buffer) {
-  const bytes = await inflated(new Uint8Array(buffer));
+  const bytes = await unzipped(new Uint8Array(buffer));
   if (new TextDecoder().decode(bytes.subarray(0, 4)) === "NRRD") return readNrrd(bytes);
   if (new TextDecoder().decode(bytes.subarray(344, 346)) === "n+") return readNifti(bytes);
   throw new Error("this is neither NRRD nor NIfTI-1 in one file");

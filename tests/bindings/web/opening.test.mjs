@@ -1,0 +1,105 @@
+// Volumes that other programs have written are opened: DICOM and Zarr as the native program reads them.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, readdirSync, statSync } from "node:fs";
+import { createServer } from "node:http";
+import { tmpdir } from "node:os";
+import { join, relative } from "node:path";
+import test from "node:test";
+
+const page = join(process.env.PALPATE_WEB, "page");
+const { readAddress, readFiles } = await import(join(page, "open.js"));
+const { readVolume } = await import(join(page, "files.js"));
+globalThis.location = { href: "http://localhost/" };
+
+const folder = mkdtempSync(join(tmpdir(), "palpate-web-"));
+execFileSync("/usr/bin/python3", ["-B", join(process.env.PALPATE_SOURCE, "tests/bindings/web/make_volumes.py"), folder], { stdio: "inherit" });
+const zstdIsThere = existsSync(join(page, "fzstd.js"));
+
+/** A file or a folder as it is dropped. */
+function dropped(name) {
+  const all = (path) => (statSync(path).isDirectory() ? readdirSync(path).flatMap((one) => all(join(path, one))) : [path]);
+  return all(join(folder, name)).map((path) => ({ path: relative(folder, path), file: new Blob([readFileSync(path)]) }));
+}
+const open = (name) => readFiles(dropped(name));
+const raw = (name) => {
+  const bytes = readFileSync(join(folder, `${name}.raw`));
+  return new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
+};
+
+const sameVolume = (one, other) => {
+  assert.deepEqual(Float32Array.from(one.samples), Float32Array.from(other.samples));
+  assert.deepEqual(one.geometry.size, other.geometry.size);
+  for (const part of ["spacing", "origin", "direction"]) {
+    one.geometry[part].forEach((x, i) => assert.ok(Math.abs(x - other.geometry[part][i]) < 1e-6, `${part}: ${one.geometry[part]} is not ${other.geometry[part]}`));
+  }
+};
+
+test("DICOM series in every order of bytes and frames of one file are one volume in Hounsfield units", async () => {
+  const series = await open("implicit");
+  assert.deepEqual(series.geometry, { size: [6, 5, 4], spacing: [3, 2, 4], origin: [-10, 20, 30], direction: [1, 0, 0, 0, 0, 1, 0, -1, 0] });
+  assert.deepEqual(series.samples, Int16Array.from({ length: 120 }, (_, i) => ((i * 7) % 251) - 100));
+  assert.deepEqual(series.marks, { skin: -300, bone: 250 });
+  assert.equal(series.name, "implicit");
+  for (const other of ["big", "frames.dcm"]) sameVolume(await open(other), series);
+  const halves = await open("explicit");
+  assert.deepEqual(halves.samples, Float32Array.from({ length: 120 }, (_, i) => 0.5 * ((i * 7) % 251) - 100));
+});
+
+test("DICOM with a missing slice, compressed pixels or none is refused with the reason", async () => {
+  await assert.rejects(open("incomplete"), /not evenly spaced/);
+  await assert.rejects(open("compressed.dcm"), /1\.2\.840\.10008\.1\.2\.4\.70 is not read in the browser: convert/);
+  await assert.rejects(readFiles([...dropped("implicit/notes.txt"), ...dropped("none.zarr").slice(-1)]), /none of these files is DICOM/);
+  const [{ path, file }] = dropped("implicit");
+  const bytes = await file.arrayBuffer();
+  for (let end = 132; end < bytes.byteLength; end += 1) {
+    await assert.rejects(readFiles([{ path, file: new Blob([bytes.slice(0, end)]) }]), Error, `${end} bytes`);
+  }
+});
+
+for (const name of ["none", "zlib", "gzip", "lz4", "zstd", "blosc_lz4", "blosc_zlib", "blosc_zstd", "big_endian"]) {
+  const skip = name.includes("zstd") && !zstdIsThere && "fzstd was not installed (scripts/deep/web)";
+  test(`OME-Zarr of chunks in ${name} has the samples and the geometry of its metadata`, { skip }, async () => {
+    const { samples, geometry } = await open(`${name}.zarr`);
+    assert.deepEqual(Float32Array.from(samples), raw(name));
+    assert.deepEqual([geometry.spacing, geometry.origin], [[1, 2, 3], [10, 20, 30]]);
+  });
+}
+
+test("a Zarr 3 array in shards is read, and missing chunks have the fill value", async () => {
+  const { samples, geometry } = await open("sharded.zarr");
+  assert.deepEqual(Float32Array.from(samples), raw("sharded"));
+  assert.deepEqual(geometry.size, [6, 5, 4]);
+});
+
+test("Zarr that the page does not read is refused with the reason", async () => {
+  await assert.rejects(open("blosclz.zarr"), /blosc with blosclz/);
+  await assert.rejects(readFiles([{ path: "x/zarr.json", file: new Blob(["{}"]) }]), /no Zarr array and no OME-Zarr/);
+});
+
+test("a Zarr and files are opened by their address", async (t) => {
+  const server = createServer((request, answer) => {
+    const file = join(folder, decodeURIComponent(new URL(request.url, "http://localhost").pathname));
+    if (!existsSync(file) || !statSync(file).isFile()) return answer.writeHead(404).end();
+    answer.end(readFileSync(file));
+  });
+  await new Promise((listens) => server.listen(0, "127.0.0.1", listens));
+  t.after(() => server.close());
+  const at = `http://127.0.0.1:${server.address().port}`;
+  for (const end of ["", "/", "/.zattrs"]) sameVolume(await readAddress(`${at}/gzip.zarr${end}`), await open("gzip.zarr"));
+  sameVolume(await readAddress(`${at}/frames.dcm`), await open("frames.dcm"));
+  await assert.rejects(readAddress(`${at}/nothing.nrrd`), /there is no such file/);
+  await assert.rejects(readAddress(`${at}/nothing.zarr`), /no Zarr array/);
+});
+
+test("the native program reads and writes the same", { skip: !process.env.PALPATE }, async () => {
+  const convert = (from, to) => execFileSync(process.env.PALPATE, ["convert", join(folder, from), join(folder, to)], { stdio: "pipe" });
+  const nrrd = async (name) => readVolume(new Uint8Array(readFileSync(join(folder, name))).buffer);
+  for (const from of ["implicit", "explicit", "frames.dcm", "blosc_lz4.zarr"]) {
+    convert(from, "native.nrrd");
+    sameVolume(await open(from), await nrrd("native.nrrd"));
+  }
+  if (!zstdIsThere) return;
+  convert("blosc_lz4.zarr", "native.zarr"); // OME-Zarr 0.5, zstd
+  sameVolume(await open("native.zarr"), await open("blosc_lz4.zarr"));
+});
