@@ -1,5 +1,8 @@
-// Unpacks the chunks of Zarr arrays: gzip, zlib, lz4, zstd and blosc. Bytes in, bytes out.
-import { inflated } from "./files.js";
+// Unpacks the chunks of Zarr arrays: gzip, zlib, lz4, zstd and blosc. Bytes in, bytes out, `most` of them.
+import { inflated, refuse } from "./files.js";
+
+const damaged = (what) => refuse(what, "copy or download it again");
+const bounded = (size, most) => (size <= most ? size : damaged(`a chunk unpacks to ${size} bytes, more than its array has in one`));
 
 async function zstd(bytes) {
   const { decompress } = await import("./fzstd.js").catch(() => {
@@ -20,7 +23,7 @@ export function lz4(bytes, size) {
   while (at < bytes.length) {
     const token = bytes[at++];
     const literals = length(token >> 4);
-    if (at + literals > bytes.length || to + literals > size) throw new Error("a chunk of lz4 is damaged");
+    if (at + literals > bytes.length || to + literals > size) damaged("a chunk of lz4 is damaged");
     out.set(bytes.subarray(at, at + literals), to);
     at += literals;
     to += literals;
@@ -28,10 +31,10 @@ export function lz4(bytes, size) {
     const back = bytes[at] | (bytes[at + 1] << 8);
     at += 2;
     const copied = length(token & 15) + 4;
-    if (back === 0 || back > to || to + copied > size) throw new Error("a chunk of lz4 is damaged");
+    if (back === 0 || back > to || to + copied > size) damaged("a chunk of lz4 is damaged");
     for (let i = 0; i < copied; ++i, ++to) out[to] = out[to - back];
   }
-  if (to !== size) throw new Error("a chunk of lz4 ends early");
+  if (to !== size) damaged("a chunk of lz4 ends early");
   return out;
 }
 
@@ -59,13 +62,15 @@ function bitUnshuffled(block, width, format) {
   return out;
 }
 
-async function blosc(bytes) {
+async function blosc(bytes, most) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const [flags, width] = [bytes[2], bytes[3]];
-  const [size, blockSize] = [view.getUint32(4, true), view.getUint32(8, true)];
+  const [size, blockSize] = [bounded(view.getUint32(4, true), most), view.getUint32(8, true)];
+  if (flags & 8) refuse("blosc with the filter delta is not read in the browser");
   if (flags & 2) return bytes.subarray(16, 16 + size); // stored
-  const codec = { 1: lz4, 3: (part) => inflated(part, "deflate"), 4: zstd }[flags >> 5];
-  if (!codec) throw new Error(`blosc with ${["blosclz", "", "snappy"][flags >> 5] ?? "an unknown codec"} is not read in the browser`);
+  if (blockSize === 0 || width === 0) damaged("a chunk of blosc is damaged");
+  const codec = { 1: lz4, 3: (part, room) => inflated(part, "deflate", room), 4: zstd }[flags >> 5];
+  if (!codec) refuse(`blosc with ${["blosclz", "", "snappy"][flags >> 5] ?? "an unknown codec"} is not read in the browser`);
   const out = new Uint8Array(size);
   for (let block = 0; block * blockSize < size; ++block) {
     const length = Math.min(blockSize, size - block * blockSize);
@@ -76,7 +81,7 @@ async function blosc(bytes) {
     for (let to = 0; to < length; to += part) {
       const packed = view.getInt32(at, true);
       const data = bytes.subarray(at + 4, at + 4 + packed);
-      if (packed < 0 || data.length !== packed) throw new Error("a chunk of blosc is damaged");
+      if (packed < 0 || data.length !== packed) damaged("a chunk of blosc is damaged");
       unpacked.set(packed === part ? data : await codec(data, part), to);
       at += 4 + packed;
     }
@@ -86,18 +91,28 @@ async function blosc(bytes) {
   return out;
 }
 
+const crcTable = Int32Array.from({ length: 256 }, (_, n) => {
+  for (let bit = 0; bit < 8; ++bit) n = n & 1 ? (n >>> 1) ^ 0x82f63b78 : n >>> 1;
+  return n;
+});
+/** The bytes before their checksum (Castagnoli, RFC 3720). */
+export function crc32c(bytes) {
+  const end = bytes.length - 4;
+  if (end < 0) damaged("a chunk is shorter than its checksum");
+  let sum = -1;
+  for (let i = 0; i < end; ++i) sum = crcTable[(sum ^ bytes[i]) & 255] ^ (sum >>> 8);
+  if (new DataView(bytes.buffer, bytes.byteOffset).getInt32(end, true) !== ~sum) damaged("the checksum (crc32c) of a chunk is not that of its bytes");
+  return bytes.subarray(0, end);
+}
+
 const codecs = {
-  gzip: (bytes) => inflated(bytes, "gzip"),
-  zlib: (bytes) => inflated(bytes, "deflate"),
+  gzip: (bytes, most) => inflated(bytes, "gzip", most),
+  zlib: (bytes, most) => inflated(bytes, "deflate", most),
   zstd,
   blosc,
   /** As numcodecs writes it: the size comes first. */
-  lz4: (bytes) => lz4(bytes.subarray(4), new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true)),
-  crc32c: (bytes) => bytes.subarray(0, bytes.length - 4), // not checked
+  lz4: (bytes, most) => lz4(bytes.subarray(4), bounded(new DataView(bytes.buffer, bytes.byteOffset).getUint32(0, true), most)),
+  crc32c,
 };
 
-export function codecNamed(name) {
-  const codec = codecs[name];
-  if (!codec) throw new Error(`chunks packed with ${name} are not read in the browser`);
-  return codec;
-}
+export const codecNamed = (name) => codecs[name] ?? refuse(`chunks packed with ${name} are not read in the browser`);

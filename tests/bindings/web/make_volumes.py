@@ -98,6 +98,15 @@ def ome(folder, compressor, dtype="<i2", order="C", separator="/", noise=False):
     values.astype("<f4").tofile(folder.with_suffix(".raw"))
 
 
+def crc32c(data):
+    total = 0xffffffff
+    for byte in data:
+        total ^= byte
+        for _ in range(8):
+            total = total >> 1 ^ (0x82f63b78 if total & 1 else 0)
+    return struct.pack("<I", total ^ 0xffffffff)
+
+
 def sharded(folder):
     """A Zarr 3 array of two shards, each of two chunks, of which one is missing."""
     folder.mkdir()
@@ -121,8 +130,132 @@ def sharded(folder):
             body += bytes(chunk)
         place = folder / "c" / str(shard) / "0"
         place.mkdir(parents=True)
-        (place / "0").write_bytes(body + index + b"\0\0\0\0")
+        (place / "0").write_bytes(body + index + crc32c(index))
     expected.astype("<f4").tofile(folder.with_suffix(".raw"))
+
+
+EIGHT = np.arange(8).astype("<i2").tobytes()
+BYTES = {"name": "bytes", "configuration": {"endian": "little"}}
+
+
+def write(path, content):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content if isinstance(content, bytes) else json.dumps(content).encode())
+
+
+def array3(**changes):
+    """2 x 2 x 2 samples of Zarr 3, in one chunk."""
+    whole = {"zarr_format": 3, "node_type": "array", "shape": [2, 2, 2], "data_type": "int16", "fill_value": 0, "codecs": [BYTES],
+             "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [2] * len(changes.get("shape", "xyz"))}},
+             "chunk_key_encoding": {"name": "default"}, "attributes": {}}
+    whole.update(changes)
+    return {"zarr.json": whole, "c/" + "/".join("0" * len(whole["shape"])): EIGHT}
+
+
+def shards(index_codecs=(BYTES,), **changes):
+    """Of two channels, each in a chunk of its own."""
+    inner = {"chunk_shape": [1, 2, 2, 2], "codecs": [BYTES], "index_codecs": list(index_codecs), **changes}
+    other = np.arange(100, 108).astype("<i2").tobytes()
+    array = array3(shape=[2, 2, 2, 2], dimension_names=["c", "z", "y", "x"], codecs=[{"name": "sharding_indexed", "configuration": inner}])
+    array["c/0/0/0/0"] = EIGHT + other + struct.pack("<4Q", 0, 16, 16, 16)
+    return array
+
+
+def image3(steps=({"type": "scale", "scale": [1, 2, 3]},), unit="millimeter", names="zyx", outer=(), **attributes):
+    axes = [{"name": name, "type": "space", **({"unit": unit} if unit else {})} for name in names]
+    multiscales = [{"axes": axes, "datasets": [{"path": "0", "coordinateTransformations": list(steps)}], "coordinateTransformations": list(outer)}]
+    group = {"zarr_format": 3, "node_type": "group", "attributes": {"ome": {"version": "0.5", "multiscales": multiscales}, **attributes}}
+    return {"zarr.json": group, **{f"0/{path}": content for path, content in array3().items()}}
+
+
+def array2(attributes=None, **changes):
+    array = {"zarr_format": 2, "shape": [2, 2, 2], "chunks": [2, 2, 2], "dtype": "<i2", "compressor": None, "filters": None, "fill_value": 0, "order": "C"}
+    return {".zarray": {**array, **changes}, ".zattrs": attributes or {}, "0.0.0": EIGHT}
+
+
+def nrrd(*fields, data=EIGHT, **changes):
+    base = {"type": "short", "dimension": 3, "sizes": "2 2 2", "endian": "little", "encoding": "raw", **changes}
+    lines = [f"{name}: {value}" for name, value in base.items() if value] + list(fields)
+    return "\n".join(["NRRD0004", *lines, "", ""]).encode() + data
+
+
+def nifti(kind=4, steps=(1, 1, 2, 3), offset=352, sform=None, qform=None, data=EIGHT):
+    head = bytearray(352)
+
+    def put(form, at, *values):
+        struct.pack_into("<" + form, head, at, *values)
+    put("i", 0, 348)
+    put("8h", 40, 3, 2, 2, 2, 1, 1, 1, 1)
+    put("2h", 70, kind, {4: 16, 16: 32}[kind])
+    put("4f", 76, *steps)
+    put("3f", 108, offset, 1, 0)
+    put("B", 123, 2)
+    put("2h", 252, int(qform is not None), int(sform is not None))
+    put("6f", 256, *(qform or [0] * 6))
+    put("12f", 280, *(sform or [0] * 12))
+    put("4s", 344, b"n+1")
+    return bytes(head) + data
+
+
+def translation(*shift):
+    return {"type": "translation", "translation": list(shift)}
+
+
+SCALE = {"type": "scale", "scale": [1, 2, 3]}
+LPS = ["space: LPS", "space directions: (1,0,0) (0,2,0) (0,0,3)"]
+HOLES = np.array([1, 2, np.nan, 4, np.inf, 6, -7, 8], "<f4").tobytes()
+SAME_ZARR = {
+    "shards": shards(), "image": image3(), "inches": image3(unit="inch"), "kilometers": image3(unit="kilometer"),
+    "no_unit": image3(unit=None), "turned": image3(palpate={"direction": [0, 1, 0, 1, 0, 0, 0, 0, -1]}),
+    "outer": image3([SCALE, translation(1, 2, 3)], outer=[{"type": "scale", "scale": [2, 2, 2]}, translation(5, 6, 7)]),
+    "named": array2({"_ARRAY_DIMENSIONS": ["x", "y", "z"]}), "capitals": array3(dimension_names=["X", "Y", "Z"]),
+    "holes": array3(data_type="float32", fill_value="NaN", shape=[2, 2, 2]) | {"c/0/0/0": HOLES},
+    "checked": array3(codecs=[BYTES, {"name": "crc32c"}]) | {"c/0/0/0": EIGHT + crc32c(EIGHT)},
+}
+SAME_FILES = {
+    "plain.nrrd": nrrd(), "longer.nrrd": nrrd(data=2 * EIGHT), "magic.nrrd": nrrd(data=b"\x1f\x8b" + EIGHT[2:]), "uint.nrrd": nrrd(type="uint", data=2 * EIGHT),
+    "ras.nrrd": nrrd("space: RAS", LPS[1], "space origin: (1,2,3)"), "las.nrrd": nrrd("space: left-anterior-superior", LPS[1]),
+    "dimension.nrrd": nrrd("space dimension: 3", LPS[1], 'space units: "m" "m" "m"'), "key.nrrd": nrrd("type:=none"),
+    "holes.nrrd": nrrd(type="float", data=HOLES), "holes.nii": nifti(16, data=HOLES), "plain.nii": nifti(),
+    "sform.nii": nifti(sform=[-1, 0, 0, 5, 0, 2, 0, 6, 0, 0, 3, 7]), "qform.nii": nifti(qform=[0, 0, 1, 5, 6, 7], steps=[-1, 1, 2, 3]),
+}
+REFUSED_ZARR = {
+    "index_big": ("index", shards([{"name": "bytes", "configuration": {"endian": "big"}}])),
+    "shards_beyond": ("shorter", shards() | {"c/0/0/0/0": EIGHT}),
+    "sum": ("checksum", array3(codecs=[BYTES, {"name": "crc32c"}]) | {"c/0/0/0": EIGHT + b"0000"}), "long_chunk": ("32 bytes", array3() | {"c/0/0/0": 2 * EIGHT}),
+    "keys": ("chunk_key_encoding", array3(chunk_key_encoding={"name": "fanout"})), "transformers": ("storage_transformers", array3(storage_transformers=[{"name": "x"}])),
+    "endian": ("endian", array3(codecs=[{"name": "bytes", "configuration": {"endian": "middle"}}])), "fill_text": ("fill_value", array3(fill_value="abc")),
+    "fill_hex": ("fill_value", array3(data_type="float32", fill_value="0x42280000")), "fill_beyond": ("fill_value", array2(fill_value=40000)),
+    "no_chunk": ("no possible size", array3(chunk_grid={"name": "regular", "configuration": {"chunk_shape": [0, 2, 2]}})),
+    "axes": ("x, y, angle", array3(dimension_names=["x", "y", "angle"])), "no_name": ("null", array3(dimension_names=["z", None, "x"])), "ijk": ("i, j, k", image3(names="ijk")),
+    "parsec": ("parsec", image3(unit="parsec")), "um": ("'um'", image3(unit="um")), "swapped": ("translation,scale", image3([translation(1, 1, 1), SCALE])),
+    "short": ("3 numbers", image3([{"type": "scale", "scale": [2, 3]}])), "negative": ("spacing", image3([{"type": "scale", "scale": [1, 1, -1]}])),
+    "sheared": ("right angles", image3(palpate={"direction": [1, 0, 0, 1, 1, 0, 0, 0, 1]})), "filter": ("delta", array2(filters=[{"id": "delta"}])), "no_json": ("JSON", {"zarr.json": b"{"}),
+}
+REFUSED_FILES = {
+    "rpi.nrrd": ("RPI", nrrd("space: RPI", LPS[1])), "scanner.nrrd": ("scanner-xyz", nrrd("space: scanner-xyz", LPS[1])), "spaceless.nrrd": ("no space", nrrd(LPS[1])),
+    "mins.nrrd": ("axismins", nrrd("spacings: 1 2 3", "axis mins: 5 6 7")), "none.nrrd": ("space directions", nrrd(LPS[0], "space directions: none (0,2,0) (0,0,3)")),
+    "endian.nrrd": ("endian", nrrd(endian=None)), "nan.nrrd": ("spacings", nrrd("spacings: NaN 2 3")), "twice.nrrd": ("twice", nrrd("sizes: 2 2 1")),
+    "time.nrrd": ("time", nrrd("kinds: domain domain time")), "units.nrrd": ("units", nrrd("spacings: 1 2 3", 'units: "m" "m" "m"')), "both.nrrd": ("both", nrrd(*LPS, "spacings: 1 2 3")),
+    "sheared.nrrd": ("right angles", nrrd(LPS[0], "space directions: (1,0,0) (1,2,0) (0,0,3)")), "huge.nrrd": ("million samples", nrrd(sizes="9999 9999 9999")),
+    "offset.nii": ("vox_offset", nifti(offset=0)), "steps.nii": ("pixdim", nifti(steps=[1, -1, 2, 3])), "sheared.nii": ("right angles", nifti(sform=[1, 0.5, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0])),
+    "flat.nii": ("spacing", nifti(sform=[0] * 12)),
+}
+
+
+def cases(out):
+    """What has to be read as the native program reads it, and what is refused, with a word of the reason."""
+    packed, uneven = shards(), array3(shape=[3, 2, 2], chunk_grid={"name": "regular", "configuration": {"chunk_shape": [3, 2, 2]}})
+    packed["zarr.json"]["codecs"].append({"name": "gzip"})
+    uneven["zarr.json"]["codecs"] = [{"name": "sharding_indexed", "configuration": {"chunk_shape": [2, 2, 2], "codecs": [BYTES], "index_codecs": [BYTES]}}]
+    refused = {**REFUSED_ZARR, "shards_packed": ("packed as a whole", packed), "shards_uneven": ("1.5", uneven)}
+    for name, objects in [*SAME_ZARR.items(), *((name, objects) for name, (_, objects) in refused.items())]:
+        for path, content in objects.items():
+            write(out / f"{name}.zarr" / path, content)
+    for name, content in [*SAME_FILES.items(), *((name, content) for name, (_, content) in REFUSED_FILES.items())]:
+        write(out / name, content)
+    words = {f"{name}.zarr": word for name, (word, _) in refused.items()} | {name: word for name, (word, _) in REFUSED_FILES.items()}
+    write(out / "cases.json", {"same": [*(f"{name}.zarr" for name in SAME_ZARR), *SAME_FILES], "refused": words})
 
 
 def main(out):
@@ -142,6 +275,7 @@ def main(out):
     ome(out / "big_endian.zarr", None, dtype=">u2")
     ome(out / "blosclz.zarr", blosc("blosclz"), noise=True)
     sharded(out / "sharded.zarr")
+    cases(out)
 
 
 if __name__ == "__main__":

@@ -27,11 +27,11 @@ const raw = (name) => {
   return new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length));
 };
 
-const sameVolume = (one, other) => {
-  assert.deepEqual(Float32Array.from(one.samples), Float32Array.from(other.samples));
-  assert.deepEqual(one.geometry.size, other.geometry.size);
+const sameVolume = (one, other, name = "") => {
+  assert.deepEqual(Float32Array.from(one.samples), Float32Array.from(other.samples), name);
+  assert.deepEqual(one.geometry.size, other.geometry.size, name);
   for (const part of ["spacing", "origin", "direction"]) {
-    one.geometry[part].forEach((x, i) => assert.ok(Math.abs(x - other.geometry[part][i]) < 1e-6, `${part}: ${one.geometry[part]} is not ${other.geometry[part]}`));
+    one.geometry[part].forEach((x, i) => assert.ok(Math.abs(x - other.geometry[part][i]) < 1e-6, `${name} ${part}: ${one.geometry[part]} is not ${other.geometry[part]}`));
   }
 };
 
@@ -92,12 +92,23 @@ test("a Zarr and files are opened by their address", async (t) => {
   await assert.rejects(readAddress(`${at}/nothing.zarr`), /no Zarr array/);
 });
 
+const cases = JSON.parse(readFileSync(join(folder, "cases.json")));
+
+test("what the page would read otherwise than the native program is refused with the reason", async () => {
+  for (const [name, word] of Object.entries(cases.refused)) {
+    await assert.rejects(open(name), ({ message }) => {
+      assert.ok(message.includes(word) && /: (convert|copy|save|correct|choose)/.test(message), `${name}: ${message}`);
+      return true;
+    }, name);
+  }
+});
+
 test("the native program reads and writes the same", { skip: !process.env.PALPATE }, async () => {
   const convert = (from, to) => execFileSync(process.env.PALPATE, ["convert", join(folder, from), join(folder, to)], { stdio: "pipe" });
   const nrrd = async (name) => readVolume(new Uint8Array(readFileSync(join(folder, name))).buffer);
-  for (const from of ["implicit", "explicit", "frames.dcm", "blosc_lz4.zarr"]) {
+  for (const from of ["implicit", "explicit", "frames.dcm", "blosc_lz4.zarr", ...cases.same]) {
     convert(from, "native.nrrd");
-    sameVolume(await open(from), await nrrd("native.nrrd"));
+    sameVolume(await open(from), await nrrd("native.nrrd"), from);
   }
   if (!zstdIsThere) return;
   convert("blosc_lz4.zarr", "native.zarr"); // OME-Zarr 0.5, zstd
