@@ -65,7 +65,7 @@ export function geometryOf(size, axes, origin) {
   const spacing = axes.map((axis) => Math.hypot(...axis));
   if (!spacing.every((s) => s >= 1e-9 && s <= 1e9)) refuse(`a spacing of ${spacing.join(" x ")} mm is not possible`);
   if (!origin.every((x) => Math.abs(x) <= 1e9)) refuse(`an origin of ${origin.join(", ")} mm is not possible`);
-  const direction = [0, 1, 2].flatMap((row) => axes.map((axis, a) => axis[row] / spacing[a]));
+  const direction = [0, 1, 2].flatMap((row) => axes.map((axis, a) => axis[row] / spacing[a] + 0)); // no -0
   for (const [a, b] of [[0, 1], [0, 2], [1, 2]]) {
     const along = [0, 3, 6].reduce((sum, row) => sum + direction[row + a] * direction[row + b], 0);
     if (!(Math.abs(along) < 1e-4)) refuse("its axes are not at right angles (sheared)");
@@ -218,8 +218,8 @@ export function isDicom(bytes) {
 }
 
 /** Samples, geometry, whether it is that of a body, and notes on what was assumed. */
-export async function readVolume(buffer) {
-  const raw = new Uint8Array(buffer);
+export async function readVolume(given) {
+  const raw = new Uint8Array(given); // bytes or a buffer
   const bytes = raw[0] === 0x1f && raw[1] === 0x8b ? await inflated(raw, "gzip") : raw;
   const text = (from, to) => new TextDecoder().decode(bytes.subarray(from, to));
   if (/^NRRD000[1-5]$/.test(text(0, 8))) return readNrrd(bytes);

@@ -1,16 +1,20 @@
-// What a visitor opens: files chosen or dropped, a folder, or an address. Finds out which format it is. Readers that
-// the first touch does not need are loaded later.
-import { isDicom, readVolume } from "./files.js";
+// Opens files that were chosen or dropped, a folder, or an address, and finds out which format it is. Readers that the
+// first touch does not need are loaded later.
+import { isDicom, readVolume, refuse } from "./files.js";
 
 const readDicom = async (files) => (await import("./dicom.js")).readDicom(files);
 const readZarr = async (get) => (await import("./zarr.js")).readZarr(get);
 
 const bytesOf = async (file) => new Uint8Array(await file.arrayBuffer());
+const isHidden = /(^|\/)(\.[^/]*|Thumbs\.db|desktop\.ini)$/i; // left by systems
+const isVolume = /\.(nrrd|nii|nii\.gz)$/i;
+/** Named as DICOM is, or beginning with its groups, without a preamble. */
+const isBare = (name, bytes) => /\.(dcm|ima)$/i.test(name) || ([2, 8].includes(bytes[0]) && bytes[1] === 0 && bytes[3] === 0 && /^[A-Z]{2}$/.test(String.fromCharCode(bytes[4], bytes[5])));
 const isZarr = /(^|\/)(zarr\.json|\.zattrs|\.zarray)$/;
 
 /** `files` have a path and a file each. Returns samples, geometry, a name, and marks if levels are known. */
 export async function readFiles(files) {
-  if (files.length === 0) throw new Error("there is no file in it");
+  if (files.length === 0) refuse("there is no file in it", "choose another");
   const root = files.map(({ path }) => path).filter((path) => isZarr.test(path)).sort((a, b) => a.length - b.length)[0];
   const name = files[0].path.split("/")[0];
   if (root !== undefined) {
@@ -19,9 +23,13 @@ export async function readFiles(files) {
     const get = async (path) => (byPath.has(folder + path) ? bytesOf(byPath.get(folder + path)) : null);
     return { name, ...(await readZarr(get)) };
   }
-  const first = await bytesOf(files[0].file);
-  if (files.length === 1 && !isDicom(first)) return { name, ...(await readVolume(first.buffer)) };
-  return { name, ...(await readDicom(await Promise.all(files.map(({ file }) => bytesOf(file))))) };
+  const all = await Promise.all(files.filter(({ path }) => !isHidden.test(path)).map(async ({ path, file }) => ({ name: path.split("/").at(-1), bytes: await bytesOf(file) })));
+  for (const { name: one, bytes } of all) if (!isDicom(bytes) && isBare(one, bytes)) refuse(`${one} has not the letters DICM of a DICOM file`);
+  const volumes = all.filter((one) => isVolume.test(one.name) && !isDicom(one.bytes));
+  const others = all.filter(({ bytes }) => isDicom(bytes));
+  if (volumes.length > 1 || (volumes.length === 1 && others.length > 0)) refuse(`there are several volumes in it: ${[...volumes, ...others].slice(0, 8).map((one) => one.name).join(", ")}`, "choose one");
+  const single = volumes[0] ?? (all.length === 1 && others.length === 0 ? all[0] : null);
+  return { name, ...(single ? await readVolume(single.bytes) : await readDicom(all)) };
 }
 
 /** Everything in what was dropped, with its path. */
@@ -44,25 +52,30 @@ export async function droppedFiles(items) {
 /** Chosen with an input, files or a folder. */
 export const chosenFiles = (list) => [...list].map((file) => ({ path: file.webkitRelativePath || file.name, file }));
 
-async function fetched(address) {
-  const answer = await fetch(address).catch(() => {
-    throw new Error(`${address} cannot be reached, or does not permit other pages to read it (CORS)`);
+/** An address without what may be secret. */
+const shownOf = ({ origin, pathname }) => origin + pathname;
+
+async function fetched(url, absent) {
+  const answer = await fetch(url).catch(() => {
+    throw new Error(`${shownOf(url)} cannot be reached, or does not permit other pages to read it (CORS)`);
   });
-  if (answer.status === 404 || answer.status === 403) return null; // stores answer so for what is not there
-  if (!answer.ok) throw new Error(`${address}: ${answer.status} ${answer.statusText}`);
+  if (absent.includes(answer.status)) return null;
+  if (!answer.ok) throw new Error(`${shownOf(url)}: ${answer.status} ${answer.statusText}`);
   return new Uint8Array(await answer.arrayBuffer());
 }
 
 /** An OME-Zarr, or a file, on a server. */
 export async function readAddress(address) {
   const url = new URL(address, location.href);
+  if (url.username || url.password) refuse("an address with a user or password is not opened", "download it, and open the file");
   const path = url.pathname.replace(/\/(zarr\.json|\.zattrs|\.zarray)?$/, "");
   const name = path.split("/").at(-1);
   if (!/\.(nrrd|nii|nii\.gz|dcm)$/i.test(path)) {
-    const get = (object) => fetched(new URL(`${path}/${object}${url.search}`, url));
+    // Stores answer 403 for metadata that are not there; a chunk that is forbidden is not empty.
+    const get = (object, isMetadata) => fetched(new URL(`${path}/${object}${url.search}`, url), isMetadata ? [403, 404] : [404]);
     return { name, ...(await readZarr(get)) };
   }
-  const bytes = await fetched(url);
-  if (!bytes) throw new Error(`${url}: there is no such file`);
-  return { name, ...(isDicom(bytes) ? await readDicom([bytes]) : await readVolume(bytes.buffer)) };
+  const bytes = await fetched(url, [404]);
+  if (!bytes) throw new Error(`${shownOf(url)}: there is no such file`);
+  return { name, ...(isDicom(bytes) ? await readDicom([{ name, bytes }]) : await readVolume(bytes)) };
 }

@@ -243,6 +243,100 @@ REFUSED_FILES = {
 }
 
 
+def slices(folder, count=1, each=None, cut=False, values=VALUES, syntax=ExplicitVRLittleEndian, **attributes):
+    """Slices of one series. `each` gives attributes of slice k; None stands for an empty element, "absent" for none."""
+    folder.mkdir(parents=True)
+    uid = generate_uid()
+    for k in range(count):
+        one = dataset(folder / f"{k}.dcm", syntax)
+        one.SeriesInstanceUID, one.PixelSpacing, one.SliceThickness = uid, [2, 3], 4
+        one.ImageOrientationPatient, one.ImagePositionPatient = [1, 0, 0, 0, 0, -1], [-10, 20 + 4 * k, 30]
+        one.PixelData = pixels(values[k])
+        for name, value in {**attributes, **(each(k) if each else {})}.items():
+            if value == "absent":
+                delattr(one, name)
+            else:
+                setattr(one, name, value)
+        if "PixelData" in one:
+            one["PixelData"].VR = "OB" if attributes.get("BitsAllocated") == 8 and syntax != ExplicitVRBigEndian else "OW"
+        one.save_as(folder / f"{k}.dcm", write_like_original=False)
+
+
+def sequence(**members):
+    inside = Dataset()
+    for name, value in members.items():
+        setattr(inside, name, value)
+    return Sequence([inside])
+
+
+def grouped(folder, count=4, private=False):
+    """Frames with functional groups, of which a private one has another slope (Philips)."""
+    groups = []
+    for k in range(count):
+        group = Dataset()
+        group.PlanePositionSequence = sequence(ImagePositionPatient=[-10, 20 + 4 * k, 30])
+        group.PixelValueTransformationSequence = sequence(RescaleSlope=10, RescaleIntercept=0)
+        if private:
+            group.add_new((0x2005, 0x0010), "LO", "Philips MR Imaging DD 005")
+            group.add_new((0x2005, 0x140f), "SQ", sequence(RescaleSlope=1))
+        groups.append(group)
+    slices(folder, NumberOfFrames=4, PixelData=pixels(VALUES), PerFrameFunctionalGroupsSequence=Sequence(groups), ImagePositionPatient="absent")
+
+
+def damaged(folder, change):
+    slices(folder, 3)
+    path = folder / "2.dcm"
+    path.write_bytes(change(path.read_bytes()))
+
+
+def cut(data):
+    return data[:data.index(b"\xe0\x7f\x10\0")]
+
+
+def twice(data):
+    return data + data[data.index(b"\xe0\x7f\x10\0"):]
+
+
+def unknown_sequence(data):
+    """A sequence of unknown type and length is in implicit syntax."""
+    inside = b"\xfe\xff\0\xe0" + b"\xff" * 4 + struct.pack("<HHI", 9, 0x1150, 4) + b"1.2\0" + b"\xfe\xff\x0d\xe0\0\0\0\0" + b"\xfe\xff\xdd\xe0\0\0\0\0"
+    at = data.index(b"\x18\0\x50\0DS")
+    return data[:at] + struct.pack("<HH", 9, 0x1010) + b"UN\0\0" + b"\xff" * 4 + inside + data[at:]
+
+
+def shifted(k):
+    return {"ImagePositionPatient": [-10, 20 + 4 * k, 30 + k]}
+
+
+def apart(part):
+    return lambda k: {"ImagePositionPatient": [-10, 20 + 4 * (k + part * (k == 2)), 30]}
+
+
+TIMES = {"NumberOfFrames": 4, "PixelData": pixels(VALUES)}
+SAME_DICOM = {
+    "empty": lambda at: slices(at, RescaleSlope=None, RescaleIntercept=None), "no_slope": lambda at: slices(at, RescaleSlope=0, RescaleIntercept=5),
+    "philips": lambda at: grouped(at, private=True), "unspaced": lambda at: slices(at, PixelSpacing="absent", SliceThickness="absent"),
+    "even": lambda at: slices(at, 4, apart(0.015)), "unknown": lambda at: damaged(at, unknown_sequence), "padded": lambda at: damaged(at, lambda data: data + b"\0" * 64),
+    "negative": lambda at: slices(at, PixelRepresentation=1, values=VALUES - 100), "inverse": lambda at: slices(at, PhotometricInterpretation="MONOCHROME1"),
+    "unplaced": lambda at: slices(at, ImagePositionPatient=None),
+}
+REFUSED_DICOM = {
+    "cut": ("no pixels", lambda at: damaged(at, cut)), "pixels_twice": ("twice", lambda at: damaged(at, twice)), "bare": ("DICM", lambda at: damaged(at, lambda data: data[132:])),
+    "one_spacing": ("1 numbers in place of 2", lambda at: slices(at, PixelSpacing=[2])), "two_slopes": ("2 numbers in place of 1", lambda at: slices(at, RescaleSlope=[1, 2])),
+    "high": ("HighBit", lambda at: slices(at, HighBit=15)), "table": ("Modality LUT", lambda at: slices(at, ModalityLUTSequence=sequence(LUTDescriptor=[4, 0, 16], ModalityLUTType="US", LUTData=b"\0" * 8))),
+    "dose": ("DoseGridScaling", lambda at: slices(at, DoseGridScaling="0.001")), "few_groups": ("describes 2", lambda at: grouped(at, 2)),
+    "moments": ("where they lie", lambda at: slices(at, FrameIncrementPointer=0x00181063, FrameTime=40, **TIMES)), "vector": ("where they lie", lambda at: slices(at, FrameIncrementPointer=0x00540080, SliceVector=[2, 1, 3, 4], **TIMES)),
+    "mosaic": ("MOSAIC", lambda at: slices(at, ImageType=["ORIGINAL", "PRIMARY", "M", "MOSAIC"])), "palette": ("PALETTE", lambda at: slices(at, PhotometricInterpretation="PALETTE COLOR")),
+    "two_series": ("2 series", lambda at: slices(at, 2, lambda k: {"SeriesInstanceUID": f"1.2.{k + 3}"})), "localizer": ("LOCALIZER", lambda at: slices(at, 3, lambda k: {"ImageType": ["ORIGINAL", "PRIMARY", "AXIAL" if k else "LOCALIZER"]})),
+    "echoes": ("2 series", lambda at: slices(at, 4, lambda k: {"EchoTime": 10 + k % 2})), "frames_x": ("'0' frames", lambda at: slices(at, NumberOfFrames=0)),
+    "more_bytes": ("bytes of pixels", lambda at: slices(at, PixelData=pixels(VALUES[:2]))), "words": ("big-endian", lambda at: slices(at, BitsAllocated=8, BitsStored=8, HighBit=7, PixelData=bytes(30), syntax=ExplicitVRBigEndian)),
+    "detector": ("ImagerPixelSpacing", lambda at: slices(at, PixelSpacing="absent", ImagerPixelSpacing=[0.2, 0.3])), "tilt": ("gantry tilt", lambda at: slices(at, 4, shifted)),
+    "uneven": ("not evenly", lambda at: slices(at, 4, apart(0.03))), "nowhere": ("where they lie", lambda at: slices(at, 3, ImagePositionPatient="absent")),
+    "oblique": ("right angles", lambda at: slices(at, ImageOrientationPatient=[1, 0, 0, 0.5, 0.866, 0])), "mixed": ("several volumes", lambda at: (slices(at), write(at / "a.nii", nifti()))),
+    "two_files": ("a.nii, b.nii", lambda at: [write(at / name, nifti()) for name in ("a.nii", "b.nii")]),
+}
+
+
 def cases(out):
     """What has to be read as the native program reads it, and what is refused, with a word of the reason."""
     packed, uneven = shards(), array3(shape=[3, 2, 2], chunk_grid={"name": "regular", "configuration": {"chunk_shape": [3, 2, 2]}})
@@ -254,8 +348,12 @@ def cases(out):
             write(out / f"{name}.zarr" / path, content)
     for name, content in [*SAME_FILES.items(), *((name, content) for name, (_, content) in REFUSED_FILES.items())]:
         write(out / name, content)
-    words = {f"{name}.zarr": word for name, (word, _) in refused.items()} | {name: word for name, (word, _) in REFUSED_FILES.items()}
-    write(out / "cases.json", {"same": [*(f"{name}.zarr" for name in SAME_ZARR), *SAME_FILES], "refused": words})
+    for name, make in [*SAME_DICOM.items(), *((name, make) for name, (_, make) in REFUSED_DICOM.items())]:
+        make(out / name)
+    write(out / "left" / "volume.nii", nifti())
+    write(out / "left" / ".DS_Store", b"\0")
+    words = {name: word for name, (word, _) in REFUSED_DICOM.items()} | {f"{name}.zarr": word for name, (word, _) in refused.items()} | {name: word for name, (word, _) in REFUSED_FILES.items()}
+    write(out / "cases.json", {"same": [*(f"{name}.zarr" for name in SAME_ZARR), *SAME_FILES, *SAME_DICOM], "refused": words})
 
 
 def main(out):

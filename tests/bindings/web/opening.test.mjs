@@ -77,27 +77,56 @@ test("Zarr that the page does not read is refused with the reason", async () => 
   await assert.rejects(readFiles([{ path: "x/zarr.json", file: new Blob(["{}"]) }]), /no Zarr array and no OME-Zarr/);
 });
 
-test("a Zarr and files are opened by their address", async (t) => {
+/** The address of a server of the folder, which answers `otherwise` for what matches `exempt`. */
+async function served(t, exempt = /^$/, otherwise = 404) {
   const server = createServer((request, answer) => {
     const file = join(folder, decodeURIComponent(new URL(request.url, "http://localhost").pathname));
+    if (exempt.test(request.url)) return answer.writeHead(otherwise).end();
     if (!existsSync(file) || !statSync(file).isFile()) return answer.writeHead(404).end();
     answer.end(readFileSync(file));
   });
   await new Promise((listens) => server.listen(0, "127.0.0.1", listens));
   t.after(() => server.close());
-  const at = `http://127.0.0.1:${server.address().port}`;
+  return `http://127.0.0.1:${server.address().port}`;
+}
+
+test("a Zarr and files are opened by their address", async (t) => {
+  const at = await served(t);
   for (const end of ["", "/", "/.zattrs"]) sameVolume(await readAddress(`${at}/gzip.zarr${end}`), await open("gzip.zarr"));
   sameVolume(await readAddress(`${at}/frames.dcm`), await open("frames.dcm"));
   await assert.rejects(readAddress(`${at}/nothing.nrrd`), /there is no such file/);
   await assert.rejects(readAddress(`${at}/nothing.zarr`), /no Zarr array/);
 });
 
+test("a forbidden chunk is no empty one, forbidden metadata are no metadata, and errors show no secrets", async (t) => {
+  const chunks = await served(t, /\/c\//, 403);
+  await assert.rejects(readAddress(`${chunks}/image.zarr?signature=abc`), ({ message }) => / 403 /.test(message) && !message.includes("abc"));
+  const metadata = await served(t, /zarr\.json/, 403);
+  sameVolume(await readAddress(`${metadata}/gzip.zarr`), await open("gzip.zarr"));
+  await assert.rejects(readAddress("https://me:secret@localhost/a.zarr"), ({ message }) => /user or password/.test(message) && !message.includes("secret"));
+});
+
+test("what was chosen and assumed is told", async () => {
+  const notes = async (name) => (await open(name)).notes.join("; ");
+  assert.match(await notes("none.zarr"), /of 2 channels, 0 was taken/);
+  assert.match(await notes("unspaced"), /no pixel spacing: 1 mm .* no distance between slices: 1 mm .* series/);
+  assert.match(await notes("implicit"), /notes\.txt is no DICOM and was passed over/);
+  assert.match(await notes("no_slope"), /RescaleSlope is 0/);
+  assert.match(await notes("holes.nrrd"), /became the least/);
+  assert.match(await notes("no_unit.zarr"), /mm were taken/);
+  const oriented = await Promise.all(["implicit", "ras.nrrd", "sform.nii", "turned.zarr"].map(open));
+  const turnedNowhere = await Promise.all(["unplaced", "plain.nrrd", "plain.nii", "image.zarr"].map(open));
+  assert.deepEqual([oriented.map((v) => v.oriented), turnedNowhere.map((v) => v.oriented)], [[true, true, true, true], [false, false, false, false]]);
+});
+
+test("a folder with one volume opens it, whatever systems leave beside it", async () => sameVolume(await open("left"), await open("plain.nii")));
+
 const cases = JSON.parse(readFileSync(join(folder, "cases.json")));
 
 test("what the page would read otherwise than the native program is refused with the reason", async () => {
   for (const [name, word] of Object.entries(cases.refused)) {
     await assert.rejects(open(name), ({ message }) => {
-      assert.ok(message.includes(word) && /: (convert|copy|save|correct|choose)/.test(message), `${name}: ${message}`);
+      assert.ok(message.includes(word) && /: (convert|copy|save|correct|choose|give)/.test(message), `${name}: ${message}`);
       return true;
     }, name);
   }
