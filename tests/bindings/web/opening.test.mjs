@@ -121,6 +121,49 @@ test("what was chosen and assumed is told", async () => {
 
 test("a folder with one volume opens it, whatever systems leave beside it", async () => sameVolume(await open("left"), await open("plain.nii")));
 
+/** The service worker over a network and a cache: what it answers for a file, and what it has stored by then. */
+async function visited(path, network, { put = () => {}, cached = "cached" } = {}) {
+  const [handlers, stored, kept] = [{}, [], []];
+  const caches = {
+    open: async () => ({
+      put: async (file, fresh) => {
+        put(file);
+        stored.push([new URL(file).pathname, await fresh.text()]);
+      },
+      match: async () => cached && new Response(cached),
+    }),
+  };
+  new Function("addEventListener", "registration", "caches", "clients", "skipWaiting", "fetch", readFileSync(join(process.env.PALPATE_WEB, "offline.js"), "utf8"))(
+    (name, handler) => (handlers[name] = handler), { scope: "http://x/" }, caches, { claim() {} }, () => {}, async () => network(),
+  );
+  let found = null;
+  handlers.fetch({ request: { url: `http://x${path}`, method: "GET" }, respondWith: (answer) => (found = answer), waitUntil: (work) => kept.push(work) });
+  const answer = await found;
+  await Promise.all(kept);
+  const install = () => new Promise((done, fail) => handlers.install({ waitUntil: (work) => work.then(done, fail) }));
+  return { answer, stored, install };
+}
+
+test("the service worker stores what is the page's alone, and falls back to it", async () => {
+  const script = (body, more) => () => new Response(body, { headers: { "Content-Type": "text/javascript" }, ...more });
+  const visit = async (...given) => {
+    const { answer, stored } = await visited("/page/page.js", ...given);
+    return [answer.status, answer.status && (await answer.text()), stored.map(([, text]) => text)];
+  };
+  assert.deepEqual(await visit(script("new")), [200, "new", ["new"]]);
+  assert.deepEqual(await visit(script("busy", { status: 503 })), [200, "cached", []]);
+  assert.deepEqual(await visit(script("gone", { status: 404 })), [404, "gone", []]);
+  assert.deepEqual(await visit(() => new Response("<html>log in", { headers: { "Content-Type": "text/html" } })), [200, "cached", []]);
+  assert.deepEqual(await visit(() => Object.defineProperty(script("moved")(), "redirected", { value: true })), [200, "moved", []]);
+  assert.deepEqual(await visit(() => Promise.reject(new Error("no network"))), [200, "cached", []]);
+  assert.deepEqual(await visit(script("new"), { put: () => { throw new Error("no room"); } }), [200, "new", []]);
+  assert.deepEqual(await visit(() => new Response(null, { status: 304 })), [304, "", []]);
+  const redirect = { status: 0, type: "opaqueredirect" };
+  assert.equal((await visited("/page/", () => redirect)).answer, redirect);
+  const login = await visited("/page/page.js", () => new Response("<html>log in", { headers: { "Content-Type": "text/html" } }));
+  await assert.rejects(login.install(), /not what was expected/);
+});
+
 const cases = JSON.parse(readFileSync(join(folder, "cases.json")));
 
 test("what the page would read otherwise than the native program is refused with the reason", async () => {
