@@ -164,6 +164,39 @@ test("the service worker stores what is the page's alone, and falls back to it",
   await assert.rejects(login.install(), /not what was expected/);
 });
 
+/** The same places and values, with the axes of the grid in another order and some against their direction. */
+function regridded({ size, direction, samples }, order, flips) {
+  const stride = [1, size[0], size[0] * size[1]];
+  const shape = order.map((axis) => size[axis]);
+  const values = Float32Array.from({ length: samples.length }, (_, i) => {
+    const at = [i % shape[0], Math.floor(i / shape[0]) % shape[1], Math.floor(i / shape[0] / shape[1])];
+    return samples[order.reduce((sum, axis, a) => sum + (flips[a] ? shape[a] - 1 - at[a] : at[a]) * stride[axis], 0)];
+  });
+  const turned = [0, 1, 2].flatMap((row) => order.map((axis, a) => direction[3 * row + axis] * (flips[a] ? -1 : 1)));
+  return { size: shape, direction: turned, samples: values, oriented: true };
+}
+
+test("slices are drawn by directions: any order and direction of the grid's axes shows the same picture", async () => {
+  const { sliceOf, viewsOf } = await import(join(page, "charts.js"));
+  const plain = { size: [3, 4, 5], direction: [1, 0, 0, 0, 1, 0, 0, 0, 1], samples: Float32Array.from({ length: 60 }, (_, i) => i), oriented: true };
+  const [axial, coronal, sagittal] = viewsOf(plain);
+  assert.deepEqual([axial, coronal, sagittal].map(({ letters }) => letters.join("")), ["RLAP", "RLSI", "APSI"]);
+  assert.deepEqual(viewsOf({ ...plain, oriented: false }).map(({ letters }) => letters.join("")), ["xy", "xz", "yz"]);
+  assert.equal(sliceOf(plain, axial, [0, 0, 0])[0], 0); // right and front are at the upper left
+  assert.equal(sliceOf(plain, coronal, [0, 0, 0])[0], 48); // right and head
+  for (const order of [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]]) {
+    for (let bits = 0; bits < 8; ++bits) {
+      const flips = [1, 2, 4].map((bit) => (bits & bit) !== 0);
+      const other = regridded(plain, order, flips);
+      const at = order.map((axis, a) => (flips[a] ? other.size[a] - 2 : 1));
+      viewsOf(other).forEach((view, i) => {
+        assert.deepEqual(sliceOf(other, view, at), sliceOf(plain, [axial, coronal, sagittal][i], [1, 1, 1]), `${order} ${flips} ${i}`);
+        assert.deepEqual(view.letters, [axial, coronal, sagittal][i].letters);
+      });
+    }
+  }
+});
+
 const cases = JSON.parse(readFileSync(join(folder, "cases.json")));
 
 test("what the page would read otherwise than the native program is refused with the reason", async () => {
