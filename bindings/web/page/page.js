@@ -42,16 +42,29 @@ function transformFor({ size, spacing, origin, direction }) {
 }
 
 let toldUntil = 0;
-/** Shows a state, which stays for `least` ms. */
+/** Shows a state, which stays for `least` ms or until the next action. */
 function tell(text, least = 0) {
   if (performance.now() < toldUntil && least === 0) return;
   toldUntil = performance.now() + least;
   if ($("state").textContent !== text) $("state").textContent = text;
 }
 
+for (const name of ["pointerdown", "keydown", "change"]) document.addEventListener(name, () => (toldUntil = 0), true);
+
+/** Announces to those who do not see the page. */
+const say = (text) => ($("said").textContent = text);
+let touching = false;
+
+/** An error, which stays until the next action. */
+function complain(error) {
+  tell(`Error: ${error}`, Infinity);
+  say(`Error: ${error}`);
+}
+
 const to = new Hand({
   ready(made) {
-    volume = { ...made, number: (volume?.number ?? 0) + 1 };
+    $("notes").textContent = (opened.notes ?? []).join("; ");
+    volume = { ...made, oriented: opened.oriented, number: (volume?.number ?? 0) + 1 };
     snapshot = null;
     scene.clear();
     meshing = false; // the worker has dropped the surface of the volume before
@@ -67,6 +80,7 @@ const to = new Hand({
     if (Number.isFinite(now.isovalue) && $("through").checked) level = now.isovalue;
     if (volume && Math.abs(level - shown) > 0.03 * (volume.maximum - volume.minimum)) remesh(); // pressed through
     const pull = Math.hypot(...now.force);
+    if (now.constrained !== touching) say((touching = now.constrained) ? "In contact" : "No contact");
     tell(now.constrained ? `In contact: ${pull.toFixed(1)} N at level ${now.isovalue.toFixed(0)}` : pressing ? "Approaching ..." : "Move, and press to touch");
   },
   surface(part) {
@@ -94,7 +108,7 @@ const to = new Hand({
   },
   error(text) {
     meshing = false;
-    tell(`Error: ${text}`, 5000);
+    complain(text);
   },
 });
 
@@ -136,7 +150,7 @@ function useLevel(value) {
 function begin(data) {
   if (recording) setRecording(false); // the worker still has its session
   const { geometry, samples, scene: made, name } = data;
-  opened = { name, marks: data.marks };
+  opened = { name, marks: data.marks, oriented: data.oriented, notes: data.notes };
   $("through").checked = $("layers").checked = $("drill").checked = false;
   $("layersLabel").hidden = data.marks !== headMarks;
   to.send("burr", 0);
@@ -151,12 +165,17 @@ function begin(data) {
   }, samples ? [samples.buffer] : []);
 }
 
+let newest = 0;
+/** The last one that was asked for wins. */
 async function open(read) {
+  const mine = ++newest;
+  toldUntil = 0;
   tell("Loading ...");
   try {
-    begin(await read());
+    const data = await read();
+    if (mine === newest) begin(data);
   } catch (error) {
-    tell(`Error: ${error.message}`, 5000);
+    if (mine === newest) complain(error.message);
   }
 }
 
@@ -268,10 +287,10 @@ function setRecording(on) {
 $("record").onclick = () => setRecording(!recording);
 setInterval(() => volume && to.send("report"), 1000);
 requestAnimationFrame(frame);
-const asked = new URLSearchParams(location.search).get("volume");
-if (asked) {
-  $("address").value = asked;
-  open(() => readAddress(asked));
+const address = new URLSearchParams(location.search).get("volume");
+if (address) {
+  $("address").value = address;
+  open(() => readAddress(address));
 } else {
   openHead();
 }

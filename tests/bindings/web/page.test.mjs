@@ -143,8 +143,12 @@ test("DICOM that is chosen and OME-Zarr at an address are opened, and what canno
     await page.type("#address", "/volumes/blosc_lz4.zarr");
     await surface(() => page.click("#remote button"));
     assert.equal(await page.$eval("#isovalue", ({ max }) => Number(max)), 499);
+    assert.match(await page.$eval("#notes", ({ textContent }) => textContent), /of 2 channels, 0 was taken/);
     await (await page.$("#file")).uploadFile(join(volumes, "compressed.dcm"));
     await says(page, /Error: .*convert it first/);
+    assert.match(await page.$eval("#said", ({ textContent }) => textContent), /Error: .*convert it first/);
+    await page.keyboard.press("Shift"); // an error stays until the next action
+    await says(page, /Move, and press/);
   }, ["404 (Not Found)"]); // where a Zarr has no zarr.json
 });
 
