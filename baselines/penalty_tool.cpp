@@ -4,7 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 
 namespace palpate::baselines {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "palpate/surface.hpp"
 #include "scenes/random.hpp"

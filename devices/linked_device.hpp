@@ -14,7 +14,7 @@ class LinkedDevice : public Device {
     DeviceReading read(double) noexcept final { return link_.read(timing_.now()); }
     void write(const Wrench& wrench, double) noexcept final { link_.write(wrench, timing_.now()); }
     void stop() noexcept final { link_.stop(); }
-    bool is_stopping() const noexcept final { return link_.stopping(); }
+    bool is_stopping() const noexcept override { return link_.stopping(); }
 
   protected:
     explicit LinkedDevice(const Timing& timing = {}) : timing_(timing) {}

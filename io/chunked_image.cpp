@@ -2,6 +2,7 @@
 #include "io/chunked_image.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "palpate/io/error.hpp"
@@ -45,6 +46,28 @@ ImageArray array_from(const nlohmann::json& json) {
 }
 
 }  // namespace
+
+double factor_between(std::int64_t fine, std::int64_t coarse) {
+    return std::max(1.0, std::round(static_cast<double>(fine) / static_cast<double>(coarse)));
+}
+
+void place(ImageArray& level, const std::array<double, 3>& spacing,
+           const std::array<double, 3>& origin, const std::array<double, 3>& factor) {
+    for (std::size_t a = 0; a < 3; ++a) {
+        level.scale[a] = spacing[a] * factor[a];
+        level.translation[a] = origin[a] + spacing[a] * (factor[a] - 1) / 2;
+    }
+}
+
+int number_of_time(int time, const std::vector<int>& numbers, std::vector<std::string>& notes) {
+    const int number = numbers.at(static_cast<std::size_t>(time));
+    if (number != time) {
+        notes.push_back("its times are numbered from " + std::to_string(numbers.front()) + " to " +
+                        std::to_string(numbers.back()) + ": time " + std::to_string(time) +
+                        " is its timepoint " + std::to_string(number));
+    }
+    return number;
+}
 
 nlohmann::json json_from(const ChunkedImage& image) {
     nlohmann::json json = {{"format", image.format},     {"unit", image.unit},

@@ -45,6 +45,15 @@ struct ChunkPlace {
     std::uint64_t skipped = 0;  ///< bit i: codec i, in the order of decoding, was not used
 };
 
+/// Of a level and the next coarser one. Halves of odd sizes are rounded either way, so it is whole.
+double factor_between(std::int64_t fine, std::int64_t coarse);
+/// Places a level whose samples are the means of `factor` ones of the finest.
+void place(ImageArray& level, const std::array<double, 3>& spacing,
+           const std::array<double, 3>& origin, const std::array<double, 3>& factor);
+/// The number of a time in its file, where `numbers` may begin anywhere and have gaps. Notes it if
+/// it is another one.
+int number_of_time(int time, const std::vector<int>& numbers, std::vector<std::string>& notes);
+
 nlohmann::json json_from(const ChunkedImage& image);
 
 /// Throws nlohmann::json::exception, std::bad_optional_access, std::invalid_argument for what the

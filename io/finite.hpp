@@ -32,7 +32,7 @@ inline std::uint64_t replace_non_finite(std::span<float> samples) {
 /// The note about such replacements.
 inline std::string non_finite_note(std::uint64_t count) {
     return std::to_string(count) + (count == 1 ? " sample was" : " samples were") +
-           " not finite (NaN or infinity) and became the least finite value";
+           " not finite (NaN, infinity or beyond float32) and became the least finite value";
 }
 
 }  // namespace palpate::io

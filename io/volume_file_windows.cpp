@@ -20,14 +20,9 @@ struct Reading {
 };
 thread_local Reading reading;
 
-std::string extension_of(const std::filesystem::path& path) {
-    return lower(path.extension().string());
-}
-
 Result read_with_header(const std::filesystem::path& path, const Request& request) {
-    const std::string extension = extension_of(path);
-    if (extension == ".nrrd" || extension == ".nhdr") return read_nrrd(request);
-    if (extension == ".mha" || extension == ".mhd") return read_meta_image(request);
+    const bool is_nifti = extension_of(path).starts_with(".nii");
+    if (header_reader(path) && !is_nifti) return read_by_header(request);
     throw Failure(
         "Palpate for Windows reads NRRD, MetaImage and raw volumes; convert it to one of them, for "
         "example with `palpate convert` on Linux");

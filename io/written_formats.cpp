@@ -14,7 +14,7 @@ std::span<const std::string_view> written_extensions() {
 std::string_view written_extension_of(const std::filesystem::path& path) {
     const std::string name = path.filename().string();
     for (const std::string_view extension : written_extensions()) {
-        if (name.ends_with(extension)) return extension;
+        if (name.size() > extension.size() && name.ends_with(extension)) return extension;
     }
     return {};
 }

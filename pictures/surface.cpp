@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 
 namespace palpate::pictures {
 namespace {

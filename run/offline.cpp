@@ -8,7 +8,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "palpate/density.hpp"
+#include "palpate/lattice.hpp"
 #include "stream/while_telling.hpp"
 
 namespace palpate::run {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 
 namespace palpate::run {
 namespace {

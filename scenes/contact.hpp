@@ -1,7 +1,7 @@
 // Finds contacts with the surface along straight lines. Internal to scenes/.
 #pragma once
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "scenes/random.hpp"
 
 namespace palpate::scenes {

@@ -23,7 +23,7 @@ TEXT
 }
 
 # In the order of the rotation: cheap and expensive ones take turns.
-checks=(alone tsan golden readme analyse asan fuzz packages adversary windows web)
+checks=(alone tsan golden readme analyse asan fuzz packages container adversary windows web)
 stamps=${XDG_CACHE_HOME:-$HOME/.cache}/palpate/passed
 
 # stamp_of CHECK: where its stamp is; nothing if a file that decides its result has changed since the last commit.

@@ -16,12 +16,12 @@ groups (default: all)
   program  core, and what reads and writes files and reaches devices: ITK, VTK, CLI11, fmt, JSON,
            EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, oneTBB, codecs of
            chunks, libcurl
-  io       program; for the Python module pybind11, NumPy, SciPy, Matplotlib, Dask, pip, nibabel; for tests zarr, h5py, pydicom, tifffile, teem
+  io       program; for the Python module pybind11, NumPy, SciPy, Matplotlib, WeasyPrint, Dask, pip, nibabel; for tests zarr, h5py, pydicom, tifffile, teem
            and OpenIGTLink
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
   package  what scripts/package.sh uses in addition to viewer
   test     package, and what only the tests use: lintian and pkg-config for the Debian packages, Mono for C#,
-           umockdev and libftdi for devices
+           umockdev and libftdi for devices, ROS 1
   dev      clang, lld, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck
   docs     MkDocs and Doxygen, for the documentation as a site
   web      core, emscripten, and Chromium for the tests of the page; not in all
@@ -33,14 +33,15 @@ TEXT
 core=(g++ cmake ninja-build ccache libeigen3-dev libgtest-dev libgmock-dev libbenchmark-dev python3 git)
 python=(python3-dev pybind11-dev python3-numpy python3-pytest python3-nibabel python3-zarr
         python3-h5py python3-pydicom python3-tifffile teem-apps python3-setuptools python3-wheel
-        python3-pip python3-dask python3-distributed python3-scipy python3-matplotlib mypy)
+        python3-pip python3-dask python3-distributed python3-scipy python3-matplotlib weasyprint mypy)
 program=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
     libgdcm-dev libhdf5-dev libtiff-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
     libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev)
 io=("${program[@]}" libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
 package=(dpkg-dev file)
-test=("${package[@]}" lintian pkg-config mono-mcs mono-runtime umockdev libftdi1-2)
+test=("${package[@]}" lintian pkg-config mono-mcs mono-runtime umockdev libftdi1-2
+    python3-rospy python3-rosmaster python3-geometry-msgs python3-sensor-msgs python3-diagnostic-msgs)
 dev=(clang lld clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 docs=(mkdocs doxygen python3-pygments libjs-jquery)
 web=("${core[@]}" emscripten node-acorn nlohmann-json3-dev googletest chromium python3-pydicom python3-zarr)

@@ -1,5 +1,5 @@
 // Density: dispatches on the field's interpolation.
-#include "palpate/density.hpp"
+#include "palpate/cubic.hpp"
 
 namespace palpate {
 namespace {

@@ -211,30 +211,40 @@ double Field::sample_at(const Index3& at) const {
 template <int count>
 std::array<double, std::size_t{count} * count * count> Field::gathered(const Index3& low) const {
     std::array<double, std::size_t{count} * count * count> samples;
+    const auto gather = [&](const Index3& first, const Index3& end, auto&& sample) {
+        for (int z = first[2]; z < end[2]; ++z) {
+            for (int y = first[1]; y < end[1]; ++y) {
+                double* const row = samples.data() + count * (y + count * z);
+                for (int x = first[0]; x < end[0]; ++x) row[x] = sample(x, y, z);
+            }
+        }
+    };
     with_type(type_, [&](auto zero) {
         using T = decltype(zero);
+        const auto* const from = static_cast<const T*>(data_);
+        const auto* const to = static_cast<const T*>(samples_->frames()[moment_.to].volume.data());
+        const double weight = moment_.weight;
+        const std::ptrdiff_t begin = low[0] + low[1] * row_ + low[2] * slice_;
+        const auto in_frames = [&](int x, int y, int z) {
+            const std::ptrdiff_t at = begin + x + y * row_ + z * slice_;
+            if (!(weight > 0)) return double(from[at]) - offset_;
+            return (1 - weight) * double(from[at]) + weight * double(to[at]) - offset_;
+        };
+        const Index3 none = Index3::Zero(), all = Index3::Constant(count);
         const Run run = stored_run<count>(low);
-        const T* const from = static_cast<const T*>(run.first);
-        const double weight = run.in_frame ? moment_.weight : 0;
-        const T* to = from;
-        if (weight > 0) {
-            to = static_cast<const T*>(samples_->frames()[moment_.to].volume.data()) +
-                 (from - static_cast<const T*>(data_));
-        }
-        double* out = samples.data();
-        for (int z = 0; z < count; ++z) {
-            for (int y = 0; y < count; ++y) {
-                for (int x = 0; x < count; ++x, ++out) {
-                    const std::ptrdiff_t at = x + y * run.row + z * run.slice;
-                    if (!from) {
-                        *out = sample_at<T>({low[0] + x, low[1] + y, low[2] + z});
-                    } else if (weight > 0) {
-                        *out = (1 - weight) * double(from[at]) + weight * double(to[at]) - offset_;
-                    } else {
-                        *out = double(from[at]) - offset_;
-                    }
-                }
-            }
+        if (run.in_frame) {
+            gather(none, all, in_frames);
+        } else if (const auto* brick = static_cast<const T*>(run.first)) {
+            gather(none, all, [&](int x, int y, int z) {
+                return double(brick[x + y * run.row + z * run.slice]) - offset_;
+            });
+        } else if (bricks_ || resident_) {
+            gather(none, all, [&](int x, int y, int z) {
+                return sample_at<T>({low[0] + x, low[1] + y, low[2] + z});
+            });
+        } else {  // across the border
+            samples.fill(background_ - offset_);
+            gather((-low).cwiseMax(none), (size_ - low).cwiseMin(all), in_frames);
         }
     });
     if (!cover_.labels) return samples;

@@ -1,5 +1,5 @@
 // Penetrability: Fig. 7 of the paper, with ranges of interest. See docs/penetrability.md.
-#include "palpate/penetrability.hpp"
+#include "palpate/proxy.hpp"
 
 #include <algorithm>
 #include <cmath>

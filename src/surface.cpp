@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "surface/nodes.hpp"
 #include "surface/refine.hpp"
 

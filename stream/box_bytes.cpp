@@ -18,18 +18,12 @@ Volume volume_from(const Geometry& geometry, SampleType type, std::vector<std::b
 void copy_box(const SampleBox& from, const std::byte* source, const SampleBox& to,
               std::byte* target, std::size_t sample) {
     const Index3 low = from.low.cwiseMax(to.low), high = from.high.cwiseMin(to.high);
-    const auto place = [&](const SampleBox& box, int y, int z) {
-        const Index3 size = box.high - box.low + Index3::Ones();
-        return (static_cast<std::size_t>(z - box.low[2]) * static_cast<std::size_t>(size[1]) +
-                static_cast<std::size_t>(y - box.low[1])) *
-                   static_cast<std::size_t>(size[0]) +
-               static_cast<std::size_t>(low[0] - box.low[0]);
-    };
     const auto row = static_cast<std::size_t>(high[0] - low[0] + 1) * sample;
     for (int z = low[2]; z <= high[2]; ++z) {
         for (int y = low[1]; y <= high[1]; ++y) {
-            std::memcpy(target + place(to, y, z) * sample, source + place(from, y, z) * sample,
-                        row);
+            const Index3 first(low[0], y, z);
+            std::memcpy(target + place_in(to, first) * sample,
+                        source + place_in(from, first) * sample, row);
         }
     }
 }

@@ -40,6 +40,14 @@ void for_each_piece(const Index3& size, const SampleBox& box, Visit&& visit) {
                    });
 }
 
+/// Where a sample of a box is among all its samples.
+inline std::size_t place_in(const SampleBox& box, const Index3& at) {
+    using Counts = Eigen::Matrix<std::size_t, 3, 1>;
+    const Counts size = (box.high - box.low + Index3::Ones()).cast<std::size_t>();
+    const Counts before = (at - box.low).cast<std::size_t>();
+    return (before[2] * size[1] + before[1]) * size[0] + before[0];
+}
+
 /// Copies the part of `from` that lies in `to`; `sample` bytes each.
 void copy_box(const SampleBox& from, const std::byte* source, const SampleBox& to,
               std::byte* target, std::size_t sample);

@@ -8,19 +8,9 @@
 #include <stdexcept>
 
 #include "io/byte_order.hpp"
+#include "stream/box_bytes.hpp"
 
 namespace palpate::stream {
-namespace {
-
-void replace_non_finite(std::byte* samples, std::size_t count, float with) {
-    for (std::size_t i = 0; i < count; ++i) {
-        float value;
-        std::memcpy(&value, samples + i * sizeof value, sizeof value);
-        if (!std::isfinite(value)) std::memcpy(samples + i * sizeof value, &with, sizeof with);
-    }
-}
-
-}  // namespace
 
 void SampleBytes::unpack(std::span<std::byte> raw, std::byte* to) const {
     if (swapped) io::swap_bytes(raw, size());
@@ -44,7 +34,12 @@ FiniteSamples finite_samples(SampleType type, std::span<const std::byte> bytes) 
 
 void make_finite(SampleType type, std::span<std::byte> bytes, double instead) {
     if (type != SampleType::float32) return;
-    replace_non_finite(bytes.data(), bytes.size() / sizeof(float), static_cast<float>(instead));
+    const auto with = static_cast<float>(instead);
+    for (std::size_t at = 0; at + sizeof(float) <= bytes.size(); at += sizeof(float)) {
+        float value;
+        std::memcpy(&value, bytes.data() + at, sizeof value);
+        if (!std::isfinite(value)) std::memcpy(bytes.data() + at, &with, sizeof with);
+    }
 }
 
 void note_finite(const SampleBytes& bytes, std::vector<std::string>& notes) {
@@ -73,9 +68,9 @@ void check_request(const Geometry& grid, const SampleBox& box, SampleType type, 
         (box.high.array() >= grid.size.array()).any()) {
         throw std::invalid_argument("a box that is empty or not inside the grid");
     }
-    std::size_t wanted = size_of(type);
-    for (int a = 0; a < 3; ++a) wanted *= static_cast<std::size_t>(box.high[a] - box.low[a] + 1);
-    if (bytes != wanted) throw std::invalid_argument("memory of another size than the box");
+    if (bytes != bytes_of(box, type)) {
+        throw std::invalid_argument("memory of another size than the box");
+    }
 }
 
 }  // namespace palpate::stream

@@ -30,10 +30,11 @@ struct ConvertWords {
     stream::ConvertOptions zarr;
 };
 
-/// A store and the level of it that is taken.
+/// A store, the level of it that is taken, and what else the source has.
 struct Taken {
     std::shared_ptr<const stream::Store> store;
     int level = 0;
+    int frames = 1;
 };
 
 /// The store that a source can be read as; nothing: it is loaded.
@@ -73,10 +74,36 @@ Taken opened(const ConvertWords& words) {
                 say("palpate: note: {}: {}\n", io::without_secrets(from->address), note);
             }
         }
-        return {std::move(store), from->loader.level};
+        const int frames = store->info().times;
+        return {std::move(store), from->loader.level, frames};
     }
     run::LoadedVolume loaded = load_for_terminal(words.source);
-    return {stream::store_of(loaded.volume, loaded.name)};
+    return {stream::store_of(loaded.volume, loaded.name), 0, loaded.time_steps};
+}
+
+/// What the source has and the output has not, unless the user chose it.
+void note_losses(const CLI::App& command, const ConvertWords& words, const Taken& taken) {
+    if (words.source.quiet) return;
+    const auto note = [&](const std::string& text) {
+        say("palpate: note: {}: {}\n", io::without_secrets(words.source.name()), text);
+    };
+    if (taken.frames > 1 && command.count("--time-step") == 0) {
+        note(fmt::format("only the first of its {} frames is converted (--time-step)",
+                         taken.frames));
+    }
+    const std::size_t channels = taken.store->info().channels.size();
+    if (channels > 1 && command.count("--channel") == 0) {
+        note(fmt::format("only the first of its {} channels is converted (--channel)", channels));
+    }
+    if (words.source.name().ends_with(".seg.nrrd")) {
+        note("names and colours of its segments are not converted");
+    }
+    const bool oriented = taken.store->info().levels.front().geometry.oriented;
+    const auto extension = io::written_extension_of(words.output);
+    if (!oriented && (extension == ".nii" || extension == ".nii.gz")) {
+        note("its orientation is not known, which NIfTI cannot say: " + words.output +
+             " has the axes L, P and S");
+    }
 }
 
 void to_zarr(const ConvertWords& words, const Taken& taken) {
@@ -146,6 +173,7 @@ void convert(const CLI::App& command, const ConvertWords& words) {
         throw std::invalid_argument(fmt::format("--level {}: {} has {} levels, numbered from 0",
                                                 taken.level, words.source.name(), levels));
     }
+    note_losses(command, words, taken);
     zarr ? to_zarr(words, taken) : to_file(words, taken);
     stop_if_interrupted();
 }

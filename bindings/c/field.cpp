@@ -1,7 +1,7 @@
 // Fields and their surfaces in the C interface.
+#include "palpate/field.hpp"
 #include "bindings/c/handles.hpp"
 #include "bindings/c/structs.hpp"
-#include "palpate/density.hpp"
 
 namespace palpate::c {
 

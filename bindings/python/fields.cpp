@@ -4,7 +4,6 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/record.hpp"
-#include "palpate/density.hpp"
 #include "palpate/field.hpp"
 #include "palpate/proxy.hpp"
 

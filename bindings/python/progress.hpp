@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "bindings/python/casters.hpp"
+#include "stream/while_telling.hpp"
 
 namespace palpate::python {
 
@@ -43,5 +44,13 @@ class Slices {
 
 /// Updates of a proxy, or ticks; and batches of them, or updates of a tool.
 inline constexpr std::size_t updates_in_slice = 4096, batches_in_slice = 64;
+
+/// What work(stop) returns. Ctrl-C stops it.
+template <class Work>
+auto until_ctrl_c(Work&& work) {
+    const ProgressFunction none;
+    const auto progress = progress_of(none);
+    return stream::while_telling([&] { progress(0); }, work);
+}
 
 }  // namespace palpate::python

@@ -17,7 +17,6 @@
 #include "bindings/python/progress.hpp"
 #include "bindings/python/setup.hpp"
 #include "palpate/baselines/methods.hpp"
-#include "palpate/penetrability.hpp"
 
 namespace palpate::python {
 namespace {

@@ -2,6 +2,7 @@
 #include "bindings/python/python_device.hpp"
 
 #include <chrono>
+#include <optional>
 
 namespace palpate::python {
 namespace {
@@ -35,6 +36,14 @@ std::string tried(const std::string& function, Work&& work) {
 }
 
 }  // namespace
+
+std::unique_ptr<PythonDevice> make_python_device(const py::object& device, double rate) {
+    if (!py::hasattr(device, "info") || !py::hasattr(device, "read")) {
+        throw py::type_error("a device needs the functions info() and read()");
+    }
+    const auto info = returned_by<DeviceInfo>("info()", device.attr("info")());
+    return std::make_unique<PythonDevice>(device, info, rate);
+}
 
 PythonDevice::PythonDevice(py::object self, DeviceInfo info, double rate)
     : self_(std::move(self)), info_(std::move(info)), rate_(rate) {
@@ -71,6 +80,8 @@ bool PythonDevice::finish() {
 }
 
 PythonDevice::~PythonDevice() {
+    std::optional<py::gil_scoped_release> unlocked;  // its thread takes the GIL before it ends
+    if (PyGILState_Check()) unlocked.emplace();
     finish();
     if (thread_.joinable()) thread_.join();
     const py::gil_scoped_acquire gil;

@@ -9,9 +9,16 @@
 #include <thread>
 
 #include "bindings/python/casters.hpp"
+#include "bindings/python/own_process.hpp"
 #include "devices/linked_device.hpp"
+#include "palpate/devices/error.hpp"
 
 namespace palpate::python {
+
+/// The device, asked `rate` [Hz] times a second. With the GIL. Throws py::type_error and
+/// std::invalid_argument for what is no device.
+class PythonDevice;
+std::unique_ptr<PythonDevice> make_python_device(const py::object& device, double rate);
 
 /// What a device's function returned. Throws std::invalid_argument for an object of another class.
 template <class T>
@@ -27,8 +34,7 @@ class PythonDevice final : public devices::LinkedDevice {
     /// `self` has read() and may have write(force, torque) and close(). Starts the thread, which
     /// calls them `rate` [Hz] times a second. With the GIL. Throws std::invalid_argument.
     PythonDevice(py::object self, DeviceInfo info, double rate);
-    /// finish(), and waits for the thread however long it takes. Not on that thread, without the
-    /// GIL.
+    /// finish(), and waits for the thread however long it takes. Not on that thread.
     ~PythonDevice() override;
 
     /// Ends the thread, after a last write of zero and close(). Any thread, any number of times,
@@ -41,6 +47,8 @@ class PythonDevice final : public devices::LinkedDevice {
     DeviceInfo info() const override { return info_; }
     /// What its functions raised.
     std::string problem() const override;
+    /// Not to its own thread, which would wait for itself.
+    bool is_stopping() const noexcept override { return !is_own_thread() && link_.stopping(); }
 
   private:
     void run();
@@ -62,5 +70,43 @@ class PythonDevice final : public devices::LinkedDevice {
     std::mutex finish_;
     std::thread thread_;  // last: it uses all of the above
 };
+
+// An `Owner` of a device has `process`, `python_device` (null: another kind of device) and
+// finish(), which stops the session and then the device; false as PythonDevice::finish().
+
+/// Ends a session. Throws devices::DeviceError if the device's functions do not return.
+template <class Owner>
+void stop_session(Owner& owner) {
+    owner.process.check();
+    if (owner.finish()) return;
+    throw devices::DeviceError("the device: " + owner.python_device->problem() +
+                               ": the session has ended, a force of zero was written, and the "
+                               "thread that hangs is left behind");
+}
+
+/// Whoever lets go last. Where that are the device's own functions, another thread of Python does
+/// it, which waits for them. One that never ends keeps the owner for good.
+template <class Owner>
+void destroy_session(Owner* owner) {
+    if (!owner->process.is_here()) return;
+    if (owner->python_device && owner->python_device->is_own_thread()) {
+        const py::gil_scoped_acquire gil;
+        try {
+            owner->finish();
+            const py::cpp_function later([owner] { destroy_session(owner); });
+            py::module_::import("threading")
+                .attr("Thread")(py::arg("target") = later, py::arg("daemon") = false)
+                .attr("start")();
+        } catch (const std::exception&) {  // Python ends
+        }
+        return;
+    }
+    const auto end = [owner] {
+        if (owner->finish()) delete owner;
+    };
+    if (!PyGILState_Check()) return end();
+    const py::gil_scoped_release unlocked;
+    end();
+}
 
 }  // namespace palpate::python

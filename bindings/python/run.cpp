@@ -4,8 +4,11 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/commands.hpp"
+#include "bindings/python/progress.hpp"
+#include "bindings/python/python_device.hpp"
 #include "bindings/python/record.hpp"
 #include "bindings/python/without_gil.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::python {
 namespace {
@@ -67,13 +70,29 @@ void bind_setup(py::module_& module) {
 }
 
 struct LiveRun : run::Run {
-    using run::Run::Run;
+    LiveRun(std::shared_ptr<run::Data> data, const run::Setup& setup, PythonDevice* its_device)
+        : Run(std::move(data), setup), python_device(its_device) {}
+
+    /// False if the device's thread goes on for good (PythonDevice::finish()). A recording ends in
+    /// any case.
+    bool finish() {
+        stop();
+        if (!python_device || python_device->finish()) return true;
+        try {
+            stop_recording();
+        } catch (const io::OutputError&) {  // it is cut off
+        }
+        return false;
+    }
+
     OwnProcess process;
+    PythonDevice* const python_device;  ///< where the device is written in Python, the run's own
 };
 
 /// `what`: LoadedVolume, Volume or Store. A Store is not converted by itself: what its reading
 /// raises would be lost.
-std::shared_ptr<LiveRun> make(const py::object& what, const std::optional<Setup>& given) {
+std::shared_ptr<LiveRun> make(const py::object& what, const std::optional<Setup>& given,
+                              const py::object& device, double device_rate) {
     const py::module_ module = py::module_::import("palpate._palpate");
     const bool is_store = py::isinstance(what, module.attr("Store"));
     if (!is_store && !py::isinstance<Volume>(what) && !py::isinstance<run::LoadedVolume>(what)) {
@@ -82,9 +101,19 @@ std::shared_ptr<LiveRun> make(const py::object& what, const std::optional<Setup>
     }
     const auto loaded = is_store ? module.attr("LoadedVolume")(what).cast<run::LoadedVolume>()
                                  : what.cast<run::LoadedVolume>();
-    const run::Setup setup = live_setup(given.value_or(Setup{}));
+    run::Setup setup = live_setup(given.value_or(Setup{}));
     std::shared_ptr<run::Data> data = made_without_gil<run::Data>(loaded, setup.playback);
-    return made_without_gil<LiveRun>(std::move(data), setup);
+    PythonDevice* python_device = nullptr;
+    if (!device.is_none()) {
+        // Made here, with the GIL: copies of the setup must not hold a Python object.
+        const auto made = std::make_shared<std::unique_ptr<PythonDevice>>(
+            make_python_device(device, device_rate));
+        python_device = made->get();
+        setup.device = {python_device->info().name, {}};
+        setup.open_device = [made](const auto&, const auto&) { return std::move(*made); };
+    }
+    const py::gil_scoped_release unlocked;
+    return {new LiveRun(std::move(data), setup, python_device), &destroy_session<LiveRun>};
 }
 
 void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
@@ -108,8 +137,12 @@ void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
 void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
     using R = LiveRun;
     run.def(
-           "edit", [](R& r, const Edit& edit) { r.data().editor().apply(edit); }, py::arg("edit"),
-           Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
+           "edit",
+           [](R& r, const Edit& edit) {
+               until_ctrl_c(
+                   [&](const std::stop_token& stop) { r.data().editor().apply(edit, stop); });
+           },
+           py::arg("edit"), Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
         .def(
             "undo", [](R& r) { return r.data().editor().undo(); }, Unlocked(),
             "False if there is nothing to undo.")
@@ -123,14 +156,18 @@ void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
             },
             py::arg("brush"), Unlocked(), "A HandBrush that follows the proxy; None: only feel.")
         .def(
-            "save", [](R& r, const fs::path& path) { return r.data().save(path, {}); },
+            "save",
+            [](R& r, const fs::path& path) {
+                const ProgressFunction none;
+                return r.data().save(path, progress_of(none));
+            },
             py::arg("path"), Unlocked(), "Writes the samples as they are now. Raises OutputError.");
 }
 
 void start(const py::object& self) {
     auto& r = self.cast<LiveRun&>();
     r.process.check();
-    stop_at_exit<LiveRun>(self, [](LiveRun& running) { running.stop(); });
+    stop_at_exit<LiveRun>(self, [](LiveRun& running) { stop_session(running); });
     const py::gil_scoped_release unlocked;
     r.start();
 }
@@ -149,20 +186,16 @@ void bind_run(py::module_& module) {
         module, "Run",
         "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
         "By one thread at a time.");
-    live.def(
-            py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(),
-            "loaded: from load(), a Volume or a Store. setup: Setup, by default Setup(). Opens the "
-            "device; nothing\nmoves before start(). Raises ValueError, InputError, DeviceError.")
+    live.def(py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(), py::kw_only(),
+             py::arg("device") = py::none(), py::arg("device_rate") = 1000.0,
+             "loaded: from load(), a Volume or a Store. setup: Setup, by default Setup(). device: "
+             "one that is\nwritten in Python, as for a Servo, in place of the setup's; device_rate "
+             "[Hz]: how often it is asked.\nOpens the "
+             "device; nothing moves before start(). Raises ValueError, InputError, DeviceError.")
         .def("start", &start, "Once.")
-        .def(
-            "stop",
-            [](R& r) {
-                r.process.check();
-                r.stop();
-            },
-            Unlocked(),
-            "Forces go to zero; for good. Raises RuntimeError in a forked child, which has no "
-            "servo.")
+        .def("stop", &stop_session<R>, Unlocked(),
+             "Forces go to zero; for good. Raises DeviceError for a device in Python that hangs, "
+             "RuntimeError in a forked child, which has no servo.")
         .def("send", &send, py::arg("command"), Unlocked(),
              "As Servo.send(). Raises ValueError, QueueFull.")
         .def("snapshot", &R::snapshot, "The newest tick, a Snapshot; None before the first.")
@@ -193,7 +226,7 @@ void bind_run(py::module_& module) {
              })
         .def("__exit__", [](R& r, const py::args&) {
             const py::gil_scoped_release unlocked;
-            if (r.process.is_here()) r.stop();
+            if (r.process.is_here()) stop_session(r);
         });
     bind_playback(live);
     bind_editing(live);

@@ -3,11 +3,9 @@
 
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/commands.hpp"
-#include "bindings/python/own_process.hpp"
 #include "bindings/python/python_device.hpp"
 #include "bindings/python/renderer.hpp"
 #include "bindings/python/without_gil.hpp"
-#include "palpate/devices/error.hpp"
 
 namespace palpate::python {
 namespace {
@@ -16,27 +14,21 @@ namespace {
 struct DeviceServo {
     DeviceServo(Renderer renderer, std::unique_ptr<PythonDevice> its_device,
                 const ServoSettings& settings)
-        : device(std::move(its_device)),
+        : python_device(std::move(its_device)),
           field(renderer.field),
           isovalue(renderer.proxy.isovalue),
           force(renderer.settings.force),
-          servo(Session{std::move(renderer), {}}, *device, settings) {}
+          servo(Session{std::move(renderer), {}}, *python_device, settings) {}
 
     /// False if the device's thread goes on for good (PythonDevice::finish()).
     bool finish() {
         servo.stop();
-        return device->finish();
+        return python_device->finish();
     }
-    void stop() {
-        process.check();
-        if (finish()) return;
-        throw devices::DeviceError("the device: " + device->problem() +
-                                   ": the session has ended, a force of zero was written, and the "
-                                   "thread that hangs is left behind");
-    }
+    void stop() { stop_session(*this); }
 
     OwnProcess process;
-    std::unique_ptr<PythonDevice> device;
+    std::unique_ptr<PythonDevice> python_device;
     Field field;
     double isovalue;
     ForceSettings force;  ///< as sent last
@@ -46,43 +38,16 @@ struct DeviceServo {
 using Held = std::shared_ptr<DeviceServo>;
 using Unlocked = py::call_guard<py::gil_scoped_release>;
 
-/// Whoever lets go last. Where that are the device's own functions, another thread of Python does
-/// it, which waits for them. One that never ends keeps the servo for good.
-void destroy(DeviceServo* servo) {
-    if (!servo->process.is_here()) return;
-    if (servo->device->is_own_thread()) {
-        const py::gil_scoped_acquire gil;
-        try {
-            servo->finish();
-            const py::cpp_function later([servo] { destroy(servo); });
-            py::module_::import("threading")
-                .attr("Thread")(py::arg("target") = later, py::arg("daemon") = false)
-                .attr("start")();
-        } catch (const std::exception&) {  // Python ends
-        }
-        return;
-    }
-    const auto end = [servo] {
-        if (servo->finish()) delete servo;
-    };
-    if (!PyGILState_Check()) return end();
-    const py::gil_scoped_release unlocked;
-    end();
-}
-
 Held make_servo(const SharedRenderer& renderer, const py::object& device, double rate,
                 bool real_time, double device_rate) {
-    if (!py::hasattr(device, "info") || !py::hasattr(device, "read")) {
-        throw py::type_error("a device needs the functions info() and read()");
-    }
-    const auto info = returned_by<DeviceInfo>("info()", device.attr("info")());
     ServoSettings settings;
     settings.rate = rate;
     settings.real_time = real_time;
-    auto its_device = std::make_unique<PythonDevice>(device, info, device_rate);
+    auto its_device = make_python_device(device, device_rate);
     Renderer own = renderer;  // with the GIL, as other threads may use it
     const py::gil_scoped_release unlocked;
-    return {new DeviceServo(std::move(own), std::move(its_device), settings), &destroy};
+    return {new DeviceServo(std::move(own), std::move(its_device), settings),
+            &destroy_session<DeviceServo>};
 }
 
 void start_servo(const py::object& self) {
@@ -137,7 +102,7 @@ void bind_servo(py::module_& module) {
             [](const DeviceServo& s) { return std::vector<std::string>(s.servo.privileges()); },
             "A sentence for each privilege of real time. After start().")
         .def_property_readonly(
-            "device_problem", [](const DeviceServo& s) { return s.device->problem(); },
+            "device_problem", [](const DeviceServo& s) { return s.python_device->problem(); },
             "What the device's functions raised or returned in place of what they have to, until\n"
             "they do as they should; usually empty.")
         .def("__enter__",

@@ -7,20 +7,12 @@
 #include "palpate/run/source.hpp"
 #include "palpate/stream/store.hpp"
 #include "stream/formats/content.hpp"
-#include "stream/while_telling.hpp"
 
 namespace palpate::python {
 namespace {
 
 namespace fs = std::filesystem;
 using Unlocked = py::call_guard<py::gil_scoped_release>;
-
-template <class Work>
-auto until_ctrl_c(Work&& work) {
-    const ProgressFunction none;
-    const auto progress = progress_of(none);
-    return stream::while_telling([&] { progress(0); }, work);
-}
 
 struct OpenStore {
     std::shared_ptr<const stream::Store> store;

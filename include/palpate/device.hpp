@@ -1,4 +1,4 @@
-// Stage 14, device: the interface of a haptic device, which gives poses and takes wrenches.
+// Stage 12, device: the interface of a haptic device, which gives poses and takes wrenches.
 // Backends for real and simulated devices are in the folder devices/.
 #pragma once
 

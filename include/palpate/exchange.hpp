@@ -1,4 +1,4 @@
-// Stage 13, exchange: two containers by which threads pass values to each other without waiting,
+// Stage 11, exchange: two containers by which threads pass values to each other without waiting,
 // and histograms of durations that one thread counts and others read. Everything between the servo
 // thread and others (snapshots, commands, recordings, devices) goes through them.
 #pragma once

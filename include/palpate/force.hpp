@@ -1,4 +1,4 @@
-// Stage 10, force: computes force and torque on the hand from hand and proxy (Corenthy et al. 2012,
+// Stage 8, force: computes force and torque on the hand from hand and proxy (Corenthy et al. 2012,
 // Eq. 4), with further effects and with limits. Lengths in device mm, angles in rad, forces in N,
 // torques in N mm, time in s, vectors in device axes.
 #pragma once

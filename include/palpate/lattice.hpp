@@ -139,6 +139,19 @@ struct Incident {
 };
 Incident incident_tetrahedra(const LatticePoint& point);
 
+// On the lattice that a field's interpolation lies on: for `cubic` its cubes lie round the samples
+// (cubic.hpp).
+
+/// A tetrahedron that contains the point, as above.
+LatticePoint locate(Interpolation interpolation, const Vec3& index);
+/// The point in index space.
+Vec3 index_of(Interpolation interpolation, const LatticePoint& point);
+/// Density at a lattice point [data units].
+double value_at(const Field& field, const LatticePoint& point);
+/// Gradient at a lattice point, in index axes [data units / voxel]. On a wall of a linear field it
+/// is that of one of the tetrahedra that meet there.
+Vec3 gradient_at(const Field& field, const LatticePoint& point);
+
 // Defined here, to be inlined: the servo thread spends most of its time in them.
 
 inline bool same_tetrahedron(const Tetrahedron& a, const Tetrahedron& b) {

@@ -1,4 +1,4 @@
-// Stage 11, layers: several surfaces in one stroke, each with its own character. A haptic transfer
+// Stage 9, layers: several surfaces in one stroke, each with its own character. A haptic transfer
 // function gives stiffness, friction and so on by density; surfaces are levels of it, from outside
 // in, and give way when they are pressed hard enough. (What Corenthy et al. 2012, section 7, leave
 // open: penetrability made for an application.) Model, energy and limits: docs/layers.md.
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "palpate/force.hpp"
-#include "palpate/penetrability.hpp"
+#include "palpate/proxy.hpp"
 
 namespace palpate {
 

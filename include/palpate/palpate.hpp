@@ -1,8 +1,7 @@
 // Includes the whole core, in the order of the flow of data. One tick:
 //
-//   volume -> samples -> field -> lattice, cubic, density --+
-//                edit --^                    penetrability --+--> proxy, layers -> force -> device
-//                                                    tool --+--> tool_proxy ---^
+//   volume -> samples -> field -> lattice, cubic --> proxy, layers -> force -> device
+//                edit --^                  tool --> tool_proxy ----^
 //
 //   renderer: one call for all from proxy to force, with a point, with layers or with a tool
 //   session: a renderer with clutch, freeze and commands
@@ -22,10 +21,8 @@
 #include "palpate/edit.hpp"
 #include "palpate/lattice.hpp"
 #include "palpate/cubic.hpp"
-#include "palpate/density.hpp"
 #include "palpate/proxy.hpp"
 #include "palpate/tool_proxy.hpp"
-#include "palpate/penetrability.hpp"
 #include "palpate/force.hpp"
 #include "palpate/layers.hpp"
 #include "palpate/renderer.hpp"

@@ -1,4 +1,4 @@
-// Stage 12, renderer: one call renders a tick, from the device's state to proxy and force. A
+// Stage 10, renderer: one call renders a tick, from the device's state to proxy and force. A
 // renderer is a value that can be copied. render() does not allocate, lock, do I/O, read clocks or
 // throw.
 #pragma once

@@ -1,4 +1,4 @@
-// Stage 16, servo: the real-time thread. It reads the device, advances the session and writes the
+// Stage 14, servo: the real-time thread. It reads the device, advances the session and writes the
 // force, usually a thousand times a second. Other threads observe snapshots and send commands.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Stage 15, session: one tick of a live session, which is everything between reading a device and
+// Stage 13, session: one tick of a live session, which is everything between reading a device and
 // writing to it. A session is a value without clock or thread, so a recording of its input gives
 // the same ticks again.
 #pragma once

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "io/byte_order.hpp"
+
 namespace palpate::io {
 namespace {
 
@@ -113,11 +115,7 @@ bool ends_code_stream(std::span<const std::byte> stream) {
 
 bool is_rle_frame(std::span<const std::byte> frame, std::size_t segments, std::uint64_t bytes) {
     const auto little = [&](std::size_t at) {
-        std::uint32_t value = 0;
-        for (std::size_t i = 4; i-- > 0;) {
-            value = value << 8 | std::to_integer<std::uint32_t>(frame[at + i]);
-        }
-        return value;
+        return little_endian<std::uint32_t>(frame.subspan(at));
     };
     if (frame.size() < 64 || segments > 15 || little(0) != segments) return false;
     for (std::size_t i = 0; i < segments; ++i) {

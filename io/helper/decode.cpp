@@ -111,7 +111,7 @@ void finish(Result& result, const Request& request, std::span<std::byte> samples
                                   samples.size() / sizeof(float)};
     const auto count = replace_non_finite(floats);
     if (count == floats.size()) {
-        throw Failure("none of its samples is a finite number; export it again");
+        throw Failure("none of its samples is finite as float32; export it again");
     }
     if (count > 0) result.notes.push_back(non_finite_note(count));
 }

@@ -2,11 +2,9 @@
 // where the data set is deflated.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <memory>
 
+#include "io/byte_order.hpp"
 #include "io/helper/decode.hpp"
 
 namespace palpate::io {
@@ -34,10 +32,7 @@ class DicomBytes {
     /// A number of a place that reaches() has found.
     template <class T>
     T number(std::uint64_t at) const {
-        std::array<std::byte, sizeof(T)> raw;
-        std::copy_n(data() + at, sizeof(T), raw.begin());
-        if (swapped_) std::reverse(raw.begin(), raw.end());
-        return std::bit_cast<T>(raw);
+        return number_in<T>(view(at, sizeof(T)), swapped_);
     }
     /// Bytes of a place that reaches() has found, valid until the next reaches().
     std::span<const std::byte> view(std::uint64_t at, std::uint64_t length) const {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <set>
 
 #include "io/helper/dicom_bytes.hpp"
@@ -167,36 +168,19 @@ class Walk {
         return end;
     }
 
-    std::int64_t* size_in(std::uint32_t tag) {
-        switch (tag) {
-            case 0x00280002:
-                return &extent_.components;
-            case 0x00280008:
-                return &extent_.frames;
-            case 0x00280010:
-                return &extent_.rows;
-            case 0x00280011:
-                return &extent_.columns;
-            case 0x00280100:
-                return &extent_.bits;
-            case 0x00280101:
-                return &extent_.stored_bits;
-            case 0x00280102:
-                return &extent_.high_bit;
-            case 0x00280103:
-                return &extent_.representation;
-            default:
-                return nullptr;
-        }
-    }
-
     /// The elements that say how large the image is; one that comes twice may say two things.
     void take_size(std::uint64_t at, const Element& e) {
-        std::int64_t* const size = size_in(e.tag);
-        if (size == nullptr || e.length == 0) return;
+        static const std::map<std::uint32_t, std::int64_t DicomExtent::*> sizes = {
+            {0x00280002, &DicomExtent::components}, {0x00280008, &DicomExtent::frames},
+            {0x00280010, &DicomExtent::rows},       {0x00280011, &DicomExtent::columns},
+            {0x00280100, &DicomExtent::bits},       {0x00280101, &DicomExtent::stored_bits},
+            {0x00280102, &DicomExtent::high_bit},   {0x00280103, &DicomExtent::representation}};
+        const auto found = sizes.find(e.tag);
+        if (found == sizes.end() || e.length == 0) return;
+        std::int64_t& size = extent_.*found->second;
         if (!taken_.insert(e.tag).second) fail("is damaged (it gives the size of its image twice)");
-        if (size != &extent_.frames) {
-            *size = number<std::uint16_t>(at);
+        if (&size != &extent_.frames) {
+            size = number<std::uint16_t>(at);
             return;
         }
         std::string digits = text(at, e);

@@ -12,6 +12,7 @@
 #include <new>
 #include <optional>
 
+#include "io/byte_order.hpp"
 #include "io/helper/code_stream.hpp"
 #include "io/helper/dicom_check.hpp"
 #include "io/helper/dicom_library.hpp"
@@ -97,10 +98,7 @@ std::vector<std::byte> in_our_order(std::span<const std::byte> bytes, std::size_
     if (samples.size() % word != 0) {
         throw Failure("has big-endian samples of less than a word; export it again, little-endian");
     }
-    for (std::size_t at = 0; word > 1 && at < samples.size(); at += word) {
-        std::reverse(samples.begin() + static_cast<std::ptrdiff_t>(at),
-                     samples.begin() + static_cast<std::ptrdiff_t>(at + word));
-    }
+    swap_bytes(samples, word);
     return samples;
 }
 
@@ -144,10 +142,8 @@ Decoded frame_from(const DicomExtent& extent, std::span<const std::byte> bytes) 
     const auto stream = extent.is_encapsulated() ? code_stream_size(bytes) : std::nullopt;
     const bool is_shifted = (stream ? stream->bits : extent.bits) > extent.high_bit;
     const int used = std::min(stored, word), shift = is_shifted ? extent.shift() : 0;
-    frame.stored = word == 8    ? is_signed ? Stored::int8 : Stored::uint8
-                   : word == 16 ? is_signed ? Stored::int16 : Stored::uint16
-                   : is_signed  ? Stored::int32
-                                : Stored::uint32;
+    frame.stored =
+        stored_named((is_signed ? "int" : "uint") + std::to_string(word)).value_or(Stored::uint32);
     frame = checked(std::move(frame), pixels);
     if (used == word && shift == 0) return frame;
     if (word == 8) tidy_bits<std::uint8_t>(frame.samples, used, shift, is_signed);

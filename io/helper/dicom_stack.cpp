@@ -88,10 +88,6 @@ void choose_time_step(const DicomSeries& series, SliceGroups groups, const Reque
     stack.time_steps = static_cast<int>(steps);
     for (const auto& group : groups) stack.slices.push_back(group[static_cast<std::size_t>(step)]);
     stack.seconds = series.slices[stack.slices.front().slice].seconds;
-    if (steps > 1) {
-        stack.notes.push_back("time step " + std::to_string(step) + " of " + std::to_string(steps) +
-                              " (0 to " + std::to_string(steps - 1) + ") was taken");
-    }
 }
 
 /// The distance between the grid's slices, and whether every slice lies on one of them.

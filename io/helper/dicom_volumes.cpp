@@ -172,11 +172,10 @@ Result read_series(const DicomSeries& given, const Request& request) {
                     : stack.slices.size() > 1 ? "DICOM series"
                                               : "DICOM, one slice";
     result.geometry = stack.geometry;
-    result.time_steps = stack.time_steps;
-    result.times.interval = stack.time_steps > 1 ? stack.seconds : 0;
     result.values = one.values;
     result.notes = notes;
     result.notes.insert(result.notes.end(), stack.notes.begin(), stack.notes.end());
+    take_step(request, stack.time_steps, {stack.seconds, 0}, result);
     note_files(taken, result.notes);
     warnings.note(result.notes);
     result.type = common_type(decoded, result.notes);
@@ -244,9 +243,7 @@ Result read_chosen(const std::vector<DicomSeries>& all, const Request& request) 
     }
 }
 
-}  // namespace
-
-Result read_dicom_file(const Request& request) {
+Result read_file(const Request& request) {
     say_doing(request.path.filename().string());
     const auto all = series_of(slices_from(request.path));
     if (all.empty()) {
@@ -255,7 +252,7 @@ Result read_dicom_file(const Request& request) {
     return read_chosen(all, request);
 }
 
-Result read_dicom_folder(const Request& request) {
+Result read_folder(const Request& request) {
     std::vector<fs::path> files;
     const auto take = [&](const fs::directory_entry& entry) {
         if (entry.is_regular_file() && looks_like_dicom(entry.path())) {
@@ -278,6 +275,12 @@ Result read_dicom_folder(const Request& request) {
         throw Failure("has DICOM files, but none with an image; give another folder");
     const auto all = series_of(std::move(slices));
     return read_chosen(all, request);
+}
+
+}  // namespace
+
+Result read_dicom(const Request& request) {
+    return fs::is_directory(request.path) ? read_folder(request) : read_file(request);
 }
 
 }  // namespace palpate::io

@@ -3,7 +3,6 @@
 // (https://imagej.net/plugins/bdv, "XML/HDF5 File Format").
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <map>
@@ -80,20 +79,6 @@ std::optional<std::array<double, 2>> imaris_range(const Hdf5File& file, const st
     const double most = std::max(*low + (static_cast<double>(last) + 0.5) * wide,
                                  *low + static_cast<double>(last + 1) * narrow);
     return std::array{std::max(least, *low), std::min(most, *high)};
-}
-
-/// Of a level and the next coarser one. Halves of odd sizes are rounded either way, so it is whole.
-double factor_between(std::int64_t fine, std::int64_t coarse) {
-    return std::max(1.0, std::round(static_cast<double>(fine) / static_cast<double>(coarse)));
-}
-
-/// Where a level lies whose samples are the means of `factor` ones of the finest.
-void place(ImageArray& level, const std::array<double, 3>& spacing,
-           const std::array<double, 3>& origin, const std::array<double, 3>& factor) {
-    for (std::size_t a = 0; a < 3; ++a) {
-        level.scale[a] = spacing[a] * factor[a];
-        level.translation[a] = origin[a] + spacing[a] * (factor[a] - 1) / 2;
-    }
 }
 
 std::string imaris_channel(int level, int time, int channel) {
@@ -270,17 +255,11 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
     } else if (setup.unit.empty()) {
         image.notes.emplace_back("its XML file gives no unit of length: millimetres were taken");
     }
-    const int timepoint = times[static_cast<std::size_t>(time)];
+    const int timepoint = number_of_time(time, times, image.notes);
     const std::string moment = bdv_moment(timepoint, id);
     if (!file.has(moment)) {
         throw Failure("has no setup " + std::to_string(id) + " at time " + std::to_string(time) +
                       "; choose another");
-    }
-    if (timepoint != time) {
-        image.notes.push_back("its times are numbered from " + std::to_string(times.front()) +
-                              " to " + std::to_string(times.back()) + ": time " +
-                              std::to_string(time) + " is its timepoint " +
-                              std::to_string(timepoint));
     }
     const auto factors = rows_of(file, resolutions_of(id));
     for (std::size_t l = 0; l < factors.size(); ++l) {

@@ -1,4 +1,6 @@
 // Reads NRRD, MetaImage and NIfTI: their headers say all that it takes, so no library is needed.
+#include <functional>
+
 #include "io/helper/headers.hpp"
 #include "io/helper/readers.hpp"
 
@@ -44,9 +46,13 @@ class StepTaker {
     std::int64_t seen_ = 0;  ///< samples of all volumes
 };
 
-Result read_with(VolumeHeader header, const Request& request) {
+}  // namespace
+
+Result read_by_header(const Request& request) {
     say_doing(request.path.filename().string());
+    VolumeHeader header = header_reader(request.path)(request);
     Result result;
+    result.format = header.format;
     result.geometry = header.geometry;
     result.type = kept_as(header.stored, header.value_map);
     result.values = header.values;
@@ -61,7 +67,8 @@ Result read_with(VolumeHeader header, const Request& request) {
     return result;
 }
 
-PlainLayout samples_of(VolumeHeader header, const Request& request) {
+VolumeHeader locate_by_header(const Request& request) {
+    VolumeHeader header = header_reader(request.path)(request);
     if (header.place.encoding != DataPlace::Encoding::raw) {
         throw OnlyWhole(
             "its samples are compressed or text, so they cannot be read piece by piece; save it "
@@ -74,58 +81,11 @@ PlainLayout samples_of(VolumeHeader header, const Request& request) {
             "volume of it");
     }
     check_raw_length(header);
-    PlainLayout plain;
-    plain.stored = header.stored;
-    plain.value_map = header.value_map;
-    plain.place = header.place;
-    plain.place.offset += header.place.skip;
-    plain.about.geometry = header.geometry;
-    plain.about.time_steps = static_cast<int>(header.steps);
-    plain.about.times = header.times;
-    plain.about.values = header.values;
-    plain.about.notes = header.notes;
-    put_in(request.grid, plain.about.geometry);
-    check_geometry(plain.about.geometry);
-    plain.about.geometry = orthonormal(plain.about.geometry);
-    return plain;
-}
-
-}  // namespace
-
-PlainLayout nrrd_samples(const Request& request) {
-    PlainLayout plain = samples_of(nrrd_header(request), request);
-    plain.about.format = "NRRD";
-    return plain;
-}
-
-PlainLayout meta_image_samples(const Request& request) {
-    PlainLayout plain = samples_of(meta_image_header(request), request);
-    plain.about.format = "MetaImage";
-    return plain;
-}
-
-PlainLayout nifti_samples(const Request& request) {
-    PlainLayout plain = samples_of(nifti_header(request), request);
-    plain.about.format = "NIfTI";
-    return plain;
-}
-
-Result read_nrrd(const Request& request) {
-    Result result = read_with(nrrd_header(request), request);
-    result.format = "NRRD";
-    return result;
-}
-
-Result read_meta_image(const Request& request) {
-    Result result = read_with(meta_image_header(request), request);
-    result.format = "MetaImage";
-    return result;
-}
-
-Result read_nifti(const Request& request) {
-    Result result = read_with(nifti_header(request), request);
-    result.format = "NIfTI";
-    return result;
+    header.place.offset += header.place.skip;
+    put_in(request.grid, header.geometry);
+    check_geometry(header.geometry);
+    header.geometry = orthonormal(header.geometry);
+    return header;
 }
 
 }  // namespace palpate::io

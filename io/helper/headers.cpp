@@ -25,6 +25,19 @@ std::uint64_t VolumeHeader::samples() const {
     return count;
 }
 
+std::string extension_of(const std::filesystem::path& path) {
+    const std::string name = lower(path.filename().string());
+    return name.ends_with(".nii.gz") ? ".nii.gz" : lower(path.extension().string());
+}
+
+ReadHeader* header_reader(const std::filesystem::path& path) {
+    const std::string extension = extension_of(path);
+    if (extension == ".nrrd" || extension == ".nhdr") return &nrrd_header;
+    if (extension == ".mha" || extension == ".mhd") return &meta_image_header;
+    if (extension == ".nii" || extension == ".nii.gz") return &nifti_header;
+    return nullptr;
+}
+
 std::vector<double> numbers_in(const std::string& text, const std::string& field) {
     std::vector<double> numbers;
     const char* at = text.data();

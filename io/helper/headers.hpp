@@ -35,6 +35,7 @@ struct DataPlace {
 
 /// All that reading the samples of one volume takes.
 struct VolumeHeader {
+    std::string format;
     std::vector<std::int64_t> sizes;  ///< every axis, the file's order
     Stored stored = Stored::uint8;
     ValueMap value_map;
@@ -55,14 +56,12 @@ struct VolumeHeader {
 VolumeHeader nrrd_header(const Request& request);
 VolumeHeader meta_image_header(const Request& request);
 VolumeHeader nifti_header(const Request& request);
+/// One of these, by a file's extension; null for a file of another format.
+using ReadHeader = VolumeHeader(const Request& request);
+ReadHeader* header_reader(const std::filesystem::path& path);
 
-/// Samples that lie uncompressed in a file, those of each volume together.
-struct PlainLayout {
-    Result about;  ///< of the first volume
-    Stored stored = Stored::uint8;
-    ValueMap value_map;
-    DataPlace place;
-};
+/// In lower case; of a.nii.gz both.
+std::string extension_of(const std::filesystem::path& path);
 
 /// Throws Failure unless the file has the bytes that raw samples take; up to 4096 more give a note.
 void check_raw_length(VolumeHeader& header);

@@ -5,11 +5,6 @@
 namespace palpate::io {
 namespace {
 
-Result read_tiff(const Request& request) {
-    return std::filesystem::is_directory(request.path) ? read_tiff_folder(request)
-                                                       : read_tiff_file(request);
-}
-
 nlohmann::json explore(const std::filesystem::path& path, const nlohmann::json& question) {
     const bool tiff = looks_like_tiff(path);
     if (!question.contains("array")) {
@@ -30,15 +25,11 @@ nlohmann::json explore(const std::filesystem::path& path, const nlohmann::json& 
     return {{"places", std::move(numbers)}};
 }
 
-void write(const std::filesystem::path& path, const std::string&, const WrittenVolume& volume) {
-    write_tiff(path, volume.geometry, volume.type, volume.samples, volume.compress);
-}
-
 }  // namespace
 }  // namespace palpate::io
 
 int main(int argc, char** argv) {
     using namespace palpate::io;
-    serve("palpate-io-images", {.read = &read_tiff, .explore = &explore, .write = &write}, argc,
-          argv);
+    serve("palpate-io-images", {.read = &read_tiff, .explore = &explore, .write = &write_tiff},
+          argc, argv);
 }

@@ -13,31 +13,13 @@
 namespace palpate::io {
 namespace {
 
-itk::IOComponentEnum component_from(SampleType type) {
-    switch (type) {
-        case SampleType::uint8:
-            return itk::IOComponentEnum::UCHAR;
-        case SampleType::int16:
-            return itk::IOComponentEnum::SHORT;
-        case SampleType::uint16:
-            return itk::IOComponentEnum::USHORT;
-        case SampleType::float32:
-            break;
-    }
-    return itk::IOComponentEnum::FLOAT;
-}
-
 /// Reads the header back and counts the data: a full disk shows here, ITK does not tell.
-void check_written(const std::filesystem::path& path, const std::string& extension,
-                   std::int64_t samples) {
+void check_written(const std::filesystem::path& path, std::int64_t samples) {
     Request request;
     request.path = path;
     std::uint64_t written = 0;
     try {
-        VolumeHeader header = extension == ".nii" || extension == ".nii.gz" ? nifti_header(request)
-                              : extension == ".nrrd" || extension == ".nhdr"
-                                  ? nrrd_header(request)
-                                  : meta_image_header(request);
+        VolumeHeader header = header_reader(path)(request);
         stream_samples(header, {});
         written = header.samples();
     } catch (const Failure& e) {
@@ -69,8 +51,9 @@ void erase_orientation(const std::filesystem::path& path) {
 
 }  // namespace
 
-void write_with_itk(const std::filesystem::path& path, const std::string& extension,
-                    const Geometry& geometry, SampleType type, const void* samples, bool compress) {
+void write_with_itk(const std::filesystem::path& path, const WrittenVolume& volume) {
+    const std::string extension = extension_of(path);
+    const Geometry& geometry = volume.geometry;
     itk::ImageIOBase::Pointer io;
     if (extension == ".nrrd" || extension == ".nhdr") io = itk::NrrdImageIO::New();
     if (extension == ".mha" || extension == ".mhd") io = itk::MetaImageIO::New();
@@ -92,15 +75,17 @@ void write_with_itk(const std::filesystem::path& path, const std::string& extens
         region.SetSize(a, size);
     }
     io->SetIORegion(region);
-    io->SetComponentType(component_from(type));
+    io->SetComponentType(with_type(volume.type, [](auto zero) {
+        return itk::ImageIOBase::MapPixelType<decltype(zero)>::CType;
+    }));
     io->SetPixelType(itk::IOPixelEnum::SCALAR);
     io->SetNumberOfComponents(1);
-    io->SetUseCompression(compress);
+    io->SetUseCompression(volume.compress || extension == ".nii.gz");
     if (!geometry.oriented) leave_unoriented(*io);
     io->WriteImageInformation();
-    io->Write(samples);
+    io->Write(volume.samples);
     if (!geometry.oriented && extension.starts_with(".mh")) erase_orientation(path);
-    check_written(path, extension, sample_count(geometry));
+    check_written(path, sample_count(geometry));
 }
 
 }  // namespace palpate::io

@@ -21,7 +21,6 @@
 #include "io/system/leftovers.hpp"
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
-#include "palpate/io/written_formats.hpp"
 
 namespace palpate::io {
 
@@ -104,18 +103,23 @@ nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked, Loc
     request.path = path;
     request.grid = grid_from(asked);
     limit_this_process(asked, 1 << 30);
-    PlainLayout plain;
+    VolumeHeader header;
     try {
-        plain = locate(request);
+        header = locate(request);
     } catch (const OnlyWhole& e) {
         return {{"only_whole", e.what()}};
     }
-    return {{"format", plain.about.format},    {"geometry", json_from(plain.about.geometry)},
-            {"stored", name_of(plain.stored)}, {"file", plain.place.file.string()},
-            {"offset", plain.place.offset},    {"swapped", plain.place.swapped},
-            {"slope", plain.value_map.slope},  {"intercept", plain.value_map.intercept},
-            {"times", plain.about.time_steps}, {"frame_interval", plain.about.times.interval},
-            {"notes", plain.about.notes}};
+    return {{"format", header.format},
+            {"geometry", json_from(header.geometry)},
+            {"stored", name_of(header.stored)},
+            {"file", header.place.file.string()},
+            {"offset", header.place.offset},
+            {"swapped", header.place.swapped},
+            {"slope", header.value_map.slope},
+            {"intercept", header.value_map.intercept},
+            {"times", header.steps},
+            {"frame_interval", header.times.interval},
+            {"notes", header.notes}};
 }
 
 /// The next question; nothing if the caller has closed the socket.
@@ -210,7 +214,7 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked, cons
     if (samples == MAP_FAILED) throw std::bad_alloc();
     volume.samples = samples;
     workshop.open();
-    write(workshop.inside(), std::string(written_extension_of(path)), volume);
+    write(workshop.inside(), volume);
     workshop.move_out();
     return nlohmann::json::object();
 }
@@ -218,14 +222,7 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked, cons
 nlohmann::json run_read_mesh(const fs::path& path, const nlohmann::json& asked,
                              ReadMesh* read_mesh) {
     limit_this_process(asked, asked.at("memory").get<std::uint64_t>());
-    const MeshSize size = read_mesh(path, extension_of(path), [](const MeshSize& wanted) {
-        const std::size_t bytes = mesh_bytes(wanted.vertices, wanted.triangles);
-        if (ftruncate(samples_descriptor, static_cast<off_t>(bytes)) != 0) throw std::bad_alloc();
-        void* const memory =
-            mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, samples_descriptor, 0);
-        if (memory == MAP_FAILED) throw std::bad_alloc();
-        return memory;
-    });
+    const MeshSize size = read_mesh(path, extension_of(path));
     return {{"vertices", size.vertices}, {"triangles", size.triangles}};
 }
 
@@ -266,11 +263,6 @@ Job job_of(int argc, char** argv) {
         if (argc > 1 && name == argv[1] && argc == (job == Job::write ? 5 : 4)) return job;
     }
     return Job::none;
-}
-
-std::string extension_of(const fs::path& path) {
-    const std::string name = lower(path.filename().string());
-    return name.ends_with(".nii.gz") ? ".nii.gz" : lower(path.extension().string());
 }
 
 std::string words_of(const std::exception& e, Job job) {

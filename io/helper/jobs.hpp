@@ -12,12 +12,10 @@
 namespace palpate::io {
 
 using Read = Result(const Request& request);
-using Locate = PlainLayout(const Request& request);
+using Locate = VolumeHeader(const Request& request);
 using Explore = nlohmann::json(const std::filesystem::path& path, const nlohmann::json& question);
-using ReadMesh = MeshSize(const std::filesystem::path& path, const std::string& extension,
-                          const MeshMemory& memory_of);
-using Write = void(const std::filesystem::path& path, const std::string& extension,
-                   const WrittenVolume& volume);
+using ReadMesh = MeshSize(const std::filesystem::path& path, const std::string& extension);
+using Write = void(const std::filesystem::path& path, const WrittenVolume& volume);
 
 /// What a program does; null: another one does it.
 struct Formats {
@@ -31,9 +29,6 @@ struct Formats {
 /// The first word of the command line (protocol.hpp).
 enum class Job { none, read, locate, explore, read_mesh, write };
 Job job_of(int argc, char** argv);
-
-/// In lower case; of a.nii.gz both.
-std::string extension_of(const std::filesystem::path& path);
 
 /// What a person is told of an exception.
 std::string words_of(const std::exception& e, Job job);

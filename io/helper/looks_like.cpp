@@ -2,6 +2,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "io/byte_order.hpp"
 #include "io/helper/readers.hpp"
 
 namespace palpate::io {
@@ -12,10 +13,9 @@ namespace {
 
 /// The first two elements of a data set or of the meta information, in little endian, without what
 /// comes before them in most files.
-bool begins_with_elements(const char* bytes, std::size_t size) {
-    const auto number = [&](std::size_t at) {
-        return static_cast<unsigned>(static_cast<unsigned char>(bytes[at])) |
-               static_cast<unsigned>(static_cast<unsigned char>(bytes[at + 1])) << 8;
+bool begins_with_elements(std::span<const char> bytes) {
+    const auto number = [&](std::size_t at) -> unsigned {
+        return little_endian<std::uint16_t>(std::as_bytes(bytes.subspan(at)));
     };
     const unsigned group = number(0), element = number(2);
     if ((group != 0x0002 && group != 0x0008) || element > 0x0020) return false;
@@ -23,7 +23,7 @@ bool begins_with_elements(const char* bytes, std::size_t size) {
     const bool is_explicit = is_upper(bytes[4]) && is_upper(bytes[5]);
     if (!is_explicit && number(6) != 0) return false;  // the length's upper half
     const std::size_t next = 8 + number(is_explicit ? 6 : 4);
-    if (next + 4 > size) return false;
+    if (next + 4 > bytes.size()) return false;
     return number(next) == group && number(next + 2) > element;
 }
 
@@ -43,7 +43,7 @@ bool begins_as_dicom(const fs::path& file) {
     in.read(start, sizeof start);
     const auto size = static_cast<std::size_t>(in.gcount());
     if (size >= 132 && std::memcmp(start + 128, "DICM", 4) == 0) return true;
-    return size == sizeof start && begins_with_elements(start, size);
+    return size == sizeof start && begins_with_elements(start);
 }
 
 bool looks_like_dicom(const fs::path& file) {

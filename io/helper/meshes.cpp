@@ -11,12 +11,14 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <new>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/helper/ply_mesh.hpp"
+#include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_errors.hpp"
 #include "io/system/number.hpp"
@@ -153,8 +155,7 @@ void check_faces(vtkCellArray& faces, vtkIdType vertices) {
 
 }  // namespace
 
-MeshSize read_mesh(const std::filesystem::path& path, const std::string& extension,
-                   const MeshMemory& memory_of) {
+MeshSize read_mesh(const std::filesystem::path& path, const std::string& extension) {
     const vtkSmartPointer<vtkPolyData> read = read_poly_data(path, extension);
     check_faces(*read->GetPolys(), read->GetNumberOfPoints());
     check_faces(*read->GetStrips(), read->GetNumberOfPoints());
@@ -171,7 +172,8 @@ MeshSize read_mesh(const std::filesystem::path& path, const std::string& extensi
     if (size.vertices > std::numeric_limits<std::uint32_t>::max()) {
         throw Failure("has more vertices than can be read; simplify it");
     }
-    void* const memory = memory_of(size);
+    void* const memory = shared_memory(mesh_bytes(size.vertices, size.triangles));
+    if (!memory) throw std::bad_alloc();
     auto* const vertices = static_cast<double*>(memory);
     for (vtkIdType i = 0; i < size.vertices; ++i) {
         double* const vertex = vertices + 3 * i;

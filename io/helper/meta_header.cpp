@@ -171,6 +171,7 @@ void read_geometry(const HeaderFields& fields, VolumeHeader& header) {
 VolumeHeader meta_image_header(const Request& request) {
     const HeaderFields fields = read_fields(request.path);
     VolumeHeader header;
+    header.format = "MetaImage";
     header.stored = stored_from(fields.needed("elementtype"));
     header.sizes = sizes_in(fields.needed("dimsize"), "DimSize");
     const auto dimensions = numbers_in(fields.needed("ndims"), "NDims");

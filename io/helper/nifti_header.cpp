@@ -4,12 +4,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <map>
 
+#include "io/byte_order.hpp"
 #include "io/helper/headers.hpp"
 #include "io/inflate.hpp"
 
@@ -25,10 +25,7 @@ struct Header {
 
     template <class T>
     T number(std::size_t offset) const {
-        std::array<std::byte, sizeof(T)> raw;
-        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(offset), sizeof(T), raw.begin());
-        if (swapped) std::reverse(raw.begin(), raw.end());
-        return std::bit_cast<T>(raw);
+        return number_in<T>(std::span(bytes).subspan(offset), swapped);
     }
     std::string magic() const {
         const auto* text = reinterpret_cast<const char*>(bytes.data()) + 344;
@@ -324,7 +321,8 @@ std::vector<std::int64_t> sizes_of(const Header& header) {
     }
     std::vector<std::int64_t> sizes;
     for (std::size_t a = 0; a < static_cast<std::size_t>(axes); ++a) {
-        sizes.push_back(header.number<std::int16_t>(42 + 2 * a));
+        const auto size = header.number<std::int16_t>(42 + 2 * a);
+        sizes.push_back(size == 0 && a > 2 ? 1 : size);  // as the reference library takes it
     }
     while (sizes.size() > 3 && sizes.back() == 1) sizes.pop_back();
     return sizes;
@@ -350,8 +348,10 @@ VolumeHeader nifti_header(const Request& request) {
     Header bytes = read_header(request.path);
     check_kind(bytes);
     VolumeHeader header;
+    header.format = "NIfTI";
     header.stored = stored_from(bytes.number<std::int16_t>(70));
-    if (bytes.number<std::int16_t>(72) != static_cast<int>(8 * size_of(header.stored))) {
+    const int bits = bytes.number<std::int16_t>(72);  // some programs leave it out
+    if (bits != 0 && bits != static_cast<int>(8 * size_of(header.stored))) {
         throw Failure("its header's bits a sample do not fit its type; the header is damaged");
     }
     header.sizes = sizes_of(bytes);

@@ -29,36 +29,18 @@ std::string field_named(const std::string& name) {
 
 /// Fields that say something of the samples but are not used.
 void note_ignored(const HeaderFields& fields, std::vector<std::string>& notes) {
-    static const std::set<std::string> known = {"axis maxs",
-                                                "axis mins",
-                                                "block size",
-                                                "byte skip",
-                                                "centerings",
-                                                "content",
-                                                "data file",
-                                                "dimension",
-                                                "encoding",
-                                                "endian",
-                                                "kinds",
-                                                "labels",
-                                                "line skip",
-                                                "max",
-                                                "measurement frame",
-                                                "min",
-                                                "number",
-                                                "old max",
-                                                "old min",
-                                                "sample units",
-                                                "sizes",
-                                                "space",
-                                                "space directions",
-                                                "space dimension",
-                                                "space origin",
-                                                "space units",
-                                                "spacings",
-                                                "thicknesses",
-                                                "type",
-                                                "units"};
+    static const std::set<std::string> known = {
+        // of the file
+        "content", "number", "type", "dimension", "sizes", "encoding", "endian", "data file",
+        "block size", "line skip", "byte skip",
+        // of samples
+        "min", "max", "old min", "old max", "sample units",
+        // of each axis
+        "kinds", "centerings", "labels", "units", "spacings", "thicknesses", "axis mins",
+        "axis maxs",
+        // of the space
+        "space", "space dimension", "space units", "space origin", "space directions",
+        "measurement frame"};
     for (const auto& [name, value] : fields.values) {
         if (!known.contains(name)) {
             notes.push_back("its header field '" + name.substr(0, 40) +
@@ -103,51 +85,27 @@ HeaderFields read_fields(const std::filesystem::path& path) {
 }
 
 Stored stored_from(const std::string& type) {
-    static const std::map<std::string, Stored> types = {{"signed char", Stored::int8},
-                                                        {"int8", Stored::int8},
-                                                        {"int8_t", Stored::int8},
-                                                        {"uchar", Stored::uint8},
-                                                        {"unsigned char", Stored::uint8},
-                                                        {"uint8", Stored::uint8},
-                                                        {"uint8_t", Stored::uint8},
-                                                        {"short", Stored::int16},
-                                                        {"short int", Stored::int16},
-                                                        {"signed short", Stored::int16},
-                                                        {"signed short int", Stored::int16},
-                                                        {"int16", Stored::int16},
-                                                        {"int16_t", Stored::int16},
-                                                        {"ushort", Stored::uint16},
-                                                        {"unsigned short", Stored::uint16},
-                                                        {"unsigned short int", Stored::uint16},
-                                                        {"uint16", Stored::uint16},
-                                                        {"uint16_t", Stored::uint16},
-                                                        {"int", Stored::int32},
-                                                        {"signed int", Stored::int32},
-                                                        {"int32", Stored::int32},
-                                                        {"int32_t", Stored::int32},
-                                                        {"uint", Stored::uint32},
-                                                        {"unsigned int", Stored::uint32},
-                                                        {"uint32", Stored::uint32},
-                                                        {"uint32_t", Stored::uint32},
-                                                        {"longlong", Stored::int64},
-                                                        {"long long", Stored::int64},
-                                                        {"long long int", Stored::int64},
-                                                        {"signed long long", Stored::int64},
-                                                        {"signed long long int", Stored::int64},
-                                                        {"int64", Stored::int64},
-                                                        {"int64_t", Stored::int64},
-                                                        {"ulonglong", Stored::uint64},
-                                                        {"unsigned long long", Stored::uint64},
-                                                        {"unsigned long long int", Stored::uint64},
-                                                        {"uint64", Stored::uint64},
-                                                        {"uint64_t", Stored::uint64},
-                                                        {"float", Stored::float32},
-                                                        {"double", Stored::float64}};
-    const auto found = types.find(lower(type));
-    if (found == types.end()) {
+    static const std::map<Stored, std::set<std::string>> names = {
+        {Stored::int8, {"signed char", "int8", "int8_t"}},
+        {Stored::uint8, {"uchar", "unsigned char", "uint8", "uint8_t"}},
+        {Stored::int16,
+         {"short", "short int", "signed short", "signed short int", "int16", "int16_t"}},
+        {Stored::uint16, {"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"}},
+        {Stored::int32, {"int", "signed int", "int32", "int32_t"}},
+        {Stored::uint32, {"uint", "unsigned int", "uint32", "uint32_t"}},
+        {Stored::int64,
+         {"longlong", "long long", "long long int", "signed long long", "signed long long int",
+          "int64", "int64_t"}},
+        {Stored::uint64,
+         {"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"}},
+        {Stored::float32, {"float"}},
+        {Stored::float64, {"double"}}};
+    const auto found = std::ranges::find_if(
+        names, [name = lower(type)](const auto& one) { return one.second.contains(name); });
+    if (found == names.end()) {
         throw Failure("its sample type '" + type + "' cannot be read; save it as int16 or float");
     }
-    return found->second;
+    return found->first;
 }
 
 DataPlace place_of(const HeaderFields& fields, const std::filesystem::path& path) {
@@ -245,6 +203,7 @@ std::vector<LabelName> labels_of(const HeaderFields& fields, int frame) {
 VolumeHeader nrrd_header(const Request& request) {
     const HeaderFields fields = read_fields(request.path);
     VolumeHeader header;
+    header.format = "NRRD";
     header.stored = stored_from(fields.needed("type"));
     header.sizes = sizes_in(fields.needed("sizes"), "sizes");
     const auto dimension = numbers_in(fields.needed("dimension"), "dimension");

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <system_error>
 #include <vector>
 
@@ -22,24 +21,15 @@ constexpr const char *dicom = "palpate-io-dicom", *images = "palpate-io-images",
 
 /// Null for what needs a library.
 const Formats* own_formats(Job job, const fs::path& path) {
-    static constexpr Formats nrrd{.read = &read_nrrd, .locate = &nrrd_samples};
-    static constexpr Formats meta_image{.read = &read_meta_image, .locate = &meta_image_samples};
-    static constexpr Formats nifti{.read = &read_nifti, .locate = &nifti_samples};
+    static constexpr Formats by_header{.read = &read_by_header, .locate = &locate_by_header};
     std::error_code error;
     if ((job != Job::read && job != Job::locate) || fs::is_directory(path, error)) return nullptr;
-    const std::string extension = extension_of(path);
-    if (extension == ".nrrd" || extension == ".nhdr") return &nrrd;
-    if (extension == ".mha" || extension == ".mhd") return &meta_image;
-    if (extension == ".nii" || extension == ".nii.gz") return &nifti;
-    return nullptr;
+    return header_reader(path) ? &by_header : nullptr;
 }
 
 /// Whether a file of this name is a volume, whole.
 bool names_a_volume(const fs::path& path) {
-    const std::string extension = extension_of(path);
-    return std::ranges::any_of(
-        std::array{".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".vti"},
-        [&](const char* known) { return extension == known; });
+    return header_reader(path) || extension_of(path) == ".vti";
 }
 
 /// "a.nrrd, b.nrrd and 3 more"

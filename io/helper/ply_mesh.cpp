@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -122,17 +121,13 @@ class Numbers {
     }
 
     double binary(Stored type) {
-        std::byte raw[8] = {};
-        const std::size_t size = size_of(type);
-        if (left() < size) fail("it is cut off");
-        std::memcpy(raw, bytes_.data() + at_, size);
-        at_ += size;
-        if ((encoding_ == Encoding::big) != (std::endian::native == std::endian::big)) {
-            swap_bytes({raw, size}, size);
-        }
+        if (left() < size_of(type)) fail("it is cut off");
+        const auto raw = std::as_bytes(std::span(bytes_)).subspan(at_);
+        at_ += size_of(type);
+        const bool swapped =
+            (encoding_ == Encoding::big) != (std::endian::native == std::endian::big);
         return with_stored(type, [&](auto zero) {
-            std::memcpy(&zero, raw, sizeof zero);
-            return static_cast<double>(zero);
+            return static_cast<double>(number_in<decltype(zero)>(raw, swapped));
         });
     }
 

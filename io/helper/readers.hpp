@@ -1,7 +1,6 @@
 // The readers and writers of the helper programs, one source file for each family of formats.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "io/helper/headers.hpp"
@@ -9,20 +8,16 @@
 namespace palpate::io {
 
 /// Each reads request.path into the shared samples, or throws Failure or its library's exception.
-Result read_nrrd(const Request& request);
-Result read_meta_image(const Request& request);
-Result read_nifti(const Request& request);
-Result read_dicom_file(const Request& request);
-Result read_dicom_folder(const Request& request);
-Result read_tiff_file(const Request& request);
-Result read_tiff_folder(const Request& request);
+/// A folder is one of DICOM's or TIFF's slices.
+Result read_by_header(const Request& request);
+Result read_dicom(const Request& request);
+Result read_tiff(const Request& request);
 Result read_vti(const Request& request);
 
-/// Where the samples of request.path lie, without reading them. Throws OnlyWhole where they cannot
-/// be read from there by the box: compressed, text, or those of several volumes mixed.
-PlainLayout nrrd_samples(const Request& request);
-PlainLayout meta_image_samples(const Request& request);
-PlainLayout nifti_samples(const Request& request);
+/// Where the samples of request.path lie, without reading them, and the grid that is asked for.
+/// Throws OnlyWhole where they cannot be read from there by the box: compressed, text, or those of
+/// several volumes mixed.
+VolumeHeader locate_by_header(const Request& request);
 
 /// Whether a name begins with a point: no slice of a folder, such as the "._a.tif" that macOS keeps
 /// beside "a.tif" on disks of others, and half a copy of rsync's.
@@ -40,11 +35,9 @@ bool looks_like_tiff(const std::filesystem::path& file);
 struct MeshSize {
     std::int64_t vertices = 0, triangles = 0;
 };
-using MeshMemory = std::function<void*(const MeshSize&)>;
-/// Reads a mesh into the memory that `memory_of` gives for its size: all vertices [3 doubles each],
-/// then all triangles [3 32-bit numbers of vertices each].
-MeshSize read_mesh(const std::filesystem::path& path, const std::string& extension,
-                   const MeshMemory& memory_of);
+/// Reads a mesh into shared memory: all vertices [3 doubles each], then all triangles [3 32-bit
+/// numbers of vertices each].
+MeshSize read_mesh(const std::filesystem::path& path, const std::string& extension);
 
 struct WrittenVolume {
     Geometry geometry;
@@ -53,11 +46,8 @@ struct WrittenVolume {
     bool compress = false;
 };
 /// Writes the shared samples to `path`, in the format that its extension names.
-void write_with_itk(const std::filesystem::path& path, const std::string& extension,
-                    const Geometry& geometry, SampleType type, const void* samples, bool compress);
-void write_vti(const std::filesystem::path& path, const Geometry& geometry, SampleType type,
-               const void* samples, bool compress);
-void write_tiff(const std::filesystem::path& path, const Geometry& geometry, SampleType type,
-                const void* samples, bool compress);
+void write_with_itk(const std::filesystem::path& path, const WrittenVolume& volume);
+void write_vti(const std::filesystem::path& path, const WrittenVolume& volume);
+void write_tiff(const std::filesystem::path& path, const WrittenVolume& volume);
 
 }  // namespace palpate::io

@@ -3,7 +3,6 @@
 // for each slice.
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdio>
 
 #include "io/helper/images.hpp"
@@ -127,14 +126,9 @@ ChunkedImage tiff_image(const fs::path& path, int channel, int time) {
             level_from(tiling, image.sizes[0], TIFFIsByteSwapped(tiff.get()) != 0, layout.values);
         level.id = id_of(l, channel, time);
         for (std::size_t a = 0; a < 3; ++a) {
-            if (l > 0) {
-                factor[a] *=
-                    std::max(1.0, std::round(static_cast<double>(found.levels.back().shape[a]) /
-                                             static_cast<double>(level.shape[a])));
-            }
-            level.scale[a] = image.spacing[a] * factor[a];
-            level.translation[a] = image.spacing[a] * (factor[a] - 1) / 2;
+            if (l > 0) factor[a] *= factor_between(found.levels.back().shape[a], level.shape[a]);
         }
+        place(level, image.spacing, {0, 0, 0}, factor);
         found.levels.push_back(level);
     }
     return found;
@@ -158,8 +152,9 @@ void tiff_places(const fs::path& path, const ChunkBox& box, std::span<ChunkPlace
     for (std::int64_t z = box.first[0]; z < box.first[0] + box.count[0]; ++z) {
         go_to(tiff.get(), path, layout, page_at(z), level);
         if (!(tiling_of(tiff.get(), path, notes) == usual)) {
-            throw Failure("its plane " + std::to_string(z) +
-                          " has another size or compression than the first; save it again");
+            throw Failure(
+                "its plane " + std::to_string(z) +
+                " has another size, Orientation or compression than the first; save it again");
         }
         for (std::int64_t y = box.first[1]; y < box.first[1] + box.count[1]; ++y) {
             for (std::int64_t x = box.first[2]; x < box.first[2] + box.count[2]; ++x, ++at) {

@@ -1,8 +1,6 @@
 // A page of a TIFF file. See the header.
 #include "io/helper/tiff_page.hpp"
 
-#include <algorithm>
-
 namespace palpate::io {
 
 namespace fs = std::filesystem;
@@ -10,14 +8,12 @@ namespace fs = std::filesystem;
 namespace {
 
 Stored stored_from(std::uint16_t bits, std::uint16_t format, const fs::path& file) {
-    const bool is_signed = format == SAMPLEFORMAT_INT;
-    if (format == SAMPLEFORMAT_IEEEFP && bits == 32) return Stored::float32;
-    if (format == SAMPLEFORMAT_IEEEFP && bits == 64) return Stored::float64;
-    if (is_signed || format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID) {
-        if (bits == 8) return is_signed ? Stored::int8 : Stored::uint8;
-        if (bits == 16) return is_signed ? Stored::int16 : Stored::uint16;
-        if (bits == 32) return is_signed ? Stored::int32 : Stored::uint32;
-    }
+    const std::string kind = format == SAMPLEFORMAT_IEEEFP                                ? "float"
+                             : format == SAMPLEFORMAT_INT                                 ? "int"
+                             : format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID ? "uint"
+                                                                                          : "";
+    const auto stored = stored_named(kind + std::to_string(bits));
+    if (stored && (bits <= 32 || *stored == Stored::float64)) return *stored;
     throw Failure(quoted(file) + " has samples of " + std::to_string(bits) +
                   " bits of a kind that is not read; save it " +
                   (format == SAMPLEFORMAT_IEEEFP ? "as 32-bit float" : "with 8 or 16 bits"));
@@ -42,7 +38,10 @@ Tiff open_to_read(const fs::path& file, const std::string& more) {
 
 std::string text_of(const TiffPage& page) {
     return std::to_string(page.width) + "x" + std::to_string(page.height) + " of " +
-           name_of(page.stored);
+           name_of(page.stored) +
+           (page.orientation == ORIENTATION_TOPLEFT
+                ? ""
+                : " (Orientation " + std::to_string(page.orientation) + ")");
 }
 
 TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
@@ -75,10 +74,13 @@ TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
                       " values a sample, PhotometricInterpretation " + std::to_string(photometric) +
                       "); save it in grey");
     }
-    const char* const white = "its zero means white: values were taken as they are";
-    if (photometric == PHOTOMETRIC_MINISWHITE &&
-        std::find(notes.begin(), notes.end(), white) == notes.end()) {
-        notes.emplace_back(white);
+    if (photometric == PHOTOMETRIC_MINISWHITE) {
+        add_note(notes, "its zero means white: values were taken as they are");
+    }
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_ORIENTATION, &page.orientation);
+    if (page.orientation != ORIENTATION_TOPLEFT) {
+        add_note(notes, "its Orientation " + std::to_string(page.orientation) +
+                            " was not applied: rows and columns were taken as they are stored");
     }
     page.stored = stored_from(bits, format, file);
     return page;

@@ -12,6 +12,7 @@ namespace palpate::io {
 struct TiffPage {
     std::uint32_t width = 0, height = 0;
     Stored stored = Stored::uint8;
+    std::uint16_t orientation = ORIENTATION_TOPLEFT;  ///< of its rows and columns; not applied
     bool operator==(const TiffPage&) const = default;
 };
 

@@ -163,9 +163,7 @@ TiffLayout layout_of_folder(const fs::path& first, std::vector<std::string>& not
     return {};
 }
 
-}  // namespace
-
-Result read_tiff_file(const Request& request) {
+Result read_file(const Request& request) {
     std::vector<std::string> notes;
     const TiffLayout layout = layout_of(open_to_read(request.path).get(), request.path, notes);
     const OmeImage& image = layout.image;
@@ -186,7 +184,7 @@ Result read_tiff_file(const Request& request) {
     return result;
 }
 
-Result read_tiff_folder(const Request& request) {
+Result read_folder(const Request& request) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(request.path)) {
         if (is_shown_file(entry) && looks_like_tiff(entry.path())) files.push_back(entry.path());
@@ -211,6 +209,12 @@ Result read_tiff_folder(const Request& request) {
     take_step(request, times, {}, result);
     note_stick(result);
     return result;
+}
+
+}  // namespace
+
+Result read_tiff(const Request& request) {
+    return fs::is_directory(request.path) ? read_folder(request) : read_file(request);
 }
 
 }  // namespace palpate::io

@@ -1,5 +1,6 @@
 // Writes TIFF stacks with libtiff: a page a slice, grey, the spacing as ImageJ writes it.
 #include <algorithm>
+#include <type_traits>
 
 #include "io/helper/readers.hpp"
 #include "io/helper/tiff_calibration.hpp"
@@ -7,17 +8,13 @@
 namespace palpate::io {
 namespace {
 
-std::uint16_t format_of(SampleType type) {
-    switch (type) {
-        case SampleType::int16:
-            return SAMPLEFORMAT_INT;
-        case SampleType::float32:
-            return SAMPLEFORMAT_IEEEFP;
-        case SampleType::uint8:
-        case SampleType::uint16:
-            break;
-    }
-    return SAMPLEFORMAT_UINT;
+int format_of(SampleType type) {
+    return with_type(type, [](auto zero) {
+        using T = decltype(zero);
+        return std::is_floating_point_v<T> ? SAMPLEFORMAT_IEEEFP
+               : std::is_signed_v<T>       ? SAMPLEFORMAT_INT
+                                           : SAMPLEFORMAT_UINT;
+    });
 }
 
 [[noreturn]] void fail_unfinished() {
@@ -42,7 +39,7 @@ void write_page(TIFF* tiff, const Geometry& geometry, SampleType type, int z, bo
     TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, height);
     TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
     TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, static_cast<int>(8 * size_of(type)));
-    TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, static_cast<int>(format_of(type)));
+    TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, format_of(type));
     TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
     TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
     TIFFSetField(tiff, TIFFTAG_COMPRESSION,
@@ -63,11 +60,11 @@ void write_page(TIFF* tiff, const Geometry& geometry, SampleType type, int z, bo
 
 }  // namespace
 
-void write_tiff(const std::filesystem::path& path, const Geometry& geometry, SampleType type,
-                const void* samples, bool compress) {
-    const std::size_t page = static_cast<std::size_t>(geometry.size.x()) *
-                             static_cast<std::size_t>(geometry.size.y()) * size_of(type);
-    const auto pages = static_cast<std::size_t>(geometry.size.z());
+void write_tiff(const std::filesystem::path& path, const WrittenVolume& volume) {
+    const Index3& size = volume.geometry.size;
+    const std::size_t page = static_cast<std::size_t>(size.x()) *
+                             static_cast<std::size_t>(size.y()) * size_of(volume.type);
+    const auto pages = static_cast<std::size_t>(size.z());
     // Classic TIFF points to 4 GB; some of them are for its directories and for what does not pack.
     const bool big = pages * (page + 4096) > 0xF0000000;
     // tifffile takes samples that fit before the second page's directory for one piece.
@@ -76,9 +73,10 @@ void write_tiff(const std::filesystem::path& path, const Geometry& geometry, Sam
     if (!tiff) fail_unfinished();
     std::vector<std::byte> slice(page);  // libtiff may turn what it is given
     for (std::size_t z = 0; z < pages; ++z) {
-        const auto* const from = static_cast<const std::byte*>(samples) + z * page;
+        const auto* const from = static_cast<const std::byte*>(volume.samples) + z * page;
         std::copy_n(from, page, slice.begin());
-        write_page(tiff.get(), geometry, type, static_cast<int>(z), compress || tiny, slice.data());
+        write_page(tiff.get(), volume.geometry, volume.type, static_cast<int>(z),
+                   volume.compress || tiny, slice.data());
         say_progress(static_cast<double>(z + 1) / static_cast<double>(pages));
     }
     tiff.reset();  // writes what is left

@@ -77,35 +77,14 @@ void check_ends(const Request& request) {
     }
 }
 
-Stored stored_from(int type) {
-    switch (type) {
-        case VTK_CHAR:
-        case VTK_SIGNED_CHAR:
-            return Stored::int8;
-        case VTK_UNSIGNED_CHAR:
-            return Stored::uint8;
-        case VTK_SHORT:
-            return Stored::int16;
-        case VTK_UNSIGNED_SHORT:
-            return Stored::uint16;
-        case VTK_INT:
-            return Stored::int32;
-        case VTK_UNSIGNED_INT:
-            return Stored::uint32;
-        case VTK_LONG:
-        case VTK_LONG_LONG:
-        case VTK_ID_TYPE:
-            return Stored::int64;
-        case VTK_UNSIGNED_LONG:
-        case VTK_UNSIGNED_LONG_LONG:
-            return Stored::uint64;
-        case VTK_FLOAT:
-            return Stored::float32;
-        case VTK_DOUBLE:
-            return Stored::float64;
-        default:
-            throw Failure("its sample type is not read; save it as Float32");
-    }
+Stored stored_of(vtkDataArray& array) {
+    const int type = array.GetDataType();
+    const std::string kind = type == VTK_FLOAT || type == VTK_DOUBLE ? "float"
+                             : array.GetDataTypeMin() < 0            ? "int"
+                                                                     : "uint";
+    const auto stored = stored_named(kind + std::to_string(8 * array.GetDataTypeSize()));
+    if (!stored) throw Failure("its sample type is not read; save it as Float32");
+    return *stored;
 }
 
 /// Whether an array marks samples that do not count, in VTK's own use.
@@ -204,7 +183,7 @@ Result read_vti(const Request& request) {
                       " samples, its grid " + std::to_string(count) +
                       "; it is damaged: export it again");
     }
-    const Stored stored = stored_from(array->GetDataType());
+    const Stored stored = stored_of(*array);
     result.type = kept_as(stored);
     note_conversion(stored, {}, result.notes);
     const auto samples = shared_samples(count * size_of(result.type));
@@ -214,8 +193,8 @@ Result read_vti(const Request& request) {
     return result;
 }
 
-void write_vti(const std::filesystem::path& path, const Geometry& geometry, SampleType type,
-               const void* samples, bool compress) {
+void write_vti(const std::filesystem::path& path, const WrittenVolume& volume) {
+    const Geometry& geometry = volume.geometry;
     const vtkNew<ErrorKeeper> errors;
     vtkOutputWindow::SetInstance(errors);
     const vtkNew<vtkImageData> image;
@@ -228,10 +207,10 @@ void write_vti(const std::filesystem::path& path, const Geometry& geometry, Samp
         }
     }
     const auto array =
-        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(vtk_type(type)));
+        vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(vtk_type(volume.type)));
     array->SetName("density");
     // The writer only reads; VTK has no interface for constant memory. 1: it is not VTK's to free.
-    array->SetVoidArray(const_cast<void*>(samples), sample_count(geometry), 1);
+    array->SetVoidArray(const_cast<void*>(volume.samples), sample_count(geometry), 1);
     image->GetPointData()->SetScalars(array);
     const vtkNew<vtkXMLImageDataWriter> writer;
     writer->SetFileName(path.c_str());
@@ -239,7 +218,7 @@ void write_vti(const std::filesystem::path& path, const Geometry& geometry, Samp
     writer->SetDataModeToAppended();
     writer->EncodeAppendedDataOff();
     writer->SetHeaderTypeToUInt64();
-    if (!compress) writer->SetCompressorTypeToNone();
+    if (!volume.compress) writer->SetCompressorTypeToNone();
     if (writer->Write() == 0 || !errors->first().empty()) {
         throw Failure("could not be written (" + errors->first() + "); is the disk full?");
     }

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "layers/cover.hpp"
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "proxy/update.hpp"
 
 namespace palpate {

@@ -3,7 +3,7 @@
 // may not be; all questions are put to that field (docs/layers.md).
 #pragma once
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "palpate/layers.hpp"
 
 namespace palpate {

@@ -5,7 +5,7 @@
 
 #include "layers/needle.hpp"
 #include "layers/tissues.hpp"
-#include "palpate/density.hpp"
+#include "palpate/lattice.hpp"
 
 namespace palpate {
 namespace {

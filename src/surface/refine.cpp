@@ -7,7 +7,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 
 namespace palpate::marching {
 namespace {

@@ -9,8 +9,30 @@
 
 namespace palpate::tool {
 
+namespace {
+
+/// Of a motion: less counts as none.
+constexpr double least_part = 1e-12;
+constexpr int most_tries = 16;
+
+/// How far the tool has come, of which a point's travel follows.
+struct Odometer {
+    double moved, turned;  // [mm], [rad]
+
+    double travel(double arm) const { return moved + turned * arm; }
+};
+
+}  // namespace
+
 void Motion::hit(int point) {
-    if (hit_count < static_cast<int>(hits.size())) hits[hit_count++] = point;
+    if (point >= 0 && hit_count < static_cast<int>(hits.size())) hits[hit_count++] = point;
+}
+
+void Motion::arrive(const Pose& at, double moved, double turned) {
+    proxy.pose = at;
+    proxy.kept().moved = moved;
+    proxy.kept().turned = turned;
+    if (observer.on_pose) observer.on_pose(at, observer.context);
 }
 
 double Motion::free_part_of(int point, const Pose& to, double level) {
@@ -29,54 +51,54 @@ double Motion::go(const Vec3& translation, const Vec3& rotation, const Pose* exa
     const auto pose_at = [&](double part) {
         return exact && part == 1 ? *exact : moved(proxy.pose, translation, rotation, part);
     };
-    // Points that may meet something, and what they meet on the way to the end.
-    std::size_t suspect_count = 0;
-    const Pose end = pose_at(1);
+    const auto odometer_at = [&](double part) {
+        return Odometer{kept.moved + part * far, kept.turned + part * angle};
+    };
+    // Points that may meet something on the way. What one meets shortens the way of the next ones;
+    // those before have to be tested again.
+    std::size_t suspect_count = 0, outdated = 0;
     double part = 1;
+    Pose to = pose_at(1);
+    Odometer end = odometer_at(1);
     int first = -1;
-    const double moved_before = kept.moved, turned_before = kept.turned;
-    const double moved_after = moved_before + far, turned_after = turned_before + angle;
-    for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-        const double arm = kept.arms[i];
-        const double after = moved_after + turned_after * arm;
-        if (after <= kept.expiry[i]) continue;
-        const double before = moved_before + turned_before * arm;
+    const auto shorten = [&](double to_part) {
+        part *= to_part;
+        to = pose_at(part);
+        end = odometer_at(part);
+        outdated = suspect_count;
+    };
+    const auto is_clear = [&](int i) { return end.travel(kept.arms[i]) <= kept.expiry[i]; };
+    for (int i = 0; i < static_cast<int>(points.size()) && part > least_part; ++i) {
+        if (is_clear(i)) continue;
         const Around::Probe probe = around.probe(physical_from_tool(proxy.pose, points[i]),
-                                                 physical_from_tool(end, points[i]));
+                                                 physical_from_tool(to, points[i]));
         if (around.is_exhausted()) return 0;
-        kept.expiry[i] = before + probe.clearance * (1 - 1e-12);
-        if (after <= kept.expiry[i]) continue;
+        kept.expiry[i] = odometer_at(0).travel(kept.arms[i]) + probe.clearance * (1 - 1e-12);
+        if (is_clear(i)) continue;
         kept.suspects[suspect_count++] = i;
-        if (probe.part >= part) continue;
-        part = probe.part;
+        if (probe.part == 1) continue;
+        shorten(probe.part);
         first = i;
     }
-    constexpr int most_tries = 16;
-    for (int tries = 0; tries < most_tries && part > 1e-12; ++tries) {
-        const Pose to = pose_at(part);
+    for (int tries = 0; tries < most_tries && part > least_part; ++tries) {
         double least = 1;
-        if (part < 1) {
-            for (const int i : std::span(kept.suspects.data(), suspect_count)) {
-                if (free_part_of(i, to, Around::verified) == 1) continue;
-                const double free = free_part_of(i, to, Around::blocked);
-                if (around.is_exhausted()) return 0;
-                if (free >= least) continue;
-                least = free;
-                first = i;
-            }
+        for (const int i : std::span(kept.suspects.data(), outdated)) {
+            if (is_clear(i)) continue;
+            const bool is_free = free_part_of(i, to, Around::verified) == 1;
+            const double free = is_free ? 1 : free_part_of(i, to, Around::blocked);
+            if (around.is_exhausted()) return 0;
+            if (free >= least) continue;
+            least = free;
+            first = i;
         }
-        if (around.is_exhausted()) return 0;
         if (least == 1) {
-            if (first >= 0) hit(first);
-            proxy.pose = to;
-            kept.moved += part * far;
-            kept.turned += part * angle;
-            if (observer.on_pose) observer.on_pose(to, observer.context);
+            hit(first);
+            arrive(to, end.moved, end.turned);
             return part;
         }
-        part *= least;
+        shorten(least);
     }
-    if (first >= 0) hit(first);
+    hit(first);
     return 0;
 }
 

@@ -22,7 +22,10 @@ struct Motion {
 
   private:
     double free_part_of(int point, const Pose& to, double level);
+    /// Below 0: none.
     void hit(int point);
+    /// Puts the tool there; the odometers then say so.
+    void arrive(const Pose& at, double moved, double turned);
 };
 
 /// The pose after a part of a motion.

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "io/byte_order.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/formats/n5_block.hpp"
 
@@ -98,32 +99,53 @@ ChunkReader::ChunkReader(std::shared_ptr<const Objects> objects, ChunkedArray ar
     check(array_);
 }
 
-std::optional<Bytes> ChunkReader::chunk(std::span<const std::int64_t> index,
-                                        std::stop_token stop) const {
+/// What `unpack` makes of an object's bytes, which errors call `part` and `what`. Nothing if there
+/// is no such object.
+template <class Unpack>
+auto ChunkReader::unpacked(Wanted wanted, const std::string& part, const std::string& what,
+                           const std::stop_token& stop, const Unpack& unpack) const {
+    using Unpacked = decltype(unpack(Bytes{}));
     for (int attempt = 1;; ++attempt) {
-        Packed got = packed(index, attempt > 1, stop);
-        if (!got.bytes) return std::nullopt;
+        wanted.again = attempt > 1;
+        const bool is_empty = wanted.range && wanted.range->length == 0;
+        auto bytes = is_empty ? Bytes{} : objects_->get(wanted, stop);
+        if (!bytes) return std::optional<Unpacked>();
         try {
-            return unpacked_chunk(array_, *std::move(got.bytes), got.skipped);
+            return std::optional<Unpacked>(unpack(*std::move(bytes)));
         } catch (const DamagedChunk& e) {
             if (attempt < attempts_at_damage) continue;
-            throw io::InputError(objects_->name_of(got.key) + ": " + e.what() +
-                                 "; the chunk is damaged: copy it again");
+            throw io::InputError(objects_->name_of(wanted.key) + ": " + part + e.what() + "; the " +
+                                 what + " is damaged: copy it again");
         }
     }
 }
 
-ChunkReader::Packed ChunkReader::packed(std::span<const std::int64_t> index, bool again,
+std::optional<Bytes> ChunkReader::chunk(std::span<const std::int64_t> index,
                                         std::stop_token stop) const {
-    if (array_.shards) return packed_in_shard(index, again, std::move(stop));
-    if (array_.table) return packed_in_file(index, again, std::move(stop));
-    const std::string key = key_of(array_, index);
+    const auto place = array_.shards ? place_in_shard(index, stop) : place_of(index, stop);
+    if (!place) return std::nullopt;
     const std::uint64_t most = packed_at_most(array_.bytes_in_chunk());
-    return {key, objects_->get({key, std::nullopt, most, true, again}, std::move(stop))};
+    const auto& range = place->range;
+    if (range && (range->length > most || range->offset > UINT64_MAX / 2)) {
+        throw io::InputError(
+            objects_->name_of(place->key) +
+            ": a chunk of it lies where none can be; it is damaged: copy it again");
+    }
+    return unpacked({place->key, range, most, true}, "", "chunk", stop, [&](Bytes packed) {
+        return unpacked_chunk(array_, std::move(packed), place->skipped);
+    });
 }
 
-ChunkReader::Packed ChunkReader::packed_in_shard(std::span<const std::int64_t> index, bool again,
-                                                 std::stop_token stop) const {
+std::optional<ChunkReader::Place> ChunkReader::place_of(std::span<const std::int64_t> index,
+                                                        const std::stop_token& stop) const {
+    if (!array_.table) return Place{key_of(array_, index)};
+    const auto found = array_.table->find(index, stop);
+    if (!found) return std::nullopt;
+    return Place{array_.folder, ByteRange{found->offset, found->length}, found->skipped};
+}
+
+std::optional<ChunkReader::Place> ChunkReader::place_in_shard(std::span<const std::int64_t> index,
+                                                              const std::stop_token& stop) const {
     std::vector<std::int64_t> shard(index.begin(), index.end());
     std::size_t inside = 0;
     for (std::size_t a = 0; a < shard.size(); ++a) {
@@ -134,40 +156,20 @@ ChunkReader::Packed ChunkReader::packed_in_shard(std::span<const std::int64_t> i
     }
     const std::string key = key_of(array_, shard);
     const Index places = index_of(key, stop);
-    if (!places) return {key, std::nullopt};
-    const std::uint64_t offset = (*places)[2 * inside], length = (*places)[2 * inside + 1];
-    if (offset == not_stored && length == not_stored) return {key, std::nullopt};
-    if (length == 0) return {key, Bytes{}};
-    const std::uint64_t most = packed_at_most(array_.bytes_in_chunk());
-    if (length > most || offset > UINT64_MAX / 2) {
-        throw io::InputError(objects_->name_of(key) +
-                             ": its index is not possible; the shard is damaged: copy it again");
-    }
-    return {key, objects_->get({key, ByteRange{offset, length}, most, true, again}, stop)};
+    if (!places) return std::nullopt;
+    const ByteRange range{(*places)[2 * inside], (*places)[2 * inside + 1]};
+    if (range.offset == not_stored && range.length == not_stored) return std::nullopt;
+    return Place{key, range};
 }
 
-ChunkReader::Packed ChunkReader::packed_in_file(std::span<const std::int64_t> index, bool again,
-                                                std::stop_token stop) const {
-    const std::string& key = array_.folder;
-    const auto place = array_.table->find(index, stop);
-    if (!place) return {key, std::nullopt};
-    const std::uint64_t most = packed_at_most(array_.bytes_in_chunk());
-    if (place->length > most || place->offset > UINT64_MAX / 2) {
-        throw io::InputError(
-            objects_->name_of(key) +
-            ": a chunk of it lies where none can be; it is damaged: copy it again");
-    }
-    const ByteRange range{place->offset, place->length};
-    return {key, objects_->get({key, range, most, true, again}, stop), place->skipped};
-}
-
-ChunkReader::Index ChunkReader::index_of(const std::string& shard, std::stop_token stop) const {
+ChunkReader::Index ChunkReader::index_of(const std::string& shard,
+                                         const std::stop_token& stop) const {
     {
         const std::lock_guard lock(mutex_);
         const auto found = indices_.find(shard);
         if (found != indices_.end()) return found->second;
     }
-    const Index index = fetched_index(shard, std::move(stop));
+    const Index index = fetched_index(shard, stop);
     const std::lock_guard lock(mutex_);
     if (!indices_.emplace(shard, index).second) return index;
     order_.push_back(shard);
@@ -182,29 +184,25 @@ ChunkReader::Index ChunkReader::index_of(const std::string& shard, std::stop_tok
 }
 
 ChunkReader::Index ChunkReader::fetched_index(const std::string& shard,
-                                              std::stop_token stop) const {
+                                              const std::stop_token& stop) const {
     const std::size_t size = 16 * product(array_.shards->chunks);
     std::size_t stored = size;
     for (const Codec codec : array_.shards->index_codecs) {
         if (codec == Codec::crc32c) stored += 4;
     }
     const ByteRange range{0, stored, !array_.shards->index_at_start};
-    for (int attempt = 1;; ++attempt) {
-        auto bytes = objects_->get({shard, range, stored, true, attempt > 1}, stop);
-        if (!bytes) return nullptr;
-        try {
-            const Bytes plain = decoded(array_.shards->index_codecs, *std::move(bytes), size);
-            auto places = std::make_shared<std::vector<std::uint64_t>>(size / 8);
-            for (std::size_t i = 0; i < places->size(); ++i) {
-                (*places)[i] = little_endian(std::span(plain).subspan(8 * i, 8));
-            }
-            return places;
-        } catch (const DamagedChunk& e) {
-            if (attempt < attempts_at_damage) continue;
-            throw io::InputError(objects_->name_of(shard) + ": its index " + e.what() +
-                                 "; the shard is damaged: copy it again");
-        }
-    }
+    return unpacked({shard, range, stored, true}, "its index ", "shard", stop,
+                    [&](Bytes packed) {
+                        const Bytes plain =
+                            decoded(array_.shards->index_codecs, std::move(packed), size);
+                        auto places = std::make_shared<std::vector<std::uint64_t>>(size / 8);
+                        for (std::size_t i = 0; i < places->size(); ++i) {
+                            (*places)[i] =
+                                io::little_endian<std::uint64_t>(std::span(plain).subspan(8 * i));
+                        }
+                        return Index(places);
+                    })
+        .value_or(nullptr);
 }
 
 }  // namespace palpate::stream

@@ -72,19 +72,21 @@ class ChunkReader {
   private:
     /// Offset and length of each chunk of a shard; null: there is no such shard.
     using Index = std::shared_ptr<const std::vector<std::uint64_t>>;
-    Index index_of(const std::string& shard, std::stop_token stop) const;
-    Index fetched_index(const std::string& shard, std::stop_token stop) const;
-    /// What is stored of a chunk.
-    struct Packed {
+    Index index_of(const std::string& shard, const std::stop_token& stop) const;
+    Index fetched_index(const std::string& shard, const std::stop_token& stop) const;
+    /// Where a chunk is stored.
+    struct Place {
         std::string key;  ///< of the object
-        std::optional<Bytes> bytes;
+        std::optional<ByteRange> range = std::nullopt;
         std::uint64_t skipped = 0;  ///< as in io::ChunkPlace
     };
-    Packed packed(std::span<const std::int64_t> index, bool again, std::stop_token stop) const;
-    Packed packed_in_shard(std::span<const std::int64_t> index, bool again,
-                           std::stop_token stop) const;
-    Packed packed_in_file(std::span<const std::int64_t> index, bool again,
-                          std::stop_token stop) const;
+    std::optional<Place> place_of(std::span<const std::int64_t> index,
+                                  const std::stop_token& stop) const;
+    std::optional<Place> place_in_shard(std::span<const std::int64_t> index,
+                                        const std::stop_token& stop) const;
+    template <class Unpack>
+    auto unpacked(Wanted wanted, const std::string& part, const std::string& what,
+                  const std::stop_token& stop, const Unpack& unpack) const;
 
     std::shared_ptr<const Objects> objects_;
     ChunkedArray array_;

@@ -60,8 +60,11 @@ class ChunkedStore : public Store {
               std::stop_token stop) const override {
         const Level& grid = volume_.info.levels.at(static_cast<std::size_t>(level));
         check_request(grid.geometry, box, volume_.info.type, out.size());
+        const std::size_t each = size_of(volume_.info.type);
         for_each_piece(grid.chunk, box, [&](const Index3& chunk, const SampleBox&) {
-            copy_chunk(level, chunk, box, out, stop);
+            for_each_row(level, chunk, box, stop, [&](const Index3& first, const auto& put) {
+                put(out.data() + place_in(box, first) * each);
+            });
         });
         if (!finite_samples(volume_.info.type, out).all) {
             make_finite(volume_.info.type, out, least_finite(stop));
@@ -69,21 +72,6 @@ class ChunkedStore : public Store {
     }
 
   private:
-    /// The rows of a chunk that are inside `box`, to their place in `out`.
-    void copy_chunk(int level, const Index3& chunk, const SampleBox& box, std::span<std::byte> out,
-                    const std::stop_token& stop) const {
-        const Index3 size = box.high - box.low + Index3::Ones();
-        for_each_row(level, chunk, box, stop, [&](const Index3& first, const auto& put) {
-            const Index3 at = first - box.low;
-            const std::size_t before =
-                (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size[1]) +
-                 static_cast<std::size_t>(at[1])) *
-                    static_cast<std::size_t>(size[0]) +
-                static_cast<std::size_t>(at[0]);
-            put(out.data() + before * size_of(volume_.info.type));
-        });
-    }
-
     /// Calls take(index of the first sample, put) for each row of a chunk inside `box`. put(to)
     /// puts the samples of the row there. Those that are not finite stay.
     template <class Take>

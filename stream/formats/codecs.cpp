@@ -14,6 +14,7 @@
 #include <string>
 #include <utility>
 
+#include "io/byte_order.hpp"
 #include "stream/formats/undo_codecs.hpp"
 
 namespace palpate::stream {
@@ -125,24 +126,11 @@ void unpacks_too_long(std::size_t most) {
                        " bytes that its metadata declare");
 }
 
-std::uint64_t big_endian(std::span<const std::byte> bytes) {
-    std::uint64_t number = 0;
-    for (const std::byte byte : bytes) number = number << 8 | std::to_integer<std::uint64_t>(byte);
-    return number;
-}
-
-std::uint64_t little_endian(std::span<const std::byte> bytes) {
-    std::uint64_t number = 0;
-    for (std::size_t i = bytes.size(); i-- > 0;) {
-        number = number << 8 | std::to_integer<std::uint64_t>(bytes[i]);
-    }
-    return number;
-}
-
 Bytes without_checksum(Bytes bytes, std::uint32_t (*sum_of)(std::span<const std::byte>)) {
     if (bytes.size() < 4) throw DamagedChunk("is too short for its checksum");
     const std::size_t size = bytes.size() - 4;
-    if (sum_of({bytes.data(), size}) != little_endian(std::span(bytes).subspan(size))) {
+    const auto sum = io::little_endian<std::uint32_t>(std::span(bytes).subspan(size));
+    if (sum_of({bytes.data(), size}) != sum) {
         throw DamagedChunk("does not have its checksum");
     }
     bytes.resize(size);

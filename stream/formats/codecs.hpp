@@ -48,10 +48,6 @@ class DamagedChunk : public std::runtime_error {
 /// Throws DamagedChunk: a chunk unpacks to more than `most` bytes.
 [[noreturn]] void unpacks_too_long(std::size_t most);
 
-/// A number of at most eight bytes.
-std::uint64_t little_endian(std::span<const std::byte> bytes);
-std::uint64_t big_endian(std::span<const std::byte> bytes);
-
 /// Bytes without their checksum, the last four, little-endian. Throws DamagedChunk.
 std::vector<std::byte> without_checksum(std::vector<std::byte> bytes,
                                         std::uint32_t (*sum_of)(std::span<const std::byte>));

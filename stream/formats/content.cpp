@@ -62,7 +62,7 @@ void take_box(ContentHash& hash, const Store& store, int level, const SampleBox&
 
 /// All samples, some planes at a time.
 void take_whole(ContentHash& hash, const Store& store, int level, const std::stop_token& stop) {
-    const Level& grid = store.info().levels[static_cast<std::size_t>(level)];
+    const Level& grid = level_of(store, level);
     const Index3 last = grid.geometry.size - Index3::Ones();
     const std::uint64_t plane = bytes_of({{0, 0, 0}, {last[0], last[1], 0}}, store.info().type);
     constexpr std::uint64_t at_a_time = std::uint64_t{16} << 20;
@@ -79,7 +79,7 @@ void take_pieces(ContentHash& hash, const Store& store, int level, std::uint64_t
                  const std::stop_token& stop) {
     constexpr int longest = 64;  // [samples]
     constexpr std::uint64_t prime = 0x9E3779B185EBCA87U;
-    const Level& grid = store.info().levels[static_cast<std::size_t>(level)];
+    const Level& grid = level_of(store, level);
     const Index3& size = grid.geometry.size;
     const Index3 piece = grid.chunk.cwiseMin(longest).cwiseMax(1);
     using Counts = Eigen::Matrix<std::uint64_t, 3, 1>;
@@ -106,7 +106,7 @@ std::string content_of(const Store& store, int level, const std::stop_token& sto
     }
     constexpr std::uint64_t fewer = 8;  // of the coarser levels, which the chosen one decides
     for (int l = level; l < static_cast<int>(info.levels.size()); ++l) {
-        const Geometry& grid = info.levels[static_cast<std::size_t>(l)].geometry;
+        const Geometry& grid = level_of(store, l).geometry;
         for (const int size : grid.size) take_value(hash, size);
         for (const double spacing : grid.spacing) take_value(hash, spacing);
         for (const double origin : grid.origin) take_value(hash, origin);

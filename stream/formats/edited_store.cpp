@@ -159,12 +159,6 @@ void check_content(const std::stop_token& stop, const Store& original, const Edi
 
 }  // namespace
 
-SampleBox chunk_box(const Index3& chunk, const Geometry& grid) {
-    const Index3 low = EditsNote::chunk * chunk;
-    return {low,
-            (low + Index3::Constant(EditsNote::chunk - 1)).cwiseMin(grid.size - Index3::Ones())};
-}
-
 EditedStore::EditedStore(std::shared_ptr<const Store> original, std::shared_ptr<const Store> chunks,
                          EditsNote note)
     : original_(std::move(original)), chunks_(std::move(chunks)), note_(std::move(note)) {

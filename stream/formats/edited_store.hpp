@@ -24,8 +24,6 @@ struct EditsNote {
     bool lacks_secrets = false;    ///< its address was saved without password and query
 };
 
-/// The samples of a chunk that lie in the grid.
-SampleBox chunk_box(const Index3& chunk, const Geometry& grid);
 /// Calls visit(chunk, box) for each chunk that holds samples of `box`, with those that it holds.
 template <class Visit>
 void for_each_chunk(const SampleBox& box, Visit&& visit) {

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "io/byte_order.hpp"
+
 namespace palpate::stream {
 
 using Bytes = std::vector<std::byte>;
@@ -46,7 +48,9 @@ Lz4Block lz4_block_at(std::span<const std::byte> packed) {
         throw DamagedChunk("is no whole stream of lz4 blocks");
     }
     const unsigned method = std::to_integer<unsigned>(packed[8]) & 0xF0U;
-    const auto number_at = [&](std::size_t at) { return little_endian(packed.subspan(at, 4)); };
+    const auto number_at = [&](std::size_t at) {
+        return io::little_endian<std::uint32_t>(packed.subspan(at));
+    };
     const Lz4Block block{method == 0x10, number_at(9), number_at(13), number_at(17)};
     if ((method != 0x10 && method != 0x20) ||
         block.packed_size > packed.size() - Lz4Block::header_bytes ||
@@ -60,7 +64,7 @@ Lz4Block lz4_block_at(std::span<const std::byte> packed) {
 
 Bytes unlz4(std::span<const std::byte> packed, std::size_t most) {
     if (packed.size() < 4) throw DamagedChunk("is too short for lz4");
-    const std::size_t size = little_endian(packed.first(4));
+    const std::size_t size = io::little_endian<std::uint32_t>(packed);
     if (size > most) unpacks_too_long(most);
     Bytes out(size);
     unpack_block(packed.subspan(4), out);
@@ -89,18 +93,18 @@ Bytes unlz4_blocks(std::span<const std::byte> packed, std::size_t most) {
 Bytes unhdf5_lz4(std::span<const std::byte> packed, std::size_t most) {
     constexpr std::size_t header_bytes = 12;
     if (packed.size() < header_bytes) throw DamagedChunk("is too short for lz4");
-    const std::uint64_t size = big_endian(packed.first(8));
-    const std::uint64_t block_size = big_endian(packed.subspan(8, 4));
+    const std::uint64_t size = io::big_endian<std::uint64_t>(packed);
+    const std::uint64_t block_size = io::big_endian<std::uint32_t>(packed.subspan(8));
     if (size > most) unpacks_too_long(most);
     if (block_size == 0) throw DamagedChunk("has lz4 blocks of no size");
     packed = packed.subspan(header_bytes);
     Bytes out(size);
     for (std::span<std::byte> to = out; !to.empty();) {
         const auto part = to.first(std::min<std::uint64_t>(block_size, to.size()));
-        if (packed.size() < 4 || big_endian(packed.first(4)) > packed.size() - 4) {
+        if (packed.size() < 4 || io::big_endian<std::uint32_t>(packed) > packed.size() - 4) {
             throw DamagedChunk("ends within an lz4 block");
         }
-        const auto from = packed.subspan(4, big_endian(packed.first(4)));
+        const auto from = packed.subspan(4, io::big_endian<std::uint32_t>(packed));
         from.size() == part.size() ? copy_block(from, part) : unpack_block(from, part);
         packed = packed.subspan(4 + from.size());
         to = to.subspan(part.size());

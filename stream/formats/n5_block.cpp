@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "io/byte_order.hpp"
+
 namespace palpate::stream {
 namespace {
 
@@ -16,17 +18,17 @@ N5Header header_of(const ChunkedArray& array, std::span<const std::byte> block) 
     const std::size_t axes = array.axes();
     N5Header header{4 + 4 * axes, std::vector<std::int64_t>(axes)};
     if (block.size() < header.bytes) throw DamagedChunk("is too short for the header of a block");
-    const std::uint64_t mode = big_endian(block.first(2));
+    const auto mode = io::big_endian<std::uint16_t>(block);
     if (mode != 0) {
         throw DamagedChunk("has a block of mode " + std::to_string(mode) +
                            " instead of 0: of varying length or of objects");
     }
-    if (big_endian(block.subspan(2, 2)) != axes) {
+    if (io::big_endian<std::uint16_t>(block.subspan(2)) != axes) {
         throw DamagedChunk("has a block with another number of axes than its array");
     }
     for (std::size_t i = 0; i < axes; ++i) {
         const std::size_t a = axes - 1 - i;
-        header.size[a] = static_cast<std::int64_t>(big_endian(block.subspan(4 + 4 * i, 4)));
+        header.size[a] = std::int64_t{io::big_endian<std::uint32_t>(block.subspan(4 + 4 * i))};
         if (header.size[a] < 1 || header.size[a] > array.chunk[a]) {
             throw DamagedChunk("has a block of a size that is not possible");
         }

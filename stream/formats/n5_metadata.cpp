@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
-#include <cmath>
 
+#include "io/chunked_image.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/formats/metadata_files.hpp"
 #include "stream/formats/zarr_metadata.hpp"
@@ -104,15 +104,12 @@ std::optional<Numbers> factors_of(std::span<const Json> groups, const Json& leve
     return at == 0 ? std::optional(Numbers(axes, 1)) : std::nullopt;
 }
 
-/// Those of the first `at` levels, each to the next one: halves of odd sizes are rounded either
-/// way.
+/// Those of the first `at` levels, each to the next one.
 Numbers factors_by_size(std::span<const ChunkedArray> arrays, std::size_t at) {
     Numbers factors(arrays[0].axes(), 1);
     for (std::size_t i = 0; i < at; ++i) {
         for (std::size_t a = 0; a < factors.size(); ++a) {
-            const auto fine = static_cast<double>(arrays[i].shape[a]);
-            const auto coarse = static_cast<double>(arrays[i + 1].shape[a]);
-            factors[a] *= std::max(1.0, std::round(fine / coarse));
+            factors[a] *= io::factor_between(arrays[i].shape[a], arrays[i + 1].shape[a]);
         }
     }
     return factors;

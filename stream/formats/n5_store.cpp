@@ -2,6 +2,7 @@
 // BigDataViewer (setup0/timepoint0/s0) and N5 Viewer (c0/s0).
 #include <algorithm>
 
+#include "io/chunked_image.hpp"
 #include "stream/formats/metadata_files.hpp"
 #include "stream/formats/n5_metadata.hpp"
 #include "stream/formats/stores.hpp"
@@ -111,13 +112,7 @@ class N5Opening {
         }
         volume_.info.times = static_cast<int>(numbers.size());
         check_choice(volume_.info, options_);
-        const int number = numbers[static_cast<std::size_t>(options_.time)];
-        if (number != options_.time) {
-            volume_.info.notes.push_back(
-                "its times are numbered from " + std::to_string(numbers.front()) + " to " +
-                std::to_string(numbers.back()) + ": time " + std::to_string(options_.time) +
-                " is its timepoint " + std::to_string(number));
-        }
+        const int number = io::number_of_time(options_.time, numbers, volume_.info.notes);
         const std::string folder = prefix + std::to_string(number);
         groups.insert(groups.begin(), attributes_of({folder})[0]);
         take_group(folder, groups);

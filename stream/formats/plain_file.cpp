@@ -11,6 +11,7 @@
 #include "io/process/helper_process.hpp"
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
+#include "stream/box_bytes.hpp"
 #include "stream/formats/stores.hpp"
 #include "stream/formats/unpacking_room.hpp"
 #include "stream/objects/traffic_count.hpp"
@@ -125,13 +126,9 @@ class PlainFile : public Store {
 
     /// The stored bytes from a sample on.
     void fetch(const Index3& from, std::span<std::byte> raw) const {
-        const auto nx = static_cast<std::uint64_t>(grid().size[0]);
-        const auto ny = static_cast<std::uint64_t>(grid().size[1]);
-        const std::uint64_t sample =
-            (static_cast<std::uint64_t>(from[2]) * ny + static_cast<std::uint64_t>(from[1])) * nx +
-            static_cast<std::uint64_t>(from[0]);
+        const std::uint64_t before = place_in(whole_box(grid()), from) * bytes_.size();
         const std::ptrdiff_t got =
-            io::read_at(file_.number(), raw.data(), raw.size(), first_ + sample * bytes_.size());
+            io::read_at(file_.number(), raw.data(), raw.size(), first_ + before);
         if (got != std::ssize(raw)) {
             throw io::InputError(info_.address + ": " +
                                  (got < 0 ? io::reason(errno) : "is shorter than when opened") +

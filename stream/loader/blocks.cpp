@@ -19,7 +19,7 @@ Blocks::~Blocks() {
 template <class Work>
 void Blocks::for_each_stored(int level, const SampleBox& box, Work&& work) const {
     if (!keeps(level)) return work(box);
-    for_each_piece(grid_of(level).chunk, box,
+    for_each_piece(level_of(store_, level).chunk, box,
                    [&](const Index3&, const SampleBox& part) { work(whole(level, part)); });
 }
 
@@ -66,13 +66,9 @@ std::optional<SampleBox> Blocks::unread(int level, const SampleBox& box) const {
     return found;
 }
 
-const Level& Blocks::grid_of(int level) const {
-    return store_.info().levels[static_cast<std::size_t>(level)];
-}
-
 /// False for pieces that are too large, and for rows, which cost nothing to read in parts.
 bool Blocks::keeps(int level) const {
-    const Index3& chunk = grid_of(level).chunk;
+    const Index3& chunk = level_of(store_, level).chunk;
     const SampleBox piece{Index3::Zero(), chunk - Index3::Ones()};
     const bool is_row = chunk[1] == 1 && chunk[2] == 1;
     return !is_row && bytes_of(piece, store_.info().type) <= most_bytes_ / 4;
@@ -80,7 +76,7 @@ bool Blocks::keeps(int level) const {
 
 /// The piece that a part lies in.
 SampleBox Blocks::whole(int level, const SampleBox& part) const {
-    const Level& grid = grid_of(level);
+    const Level& grid = level_of(store_, level);
     const Index3 low = part.low.cwiseQuotient(grid.chunk).cwiseProduct(grid.chunk);
     const Index3 last = grid.geometry.size - Index3::Ones();
     return {low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)};

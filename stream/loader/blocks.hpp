@@ -60,7 +60,6 @@ class Blocks {
     Bytes block(int level, const SampleBox& box, const std::stop_token& stop);
     bool has(int level, const SampleBox& box) const;
     bool keeps(int level) const;
-    const Level& grid_of(int level) const;
     void use(Kept& kept);
     void forget(const Key& key);
     void forget_old(const Key& but);

@@ -25,16 +25,8 @@ constexpr std::size_t most_read = 16;
 /// Of rows, which have no pieces worth keeping: samples along each axis that are read at a time.
 constexpr int piece_of_rows = 64;
 
-const Geometry& grid_of(const Store& store, const DetailBox& of) {
-    return store.info().levels[static_cast<std::size_t>(of.level)].geometry;
-}
-
 void check(const Store& store, const DetailBox& of) {
-    const auto levels = static_cast<int>(store.info().levels.size());
-    if (of.level < 0 || of.level >= levels) {
-        throw std::invalid_argument("a level that the store does not have");
-    }
-    const SampleBox whole = whole_box(grid_of(store, of));
+    const SampleBox whole = whole_box(level_of(store, of.level).geometry);
     if (of.box.empty() || united(whole, of.box) != whole) {
         throw std::invalid_argument("a box that is empty or not inside its level");
     }
@@ -110,10 +102,9 @@ struct Work {
 void interpolate_into(const Volume& coarse, const Geometry& grid, const SampleBox& box,
                       std::byte* out) {
     const std::ptrdiff_t row = grid.size[0], slice = row * grid.size[1];
-    const std::ptrdiff_t first = box.low[0] + box.low[1] * row + box.low[2] * slice;
-    const auto each = static_cast<std::ptrdiff_t>(size_of(coarse.type()));
+    std::byte* const first = out + place_in(whole_box(grid), box.low) * size_of(coarse.type());
     upsample(coarse.geometry(), static_cast<const std::byte*>(coarse.data()), coarse.type(), grid,
-             box, {out + first * each, row, slice});
+             box, {first, row, slice});
 }
 
 struct DetailReader::Parts {
@@ -137,9 +128,10 @@ struct DetailReader::Parts {
         work->interval = interval;
         for (const DetailBox& of : coarse_to_fine) {
             check(*store_, of);
-            const Level& level = store_->info().levels[static_cast<std::size_t>(of.level)];
             Work::Stage stage{of, {}, {}};
-            for (const SampleBox& part : parts_of(level, of.box)) stage.pieces.push_back({part});
+            for (const SampleBox& part : parts_of(level_of(*store_, of.level), of.box)) {
+                stage.pieces.push_back({part});
+            }
             work->stages.push_back(std::move(stage));
         }
         const std::scoped_lock lock(mutex_);
@@ -306,12 +298,15 @@ struct DetailReader::Parts {
         if (&stage == &work.last()) work.changed = united(work.changed, piece.box);
     }
 
+    Geometry grid_of(const DetailBox& of) const {
+        return geometry_of(level_of(*store_, of.level).geometry, of.box);
+    }
+
     /// What is missing of the last stage is made of the coarse one.
     void make_base(Work& work) const {
         Work::Stage& stage = work.stages[work.stage];
         fill(work, stage);
-        work.base = volume_from(geometry_of(grid_of(*store_, stage.of), stage.of.box),
-                                store_->info().type, std::move(stage.samples));
+        work.base = volume_from(grid_of(stage.of), store_->info().type, std::move(stage.samples));
         for (Piece& piece : work.last().pieces) {
             piece.based = false;
             if (!piece.copied) work.changed = united(work.changed, piece.box);
@@ -320,7 +315,7 @@ struct DetailReader::Parts {
     /// What is missing of a stage is interpolated from the base, which is coarser. Returns how many
     /// pieces are missing.
     std::size_t fill(const Work& work, Work::Stage& stage) const {
-        const Geometry grid = geometry_of(grid_of(*store_, stage.of), stage.of.box);
+        const Geometry grid = grid_of(stage.of);
         const Index3 low = stage.of.box.low;
         stage.samples.resize(bytes_of(stage.of.box, store_->info().type));
         std::size_t missing = 0;
@@ -344,10 +339,9 @@ struct DetailReader::Parts {
         work.changed = {};
         work.done = missing == 0;  // nothing is added to it
         std::vector<std::byte> samples = work.done ? std::move(last.samples) : last.samples;
-        made_(work.viewer, {last.of,
-                            volume_from(geometry_of(grid_of(*store_, last.of), last.of.box),
-                                        store_->info().type, std::move(samples)),
-                            last.pieces.size(), missing, changed});
+        made_(work.viewer,
+              {last.of, volume_from(grid_of(last.of), store_->info().type, std::move(samples)),
+               last.pieces.size(), missing, changed});
     }
 
     const std::shared_ptr<const Store> store_;

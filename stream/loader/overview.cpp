@@ -27,7 +27,7 @@ constexpr std::int64_t most_pieces = 512;
 Volume whole_level(const Store& store, int level, const std::stop_token& stop,
                    const std::function<void(double)>& made = {}) {
     const StoreInfo& info = store.info();
-    const auto& [geometry, chunk] = info.levels[static_cast<std::size_t>(level)];
+    const auto& [geometry, chunk] = level_of(store, level);
     const SampleBox box = whole_box(geometry);
     std::vector<SampleBox> pieces;
     for_each_piece(chunk, box,
@@ -128,8 +128,7 @@ Volume overview_of(const Store& store, std::int64_t samples, std::stop_token sto
 SampleBox BrickLoader::Parts::source_of(const Index3& brick, int coarser) const {
     const SampleBox box = ResidentBricks::box_of(brick, geometry_.size);
     if (coarser == 0) return box;
-    const Geometry& grid =
-        store_->info().levels[static_cast<std::size_t>(settings_.level + coarser)].geometry;
+    const Geometry& grid = level_of(*store_, settings_.level + coarser).geometry;
     const auto index_in = [&](const Index3& at) {
         return index_from_physical(grid, physical_from_index(geometry_, at.cast<double>()));
     };
@@ -146,9 +145,8 @@ Brick BrickLoader::Parts::read(const Index3& brick, int coarser, const std::stop
     const std::size_t each = size_of(type);
     const SampleBox box = ResidentBricks::box_of(brick, geometry_.size);
     const SampleBox from = source_of(brick, coarser);
-    const Geometry& grid =
-        store_->info().levels[static_cast<std::size_t>(settings_.level + coarser)].geometry;
     const int level = settings_.level + coarser;
+    const Geometry& grid = level_of(*store_, level).geometry;
     if (coarser == 0) {
         blocks_->load(level, from, stop);  // before it takes memory
         const std::shared_ptr<std::byte[]> samples = memory_->take();
@@ -159,12 +157,9 @@ Brick BrickLoader::Parts::read(const Index3& brick, int coarser, const std::stop
     std::vector<std::byte> bytes(bytes_of(from, type));
     blocks_->read(level, from, from, bytes, stop);
     const std::shared_ptr<std::byte[]> samples = memory_->take();
-    const Index3 place = box.low - room_of(brick).low;
-    const std::ptrdiff_t first =
-        place[0] + place[1] * ResidentBricks::row + place[2] * ResidentBricks::slice;
+    std::byte* const first = samples.get() + place_in(room_of(brick), box.low) * each;
     upsample(geometry_of(grid, from), bytes.data(), type, geometry_, box,
-             {samples.get() + static_cast<std::size_t>(first) * each, ResidentBricks::row,
-              ResidentBricks::slice});
+             {first, ResidentBricks::row, ResidentBricks::slice});
     return {samples, static_cast<std::uint8_t>(coarser)};
 }
 

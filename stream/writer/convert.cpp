@@ -79,8 +79,7 @@ class Conversion {
           level_(level),
           options_(options),
           partial_(partial),
-          image_(partial.result(), from.info().type,
-                 from.info().levels.at(static_cast<std::size_t>(level)).geometry, options) {
+          image_(partial.result(), from.info().type, level_of(from, level).geometry, options) {
         for (int l = 0; l < image_.levels(); ++l) total_ += chunks(l);
     }
 

@@ -14,7 +14,6 @@ namespace palpate::stream {
 struct GrowingImage::Parts {
     std::filesystem::path folder;
     SampleType type;
-    int chunk;
     ZarrWriter writer;
     mutable std::once_flag opening = {};
     mutable std::shared_ptr<const Store> store = nullptr;
@@ -27,10 +26,6 @@ struct GrowingImage::Parts {
         });
         return *store;
     }
-    /// A chunk with what lies outside the grid.
-    SampleBox whole(const Index3& at) const {
-        return {at * chunk, at * chunk + Index3::Constant(chunk - 1)};
-    }
     const CoarserGrid& grid(int level) const {
         return writer.levels().at(static_cast<std::size_t>(level));
     }
@@ -41,7 +36,7 @@ GrowingImage::GrowingImage(std::filesystem::path folder, SampleType type, const 
     check_format(options);
     ZarrWriter writer(folder, type, pyramid_of(finest, options.chunk), options,
                       std::move(temporary));
-    parts_.reset(new Parts{std::move(folder), type, options.chunk, std::move(writer)});
+    parts_.reset(new Parts{std::move(folder), type, std::move(writer)});
 }
 
 GrowingImage::~GrowingImage() = default;
@@ -59,8 +54,7 @@ Index3 GrowingImage::chunks(int level) const {
 }
 
 SampleBox GrowingImage::box(int level, const Index3& chunk) const {
-    const Index3 low = chunk * parts_->chunk;
-    return {low, (low.array() + parts_->chunk).min(geometry(level).size.array()) - 1};
+    return parts_->writer.box_of(level, chunk);
 }
 
 void GrowingImage::write_metadata(const std::optional<Range>& range) const {
@@ -76,19 +70,11 @@ bool GrowingImage::write(int level, const Index3& chunk, std::span<const std::by
     if (part.empty() || samples.size() != bytes_of(part, parts_->type)) {
         throw std::invalid_argument("these are not the samples of this chunk");
     }
-    const SampleBox whole = parts_->whole(chunk);
-    Bytes whole_chunk(bytes_of(whole, parts_->type));
-    copy_box(part, samples.data(), whole, whole_chunk.data(), size_of(parts_->type));
-    return parts_->writer.write_chunk(level, chunk, whole_chunk);
+    return parts_->writer.write_chunk(level, chunk, samples);
 }
 
 std::optional<Bytes> GrowingImage::written(int level, const Index3& chunk) const {
-    const auto before = parts_->writer.written_chunk(level, chunk);
-    if (!before) return std::nullopt;
-    const SampleBox part = box(level, chunk);
-    Bytes samples(bytes_of(part, parts_->type));
-    copy_box(parts_->whole(chunk), before->data(), part, samples.data(), size_of(parts_->type));
-    return samples;
+    return parts_->writer.written_chunk(level, chunk);
 }
 
 Bytes GrowingImage::means(int level, const Index3& chunk, const std::stop_token& stop) const {

@@ -55,20 +55,6 @@ T mean_of(double sum, int count) {
     return static_cast<T>(mean);
 }
 
-/// Samples of a box, x fastest.
-template <class T>
-T sample_at(std::span<const std::byte> samples, const SampleBox& box, const Index3& index) {
-    const auto nx = static_cast<std::size_t>(box.high[0] - box.low[0] + 1);
-    const auto ny = static_cast<std::size_t>(box.high[1] - box.low[1] + 1);
-    const Index3 in = index - box.low;
-    const std::size_t at =
-        (static_cast<std::size_t>(in[2]) * ny + static_cast<std::size_t>(in[1])) * nx +
-        static_cast<std::size_t>(in[0]);
-    T value;
-    std::memcpy(&value, samples.data() + at * sizeof value, sizeof value);
-    return value;
-}
-
 }  // namespace
 
 void take_means(SampleType type, std::span<const std::byte> finer, const SampleBox& finer_box,
@@ -81,7 +67,10 @@ void take_means(SampleType type, std::span<const std::byte> finer, const SampleB
             const Index3 high = (low + factor - Index3::Ones()).cwiseMin(finer_box.high);
             double sum = 0;
             for_each_index({low, high}, [&](const Index3& one) {
-                sum += static_cast<double>(sample_at<T>(finer, finer_box, one));
+                T sample;
+                std::memcpy(&sample, finer.data() + place_in(finer_box, one) * sizeof sample,
+                            sizeof sample);
+                sum += static_cast<double>(sample);
             });
             const T value = mean_of<T>(sum, (high - low + Index3::Ones()).prod());
             std::memcpy(to, &value, sizeof value);

@@ -94,21 +94,16 @@ class Saving {
                 parts[chunk].push_back(part);
             });
         }
-        const Geometry& grid = writer_.levels()[level].geometry;
         std::size_t done = 0;
         for (const auto& [chunk, boxes] : parts) {
-            const SampleBox box = chunk_box(chunk, grid);
+            const SampleBox box = writer_.box_of(static_cast<int>(level), chunk);
             Bytes samples(bytes_of(box, type()));
             from_.read(level_ + static_cast<int>(level), box, samples, stop_);
             for (const SampleBox& part : boxes) {
                 const Bytes now = level == 0 ? edited(part) : means(level, part);
                 copy_box(part, now.data(), box, samples.data(), size_of(type()));
             }
-            const Index3 edge = Index3::Constant(EditsNote::chunk);
-            const SampleBox all{box.low, box.low + edge - Index3::Ones()};
-            Bytes whole(bytes_of(all, type()));
-            copy_box(box, samples.data(), all, whole.data(), size_of(type()));
-            writer_.write_chunk(static_cast<int>(level), chunk, whole);
+            writer_.write_chunk(static_cast<int>(level), chunk, samples);
             note_.chunks[level].insert(chunk);
             ++done;
             if (level == 0) made_ = double(done) / double(parts.size());

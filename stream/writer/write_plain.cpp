@@ -48,7 +48,7 @@ int slab_of(const Level& level, SampleType type) {
 
 void write_slabs(const Store& from, int level, io::PendingFile& file, std::atomic<double>& made,
                  const std::stop_token& stop) {
-    const Level& grid = from.info().levels.at(static_cast<std::size_t>(level));
+    const Level& grid = level_of(from, level);
     const Index3& size = grid.geometry.size;
     const int slab = slab_of(grid, from.info().type);
     Bytes samples;
@@ -66,7 +66,7 @@ void write_slabs(const Store& from, int level, io::PendingFile& file, std::atomi
 
 void write_plain(const Store& from, int level, const std::filesystem::path& out,
                  const io::WriteOptions& options) {
-    const Geometry& grid = from.info().levels.at(static_cast<std::size_t>(level)).geometry;
+    const Geometry& grid = level_of(from, level).geometry;
     const std::string problem = io::why_not_written(out, grid);
     if (!problem.empty()) throw io::OutputError(problem);
     const std::string_view extension = io::written_extension_of(out);

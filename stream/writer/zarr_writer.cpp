@@ -9,6 +9,7 @@
 #include "io/process/helper_process.hpp"
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
+#include "stream/box_bytes.hpp"
 #include "stream/formats/zarr_metadata.hpp"
 
 namespace palpate::stream {
@@ -211,12 +212,26 @@ Bytes ZarrWriter::packed(const Bytes& samples) const {
     return samples;
 }
 
-bool ZarrWriter::write_chunk(int level, const Index3& chunk, const Bytes& samples) const {
+SampleBox ZarrWriter::whole(const Index3& chunk) const {
+    const Index3 low = chunk * options_.chunk;
+    return {low, low + Index3::Constant(options_.chunk - 1)};
+}
+
+SampleBox ZarrWriter::box_of(int level, const Index3& chunk) const {
+    const Index3& size = levels_.at(static_cast<std::size_t>(level)).geometry.size;
+    const auto [low, high] = whole(chunk);
+    return {low, high.cwiseMin(size - Index3::Ones())};
+}
+
+bool ZarrWriter::write_chunk(int level, const Index3& chunk,
+                             std::span<const std::byte> samples) const {
     if (std::ranges::all_of(samples, [](std::byte b) { return b == std::byte{0}; })) return false;
+    Bytes all(bytes_of(whole(chunk), type_));
+    copy_box(box_of(level, chunk), samples.data(), whole(chunk), all.data(), size_of(type_));
     const fs::path name = name_of(level, chunk);
-    folder_->put(name, packed(samples), temporary_);
-    const auto back = written_chunk(level, chunk);
-    if (!back || *back != samples) {
+    folder_->put(name, packed(all), temporary_);
+    const auto back = stored(level, chunk);
+    if (!back || *back != all) {
         throw io::OutputError((folder_->path() / name).string() +
                               ": reads back as something else; check the disk");
     }
@@ -224,6 +239,15 @@ bool ZarrWriter::write_chunk(int level, const Index3& chunk, const Bytes& sample
 }
 
 std::optional<Bytes> ZarrWriter::written_chunk(int level, const Index3& chunk) const {
+    const auto all = stored(level, chunk);
+    if (!all) return std::nullopt;
+    const SampleBox box = box_of(level, chunk);
+    Bytes samples(bytes_of(box, type_));
+    copy_box(whole(chunk), all->data(), box, samples.data(), size_of(type_));
+    return samples;
+}
+
+std::optional<Bytes> ZarrWriter::stored(int level, const Index3& chunk) const {
     const io::Descriptor file = folder_->open(name_of(level, chunk));
     struct stat about {};
     if (file.number() < 0 || ::fstat(file.number(), &about) != 0) return std::nullopt;

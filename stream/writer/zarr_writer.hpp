@@ -24,10 +24,12 @@ class ZarrWriter {
     const std::vector<CoarserGrid>& levels() const { return levels_; }
     /// Of all levels and of the image. Throws io::OutputError, as the next one does.
     void write_metadata(const std::optional<Range>& range) const;
-    /// Writes a chunk under another name and renames it, after having read it back. One whose
-    /// samples are all 0 is not written; returns false then.
-    bool write_chunk(int level, const Index3& chunk, const Bytes& samples) const;
-    /// The samples of a chunk that was written before; nothing if it is not there or not whole.
+    /// The samples of a chunk that lie in the grid.
+    SampleBox box_of(int level, const Index3& chunk) const;
+    /// Writes these under another name and renames the file, after having read it back. A chunk
+    /// whose samples are all 0 is not written; returns false then.
+    bool write_chunk(int level, const Index3& chunk, std::span<const std::byte> samples) const;
+    /// Those of a chunk that was written before; nothing if it is not there or not whole.
     std::optional<Bytes> written_chunk(int level, const Index3& chunk) const;
     /// Chunks of all levels that are there.
     std::uint64_t stored_chunks() const;
@@ -35,6 +37,9 @@ class ZarrWriter {
     Index3 chunks_of(int level) const;
 
   private:
+    /// A chunk with what lies outside the grid.
+    SampleBox whole(const Index3& chunk) const;
+    std::optional<Bytes> stored(int level, const Index3& chunk) const;
     void put_json(const std::filesystem::path& name, const nlohmann::json& json) const;
     std::string name_of(int level, const Index3& chunk) const;
     Bytes packed(const Bytes& samples) const;

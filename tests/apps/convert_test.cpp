@@ -85,6 +85,35 @@ Outcome ended_by(int signal, const ScratchFolder& folder) {
     return run.finish(signal);
 }
 
+TEST(Convert, what_the_output_lacks_is_said_unless_it_was_chosen) {
+    const ScratchFolder folder;
+    const std::string head = "NRRD0004\ntype: uint8\nencoding: raw\n";
+    put_bytes(folder / "beat.nrrd",
+              head + "dimension: 4\nsizes: 4 4 4 3\nkinds: domain domain domain time\n\n" +
+                  std::string(192, 'x'));
+    put_bytes(folder / "l.seg.nrrd", head +
+                                         "dimension: 3\nspace: left-posterior-superior\n"
+                                         "sizes: 4 4 4\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
+                                         "space origin: (0,0,0)\nSegment0_Name:=liver\n"
+                                         "Segment0_LabelValue:=1\nSegment0_Layer:=0\n\n" +
+                                         std::string(64, '\1'));
+    const auto said = [&](const std::string& words, const std::string& note) {
+        const Outcome outcome = palpate(folder, "convert " + words);
+        expect_done(outcome);
+        return outcome.err.find(note) != std::string::npos;
+    };
+    const char* const frames = "only the first of its 3 frames is converted";
+    const char* const axes = "its orientation is not known, which NIfTI cannot say";
+    EXPECT_TRUE(said("beat.nrrd a.nrrd", frames));
+    EXPECT_TRUE(said("beat.nrrd a.zarr", frames));
+    EXPECT_FALSE(said("beat.nrrd a.mha --time-step 0", frames));
+    EXPECT_TRUE(said("beat.nrrd a.nii", axes));
+    EXPECT_FALSE(said("beat.nrrd b.nii --orientation LPS", axes));
+    EXPECT_FALSE(said("beat.nrrd c.mha", axes));
+    EXPECT_TRUE(said("l.seg.nrrd d.nrrd", "names and colours of its segments are not"));
+    EXPECT_TRUE(palpate(folder, "convert -q l.seg.nrrd e.nrrd").err.empty());
+}
+
 TEST(Convert, a_run_that_is_killed_is_continued_and_gives_what_one_run_gives) {
     const ScratchFolder folder;
     EXPECT_EQ(ended_by(SIGKILL, folder).status, 1000 + SIGKILL);

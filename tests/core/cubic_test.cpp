@@ -1,5 +1,5 @@
 // The smooth field: equal to the slow reference, C1 everywhere, within the range of its samples.
-#include "palpate/density.hpp"
+#include "palpate/cubic.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "layers/cover.hpp"
-#include "palpate/density.hpp"
 #include "support/fields.hpp"
 #include "support/paper_lattice.hpp"
 

@@ -1,6 +1,6 @@
 // The lattice: every point has a tetrahedron, walls are shared, the field is continuous; against
 // the paper's own form with explicit tetrahedra and barycentric coordinates.
-#include "palpate/density.hpp"
+#include "palpate/lattice.hpp"
 
 #include <gtest/gtest.h>
 

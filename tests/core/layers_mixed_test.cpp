@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "layers/cover.hpp"
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "palpate/renderer.hpp"
 #include "support/constants.hpp"
 #include "support/cubic_guarantees.hpp"

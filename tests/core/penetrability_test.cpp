@@ -1,5 +1,5 @@
 // Penetrability on a ramp, where the level felt and the depth of the hand are the same number.
-#include "palpate/penetrability.hpp"
+#include "palpate/proxy.hpp"
 
 #include <gtest/gtest.h>
 

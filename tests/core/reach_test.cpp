@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "palpate/density.hpp"
+#include "palpate/lattice.hpp"
 #include "palpate/session.hpp"
 #include "reach.hpp"
 #include "support/constants.hpp"

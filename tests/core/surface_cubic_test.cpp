@@ -6,8 +6,8 @@
 #include <numbers>
 #include <set>
 
-#include "palpate/density.hpp"
 #include "palpate/edit.hpp"
+#include "palpate/field.hpp"
 #include "palpate/surface.hpp"
 #include "support/cubic_reference.hpp"
 #include "support/fields.hpp"

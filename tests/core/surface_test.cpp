@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-#include "palpate/density.hpp"
+#include "palpate/lattice.hpp"
 #include "support/mesh_checks.hpp"
 
 using namespace palpate;

@@ -329,13 +329,33 @@ TEST(ToolProxy, does_no_more_work_than_its_budget_in_noise_in_the_solid_and_with
     EXPECT_GT(out_of_budget, 0);
 }
 
+/// Where a tool can hardly move, its points look about as far as it can go, and not to the end of
+/// the step that it would like to make: that took 4.9 cubes per point and round.
+TEST(ToolProxy, looks_in_noise_no_farther_than_it_can_go) {
+    const Field field = support::smooth(support::noise_field().field);
+    const Tool tool = box_tool({6, 6, 6}, 0.5);
+    ToolProxy proxy = proxy_of(tool, support::noise_field().isovalue);
+    double work = 0, rounds = 0;
+    for (int i = 0; i < 400; ++i) {
+        const double t = 0.02 * i;
+        const Vec3 place(12 + 5 * std::sin(t), 12 + 5 * std::sin(1.6 * t), i < 1 ? 32.0 : 18.0);
+        const Quaternion turn = turned(Quaternion::Identity(), 0.004 * i * Vec3(1, 2, 3));
+        const ToolUpdate r = update_tool(proxy, field, {place, turn});
+        work += r.work;
+        rounds += r.rounds;
+    }
+    EXPECT_GT(rounds, 400) << "it moves";
+    EXPECT_LT(work / rounds, 3 * double(tool.points().size()));
+}
+
 TEST(ToolProxy, counts_what_half_spaces_and_friction_cost_as_work) {
     const Field field = plane_field();
     const auto work_of = [&](double coefficient) {
         ToolProxy proxy = proxy_of(box_tool({4, 3, 2}, 1));
         ToolUpdate last;
         for (int i = 0; i < 40; ++i) {
-            const Quaternion turn = turned(Quaternion::Identity(), {0, 0, 0.01 * i});
+            // Tilted, so that the pull goes through no line between two corners: two would hold it.
+            const Quaternion turn = turned(Quaternion::Identity(), {0.2, 0.1, 0.01 * i});
             last = update_tool(proxy, field, {{12 + 0.05 * i, 12, i < 1 ? 18.0 : 10.0}, turn},
                                {.friction = {coefficient, coefficient}});
         }

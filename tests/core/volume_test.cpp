@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "support/constants.hpp"
 #include "support/fields.hpp"
 

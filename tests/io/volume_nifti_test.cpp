@@ -136,6 +136,31 @@ TEST(nifti, samples_that_are_not_finite_become_the_least_one_and_are_counted) {
     EXPECT_TRUE(contains(all_notes(file), "3 samples were not finite")) << all_notes(file);
 }
 
+TEST(nifti, numbers_beyond_float32_are_counted_with_those_that_are_not_finite) {
+    const ScratchFolder folder;
+    std::string bytes = nifti(
+        [](std::string& h) { put_at(h, 70, little<std::int16_t>(64) + little<std::int16_t>(64)); });
+    bytes.resize(352);
+    for (int i = 0; i < 24; ++i) bytes += little(i == 3 ? 1e300 : i == 5 ? -1e39 : 100.0 + i);
+    const VolumeFile file = read_nifti(folder, bytes);
+    EXPECT_EQ(file.volume.minimum(), 100);
+    EXPECT_EQ(file.volume.maximum(), 123);
+    EXPECT_TRUE(contains(all_notes(file), "2 samples were not finite (NaN, infinity or beyond "));
+}
+
+TEST(nifti, sizes_and_bits_that_a_writer_left_at_0_are_those_of_the_reference_library) {
+    const ScratchFolder folder;
+    const VolumeFile file =
+        read_nifti(folder, nifti([](std::string& h) {
+                       put_at(h, 40, little<std::int16_t>(5));  // axes
+                       put_at(h, 48, little<std::int16_t>(0) + little<std::int16_t>(0));
+                       put_at(h, 72, little<std::int16_t>(0));  // bitpix
+                   }));
+    EXPECT_EQ(file.volume.geometry().size, Index3(2, 3, 4));
+    EXPECT_EQ(file.time_steps, 1);
+    EXPECT_EQ(file.volume.sample({1, 2, 3}), 23);
+}
+
 TEST(nifti, of_two_transforms_that_disagree_the_sform_is_taken_and_that_is_said) {
     const ScratchFolder folder;
     const auto read = [&](const std::array<float, 12>& sform) {

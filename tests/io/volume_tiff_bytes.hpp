@@ -17,6 +17,7 @@ struct TestPage {
     bool deflate = false;
     int depth = 1;  ///< ImageDepth
     int kind = 0;   ///< NewSubfileType; 1: a thumbnail
+    int orientation = 1;
     std::string samples;
     std::string description;           ///< none if empty
     std::uint32_t resolution[2] = {};  ///< pixels a unit, a fraction, along x and y; none if 0
@@ -68,6 +69,7 @@ inline std::string tiff_bytes(const std::vector<TestPage>& pages) {
             entry(270, description_at, 2, static_cast<std::uint32_t>(page.description.size() + 1));
         }
         entry(273, data_at);
+        entry(274, static_cast<std::uint32_t>(page.orientation));
         entry(277, static_cast<std::uint32_t>(page.samples_per_pixel));
         entry(278, static_cast<std::uint32_t>(page.height));
         entry(279, static_cast<std::uint32_t>(data.size()));

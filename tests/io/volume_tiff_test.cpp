@@ -262,6 +262,21 @@ TEST(tiff, a_flipped_byte_of_packed_samples_is_refused) {
     }
 }
 
+TEST(tiff, an_orientation_that_is_not_applied_is_said_and_a_page_of_another_is_refused) {
+    const ScratchFolder folder;
+    TestPage first = counting_page(0), second = counting_page(12);
+    put_bytes(folder / "a.tif", tiff_bytes({first, second}));
+    EXPECT_FALSE(contains(all_notes(read_volume(folder / "a.tif")), "Orientation"));
+    first.orientation = 4;  // the first row is at the bottom
+    put_bytes(folder / "a.tif", tiff_bytes({first, second}));
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "(Orientation 4)"));
+    second.orientation = 4;
+    put_bytes(folder / "a.tif", tiff_bytes({first, second}));
+    const VolumeFile file = read_volume(folder / "a.tif");
+    EXPECT_TRUE(contains(all_notes(file), "its Orientation 4 was not applied"));
+    EXPECT_EQ(file.volume.sample({0, 0, 0}), 0);
+}
+
 TEST(tiff, noise_and_text_are_refused) {
     const ScratchFolder folder;
     std::mt19937 random(53);

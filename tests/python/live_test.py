@@ -76,6 +76,55 @@ def test_a_device_in_python_is_asked_on_a_thread_of_its_own_and_feels_the_force(
     assert device.closed and not numpy.any(device.forces[-1])
 
 
+def test_a_run_takes_a_device_in_python_too_and_records_it(tmp_path):
+    device = Still(60)
+    loaded = palpate.load("synthetic:sphere:40x40x40")
+    run = palpate.Run(loaded, palpate.Setup(real_time=False), device=device)
+    run.record(tmp_path / "hand.csv")
+    with run:
+        until(lambda: run.snapshot() and run.snapshot().device.status == "ready")
+        assert run.device.name == "still"
+        device.read = lambda: None
+        until(lambda: "read() has to return a DeviceReading" in run.problem)
+    assert device.closed and not numpy.any(device.forces[-1])
+    assert run.stop_recording() > 0
+    assert palpate.read_recording(tmp_path / "hand.csv").head["device"].startswith("still")
+
+
+def test_a_run_that_cannot_begin_lets_go_of_its_device_in_python():
+    device = Still(60)
+    with pytest.raises(ValueError):
+        palpate.Run(palpate.load("synthetic:sphere:8x8x8"), palpate.Setup(isovalue=numpy.nan), device=device)
+    assert device.closed
+    with pytest.raises(TypeError, match="needs the functions info"):
+        palpate.Run(palpate.load("synthetic:sphere:8x8x8"), device=object())
+
+
+def test_a_run_whose_device_hangs_ends_with_a_zero_and_says_so():
+    goes_on = threading.Event()
+
+    class Hanging(Still):
+        hangs = False
+
+        def read(self):
+            if self.hangs:
+                goes_on.wait()
+            return super().read()
+
+    device = Hanging(60)
+    run = palpate.Run(palpate.load("synthetic:sphere:8x8x8"), palpate.Setup(real_time=False), device=device)
+    run.start()
+    until(lambda: run.snapshot() and run.snapshot().device.status == "ready")
+    device.hangs = True
+    until(lambda: run.snapshot().device.age > 0.02)
+    with pytest.raises(palpate.DeviceError, match="does not return: the session has ended"):
+        run.stop()
+    assert not numpy.any(device.forces[-1])
+    goes_on.set()
+    until(lambda: device.closed)
+    run.stop()
+
+
 def raising(reading):
     raise RuntimeError("cable pulled")
 
@@ -148,19 +197,24 @@ run.start()
     assert ran.stdout.strip() == "closed True True"
 
 
-def test_a_device_may_stop_its_own_servo():
+def run_with(device):
+    return palpate.Run(palpate.load("synthetic:sphere:16x16x16"), palpate.Setup(real_time=False), device=device)
+
+
+@pytest.mark.parametrize("session", [lambda device: palpate.Servo(renderer(), device, real_time=False), run_with])
+def test_a_device_may_stop_its_own_session(session):
     class Tired(Still):
         def read(self):
             if len(self.forces) == 20:
-                self.servo.stop()
+                self.session.stop()
             return super().read()
 
     device = Tired(50)
-    device.servo = palpate.Servo(renderer(), device, real_time=False)
-    device.servo.start()
+    device.session = session(device)
+    device.session.start()
     until(lambda: device.closed)
-    device.servo.stop()
-    del device.servo
+    device.session.stop()
+    del device.session
 
 
 def test_objects_that_are_no_device_are_refused():

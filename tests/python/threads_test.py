@@ -68,8 +68,8 @@ print("end")
     assert words == ["True", "False", "True", "False", "end"]
 
 
-def serve(folder):
-    handler = functools.partial(http.server.SimpleHTTPRequestHandler, directory=folder)
+def serve(folder, kind=http.server.SimpleHTTPRequestHandler):
+    handler = functools.partial(kind, directory=folder)
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
     threading.Thread(target=server.serve_forever, daemon=True).start()
     return f"http://127.0.0.1:{server.server_address[1]}/"
@@ -133,6 +133,25 @@ scene = palpate.scene("sphere:32x32x32")
 settings = palpate.MotionSettings(duration_s=8, rate_hz=5e5)  # means of 15,000 samples each
 palpate.motion("slide", palpate.Field(scene.volume), scene.isovalue, settings)
 """) < 10  # of minutes; usually 0.1
+
+
+class SilentAbout(http.server.SimpleHTTPRequestHandler):
+    """Answers for all of a folder but the last chunk of the finest level."""
+
+    def do_GET(self):
+        if self.path.endswith("/0/c/3/3/3"):
+            threading.Event().wait()
+        super().do_GET()
+
+
+def test_ctrl_c_ends_an_edit_that_waits_for_samples(tmp_path):
+    subprocess.run([os.environ["PALPATE"], "convert", "-q", "synthetic:sphere:200x200x200", tmp_path / "v.zarr",
+                    "--chunk", "64"], check=True)
+    assert interrupted_after("""
+run = palpate.Run(palpate.open_store(sys.argv[2]), palpate.Setup(isovalue=100, real_time=False))
+run.start()
+run.edit(palpate.Fill([195, 195, 195], [198, 198, 198], 80))
+""", serve(tmp_path, SilentAbout) + "v.zarr") < 10  # of 50
 
 
 def test_ctrl_c_ends_the_wait_for_a_silent_server():

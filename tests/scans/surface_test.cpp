@@ -8,8 +8,8 @@
 #include <string>
 
 #include "io/real_volumes.hpp"
-#include "palpate/density.hpp"
 #include "palpate/io/volume_file.hpp"
+#include "palpate/lattice.hpp"
 #include "palpate/surface.hpp"
 #include "support/mesh_checks.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "scenes/hash.hpp"
 #include "scenes/random.hpp"

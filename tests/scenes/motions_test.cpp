@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <map>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "scenes/contact.hpp"
 #include "scenes/hash.hpp"

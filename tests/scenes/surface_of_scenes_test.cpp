@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "palpate/density.hpp"
+#include "palpate/lattice.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "palpate/surface.hpp"
 #include "scenes/random.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "scenes/hash.hpp"
 #include "scenes/random.hpp"
 

@@ -81,6 +81,10 @@ TEST(GrowingImage, refuses_samples_of_another_box_and_leaves_no_file_of_bad_opti
     const std::vector<std::byte> samples(std::size_t{16} * 16 * 16);
     EXPECT_THROW((void)image.write(0, {1, 0, 0}, samples), std::invalid_argument);
     EXPECT_THROW((void)image.write(0, {2, 0, 0}, {}), std::invalid_argument);
+    for (const int level : {-1, image.levels()}) {
+        EXPECT_THROW((void)image.box(level, {0, 0, 0}), std::out_of_range);
+        EXPECT_THROW((void)image.write(level, {0, 0, 0}, samples), std::out_of_range);
+    }
     EXPECT_THROW((void)image.means(0, {0, 0, 0}, {}), std::invalid_argument);
     options.chunk = 4;
     EXPECT_THROW(GrowingImage(folder / "w.zarr", SampleType::uint8, grid, options),

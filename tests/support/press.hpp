@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "palpate/penetrability.hpp"
+#include "palpate/proxy.hpp"
 #include "palpate/renderer.hpp"
 #include "support/fields.hpp"
 

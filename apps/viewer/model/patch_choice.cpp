@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "apps/viewer/model/at_once.hpp"
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 
 namespace palpate::viewer {
 namespace {

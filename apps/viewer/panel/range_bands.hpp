@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/viewer/panel/level_axis.hpp"
-#include "palpate/penetrability.hpp"
+#include "palpate/proxy.hpp"
 
 class QPainter;
 

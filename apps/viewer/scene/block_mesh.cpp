@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "apps/viewer/model/sample_block.hpp"
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "palpate/surface.hpp"
 #include "pictures/surface.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/viewer/scene/render_mesh.hpp"
-#include "palpate/density.hpp"
+#include "palpate/lattice.hpp"
 
 namespace palpate::viewer {
 

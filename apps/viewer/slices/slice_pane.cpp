@@ -16,7 +16,7 @@
 #include "apps/viewer/slices/slice_content.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
-#include "palpate/density.hpp"
+#include "palpate/lattice.hpp"
 
 namespace palpate::viewer {
 namespace {

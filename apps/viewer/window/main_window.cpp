@@ -35,7 +35,7 @@
 #include "apps/viewer/window/streaming_words.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "apps/viewer/window/welcome.hpp"
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::viewer {

@@ -155,6 +155,8 @@ static class FeelsABall
         Native.palpate_volume_destroy(volume);
         IntPtr run = Run(data);
         Native.Check(Native.palpate_run_start(run));
+        // On a busy machine a reading may be older than 20 ms every time, and the force would never rise.
+        Native.Check(Native.palpate_run_set(run, "force.stale_after", 3600));
         var snapshot = new Snapshot { SizeOf = Native.SizeOf<Snapshot>() };
         for (int frame = 0; frame < 1200 && force < 1; ++frame)
         {

@@ -1,6 +1,7 @@
 // A client or server made of OpenIGTLink's own library, as 3D Slicer is: igtl_peer connect|listen
-// PORT ACTION...; actions: for SECONDS, string TEXT, image NAME SIZE LEVEL, surface, await TYPE,
-// garbage. Prints a line a message, but for transforms, which it counts.
+// PORT ACTION... Prints a line a message, but for poses.
+// Actions: poses COUNT (until so many of each kind have come), status TEXT (until a status has it),
+// await TYPE, string TEXT, image NAME SIZE LEVEL, surface, garbage.
 #include <igtlClientSocket.h>
 #include <igtlImageMessage.h>
 #include <igtlPolyDataMessage.h>
@@ -10,7 +11,6 @@
 #include <igtlTransformMessage.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -18,8 +18,6 @@
 #include <string>
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 class Peer {
   public:
@@ -72,18 +70,29 @@ class Peer {
         return type;
     }
 
-    bool receive_for(double seconds) {
-        const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+    /// Until so many poses of each kind have come; false at the end.
+    bool receive_poses(int wanted) {
         counts_.clear();
-        const auto begin = Clock::now();
-        while (Clock::now() < end) {
+        const auto has_all = [&] {
+            return counts_.size() == 4 &&
+                   std::all_of(counts_.begin(), counts_.end(),
+                               [&](auto& one) { return one.second >= wanted; });
+        };
+        while (!has_all()) {
             if (receive().empty()) return false;
         }
-        const double passed = std::chrono::duration<double>(Clock::now() - begin).count();
         for (const auto& [name, count] : counts_) {
-            std::printf("%s %.1f Hz at %s\n", name.c_str(), count / passed, last_[name]);
+            std::printf("%s at %s\n", name.c_str(), last_[name]);
         }
         std::printf("status %s\n", status_.c_str());
+        return true;
+    }
+
+    /// Until a status has the text; false at the end.
+    bool receive_status(const std::string& text) {
+        for (status_.clear(); status_.find(text) == std::string::npos;) {
+            if (receive().empty()) return false;
+        }
         return true;
     }
 
@@ -151,8 +160,10 @@ igtl::Socket::Pointer socket_for(const std::string& role, int port) {
 int act(Peer& peer, int argc, char** argv) {
     for (int i = 3; i < argc; ++i) {
         const std::string action = argv[i];
-        if (action == "for") {
-            if (!peer.receive_for(std::stod(argv[++i]))) return 3;
+        if (action == "poses") {
+            if (!peer.receive_poses(std::stoi(argv[++i]))) return 3;
+        } else if (action == "status") {
+            if (!peer.receive_status(argv[++i])) return 3;
         } else if (action == "string") {
             auto message = igtl::StringMessage::New();
             message->SetDeviceName("Command");

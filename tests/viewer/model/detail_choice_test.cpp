@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "apps/viewer/model/patch_choice.hpp"
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "support/edits.hpp"
 #include "support/random.hpp"
 

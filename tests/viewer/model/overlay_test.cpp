@@ -8,7 +8,7 @@
 
 #include "apps/viewer/model/colour_map.hpp"
 #include "apps/viewer/model/measurement.hpp"
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "support/fields.hpp"
 
 namespace palpate::viewer {

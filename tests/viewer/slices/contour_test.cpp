@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "palpate/density.hpp"
+#include "palpate/field.hpp"
 #include "support/fields.hpp"
 
 namespace palpate::viewer {

@@ -17,12 +17,13 @@ if not __package__:  # run as a folder, by the program palpate: this folder's mo
     sys.path[0] = str(Path(__file__).resolve().parents[2])
 
 EXPERIMENTS = ("drift", "fall-through", "performance", "scaling", "fidelity", "stability", "walk-through",
-               "penetration", "layers", "tools", "streaming", "notice")  # in the order of docs/evaluation.md
+               "penetration", "layers", "tools", "streaming", "notice", "recorded", "needle")  # in the order of docs/evaluation.md
 MOST_SEEDS = 1000
 METHODS = ("exact", "paper", "gradient", "gradient-improved")
 PACKAGES = ("numpy", "scipy", "matplotlib")  # Debian: python3-NAME
-USERS = {"--range": ("penetration",), "--seeds": ("fall-through", "layers", "tools"), "--method": ("walk-through",),
-         "--seed": ("fall-through", "performance", "scaling", "layers", "tools", "streaming")}  # of options that few use
+USERS = {"--range": ("penetration",), "--seeds": ("fall-through", "layers", "tools", "recorded"), "--method": ("walk-through",),
+         "--seed": ("fall-through", "performance", "scaling", "layers", "tools", "streaming", "recorded",
+                    "needle")}  # of options that few use
 CLAIMS_BROKEN, WRONG_USE, BAD_INPUT, BAD_OUTPUT, READER_GONE = 1, 2, 3, 5, 141  # exit status, docs/command_line.md
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 HELP = f"""Run experiments, each with a table, figures and checked claims
@@ -31,18 +32,18 @@ Usage: palpate evaluate [OPTIONS] EXPERIMENT
 
 Positionals:
   EXPERIMENT {{{','.join(EXPERIMENTS)},all}}
-                              Name of the experiment, or all to run every one and to write report.html, which needs no other file
+                              Name of the experiment, or all to run every one and to write report.html and report.pdf, which need no other file
 
 Options:
   -h,--help                   Print this help message and exit
   --version                   Display program version information and exit
   -o,--output FOLDER          Folder for the results [palpate-evaluation]
   --volume VOLUME@ISOVALUE    Volume to use instead of the experiment's own. May be given again
-  --data FOLDER               Folder with the real volumes that some experiments use, such as lobster.nrrd (default: environment PALPATE_DATA)
+  --data FOLDER               Folder with the real volumes that some experiments use, such as lobster.nrrd, and with recordings, such as plane0/probe.traj (default: environment PALPATE_DATA)
   --method {{{','.join(METHODS)}}}
                               Proxy method, for walk-through [exact]
   --seed UINT                 Seed of everything random [1]
-  --seeds UINT                How many seeds draw their own lines, from the first one on, for fall-through, layers and tools. At most {MOST_SEEDS} [3]
+  --seeds UINT                How many seeds draw their own lines, from the first one on, for fall-through, layers, tools and recorded. At most {MOST_SEEDS} [3]
   --range LOW:HIGH            Range of interest, in the data's units or in percent of its range, for penetration. May be given again
   --quick                     Seconds instead of minutes, with every claim checked
   --json                      Print paragraphs and claims as JSON
@@ -310,7 +311,8 @@ def evaluate(chosen, words):
             if not (chosen.quiet or chosen.json):
                 say(shown(reports[-1]), last=len(names) == 1)
         if chosen.name == "all":
-            report.write_html(reports, folder.path, folder.part / "report.html")
+            if not report.write_pages(reports, folder.path, folder.part):
+                tell("note: without report.pdf: it needs WeasyPrint (apt install weasyprint)")
             folder.complete()
     finally:
         folder.close()

@@ -84,9 +84,7 @@ def figure_of(table, last):
               ylabel="largest deviation [part of the range]", ylim=(1e-17, 10))
     right.axhline(GRANTED, color=figures.GREY, lw=0.8, ls="--")
     right.text(rates[0], 1.5 * GRANTED, "granted (G2)", color=figures.GREY, fontsize=7)
-    drawn.canvas.draw()
-    for axes in (left, right):
-        figures.label_ends(axes)
+    figures.label_ends(left, right)
     return Figure("", "Left: density at the SCP after each turn, at 200 mm/s and 1 kHz. The isovalue is "
                   "dashed. Right: the largest deviation from the isovalue in any update, over all volumes "
                   "and speeds.", drawn)

@@ -209,7 +209,6 @@ def figure_of(table):
         axes.set(title=title, xscale="log", xlabel="hand per tick [mm]", ylim=(-3, 103))
     panels[0].set_ylabel("share of the crossings [%]")
     drawn.suptitle("Only methods that look at the whole step keep the proxy out", x=0.01, ha="left")
-    drawn.canvas.draw()
     figures.label_ends(panels[2])
     return Figure("", "Shares of the crossings against how far the hand moves per tick, which is its speed over the "
                   "rate: the mean over all walls, shaded from the best to the worst wall. In the middle, only crossings "

@@ -247,9 +247,7 @@ def figure_of_ball(table):
     rows = table.where(body="ball", trajectory="circle")
     draw_lines(left, rows, BALL, "off_ideal_mean_deg", "no method is good on raw 8-bit samples")
     draw_lines(right, rows, SOURCES, "off_ideal_mean_deg", "the smooth field is, if dequantized")
-    drawn.canvas.draw()
-    figures.label_ends(left)
-    figures.label_ends(right)
+    figures.label_ends(left, right)
     return Figure("", "A ball, touched 0.03 of its box below the surface along a great circle: the mean angle between the "
                   "force and that of a perfect ball. Left: Palpate on raw 8-bit samples and the peers that were measured with "
                   "this protocol. Right: where the error comes from.", drawn)
@@ -268,7 +266,6 @@ def figure_of_turn(grid):
     left.set(title="the force turns at facets only on the linear field", xlabel="hand along the circle [degrees]", yscale="log",
              ylabel="turn per tick [degrees]")
     right.set(title="", xlabel="turn per tick [degrees]", ylabel="ticks with no larger turn [%]", xscale="log")
-    drawn.canvas.draw()
     figures.label_ends(right)
     return Figure("turn", f"Turn of the force from tick to tick along {arc} degrees of the circle on the ball of {grid} samples, "
                   f"and its distribution. The hand moves by {arc / steps:g} degrees per tick, and the force of a perfect ball "
@@ -291,7 +288,6 @@ def figure_of_losses(table):
     rows = table.where(body="ball", trajectory="circle")
     draw_lines(right, rows, SOURCES[2::2], "surface_error_mean_voxel", "curved surfaces move a little")
     right.set_ylabel("distance from the true surface [voxel]")
-    drawn.canvas.draw()
     figures.label_ends(right)
     return Figure("losses", "Costs of the smooth field. Left: density across walls of one, two and three samples of 1 in 0; the "
                   "linear field (dashed) keeps their height. Right: mean distance of the SCP from the true surface of the ball; "
@@ -302,9 +298,7 @@ def figure_of_shapes(table):
     drawn, panels = figures.panels(columns=2, height=2.7)
     for axes, (body, trajectory) in zip(panels, (("torus", "helix"), ("marschner-lobb", "spiral"))):
         draw_lines(axes, table.where(body=body, trajectory=trajectory), SOURCES, "angle_mean_deg", body)
-    drawn.canvas.draw()
-    for axes in panels:
-        figures.label_ends(axes)
+    figures.label_ends(*panels)
     return Figure("shapes", "Torus, with the hand in its tube on a helix, and Marschner-Lobb ripples, with the hand under them on "
                   "a spiral: mean angle between the force and the true normal at the SCP.", drawn)
 
@@ -317,7 +311,6 @@ def figure_of_users(table):
         figures.curve(axes, name, numpy.arange(len(rows)) + 0.1 * (number - 2), rows["turn_p99_deg"], ls="")
     axes.set(title="how much the force turns per tick", ylabel="99th percentile [degrees]")
     axes.set_xticks(range(len(volumes)), volumes)
-    drawn.canvas.draw()
     figures.label_ends(axes)
     return Figure("", "Turn of the force from one tick to the next, 99th percentile.", drawn)
 

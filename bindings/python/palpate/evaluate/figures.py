@@ -39,29 +39,31 @@ def curve(axes, name, x, y, **look):
     axes.plot(x, y, **{"color": colour, "marker": marker, "label": name, **look})
 
 
-def label_ends(axes, apart=0.075):
+def label_ends(*panels, apart=0.075):
     """Writes each curve's label at its right end, in its colour, pushed apart where ends meet, and a
     thin line to it where it was pushed away."""
-    ends = []
-    for line in axes.get_lines():
-        x, y = (numpy.asarray(values, dtype=float) for values in line.get_data())
-        shown = numpy.isfinite(x) & numpy.isfinite(y)
-        if line.get_label().startswith("_") or not shown.any():
-            continue
-        at = axes.transAxes.inverted().transform(
-            axes.transData.transform((x[shown][-1], y[shown][-1])))
-        ends.append([at[1], at, line])
-    ends.sort(key=lambda end: end[0])
-    for lower, upper in zip(ends, ends[1:]):
-        upper[0] = max(upper[0], lower[0] + apart)
-    over = max(0.0, ends[-1][0] - 1) if ends else 0
-    for below, (height, at, line) in enumerate(ends):
-        moved = max(height - over, below * apart)
-        axes.annotate(line.get_label(), xy=at, xytext=(1.05, moved), xycoords="axes fraction",
-                      textcoords="axes fraction", va="center", color=line.get_color(), fontsize=7.5,
-                      annotation_clip=False,
-                      arrowprops={"arrowstyle": "-", "color": line.get_color(), "lw": 0.5,
-                                  "shrinkA": 0, "shrinkB": 2, "relpos": (0, 0.5)})
+    panels[0].figure.canvas.draw()  # before any label, as labels move the panels
+    for axes in panels:
+        ends = []
+        for line in axes.get_lines():
+            x, y = (numpy.asarray(values, dtype=float) for values in line.get_data())
+            shown = numpy.isfinite(x) & numpy.isfinite(y)
+            if line.get_label().startswith("_") or not shown.any():
+                continue
+            at = axes.transAxes.inverted().transform(
+                axes.transData.transform((x[shown][-1], y[shown][-1])))
+            ends.append([at[1], at, line])
+        ends.sort(key=lambda end: end[0])
+        for lower, upper in zip(ends, ends[1:]):
+            upper[0] = max(upper[0], lower[0] + apart)
+        over = max(0.0, ends[-1][0] - 1) if ends else 0
+        for below, (height, at, line) in enumerate(ends):
+            moved = max(height - over, below * apart)
+            axes.annotate(line.get_label(), xy=at, xytext=(1.05, moved), xycoords="axes fraction",
+                          textcoords="axes fraction", va="center", color=line.get_color(), fontsize=7.5,
+                          annotation_clip=False,
+                          arrowprops={"arrowstyle": "-", "color": line.get_color(), "lw": 0.5,
+                                      "shrinkA": 0, "shrinkB": 2, "relpos": (0, 0.5)})
 
 
 def save(figure, path):
@@ -72,3 +74,10 @@ def save(figure, path):
     path.with_name(path.name + ".svg").write_text(one_line, encoding="utf-8")
     figure.savefig(path.with_name(path.name + ".pdf"), metadata={"CreationDate": None})
     matplotlib.pyplot.close(figure)
+
+
+def pixels(figure):
+    """As PNG, for paper."""
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="png")
+    return drawn.getvalue()

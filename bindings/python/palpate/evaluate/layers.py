@@ -341,7 +341,6 @@ def puncture_figure(table):
              xlabel="speed of the hand [mm/s]", ylabel="part of the puncture force [%]")
     axes.set_xticks(SPEEDS, [f"{speed:g}" for speed in SPEEDS])
     axes.tick_params(axis="x", which="minor", bottom=False)
-    drawn.canvas.draw()
     figures.label_ends(axes)
     return Figure("puncture", "The last force rendered before a surface gave way (balls, linear field, mean of all insertions), as a "
                   "part of the surface's puncture force: the faster the hand, the farther apart its ticks. Dashed: the same forces "

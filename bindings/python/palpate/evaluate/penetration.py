@@ -204,7 +204,7 @@ def draw_press(press, level, force, mode, number):
 
 def figure_of(lines, presses):
     shown = lines[:3]
-    drawn, axes = figures.panels(4, len(shown), height=6.8, width=figures.PAGE if len(shown) > 1 else 4.6, sharex="col",
+    drawn, axes = figures.panels(4, len(shown), height=6.8, width=figures.PAGE if len(shown) > 1 else 5.6, sharex="col",
                                  squeeze=False, gridspec_kw={"height_ratios": [3, 3, 2.5, 2]})
     for (slice_, level, force, mode), line in zip(axes.T, shown):
         own = {p.function: p for p in presses if p.line is line}

@@ -1,9 +1,10 @@
-"""Writes results as files: NAME.csv, NAME.md and figures, and one HTML page of several experiments."""
+"""Writes results as files: NAME.csv, NAME.md and figures, and several experiments as one HTML page and one PDF."""
 
 import base64
 import csv
 import dataclasses
 import html
+import importlib.util
 import math
 
 from . import figures
@@ -92,20 +93,19 @@ def html_table(table):
     return "<table>\n" + "".join(f"<tr>{row}</tr>\n" for row in rows) + "</table>\n"
 
 
-def section(report, folder):
+def section(report, folder, whole):
     parts = [f'<h2 id="{report.name}">{report.name}: {html.escape(report.title)}</h2>\n',
              *(f"<p>{html.escape(text)}</p>\n" for text in report.result.paragraphs),
              html_table(report.result.summary)]
-    for file, caption in files_of(report):
-        data = base64.b64encode((folder / file).read_bytes()).decode()
+    for figure, (file, caption) in zip(report.result.figures, files_of(report)):
+        # WeasyPrint 57 sets the text of such SVG in wrong sizes, so paper gets pixels.
+        kind, data = ("svg+xml", (folder / file).read_bytes()) if whole else ("png", figures.pixels(figure.drawn))
         caption = html.escape(caption)
-        parts.append(f'<figure><img src="data:image/svg+xml;base64,{data}" alt="{caption}">'
+        parts.append(f'<figure><img src="data:image/{kind};base64,{base64.b64encode(data).decode()}" alt="{caption}">'
                      f"<figcaption>{caption}</figcaption></figure>\n")
-    parts += [html_table(claims_of(report.result)),
-              f"<details><summary>All numbers ({len(report.result.table)} rows)</summary>\n"
-              f"{html_table(report.result.table)}</details>\n"
-              f"<p class=c>{html.escape(report.circumstances)}</p>\n"]
-    return "".join(parts)
+    numbers = (f"<details><summary>All numbers ({len(report.result.table)} rows)</summary>\n{html_table(report.result.table)}</details>\n"
+               if whole else f"<p class=c>All {len(report.result.table)} rows of numbers are in {report.name}.csv.</p>\n")
+    return "".join([*parts, html_table(claims_of(report.result)), numbers, f"<p class=c>{html.escape(report.circumstances)}</p>\n"])
 
 
 METHOD = ("Each experiment asks a question and answers it with a table, figures and claims. A claim is a statement that the run checks, "
@@ -120,17 +120,31 @@ THREATS = ("No person and no real device took part. Hands and devices are simula
            "Peers whose rows say (measured) were measured once, on one day and one machine, and are not run here.")
 
 
-def write_html(reports, folder, page):
-    """`folder` holds the figures, which are embedded."""
-    style = ("body{font-family:sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
-             "img{max-width:100%}figure{margin:1em 0}figcaption,.c{color:#444;font-size:90%}"
-             "table{border-collapse:collapse;font-size:85%}td,th{border:1px solid #ccc;"
-             "padding:.2em .5em;text-align:left}details{overflow-x:auto}")
+STYLE = ("body{font-family:'DejaVu Sans',sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
+         "img{max-width:100%}figure{margin:1em 0;break-inside:avoid}figcaption,.c{color:#444;font-size:90%}"
+         "table{border-collapse:collapse;font-size:85%}td,th{border:1px solid #ccc;padding:.2em .5em;text-align:left}"
+         "h1,h2{break-after:avoid}tr{break-inside:avoid}details{overflow-x:auto}"
+         "@page{size:A4;margin:18mm;@bottom-center{content:counter(page)}}"
+         "@media print{body{max-width:none;margin:0;padding:0;font-size:9.5pt}table{font-size:7pt}img{max-height:190mm}}")
+
+
+def page_of(reports, folder, whole=True):
+    """HTML of all reports; `folder` holds the figures, which are embedded. whole: with the tables of all numbers."""
     entries = [f'<li><a href="#{r.name}">{r.name}</a>: {html.escape(r.title)} '
                f"({sum(c.held for c in r.claims)} of {len(r.claims)} claims hold)</li>\n" for r in reports]
-    page.write_text('<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8">'
-                    f"<title>Palpate: the evidence</title>\n<style>{style}</style>\n"
-                    f"<h1>Palpate: the evidence</h1>\n<ul>\n{''.join(entries)}</ul>\n<h2>Method</h2>\n"
-                    f"{''.join(f'<p>{text}</p>{chr(10)}' for text in METHOD)}"
-                    f"{''.join(section(report, folder) for report in reports)}<h2>Threats to validity</h2>\n<ul>\n"
-                    f"{''.join(f'<li>{text}</li>{chr(10)}' for text in THREATS)}</ul>\n</html>\n", encoding="utf-8")
+    return ('<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8">'
+            f"<title>Palpate: the evidence</title>\n<style>{STYLE}</style>\n"
+            f"<h1>Palpate: the evidence</h1>\n<ul>\n{''.join(entries)}</ul>\n<h2>Method</h2>\n"
+            f"{''.join(f'<p>{text}</p>{chr(10)}' for text in METHOD)}"
+            f"{''.join(section(report, folder, whole) for report in reports)}<h2>Threats to validity</h2>\n<ul>\n"
+            f"{''.join(f'<li>{text}</li>{chr(10)}' for text in THREATS)}</ul>\n</html>\n")
+
+
+def write_pages(reports, folder, into):
+    """report.html, and report.pdf if WeasyPrint is there. Returns whether it is."""
+    (into / "report.html").write_text(page_of(reports, folder), encoding="utf-8")
+    if not importlib.util.find_spec("weasyprint"):
+        return False
+    import weasyprint
+    weasyprint.HTML(string=page_of(reports, folder, whole=False)).write_pdf(into / "report.pdf")
+    return True

@@ -325,7 +325,6 @@ def growth_figure(table):
     panels[0, 0].set_ylabel("time of an update [µs]")
     panels[1, 0].set_ylabel("tetrahedra\nper update")
     drawn.suptitle("An update costs the tetrahedra that the proxy passes, whatever the size of the volume", x=0.01, ha="left")
-    drawn.canvas.draw()
     figures.label_ends(panels[0, -1])
     return Figure("", "Above: the time of an update on the linear field, and its mean on the smooth field. Below: tetrahedra that the "
                   "proxy moves through per update on the linear field. From left to right: speed of the hand, voxels per millimetre of "
@@ -364,9 +363,7 @@ def explicit_figure(table):
             axes.set_xticks(ticks, map(str, ticks))
             axes.set_xticks([], minor=True)
     drawn.suptitle("A new level costs us one update, and the explicit approach the whole surface", x=0.01, ha="left")
-    drawn.canvas.draw()
-    for axes in panels:
-        figures.label_ends(axes)
+    figures.label_ends(*panels)
     return Figure("explicit", "After a change of the isovalue by a tenth of the data's range. The explicit approach extracts the whole "
                   "isosurface and builds a hierarchy on it, and ours updates its proxy. Left: the time until the new surface is felt. "
                   "Right: the memory that this takes. Lines are a ball that grows with the volume, and open marks other volumes.", drawn)

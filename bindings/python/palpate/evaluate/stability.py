@@ -6,13 +6,17 @@ held straight by a rotational spring. A loop that does not come to rest is in a 
 
 import copy
 import dataclasses
+import tempfile
 
 import numpy
 import palpate
+import scipy.signal
 from scipy.spatial.transform import Rotation
 
 from . import figures
 from .experiment import Claim, Figure, Result, Table, in_parallel, largest
+from .human import RATE, Human, trembling
+from .notice import FORCE, SLOW
 from .subjects import synthetic
 
 TITLE = "How stiff may a surface be before it buzzes?"
@@ -21,6 +25,7 @@ LARGEST = 3.0  # [N/mm] that is tried
 LEAST_STEP, LEAST_ANGLE = 0.01, 0.02  # [mm], [degrees] the least that a step counts for
 MAP_PROFILE = "touch"
 FASTEST = 8000  # [Hz] for the comparison of Choi and Tan
+PRESSED = 10  # [mm] from the surface to the target of a hand that trembles
 PROFILES = palpate.simulated_profiles()
 TORQUE = [name for name, profile in PROFILES.items() if profile["maximum_torque"] > 0]
 # Part of the table: title, whether the mechanics have friction, field.
@@ -80,6 +85,37 @@ def pressed(subject, part, profile, friction, interpolation, encoder, rate, stif
             "at_rest": "yes" if moves_within(2, moved, encoder) else "no"}
 
 
+def place_to_press(subject):
+    """(a place on the surface [mm], the direction out of it); NaN where the way to the middle meets none."""
+    out, centre = numpy.array([0.36, 0.48, 0.8]), numpy.array(subject.field.geometry.centre)
+    return palpate.cast_rays(subject.field, subject.isovalue, [centre + subject.diagonal * out], [centre])[0][0], out
+
+
+def trembled(subject, part, profile, rate, stiffness):
+    """A row: a modelled person presses and holds, and trembles (human.py). The force above 20 Hz, of which tremor has hardly any, is
+    what the loop adds."""
+    person, field, (surface, out) = Human(), subject.field, place_to_press(subject)
+    own = palpate.simulated_info(f"simulated:{profile}", field, subject.isovalue, rate)
+    scale = palpate.fit_workspace(field.geometry, own).scale  # [mm of volume per mm of device]
+    time = numpy.arange(SECONDS * RATE + 1) / RATE
+    depth = numpy.clip(PRESSED * time, 0, PRESSED)  # in the first second; from the surface on, where the field is free
+    shaking = trembling(person, numpy.random.default_rng([1, rate]), len(time))
+    target = surface + scale * ((1 - depth)[:, None] * out + shaking)
+    with tempfile.NamedTemporaryFile(suffix=".csv") as file:
+        numpy.savetxt(file.name, numpy.column_stack([time, target]), delimiter=",", header="t,x,y,z", comments="")
+        device = (f"simulated:{profile},file={file.name},hand_mass={person.mass},hand_damping={person.damping / 1000},"
+                  f"hand_stiffness={person.stiffness / 1000}")
+        loop = loop_of(field, subject.isovalue, device, rate, 1, stiffness=stiffness, limit=own.limits.maximum_force)
+    last = slice(rate, None)
+    force = loop["force"][last]
+    push = numpy.linalg.norm(force, axis=1).mean()
+    high = scipy.signal.butter(4, SLOW, "highpass", fs=rate, output="sos")
+    fast = numpy.sqrt((scipy.signal.sosfiltfilt(high, force, axis=0)**2).sum(axis=1).mean())
+    return {"part": part, "profile": profile, "friction": "yes", "field": field.interpolation, "rate_hz": rate,
+            "stiffness_N_mm": stiffness, "push_N": push, "above_20_hz_percent": 100 * fast / push,
+            "in_contact": "yes" if loop["constrained"][last].all() else "no"}
+
+
 def turned(subject, part, profile, rate, share):
     """A row: a light hand turns the handle by 20 degrees against a spring that holds it straight. The theory: at rest while
     k (period / 2 + delay) < damping."""
@@ -114,6 +150,8 @@ def cases_of(subject, plan):
               for stiffness in plan.stiffnesses]
     cases += [(pressed, (subject, "rated", name, True, "linear", profile["encoder_step"], 1000, profile["stiffness"]))
               for name, profile in PROFILES.items()]
+    cases += [(trembled, (subject, "trembling", name, rate, profile["stiffness"])) for name, profile in PROFILES.items()
+              for rate in plan.rates if not numpy.isnan(place_to_press(subject)[0]).any()]
     return cases + [(turned, (subject, part, profile, rate, share)) for part in ROTATION for profile in TORQUE
                     for rate in plan.rates for share in plan.bound_parts]
 
@@ -156,6 +194,15 @@ def rated_claim(table):
     said = f"at most {largest(rows['position_peak_to_peak_mm']):.2g} mm peak to peak, {len(rows)} profiles"
     return Claim("every profile comes to rest at its rated stiffness at 1 kHz, to two encoder steps",
                  all(r["at_rest"] == r["in_contact"] == "yes" for r in rows), said)
+
+
+def trembling_claim(table):
+    rows = table.where(part="trembling", rate_hz=1000)
+    most = largest(rows["above_20_hz_percent"])
+    if rows:
+        yield Claim(f"in the hand of a modelled person who trembles, at its rated stiffness and 1 kHz, no profile adds more than the {FORCE:g} % "
+                    "of force above 20 Hz that people notice", most < FORCE and all(r["in_contact"] == "yes" for r in rows),
+                    f"at most {most:.2g} %, {len(rows)} profiles")
 
 
 def smooth_claim(table, plan):
@@ -256,7 +303,6 @@ def rotation_figure(table, plan):
         rate_axis(axes, plan.rates)
     panels[0].set_ylabel("stiffness [N mm/rad]")
     drawn.suptitle("A delay lowers the rotational stiffness that is stable", x=0.01, ha="left")
-    drawn.canvas.draw()
     figures.label_ends(panels[2])
     return Figure("rotation", "The largest rotational stiffness at which a simulated device with torque in a light hand comes to rest, "
                   "of those tried up to 2.5 times the bound of the theory. Left: without delay, friction and steps, where the bound is "
@@ -270,8 +316,11 @@ def summary_of(table, plan):
         rows = table.where(part=part, **cells)
         return {"device": what, **{f"{rate:g} Hz": round(largest_stable(rows, rate), 1) for rate in plan.rates}}
 
+    fastest = {f"{FASTEST} Hz": round(largest_stable(table.where(part="fastest"), FASTEST), 1)}
     for encoder in plan.encoders:
-        yield row(f"{MAP_PROFILE}, no friction, encoder steps of {encoder:g} mm", "map", encoder_step_mm=encoder)
+        yield {**row(f"{MAP_PROFILE}, no friction, encoder steps of {encoder:g} mm", "map", encoder_step_mm=encoder),
+               **(fastest if encoder == plan.encoders[0] else {})}
+    yield {"device": "clean texture on a real device (Choi and Tan 2004, published)", "250 Hz": 0.325, "40000 Hz": 0.904}
     for profile in PROFILES:
         yield {**row(profile, "profiles", profile=profile), "rated": PROFILES[profile]["stiffness"]}
 
@@ -301,7 +350,10 @@ def paragraphs_of(table, plan, subject):
              "A handle begins to shake there, because its inertia is large against damping times period. A delay lowers that to "
              "damping / (period / 2 + delay), and check() includes it. Without friction, a device with a delay of half a period takes "
              "half of the stiffness. Friction of the wrist, which is assumed, stills such shaking.",
-            "Everything here is simulated and nothing is random, so there are no intervals. The profiles' masses, frictions and delays "
+            "A person does not hold still. In the part trembling, the hand has the mass, damping, stiffness and tremor of the experiment "
+            "recorded, and presses each profile at its rated stiffness. The force above "
+            f"{SLOW} Hz is at most {largest(table.where(part='trembling')['above_20_hz_percent']):.2g} % of the push at any rate.",
+            "Everything here is simulated, and nothing but the tremor is random, so there are no intervals. The profiles' masses, frictions and delays "
             "are partly assumed (docs/devices/simulated.md), so the shape of the map is worth more than its numbers."]
 
 
@@ -309,6 +361,6 @@ def run(options):
     plan = plan_of(options.quick)
     subject = options.subjects[0] if options.subjects else synthetic("sphere")
     table = measured(cases_of(subject, plan), options.progress)
-    claims = [rated_claim(table), smooth_claim(table, plan), control_claim(table), *bound_claims(table)]
+    claims = [rated_claim(table), *trembling_claim(table), smooth_claim(table, plan), control_claim(table), *bound_claims(table)]
     return Result(table, [map_figure(table, plan), profile_figure(table, plan), rotation_figure(table, plan)], claims,
                   paragraphs_of(table, plan, subject), Table(summary_of(table, plan)))

@@ -77,7 +77,6 @@ def waiting_figure(table, plan):
     for axes in panels:
         axes.set(xlabel="speed of the hand [voxel/s]", ylim=(-3, 103))
     drawn.suptitle("Coarser levels spare a fast hand most of its waiting", x=0.01, ha="left")
-    drawn.canvas.draw()
     figures.label_ends(panels[1])
     return Figure("", "Ticks that wait for samples, against the hand's speed, for each latency of the network. Left: only the finest "
                   "level is felt. Right: a coarser level while the finer one has not loaded, or if the hand is too fast for it.", drawn)
@@ -93,7 +92,6 @@ def traffic_figure(table, plan):
         axes.text(axes.get_xlim()[0], 1.02e-6 * MEMORY, " bound", fontsize=7, color=figures.GREY, va="bottom")
     panels[0, 0].set_ylim(0, None)
     drawn.suptitle("The memory stays below its bound, whatever the hand does", x=0.01, ha="left")
-    drawn.canvas.draw()
     figures.label_ends(panels[0, 1])
     return Figure("traffic", "Above: samples read in a stroke. Below: the most memory that bricks and decoded pieces took, with the "
                   "bound as a dotted line.", drawn)

@@ -1,0 +1,256 @@
+"""recorded: does a hand feel what it felt on a real surface? (Ruffaldi, Morris et al. 2006)
+
+A hand with a force sensor strokes a rigid object. The recording determines where a haptic device would have been, and each method
+renders the force on it. A perfect method renders the recorded force.
+"""
+
+import dataclasses
+from pathlib import Path
+from typing import Callable
+
+import numpy
+import palpate
+import scipy.spatial
+
+from . import figures, sampling
+from .bodies import tilt, unit
+from .experiment import Claim, Figure, Result, Table, largest
+from .fidelity import nearest_in_triangles
+from .human import RATE, Human, press
+from .subjects import CONTESTANTS, Subject
+
+TITLE = "Does a hand feel what it felt on a real surface?"
+STIFFNESS = 0.5  # [N/mm] of the reference rendering, as in the published plane0
+CONTACT = 0.05  # [N] from which on a hand touches
+SAMPLE = Path(__file__).with_name("plane.traj")
+PRESS, WALL, FRICTION = 1.5, 10.0, 0.2  # of the modelled hand on the modelled plane [N, N/mm]
+BAND = 3  # [voxel] of samples on either side of the surface
+SAMPLES = {"float32": numpy.inf, "uint8": 40.0}  # levels per voxel of the ramp, rounded
+NEIGHBOURS = 16  # triangles that are looked at for a point
+COLUMNS = ("t", "x", "y", "z", "fx", "fy", "fz")
+
+
+@dataclasses.dataclass
+class Recording:
+    """Of a probe: time [s], position [mm], and the force on the hand [N]."""
+
+    name: str
+    time: numpy.ndarray
+    position: numpy.ndarray
+    force: numpy.ndarray
+
+
+def read(path):
+    """A .traj file: a sample per line, its numbers apart by blanks or commas: t [s], x, y, z [mm], fx, fy, fz [N]. A comment (#, %)
+    that lists names of columns gives another order. Raises ValueError."""
+    names, rows = list(COLUMNS), []
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        words = line.replace(",", " ").split()
+        if words and words[0][0] in "#%":
+            listed = [word.lower() for word in " ".join(words).strip("#% ").split()]
+            names = listed if set(COLUMNS) <= set(listed) else names
+        elif words:
+            try:
+                rows.append([float(words[names.index(name)]) for name in COLUMNS])
+            except (ValueError, IndexError) as error:
+                raise ValueError(f"{path.name}, line {number}: {len(COLUMNS)} numbers are needed: {' '.join(COLUMNS)}") from error
+    table = numpy.array(rows).reshape(-1, len(COLUMNS))
+    if len(table) < 2 or not numpy.isfinite(table).all() or (numpy.diff(table[:, 0]) <= 0).any():
+        raise ValueError(f"{path.name}: two samples or more are needed, with numbers that are finite and times that rise")
+    return Recording(path.parent.name if path.name == "probe.traj" else path.stem, table[:, 0], table[:, 1:4], table[:, 4:])
+
+
+def write(recording, path):
+    rows = numpy.column_stack([recording.time, recording.position, recording.force])
+    numpy.savetxt(path, rows, fmt=["%.3f"] + 3 * ["%.4f"] + 3 * ["%.4f"], header=" ".join(COLUMNS), comments="# ")
+
+
+def modelled(seed, seconds):
+    """The modelled hand on a plane that is no plane of a grid."""
+    tip, force = press(Human(), numpy.random.default_rng([seed, 7]), seconds, PRESS, WALL, FRICTION)
+    return Recording(f"modelled hand {seed}", numpy.arange(len(tip)) / RATE, tip @ tilt().T, force @ tilt().T)
+
+
+@dataclasses.dataclass
+class Surface:
+    """nearest: points [mm] to the nearest points of the surface and its outward unit normals there, (n, 3) each."""
+
+    name: str
+    nearest: Callable
+
+    def height(self, points):
+        """[mm] above the surface."""
+        on, normal = self.nearest(points)
+        return ((points - on) * normal).sum(axis=1)
+
+
+def plane_through(recording):
+    """The plane that fits best to where the probe touched, with its normal to the side of the forces."""
+    strength = numpy.linalg.norm(recording.force, axis=1)
+    touched = recording.position[strength > CONTACT]
+    if len(touched) < 3:
+        raise ValueError(f"{recording.name}: it hardly touches anything")
+    middle = touched.mean(axis=0)
+    normal = numpy.linalg.svd(touched - middle, full_matrices=False)[2][2]
+    normal = normal * (numpy.sign(normal @ recording.force.sum(axis=0)) or 1)
+    return Surface("plane", lambda points: (points - ((points - middle) @ normal)[:, None] * normal,
+                                            numpy.broadcast_to(normal, points.shape)))
+
+
+def scanned(mesh):
+    """The surface of a closed mesh, its triangles counter-clockwise from outside."""
+    a, b, c = mesh.vertices[mesh.triangles].transpose(1, 0, 2)
+    tree, flat = scipy.spatial.cKDTree((a + b + c) / 3), unit(numpy.cross(b - a, c - a))
+
+    def nearest(points):
+        _, near = tree.query(points, min(NEIGHBOURS, len(a)))
+        of = near.reshape(-1)
+        found = nearest_in_triangles(a[of], b[of], c[of], numpy.repeat(points, near.shape[1], axis=0)).reshape(*near.shape, 3)
+        away = numpy.linalg.norm(found - points[:, None], axis=2)
+        # Of triangles that are equally near, at an edge, the one that faces the point most tells the side.
+        facing = abs(((points[:, None] - found) * flat[near]).sum(axis=2))
+        best = numpy.where(away <= away.min(axis=1, keepdims=True) + 1e-9, facing, -1).argmax(axis=1)
+        row = numpy.arange(len(points))
+        return found[row, best], flat[near[row, best]]
+
+    return Surface("scanned", nearest)
+
+
+def volume_of(surface, hands, voxel, levels):
+    """A grid around the hands: density 1/2 - height / (2 BAND voxels), in `levels` per voxel."""
+    low = hands.min(axis=0) - (BAND + 2) * voxel
+    size = numpy.ceil((numpy.ptp(hands, axis=0) + 2 * (BAND + 2) * voxel) / voxel).astype(int) + 1
+    places = low + voxel * numpy.indices(size[::-1]).reshape(3, -1).T[:, ::-1]
+    part = numpy.clip(0.5 - numpy.concatenate([surface.height(some) for some in numpy.array_split(places, 1 + len(places) // 20_000)])
+                      / (2 * BAND * voxel), 0, 1).reshape(size[::-1])
+    if numpy.isfinite(levels):
+        full = 2 * BAND * levels
+        return palpate.Volume(numpy.floor(full * part + 0.5).astype(numpy.uint8), [voxel] * 3, low), 0.5 * full
+    return palpate.Volume(part.astype(numpy.float32), [voxel] * 3, low), 0.5
+
+
+def device_of(recording, surface):
+    """(the way on the surface, the way of a device that is felt at STIFFNESS, normal forces): the out- and the in-trajectory."""
+    on, normal = surface.nearest(recording.position)
+    pressure = numpy.maximum(0, (recording.force * normal).sum(axis=1))
+    touches = pressure > CONTACT
+    above = recording.position + numpy.maximum(0, 1e-6 - surface.height(recording.position))[:, None] * normal
+    out = numpy.where(touches[:, None], on, above)
+    return out, out - numpy.where(touches, pressure / STIFFNESS, 0)[:, None] * normal, numpy.where(touches, pressure, 0)[:, None] * normal
+
+
+def metrics(wanted, rendered):
+    """Of the difference of two paths or forces: mean, root mean square and greatest length."""
+    off = numpy.linalg.norm(rendered - wanted, axis=1)
+    return {"mean": off.mean(), "rms": numpy.sqrt((off**2).mean()), "max": off.max()}
+
+
+def rows_of(recording, surface, samples, voxel):
+    out, hands, normal_force = device_of(recording, surface)
+    volume, level = volume_of(surface, hands, voxel, SAMPLES[samples])
+    subject = Subject(recording.name, palpate.Field(volume, interpolation="linear"), level)
+
+    def row(contestant):
+        felt = contestant.felt(subject)
+        start = hands[0] + (BAND + 1) * voxel * surface.nearest(hands[:1])[1][0]
+        trace = palpate.Proxy(felt.field, level, start, contestant.method).follow(hands)
+        force = numpy.where(trace.constrained[:, None], STIFFNESS * (trace.scp - hands), 0)
+        found = {f"{what}_{name}": value for what, pair in (
+            ("force_n", (normal_force, force)), ("with_friction_n", (recording.force, force)), ("position_mm", (out, trace.scp)))
+            for name, value in metrics(*pair).items()}
+        return {"recording": recording.name, "surface": surface.name, "samples": samples, "voxel_mm": voxel, "method": contestant.name, "ticks": len(hands),
+                "contact_share": (numpy.linalg.norm(normal_force, axis=1) > 0).mean(),
+                "mean_force_n": numpy.linalg.norm(normal_force, axis=1).mean(), **found}, force
+
+    return [row(contestant) for contestant in CONTESTANTS.values()]
+
+
+def recordings_of(options):
+    """(recording, surface): the sample, modelled hands, and what the data folder has: NAME/probe.traj, with NAME.obj where the object
+    is no plane."""
+    found = [read(SAMPLE)] + [modelled(options.seed + part, 4 if options.quick else 30) for part in range(options.seeds)]
+    yield from ((one, plane_through(one)) for one in found)
+    for path in sorted(Path(options.data).glob("*/probe.traj")) if options.data else ():
+        mesh, one = path.with_name(path.parent.name + ".obj"), read(path)
+        yield one, scanned(palpate.read_mesh(mesh)) if mesh.exists() else plane_through(one)
+
+
+def claims_of(table):
+    table = table.where(surface="plane")
+    plain = table.where(samples="float32")
+    for name in ("exact", "smooth"):
+        rows = plain.where(method=name)
+        force, place = largest(rows["force_n_max"]), largest(rows["position_mm_max"] / rows["voxel_mm"])
+        yield Claim(f"{name}: on samples that are not rounded, every force is the recorded one to 1 mN and every SCP is on the recorded "
+                    "way to a hundredth of a voxel", force <= 1e-3 and place <= 0.01, f"at most {force:.1e} N and {place:.1e} voxel off")
+    rows = table.where(samples="uint8", method="smooth")
+    yield Claim(f"smooth: on samples of {SAMPLES['uint8']:g} levels per voxel, the root mean square error is below 2 % of the mean force",
+                bool((rows["force_n_rms"] < 0.02 * rows["mean_force_n"]).all()), f"at most {largest(rows['force_n_rms']):.2g} N")
+    rubbed = plain.where(method="smooth")
+    yield Claim("control: beside the whole recorded force, with its friction, which is not rendered here, the error is above 5 %",
+                bool((rubbed["with_friction_n_rms"] > 0.05 * rubbed["mean_force_n"]).all()),
+                f"at least {rubbed['with_friction_n_rms'].min():.2g} N")
+
+
+def summary_of(table):
+    for samples in SAMPLES:
+        for name in CONTESTANTS:
+            rows = table.where(samples=samples, method=name)
+            yield {"samples": samples, "method": name, "force, RMS error [N]": sampling.in_words(rows["force_n_rms"], "{:.2g}"),
+                   "force, greatest error [N]": largest(rows["force_n_max"]),
+                   "position, RMS error [mm]": sampling.in_words(rows["position_mm_rms"], "{:.2g}"),
+                   "force with friction, RMS error [N]": sampling.in_words(rows["with_friction_n_rms"], "{:.2g}")}
+
+
+def figure_of(recording, surface, forces, table):
+    drawn, (left, right) = figures.panels(columns=2, height=2.6)
+    wanted = numpy.linalg.norm(device_of(recording, surface)[2], axis=1)
+    left.plot(recording.time, wanted, color="#c0c0c0", lw=4)
+    left.plot(recording.time, numpy.linalg.norm(forces["smooth"], axis=1), color=figures.LOOKS["smooth"][0], lw=1)
+    left.text(0.02, 0.97, "recorded (grey)", color=figures.GREY, transform=left.transAxes, fontsize=7.5, va="top")
+    left.text(0.02, 0.87, "rendered, smooth", color=figures.LOOKS["smooth"][0], transform=left.transAxes, fontsize=7.5, va="top")
+    left.set(title=recording.name, xlabel="time [s]", ylabel="normal force [N]", ylim=(0, 1.35 * wanted.max()))
+    for at, samples in enumerate(SAMPLES):
+        for number, name in enumerate(CONTESTANTS):
+            rows = table.where(samples=samples, method=name)
+            figures.curve(right, name, numpy.maximum(rows["force_n_rms"], 1e-9), [at + 0.15 * (number - 2)] * len(rows), ls="")
+            if at == 0:
+                right.text(1.03, 0.9 - 0.13 * number, name, color=figures.LOOKS[name][0], transform=right.transAxes, fontsize=7.5)
+    right.set(title="error of the force", xscale="log", xlabel="root mean square [N]", ylim=(1.5, -0.5))
+    right.set_yticks(range(len(SAMPLES)), SAMPLES)
+    drawn.suptitle("On a plane, the rendered force is the recorded one", x=0.01, ha="left")
+    return Figure("", "Left: normal force on the probe, as recorded (grey, wide) and as rendered on the smooth field. Right: error of the "
+                  "force of each method, a mark for each recording, on samples that are not rounded and on 8-bit ones. Values below "
+                  "1e-9 N are drawn there.", drawn)
+
+
+def paragraphs_of(table, names):
+    human = Human()
+    return ["Ruffaldi, Morris et al. (2006) scanned rigid objects with a probe that measures position and force, and published the recordings "
+            "(.traj) for the comparison of rendering algorithms. The steps are theirs. The recorded way is moved onto the surface (out). A "
+            f"device that is felt with {STIFFNESS:g} N/mm would be where this spring gives the recorded normal force (in). Each method gets "
+            "that way, and its force and its SCP are compared with the recorded force and with the way on the surface. On a plane, a perfect "
+            "proxy has no error.",
+            f"Recordings: {', '.join(names)}. Published ones are read from the data folder (NAME/probe.traj). They were not at hand, so "
+            "the recordings here are modelled. The one named plane comes with the program.",
+            f"The modelled hand has {human.mass:g} kg, {human.damping:g} N s/m and {human.stiffness:g} N/m (fitted by van Beek et al. 2016 to a "
+            f"person who held a handle). It trembles by {1000 * human.tremor:g} µm at {human.band[0]} to {human.band[1]} Hz, moves on purpose "
+            f"below {human.willed:g} Hz (Riviere et al. 1997) and reacts after {1000 * human.delay:g} ms (Robinson 1934). The plane has "
+            f"{WALL:g} N/mm and a friction of {FRICTION:g}, both assumed.",
+            "A modelled hand is no person, and a plane has no edges. The errors say how the methods render, not how the surface feels."]
+
+
+def run(options):
+    if options.subjects:
+        raise ValueError("recorded has objects of its own: leave out --volume")
+    table, shown, names = Table(), None, []
+    cases = list(recordings_of(options))
+    for number, (recording, surface) in enumerate(cases):
+        options.progress(number / len(cases))
+        names.append(recording.name)
+        voxel = numpy.ptp(recording.position, axis=0).max() / (40 if options.quick else 80)
+        for samples in SAMPLES:
+            found = rows_of(recording, surface, samples, voxel)
+            table.extend(row for row, _ in found)
+            shown = shown or (recording, surface, {row["method"]: force for row, force in found})
+    return Result(table, [figure_of(*shown, table)], list(claims_of(table)), paragraphs_of(table, names), Table(summary_of(table)))

@@ -1,0 +1,181 @@
+"""The process that speaks ROS 1 for a session: it passes the session's state to topics, an arm's pose to the
+session, and the session's force to the arm.
+
+palpate.ros starts it as a program and exchanges records with it over a socket. It uses rospy but not
+palpate, and ROS's units: m, rad, N, N m.
+"""
+
+import json
+import math
+import select
+import signal
+import socket
+import struct
+import sys
+import time
+
+# To the session: when the pose arrived [s, CLOCK_MONOTONIC], position, orientation x, y, z, w, opening of
+# the gripper [rad] (NaN: none), a bit for each button.
+READING = struct.Struct("=d3d4ddI")
+# From the session, after one byte that tells which: force and torque, or the state (position, orientation,
+# linear and angular velocity of the hand; position and orientation of the proxy; force and torque; then
+# frame, level, message and values as JSON).
+WRENCH, IS_WRENCH = struct.Struct("=6d"), b"w"
+STATE, IS_STATE = struct.Struct("=3d4d3d3d3d4d6d"), b"s"
+# To the session, once, at the beginning: ready, or why not.
+IS_READY, IS_PROBLEM = b"r", b"p"
+SILENCE = 0.02  # [s] after which a force that was not renewed ends
+PACKAGES = "python3-rospy python3-geometry-msgs python3-sensor-msgs python3-diagnostic-msgs"
+
+
+class Arm:
+    """A device of another node, with the names of CRTK."""
+
+    def __init__(self, ros, link, name):
+        self.ros, self.link = ros, link
+        self.stamp = None
+        self.frame = ""
+        self.opening, self.buttons = math.nan, 0
+        self.force = ros.publisher(f"{name}/servo_cf", ros.WrenchStamped)
+        self.gripper_topic = ros.subscriber(f"{name}/gripper/measured_js", ros.JointState, self.gripper)
+        self.button_topic = ros.subscriber(f"{name}/button", ros.Joy, self.button)
+        self.pose_topic = ros.subscriber(f"{name}/measured_cp", ros.PoseStamped, self.pose)
+
+    def gripper(self, message):
+        self.opening = message.position[0] if message.position else math.nan
+
+    def button(self, message):
+        self.buttons = sum(1 << bit for bit, held in enumerate(message.buttons[:32]) if held)
+
+    def pose(self, message):
+        """A stamp that stands still is a pose that was not measured again: it becomes stale."""
+        arrived, stamp = time.monotonic(), message.header.stamp
+        if stamp and stamp == self.stamp:
+            return
+        self.stamp, self.frame = stamp, message.header.frame_id
+        p, q = message.pose.position, message.pose.orientation
+        # Nobody holds a button of a node that is gone.
+        opening = self.opening if self.gripper_topic.get_num_connections() else math.nan
+        buttons = self.buttons if self.button_topic.get_num_connections() else 0
+        try:
+            self.link.send(READING.pack(arrived, p.x, p.y, p.z, q.x, q.y, q.z, q.w, opening, buttons),
+                           socket.MSG_DONTWAIT)
+        except OSError:  # the session does not read, or has ended
+            pass
+
+    def push(self, wrench):
+        self.force.publish(self.ros.stamped_wrench(self.frame, wrench))
+
+
+class Topics:
+    """What a session tells, below the name of the node."""
+
+    def __init__(self, ros):
+        self.ros = ros
+        self.hand = ros.publisher("~hand/measured_cp", ros.PoseStamped)
+        self.velocity = ros.publisher("~hand/measured_cv", ros.TwistStamped)
+        self.force = ros.publisher("~hand/setpoint_cf", ros.WrenchStamped)
+        self.proxy = ros.publisher("~proxy/measured_cp", ros.PoseStamped)
+        self.status = ros.publisher("~status", ros.DiagnosticArray)
+
+    def tell(self, record):
+        numbers, rest = STATE.unpack_from(record), json.loads(record[STATE.size:])
+        ros, frame = self.ros, rest["frame"]
+        self.hand.publish(ros.stamped_pose(frame, numbers[0:7]))
+        twist = ros.TwistStamped(header=ros.header(frame))
+        ros.fill(twist.twist.linear, numbers[7:10])
+        ros.fill(twist.twist.angular, numbers[10:13])
+        self.velocity.publish(twist)
+        self.proxy.publish(ros.stamped_pose(frame, numbers[13:20]))
+        self.force.publish(ros.stamped_wrench(frame, numbers[20:26]))
+        values = [ros.KeyValue(key, value) for key, value in rest["values"].items()]
+        status = ros.DiagnosticStatus(level=rest["level"], name="palpate", message=rest["message"], values=values)
+        self.status.publish(ros.DiagnosticArray(header=ros.header(frame), status=[status]))
+
+
+class Ros:
+    """rospy and the messages. Everything is sent by threads of rospy, so that a subscriber that hangs holds
+    up nobody else; a message that could not be sent gives way to the next."""
+
+    def __init__(self, arguments):
+        import rosgraph
+        import rospy
+        from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+        from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
+        from sensor_msgs.msg import JointState, Joy
+        from std_msgs.msg import Header
+        self.rospy, self.Header, self.Joy, self.JointState = rospy, Header, Joy, JointState
+        self.PoseStamped, self.TwistStamped, self.WrenchStamped = PoseStamped, TwistStamped, WrenchStamped
+        self.DiagnosticArray, self.DiagnosticStatus, self.KeyValue = DiagnosticArray, DiagnosticStatus, KeyValue
+        if not rosgraph.is_master_online():
+            raise ConnectionError(f"no ROS master at {rosgraph.get_master_uri()}: start roscore, or set ROS_MASTER_URI")
+        rospy.init_node("palpate", [sys.argv[0], *arguments], disable_signals=True)
+
+    def publisher(self, name, kind):
+        return self.rospy.Publisher(name, kind, queue_size=1, tcp_nodelay=True)
+
+    def subscriber(self, name, kind, callback):
+        return self.rospy.Subscriber(name, kind, callback, queue_size=1, tcp_nodelay=True)
+
+    def header(self, frame):
+        return self.Header(stamp=self.rospy.Time.now(), frame_id=frame)
+
+    @staticmethod
+    def fill(vector, numbers):
+        vector.x, vector.y, vector.z = numbers
+
+    def stamped_pose(self, frame, numbers):
+        message = self.PoseStamped(header=self.header(frame))
+        self.fill(message.pose.position, numbers[:3])
+        turn = message.pose.orientation
+        turn.x, turn.y, turn.z, turn.w = numbers[3:]
+        return message
+
+    def stamped_wrench(self, frame, numbers):
+        message = self.WrenchStamped(header=self.header(frame))
+        self.fill(message.wrench.force, numbers[:3])
+        self.fill(message.wrench.torque, numbers[3:])
+        return message
+
+
+def serve(link, topics, arm):
+    """Until the session closes its end. An arm whose force the session does not renew gets zero."""
+    while True:
+        if not select.select([link], [], [], SILENCE if arm else None)[0]:
+            arm.push((0,) * 6)
+            continue
+        record = link.recv(1 << 16)
+        if not record:
+            return
+        if record[:1] == IS_WRENCH:
+            arm.push(WRENCH.unpack_from(record, 1))
+        else:
+            topics.tell(record[1:])
+
+
+def main(number, name, *arguments):
+    link = socket.socket(fileno=int(number))
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # past the zero below
+    try:
+        ros = Ros(arguments)
+        topics, arm = Topics(ros), Arm(ros, link, name) if name else None
+    except ImportError as error:
+        link.send(IS_PROBLEM + f"{error}: apt install {PACKAGES}".encode())
+        return
+    except Exception as error:
+        link.send(IS_PROBLEM + str(error).encode())
+        return
+    link.send(IS_READY)
+    try:
+        serve(link, topics, arm)
+    except ConnectionError:  # the session was killed
+        pass
+    finally:
+        for _ in range(5 if arm else 0):  # sent by other threads, which need a moment
+            arm.push((0,) * 6)
+            time.sleep(SILENCE)
+        ros.rospy.signal_shutdown("the session has ended")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,283 @@
+"""ROS 1: a real master, a real peer in this process, and the node in a process of its own."""
+
+import importlib.util
+import math
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+import numpy
+import pytest
+from live_test import Still, renderer, surface_height, until
+
+import palpate
+
+if importlib.util.find_spec("rospy") is None or importlib.util.find_spec("rosmaster") is None:
+    pytest.skip("ROS is not installed (scripts/install_packages.sh test)", allow_module_level=True)
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
+from sensor_msgs.msg import JointState, Joy
+
+from palpate.ros import Node, axes_from, velocity
+from palpate.ros import node as records
+
+
+@pytest.fixture(scope="module", autouse=True)
+def ros(tmp_path_factory):
+    """rospy as another node, with a master of its own."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    os.environ.update(ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1",
+                      ROS_LOG_DIR=str(tmp_path_factory.mktemp("log")))
+    with pytest.raises(palpate.DeviceError, match="no ROS master at .*: start roscore"):
+        Node()
+    master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL)
+    import rosgraph
+    import rospy
+    until(rosgraph.is_master_online)
+    rospy.init_node("peer", disable_signals=True)
+    yield rospy
+    rospy.signal_shutdown("done")
+    master.terminate()
+    master.wait()
+
+
+class Peer:
+    """A device of ROS whose pose is sent again and again. Palpate's z, towards the person, is ROS's -x."""
+
+    def __init__(self, ros, arm):
+        self.ros, self.height, self.opening, self.buttons = ros, surface_height() + 1, None, None
+        self.stamped = self.sends = True
+        self.forces, self.stamp = [], None
+        self.topic = ros.Publisher(f"{arm}/measured_cp", PoseStamped, queue_size=1, tcp_nodelay=True)
+        self.gripper = ros.Publisher(f"{arm}/gripper/measured_js", JointState, queue_size=1)
+        self.joy = ros.Publisher(f"{arm}/button", Joy, queue_size=1)
+        self.wrench = ros.Subscriber(f"{arm}/servo_cf", WrenchStamped, self.forces.append, tcp_nodelay=True)
+        self.ends = False
+        self.thread = threading.Thread(target=self.run)
+        self.thread.start()
+
+    def run(self):
+        while not self.ends:
+            time.sleep(0.002)
+            if not self.sends:
+                continue
+            message = PoseStamped()
+            self.stamp = self.ros.Time.now() if self.stamped else self.stamp
+            message.header.stamp, message.header.frame_id = self.stamp, "base"
+            message.pose.position.x, message.pose.orientation.w = -self.height / 1000, 1
+            self.topic.publish(message)
+            if self.opening is not None:
+                self.gripper.publish(JointState(position=[self.opening]))
+            if self.buttons is not None:
+                self.joy.publish(Joy(buttons=self.buttons))
+
+    def pushes(self):
+        """Outwards, which is to the person."""
+        return bool(self.forces) and self.forces[-1].wrench.force.x < -0.2
+
+    def rests(self):
+        force = self.forces[-1].wrench.force
+        return force.x == force.y == force.z == 0
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.ends = True
+        self.thread.join()
+        for topic in (self.topic, self.gripper, self.joy, self.wrench):
+            topic.unregister()
+
+
+def newest(ros, topic, kind):
+    got = []
+    return got, ros.Subscriber(topic, kind, got.append)
+
+
+def numbers(vector):
+    return numpy.array([vector.x, vector.y, vector.z])
+
+
+def feels(device, session):
+    """Whether there is a force that stays; if not, and the hand is where it was told to be, one step of it. A
+    force begins again, after readings that were late, below 0.3 N only."""
+    snapshot = session.snapshot()
+    if snapshot is None or snapshot.device.position[2] != device.height:
+        return False
+    flags = {name for name, bit in palpate.FORCE_FLAGS.items() if snapshot.tick.force_flags & bit}
+    if "waiting" in flags:
+        device.height += 1
+    elif not flags and numpy.linalg.norm(snapshot.tick.force) < 0.1:
+        device.height -= 0.2
+    return not flags and numpy.linalg.norm(snapshot.tick.force) >= 0.1
+
+
+def test_topics_are_the_session_in_metres_newtons_and_the_axes_of_the_volume(ros):
+    device = Still(60)
+    loaded = palpate.load("synthetic:sphere:40x40x40")
+    setup = palpate.Setup(real_time=False, facing="left", isovalue=palpate.scene("sphere:40x40x40").isovalue)
+    with Node(arm="", frame="patient") as node, palpate.Run(loaded, setup, device=device) as run:
+        topics = {"hand/measured_cp": PoseStamped, "hand/measured_cv": TwistStamped,
+                  "hand/setpoint_cf": WrenchStamped, "proxy/measured_cp": PoseStamped, "status": DiagnosticArray}
+        subscribed = {name: newest(ros, f"/palpate/{name}", kind) for name, kind in topics.items()}
+        got = {name: messages for name, (messages, _) in subscribed.items()}
+        until(lambda: run.snapshot())
+        transform = run.snapshot().transform
+
+        def same():
+            node.publish(run)
+            tick = run.snapshot().tick
+            return feels(device, run) and all(got.values()) and numpy.allclose(
+                numbers(got["hand/setpoint_cf"][-1].wrench.force), transform.rotation @ tick.force, atol=1e-6
+            ) and numpy.allclose(numbers(got["hand/measured_cp"][-1].pose.position) * 1000, tick.hip, atol=1e-9
+            ) and numpy.allclose(numbers(got["proxy/measured_cp"][-1].pose.position) * 1000, tick.scp, atol=1e-6
+            )
+        until(same)
+        assert abs(transform.rotation[2, 2]) < 0.5  # else the axes are not told apart
+        assert {messages[-1].header.frame_id for messages in got.values()} == {"patient"}
+
+        def told(level):
+            node.publish(run)
+            status = got["status"][-1].status[0]
+            return status.level == level and {value.key: value.value for value in status.values}
+        until(lambda: feels(device, run) and told(0) and told(0)["mode"] == "constrained" and float(told(0)["force [N]"]) > 0.1)
+        device.read = lambda: palpate.DeviceReading(status="lost")
+        until(lambda: told(2))
+        assert got["status"][-1].status[0].message == "lost"
+        for _, subscriber in subscribed.values():
+            subscriber.unregister()
+
+
+def test_a_device_of_ros_is_felt_and_its_force_ends_with_its_poses(ros):
+    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+        servo = palpate.Servo(renderer(), node.device(), real_time=False)
+        with servo:
+            until(lambda: servo.snapshot() and servo.snapshot().device.status == "ready")
+            assert servo.snapshot().device.position == pytest.approx((0, 0, peer.height))
+            peer.height -= 1.5
+            until(peer.pushes)
+            assert peer.forces[-1].header.frame_id == "base"
+            peer.sends = False
+            until(lambda: servo.snapshot().device.age > 0.02 and peer.rests())
+            peer.sends = True
+            until(peer.pushes)
+            peer.stamped = False  # the same pose again and again
+            until(lambda: servo.snapshot().device.age > 0.02 and peer.rests())
+            peer.stamped = True
+            until(peer.pushes)
+        until(peer.rests)  # the session has ended, the node has not
+        assert node._process.poll() is None
+
+
+def test_a_run_with_a_device_of_ros_has_its_gripper_and_its_buttons_and_is_recorded(ros, tmp_path):
+    with Peer(ros, "/left") as peer, Node(arm="/left/") as node:
+        run = palpate.Run(palpate.load("synthetic:sphere:40x40x40"), palpate.Setup(real_time=False, clutch=2),
+                          device=node.device())
+        run.record(tmp_path / "hand.csv")
+        with run:
+            until(lambda: run.snapshot() and run.snapshot().device.status == "ready")
+            assert run.device.name == "ros" and run.snapshot().device.opening is None
+            peer.opening, peer.buttons = 0.25, [0, 1]
+            until(lambda: run.snapshot().clutched and run.snapshot().device.opening == 0.25)
+            assert run.snapshot().device.buttons == 2
+            peer.buttons = [1, 0]
+            until(lambda: not run.snapshot().clutched and run.snapshot().device.buttons == 1)
+            peer.buttons = None
+            peer.joy.unregister()  # its node is gone: nobody holds the button
+            until(lambda: run.snapshot().device.buttons == 0)
+        assert run.stop_recording() > 0
+        assert palpate.validate(tmp_path / "hand.csv")
+
+
+def test_without_the_process_of_ros_the_device_is_lost_and_the_servo_goes_on(ros):
+    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+        with palpate.Servo(renderer(), node.device(), real_time=False) as servo:
+            peer.height -= 1.5
+            until(peer.pushes)
+            # Hanging, and then gone.
+            os.kill(node._process.pid, signal.SIGSTOP)
+            until(lambda: servo.snapshot().device.age > 0.02 and not servo.snapshot().tick.force.any())
+            os.kill(node._process.pid, signal.SIGCONT)
+            until(lambda: servo.snapshot().tick.force[2] > 0.2)
+            os.kill(node._process.pid, signal.SIGKILL)
+            until(lambda: servo.snapshot().device.status == "lost")
+            before = servo.snapshot().number
+            until(lambda: servo.snapshot().number > before + 100)
+            assert not servo.snapshot().tick.force.any() and servo.device_problem == ""
+            with pytest.raises(palpate.DeviceError, match="the node has ended"):
+                node.publish(servo)
+
+
+@pytest.mark.parametrize("end", [signal.SIGSTOP, signal.SIGKILL])
+def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
+    with Peer(ros, "/left") as peer:
+        peer.height = 100  # the hand begins outside
+        program = subprocess.Popen([sys.executable, "-B", "-m", "palpate.ros", "synthetic:sphere:40x40x40",
+                                    "--arm", "/left", "__name:=killed"], stdout=subprocess.PIPE, text=True)
+        try:
+            assert "with ros" in program.stdout.readline()
+            until(lambda: peer.wrench.get_num_connections() == 1 and peer.forces)
+
+            def presses():
+                time.sleep(0.01)
+                peer.height = 100 if peer.height < 0 else peer.height - 0.5
+                return peer.pushes()
+            until(presses)
+            program.send_signal(end)
+            if end == signal.SIGKILL:
+                until(lambda: peer.wrench.get_num_connections() == 0)
+            until(peer.rests)
+        finally:
+            program.kill()
+            program.communicate()
+
+
+def test_axes_are_rotations_and_work_is_the_same_in_both(ros):
+    random = numpy.random.default_rng(5)
+    with Node(arm="/left") as node:
+        for text in ("-y,z,-x", "x,y,z", "y, z, x", "-x,-y,z"):
+            arm = node.device(axes=text)
+            arm._link, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+            arm._link.setblocking(False)
+            place, force, torque = random.normal(size=(3, 3))
+            turn = random.normal(size=4)
+            turn /= numpy.linalg.norm(turn)
+            theirs.send(records.READING.pack(time.monotonic(), *place, *turn, math.nan, 0))
+            reading = arm.read()
+            arm.write(force, torque)
+            wrench = records.WRENCH.unpack_from(theirs.recv(1000), 1)
+            assert force @ reading.position / 1000 == pytest.approx(numpy.dot(wrench[:3], place))  # N m
+            axis = reading.orientation_xyzw[:3] * reading.orientation_xyzw[3]  # either sign is the same turn
+            assert torque @ axis / 1000 == pytest.approx(numpy.dot(wrench[3:], turn[:3] * turn[3]))
+            assert abs(reading.orientation_xyzw[3]) == pytest.approx(abs(turn[3]))
+            theirs.send(records.READING.pack(time.monotonic(), *place, 0, 0, 0, 0, math.nan, 0))
+            assert tuple(arm.read().orientation_xyzw) == (0, 0, 0, 1)  # none given
+            theirs.close()
+            assert arm.read().status == "lost"
+    for wrong in ("y,z,-x", "x,x,y", "x,y", "x,y,up", "", "x,-y,z"):
+        with pytest.raises(ValueError, match="axes"):
+            axes_from(wrong)
+    with Node() as node, pytest.raises(ValueError, match="arm"):
+        node.device()
+
+
+def test_the_velocity_is_that_between_two_ticks():
+    class Tick:
+        def __init__(self, at, hip, angle):
+            self.time, self.hip = at, numpy.array(hip)
+            self.hand_orientation_xyzw = numpy.array([0, math.sin(angle / 2), 0, math.cos(angle / 2)])
+
+    before, after = Tick(1, (1, 2, 3), 0.2), Tick(1.5, (2, 2, 1), 0.5)
+    linear, angular = velocity(before, after)
+    assert linear == pytest.approx((2, 0, -4)) and angular == pytest.approx((0, 0.6, 0))
+    after.hand_orientation_xyzw *= -1  # the same orientation
+    assert velocity(before, after)[1] == pytest.approx((0, 0.6, 0))
+    for linear in (*velocity(after, after), *velocity(after, before)):
+        assert not linear.any()

@@ -1,0 +1,108 @@
+"""Trials with people, by an observer whose threshold is known."""
+
+import os
+import subprocess
+import sys
+
+import numpy
+import pytest
+
+from palpate import RenderSetup, trials
+from palpate.trials import Observer, Plan, fit, next_trial, psychometric, put, read, session, staircase
+
+
+@pytest.mark.parametrize("plan", [Plan(0.3), Plan(0.3, differences=(0.03, 0.06, 0.1, 0.2, 0.4), repeats=40)])
+@pytest.mark.parametrize("threshold", [0.06, 0.15])
+def test_a_known_threshold_comes_back(tmp_path, plan, threshold):
+    found = []
+    for seed in range(6):
+        rows = session(tmp_path / f"{seed}.csv", Plan(**{**vars(plan), "seed": seed}), Observer(threshold, seed=seed))
+        found.append(fit(rows, resamples=20)[0])
+    assert numpy.exp(numpy.log(found).mean()) == pytest.approx(threshold, rel=0.3)
+
+
+def test_intervals_contain_the_threshold_nearly_always(tmp_path):
+    plan = Plan(1.0, differences=(0.03, 0.06, 0.1, 0.2, 0.4), repeats=30)
+    inside = 0
+    for seed in range(12):
+        _, low, high, _ = fit(session(tmp_path / f"{seed}.csv", plan, Observer(0.1, seed=seed)), resamples=60)
+        inside += low <= 0.1 <= high
+    assert inside >= 9
+
+
+def test_a_staircase_goes_down_after_three_right_answers_and_up_after_a_wrong_one():
+    assert staircase(0.4, [1, 1]) == (0.4, [])
+    assert staircase(0.4, [1, 1, 1]) == (0.2, [])
+    assert staircase(0.4, [1, 1, 1, 0]) == (0.4, [0.2])
+    assert staircase(0.4, [0, 0]) == (1.6, [])
+    difference, reversals = staircase(0.4, [1, 1, 1, 0, 1, 1, 1])
+    assert reversals == [0.2, 0.4] and difference == pytest.approx(0.4 / 1.3)
+
+
+def test_an_interrupted_session_continues_as_if_it_had_not_been(tmp_path):
+    plan = Plan(0.3, seed=5)
+    answers = [1 + int(x) for x in numpy.random.default_rng(2).integers(0, 2, trials.MOST)]
+    whole = session(tmp_path / "whole.csv", plan, lambda trial: answers[trial.trial])
+
+    def ends(trial):
+        if trial.trial == 7:
+            raise KeyboardInterrupt
+        return answers[trial.trial]
+
+    with pytest.raises(KeyboardInterrupt):
+        session(tmp_path / "two.csv", plan, ends)
+    assert len(read(tmp_path / "two.csv", plan)) == 7
+    session(tmp_path / "two.csv", plan, lambda trial: answers[trial.trial])
+    assert (tmp_path / "two.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
+    assert read(tmp_path / "two.csv", plan) == whole
+    with pytest.raises(ValueError, match="no trial of the plan"):
+        session(tmp_path / "two.csv", Plan(0.4, seed=5), lambda trial: 1)
+
+
+def test_the_order_is_random_and_each_difference_is_asked_as_often():
+    plan, seen = Plan(2.0, differences=(0.1, 0.3), repeats=30), []
+    while trial := next_trial(plan, [1] * len(seen)):
+        assert {trial.first, trial.second} == {2.0, 2.0 * (1 + trial.difference)}
+        seen.append(trial)
+    assert [t.difference for t in seen].count(0.1) == 30 == len(seen) / 2
+    assert 15 < sum(t.first > t.second for t in seen) < 45
+    assert [t.difference for t in seen] != sorted(t.difference for t in seen)
+
+
+@pytest.mark.parametrize("text, said", [("", "no session"), ("a,b\n", "no session"), (",".join(trials.COLUMNS) + "\n0,0.5\n", "line 2"),
+                                        (",".join(trials.COLUMNS) + "\n0,x,1,2,1,0\n", "line 2")])
+def test_damaged_files_are_refused(tmp_path, text, said):
+    (tmp_path / "bad.csv").write_text(text)
+    with pytest.raises(ValueError, match=said):
+        read(tmp_path / "bad.csv")
+
+
+def test_settings_are_found_by_name_and_plans_are_checked():
+    setup = RenderSetup()
+    put(setup, "force.damping", 0.001)
+    put(setup, "stiffness", 0.7)
+    assert setup.force.damping == 0.001 and setup.stiffness == 0.7
+    with pytest.raises(ValueError, match="no setting"):
+        put(setup, "force.stickiness", 1)
+    for wrong in ({"standard": 0}, {"standard": 1, "difference": -1}, {"standard": 1, "repeats": 0}):
+        with pytest.raises(ValueError):
+            Plan(**wrong)
+    assert psychometric(0.1, 0.1, 2) == pytest.approx(trials.GUESS + (0.5 - trials.LAPSE) * (2 * trials.AT - 1))
+
+
+def test_a_person_at_the_keys_touches_answers_and_is_analysed(tmp_path):
+    def start(*words, keys=""):
+        return subprocess.run([sys.executable, "-B", "-m", "palpate.trials", *words], cwd=tmp_path, input=keys, text=True,
+                              capture_output=True, check=False, env=os.environ)
+
+    import palpate
+    run = ("run", f"{palpate.sample_volume()}@34.5", "p.csv", "--standard", "0.2", "--differences", "0.5", "--repeats", "2",
+           "--seconds", "0.2")
+    assert start(*run, keys="x\n1\n2\n").returncode == 0
+    rows = read(tmp_path / "p.csv")
+    assert [row["answer"] for row in rows] == [1, 2] and {rows[0]["first"], rows[0]["second"]} == {0.2, 0.2 * 1.5}
+    few = start("analyse", "p.csv")
+    assert few.returncode == 2 and "10 trials" in few.stderr
+    session(tmp_path / "q.csv", Plan(0.3), Observer(0.1))
+    line = start("analyse", "q.csv").stdout.splitlines()[1].split(",")
+    assert line[0] == "q.csv" and float(line[3]) <= float(line[2]) <= float(line[4])
