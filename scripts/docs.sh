@@ -8,8 +8,9 @@ usage: scripts/docs.sh [--no-packages] [--serve [PORT]]
 
 Makes build/docs/site from the pages of the repository (MkDocs) and the public headers (Doxygen).
 Warnings are errors: links that lead nowhere, pages that are not in the navigation, mistakes in the
-comments of headers. Open build/docs/site/index.html: the pages need no network and no server. The
-search box needs one: --serve shows the site at http://127.0.0.1:8000 (PORT) until Ctrl-C.
+comments of headers. If scripts/deep/web has built the page for the browser, it becomes part of the site and can be
+touched on its first page. Open build/docs/site/index.html: the pages need no network and no server. The
+search box and the page to touch need one: --serve shows the site at http://127.0.0.1:8000 (PORT) until Ctrl-C.
 TEXT
 }
 
@@ -36,6 +37,11 @@ python=/usr/bin/python3 # Debian's, which has MkDocs
 "$python" docs/site/by_stage.py --groups include >"$out/groups.dox"
 doxygen docs/site/Doxyfile
 mv "$out/doxygen/html" "$out/pages/api"
+web=build/web/bindings/web/package # scripts/deep/web builds it
+if [ -f "$web/palpate_core.wasm" ]; then
+    cp -r "$web" "$out/pages/touch"
+    rm "$out/pages/touch/README.md" # it would become a page
+fi
 "$python" docs/site/stage.py . "$out/pages"
 version=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 export PALPATE_SITE_NAME="Palpate ${version:?CMakeLists.txt names no version}"

@@ -44,7 +44,7 @@ test=("${package[@]}" lintian pkg-config mono-mcs mono-runtime umockdev libftdi1
     python3-rospy python3-rosmaster python3-geometry-msgs python3-sensor-msgs python3-diagnostic-msgs)
 dev=(clang lld clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 docs=(mkdocs doxygen python3-pygments libjs-jquery)
-web=("${core[@]}" emscripten node-acorn nlohmann-json3-dev googletest chromium)
+web=("${core[@]}" emscripten node-acorn nlohmann-json3-dev googletest chromium python3-pydicom python3-zarr)
 windows=("${core[@]}" g++-mingw-w64-x86-64-posix wine64 libz-mingw-w64-dev nlohmann-json3-dev
     libboost-dev libcli11-dev libfmt-dev)
 

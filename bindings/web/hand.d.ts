@@ -18,7 +18,8 @@ export interface Hearing {
   ready?(made: Ready): void;
   /** Around 60 times a second. */
   snapshot?(now: Snapshot): void;
-  surface?(mesh: Surface): void;
+  /** A part of the surface that was asked for; it is whole with the last one. A newer request ends an older one. */
+  surface?(part: Surface & { last: boolean }): void;
   /** False if there was nothing to undo or redo. */
   edited?(changed: boolean): void;
   recording?(text: string): void;

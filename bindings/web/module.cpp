@@ -116,9 +116,7 @@ val copied(const char* type, const std::vector<T>& values) {
     return val::global(type).new_(typed_memory_view(values.size(), values.data()));
 }
 
-val surface_of(const Field& field, double isovalue) {
-    const SurfaceMesh mesh = extract_surface(
-        field, isovalue, {.normals = field.interpolation() == Interpolation::cubic});
+val as_arrays(const SurfaceMesh& mesh) {
     const auto floats = [](const std::vector<Vec3>& points) {
         std::vector<float> list;
         list.reserve(3 * points.size());
@@ -137,16 +135,57 @@ val surface_of(const Field& field, double isovalue) {
     return result;
 }
 
+/// The surface of a session's samples as they are, box by box, so that ticks can run in between.
+class WebSurface {
+  public:
+    WebSurface(const WebSession& session, double isovalue)
+        : field_(session.field()),
+          isovalue_(isovalue),
+          cells_(surface_cells(field_)),
+          low_(cells_.low) {
+        field_.use(session.samples());
+    }
+
+    /// The part in the next box of at most these cells, or null after the last one.
+    val next(int x, int y, int z) {
+        if ((low_.array() > cells_.high.array()).any()) return val::null();
+        const Index3 edges = Index3(x, y, z).cwiseMax(1);
+        SurfaceOptions options;
+        options.normals = field_.interpolation() == Interpolation::cubic;
+        options.cells = SampleBox{low_, (low_ + edges - Index3::Ones()).cwiseMin(cells_.high)};
+        const SurfaceMesh mesh = extract_surface(field_, isovalue_, options);
+        low_[0] += edges[0];
+        for (int axis = 0; axis < 2 && low_[axis] > cells_.high[axis]; ++axis) {
+            low_[axis] = cells_.low[axis];
+            low_[axis + 1] += edges[axis + 1];
+        }
+        return as_arrays(mesh);
+    }
+    /// All of it.
+    val whole() const {
+        return as_arrays(extract_surface(
+            field_, isovalue_, {.normals = field_.interpolation() == Interpolation::cubic}));
+    }
+
+  private:
+    Field field_;
+    double isovalue_;
+    SampleBox cells_;
+    Index3 low_;  // of the next box
+};
+
 std::shared_ptr<WebSession> new_session(const WebVolume& volume, const std::string& setup) {
     return guarded([&] { return std::make_shared<WebSession>(volume.samples(), setup); });
 }
 
-val surface(const WebSession& session, double isovalue) {
-    return guarded([&] {
-        Field field = session.field();
-        field.use(session.samples());
-        return surface_of(field, isovalue);
-    });
+std::shared_ptr<WebSurface> surface(const WebSession& session, double isovalue) {
+    return guarded([&] { return std::make_shared<WebSurface>(session, isovalue); });
+}
+val next_part(WebSurface& surface, int x, int y, int z) {
+    return guarded([&] { return surface.next(x, y, z); });
+}
+val whole_surface(const WebSurface& surface) {
+    return guarded([&] { return surface.whole(); });
 }
 
 /// The session's snapshot where it lies: copy it before the next call.
@@ -170,6 +209,10 @@ EMSCRIPTEN_BINDINGS(palpate) {
         .function("description", &description_of);
     emscripten::function("newVolume", &new_volume);
     emscripten::function("scene", &scene);
+    emscripten::class_<WebSurface>("Surface")
+        .smart_ptr<std::shared_ptr<WebSurface>>("shared_ptr<Surface>")
+        .function("next", &next_part)
+        .function("whole", &whole_surface);
     emscripten::class_<WebSession>("Session")
         .smart_ptr<std::shared_ptr<WebSession>>("shared_ptr<Session>")
         .function("read", &WebSession::read)

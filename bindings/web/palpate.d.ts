@@ -112,6 +112,8 @@ export class Session {
   recording(): string;
   /** Of the samples as they are. */
   surface(isovalue: number): Surface;
+  /** The same in parts, box by box, so that ticks can run in between. joined() makes one mesh of them. */
+  surfaceParts(isovalue: number, cells?: Vector): Generator<Surface, void>;
   replay(path: ArrayLike<number>[], rate?: number): Snapshot[];
   delete(): void;
 }
@@ -122,5 +124,7 @@ export interface Palpate {
   scene(specification: string): { volume: Volume; isovalue: number; description: string };
   session(volume: Volume, setup: SessionSetup): Session;
 }
+
+export function joined(parts: Surface[]): Surface;
 
 export function load(wasm?: ArrayBuffer | Uint8Array): Promise<Palpate>;

@@ -106,7 +106,21 @@ export class Session {
     return this.core.recording();
   }
   surface(isovalue) {
-    return this.core.surface(isovalue);
+    const surface = this.core.surface(isovalue);
+    try {
+      return surface.whole();
+    } finally {
+      surface.delete();
+    }
+  }
+  /** The same in parts, box by box, of the samples as they are when the first part is taken. */
+  *surfaceParts(isovalue, cells = [4, 4, 4]) {
+    const surface = this.core.surface(isovalue);
+    try {
+      for (let part = surface.next(...cells); part; part = surface.next(...cells)) yield part;
+    } finally {
+      surface.delete();
+    }
   }
   /** Renders a hand's path [device mm], one position per tick at `rate` [Hz]. */
   replay(path, rate = 1000) {
@@ -118,6 +132,22 @@ export class Session {
   delete() {
     this.core.delete();
   }
+}
+
+/** One mesh of several; vertices on their borders occur once in each. */
+export function joined(parts) {
+  const sum = (name) => parts.reduce((total, part) => total + part[name].length, 0);
+  const result = {
+    vertices: new Float32Array(sum("vertices")), normals: new Float32Array(sum("normals")), triangles: new Uint32Array(sum("triangles")),
+  };
+  let [vertices, triangles] = [0, 0];
+  for (const part of parts) {
+    result.vertices.set(part.vertices, vertices);
+    if (part.normals.length > 0) result.normals.set(part.normals, vertices);
+    for (const corner of part.triangles) result.triangles[triangles++] = corner + vertices / 3;
+    vertices += part.vertices.length;
+  }
+  return result;
 }
 
 class Palpate {

@@ -1,9 +1,11 @@
 // The servo loop of a page, in a Worker: sleeps until each tick is due and posts snapshots. Messages are
-// { name: argument }, see Hand in hand.js. A session that has lost its page has stale input and no force.
-import { load } from "./palpate.js";
+// { name: argument }, see Hand in hand.js. The surface that is drawn is made box by box, in the time that ticks leave. A session that has lost its page has stale input and no force.
+import { joined, load } from "./palpate.js";
 
 const betweenSnapshots = 16; // [ms]
 const betweenCarvings = 40; // [ms]
+const boxTime = 0.3; // [ms] that a box of a surface takes at most on an idle machine
+const partsAtOnce = 64; // boxes with triangles in a message
 const sleeper = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayBuffer(4)) : null;
 const turns = new MessageChannel();
 
@@ -14,6 +16,7 @@ let lastSnapshot = 0;
 let lastCarving = 0;
 let burr = 0; // [mm] radius, 0: none
 let carving = false; // within one step of undo
+let meshing = null; // a surface under way: { parts, made }
 
 const post = (name, value, transfer = []) => postMessage({ [name]: value }, transfer);
 
@@ -31,6 +34,7 @@ function turn() {
 }
 
 function tick() {
+  if (meshing) mesh();
   const left = session.due - performance.now();
   if (left > 0) {
     // Without isolation there is no sleep of under 4 ms: the loop keeps its processor busy.
@@ -44,6 +48,27 @@ function tick() {
     lastSnapshot = now;
     post("snapshot", session.snapshot());
   }
+}
+
+/** Boxes of the surface until the next tick is near, and for a moment if it is late already. */
+function mesh() {
+  const until = Math.max(session.due - boxTime, performance.now() + boxTime);
+  while (meshing && performance.now() < until) meshBox();
+}
+
+function meshBox() {
+  const { value, done } = meshing.parts.next();
+  const { made } = meshing;
+  if (value?.triangles.length > 0) made.push(value);
+  if (!done && made.length < partsAtOnce) return;
+  const surface = { ...joined(made), last: done };
+  meshing = done ? null : { ...meshing, made: [] };
+  post("surface", surface, [surface.vertices.buffer, surface.normals.buffer, surface.triangles.buffer]);
+}
+
+function stopMeshing() {
+  meshing?.parts.return();
+  meshing = null;
 }
 
 function carve(now) {
@@ -60,6 +85,7 @@ const actions = {
     const { volume } = made;
     try {
       const begun = palpate.session(volume, { isovalue: made.isovalue, ...setup });
+      stopMeshing();
       session?.delete();
       session = begun;
       actions.burr(0);
@@ -90,8 +116,9 @@ const actions = {
   undo: () => post("edited", session.undo()),
   redo: () => post("edited", session.redo()),
   surface(isovalue) {
-    const mesh = session.surface(isovalue);
-    post("surface", mesh, [mesh.vertices.buffer, mesh.normals.buffer, mesh.triangles.buffer]);
+    stopMeshing();
+    meshing = { parts: session.surfaceParts(isovalue), made: [] };
+    while (meshing && !running) meshBox(); // no ticks to keep
   },
   record: () => session.record(),
   recording: () => post("recording", session.recording()),

@@ -13,6 +13,9 @@ from pathlib import Path
 
 PAGES = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "data/README.md")
 LINK = re.compile(r"(?<=\]\()([^)\s#]+)")
+TOUCH = """
+<p><a class="touch-here" href="touch/page/index.html">Touch a CT head here, in your browser</a></p>
+"""
 ITEM = re.compile(r"( *)([-*]|\d+[.)]) +")
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".c": "c", ".h": "c", ".py": "python", ".cs": "csharp",
              ".sh": "sh", ".json": "json"}
@@ -71,6 +74,8 @@ class Site:
             sys.exit(f"docs/site/mkdocs.yml: its navigation lacks {', '.join(left_out)}")
         for page in pages:
             self.write(page.relative_to(self.root), self.linked(page))
+        if (self.out / "touch").is_dir():
+            self.embed()
         for path in sorted(self.shown):
             self.show(path)
         shutil.copy(self.root / "docs/site/site.css", self.out)
@@ -78,6 +83,11 @@ class Site:
         shutil.copy(self.root / "docs/site/theme_extra.js", self.out / "js")
         # The name by which Debian's theme asks for it, which is not in its package.
         shutil.copy("/usr/share/javascript/jquery/jquery.min.js", self.out / "js/jquery-3.6.0.min.js")
+
+    def embed(self):
+        """Puts the page for the browser below the first paragraph of the site."""
+        title, first, rest = (self.out / "README.md").read_text(encoding="utf-8").split("\n\n", 2)
+        self.write("README.md", "\n\n".join((title, first, TOUCH.strip(), rest)))
 
     def write(self, relative, text):
         to = self.out / relative

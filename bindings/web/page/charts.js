@@ -2,6 +2,15 @@
 
 const bins = 160;
 
+export function rangeOf(samples) {
+  let [minimum, maximum] = [Infinity, -Infinity];
+  for (const v of samples) {
+    if (v < minimum) minimum = v;
+    if (v > maximum) maximum = v;
+  }
+  return { minimum, maximum };
+}
+
 /** Counts per bin, and Otsu's threshold between dark and bright. */
 export function histogramOf({ samples, minimum, maximum }) {
   const counts = new Float64Array(bins);
@@ -28,8 +37,9 @@ function sized(canvas, height) {
   return [context, w, h];
 }
 
-export function drawHistogram(canvas, { counts, minimum, maximum }, level) {
-  const drawn = [canvas.clientWidth, minimum, maximum, counts[0], level].join();
+/** `marks` are levels by name. */
+export function drawHistogram(canvas, { counts, minimum, maximum }, level, marks) {
+  const drawn = [canvas.clientWidth, minimum, maximum, counts[0], level, Object.values(marks)].join();
   if (canvas.dataset.drawn === drawn) return;
   canvas.dataset.drawn = drawn;
   const [context, w, h] = sized(canvas, 64);
@@ -39,8 +49,19 @@ export function drawHistogram(canvas, { counts, minimum, maximum }, level) {
     const tall = (h * Math.log1p(n)) / top;
     context.fillRect((i * w) / bins, h - tall, w / bins + 0.5, tall);
   });
+  const at = (value) => ((value - minimum) / (maximum - minimum)) * w;
+  context.fillStyle = context.strokeStyle = getComputedStyle(canvas).color;
+  context.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+  context.setLineDash([3, 3]);
+  for (const [name, value] of Object.entries(marks)) {
+    context.beginPath();
+    context.moveTo(at(value), 0);
+    context.lineTo(at(value), h);
+    context.stroke();
+    context.fillText(name, at(value) + 4 * devicePixelRatio, 12 * devicePixelRatio);
+  }
   context.fillStyle = "#f97316";
-  context.fillRect(((level - minimum) / (maximum - minimum)) * w - 1, 0, 3, h);
+  context.fillRect(at(level) - 1, 0, 3, h);
 }
 
 /** Physical to index. */
@@ -49,35 +70,60 @@ function indexOf({ origin, spacing, direction }, point) {
   return [0, 1, 2].map((a) => (direction[a] * d[0] + direction[3 + a] * d[1] + direction[6 + a] * d[2]) / spacing[a]);
 }
 
+const orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+
+/** An axial, a coronal and a sagittal slice as radiologists look at them (directions in LPS). For each: the axes of the
+ * grid across and down, whether they are flipped, the axis that is fixed, and what to write left, right, above and below. */
+export function viewsOf({ direction, oriented }) {
+  const along = (order) => order.reduce((sum, axis, row) => sum + Math.abs(direction[3 * row + axis]), 0);
+  const axes = orders.reduce((best, one) => (along(one) > along(best) + 1e-6 ? one : best));
+  const ends = oriented ? [["R", "L"], ["A", "P"], ["I", "S"]] : [["", "x"], ["", "y"], ["", "z"]];
+  return [[0, 1, 1], [0, 2, -1], [1, 2, -1]].map(([right, down, way]) => ({ // head up
+    u: axes[right], v: axes[down], fixed: axes[3 - right - down],
+    flipU: direction[3 * right + axes[right]] < 0, flipV: way * direction[3 * down + axes[down]] < 0,
+    letters: [...ends[right], ...(way > 0 ? ends[down] : [...ends[down]].reverse())],
+  }));
+}
+
+/** The samples of a view through a place of the grid, row by row from above. */
+export function sliceOf({ size, samples }, { u, v, fixed, flipU, flipV }, at) {
+  const stride = [1, size[0], size[0] * size[1]];
+  return Float32Array.from({ length: size[u] * size[v] }, (_, i) => {
+    const [x, y] = [i % size[u], Math.floor(i / size[u])];
+    return samples[(flipU ? size[u] - 1 - x : x) * stride[u] + (flipV ? size[v] - 1 - y : y) * stride[v] + at[fixed] * stride[fixed]];
+  });
+}
+
 export function drawSlices(canvas, volume, scp) {
   const edge = Math.floor((canvas.clientWidth - 8) / 3);
-  const { size, samples, minimum, maximum } = volume;
+  const { size, spacing, minimum, maximum } = volume;
+  const longest = Math.max(...size.map((n, a) => n * spacing[a]));
   const at = indexOf(volume, scp).map((v, a) => Math.max(0, Math.min(size[a] - 1, Math.round(v))));
   const drawn = [edge, volume.number, ...at].join();
   if (canvas.dataset.drawn === drawn) return;
   canvas.dataset.drawn = drawn;
   const [context, w] = sized(canvas, edge);
   canvas.style.height = `${edge}px`;
-  const stride = [1, size[0], size[0] * size[1]];
-  [[0, 1, 2], [0, 2, 1], [1, 2, 0]].forEach(([u, v, fixed], slice) => {
+  const side = Math.floor((w - 8) / 3);
+  const margin = 14 * devicePixelRatio; // for letters
+  context.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+  [context.textAlign, context.textBaseline] = ["center", "middle"];
+  viewsOf(volume).forEach((view, slice) => {
+    const { u, v, flipU, flipV, letters } = view;
     const image = context.createImageData(size[u], size[v]);
-    for (let y = 0, out = 0; y < size[v]; ++y) {
-      const row = v === 2 ? size[v] - 1 - y : y; // head up
-      for (let x = 0; x < size[u]; ++x, out += 4) {
-        const value = samples[x * stride[u] + row * stride[v] + at[fixed] * stride[fixed]];
-        image.data[out] = image.data[out + 1] = image.data[out + 2] = (255 * (value - minimum)) / (maximum - minimum);
-        image.data[out + 3] = 255;
-      }
-    }
-    const side = Math.floor((w - 8) / 3);
-    const left = slice * (side + 4);
+    sliceOf(volume, view, at).forEach((value, i) => image.data.fill((255 * (value - minimum)) / (maximum - minimum), 4 * i, 4 * i + 3).fill(255, 4 * i + 3, 4 * i + 4));
     const tile = new OffscreenCanvas(size[u], size[v]);
     tile.getContext("2d").putImageData(image, 0, 0);
-    context.drawImage(tile, left, 0, side, side);
+    const [wide, tall] = [u, v].map((a) => ((side - 2 * margin) * size[a] * spacing[a]) / longest);
+    const [dx, dy] = [slice * (side + 4) + (side - wide) / 2, (side - tall) / 2];
+    context.drawImage(tile, dx, dy, wide, tall);
     context.strokeStyle = "#f97316";
     context.beginPath();
-    const y = ((v === 2 ? size[v] - 1 - at[v] : at[v]) + 0.5) / size[v];
-    context.arc(left + ((at[u] + 0.5) / size[u]) * side, y * side, 4, 0, 7);
+    const place = (a, flipped) => ((flipped ? size[a] - 1 - at[a] : at[a]) + 0.5) / size[a];
+    context.arc(dx + place(u, flipU) * wide, dy + place(v, flipV) * tall, 4, 0, 7);
     context.stroke();
+    context.fillStyle = getComputedStyle(canvas).color;
+    const ends = [[dx - margin / 2, dy + tall / 2], [dx + wide + margin / 2, dy + tall / 2], [dx + wide / 2, dy - margin / 2], [dx + wide / 2, dy + tall + margin / 2]];
+    ends.forEach(([x, y], i) => context.fillText(letters[i], x, y));
   });
 }

@@ -1,13 +1,13 @@
 // The page: a mouse or finger moves the hand; pressing pushes it against the surface until the spring is as long
 // as asked for. What it does goes through Hand, what it shows comes from there.
 import { Hand } from "../hand.js";
-import { drawHistogram, drawSlices, histogramOf } from "./charts.js";
-import { readVolume } from "./files.js";
+import { drawHistogram, drawSlices, histogramOf, rangeOf } from "./charts.js";
+import { chosenFiles, droppedFiles, readAddress, readFiles } from "./open.js";
 import { Scene } from "./scene.js";
 
 const $ = (id) => document.getElementById(id);
 const headAddress = new URL("./visible_human_head.nrrd", import.meta.url);
-const levels = { head: 35 }; // [data units] the skin
+const headMarks = { skin: 35, bone: 100 }; // [data units]
 const headLayers = {
   name: "Skin and bone of the head",
   layers: [
@@ -23,12 +23,14 @@ const scene = new Scene($("scene"));
 let volume = null; // of the worker's answer `ready`
 let snapshot = null;
 let histogram = null;
+let marks = {};
 let level = 0;
 let pressing = false;
 let meshing = false; // a surface was asked for and has not come
 let stale = false; // another one is needed
 let recording = false;
-let opened = ""; // name of the volume
+let opened = {}; // the volume: its name, levels that are known
+let parts = []; // of the surface that is on its way
 let shown = 0; // level of the surface
 const hand = [0, 0, far];
 
@@ -40,21 +42,36 @@ function transformFor({ size, spacing, origin, direction }) {
 }
 
 let toldUntil = 0;
-/** Shows a state, which stays for `least` ms. */
+/** Shows a state, which stays for `least` ms or until the next action. */
 function tell(text, least = 0) {
   if (performance.now() < toldUntil && least === 0) return;
   toldUntil = performance.now() + least;
   if ($("state").textContent !== text) $("state").textContent = text;
 }
 
+for (const name of ["pointerdown", "keydown", "change"]) document.addEventListener(name, () => (toldUntil = 0), true);
+
+/** Announces to those who do not see the page. */
+const say = (text) => ($("said").textContent = text);
+let touching = false;
+
+/** An error, which stays until the next action. */
+function complain(error) {
+  tell(`Error: ${error}`, Infinity);
+  say(`Error: ${error}`);
+}
+
 const to = new Hand({
   ready(made) {
-    volume = { ...made, number: (volume?.number ?? 0) + 1 };
+    $("notes").textContent = (opened.notes ?? []).join("; ");
+    volume = { ...made, oriented: opened.oriented, number: (volume?.number ?? 0) + 1 };
     snapshot = null;
-    scene.surface = null;
+    scene.clear();
+    meshing = false; // the worker has dropped the surface of the volume before
     hand[2] = far;
     histogram = histogramOf(volume);
-    useLevel(levels[opened] ?? made.isovalue ?? histogram.otsu);
+    showMarks(opened.marks ?? {});
+    useLevel(Object.values(marks)[0] ?? made.isovalue ?? histogram.otsu);
     document.body.dataset.ready = "1";
     to.send("report");
   },
@@ -63,10 +80,15 @@ const to = new Hand({
     if (Number.isFinite(now.isovalue) && $("through").checked) level = now.isovalue;
     if (volume && Math.abs(level - shown) > 0.03 * (volume.maximum - volume.minimum)) remesh(); // pressed through
     const pull = Math.hypot(...now.force);
+    if (now.constrained !== touching) say((touching = now.constrained) ? "In contact" : "No contact");
     tell(now.constrained ? `In contact: ${pull.toFixed(1)} N at level ${now.isovalue.toFixed(0)}` : pressing ? "Approaching ..." : "Move, and press to touch");
   },
-  surface(mesh) {
-    scene.show(mesh, transformFor(volume));
+  surface(part) {
+    parts.push(part);
+    if (!part.last) return;
+    scene.show(parts, transformFor(volume));
+    keep();
+    parts = [];
     meshing = false;
     document.body.dataset.surface = String(Number(document.body.dataset.surface ?? 0) + 1);
     if (stale) remesh();
@@ -81,22 +103,38 @@ const to = new Hand({
   report({ ticks, missed, lateness, work }) {
     const us = (ns) => `${(ns / 1000).toFixed(0)} µs`;
     const rows = [["ticks", ticks], ["missed", missed], ["late, median", us(lateness.p50)], ["late, 99 %", us(lateness.p99)],
-      ["late, 99.9 %", us(lateness.p999)], ["work, median", us(work.p50)], ["sleeps between ticks", volume.isolated ? "yes" : "no"]];
+      ["late, 99.9 %", us(lateness.p999)], ["work, median", us(work.p50)], ["sleeps between ticks", volume.isolated ? "yes" : "no, until the page is loaded again"]];
     $("report").innerHTML = rows.map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("");
   },
   error(text) {
     meshing = false;
-    tell(`Error: ${text}`, 5000);
+    complain(text);
   },
 });
 
-/** Not while pressing: the worker makes the surface, and renders no ticks meanwhile. */
+/** For visits without a network; after the first picture, which should not wait for it. */
+function keep() {
+  if (!document.body.dataset.surface) navigator.serviceWorker?.register(new URL("../offline.js", import.meta.url)).catch(() => {});
+}
+
 function remesh() {
-  stale = meshing || pressing;
+  stale = meshing;
   if (stale) return;
   meshing = true;
+  parts = [];
   shown = level;
   to.send("surface", level);
+}
+
+/** Levels by name: on the histogram, and as buttons. */
+function showMarks(named) {
+  marks = named;
+  $("marks").replaceChildren(...Object.entries(marks).map(([name, value]) => {
+    const button = document.createElement("button");
+    button.textContent = `${name[0].toUpperCase()}${name.slice(1)}`;
+    button.onclick = () => useLevel(value);
+    return button;
+  }));
 }
 
 function useLevel(value) {
@@ -109,42 +147,39 @@ function useLevel(value) {
   remesh();
 }
 
-function begin(data, name, file) {
+function begin(data) {
   if (recording) setRecording(false); // the worker still has its session
-  opened = name;
+  const { geometry, samples, scene: made, name } = data;
+  opened = { name, marks: data.marks, oriented: data.oriented, notes: data.notes };
   $("through").checked = $("layers").checked = $("drill").checked = false;
-  $("layersLabel").hidden = name !== "head";
+  $("layersLabel").hidden = data.marks !== headMarks;
   to.send("burr", 0);
-  const { geometry, samples, scene: made } = data;
   const fit = geometry && transformFor(geometry);
   to.send("begin", {
     samples, geometry, scene: made,
     setup: {
-      ...(made ? {} : { isovalue: levels[name] ?? middleOf(samples) }), volume: file, device: "mouse",
+      ...(made ? {} : { isovalue: Object.values(data.marks ?? {})[0] ?? histogramOf({ samples, ...rangeOf(samples) }).otsu }), volume: name, device: "mouse",
       // A page reads its mouse 60 times a second.
       settings: { force: { stiffness: 0.5, stale_after: 0.08, limit: 3.3 }, transform: fit ?? { rotation: [[1, 0, 0], [0, 0, -1], [0, 1, 0]], scale: 64 / 140 } },
     },
   }, samples ? [samples.buffer] : []);
 }
 
-function middleOf(samples) {
-  return histogramOf({ samples, ...rangeOf(samples) }).otsu;
-}
-function rangeOf(samples) {
-  return samples.reduce((r, v) => ({ minimum: Math.min(r.minimum, v), maximum: Math.max(r.maximum, v) }), { minimum: Infinity, maximum: -Infinity });
-}
-
-async function open(name, read, file) {
+let newest = 0;
+/** The last one that was asked for wins. */
+async function open(read) {
+  const mine = ++newest;
+  toldUntil = 0;
   tell("Loading ...");
   try {
-    begin(await read(), name, file);
+    const data = await read();
+    if (mine === newest) begin(data);
   } catch (error) {
-    tell(`Error: ${error.message}`, 5000);
+    if (mine === newest) complain(error.message);
   }
 }
 
-const openHead = () => open("head", async () => readVolume(await (await fetch(headAddress)).arrayBuffer()), "visible_human_head.nrrd");
-const openFile = (file) => open(file.name, async () => readVolume(await file.arrayBuffer()), file.name);
+const openHead = () => open(async () => ({ ...(await readAddress(headAddress)), marks: headMarks }));
 
 // The hand.
 let then = performance.now();
@@ -167,7 +202,7 @@ function frame(now) {
   if (volume && !document.hidden) to.read(hand);
   scene.draw(snapshot, hand);
   if (volume) {
-    drawHistogram($("histogram"), histogram, level);
+    drawHistogram($("histogram"), histogram, level, marks);
     if (snapshot) drawSlices($("slices"), volume, snapshot.scp);
   }
   requestAnimationFrame(frame);
@@ -180,7 +215,6 @@ const follow = (event) => {
 const setPressing = (on) => {
   pressing = on;
   if ($("drill").checked) to.send("burr", on ? drillRadius() : 0); // each press is a step of undo
-  if (stale) remesh();
 };
 const drillRadius = () => 2.5 * Math.max(...volume.spacing);
 canvas.addEventListener("pointermove", follow);
@@ -218,13 +252,17 @@ function moveByKeys(dt) {
 }
 
 // The panel.
-$("volume").onchange = ({ target }) =>
-  target.value === "head" ? openHead() : open(target.value, () => ({ scene: target.value }), target.value);
-$("file").onchange = ({ target }) => target.files[0] && openFile(target.files[0]);
+$("volume").onchange = ({ target: { value } }) => (value === "head" ? openHead() : open(() => ({ scene: value, name: value })));
+for (const id of ["file", "folder"]) $(id).onchange = ({ target }) => target.files.length > 0 && open(() => readFiles(chosenFiles(target.files)));
+$("remote").onsubmit = (event) => {
+  event.preventDefault();
+  open(() => readAddress($("address").value));
+};
 document.ondragover = (event) => event.preventDefault();
 document.ondrop = (event) => {
   event.preventDefault();
-  if (event.dataTransfer.files[0]) openFile(event.dataTransfer.files[0]);
+  const files = droppedFiles(event.dataTransfer.items);
+  open(async () => readFiles(await files));
 };
 $("isovalue").oninput = ({ target }) => useLevel(Number(target.value));
 $("histogram").onclick = (event) => {
@@ -249,4 +287,10 @@ function setRecording(on) {
 $("record").onclick = () => setRecording(!recording);
 setInterval(() => volume && to.send("report"), 1000);
 requestAnimationFrame(frame);
-openHead();
+const address = new URLSearchParams(location.search).get("volume");
+if (address) {
+  $("address").value = address;
+  open(() => readAddress(address));
+} else {
+  openHead();
+}

@@ -48,15 +48,17 @@ export class Scene {
     gl.linkProgram(this.program);
     this.at = (name) => gl.getUniformLocation(this.program, name);
     this.ball = this.uploaded(ball());
-    this.surface = null;
+    this.surface = [];
   }
 
   uploaded({ vertices, normals, triangles }) {
     const gl = this.gl;
     const array = gl.createVertexArray();
     gl.bindVertexArray(array);
+    const buffers = [];
     const fill = (target, data) => {
-      gl.bindBuffer(target, gl.createBuffer());
+      buffers.push(gl.createBuffer());
+      gl.bindBuffer(target, buffers.at(-1));
       gl.bufferData(target, data, gl.STATIC_DRAW);
     };
     fill(gl.ARRAY_BUFFER, vertices);
@@ -68,14 +70,22 @@ export class Scene {
       gl.vertexAttribPointer(1, 3, gl.FLOAT, false, 0, 0);
     }
     fill(gl.ELEMENT_ARRAY_BUFFER, triangles);
-    return { array, count: triangles.length };
+    return { array, buffers, count: triangles.length };
   }
 
-  /** A surface of the worker; `transform` as in the settings. */
-  show(mesh, transform) {
-    if (this.surface) this.gl.deleteVertexArray(this.surface.array);
-    this.surface = this.uploaded(mesh);
+  /** The parts of a surface; `transform` as in the settings. */
+  show(parts, transform) {
+    this.clear();
+    this.surface = parts.filter(({ triangles }) => triangles.length > 0).map((part) => this.uploaded(part));
     this.transform = transform;
+  }
+
+  clear() {
+    for (const { array, buffers } of this.surface) {
+      this.gl.deleteVertexArray(array);
+      for (const buffer of buffers) this.gl.deleteBuffer(buffer);
+    }
+    this.surface = [];
   }
 
   /** Physical to device. */
@@ -111,12 +121,12 @@ export class Scene {
     gl.uniformMatrix4fv(this.at("projection"), false, [
       height / width / up, 0, 0, 0, 0, 1 / up, 0, 0, 0, 0, -(far + near) / (far - near), -1, 0, 0, (-2 * far * near) / (far - near), 0,
     ]);
-    if (this.surface) {
+    if (this.surface.length > 0) {
       const { rotation: r, scale } = this.transform;
       const origin = this.device([0, 0, 0]);
       const row = (i) => [r[i][0] / scale, r[i][1] / scale, r[i][2] / scale, 0];
-      this.part(this.surface, [...row(0), ...row(1), ...row(2), origin[0], origin[1], origin[2] - eye, 1],
-        [...r[0], ...r[1], ...r[2]], [0.85, 0.72, 0.62, 1]);
+      const model = [...row(0), ...row(1), ...row(2), origin[0], origin[1], origin[2] - eye, 1];
+      for (const part of this.surface) this.part(part, model, [...r[0], ...r[1], ...r[2]], [0.85, 0.72, 0.62, 1]);
     }
     if (!snapshot || !this.transform) return;
     const proxy = this.device(snapshot.scp);

@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
 
-const { load } = await import(join(process.env.PALPATE_WEB, "palpate.js"));
+const { joined, load } = await import(join(process.env.PALPATE_WEB, "palpate.js"));
 const palpate = await load();
 
 const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -75,6 +75,24 @@ test("drilling removes what is touched, and undo brings it back", () => {
   assert.deepEqual(session.surface(isovalue).triangles, before.triangles);
   assert.ok(session.redo());
   assert.equal(session.redo(), false);
+});
+
+test("the parts of a surface are the whole, also if samples change in between", () => {
+  for (const field of ["linear", "cubic"]) {
+    const { session, isovalue } = ball({ field });
+    session.replay(path(1500));
+    const corners = ({ vertices, normals, triangles }) =>
+      Array.from({ length: triangles.length / 3 }, (_, i) => {
+        const places = [...triangles.subarray(3 * i, 3 * i + 3)].map((at) => [...vertices.subarray(3 * at, 3 * at + 3), ...normals.subarray(3 * at, 3 * at + 3)].join());
+        return places.join(" ");
+      }).sort();
+    const whole = session.surface(isovalue);
+    const parts = session.surfaceParts(isovalue, [7, 5, 9]);
+    const first = parts.next().value;
+    assert.ok(session.drill(4));
+    assert.deepEqual(corners(joined([first, ...parts])), corners(whole));
+    assert.ok(whole.triangles.length > 1000);
+  }
 });
 
 test("input that is stale, lost or not a number gives no force", () => {

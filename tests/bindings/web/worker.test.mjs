@@ -66,3 +66,23 @@ test("an error in the loop ends its session and is told, and the next session be
   await press(touches);
   assert.deepEqual(messages("error"), []);
 });
+
+test("ticks go on while a surface is made, and a new session drops it", { timeout: 300000 }, async () => {
+  await begin();
+  await press(touches);
+  heard = [];
+  send("report");
+  send("surface", 0);
+  while (!messages("surface").some(({ last }) => last)) await new Promise((resolve) => setTimeout(resolve, 5));
+  send("report");
+  const [before, after] = messages("report");
+  assert.ok(after.ticks > before.ticks);
+  const corners = messages("surface").reduce((sum, { triangles }) => sum + triangles.length, 0);
+
+  send("surface", 0);
+  await begin();
+  heard = [];
+  send("surface", 0);
+  while (!messages("surface").some(({ last }) => last)) await new Promise((resolve) => setTimeout(resolve, 5));
+  assert.equal(messages("surface").reduce((sum, { triangles }) => sum + triangles.length, 0), corners, "of one surface");
+});

@@ -1,0 +1,324 @@
+// Reads the slices of a DICOM series, or a file of several frames, into samples and a geometry in LPS. What is not
+// known to be read as the native program reads it is refused; so are compressed pixels, which browsers cannot unpack.
+import { countOf, geometryOf, inflated, isDicom, refuse } from "./files.js";
+
+const syntaxes = {
+  "1.2.840.10008.1.2": {}, "1.2.840.10008.1.2.1": { explicit: true }, "1.2.840.10008.1.2.2": { explicit: true, big: true },
+  "1.2.840.10008.1.2.1.99": { explicit: true, deflated: true },
+};
+const longForms = new Set(["OB", "OD", "OF", "OL", "OV", "OW", "SQ", "UC", "UN", "UR", "UT", "SV", "UV"]);
+const open = 0xffffffff; // a length that is not told
+const again = "copy or export it again";
+
+const tags = {
+  storage: "00080016", imageType: "00080008", modality: "00080060", description: "0008103e", seriesNumber: "00200011", series: "0020000e",
+  echoTime: "00180081", echo: "00180086", bValue: "00189087", between: "00180088", thickness: "00180050", position: "00200032", orientation: "00200037",
+  samples: "00280002", colours: "00280004", frames: "00280008", rows: "00280010", columns: "00280011", spacing: "00280030", allocated: "00280100",
+  stored: "00280101", highBit: "00280102", signed: "00280103", intercept: "00281052", slope: "00281053", pixels: "7fe00010",
+  shared: "52009229", each: "52009230",
+};
+/** Functional groups of frames, and what of them is taken. */
+const macros = {
+  "00289110": [tags.spacing, tags.between, tags.thickness], "00209113": [tags.position], "00209116": [tags.orientation],
+  "00289145": [tags.intercept, tags.slope],
+};
+const unread = {
+  "00283000": "a table of values (Modality LUT)", "3004000e": "a DoseGridScaling", "7fe00008": "samples of float32", "7fe00009": "samples of float64",
+  "00620002": "segments",
+};
+/** Storage classes without an image: reports, plans, structures, presentations, raw data, the index of a folder. */
+const withoutImage = /^1\.2\.840\.10008\.(1\.3\.10$|5\.1\.4\.1\.1\.(9\.|11\.|66|88\.|104\.|481\.))/;
+
+/** Elements by tag, for example "0020000e": bytes, or for a sequence its items. */
+class Reader {
+  constructor(bytes, { explicit = false, big = false }) {
+    Object.assign(this, { bytes, explicit, little: !big, at: 0, view: new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength) });
+  }
+  short() {
+    this.at += 2;
+    return this.view.getUint16(this.at - 2, this.little);
+  }
+  long() {
+    this.at += 4;
+    return this.view.getUint32(this.at - 4, this.little);
+  }
+  tag() {
+    const group = this.short();
+    return group.toString(16).padStart(4, "0") + this.short().toString(16).padStart(4, "0");
+  }
+  /** Up to `end`, or to the delimiter of an item without a length. */
+  elements(end, depth = 0) {
+    if (depth > 16) refuse("its sequences are nested too deep", again);
+    const set = new Map();
+    while (this.at < end) {
+      if (depth === 0 && this.bytes[this.at] === 0 && !this.bytes.subarray(this.at).some((byte) => byte !== 0)) break; // padding
+      const tag = this.tag();
+      if (tag === "fffee00d") {
+        this.at += 4;
+        break;
+      }
+      if (set.has(tag)) refuse(`element ${tag} is there twice`, again);
+      let kind = "";
+      if (this.explicit) {
+        kind = String.fromCharCode(this.bytes[this.at], this.bytes[this.at + 1]);
+        if (!/^[A-Z]{2}$/.test(kind)) refuse(`element ${tag} is of no known type`, again);
+        this.at += 2;
+      }
+      if (tag === tags.pixels) this.pixelKind = kind;
+      let size;
+      if (this.explicit && !longForms.has(kind)) size = this.short();
+      else {
+        if (this.explicit) this.at += 2;
+        size = this.long();
+      }
+      if (size !== open && this.at + size > end) refuse(`element ${tag} reaches beyond its end`, again);
+      if (kind === "SQ" || size === open || tag === tags.shared || tag === tags.each) {
+        if (tag === tags.pixels) refuse("compressed pixels are not read in the browser");
+        set.set(tag, this.items(size === open ? end : this.at + size, depth, kind));
+      } else if (this.isSequence(kind, size, tag)) set.set(tag, this.items(this.at + size, depth, kind));
+      else {
+        set.set(tag, this.bytes.subarray(this.at, this.at + size));
+        this.at += size;
+      }
+    }
+    return set;
+  }
+  /** Implicit syntax does not tell sequences from values: they begin with the tag of an item. */
+  isSequence(kind, size, tag) {
+    return kind === "" && tag !== tags.pixels && size >= 8 && this.view.getUint32(this.at, true) === 0xe000fffe;
+  }
+  items(end, depth, kind) {
+    const { explicit } = this;
+    this.explicit &&= kind !== "UN"; // those of unknown type are implicit (PS3.5, 6.2.2)
+    const list = [];
+    while (this.at < end) {
+      const tag = this.tag();
+      const size = this.long();
+      if (tag === "fffee0dd") break;
+      if (tag !== "fffee000") refuse(`a sequence has element ${tag} in place of an item`, again);
+      if (size !== open && this.at + size > end) refuse("an item reaches beyond its end", again);
+      list.push(this.elements(size === open ? end : this.at + size, depth + 1));
+    }
+    this.explicit = explicit;
+    return list;
+  }
+}
+
+async function parsed(bytes) {
+  let end = 132;
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  while (end + 8 <= bytes.length && view.getUint16(end, true) === 2) {
+    const isLong = longForms.has(String.fromCharCode(bytes[end + 4], bytes[end + 5]));
+    end += isLong ? 12 + view.getUint32(end + 8, true) : 8 + view.getUint16(end + 6, true);
+  }
+  const head = new Reader(bytes.subarray(132, end), { explicit: true }).elements(end - 132);
+  const name = new Header(head).text("00020010");
+  const syntax = syntaxes[name] ?? refuse(`DICOM of transfer syntax ${name} is not read in the browser`);
+  const body = syntax.deflated ? await inflated(bytes.subarray(end), "deflate-raw") : bytes.subarray(end);
+  const reader = new Reader(body, syntax);
+  return { header: new Header(reader.elements(body.length), reader.little), pixelKind: reader.pixelKind };
+}
+
+/** Values of elements. Empty ones are absent. */
+class Header {
+  constructor(set, little = true) {
+    Object.assign(this, { set, little });
+  }
+  has(tag) {
+    return this.set.get(tag)?.length > 0;
+  }
+  text(tag) {
+    const value = this.set.get(tag) ?? [];
+    return value instanceof Uint8Array ? new TextDecoder().decode(value).replace(/[\0 ]+$/, "").trim() : "";
+  }
+  numbers(tag, count) {
+    const told = this.text(tag);
+    if (told === "") return undefined;
+    const list = told.split("\\").map((one) => one.trim());
+    if (!list.every((one) => /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(one))) refuse(`element ${tag} is not a number ('${told}')`, "correct its header");
+    return list.length === count ? list.map(Number) : refuse(`element ${tag} has ${list.length} numbers in place of ${count}`, "correct its header");
+  }
+  whole(tag, otherwise) {
+    if (!this.has(tag)) return otherwise;
+    const value = this.set.get(tag);
+    if (value.length !== 2) refuse(`element ${tag} has ${value.length} bytes in place of 2`, again);
+    return new DataView(value.buffer, value.byteOffset).getUint16(0, this.little);
+  }
+  items(tag) {
+    const value = this.set.get(tag);
+    return Array.isArray(value) ? value : [];
+  }
+}
+
+/** How pixels are stored: one value of 8 or 16 bits each. */
+function formatOf(header, pixelKind) {
+  for (const [tag, what] of Object.entries(unread)) if (header.set.has(tag)) refuse(`${what} (element ${tag}) is not read in the browser`);
+  const colours = header.text(tags.colours);
+  if (header.whole(tags.samples, 1) !== 1 || !["", "MONOCHROME1", "MONOCHROME2"].includes(colours)) refuse(`DICOM in colours (${colours}) is not read`, "give a series with one value per sample");
+  if (header.text(tags.imageType).includes("MOSAIC")) refuse("a MOSAIC of slices is not read", "convert it to NIfTI first, for example with dcm2niix");
+  const bits = header.whole(tags.allocated);
+  const format = { rows: header.whole(tags.rows), columns: header.whole(tags.columns), bits, stored: header.whole(tags.stored, bits), signed: header.whole(tags.signed, 0) === 1 };
+  const { rows, columns, stored } = format;
+  if (bits !== 8 && bits !== 16) refuse(`DICOM of ${bits} bits is not read`);
+  const high = header.whole(tags.highBit, stored - 1);
+  if (!(stored >= 1 && stored <= bits && high === stored - 1)) refuse(`samples of ${stored} bits up to bit ${high} (HighBit) of ${bits} are not read`);
+  if (header.whole(tags.signed, 0) > 1) refuse("its PixelRepresentation is neither 0 nor 1", "correct its header");
+  if (!header.little && bits === 8 && pixelKind !== "OB") refuse("8 bits in big-endian words (OW) are not read");
+  return { ...format, little: header.little, size: (countOf([rows, columns]) * bits) / 8 };
+}
+
+function framesIn(header) {
+  const told = header.text(tags.frames) || "1";
+  return /^\+?[1-9]\d{0,6}$/.test(told) ? Number(told) : refuse(`it has '${told}' frames, which is not possible`, again);
+}
+
+/** The header that holds for each frame. */
+function headersOf(header, count) {
+  const [shared] = header.items(tags.shared);
+  const each = header.items(tags.each);
+  if (each.length === 0 && count === 1) return [header];
+  if (each.length === 0) refuse(`its ${count} frames do not say where they lie: they may be moments (FrameIncrementPointer), or slices by SliceVector`);
+  if (each.length !== count) refuse(`it has ${count} frames, and describes ${each.length}`, again);
+  return each.map((group) => {
+    const set = new Map(header.set);
+    for (const [macro, taken] of Object.entries(macros)) {
+      const [inside] = group.get(macro) ?? shared?.get(macro) ?? [];
+      for (const tag of taken) if (inside?.get?.(tag)?.length > 0) set.set(tag, inside.get(tag));
+    }
+    return new Header(set, header.little);
+  });
+}
+
+function unitVectors(list) {
+  if (!list) return undefined;
+  const [across, down] = [list.slice(0, 3), list.slice(3)].map((v) => v.map((x) => x / Math.hypot(...v)));
+  const isUnit = [list.slice(0, 3), list.slice(3)].every((v) => Math.abs(Math.hypot(...v) - 1) < 1e-3);
+  if (!isUnit || !(Math.abs(dot(across, down)) < 1e-3)) refuse("its row and column directions are no unit vectors at right angles", "correct its header");
+  const along = dot(across, down);
+  const rest = down.map((x, i) => x - along * across[i]);
+  return [across, rest.map((x) => x / Math.hypot(...rest))];
+}
+
+/** The frames of a file. */
+function framesOf({ header, pixelKind }) {
+  if (!header.set.has(tags.rows) && withoutImage.test(header.text(tags.storage))) return [];
+  if (!header.has(tags.rows) || !header.has(tags.columns)) refuse("it gives no size of its image: it is cut off or damaged", again);
+  if (!header.set.has(tags.pixels)) refuse("it has no pixels, but says how large its image is: it is cut off", `${again}, or leave it out`);
+  const format = formatOf(header, pixelKind);
+  const count = framesIn(header);
+  const pixels = header.set.get(tags.pixels);
+  const expected = countOf([count, format.size]);
+  if (pixels.length !== expected && pixels.length !== expected + (expected % 2)) refuse(`it has ${pixels.length} bytes of pixels in place of ${expected}`, again);
+  return headersOf(header, count).map((one, i) => {
+    const spacing = one.numbers(tags.spacing, 2);
+    if (!spacing && (one.has("00181164") || one.has("00182010"))) refuse("its pixel spacing is that at the detector (ImagerPixelSpacing) or of a scan");
+    if (spacing?.some((s) => !(s > 0))) refuse(`a PixelSpacing of ${spacing.join(" x ")} mm is not possible`, "correct its header");
+    const between = one.numbers(tags.between, 1)?.[0];
+    return {
+      ...format, pixels: pixels.subarray(i * format.size, (i + 1) * format.size), spacing, position: one.numbers(tags.position, 3),
+      orientation: unitVectors(one.numbers(tags.orientation, 6)), thickness: between > 0 ? between : one.numbers(tags.thickness, 1)?.[0],
+      slope: one.numbers(tags.slope, 1)?.[0], intercept: one.numbers(tags.intercept, 1)?.[0] ?? 0, modality: one.text(tags.modality),
+      label: one.text(tags.description) || one.text(tags.seriesNumber) || one.text(tags.series),
+      key: [...["series", "imageType", "echoTime", "echo", "modality"].map((name) => one.text(tags[name])), String(one.set.get(tags.bValue)), format.rows, format.columns].join("|"),
+    };
+  });
+}
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = ([a, b, c], [d, e, f]) => [b * f - c * e, c * d - a * f, a * e - b * d];
+
+/** All frames, if they are of one series. */
+function oneSeries(frames) {
+  const groups = new Map();
+  for (const frame of frames) groups.set(frame.key, [...(groups.get(frame.key) ?? []), frame]);
+  if (groups.size === 1) return;
+  const list = [...groups.values()].map(([{ label, key, rows, columns }, ...others]) => `${1 + others.length} of ${columns} x ${rows} '${label}' ${key.split("|")[1].replaceAll("\\", " ")}`);
+  refuse(`there are ${groups.size} series in it (${list.slice(0, 8).join("; ")})`, "choose the files of one");
+}
+
+/** The frames in the order of their places, and the columns of the grid's directions. */
+function stacked(frames, notes) {
+  const [first] = frames;
+  const note = (text, is) => is && notes.push(text);
+  note("it gives no pixel spacing: 1 mm was taken", !first.spacing);
+  note("its RescaleSlope is 0, which makes no sense: 1 was taken", frames.some(({ slope }) => slope === 0));
+  const near = (a, b, part) => !a === !b && (a ?? []).every((x, i) => Math.abs(x - b[i]) <= part);
+  const alike = ({ orientation, spacing }) => near(orientation?.flat(), first.orientation?.flat(), 1e-3) && near(spacing, first.spacing, 1e-3 * Math.max(...(first.spacing ?? [1])));
+  if (!frames.every(alike)) refuse("the slices of this series differ in spacing or orientation");
+  const isPlaced = frames.every(({ position, orientation }) => position && orientation);
+  const [across, down] = isPlaced ? first.orientation : [[1, 0, 0], [0, 1, 0]];
+  const normal = cross(across, down);
+  if (frames.length === 1) {
+    note("it gives no distance between slices: 1 mm was taken", !(first.thickness > 0));
+    note("it does not say how it lies in the body", !isPlaced);
+    return { slices: frames, directions: [across, down, normal], gap: first.thickness > 0 ? first.thickness : 1 };
+  }
+  if (!isPlaced) refuse("the slices of this series do not say where they lie (ImagePositionPatient, ImageOrientationPatient)");
+  const slices = frames.map((frame) => ({ ...frame, height: dot(normal, frame.position) })).sort((a, b) => a.height - b.height);
+  const gap = (slices.at(-1).height - slices[0].height) / (slices.length - 1);
+  const gaps = slices.slice(1).map(({ height }, i) => height - slices[i].height);
+  const middle = [...gaps].sort((a, b) => a - b)[gaps.length >> 1];
+  const tolerance = Math.max(Math.min(0.01, 0.1 * middle), 0.02 * middle);
+  if (!gaps.every((one) => one > 0 && Math.abs(one - middle) <= tolerance)) refuse("the slices of this series are not evenly spaced: some are missing, or there are several at one place");
+  const [dx, dy] = first.spacing ?? [1, 1];
+  const isShifted = ({ position }) => {
+    const from = position.map((x, i) => x - slices[0].position[i]);
+    return Math.abs(dot(across, from)) > 0.05 * dy || Math.abs(dot(down, from)) > 0.05 * dx;
+  };
+  if (slices.some(isShifted)) refuse("the slices of this series are shifted against each other (gantry tilt)");
+  return { slices, directions: [across, down, normal], gap };
+}
+
+function valuesOf({ pixels, bits, stored, signed, little, slope, intercept }, out) {
+  const view = new DataView(pixels.buffer, pixels.byteOffset);
+  const unused = 32 - stored;
+  const factor = slope || 1;
+  for (let i = 0; i < out.length; ++i) {
+    const raw = bits === 8 ? pixels[i] : view.getUint16(2 * i, little);
+    out[i] = factor * (signed ? (raw << unused) >> unused : (raw << unused) >>> unused) + intercept;
+  }
+}
+
+/** The smallest type of the core that has all values. */
+function narrowed(values) {
+  let [least, most, whole] = [Infinity, -Infinity, true];
+  for (const v of values) {
+    least = Math.min(least, v);
+    most = Math.max(most, v);
+    whole &&= Number.isInteger(v);
+  }
+  if (!whole) return values;
+  if (least >= 0 && most <= 255) return Uint8Array.from(values);
+  if (least >= -32768 && most <= 32767) return Int16Array.from(values);
+  return least >= 0 && most <= 65535 ? Uint16Array.from(values) : values;
+}
+
+/** `files` have a name and bytes each. Returns samples, geometry, marks, whether it is of a body, and notes. */
+export async function readDicom(files) {
+  const frames = [];
+  const notes = [];
+  for (const { name, bytes } of files) {
+    if (!isDicom(bytes)) {
+      notes.push(`${name} is no DICOM and was passed over`);
+      continue;
+    }
+    try {
+      frames.push(...framesOf(await parsed(bytes)));
+    } catch (error) {
+      throw new Error(`${name}: ${error instanceof RangeError ? `it is cut off or damaged: ${again}` : error.message}`);
+    }
+  }
+  if (frames.length === 0) refuse("none of these files is DICOM with pixels", "choose others");
+  oneSeries(frames);
+  const { slices, directions, gap } = stacked(frames, notes);
+  const { rows, columns, spacing = [1, 1], orientation, position: place, modality, label } = slices[0];
+  if (label) notes.push(`series '${label}'`);
+  const values = new Float32Array(countOf([columns, rows, slices.length]));
+  slices.forEach((slice, i) => valuesOf(slice, values.subarray(i * rows * columns, (i + 1) * rows * columns)));
+  const isPlaced = orientation !== undefined && place !== undefined;
+  const axes = [spacing[1], spacing[0], gap].map((step, a) => directions[a].map((x) => x * step));
+  return {
+    samples: narrowed(values), geometry: geometryOf([columns, rows, slices.length], axes, isPlaced ? place : [0, 0, 0]), oriented: isPlaced, notes,
+    marks: modality === "CT" ? { skin: -300, bone: 250 } : undefined, // [HU] docs/isovalue.md
+  };
+}
