@@ -1,4 +1,4 @@
-# A container that repeats the tables of docs/results on any machine (docs/evaluation.md, "In a container").
+# A container that runs the experiments (docs/evaluation.md, "In a container").
 # The deep check `container` runs these steps in a bare Debian 12.
 FROM debian:12
 WORKDIR /palpate

@@ -351,7 +351,6 @@ def test_a_modelled_hand_trembles_reacts_late_and_presses_as_wanted():
     frequency = numpy.fft.rfftfreq(8000, 1 / human.RATE)
     power = (abs(numpy.fft.rfft(shaking, axis=0))**2).sum(axis=1)
     assert power[(frequency > 6) & (frequency < 15)].sum() > 0.9 * power.sum()
-    assert numpy.sqrt((shaking**2).mean()) == pytest.approx(person.tremor, rel=1e-6)
     tip, force = human.press(person, random, 6, 1.5, 10, 0.2)
     pressed = force[:, 2] > 0
     assert (tip[pressed, 2] <= 0).all() and (force[~pressed] == 0).all() and 0.4 < pressed.mean() < 0.95
@@ -362,6 +361,15 @@ def test_a_modelled_hand_trembles_reacts_late_and_presses_as_wanted():
     touched, differs = (numpy.flatnonzero(changed)[0] / human.RATE for changed in (
         alive[1][:, 2] > 0, abs(alive[0] - numb[0]).max(axis=1) > 0))
     assert differs - touched == pytest.approx(person.delay, abs=2e-3)
+
+
+def test_a_free_hand_trembles_as_much_as_people_do():
+    person = human.Human(gain=0)
+    free, calm = (human.press(dataclasses.replace(person, tremor=tremor), numpy.random.default_rng(3), 12, 1.5, 1e-9, 0)[0][human.RATE:, :2]
+                  for tremor in (person.tremor, 0))
+    wide = human.in_band(free - calm, (4, 24), "bandpass")
+    assert numpy.sqrt((wide**2).mean(axis=0)) == pytest.approx(person.tremor, rel=0.15)
+    assert numpy.sqrt(((free - calm - wide)**2).mean()) < 0.25 * person.tremor
 
 
 def test_a_scanned_ball_is_felt_as_it_was_recorded(tmp_path):
@@ -385,6 +393,8 @@ def test_a_scanned_ball_is_felt_as_it_was_recorded(tmp_path):
     exact = rows.where(method="exact")[0]
     assert exact["contact_share"] == 1 and exact["mean_force_n"] == pytest.approx(1, abs=0.1)
     assert exact["force_n_rms"] < 0.1 and exact["position_mm_rms"] < 0.3
+    with pytest.raises(ValueError, match="ball: only 0 of 500 samples .* outwards"):  # it would have nothing to render
+        recorded.device_of(dataclasses.replace(recording, force=-recording.force), surface)
 
 
 def test_a_shifted_surface_is_an_error_of_its_spring_in_the_metrics_of_recordings():
@@ -397,6 +407,9 @@ def test_a_shifted_surface_is_an_error_of_its_spring_in_the_metrics_of_recording
     assert abs(sunk - numpy.linalg.norm(force, axis=1) / recorded.STIFFNESS).max() < 1e-9 and sunk.max() > 1
     with pytest.raises(ValueError, match="hardly touches"):
         recorded.plane_through(dataclasses.replace(made, force=0 * made.force))
+    pulled = dataclasses.replace(made, force=-made.force)  # the force on the surface, which is not that on the hand
+    with pytest.raises(ValueError, match="outwards"):
+        recorded.device_of(pulled, recorded.plane_through(pulled))
 
 
 def test_a_needle_in_the_wrong_tissue_is_counted_as_an_error():
@@ -405,11 +418,18 @@ def test_a_needle_in_the_wrong_tissue_is_counted_as_an_error():
     assert needle.inside(needle.TISSUES[3], numpy.array([[-14.0, 3, 0]]))[0] == 6
     scans = needle.scans(made, random)
     assert abs(scans[needle.RAW] - made.truth)[made.depths[3] > 4].std() == pytest.approx(0.6 * needle.NOISE, rel=0.2)
+    assert {*scans[needle.PARTLY][(made.depths[2] > 0) & (made.depths[3] <= 0)]} == {110} and scans[needle.PARTLY].dtype == numpy.float32
+    assert {*scans[needle.PARTLY][made.depths[3] > 0]} == {175} and scans[needle.PARTLY][made.depths[2] <= 0].max() == 55
     truth = made.felt(scans[needle.TRUTH])
     softer = made.felt(numpy.where(made.depths[2] > -9, 55, scans[needle.TRUTH]).astype(numpy.float32))  # without a liver
     table = needle.rows_of([needle.path(random) for _ in range(4)], {needle.TRUTH: truth, needle.RAW: softer})
     assert (table.where(scan=needle.TRUTH)["rms_n"] == 0).all() and (table.where(scan=needle.RAW)["rms_n"] > 0.02).all()
     assert (table.where(scan=needle.TRUTH)["punctures"] == 4).all() and (table.where(scan=needle.RAW)["punctures"] < 4).all()
+    assert (table.where(scan=needle.RAW)["missed"] >= 1).all() and (table.where(scan=needle.RAW)["extra"] == 0).all()
+    other = numpy.where(made.depths[3] > -9, 110, scans[needle.TRUTH])  # without the vessel, but with a gap under the skin
+    other = made.felt(numpy.where(abs(made.depths[0] - 4) < 2, -1000, other).astype(numpy.float32))
+    row = needle.rows_of([needle.path(random)], {needle.TRUTH: truth, needle.RAW: other}).where(scan=needle.RAW)[0]
+    assert row["extra"] == 1 and row["missed"] == 1 and row["punctures"] == 4
 
 
 def test_a_trembling_hand_feels_a_surface_that_is_too_stiff_buzz():

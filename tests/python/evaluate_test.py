@@ -29,7 +29,7 @@ BEFORE = pathlib.Path(__file__).with_name("evaluate")
 MODULES = {"drift": drift, "fall-through": fall_through, "fidelity": fidelity, "penetration": penetration,
            "walk-through": walk_through, "notice": notice}
 CLAIMS = {"drift": 4, "fall-through": 9, "performance": 3, "scaling": 7, "fidelity": 9, "stability": 9, "walk-through": 5,
-          "penetration": 6, "layers": 7, "tools": 5, "streaming": 2, "notice": 4, "recorded": 4, "needle": 4}
+          "penetration": 6, "layers": 7, "tools": 5, "streaming": 2, "notice": 4, "recorded": 4, "needle": 3}
 
 
 def evaluate(folder, *words, status=0, environment=None):

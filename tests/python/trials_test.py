@@ -1,5 +1,6 @@
 """Trials with people, by an observer whose threshold is known."""
 
+import copy
 import os
 import subprocess
 import sys
@@ -7,16 +8,17 @@ import sys
 import numpy
 import pytest
 
+import palpate
 from palpate import RenderSetup, trials
 from palpate.trials import Observer, Plan, fit, next_trial, psychometric, put, read, session, staircase
 
 
 @pytest.mark.parametrize("plan", [Plan(0.3), Plan(0.3, differences=(0.03, 0.06, 0.1, 0.2, 0.4), repeats=40)])
-@pytest.mark.parametrize("threshold", [0.06, 0.15])
-def test_a_known_threshold_comes_back(tmp_path, plan, threshold):
+@pytest.mark.parametrize("threshold, slope", [(0.06, 2), (0.15, 2), (0.1, 1), (0.1, 4)])
+def test_a_known_threshold_comes_back(tmp_path, plan, threshold, slope):
     found = []
     for seed in range(6):
-        rows = session(tmp_path / f"{seed}.csv", Plan(**{**vars(plan), "seed": seed}), Observer(threshold, seed=seed))
+        rows = session(tmp_path / f"{seed}.csv", Plan(**{**vars(plan), "seed": seed}), Observer(threshold, slope, seed))
         found.append(fit(rows, resamples=20)[0])
     assert numpy.exp(numpy.log(found).mean()) == pytest.approx(threshold, rel=0.3)
 
@@ -31,12 +33,32 @@ def test_intervals_contain_the_threshold_nearly_always(tmp_path):
 
 
 def test_a_staircase_goes_down_after_three_right_answers_and_up_after_a_wrong_one():
-    assert staircase(0.4, [1, 1]) == (0.4, [])
-    assert staircase(0.4, [1, 1, 1]) == (0.2, [])
-    assert staircase(0.4, [1, 1, 1, 0]) == (0.4, [0.2])
-    assert staircase(0.4, [0, 0]) == (1.6, [])
-    difference, reversals = staircase(0.4, [1, 1, 1, 0, 1, 1, 1])
+    assert staircase(0.4, [1, 1]) == (0.4, [], 0)
+    assert staircase(0.4, [1, 1, 1]) == (0.2, [], 0)
+    assert staircase(0.4, [1, 1, 1, 0]) == (0.4, [0.2], 0)
+    assert staircase(0.4, [0, 0]) == (1.6, [], 0)
+    assert staircase(0.4, [0, 0, 0, 0], most=1.0) == (1.0, [], 2)
+    difference, reversals, _ = staircase(0.4, [1, 1, 1, 0, 1, 1, 1])
     assert reversals == [0.2, 0.4] and difference == pytest.approx(0.4 / 1.3)
+
+
+@pytest.mark.parametrize("most", [0.5, 1, 3])
+def test_somebody_who_guesses_never_gets_more_than_the_plan_allows_and_is_soon_done(tmp_path, most):
+    lengths = []
+    for seed in range(20):
+        random, plan = numpy.random.default_rng(seed), Plan(0.2, seed=seed, most=most)
+        rows = session(tmp_path / f"{seed}.csv", plan, lambda _, random=random: 1 + int(random.integers(2)))
+        lengths.append(len(rows))
+        assert max(max(row["first"], row["second"]) for row in rows) <= 0.2 * (1 + most) + 1e-12
+        assert sum(row["difference"] >= most for row in rows) <= trials.AT_CEILING
+    assert numpy.median(lengths) < 50
+
+
+def test_a_threshold_beyond_the_differences_that_were_asked_is_no_number(tmp_path):
+    plan = Plan(1.0, differences=(0.03, 0.06, 0.1), repeats=40)
+    for threshold, known in ((0.06, True), (0.4, False), (0.005, False)):
+        found, low, high, _ = fit(session(tmp_path / f"{threshold}.csv", plan, Observer(threshold)), resamples=20)
+        assert numpy.isfinite(found) == known and low <= high
 
 
 def test_an_interrupted_session_continues_as_if_it_had_not_been(tmp_path):
@@ -84,10 +106,26 @@ def test_settings_are_found_by_name_and_plans_are_checked():
     assert setup.force.damping == 0.001 and setup.stiffness == 0.7
     with pytest.raises(ValueError, match="no setting"):
         put(setup, "force.stickiness", 1)
-    for wrong in ({"standard": 0}, {"standard": 1, "difference": -1}, {"standard": 1, "repeats": 0}):
+    for wrong in ({"standard": 0}, {"standard": 1, "difference": -1}, {"standard": 1, "repeats": 0}, {"standard": 1, "difference": 1.5},
+                  {"standard": 1, "differences": (0.1, 3)}, {"standard": 1, "most": numpy.inf}):
         with pytest.raises(ValueError):
             Plan(**wrong)
-    assert psychometric(0.1, 0.1, 2) == pytest.approx(trials.GUESS + (0.5 - trials.LAPSE) * (2 * trials.AT - 1))
+    assert psychometric(0.1, 0.1, 2) == pytest.approx(trials.GUESS + (0.5 - trials.LAPSE) * (2 * trials.AT - 1)) == pytest.approx(0.782, abs=1e-3)
+
+
+def test_a_device_that_tells_only_once_it_is_connected_that_it_is_too_weak_ends_the_session(tmp_path, monkeypatch):
+    class Weak(palpate.Run):
+        def __enter__(self):
+            run, limits = super().__enter__(), copy.copy(self.device.limits)
+            limits.physical_damping = 1e-4
+            run.send(limits)
+            return run
+
+    ask = trials.touching(palpate.sample_volume(), 34.5, "simulated:hand=press", "stiffness", 0.3, tmp_path, 0.4, key=lambda _: "1")
+    assert ask(trials.Trial(0, 1.0, 0.4, 0.2)) == 1
+    monkeypatch.setattr(palpate, "Run", Weak)
+    with pytest.raises(ValueError, match="0.4: the device renders only 0.1 stably"):
+        ask(trials.Trial(0, 1.0, 0.4, 0.2))
 
 
 def test_a_person_at_the_keys_touches_answers_and_is_analysed(tmp_path):
@@ -95,12 +133,20 @@ def test_a_person_at_the_keys_touches_answers_and_is_analysed(tmp_path):
         return subprocess.run([sys.executable, "-B", "-m", "palpate.trials", *words], cwd=tmp_path, input=keys, text=True,
                               capture_output=True, check=False, env=os.environ)
 
-    import palpate
     run = ("run", f"{palpate.sample_volume()}@34.5", "p.csv", "--standard", "0.2", "--differences", "0.5", "--repeats", "2",
            "--seconds", "0.2")
     assert start(*run, keys="x\n1\n2\n").returncode == 0
     rows = read(tmp_path / "p.csv")
     assert [row["answer"] for row in rows] == [1, 2] and {rows[0]["first"], rows[0]["second"]} == {0.2, 0.2 * 1.5}
+    touches = sorted((tmp_path / "p.touches").iterdir())
+    assert [path.name for path in touches] == ["0-1.csv", "0-2.csv", "1-1.csv", "1-2.csv"]
+    assert all(palpate.read_recording(path).trace.force.any() for path in touches)
+    # A hand far from the head feels nothing and is asked again, until the keys end.
+    (tmp_path / "air.csv").write_text("t,x,y,z\n0,0,0,500\n9,0,0,500\n")
+    air = start(*run[:2], "r.csv", *run[3:], "--device", f"simulated:file={tmp_path / 'air.csv'}", keys="\n")
+    assert air.returncode == 2 and air.stderr.count("touch 2") == 2 and read(tmp_path / "r.csv") == []
+    stiff = start(*run[:2], "s.csv", "--standard", "2", "--device", "simulated:touch,hand=press", "--seconds", "0.2", keys="1\n")
+    assert stiff.returncode == 2 and "stiffness [N/mm] = 4: must be at most 3.6" in stiff.stderr and "touch 1" not in stiff.stderr
     few = start("analyse", "p.csv")
     assert few.returncode == 2 and "10 trials" in few.stderr
     session(tmp_path / "q.csv", Plan(0.3), Observer(0.1))

@@ -22,26 +22,29 @@ _Row = dict[str, float]
 
 COLUMNS = ("trial", "difference", "first", "second", "answer", "correct")
 GUESS, LAPSE = 0.5, 0.02  # of two alternatives; answers beside the question, assumed
-DOWN = 3  # right answers in a row that make it harder: converges to 79.4 % (Levitt 1971)
+DOWN = 3  # right answers in a row that make it harder: converges to 79.4 % without lapses (Levitt 1971)
 AT = 0.5 ** (1 / DOWN)
-REVERSALS, DROPPED, MOST = 12, 4, 120  # of a staircase: where it ends, which do not count, and trials at most
+REVERSALS, MOST, AT_CEILING = 12, 120, 20  # of a staircase: it ends after so many of them, trials, or trials at its largest difference
 STEPS = (2.0, 1.3)  # factors before and after the first two reversals
 
 
 @dataclasses.dataclass(frozen=True)
 class Plan:
     """standard: of the setting; difference: of the first trial of a staircase, as a part of the standard; differences and repeats:
-    constant ones instead; seed: of their order and of which touch is the stronger one."""
+    constant ones instead; seed: of their order and of which touch is the stronger one; most: the largest difference that is asked."""
 
     standard: float
     difference: float = 0.5
     differences: Sequence[float] = ()
     repeats: int = 20
     seed: int = 1
+    most: float = 1.0
 
     def __post_init__(self) -> None:
         if not (self.standard > 0 and all(0 < d < math.inf for d in (self.difference, *self.differences)) and self.repeats > 0):
             raise ValueError("standard, differences and repeats have to be above 0")
+        if not max((self.difference, *self.differences)) <= self.most < math.inf:
+            raise ValueError(f"differences have to be at most {self.most:g}, the largest one that the plan allows")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -52,18 +55,19 @@ class Trial:
     second: float
 
 
-def staircase(difference: float, correct: Sequence[float]) -> tuple[float, list[float]]:
-    """(the next difference, the differences at reversals) after answers that were right or not."""
-    reversals, row, way = [], 0, 0
+def staircase(difference: float, correct: Sequence[float], most: float = math.inf) -> tuple[float, list[float], int]:
+    """(the next difference, the differences at reversals, trials at `most`) after answers that were right or not."""
+    reversals, row, way, ceiling = [], 0, 0, 0
     for right in correct:
+        ceiling += difference >= most
         row = row + 1 if right else 0
         turn = 1 if not right else -1 if row == DOWN else 0
         if turn:
             row = 0
             if way and turn != way:
                 reversals.append(difference)
-            way, difference = turn, difference * STEPS[len(reversals) >= 2]**turn
-    return difference, reversals
+            way, difference = turn, min(most, difference * STEPS[len(reversals) >= 2]**turn)
+    return difference, reversals, ceiling
 
 
 def next_trial(plan: Plan, correct: Sequence[float]) -> Optional[Trial]:
@@ -75,8 +79,8 @@ def next_trial(plan: Plan, correct: Sequence[float]) -> Optional[Trial]:
             return None
         difference = float(numpy.random.default_rng([plan.seed, 0]).permutation(every)[done])
     else:
-        difference, reversals = staircase(plan.difference, correct)
-        if len(reversals) >= REVERSALS or done >= MOST:
+        difference, reversals, ceiling = staircase(plan.difference, correct, plan.most)
+        if len(reversals) >= REVERSALS or done >= MOST or ceiling >= AT_CEILING:
             return None
     pair = [plan.standard, plan.standard * (1 + difference)]
     if numpy.random.default_rng([plan.seed, 1, done]).random() < 0.5:
@@ -122,13 +126,14 @@ def session(path: _Path, plan: Plan, ask: Callable[[Trial], int]) -> list[_Row]:
 
 
 def psychometric(difference: Any, threshold: float, slope: float) -> Any:
-    """The part of right answers: a Weibull function of log difference, which is 79.4 % at the threshold without lapses."""
+    """The part of right answers: a Weibull function of log difference, which is 78.2 % at the threshold, and 79.4 % without lapses."""
     reach = -numpy.log(2 * (1 - AT))
     return GUESS + (1 - GUESS - LAPSE) * (1 - numpy.exp(-reach * (numpy.asarray(difference) / threshold)**slope))
 
 
 def fit(rows: Sequence[_Row], resamples: int = 200, seed: int = 1) -> tuple[float, float, float, float]:
-    """(threshold, low, high, slope): of highest likelihood, with the 95 % interval of a bootstrap by trials. Raises ValueError."""
+    """(threshold, low, high, slope): of highest likelihood, with the 95 % interval of a bootstrap by trials. The threshold is NaN if it is
+    not within the differences that were asked. Raises ValueError."""
     from scipy.optimize import minimize  # not needed to run a session
     difference, correct = (numpy.array([row[name] for row in rows], dtype=float) for name in ("difference", "correct"))
     if len(difference) < 10 or not 0 < correct.mean() < 1:
@@ -144,6 +149,8 @@ def fit(rows: Sequence[_Row], resamples: int = 200, seed: int = 1) -> tuple[floa
     random, every = numpy.random.default_rng(seed), numpy.arange(len(difference))
     drawn = [best(random.choice(every, len(every)))[0] for _ in range(resamples)]
     threshold, slope = best(every)
+    if not difference.min() <= threshold <= difference.max():
+        threshold = math.nan
     return float(threshold), *map(float, numpy.quantile(drawn, (0.025, 0.975))), float(slope)
 
 
@@ -169,25 +176,48 @@ def put(render: Any, name: str, value: float) -> None:
     setattr(owner, last, value)
 
 
-def touching(volume: _Path, level: float, device: str, name: str, seconds: float,
+def touching(volume: _Path, level: float, device: str, name: str, seconds: float, folder: _Path, largest: float,
              key: Callable[[str], str] = input) -> Callable[[Trial], int]:
-    """Asks by two touches of a device, one after the other, and a key."""
+    """Asks by two touches of a device, one after the other, and a key. Each touch is recorded in the
+    folder. A trial in which nothing was felt is asked again. largest: value of the setting. Raises ValueError if the device cannot
+    render it as it is."""
     import palpate
-    loaded = palpate.load(volume)
+    loaded, folder = palpate.load(volume), Path(folder)
+
+    def opened(value):
+        setup = palpate.Setup(isovalue=level, device=device)
+        put(setup.render, name, value)
+        return palpate.Run(loaded, setup), setup.render.stiffness or 0
+
+    def felt(value, file):
+        run, stiffness = opened(value)
+        file.unlink(missing_ok=True)  # of a trial that was interrupted
+        with run:
+            run.record(file)
+            time.sleep(seconds)
+            run.stop_recording()
+            if run.problem:
+                raise RuntimeError(f"device: {run.problem}")
+            now = run.snapshot()
+            if now and now.stiffness < stiffness:  # a device may tell its limits only once it is connected
+                raise ValueError(f"stiffness [N/mm] = {stiffness:g}: the device renders only {now.stiffness:g} stably")
+        return bool(palpate.read_recording(file).trace.force.any())
 
     def ask(trial):
-        for number, value in enumerate((trial.first, trial.second), 1):
-            setup = palpate.Setup(isovalue=level, device=device)
-            put(setup.render, name, value)
-            print(f"Trial {trial.trial + 1}: touch {number}", file=sys.stderr, flush=True)
-            with palpate.Run(loaded, setup) as run:
-                time.sleep(seconds)
-                if run.problem:
-                    raise RuntimeError(f"device: {run.problem}")
+        folder.mkdir(parents=True, exist_ok=True)
+        while True:
+            both = True
+            for number, value in enumerate((trial.first, trial.second), 1):
+                print(f"Trial {trial.trial + 1}: touch {number}", file=sys.stderr, flush=True)
+                both &= felt(value, folder / f"{trial.trial}-{number}.csv")
+            if both:
+                break
+            key("Nothing was felt in one of them. Press Enter to touch both again. ")
         while (answer := key("Which one was more, 1 or 2? ").strip()) not in ("1", "2"):
             pass
         return int(answer)
 
+    opened(largest)  # Run refuses what the device cannot render stably
     return ask
 
 
@@ -200,6 +230,7 @@ def main(words: Optional[Sequence[str]] = None) -> int:
     run.add_argument("--setting", default="stiffness", help="name in RenderSetup, such as force.damping [stiffness]")
     run.add_argument("--standard", type=float, required=True, help="value of the setting that others are compared with")
     run.add_argument("--difference", type=float, default=0.5, help="of the staircase's first trial, as a part of the standard [0.5]")
+    run.add_argument("--most", type=float, default=1, help="largest difference that is asked, as a part of the standard [1]")
     run.add_argument("--differences", type=float, nargs="+", default=(), help="constant ones in random order instead of a staircase")
     run.add_argument("--repeats", type=int, default=20, help="of each constant difference [20]")
     run.add_argument("--seed", type=int, default=1, help="another one for each participant [1]")
@@ -211,14 +242,16 @@ def main(words: Optional[Sequence[str]] = None) -> int:
     try:
         if chosen.command == "run":
             volume, _, level = chosen.volume.rpartition("@")
-            plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed)
-            session(chosen.file, plan, touching(volume, float(level), chosen.device, chosen.setting, chosen.seconds))
+            plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed, chosen.most)
+            largest = plan.standard * (1 + (max(plan.differences) if plan.differences else plan.most))
+            touches = Path(chosen.file).with_suffix(".touches")
+            session(chosen.file, plan, touching(volume, float(level), chosen.device, chosen.setting, chosen.seconds, touches, largest))
             return 0
         print("file,trials,threshold,low,high,slope")
         for file in chosen.files:
             rows = read(file)
             print(file, len(rows), *(f"{value:.4g}" for value in fit(rows)), sep=",")
-    except (ValueError, OSError, RuntimeError) as error:
+    except (ValueError, OSError, RuntimeError, EOFError) as error:
         print(f"palpate: {error}", file=sys.stderr)
         return 2
     return 0

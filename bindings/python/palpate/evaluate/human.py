@@ -14,15 +14,15 @@ SMOOTH = 1.0  # [mm/s] below which friction falls to 0, so that a slow hand does
 
 @dataclasses.dataclass(frozen=True)
 class Human:
-    """Mass, damping and stiffness: fitted to a person who held a haptic handle (van Beek et al. 2016, Scientific Reports 6, 18004,
-    Fig. 3). Tremor: 50 to 200 µm root mean square, commonly at 8 to 12 Hz (reviewed in PMC3989364), and 182 µm in surgery (Riviere and
-    Jensen 2000). Willed motion: 98.9 % of its power is below 2 Hz (Riviere, Rader and Khosla 1997). Delay: of a simple reaction to
+    """Mass, damping and stiffness: fitted to one trial of one person who held a haptic handle (van Beek et al. 2015, Scientific Reports
+    5, 18004, Fig. 3). Tremor of the hand: 50 to 200 µm root mean square, commonly at 8 to 12 Hz (reviewed in PMC3989364), and 182 µm in
+    surgery (Riviere and Jensen 2000). Willed motion: 98.9 % of its power is below 2 Hz (Riviere, Rader and Khosla 1997). Delay: of a simple reaction to
     touch (Robinson 1934). The gain is assumed."""
 
     mass: float = 0.554  # [kg]
     damping: float = 6.45  # [N s/m]
     stiffness: float = 135.0  # [N/m]
-    tremor: float = 0.1  # [mm] root mean square of the target along an axis
+    tremor: float = 0.1  # [mm] root mean square of the free hand, along an axis
     band: tuple = (8, 12)  # [Hz]
     willed: float = 2.0  # [Hz]
     delay: float = 0.155  # [s]
@@ -40,8 +40,12 @@ def noise(random, count, band, kind):
 
 
 def trembling(human, random, count):
-    """[mm] What tremor adds to a target, (count, 3)."""
-    return human.tremor * noise(random, count, human.band, "bandpass")
+    """[mm] What tremor adds to a target, (count, 3), so that a free hand trembles by human.tremor: its mass, damper and spring pass
+    on only a fifth of what the target does at 10 Hz."""
+    hand = human.tremor * noise(random, count + 2 * RATE, human.band, "bandpass")
+    s = 2j * numpy.pi * numpy.fft.rfftfreq(len(hand), 1 / RATE)[:, None]
+    given = human.stiffness + human.damping * s
+    return numpy.fft.irfft(numpy.fft.rfft(hand, axis=0) * (human.mass * s**2 + given) / given, len(hand), axis=0)[RATE:-RATE]
 
 
 def press(human, random, seconds, wanted, wall, friction):
@@ -66,5 +70,5 @@ def press(human, random, seconds, wanted, wall, friction):
             pull = human.stiffness * (target[tick] - [0, 0, more] - place) + human.damping * (way[tick] - speed)  # [mN]
             speed = speed + step * (1000 * force + pull) / human.mass
             place = place + step * speed
-        tips[tick], forces[tick] = [*place[:2], max(place[2], -normal / wall)], force
+        tips[tick], forces[tick] = [*place[:2], -normal / wall if normal else max(place[2], 0.0)], force
     return tips, forces

@@ -50,7 +50,7 @@ class Phantom:
 
 
 def phantom(spacing):
-    """Borders are as wide as a sample, as a scanner's partial volumes are."""
+    """Borders are ramps two samples wide, so that a level half way between two tissues is met where the ellipsoid is."""
     half = numpy.array(TISSUES[0][2]) + 5.0
     size = numpy.ceil(2 * half / spacing).astype(int) + 1
     points = -half + spacing * numpy.moveaxis(numpy.indices(size[::-1])[::-1], 0, -1)
@@ -65,9 +65,11 @@ def scans(made, random):
     """What a program gets, by the part that is segmented: [HU]."""
     blurred = scipy.ndimage.gaussian_filter(made.truth, BLUR / made.spacing)
     scan = numpy.round(blurred + random.normal(0, NOISE, blurred.shape)).clip(-1024, 3071).astype(numpy.int16)
-    known = made.depths[2] > -made.spacing  # a label's voxels take the intensity that the label stands for
-    painted = numpy.where(known, made.truth, numpy.where(scan > 69, 55, scan)).astype(numpy.float32)
-    return {TRUTH: made.truth.astype(numpy.float32), PARTLY: painted,
+    muscle, liver, vessel = (tissue[1] for tissue in TISSUES[1:])
+    painted = numpy.minimum(scan, muscle)  # outside the labels, nothing is denser than muscle
+    for depth, intensity in zip(made.depths[2:], (liver, vessel)):  # a voxel has the label of the tissue that its centre is in
+        painted[depth > 0] = intensity
+    return {TRUTH: made.truth.astype(numpy.float32), PARTLY: painted.astype(numpy.float32),
             SMOOTHED: palpate.smoothed(palpate.Volume(scan)).array, RAW: scan}
 
 
@@ -88,10 +90,13 @@ def path(random):
 
 
 def forces_on(fresh, way, length):
-    """[N] along the needle, which a hand pushes straight in."""
+    """(depth [mm], force [N] along the needle, which a hand pushes straight in, and how often each surface gave way)."""
     depth = SPEED / RATE * numpy.arange(int(length * RATE / SPEED))
     trace = fresh.copy().follow(times(len(depth)), way.at(depth), pointing=numpy.tile(way.inward, (len(depth), 1)))
-    return depth, -trace["force"] @ way.inward, int(trace["punctured"].sum())
+    # The surface that was touched gives way; of several in one tick, the next deeper one each time.
+    gone = [min(max(trace["layer"][tick - 1], 0) + more, len(TISSUES) - 1)
+            for tick in numpy.flatnonzero(trace["punctured"]) for more in range(trace["punctured"][tick])]
+    return depth, -trace["force"] @ way.inward, numpy.bincount(gone, minlength=len(TISSUES))
 
 
 def rows_of(paths, fields):
@@ -102,7 +107,9 @@ def rows_of(paths, fields):
         made = {name: forces_on(fresh[name], *paths[number]) for name in fresh}
         for name, (depth, force, punctures) in made.items():
             off = abs(force - made[TRUTH][1])
-            yield {"path": number, "scan": name, "ticks": len(depth), "punctures": punctures, "greatest_n": made[TRUTH][1].max(),
+            extra = punctures - made[TRUTH][2]
+            yield {"path": number, "scan": name, "ticks": len(depth), "punctures": punctures.sum(),
+                   "extra": extra.clip(0).sum(), "missed": (-extra).clip(0).sum(), "greatest_n": made[TRUTH][1].max(),
                    "rms_n": numpy.sqrt((off**2).mean()), "most_n": off.max(), "affected_percent": 100 * (off > AFFECTED).mean()}
 
     return Table(row for rows in in_parallel(lambda number: list(one(number)), range(len(paths))) for row in rows)
@@ -110,13 +117,11 @@ def rows_of(paths, fields):
 
 def claims_of(table):
     partly, raw = (table.where(scan=name) for name in (PARTLY, RAW))
-    yield Claim(f"with liver and vessel segmented, the mean RMS error is below the {MASTMEYER['mean_rms_n']:g} N of Mastmeyer et al.",
-                bool(partly["rms_n"].mean() < MASTMEYER["mean_rms_n"]), f"{partly['rms_n'].mean():.3g} N on {len(partly)} paths")
     wanted = table.where(scan=TRUTH)["punctures"]
     yield Claim("with all segmented, every path goes through each of the surfaces once", bool((wanted == len(TISSUES)).all()),
                 f"{int((wanted == len(TISSUES)).sum())} of {len(wanted)} paths")
-    same = int((partly["punctures"] == wanted).sum())
-    yield Claim("with liver and vessel segmented, 99 % of the paths or more go through as many surfaces as in the truth",
+    same = int((partly["extra"] + partly["missed"] == 0).sum())
+    yield Claim("with liver and vessel segmented, 99 % of the paths or more miss no surface and have no extra puncture",
                 same >= 0.99 * len(wanted), f"{same:,} of {len(wanted):,} paths")
     yield Claim("control: without segmentation the error is larger", bool(raw["rms_n"].mean() > partly["rms_n"].mean()),
                 f"{raw['rms_n'].mean():.3g} N")
@@ -127,10 +132,10 @@ def summary_of(table):
         rows = table.where(scan=name)
         yield {"scan": name, "paths": f"{len(rows):,}", "RMS error, mean [95 % interval] [N]": sampling.in_words(rows["rms_n"], "{:.2g}", numpy.mean),
                "greatest error [N]": rows["most_n"].max(), "forces off by more than 0.01 N [%]": rows["affected_percent"].mean(),
-               "false punctures per path": (rows["punctures"] - table.where(scan=TRUTH)["punctures"]).mean()}
+               "extra punctures per path": rows["extra"].mean(), "missed punctures per path": rows["missed"].mean()}
     yield {"scan": "10 patients, partly segmented (published)", "paths": f"{MASTMEYER['paths']:,}",
            "RMS error, mean [95 % interval] [N]": f"{MASTMEYER['mean_rms_n']:g}", "greatest error [N]": MASTMEYER["most_n"],
-           "forces off by more than 0.01 N [%]": MASTMEYER["affected_percent"]}
+           "forces off by more than 0.01 N [%]": f"{MASTMEYER['affected_percent']} (threshold not stated)"}
 
 
 def figure_of(table, paths, fields):
@@ -151,7 +156,7 @@ def figure_of(table, paths, fields):
     right.set(title="error of all paths", xlabel="root mean square [N]", ylabel="part of the paths [%]", xlim=(0, None), ylim=(0, 103))
     for line, place in zip(right.get_lines()[:3], (0.75, 0.5, 0.25)):
         right.text(1.03, place, line.get_label(), color=line.get_color(), transform=right.transAxes, fontsize=7.5)
-    drawn.suptitle("In a CT that is segmented in part, a needle's force is nearly the true one", x=0.01, ha="left")
+    drawn.suptitle("Labels and smoothing both lower the error of a needle's force", x=0.01, ha="left")
     return Figure("", "Left: force on a needle on its way from the skin into the vessel. Right: error of the force on every path, as the "
                   "part of the paths with at most so much. Dashed: the mean of Mastmeyer et al. 2017 in patients.", drawn)
 
@@ -159,13 +164,16 @@ def figure_of(table, paths, fields):
 def paragraphs_of(count, seed):
     return [f"A needle goes in at {SPEED} mm/s on {count:,} random paths, from the front of a phantom through skin and fat, muscle and liver "
             f"into a vessel. All are ellipsoids. The truth is a volume without noise. The CT is the truth, blurred by {BLUR:g} mm, with "
-            f"{NOISE} HU of noise (seed {seed}), rounded to whole HU, 1 mm per sample. The samples of segmented tissues get their "
-            "intensity. All other surfaces are levels half way between two tissues. The same program, with the same properties of tissues, "
-            "renders both, so that the difference is that of the data.",
+            f"{NOISE} HU of noise (seed {seed}), rounded to whole HU, 1 mm per sample. Liver and vessel are segmented by binary labels: a sample "
+            f"whose centre is inside gets the tissue's intensity ({TISSUES[2][1]} or {TISSUES[3][1]} HU). Outside the labels, samples above "
+            f"{TISSUES[1][1]} HU are set to that of muscle, because the labels say that no liver is there. All surfaces are levels half way "
+            "between two tissues. The same program, with the same properties of tissues, renders both, so that the difference is that of the data.",
+            "A puncture is extra if its surface gives way more often than in the truth, and missed if it does so less often. They are counted "
+            "for each surface.",
             "Mastmeyer et al. (2017, Scientific Reports 7, 671) compared forces in partly segmented CT of 10 patients with those in full "
             f"segmentations. On {MASTMEYER['paths']:,} paths, the error was {MASTMEYER['mean_rms_n']:g} N RMS on average and at most "
-            f"{MASTMEYER['most_n']:g} N. It affected {MASTMEYER['affected_percent']} % of the forces. The protocols differ: theirs has anatomy, ribs and deformation, and "
-            "errors of their segmentations. Compare the size, and no more.",
+            f"{MASTMEYER['most_n']:g} N. It affected {MASTMEYER['affected_percent']} % of the forces (threshold not stated). The protocols differ: theirs has "
+            "anatomy, ribs and deformation, and errors of their segmentations. No claim is made about their numbers.",
             "The properties of tissues are chosen, not measured. Most of the error is that a surface gives way a little earlier or later than in "
             "the truth. The whole force of the surface is then missing, or too much, for some ticks."]
 

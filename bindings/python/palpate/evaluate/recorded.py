@@ -85,14 +85,16 @@ class Surface:
 
 
 def plane_through(recording):
-    """The plane that fits best to where the probe touched, with its normal to the side of the forces."""
+    """The plane that fits best to where the probe touched, with its normal to the side where it was free. Without such a place the side
+    is that of the forces."""
     strength = numpy.linalg.norm(recording.force, axis=1)
     touched = recording.position[strength > CONTACT]
     if len(touched) < 3:
         raise ValueError(f"{recording.name}: it hardly touches anything")
     middle = touched.mean(axis=0)
     normal = numpy.linalg.svd(touched - middle, full_matrices=False)[2][2]
-    normal = normal * (numpy.sign(normal @ recording.force.sum(axis=0)) or 1)
+    free = recording.position[strength <= CONTACT] - middle
+    normal = normal * (numpy.sign(normal @ (free if len(free) else recording.force).sum(axis=0)) or 1)
     return Surface("plane", lambda points: (points - ((points - middle) @ normal)[:, None] * normal,
                                             numpy.broadcast_to(normal, points.shape)))
 
@@ -130,10 +132,14 @@ def volume_of(surface, hands, voxel, levels):
 
 
 def device_of(recording, surface):
-    """(the way on the surface, the way of a device that is felt at STIFFNESS, normal forces): the out- and the in-trajectory."""
+    """(the way on the surface, the way of a device that is felt at STIFFNESS, normal forces): the out- and the in-trajectory. Raises
+    ValueError for a force that does not push the hand out of the surface."""
     on, normal = surface.nearest(recording.position)
     pressure = numpy.maximum(0, (recording.force * normal).sum(axis=1))
-    touches = pressure > CONTACT
+    touches, strong = pressure > CONTACT, numpy.linalg.norm(recording.force, axis=1) > CONTACT
+    if touches.sum() <= 0.5 * strong.sum():
+        raise ValueError(f"{recording.name}: only {touches.sum()} of {strong.sum()} samples with a force push the hand out of the surface: "
+                         "the force on the hand is needed, outwards")
     above = recording.position + numpy.maximum(0, 1e-6 - surface.height(recording.position))[:, None] * normal
     out = numpy.where(touches[:, None], on, above)
     return out, out - numpy.where(touches, pressure / STIFFNESS, 0)[:, None] * normal, numpy.where(touches, pressure, 0)[:, None] * normal
@@ -233,11 +239,12 @@ def paragraphs_of(table, names):
             "proxy has no error.",
             f"Recordings: {', '.join(names)}. Published ones are read from the data folder (NAME/probe.traj). They were not at hand, so "
             "the recordings here are modelled. The one named plane comes with the program.",
-            f"The modelled hand has {human.mass:g} kg, {human.damping:g} N s/m and {human.stiffness:g} N/m (fitted by van Beek et al. 2016 to a "
-            f"person who held a handle). It trembles by {1000 * human.tremor:g} µm at {human.band[0]} to {human.band[1]} Hz, moves on purpose "
-            f"below {human.willed:g} Hz (Riviere et al. 1997) and reacts after {1000 * human.delay:g} ms (Robinson 1934). The plane has "
+            f"The modelled hand has {human.mass:g} kg, {human.damping:g} N s/m and {human.stiffness:g} N/m (fitted by van Beek et al. 2015 to one "
+            f"trial of one person who held a handle). While it is free, it trembles by {1000 * human.tremor:g} µm RMS along each axis, at "
+            f"{human.band[0]} to {human.band[1]} Hz. It moves on purpose below {human.willed:g} Hz (Riviere et al. 1997) and reacts after {1000 * human.delay:g} ms (Robinson 1934). The plane has "
             f"{WALL:g} N/mm and a friction of {FRICTION:g}, both assumed.",
-            "A modelled hand is no person, and a plane has no edges. The errors say how the methods render, not how the surface feels."]
+            "On a plane, the volume, the in-trajectory and the reference force are made from the same plane. The error is therefore that of the "
+            "renderer and of the samples. A modelled hand is no person, and a plane has no edges. The errors say how the methods render, not how the surface feels."]
 
 
 def run(options):

@@ -25,7 +25,7 @@ LARGEST = 3.0  # [N/mm] that is tried
 LEAST_STEP, LEAST_ANGLE = 0.01, 0.02  # [mm], [degrees] the least that a step counts for
 MAP_PROFILE = "touch"
 FASTEST = 8000  # [Hz] for the comparison of Choi and Tan
-PRESSED = 10  # [mm] from the surface to the target of a hand that trembles
+PRESSED = 18  # [mm] from the surface to the target of a hand that trembles, some 2 N; with 10 mm it bounces on stiff surfaces
 PROFILES = palpate.simulated_profiles()
 TORQUE = [name for name, profile in PROFILES.items() if profile["maximum_torque"] > 0]
 # Part of the table: title, whether the mechanics have friction, field.
@@ -351,7 +351,7 @@ def paragraphs_of(table, plan, subject):
              "damping / (period / 2 + delay), and check() includes it. Without friction, a device with a delay of half a period takes "
              "half of the stiffness. Friction of the wrist, which is assumed, stills such shaking.",
             "A person does not hold still. In the part trembling, the hand has the mass, damping, stiffness and tremor of the experiment "
-            "recorded, and presses each profile at its rated stiffness. The force above "
+            f"recorded, and presses each profile at its rated stiffness with its target {PRESSED} mm below the surface. The force above "
             f"{SLOW} Hz is at most {largest(table.where(part='trembling')['above_20_hz_percent']):.2g} % of the push at any rate.",
             "Everything here is simulated, and nothing but the tremor is random, so there are no intervals. The profiles' masses, frictions and delays "
             "are partly assumed (docs/devices/simulated.md), so the shape of the map is worth more than its numbers."]
