@@ -1,5 +1,6 @@
 """ROS 1: a real master, a real peer in this process, and the node in a process of its own."""
 
+import contextlib
 import importlib.util
 import math
 import os
@@ -9,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import xmlrpc.client
 
 import numpy
 import pytest
@@ -225,9 +227,17 @@ def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
             assert "with ros" in program.stdout.readline()
             until(lambda: peer.wrench.get_num_connections() == 1 and peer.forces)
 
+            lowest = 0
+
             def presses():
+                """Down to the first force, then up and down there: a force that late poses ended begins low."""
+                nonlocal lowest
                 time.sleep(0.01)
-                peer.height = 100 if peer.height < 0 else peer.height - 0.5
+                if not lowest and not peer.rests():
+                    lowest = peer.height - 1
+                peer.height -= 0.1 if lowest else 0.5
+                if peer.height < lowest:
+                    peer.height = lowest + 3 if lowest else 100
                 return peer.pushes()
             until(presses)
             program.send_signal(end)
@@ -237,6 +247,62 @@ def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
         finally:
             program.kill()
             program.communicate()
+
+
+@pytest.mark.parametrize("end", ["rosnode kill", "a node of the same name"])
+def test_a_node_that_ros_ends_leaves_no_force_and_the_device_is_lost(ros, end):
+    import rosgraph
+    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+        with palpate.Servo(renderer(), node.device(), real_time=False) as servo:
+            until(lambda: servo.snapshot() and servo.snapshot().device.status == "ready")
+            peer.height -= 1.5
+            until(peer.pushes)
+            if end == "rosnode kill":
+                place = rosgraph.Master("/peer").lookupNode("/palpate")
+                with contextlib.suppress(OSError):  # it may end before it answers
+                    xmlrpc.client.ServerProxy(place).shutdown("/peer", "killed by a test")
+            else:
+                Node().close()
+            until(peer.rests)
+            until(lambda: servo.snapshot().device.status == "lost" and not servo.snapshot().tick.force.any())
+            with pytest.raises(palpate.DeviceError, match="the node has ended"):
+                node.publish(servo)
+            node._process.wait()
+            assert peer.rests()
+
+
+def test_states_do_not_keep_a_force_that_the_session_does_not_renew(ros):
+    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+        arm = node.device()
+        with palpate.Servo(renderer(), Still(60), real_time=False) as other:
+            until(lambda: other.snapshot())
+
+            def pushed():
+                arm.write((0, 0, 1), (0, 0, 0))
+                return peer.pushes()
+            until(pushed)
+
+            def rests():
+                for _ in range(20):
+                    node.publish(other)
+                    time.sleep(0.001)
+                return peer.rests()
+            until(rests)
+
+
+def test_forces_that_waited_for_the_process_of_ros_are_not_sent(ros):
+    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+        arm = node.device()
+        until(lambda: peer.forces)
+        os.kill(node._process.pid, signal.SIGSTOP)
+        for _ in range(1000):  # more than the link holds
+            arm.write((0, 0, 1), (0, 0, 0))
+        time.sleep(2 * records.SILENCE)
+        before = len(peer.forces)
+        os.kill(node._process.pid, signal.SIGCONT)
+        until(lambda: len(peer.forces) > before + 10)
+        assert not any(force.wrench.force.x for force in peer.forces)
+        assert not arm._lost
 
 
 def test_axes_are_rotations_and_work_is_the_same_in_both(ros):
@@ -252,7 +318,7 @@ def test_axes_are_rotations_and_work_is_the_same_in_both(ros):
             theirs.send(records.READING.pack(time.monotonic(), *place, *turn, math.nan, 0))
             reading = arm.read()
             arm.write(force, torque)
-            wrench = records.WRENCH.unpack_from(theirs.recv(1000), 1)
+            _, *wrench = records.WRENCH.unpack_from(theirs.recv(1000), 1)
             assert force @ reading.position / 1000 == pytest.approx(numpy.dot(wrench[:3], place))  # N m
             axis = reading.orientation_xyzw[:3] * reading.orientation_xyzw[3]  # either sign is the same turn
             assert torque @ axis / 1000 == pytest.approx(numpy.dot(wrench[3:], turn[:3] * turn[3]))

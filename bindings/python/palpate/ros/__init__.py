@@ -171,7 +171,7 @@ class Arm:
         """Does not wait. A force that ROS does not take is left out, and the node ends one that is old."""
         wrench = (*(self._axes.T @ force), *(self._axes.T @ torque / MM))
         try:
-            self._link.send(node.IS_WRENCH + node.WRENCH.pack(*wrench))
+            self._link.send(node.IS_WRENCH + node.WRENCH.pack(time.monotonic(), *wrench))
         except BlockingIOError:
             pass
         except OSError:

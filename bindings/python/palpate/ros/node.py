@@ -12,19 +12,21 @@ import signal
 import socket
 import struct
 import sys
+import threading
 import time
 
 # To the session: when the pose arrived [s, CLOCK_MONOTONIC], position, orientation x, y, z, w, opening of
 # the gripper [rad] (NaN: none), a bit for each button.
 READING = struct.Struct("=d3d4ddI")
-# From the session, after one byte that tells which: force and torque, or the state (position, orientation,
-# linear and angular velocity of the hand; position and orientation of the proxy; force and torque; then
-# frame, level, message and values as JSON).
-WRENCH, IS_WRENCH = struct.Struct("=6d"), b"w"
+# From the session, after one byte that tells which: when it was sent [s, CLOCK_MONOTONIC], force and torque;
+# or the state (position, orientation, linear and angular velocity of the hand; position and orientation of
+# the proxy; force and torque; then frame, level, message and values as JSON).
+WRENCH, IS_WRENCH = struct.Struct("=7d"), b"w"
 STATE, IS_STATE = struct.Struct("=3d4d3d3d3d4d6d"), b"s"
 # To the session, once, at the beginning: ready, or why not.
 IS_READY, IS_PROBLEM = b"r", b"p"
 SILENCE = 0.02  # [s] after which a force that was not renewed ends
+ZERO = (0,) * 6
 PACKAGES = "python3-rospy python3-geometry-msgs python3-sensor-msgs python3-diagnostic-msgs"
 
 
@@ -35,6 +37,7 @@ class Arm:
         self.ros, self.link = ros, link
         self.stamp = None
         self.frame = ""
+        self.lock, self.released = threading.Lock(), False
         self.opening, self.buttons = math.nan, 0
         self.force = ros.publisher(f"{name}/servo_cf", ros.WrenchStamped)
         self.gripper_topic = ros.subscriber(f"{name}/gripper/measured_js", ros.JointState, self.gripper)
@@ -64,7 +67,17 @@ class Arm:
             pass
 
     def push(self, wrench):
-        self.force.publish(self.ros.stamped_wrench(self.frame, wrench))
+        with self.lock:
+            if not self.released:
+                self.force.publish(self.ros.stamped_wrench(self.frame, wrench))
+
+    def release(self):
+        """Zero, after which no force follows. It takes 100 ms, because other threads send it."""
+        with self.lock:
+            for _ in range(0 if self.released else 5):
+                self.force.publish(self.ros.stamped_wrench(self.frame, ZERO))
+                time.sleep(SILENCE)
+            self.released = True
 
 
 class Topics:
@@ -138,19 +151,35 @@ class Ros:
         return message
 
 
+def drained(link):
+    """The newest record of each kind among all that wait. None: the link is closed."""
+    newest = {}
+    try:
+        while record := link.recv(1 << 16, socket.MSG_DONTWAIT):
+            newest[record[:1]] = record[1:]
+    except BlockingIOError:
+        return newest
+    return None
+
+
 def serve(link, topics, arm):
-    """Until the session closes its end. An arm whose force the session does not renew gets zero."""
+    """Until the link is closed. An arm whose force the session does not renew gets zero."""
+    due = 0.0  # when the arm gets its next zero
     while True:
-        if not select.select([link], [], [], SILENCE if arm else None)[0]:
-            arm.push((0,) * 6)
-            continue
-        record = link.recv(1 << 16)
-        if not record:
+        select.select([link], [], [], max(0, due - time.monotonic()) if arm else None)
+        newest = drained(link)
+        if newest is None:
             return
-        if record[:1] == IS_WRENCH:
-            arm.push(WRENCH.unpack_from(record, 1))
-        else:
-            topics.tell(record[1:])
+        if IS_WRENCH in newest:
+            sent, *wrench = WRENCH.unpack(newest[IS_WRENCH])
+            due = sent + SILENCE
+        if arm and time.monotonic() >= due:
+            arm.push(ZERO)
+            due = time.monotonic() + SILENCE
+        elif arm and IS_WRENCH in newest:
+            arm.push(wrench)
+        if IS_STATE in newest:
+            topics.tell(newest[IS_STATE])
 
 
 def main(number, name, *arguments):
@@ -165,15 +194,22 @@ def main(number, name, *arguments):
     except Exception as error:
         link.send(IS_PROBLEM + str(error).encode())
         return
-    link.send(IS_READY)
+
+    def end():
+        """Also when ROS ends the node, after which rospy sends nothing."""
+        if arm:
+            arm.release()
+        link.shutdown(socket.SHUT_RDWR)
+
+    ros.rospy.on_shutdown(end)
     try:
+        link.send(IS_READY)
         serve(link, topics, arm)
     except ConnectionError:  # the session was killed
         pass
     finally:
-        for _ in range(5 if arm else 0):  # sent by other threads, which need a moment
-            arm.push((0,) * 6)
-            time.sleep(SILENCE)
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        end()
         ros.rospy.signal_shutdown("the session has ended")
 
 
