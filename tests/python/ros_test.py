@@ -25,7 +25,8 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
 from sensor_msgs.msg import JointState, Joy
 
-from palpate.ros import Node, axes_from, velocity
+from palpate.ros import POSES, Arm, Node, axes_from, velocity
+from palpate.ros.__main__ import arguments_from
 from palpate.ros import node as records
 
 
@@ -98,6 +99,11 @@ class Peer:
             topic.unregister()
 
 
+def felt(node):
+    """The node's device, with a force on a busy machine, too: 0.2 N/mm."""
+    return node.device(pose_rate=50)
+
+
 def newest(ros, topic, kind):
     got = []
     return got, ros.Subscriber(topic, kind, got.append)
@@ -159,11 +165,11 @@ def test_topics_are_the_session_in_metres_newtons_and_the_axes_of_the_volume(ros
 
 def test_a_device_of_ros_is_felt_and_its_force_ends_with_its_poses(ros):
     with Peer(ros, "/left") as peer, Node(arm="/left") as node:
-        servo = palpate.Servo(renderer(), node.device(), real_time=False)
+        servo = palpate.Servo(renderer(), felt(node), real_time=False)
         with servo:
             until(lambda: servo.snapshot() and servo.snapshot().device.status == "ready")
             assert servo.snapshot().device.position == pytest.approx((0, 0, peer.height))
-            peer.height -= 1.5
+            peer.height -= 2.2
             until(peer.pushes)
             assert peer.forces[-1].header.frame_id == "base"
             peer.sends = False
@@ -181,7 +187,7 @@ def test_a_device_of_ros_is_felt_and_its_force_ends_with_its_poses(ros):
 def test_a_run_with_a_device_of_ros_has_its_gripper_and_its_buttons_and_is_recorded(ros, tmp_path):
     with Peer(ros, "/left") as peer, Node(arm="/left/") as node:
         run = palpate.Run(palpate.load("synthetic:sphere:40x40x40"), palpate.Setup(real_time=False, clutch=2),
-                          device=node.device())
+                          device=felt(node))
         run.record(tmp_path / "hand.csv")
         with run:
             until(lambda: run.snapshot() and run.snapshot().device.status == "ready")
@@ -189,19 +195,28 @@ def test_a_run_with_a_device_of_ros_has_its_gripper_and_its_buttons_and_is_recor
             peer.opening, peer.buttons = 0.25, [0, 1]
             until(lambda: run.snapshot().clutched and run.snapshot().device.opening == 0.25)
             assert run.snapshot().device.buttons == 2
-            peer.buttons = [1, 0]
+            peer.buttons = [1, 2]  # the second was clicked and is not held
             until(lambda: not run.snapshot().clutched and run.snapshot().device.buttons == 1)
-            peer.buttons = None
+            peer.buttons = peer.opening = None
             peer.joy.unregister()  # its node is gone: nobody holds the button
-            until(lambda: run.snapshot().device.buttons == 0)
+            peer.gripper.unregister()
+            until(lambda: run.snapshot().device.buttons == 0 and run.snapshot().device.opening is None)
+            # It is back, and has not said anything.
+            peer.joy = ros.Publisher("/left/button", Joy, queue_size=1)
+            peer.gripper = ros.Publisher("/left/gripper/measured_js", JointState, queue_size=1)
+            until(lambda: peer.joy.get_num_connections() and peer.gripper.get_num_connections())
+            for place in (peer.height + 1, peer.height + 2):
+                peer.height = place
+                until(lambda: run.snapshot().device.position[2] == pytest.approx(place))
+                assert run.snapshot().device.buttons == 0 and run.snapshot().device.opening is None
         assert run.stop_recording() > 0
         assert palpate.validate(tmp_path / "hand.csv")
 
 
 def test_without_the_process_of_ros_the_device_is_lost_and_the_servo_goes_on(ros):
     with Peer(ros, "/left") as peer, Node(arm="/left") as node:
-        with palpate.Servo(renderer(), node.device(), real_time=False) as servo:
-            peer.height -= 1.5
+        with palpate.Servo(renderer(), felt(node), real_time=False) as servo:
+            peer.height -= 2.2
             until(peer.pushes)
             # Hanging, and then gone.
             os.kill(node._process.pid, signal.SIGSTOP)
@@ -222,7 +237,7 @@ def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
     with Peer(ros, "/left") as peer:
         peer.height = 100  # the hand begins outside
         program = subprocess.Popen([sys.executable, "-B", "-m", "palpate.ros", "synthetic:sphere:40x40x40",
-                                    "--arm", "/left", "__name:=killed"], stdout=subprocess.PIPE, text=True)
+                                    "--arm", "/left", "--pose-rate", "50", "__name:=killed"], stdout=subprocess.PIPE, text=True)
         try:
             assert "with ros" in program.stdout.readline()
             until(lambda: peer.wrench.get_num_connections() == 1 and peer.forces)
@@ -253,9 +268,9 @@ def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
 def test_a_node_that_ros_ends_leaves_no_force_and_the_device_is_lost(ros, end):
     import rosgraph
     with Peer(ros, "/left") as peer, Node(arm="/left") as node:
-        with palpate.Servo(renderer(), node.device(), real_time=False) as servo:
+        with palpate.Servo(renderer(), felt(node), real_time=False) as servo:
             until(lambda: servo.snapshot() and servo.snapshot().device.status == "ready")
-            peer.height -= 1.5
+            peer.height -= 2.2
             until(peer.pushes)
             if end == "rosnode kill":
                 place = rosgraph.Master("/peer").lookupNode("/palpate")
@@ -315,7 +330,9 @@ def test_axes_are_rotations_and_work_is_the_same_in_both(ros):
             place, force, torque = random.normal(size=(3, 3))
             turn = random.normal(size=4)
             turn /= numpy.linalg.norm(turn)
-            theirs.send(records.READING.pack(time.monotonic(), *place, *turn, math.nan, 0))
+            now = time.monotonic()
+            for number in range(POSES):
+                theirs.send(records.READING.pack(now + 0.001 * number, *place, *turn, math.nan, 0, 1))
             reading = arm.read()
             arm.write(force, torque)
             _, *wrench = records.WRENCH.unpack_from(theirs.recv(1000), 1)
@@ -323,7 +340,7 @@ def test_axes_are_rotations_and_work_is_the_same_in_both(ros):
             axis = reading.orientation_xyzw[:3] * reading.orientation_xyzw[3]  # either sign is the same turn
             assert torque @ axis / 1000 == pytest.approx(numpy.dot(wrench[3:], turn[:3] * turn[3]))
             assert abs(reading.orientation_xyzw[3]) == pytest.approx(abs(turn[3]))
-            theirs.send(records.READING.pack(time.monotonic(), *place, 0, 0, 0, 0, math.nan, 0))
+            theirs.send(records.READING.pack(now + 0.001 * POSES, *place, 0, 0, 0, 0, math.nan, 0, 1))
             assert tuple(arm.read().orientation_xyzw) == (0, 0, 0, 1)  # none given
             theirs.close()
             assert arm.read().status == "lost"
@@ -332,6 +349,106 @@ def test_axes_are_rotations_and_work_is_the_same_in_both(ros):
             axes_from(wrong)
     with Node() as node, pytest.raises(ValueError, match="arm"):
         node.device()
+
+
+def test_the_command_line_takes_axes_in_both_forms():
+    for given in (["--axes", "-y,z,-x"], ["--axes=-y,z,-x"]):
+        options, ros = arguments_from(["head.nrrd", *given, "__name:=left", "--arm", "/left"])
+        assert (options.axes, options.arm, ros) == ("-y,z,-x", "/left", ["__name:=left"])
+
+
+def test_poses_that_come_too_slowly_for_the_stiffness_give_no_force():
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    ours.setblocking(False)
+    with ours, theirs:
+        arm = Arm(ours, palpate.DeviceInfo(), "x,y,z", pose_rate=100)
+        limits = arm.info().limits
+        assert limits.delay == pytest.approx(0.002 + 0.005)
+        assert arm.info().stiffness <= limits.physical_damping / (0.5 / limits.rate + limits.delay)
+        arrived = time.monotonic()
+
+        def arrive(count, period, nodes=1):
+            nonlocal arrived
+            for _ in range(count):
+                arrived += period
+                theirs.send(records.READING.pack(arrived, 0, 0, 0, 0, 0, 0, 1, math.nan, 0, nodes))
+        arrive(POSES - 1, 0.009)
+        assert arm.read().status == "starting"
+        arrive(1, 0.009)
+        assert arm.read().status == "ready"
+        arrive(1, 0.03)  # a single one that is late
+        assert arm.read().status == "ready"
+        arrive(POSES, 0.011)
+        with pytest.raises(palpate.DeviceError, match="90.9 poses per second, where pose_rate asks for 100"):
+            arm.read()
+        arrive(POSES, 0.009)
+        assert arm.read().status == "ready"
+        arrive(1, 0.009, nodes=2)
+        with pytest.raises(palpate.DeviceError, match="2 nodes send measured_cp"):
+            arm.read()
+        arrive(1, 0.009)
+        assert arm.read().status == "ready"
+        for rate in (0, -1, math.nan):
+            with pytest.raises(ValueError, match="pose_rate"):
+                Arm(ours, palpate.DeviceInfo(), "x,y,z", pose_rate=rate)
+
+
+SECOND = """
+import rospy
+from geometry_msgs.msg import PoseStamped
+rospy.init_node("second")
+pose = rospy.Publisher("/left/measured_cp", PoseStamped, queue_size=1)
+rospy.spin()
+"""
+
+
+def test_a_second_node_that_sends_poses_ends_the_force(ros):
+    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+        with palpate.Servo(renderer(), felt(node), real_time=False) as servo:
+            until(lambda: servo.snapshot() and servo.snapshot().device.status == "ready")
+            peer.height -= 2.2
+            until(peer.pushes)
+            second = subprocess.Popen([sys.executable, "-c", SECOND])
+            try:
+                until(lambda: "2 nodes send measured_cp" in servo.device_problem)
+                until(peer.rests)
+            finally:
+                second.kill()
+                second.wait()
+            until(peer.pushes)
+
+
+SLOW_START = """
+import sys, time
+from palpate.ros import node
+make = node.Arm.__init__
+def slowly(arm, *arguments):
+    make(arm, *arguments)
+    time.sleep(1)
+node.Arm.__init__ = slowly
+node.main(*sys.argv[1:])
+"""
+
+
+def test_no_pose_comes_before_the_answer_that_the_node_is_ready(ros):
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with Peer(ros, "/left"), ours:
+        with theirs:
+            process = subprocess.Popen([sys.executable, "-c", SLOW_START, str(theirs.fileno()), "/left"],
+                                       pass_fds=[theirs.fileno()])
+        assert ours.recv(1000) == records.IS_READY
+        assert len(ours.recv(1000)) == records.READING.size
+        ours.close()
+        process.wait()
+
+
+def test_a_process_of_ros_that_hangs_is_ended(ros):
+    node = Node()
+    os.kill(node._process.pid, signal.SIGSTOP)
+    closing = threading.Thread(target=node.close, daemon=True)
+    closing.start()
+    until(lambda: node._process.poll() is not None, 60)
+    closing.join()
 
 
 def test_the_velocity_is_that_between_two_ticks():

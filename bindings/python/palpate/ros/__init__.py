@@ -3,6 +3,7 @@
 The node runs in a process of its own. Neither the servo nor the device's thread ever waits for it.
 """
 
+import collections
 import json
 import math
 import socket
@@ -18,7 +19,9 @@ from palpate import FORCE_FLAGS, DeviceError, DeviceInfo, DeviceReading, Run, Se
 from . import node
 
 MM = 1000  # of a metre; N mm of a newton metre
-DELAY = 0.005  # [s] that the way through ROS adds (docs/ros.md)
+DELAY = 0.002  # [s] that the way through ROS adds (docs/ros.md)
+POSE_RATE = 150  # [Hz], the smallest that counts as a pose that is measured again and again
+POSES = 32  # whose mean rate is taken
 LEVELS = {"ready": 0, "finished": 0, "starting": 1, "uncalibrated": 1, "lost": 2, "fault": 2, "stale": 3}
 
 
@@ -108,17 +111,23 @@ class Node:
         except OSError:
             raise DeviceError("ROS: the node has ended") from None
 
-    def device(self, info: Optional[DeviceInfo] = None, axes: str = "-y,z,-x") -> "Arm":
+    def device(self, info: Optional[DeviceInfo] = None, axes: str = "-y,z,-x",
+               pose_rate: float = POSE_RATE) -> "Arm":
         """The device for a Run or a Servo: its pose comes from ARM/measured_cp, its force goes to
-        ARM/servo_cf. info: its limits and workspace; axes: of ROS (axes_from()). Raises ValueError."""
+        ARM/servo_cf. info: its limits and workspace; axes: of ROS (axes_from()); pose_rate: the smallest
+        rate of poses [Hz] with which there is a force. Raises ValueError."""
         if not self._arm:
             raise ValueError("Node(): arm must name the device's namespace")
-        return Arm(self._link, info or DeviceInfo(), axes)
+        return Arm(self._link, info or DeviceInfo(), axes, pose_rate)
 
     def close(self) -> None:
-        """Ends the process, after a force of zero. Any number of times."""
+        """Ends the process, after a force of zero; after 2 s, whatever it does. Any number of times."""
         self._link.close()
-        self._process.wait()
+        try:
+            self._process.wait(timeout=2)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
 
     def __enter__(self) -> "Node":
         return self
@@ -130,16 +139,19 @@ class Node:
 class Arm:
     """A device that a ROS node moves, for palpate.Run and palpate.Servo. Node.device() makes it."""
 
-    def __init__(self, link: socket.socket, info: DeviceInfo, axes: str) -> None:
-        self._link, self._info, self._axes = link, info, axes_from(axes)
+    def __init__(self, link: socket.socket, info: DeviceInfo, axes: str, pose_rate: float = POSE_RATE) -> None:
+        if not pose_rate > 0:
+            raise ValueError(f"pose_rate: {pose_rate} must be above 0 Hz")
+        self._link, self._info, self._axes, self._pose_rate = link, info, axes_from(axes), pose_rate
         self._info.name = "ros"
         self._info.has_orientation = self._info.has_gripper = True
         self._info.buttons = 32
         limits = self._info.limits
-        limits.delay += DELAY
+        limits.delay += DELAY + 0.5 / pose_rate  # a pose that is held acts like a tick of that length
         stable = limits.physical_damping / (0.5 / limits.rate + limits.delay)  # docs/force.md
         self._info.stiffness = min(self._info.stiffness, 0.999 * stable)
-        self._newest: Optional[tuple[Any, ...]] = None
+        self._newest: tuple[Any, ...] = ()
+        self._arrivals: collections.deque[float] = collections.deque(maxlen=POSES)
         self._lost = False
 
     def info(self) -> DeviceInfo:
@@ -149,6 +161,7 @@ class Arm:
         try:
             while record := self._link.recv(node.READING.size):
                 self._newest = node.READING.unpack(record)
+                self._arrivals.append(self._newest[0])
             self._lost = True
         except BlockingIOError:
             pass
@@ -156,11 +169,18 @@ class Arm:
             self._lost = True
 
     def read(self) -> DeviceReading:
-        """The newest pose, as old as it is: after 20 ms the servo gives no force."""
+        """The newest pose, as old as it is: after 20 ms the servo gives no force. Raises DeviceError, which
+        ends the force, while poses come too slowly or from several nodes."""
         self._receive()
-        if self._lost or self._newest is None:
+        if self._lost or len(self._arrivals) < POSES:
             return DeviceReading(status="lost" if self._lost else "starting")
-        arrived, numbers, opening, buttons = self._newest[0], self._newest[1:8], *self._newest[8:]
+        arrived, numbers, opening, buttons, nodes = self._newest[0], self._newest[1:8], *self._newest[8:]
+        if nodes > 1:
+            raise DeviceError(f"ROS: {nodes} nodes send measured_cp, but the hand has one pose: end all but one")
+        passed = arrived - self._arrivals[0]
+        if passed * self._pose_rate > POSES - 1:
+            raise DeviceError(f"ROS: {(POSES - 1) / passed:.1f} poses per second, where pose_rate asks for "
+                              f"{self._pose_rate:g}: send more, or lower it with the stiffness")
         turn = numpy.array(numbers[3:]) if any(numbers[3:]) else numpy.array([0.0, 0.0, 0.0, 1.0])  # none given
         turn[:3] = self._axes @ turn[:3]
         return DeviceReading(position=self._axes @ numbers[:3] * MM, orientation_xyzw=turn, buttons=buttons,

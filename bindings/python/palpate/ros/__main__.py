@@ -7,7 +7,7 @@ import time
 
 import palpate
 
-from . import Node
+from . import POSE_RATE, Node
 
 
 def arguments_from(given):
@@ -21,6 +21,7 @@ def arguments_from(given):
     hand.add_argument("--device", help="as for palpate touch [simulated]")
     hand.add_argument("--arm", help="namespace of a device of ROS: measured_cp moves the hand, servo_cf gets the force")
     parser.add_argument("--axes", default="-y,z,-x", help="of the arm: what right, up and towards the person are in ROS [%(default)s]")
+    parser.add_argument("--pose-rate", type=float, default=POSE_RATE, help="Hz: no force with fewer poses of the arm [%(default)s]")
     parser.add_argument("--model", choices=palpate.simulated_profiles(), help="of the arm: limits and workspace of this model")
     parser.add_argument("--force-limit", type=float, help="N")
     parser.add_argument("--stiffness", type=float, help="N/mm")
@@ -30,7 +31,11 @@ def arguments_from(given):
     parser.add_argument("--rate", type=float, default=100, help="Hz, of the topics [%(default)s]")
     parser.add_argument("--seconds", type=float, default=math.inf, help="ends after this time")
     ros = [text for text in given if ":=" in text]
-    options = parser.parse_args([text for text in given if ":=" not in text])
+    rest = [text for text in given if ":=" not in text]
+    if "--axes" in rest:  # argparse takes -y,z,-x for an option, unless it is joined
+        at = rest.index("--axes")
+        rest[at:at + 2] = ["=".join(rest[at:at + 2])]
+    options = parser.parse_args(rest)
     if not 1 <= options.rate <= 1000:
         parser.error("--rate: 1 to 1000 Hz")
     return options, ros
@@ -57,7 +62,7 @@ def model_info(name):
 def touch(options, ros):
     loaded = palpate.load(options.volume)
     with Node(ros, arm=options.arm or "") as node:
-        arm = node.device(model_info(options.model), options.axes) if options.arm else None
+        arm = node.device(model_info(options.model), options.axes, options.pose_rate) if options.arm else None
         run = palpate.Run(loaded, setup_from(options), device=arm)
         if options.record:
             run.record(options.record)

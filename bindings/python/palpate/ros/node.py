@@ -16,8 +16,8 @@ import threading
 import time
 
 # To the session: when the pose arrived [s, CLOCK_MONOTONIC], position, orientation x, y, z, w, opening of
-# the gripper [rad] (NaN: none), a bit for each button.
-READING = struct.Struct("=d3d4ddI")
+# the gripper [rad] (NaN: none), a bit for each button, how many nodes send poses.
+READING = struct.Struct("=d3d4ddII")
 # From the session, after one byte that tells which: when it was sent [s, CLOCK_MONOTONIC], force and torque;
 # or the state (position, orientation, linear and angular velocity of the hand; position and orientation of
 # the proxy; force and torque; then frame, level, message and values as JSON).
@@ -30,6 +30,24 @@ ZERO = (0,) * 6
 PACKAGES = "python3-rospy python3-geometry-msgs python3-sensor-msgs python3-diagnostic-msgs"
 
 
+class Input:
+    """The newest message of a topic, while the connection that brought it stands: nobody holds a button of a
+    node that is gone."""
+
+    def __init__(self, ros, name, kind):
+        self.message = None
+        self.topic = ros.subscriber(name, kind, self.take)
+
+    def take(self, message):
+        self.message = message
+
+    def newest(self):
+        message = self.message
+        if message and any(link.header is message._connection_header for link in self.topic.impl.connections):
+            return message
+        return None
+
+
 class Arm:
     """A device of another node, with the names of CRTK."""
 
@@ -38,17 +56,23 @@ class Arm:
         self.stamp = None
         self.frame = ""
         self.lock, self.released = threading.Lock(), False
-        self.opening, self.buttons = math.nan, 0
         self.force = ros.publisher(f"{name}/servo_cf", ros.WrenchStamped)
-        self.gripper_topic = ros.subscriber(f"{name}/gripper/measured_js", ros.JointState, self.gripper)
-        self.button_topic = ros.subscriber(f"{name}/button", ros.Joy, self.button)
-        self.pose_topic = ros.subscriber(f"{name}/measured_cp", ros.PoseStamped, self.pose)
+        self.gripper = Input(ros, f"{name}/gripper/measured_js", ros.JointState)
+        self.joy = Input(ros, f"{name}/button", ros.Joy)
+        self.pose_topic = ros.subscriber(f"{name}/measured_cp", ros.PoseStamped, None)
 
-    def gripper(self, message):
-        self.opening = message.position[0] if message.position else math.nan
+    def start(self):
+        """The first record of the link is the answer to the session, so poses are passed on from here."""
+        self.pose_topic.impl.add_callback(self.pose, None)
 
-    def button(self, message):
-        self.buttons = sum(1 << bit for bit, held in enumerate(message.buttons[:32]) if held)
+    def opening(self):
+        gripper = self.gripper.newest()
+        return gripper.position[0] if gripper and gripper.position else math.nan
+
+    def buttons(self):
+        """1 is held. CRTK devices also send 2, which is a click that has ended."""
+        joy = self.joy.newest()
+        return sum(1 << bit for bit, held in enumerate(joy.buttons[:32]) if held == 1) if joy else 0
 
     def pose(self, message):
         """A stamp that stands still is a pose that was not measured again: it becomes stale."""
@@ -57,12 +81,10 @@ class Arm:
             return
         self.stamp, self.frame = stamp, message.header.frame_id
         p, q = message.pose.position, message.pose.orientation
-        # Nobody holds a button of a node that is gone.
-        opening = self.opening if self.gripper_topic.get_num_connections() else math.nan
-        buttons = self.buttons if self.button_topic.get_num_connections() else 0
+        reading = READING.pack(arrived, p.x, p.y, p.z, q.x, q.y, q.z, q.w, self.opening(), self.buttons(),
+                               self.pose_topic.get_num_connections())
         try:
-            self.link.send(READING.pack(arrived, p.x, p.y, p.z, q.x, q.y, q.z, q.w, opening, buttons),
-                           socket.MSG_DONTWAIT)
+            self.link.send(reading, socket.MSG_DONTWAIT)
         except OSError:  # the session does not read, or has ended
             pass
 
@@ -204,6 +226,8 @@ def main(number, name, *arguments):
     ros.rospy.on_shutdown(end)
     try:
         link.send(IS_READY)
+        if arm:
+            arm.start()
         serve(link, topics, arm)
     except ConnectionError:  # the session was killed
         pass
