@@ -286,23 +286,33 @@ def test_a_node_that_ros_ends_leaves_no_force_and_the_device_is_lost(ros, end):
             assert peer.rests()
 
 
-def test_states_do_not_keep_a_force_that_the_session_does_not_renew(ros):
-    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
-        arm = node.device()
-        with palpate.Servo(renderer(), Still(60), real_time=False) as other:
-            until(lambda: other.snapshot())
+def test_states_do_not_keep_a_force_that_the_session_does_not_renew():
+    session, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    theirs.settimeout(None)  # rospy gives every socket one
+    now, pushed, told = [100.0], [], []
 
-            def pushed():
-                arm.write((0, 0, 1), (0, 0, 0))
-                return peer.pushes()
-            until(pushed)
+    class Topics:
+        def tell(self, state):
+            told.append(state)
 
-            def rests():
-                for _ in range(20):
-                    node.publish(other)
-                    time.sleep(0.001)
-                return peer.rests()
-            until(rests)
+    class PushedArm:
+        def push(self, wrench):
+            pushed.append((now[0], tuple(wrench)))
+
+    def wait(*_):
+        """A state each 5 ms; the force is not renewed after the first."""
+        now[0] += 0.005
+        if now[0] < 100.1:
+            session.send(records.IS_STATE)
+        else:
+            session.close()
+
+    session.send(records.IS_WRENCH + records.WRENCH.pack(now[0], 1, 0, 0, 0, 0, 0))
+    records.serve(theirs, Topics(), PushedArm(), clock=lambda: now[0], wait=wait)
+    assert len(told) > 15
+    assert pushed[0][1] == (1, 0, 0, 0, 0, 0)
+    assert pushed[1][1] == records.ZERO and pushed[1][0] < 100 + records.SILENCE + 0.01
+    assert all(wrench == records.ZERO for _, wrench in pushed[1:])
 
 
 def test_forces_that_waited_for_the_process_of_ros_are_not_sent(ros):

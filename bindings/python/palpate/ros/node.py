@@ -174,30 +174,33 @@ class Ros:
 
 
 def drained(link):
-    """The newest record of each kind among all that wait. None: the link is closed."""
+    """The newest record of each kind among those that wait. None: the link is closed."""
     newest = {}
     try:
-        while record := link.recv(1 << 16, socket.MSG_DONTWAIT):
+        for _ in range(1000):  # more than the link holds: a fast sender must not hold this up
+            record = link.recv(1 << 16, socket.MSG_DONTWAIT)
+            if not record:
+                return None
             newest[record[:1]] = record[1:]
     except BlockingIOError:
-        return newest
-    return None
+        pass
+    return newest
 
 
-def serve(link, topics, arm):
+def serve(link, topics, arm, clock=time.monotonic, wait=select.select):
     """Until the link is closed. An arm whose force the session does not renew gets zero."""
     due = 0.0  # when the arm gets its next zero
     while True:
-        select.select([link], [], [], max(0, due - time.monotonic()) if arm else None)
+        wait([link], [], [], max(0, due - clock()) if arm else None)
         newest = drained(link)
         if newest is None:
             return
         if IS_WRENCH in newest:
             sent, *wrench = WRENCH.unpack(newest[IS_WRENCH])
             due = sent + SILENCE
-        if arm and time.monotonic() >= due:
+        if arm and clock() >= due:
             arm.push(ZERO)
-            due = time.monotonic() + SILENCE
+            due = clock() + SILENCE
         elif arm and IS_WRENCH in newest:
             arm.push(wrench)
         if IS_STATE in newest:
