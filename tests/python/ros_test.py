@@ -428,6 +428,19 @@ def test_a_second_node_that_sends_poses_ends_the_force(ros):
             until(peer.pushes)
 
 
+def test_a_volume_that_is_not_there_and_ctrl_c_have_their_exit_statuses(ros, tmp_path):
+    command = [sys.executable, "-B", "-m", "palpate.ros"]
+    lost = subprocess.run([*command, tmp_path / "lost.nrrd"], stderr=subprocess.PIPE, text=True, check=False)
+    assert lost.returncode == 3 and lost.stderr == f"palpate.ros: {tmp_path / 'lost.nrrd'}: does not exist; check the name\n"
+    recorded = tmp_path / "hand.csv"
+    session = subprocess.Popen([*command, "synthetic:sphere:16x16x16", "--record", recorded], stdout=subprocess.PIPE)
+    assert session.stdout.readline().startswith(b"touching")
+    session.send_signal(signal.SIGINT)
+    assert session.wait() == 130
+    session.stdout.close()
+    assert palpate.validate(recorded)["complete"]
+
+
 SLOW_START = """
 import sys, time
 from palpate.ros import node

@@ -17,6 +17,8 @@ from typing import Any, Optional, Union
 
 import numpy
 
+from .errors import exit_status
+
 _Path = Union[str, Path]
 _Row = dict[str, float]
 
@@ -251,9 +253,12 @@ def main(words: Optional[Sequence[str]] = None) -> int:
         for file in chosen.files:
             rows = read(file)
             print(file, len(rows), *(f"{value:.4g}" for value in fit(rows)), sep=",")
+    except KeyboardInterrupt as error:
+        print("\nthe same command continues", file=sys.stderr)
+        return exit_status(error)
     except (ValueError, OSError, RuntimeError, EOFError) as error:
         print(f"palpate: {error}", file=sys.stderr)
-        return 2
+        return exit_status(error)
     return 0
 
 

@@ -16,6 +16,9 @@ from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
 from pydicom.sequence import Sequence
 from pydicom.uid import ExplicitVRBigEndian, ExplicitVRLittleEndian, ImplicitVRLittleEndian, JPEGLosslessSV1, generate_uid
 
+sys.path.insert(0, str(Path(__file__).parents[2] / "stream"))
+from zarr_reference import crc32c
+
 CT = "1.2.840.10008.5.1.4.1.1.2"
 ENHANCED_CT = "1.2.840.10008.5.1.4.1.1.2.1"
 VALUES = (np.arange(4 * 5 * 6).reshape(4, 5, 6) * 7 % 251).astype(np.int16)  # z, y, x
@@ -96,15 +99,6 @@ def ome(folder, compressor, dtype="<i2", order="C", separator="/", noise=False):
     group.attrs["multiscales"] = [{"version": "0.4", "axes": axes, "datasets": [{"path": "0", "coordinateTransformations": [
         {"type": "scale", "scale": [1, 3000, 2000, 1000]}, {"type": "translation", "translation": [0, 30000, 20000, 10000]}]}]}]
     values.astype("<f4").tofile(folder.with_suffix(".raw"))
-
-
-def crc32c(data):
-    total = 0xffffffff
-    for byte in data:
-        total ^= byte
-        for _ in range(8):
-            total = total >> 1 ^ (0x82f63b78 if total & 1 else 0)
-    return struct.pack("<I", total ^ 0xffffffff)
 
 
 def sharded(folder):

@@ -7,6 +7,7 @@ import time
 
 import palpate
 
+from ..errors import exit_status
 from . import POSE_RATE, Node
 
 
@@ -66,14 +67,15 @@ def touch(options, ros):
         run = palpate.Run(loaded, setup_from(options), device=arm)
         if options.record:
             run.record(options.record)
-        with run:
-            print(f"touching {options.volume} at isovalue {run.isovalue:g} with {run.device.name}; Ctrl-C ends it",
-                  flush=True)
-            end = time.monotonic() + options.seconds
-            while time.monotonic() < end:
-                node.publish(run)
-                time.sleep(1 / options.rate)
-        if options.record:
+        try:
+            with run:
+                print(f"touching {options.volume} at isovalue {run.isovalue:g} with {run.device.name}; Ctrl-C ends it",
+                      flush=True)
+                end = time.monotonic() + options.seconds
+                while time.monotonic() < end:
+                    node.publish(run)
+                    time.sleep(1 / options.rate)
+        finally:
             run.stop_recording()
 
 
@@ -81,10 +83,11 @@ def main():
     options, ros = arguments_from(sys.argv[1:])
     try:
         touch(options, ros)
-    except KeyboardInterrupt:
-        pass
+    except KeyboardInterrupt as error:
+        sys.exit(exit_status(error))
     except (palpate.Error, ValueError) as error:
-        sys.exit(f"palpate.ros: {error}")
+        print(f"palpate.ros: {error}", file=sys.stderr)
+        sys.exit(exit_status(error))
 
 
 if __name__ == "__main__":
