@@ -34,8 +34,14 @@ void Blocks::read(int level, const SampleBox& box, const SampleBox& room, std::s
 
 void Blocks::load(int level, const SampleBox& box, const std::stop_token& stop) {
     if (!keeps(level)) return;
+    for_each_stored(level, box, [&](const SampleBox& piece) { read_if_unread(level, piece, stop); });
+}
+
+void Blocks::load_one(int level, const SampleBox& box, const std::stop_token& stop) {
+    if (!keeps(level)) return;
+    bool is_done = false;
     for_each_stored(level, box, [&](const SampleBox& piece) {
-        if (!has(level, piece)) block(level, piece, stop);
+        is_done = is_done || read_if_unread(level, piece, stop);
     });
 }
 
@@ -57,13 +63,14 @@ StoredPiece Blocks::kept(int level, const SampleBox& part) {
     return {box, found->second.bytes.get()};
 }
 
-std::optional<SampleBox> Blocks::unread(int level, const SampleBox& box) const {
-    std::optional<SampleBox> found;
-    if (!keeps(level)) return found;
+bool Blocks::has_all(int level, const SampleBox& box) const {
+    if (!keeps(level)) return true;
+    bool all = true;
+    const std::scoped_lock lock(loader_->pieces_mutex_);
     for_each_stored(level, box, [&](const SampleBox& piece) {
-        if (!found && !has(level, piece)) found = piece;
+        all = all && loader_->kept_.contains(key_of(level, piece));
     });
-    return found;
+    return all;
 }
 
 /// False for pieces that are too large, and for rows, which cost nothing to read in parts.
@@ -82,12 +89,6 @@ SampleBox Blocks::whole(int level, const SampleBox& part) const {
     return {low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)};
 }
 
-/// True for a piece that is kept or that a thread reads now.
-bool Blocks::has(int level, const SampleBox& box) const {
-    const std::scoped_lock lock(loader_->pieces_mutex_);
-    return loader_->kept_.contains(key_of(level, box));
-}
-
 Blocks::Bytes Blocks::read_now(int level, const SampleBox& box, const std::stop_token& stop) const {
     auto bytes = std::make_shared<std::vector<std::byte>>(bytes_of(box, store_.info().type));
     store_.read(level, box, *bytes, stop);
@@ -95,39 +96,55 @@ Blocks::Bytes Blocks::read_now(int level, const SampleBox& box, const std::stop_
 }
 
 Blocks::Bytes Blocks::block(int level, const SampleBox& box, const std::stop_token& stop) {
-    const Key key = key_of(level, box);
     std::promise<Bytes> promise;
-    std::shared_future<Bytes> others;
-    {
-        const std::scoped_lock lock(loader_->pieces_mutex_);
-        const auto found = loader_->kept_.find(key);
-        if (found != loader_->kept_.end()) {
-            use(found->second);
-            others = found->second.bytes;
-        } else {
-            ages_.push_front(key);
-            const std::uint64_t size = bytes_of(box, store_.info().type);
-            loader_->kept_[key] = {promise.get_future().share(), ages_.begin(), size, this};
-            bytes_ += size;
-        }
+    const std::shared_future<Bytes> others = others_or_claim(level, box, promise);
+    if (!others.valid()) return read_claimed(level, box, promise, stop);
+    constexpr std::chrono::milliseconds between{20};
+    while (others.wait_for(between) != std::future_status::ready) {
+        if (stop.stop_requested()) throw Cancelled{};  // the other one may go on for long
+    }
+    if (Bytes bytes = others.get()) return bytes;
+    // It failed; but another caller may have cancelled it, or it began before its cause was mended.
+    return read_now(level, box, stop);
+}
+
+/// Whether it was neither kept nor being read.
+bool Blocks::read_if_unread(int level, const SampleBox& box, const std::stop_token& stop) {
+    std::promise<Bytes> promise;
+    if (others_or_claim(level, box, promise).valid()) return false;
+    read_claimed(level, box, promise, stop);
+    return true;
+}
+
+/// The samples that are kept or that another thread reads. If there are none, nothing: the piece is
+/// then the caller's to read, with read_claimed(), and others wait for `promise`.
+std::shared_future<Blocks::Bytes> Blocks::others_or_claim(int level, const SampleBox& box,
+                                                          std::promise<Bytes>& promise) {
+    const Key key = key_of(level, box);
+    const std::scoped_lock lock(loader_->pieces_mutex_);
+    const auto found = loader_->kept_.find(key);
+    if (found != loader_->kept_.end()) {
+        use(found->second);
+        std::shared_future<Bytes> others = found->second.bytes;
         forget_old(key);
+        return others;
     }
-    if (others.valid()) {
-        constexpr std::chrono::milliseconds between{20};
-        while (others.wait_for(between) != std::future_status::ready) {
-            if (stop.stop_requested()) throw Cancelled{};  // the other one may go on for long
-        }
-        if (Bytes bytes = others.get()) return bytes;
-        // It failed; but another caller may have cancelled it, or it began before its cause was
-        // mended.
-        return read_now(level, box, stop);
-    }
+    ages_.push_front(key);
+    const std::uint64_t size = bytes_of(box, store_.info().type);
+    loader_->kept_[key] = {promise.get_future().share(), ages_.begin(), size, this};
+    bytes_ += size;
+    forget_old(key);
+    return {};
+}
+
+Blocks::Bytes Blocks::read_claimed(int level, const SampleBox& box, std::promise<Bytes>& promise,
+                                   const std::stop_token& stop) {
     try {
         const Bytes bytes = read_now(level, box, stop);
         promise.set_value(bytes);
         return bytes;
     } catch (...) {
-        forget(key);
+        forget(key_of(level, box));
         promise.set_value(nullptr);  // an error is the reader's own, never shared by threads
         throw;
     }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
 
 #include "stream/loader/loader.hpp"
 
@@ -35,12 +34,14 @@ class Blocks {
               const std::stop_token& stop);
     /// So that read() finds them, unless they are dropped meanwhile.
     void load(int level, const SampleBox& box, const std::stop_token& stop);
+    /// The same for one piece of the box, the first that no other thread reads.
+    void load_one(int level, const SampleBox& box, const std::stop_token& stop);
     /// The piece that holds `part`, or `part` alone if pieces of the level are not kept.
     StoredPiece piece(int level, const SampleBox& part, const std::stop_token& stop);
     /// The same, without samples unless they are in memory: waits for nothing.
     StoredPiece kept(int level, const SampleBox& part);
-    /// A piece of a box that is neither kept nor being read.
-    std::optional<SampleBox> unread(int level, const SampleBox& box) const;
+    /// Whether each piece of a box is kept or being read.
+    bool has_all(int level, const SampleBox& box) const;
     /// Of the pieces that count as its own.
     std::uint64_t bytes() const;
 
@@ -58,7 +59,11 @@ class Blocks {
     SampleBox whole(int level, const SampleBox& part) const;
     Bytes read_now(int level, const SampleBox& box, const std::stop_token& stop) const;
     Bytes block(int level, const SampleBox& box, const std::stop_token& stop);
-    bool has(int level, const SampleBox& box) const;
+    bool read_if_unread(int level, const SampleBox& box, const std::stop_token& stop);
+    std::shared_future<Bytes> others_or_claim(int level, const SampleBox& box,
+                                              std::promise<Bytes>& promise);
+    Bytes read_claimed(int level, const SampleBox& box, std::promise<Bytes>& promise,
+                       const std::stop_token& stop);
     bool keeps(int level) const;
     void use(Kept& kept);
     void forget(const Key& key);

@@ -243,7 +243,7 @@ std::optional<BrickLoader::Parts::Job> BrickLoader::Parts::job_for(const Index3&
     const auto read = in_flight_.find(brick);
     if (read == in_flight_.end()) return Job{brick, level, false};
     const int coarser = read->second;
-    if (!blocks_->unread(settings_.level + coarser, source_of(brick, coarser))) return std::nullopt;
+    if (blocks_->has_all(settings_.level + coarser, source_of(brick, coarser))) return std::nullopt;
     return Job{brick, coarser, true};
 }
 
@@ -294,7 +294,7 @@ void BrickLoader::Parts::make(const Job& job, std::uint64_t waits, const std::st
     bool is_kept = false, failed = false;
     try {
         is_kept =
-            !blocks_->unread(settings_.level + job.coarser, source_of(job.brick, job.coarser));
+            blocks_->has_all(settings_.level + job.coarser, source_of(job.brick, job.coarser));
         brick = read(job.brick, job.coarser, stop);
     } catch (const Cancelled&) {  // the loader ends
     } catch (const std::exception& e) {
@@ -332,10 +332,8 @@ void BrickLoader::Parts::fail(const Index3& brick, const std::string& problem,
 
 /// What fails here fails for the thread that makes the brick, too, which says so.
 void BrickLoader::Parts::help(const Job& job, const std::stop_token& stop) const {
-    const int level = settings_.level + job.coarser;
     try {
-        const auto piece = blocks_->unread(level, source_of(job.brick, job.coarser));
-        if (piece) blocks_->piece(level, *piece, stop);
+        blocks_->load_one(settings_.level + job.coarser, source_of(job.brick, job.coarser), stop);
     } catch (const Cancelled&) {
     } catch (const std::exception&) {
     }
