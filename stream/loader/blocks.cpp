@@ -34,7 +34,8 @@ void Blocks::read(int level, const SampleBox& box, const SampleBox& room, std::s
 
 void Blocks::load(int level, const SampleBox& box, const std::stop_token& stop) {
     if (!keeps(level)) return;
-    for_each_stored(level, box, [&](const SampleBox& piece) { read_if_unread(level, piece, stop); });
+    for_each_stored(level, box,
+                    [&](const SampleBox& piece) { read_if_unread(level, piece, stop); });
 }
 
 void Blocks::load_one(int level, const SampleBox& box, const std::stop_token& stop) {
