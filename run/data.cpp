@@ -31,13 +31,6 @@ std::vector<std::filesystem::path> places_of_rescue() {
     return places;
 }
 
-/// The file, folder or numbered series of a source; empty if it is none.
-std::filesystem::path place_of(const Source& source) {
-    if (const auto* file = std::get_if<FileSource>(&source.from)) return file->path;
-    if (const auto* live = std::get_if<LiveSource>(&source.from)) return live->path;
-    return {};
-}
-
 /// Writing `path` would change `used`: the same file, one in that folder, or of a numbered series
 /// any file of its folder. (io::why_not_written() knows whose samples a .raw file has.)
 bool changes(const std::filesystem::path& path, const std::filesystem::path& used) {

@@ -164,6 +164,12 @@ struct NameOf {
 
 }  // namespace
 
+std::filesystem::path place_of(const Source& source) {
+    if (const auto* file = std::get_if<FileSource>(&source.from)) return file->path;
+    if (const auto* live = std::get_if<LiveSource>(&source.from)) return live->path;
+    return {};
+}
+
 std::string name_of(const Source& source) {
     return std::visit(NameOf{}, source.from);
 }

@@ -22,8 +22,13 @@ namespace py = pybind11;
 template <class T>
 using Numbers = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-/// Masked elements have numbers below their mask that nobody meant. Throws std::invalid_argument.
+/// Masked elements have numbers below their mask that nobody meant, also in lists of arrays, which
+/// NumPy joins without their masks. Throws std::invalid_argument.
 inline void refuse_masked(py::handle given) {
+    if (py::isinstance<py::list>(given) || py::isinstance<py::tuple>(given)) {
+        for (const py::handle each : given) refuse_masked(each);
+        return;
+    }
     if (!py::isinstance<py::array>(given) || !py::hasattr(given, "mask")) return;
     if (!py::module_::import("numpy").attr("any")(given.attr("mask")).cast<bool>()) return;
     throw std::invalid_argument(

@@ -99,10 +99,12 @@ inline constexpr auto settings_of<Friction> =
     std::tuple{setting(&Friction::static_coefficient, "static_coefficient", "",
                        "Pull along the surface that moves a resting proxy, as a part of the pull "
                        "into it (0: none)")
+                   .titled("static friction")
                    .in_files("static")
                    .within(ranges::not_negative),
                setting(&Friction::dynamic_coefficient, "dynamic_coefficient", "",
                        "The same for a moving proxy. At most the static one")
+                   .titled("dynamic friction")
                    .in_files("dynamic")
                    .within(ranges::not_negative)};
 

@@ -99,6 +99,16 @@ class Running {
         return false;
     }
 
+    /// Whether it has written this to standard error so far. The place where it writes stays.
+    bool has_said(const std::string& words) const {
+        struct stat file {};
+        if (::fstat(::fileno(err_), &file) != 0) return false;
+        std::string text(static_cast<std::size_t>(file.st_size), '\0');
+        const ssize_t got = ::pread(::fileno(err_), text.data(), text.size(), 0);
+        text.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+        return contains(text, words);
+    }
+
     void signal(int signal) const { ::kill(pid_, signal); }
 
     /// Sends `signal` (0: none) and waits for the end.

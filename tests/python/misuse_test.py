@@ -178,7 +178,7 @@ INDICES = {
 @pytest.mark.parametrize("wrong", [
     (2**33, 1, 2), (2**64, 1, 2), (0, 1.5, 2), (0, NAN, 2), (0, 1e30, 2), (0, 1j, 2), (0, None, 2), ("0", "1", "2"),
     numpy.array([0, 1, 2], "datetime64[s]"), numpy.array([0, 1, 2], object),
-    numpy.ma.array([0, 1, 2], mask=[0, 1, 0])], ids=str)
+    numpy.ma.array([0, 1, 2], mask=[0, 1, 0]), [numpy.ma.array(0, mask=True), 1, 2]], ids=str)
 @pytest.mark.parametrize("name", INDICES)
 def test_an_index_is_three_whole_numbers_or_refused(name, wrong):
     call = INDICES[name]
@@ -191,7 +191,7 @@ def test_an_index_is_three_whole_numbers_or_refused(name, wrong):
 
 @pytest.mark.parametrize("wrong", [
     (0, 1j, 2), (0, None, 2), ("0", "1", "2"), numpy.array([0, 1, 2], "datetime64[s]"),
-    numpy.ma.array([0.0, 1, 2], mask=[0, 1, 0])], ids=str)
+    numpy.ma.array([0.0, 1, 2], mask=[0, 1, 0]), [numpy.ma.array(0.0, mask=True), 1, 2]], ids=str)
 @pytest.mark.parametrize("call", [
     lambda at: palpate.Stroke(palpate.Brush(), at, (1, 1, 1)),
     lambda at: palpate.Volume(numpy.ones((2, 2, 2), "u1"), origin=at),

@@ -1,16 +1,17 @@
-// Controls of how contact feels: spring, damping, friction, texture, magnet, limit.
+// Controls of how contact feels: spring, damping, friction, texture, magnet, limits.
 #pragma once
 
 #include <QWidget>
 
-#include <vector>
+#include <map>
 
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/quantity.hpp"
 
 namespace palpate::viewer {
 
-/// The sliders end at what the device can render.
+/// A row for each number in the tables of force and friction. The sliders end at what the device
+/// can render.
 class ForceControls : public QWidget {
     Q_OBJECT
 
@@ -18,12 +19,12 @@ class ForceControls : public QWidget {
     explicit ForceControls(Effect& effect);
 
   private:
-    void change(std::size_t number, double value);
+    void change(const QString& name, double value);
     void show();
     void set_ends(const RendererSettings& settings);
 
     Effect& effect_;
-    std::vector<Quantity*> rows_;
+    std::map<QString, Quantity*> rows_;  // by their names
 };
 
 }  // namespace palpate::viewer

@@ -41,6 +41,155 @@
     </message>
 </context>
 <context>
+    <name>ForceRows</name>
+    <message>
+        <source>Stiffness</source>
+        <translation>Steifigkeit</translation>
+    </message>
+    <message>
+        <source>Stiffness k of the spring between hand and proxy [N/mm].
+The slider ends where device and loop can no longer render it stably.</source>
+        <translation>Steifigkeit k der Feder zwischen Hand und Proxy [N/mm].
+Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben können.</translation>
+    </message>
+    <message>
+        <source>Damping</source>
+        <translation>Dämpfung</translation>
+    </message>
+    <message>
+        <source>Against the hand&apos;s motion along the contact normal [N s/mm]; never pulls the hand in</source>
+        <translation>Gegen die Bewegung der Hand entlang der Kontaktnormalen [N s/mm]; zieht die Hand nie hinein</translation>
+    </message>
+    <message>
+        <source>Viscosity</source>
+        <translation>Viskosität</translation>
+    </message>
+    <message>
+        <source>Of the medium, against all motion, in contact or not [N s/mm]</source>
+        <translation>Des Mediums, gegen jede Bewegung, mit oder ohne Kontakt [N s/mm]</translation>
+    </message>
+    <message>
+        <source>Static friction</source>
+        <translation>Haftreibung</translation>
+    </message>
+    <message>
+        <source>Coefficient past which the proxy begins to slide (no unit)</source>
+        <translation>Koeffizient, ab dem der Proxy zu gleiten beginnt (ohne Einheit)</translation>
+    </message>
+    <message>
+        <source>Dynamic friction</source>
+        <translation>Gleitreibung</translation>
+    </message>
+    <message>
+        <source>Coefficient while the proxy slides, at most the static one (no unit)</source>
+        <translation>Koeffizient, solange der Proxy gleitet, höchstens der der Haftreibung (ohne Einheit)</translation>
+    </message>
+    <message>
+        <source>Texture height</source>
+        <translation>Texturhöhe</translation>
+    </message>
+    <message>
+        <source>Height of the bumps [mm in the volume]; 0: smooth</source>
+        <translation>Höhe der Unebenheiten [mm im Volumen]; 0: glatt</translation>
+    </message>
+    <message>
+        <source>Texture length</source>
+        <translation>Texturlänge</translation>
+    </message>
+    <message>
+        <source>From bump to bump [mm in the volume]</source>
+        <translation>Von Unebenheit zu Unebenheit [mm im Volumen]</translation>
+    </message>
+    <message>
+        <source>Magnet reach</source>
+        <translation>Magnetweite</translation>
+    </message>
+    <message>
+        <source>From how far a free hand is pulled to the surface [mm of the hand]; 0: off</source>
+        <translation>Aus welcher Entfernung eine freie Hand zur Oberfläche gezogen wird [mm der Hand]; 0: aus</translation>
+    </message>
+    <message>
+        <source>Magnet force</source>
+        <translation>Magnetkraft</translation>
+    </message>
+    <message>
+        <source>Greatest pull of the magnet, half-way to the surface [N]</source>
+        <translation>Größter Zug des Magneten, auf halbem Weg zur Oberfläche [N]</translation>
+    </message>
+    <message>
+        <source>Force limit</source>
+        <translation>Kraftgrenze</translation>
+    </message>
+    <message>
+        <source>Greatest force asked of the device [N]; the device&apos;s own limit holds as well</source>
+        <translation>Größte Kraft, die vom Gerät verlangt wird [N]; die Grenze des Geräts selbst gilt auch</translation>
+    </message>
+    <message>
+        <source>Force rate</source>
+        <translation>Kraftänderung</translation>
+    </message>
+    <message>
+        <source>Greatest change of the force [N/s]; a stop may drop it at once</source>
+        <translation>Größte Änderung der Kraft [N/s]; ein Halt darf sie sofort auf null bringen</translation>
+    </message>
+    <message>
+        <source>Force ramp</source>
+        <translation>Anstieg</translation>
+    </message>
+    <message>
+        <source>How long the force rises at the start and after a pause [s]</source>
+        <translation>Wie lange die Kraft am Anfang und nach einer Pause ansteigt [s]</translation>
+    </message>
+    <message>
+        <source>Starts below</source>
+        <translation>Beginnt unter</translation>
+    </message>
+    <message>
+        <source>After a start or a pause there is no force until the computed one is this small [N]; inf: it begins at any</source>
+        <translation>Nach einem Start oder einer Pause gibt es keine Kraft, bis die berechnete so klein ist [N]; inf: sie beginnt bei jeder</translation>
+    </message>
+    <message>
+        <source>Stale after</source>
+        <translation>Veraltet nach</translation>
+    </message>
+    <message>
+        <source>Longest time from one reading of the device to the next [s]; a longer one is a pause without force</source>
+        <translation>Längste Zeit von einer Ablesung des Geräts zur nächsten [s]; eine längere ist eine Pause ohne Kraft</translation>
+    </message>
+    <message>
+        <source>Turning stiffness</source>
+        <translation>Drehsteifigkeit</translation>
+    </message>
+    <message>
+        <source>Stiffness against turning a tool [N mm/rad]; 0: from the stiffness and the tool&apos;s size</source>
+        <translation>Steifigkeit gegen das Drehen eines Werkzeugs [N mm/rad]; 0: aus der Steifigkeit und der Größe des Werkzeugs</translation>
+    </message>
+    <message>
+        <source>Turning damping</source>
+        <translation>Drehdämpfung</translation>
+    </message>
+    <message>
+        <source>Against the turning of a tool [N mm s/rad]; never turns the hand further</source>
+        <translation>Gegen das Drehen eines Werkzeugs [N mm s/rad]; dreht die Hand nie weiter</translation>
+    </message>
+    <message>
+        <source>Torque limit</source>
+        <translation>Drehmomentgrenze</translation>
+    </message>
+    <message>
+        <source>Greatest torque asked of the device [N mm]; the device&apos;s own limit holds as well</source>
+        <translation>Größtes Drehmoment, das vom Gerät verlangt wird [N mm]; die Grenze des Geräts selbst gilt auch</translation>
+    </message>
+    <message>
+        <source>Torque rate</source>
+        <translation>Drehmomentänderung</translation>
+    </message>
+    <message>
+        <source>Greatest change of the torque [N mm/s]; a stop may drop it at once</source>
+        <translation>Größte Änderung des Drehmoments [N mm/s]; ein Halt darf es sofort auf null bringen</translation>
+    </message>
+</context>
+<context>
     <name>Help</name>
     <message>
         <source>Mouse in the scene</source>
@@ -842,88 +991,6 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
 </context>
 <context>
     <name>palpate::viewer::ForceControls</name>
-    <message>
-        <source>Stiffness</source>
-        <translation>Steifigkeit</translation>
-    </message>
-    <message>
-        <source>Stiffness k of the spring between hand and proxy [N/mm].
-The slider ends where device and loop can no longer render it stably.</source>
-        <translation>Steifigkeit k der Feder zwischen Hand und Proxy [N/mm].
-Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben können.</translation>
-    </message>
-    <message>
-        <source>Damping</source>
-        <translation>Dämpfung</translation>
-    </message>
-    <message>
-        <source>Against the hand&apos;s motion along the contact normal [N s/mm]; never pulls the hand in</source>
-        <translation>Gegen die Bewegung der Hand entlang der Kontaktnormalen [N s/mm]; zieht die Hand nie hinein</translation>
-    </message>
-    <message>
-        <source>Viscosity</source>
-        <translation>Viskosität</translation>
-    </message>
-    <message>
-        <source>Of the medium, against all motion, in contact or not [N s/mm]</source>
-        <translation>Des Mediums, gegen jede Bewegung, mit oder ohne Kontakt [N s/mm]</translation>
-    </message>
-    <message>
-        <source>Static friction</source>
-        <translation>Haftreibung</translation>
-    </message>
-    <message>
-        <source>Coefficient past which the proxy begins to slide (no unit)</source>
-        <translation>Koeffizient, ab dem der Proxy zu gleiten beginnt (ohne Einheit)</translation>
-    </message>
-    <message>
-        <source>Dynamic friction</source>
-        <translation>Gleitreibung</translation>
-    </message>
-    <message>
-        <source>Coefficient while the proxy slides, at most the static one (no unit)</source>
-        <translation>Koeffizient, solange der Proxy gleitet, höchstens der der Haftreibung (ohne Einheit)</translation>
-    </message>
-    <message>
-        <source>Texture height</source>
-        <translation>Texturhöhe</translation>
-    </message>
-    <message>
-        <source>Height of the bumps [mm in the volume]; 0: smooth</source>
-        <translation>Höhe der Unebenheiten [mm im Volumen]; 0: glatt</translation>
-    </message>
-    <message>
-        <source>Texture length</source>
-        <translation>Texturlänge</translation>
-    </message>
-    <message>
-        <source>From bump to bump [mm in the volume]</source>
-        <translation>Von Unebenheit zu Unebenheit [mm im Volumen]</translation>
-    </message>
-    <message>
-        <source>Magnet reach</source>
-        <translation>Magnetweite</translation>
-    </message>
-    <message>
-        <source>From how far a free hand is pulled to the surface [mm of the hand]; 0: off</source>
-        <translation>Aus welcher Entfernung eine freie Hand zur Oberfläche gezogen wird [mm der Hand]; 0: aus</translation>
-    </message>
-    <message>
-        <source>Magnet force</source>
-        <translation>Magnetkraft</translation>
-    </message>
-    <message>
-        <source>Greatest pull of the magnet, half-way to the surface [N]</source>
-        <translation>Größter Zug des Magneten, auf halbem Weg zur Oberfläche [N]</translation>
-    </message>
-    <message>
-        <source>Force limit</source>
-        <translation>Kraftgrenze</translation>
-    </message>
-    <message>
-        <source>Greatest force asked of the device [N]; the device&apos;s own limit holds as well</source>
-        <translation>Größte Kraft, die vom Gerät verlangt wird [N]; die Grenze des Geräts selbst gilt auch</translation>
-    </message>
     <message>
         <source>Advanced</source>
         <translation>Erweitert</translation>

@@ -77,6 +77,7 @@ void OverlayController::open(const run::Source& source) {
 void OverlayController::use(std::shared_ptr<const Overlay> overlay,
                             std::vector<ExtractedSurface> labels) {
     if (!content_.volume()) return;
+    keep_file(run::place_of(overlay->source));
     overlay_ = std::move(overlay);
     labels_ = std::move(labels);
     const std::optional<double> level = panel_.look_controls().look().overlay.level;
@@ -87,6 +88,15 @@ void OverlayController::use(std::shared_ptr<const Overlay> overlay,
     }
     colour();
     Q_EMIT changed();
+}
+
+/// From being replaced by the volume that is saved.
+void OverlayController::keep_file(const std::filesystem::path& file) {
+    if (const auto& data = content_.data()) {
+        data->release(file_);
+        data->keep(file);
+    }
+    file_ = file;
 }
 
 void OverlayController::set_layers(const SharedLayers& layers) {
@@ -106,6 +116,7 @@ void OverlayController::colour() {
 void OverlayController::close() {
     loader_.abandon();
     if (!overlay_) return;
+    keep_file({});
     overlay_.reset();
     coloured_.reset();
     labels_.clear();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QObject>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -43,6 +44,7 @@ class OverlayController : public QObject {
 
   private:
     void use(std::shared_ptr<const Overlay> overlay, std::vector<ExtractedSurface> labels);
+    void keep_file(const std::filesystem::path& file);
     void show();
     void colour();
     void go_to(int label);
@@ -52,6 +54,7 @@ class OverlayController : public QObject {
     Panel& panel_;
     Messages& messages_;
     std::shared_ptr<const Overlay> overlay_, coloured_;  // the latter as it is shown
+    std::filesystem::path file_;                         // of the overlay; empty: none
     SharedLayers layers_;
     std::vector<ExtractedSurface> labels_;
     SurfaceSource image_;  // its surface

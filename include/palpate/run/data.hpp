@@ -48,9 +48,9 @@ class Data {
     const std::shared_ptr<const Samples>& start() const { return start_; }
     /// Brings a field of these data up to date: edits, or frames and moment.
     void update(Field& field) const;
-    /// Starts a servo on the data as they are now and keeps it up to date until detach().
     /// Throws io::OutputError where a recording that begins now could not be rendered again.
     void check_recording() const;
+    /// Starts a servo on the data as they are now and keeps it up to date until detach().
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     void detach(const Servo& servo);
     /// As VolumeEditor::record().
@@ -59,7 +59,8 @@ class Data {
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
     /// Why edits or frames do not come; usually empty.
     std::string problem() const;
-    /// A file that is in use from now on, such as a recording: nothing is written over it.
+    /// A file that is in use from now on, such as a recording or an overlay: save() replaces no
+    /// such file. An empty path is none.
     void keep(const std::filesystem::path& path);
     /// The end of one keep().
     void release(const std::filesystem::path& path);

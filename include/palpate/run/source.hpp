@@ -2,6 +2,7 @@
 // loading it.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -57,6 +58,8 @@ struct Source {
 
 /// As people write it: "head.nrrd", "synthetic:torus", "live:frames.shm".
 std::string name_of(const Source& source);
+/// The file, folder or numbered series of a source; empty if it is none.
+std::filesystem::path place_of(const Source& source);
 /// The inverse, with everything else as its default.
 Source source_named(const std::string& name);
 

@@ -7,8 +7,10 @@
 #include <QSlider>
 
 #include <functional>
+#include <limits>
 
 #include "apps/viewer/panel/force_gauge.hpp"
+#include "apps/viewer/panel/force_rows.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 
 namespace palpate::viewer {
@@ -28,23 +30,13 @@ class Forces : public PanelFixture {
                           .rate_limit = 1234,
                           .ramp = 0.3,
                           .stale_after = 0.03,
-                          .start_below = 0.4};
+                          .start_below = 0.4,
+                          .rotational_stiffness = 20,
+                          .rotational_damping = 0.01,
+                          .torque_limit = 60,
+                          .torque_rate_limit = 3e4};
         settings.proxy.friction = {0.5, 0.25};
         return settings;
-    }
-    static void expect_same(const ForceSettings& a, const ForceSettings& b) {
-        EXPECT_EQ(a.stiffness, b.stiffness);
-        EXPECT_EQ(a.damping, b.damping);
-        EXPECT_EQ(a.viscosity, b.viscosity);
-        EXPECT_EQ(a.magnet.distance, b.magnet.distance);
-        EXPECT_EQ(a.magnet.peak, b.magnet.peak);
-        EXPECT_EQ(a.texture.amplitude, b.texture.amplitude);
-        EXPECT_EQ(a.texture.wavelength, b.texture.wavelength);
-        EXPECT_EQ(a.limit, b.limit);
-        EXPECT_EQ(a.rate_limit, b.rate_limit);
-        EXPECT_EQ(a.ramp, b.ramp);
-        EXPECT_EQ(a.stale_after, b.stale_after);
-        EXPECT_EQ(a.start_below, b.start_below);
     }
 };
 
@@ -63,6 +55,15 @@ TEST_F(Forces, each_number_changes_its_setting_and_nothing_else) {
         {"magnet_distance_box", "5", [](ForceSettings& f) { f.magnet.distance = 5; }},
         {"magnet_peak_box", "0.9", [](ForceSettings& f) { f.magnet.peak = 0.9; }},
         {"force_limit_box", "1.5", [](ForceSettings& f) { f.limit = 1.5; }},
+        {"force_rate_limit_box", "700", [](ForceSettings& f) { f.rate_limit = 700; }},
+        {"force_ramp_box", "0.75", [](ForceSettings& f) { f.ramp = 0.75; }},
+        {"force_to_start_below_box", "inf",
+         [](ForceSettings& f) { f.start_below = std::numeric_limits<double>::infinity(); }},
+        {"stale_time_box", "0.015", [](ForceSettings& f) { f.stale_after = 0.015; }},
+        {"rotational_stiffness_box", "30", [](ForceSettings& f) { f.rotational_stiffness = 30; }},
+        {"rotational_damping_box", "0.02", [](ForceSettings& f) { f.rotational_damping = 0.02; }},
+        {"torque_limit_box", "45", [](ForceSettings& f) { f.torque_limit = 45; }},
+        {"torque_rate_limit_box", "1e4", [](ForceSettings& f) { f.torque_rate_limit = 1e4; }},
     };
     for (const Case& one : cases) {
         SCOPED_TRACE(one.box);
@@ -73,8 +74,8 @@ TEST_F(Forces, each_number_changes_its_setting_and_nothing_else) {
         one.change(expected);
         const auto asked = of<ForceSettings>();
         ASSERT_EQ(asked.size(), 1U);
-        expect_same(asked.front(), expected);
-        expect_same(effect.settings().force, expected);
+        EXPECT_EQ(asked.front(), expected);
+        EXPECT_EQ(effect.settings().force, expected);
         EXPECT_EQ(commands.size(), 1U);
     }
 }
@@ -93,15 +94,51 @@ TEST_F(Forces, the_stiffness_slider_ends_where_it_can_still_be_rendered) {
     EXPECT_EQ(damping->value(), damping->maximum());
 }
 
+/// Of all numbers in the tables of force and friction.
+std::vector<std::string> names_of_rows() {
+    std::vector<std::string> names;
+    RendererSettings settings;
+    const auto add = [&](const std::string&, const auto& setting, double) {
+        names.push_back(row_name(setting.title).toStdString());
+    };
+    for_each_number("force", settings.force, add);
+    for_each_number("friction", settings.proxy.friction, add);
+    return names;
+}
+
+TEST_F(Forces, each_number_in_the_tables_has_a_row_with_words_of_its_own) {
+    set();
+    EXPECT_GE(names_of_rows().size(), 18U);
+    std::set<QString> labels;
+    for (const std::string& name : names_of_rows()) {
+        SCOPED_TRACE(name);
+        const auto* box = find<NumberBox>((name + "_box").c_str());
+        ASSERT_NE(box, nullptr);
+        EXPECT_TRUE(labels.insert(box->accessibleName()).second);
+        EXPECT_NE(box->parentWidget()->toolTip(), "");
+    }
+}
+
+TEST(ForceRows, a_setting_that_is_added_to_a_table_has_a_row) {
+    const ForceRow row =
+        row_of({"wobble height", "mm, physical", "How far it wobbles"}, ranges::positive, 0.5);
+    EXPECT_EQ(row.name, "wobble_height");
+    EXPECT_EQ(row.label, "Wobble height");
+    EXPECT_EQ(row.tip, "How far it wobbles [mm, physical]");
+    EXPECT_EQ(row.unit, "mm");
+    EXPECT_EQ(row.high, 2);
+    EXPECT_GT(row.low, 0);
+    EXPECT_FALSE(row.infinite);
+    EXPECT_GT(row.place, row_of({"force limit", "N", ""}, ranges::limit, 3).place);
+}
+
 TEST_F(Forces, every_slider_end_can_be_rendered) {
-    for (const char* name : {"stiffness", "damping", "viscosity", "static_friction",
-                             "dynamic_friction", "texture_amplitude", "texture_wavelength",
-                             "magnet_distance", "magnet_peak", "force_limit"}) {
+    for (const std::string& name : names_of_rows()) {
         SCOPED_TRACE(name);
         for (const auto end : {Qt::Key_End, Qt::Key_Home}) {
             set(unusual());
             commands.clear();
-            auto* slider = find<QSlider>((std::string(name) + "_slider").c_str());
+            auto* slider = find<QSlider>((name + "_slider").c_str());
             slider->setFocus();
             QTest::keyClick(slider, end);
             settle();

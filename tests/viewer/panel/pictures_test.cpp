@@ -5,7 +5,10 @@
 #include <filesystem>
 
 #include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/force_controls.hpp"
 #include "apps/viewer/panel/loop_view.hpp"
+#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/section.hpp"
 #include "palpate/run/source.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
@@ -95,6 +98,22 @@ TEST_F(Pictures, show_a_session_in_dark_colours) {
     QApplication::setPalette(dark_palette());
     full();
     picture("panel_dark");
+}
+
+TEST_F(Pictures, show_every_row_of_the_force) {
+    ForceControls rows(effect);
+    full();
+    rows.findChild<Section*>("force_advanced")->set_open(true);
+    rows.resize(440, rows.sizeHint().height());
+    static_cast<QWidget&>(rows).show();
+    QApplication::processEvents();
+    rows.resize(440, rows.sizeHint().height());
+    QDir().mkpath(PALPATE_PICTURES);
+    EXPECT_TRUE(rows.grab().save(PALPATE_PICTURES "/force_rows.png"));
+    for (const NumberBox* box : rows.findChildren<NumberBox*>()) {
+        const int wanted = box->fontMetrics().horizontalAdvance(box->text());
+        EXPECT_GT(box->width(), wanted) << box->objectName().toStdString();
+    }
 }
 
 TEST_F(Pictures, show_a_narrow_panel_with_a_threshold_and_refusals) {

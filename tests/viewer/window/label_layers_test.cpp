@@ -85,6 +85,22 @@ class LabelsInWindow : public InWindow {
     }
 };
 
+TEST_F(LabelsInWindow, the_volume_is_not_saved_over_the_file_of_the_overlay) {
+    feel("synthetic:sphere:48x48x48");
+    open_labels();
+    const std::filesystem::path file = scratch_.path() / "ball.seg.nrrd";
+    const auto before = std::filesystem::file_size(file);
+    window_->editing().save(QString::fromStdString(file.string()));
+    EXPECT_TRUE(window_->messages().problem().contains("in use"));
+    wait_until_settled();
+    EXPECT_EQ(std::filesystem::file_size(file), before);
+
+    window_->overlays().close();
+    window_->editing().save(QString::fromStdString(file.string()));
+    wait_until_settled();
+    EXPECT_NE(std::filesystem::file_size(file), before);
+}
+
 TEST_F(LabelsInWindow, one_click_feels_the_labels_with_their_names_and_colours) {
     feel("synthetic:sphere:48x48x48");
     feel_labels();
