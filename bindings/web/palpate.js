@@ -13,16 +13,23 @@ const sampleTypes = new Map([
 ]);
 const arrayTypes = { uint8: Uint8Array, int16: Int16Array, uint16: Uint16Array, float32: Float32Array };
 
-/** The module's bytes, from beside this file: emscripten's own loader cannot read files in Node. */
+/** The module's bytes, from beside this file: emscripten's own loader cannot read files in Node, and unpacks nothing. */
 async function readCore() {
-  const address = new URL("./palpate_core.wasm", import.meta.url);
+  const address = new URL("./palpate_core.wasm.gz", import.meta.url);
   if (address.protocol !== "file:") {
     const answer = await fetch(address);
     if (!answer.ok) throw new Error(`${address}: ${answer.status} ${answer.statusText}`);
-    return answer.arrayBuffer();
+    return unpacked(await answer.arrayBuffer());
   }
   const { readFile } = await import("node:fs/promises");
-  return readFile(address);
+  return unpacked(await readFile(address));
+}
+
+/** Some servers let the browser unpack what is named .gz. */
+async function unpacked(bytes) {
+  const stream = new Blob([bytes]).stream();
+  const isPacked = new DataView(await new Blob([bytes]).slice(0, 2).arrayBuffer()).getUint16(0) === 0x1f8b;
+  return new Response(isPacked ? stream.pipeThrough(new DecompressionStream("gzip")) : stream).arrayBuffer();
 }
 
 /** Samples of a grid. */
