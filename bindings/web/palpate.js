@@ -60,6 +60,9 @@ export class Session {
   lose() {
     this.core.lose();
   }
+  puck(number, bytes) {
+    this.core.puck(number, bytes);
+  }
   step() {
     return this.core.step();
   }
@@ -75,6 +78,13 @@ export class Session {
   }
   command(name, members = {}) {
     this.core.send(JSON.stringify({ [name]: members }));
+  }
+  settings() {
+    const number = (value) => (typeof value === "string" ? Number(value.replace("inf", "Infinity")) : value);
+    return JSON.parse(this.core.settings()).map((one) => ({ ...one, least: number(one.least), most: number(one.most), value: number(one.value) }));
+  }
+  set(name, value) {
+    this.core.set(name, value);
   }
   edit(edit, { sameStep = false } = {}) {
     this.core.edit(JSON.stringify(edit), sameStep);
@@ -171,8 +181,8 @@ class Palpate {
     const { volume, ...rest } = this.core.scene(specification);
     return { volume: new Volume(volume), ...rest };
   }
-  session(volume, setup) {
-    return new Session(this.core.newSession(volume.core, JSON.stringify(setup)));
+  session(volume, setup, line = null) {
+    return new Session(this.core.newSession(volume.core, JSON.stringify(setup), line));
   }
 }
 
