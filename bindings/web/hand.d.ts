@@ -60,7 +60,7 @@ export interface Requests {
   end: null;
 }
 
-export function endedBy(why: string): string;
+export function endedBy(why: string, remedy: string): string;
 export function withoutForce(snapshot: Snapshot): Snapshot;
 
 export class Hand {

@@ -52,7 +52,7 @@ function end(error) {
   }
   running = false;
   if (newest) post("snapshot", withoutForce(newest));
-  post("error", endedBy(error.message));
+  post("error", endedBy(error.message, "Open a volume to begin again"));
 }
 
 function tick() {
