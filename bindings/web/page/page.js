@@ -134,7 +134,7 @@ function respond(contact) {
 
 /** Which device holds the hand, on the buttons that connect and disconnect. */
 function showDevices() {
-  for (const [id, is, name] of [["connect", isService, "the Inverse3"], ["puck", (one) => one === "spacenav", "a SpaceMouse"], ["simulate", isSimulated, "a simulated hand"]]) {
+  for (const [id, is, name] of [["connect", isService, "the Inverse3"], ["puck", (one) => one === "spacenav", "the SpaceMouse"], ["simulate", isSimulated, "the simulated hand"]]) {
     $(id).disabled = false;
     $(id).classList.toggle("on", is(device));
     $(id).textContent = `${is(device) ? "Disconnect" : "Connect"} ${name}`;

@@ -20,10 +20,11 @@ export function installed(name) {
   }
 }
 
-/** Lets time pass more slowly for a module, from now on, so that a busy machine keeps up with it. */
+/** Lets time pass more slowly for a module, from now on, so that a busy machine keeps up with it. The same for a page and its
+ * worker, and an hour later, as both begin after the server and no clock is below 0. */
 const slowed = (slowness) => `{
   const begun = ${Date.now()}, real = performance.now.bind(performance);
-  performance.now = () => begun + (performance.timeOrigin + real() - begun) / ${slowness} - performance.timeOrigin;
+  performance.now = () => 3.6e6 + begun + (performance.timeOrigin + real() - begun) / ${slowness} - performance.timeOrigin;
 }
 `;
 
@@ -51,10 +52,18 @@ export async function served(isolated, slowness = 1) {
   return { server, address: `http://127.0.0.1:${server.address().port}/page/index.html`, bytes: () => bytes, release };
 }
 
+/** Nothing has a limit of its own but the test. */
 export const launched = () => installed("puppeteer-core").launch({
   executablePath: chromium,
+  protocolTimeout: 0,
   args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
+
+export async function newPage(browser) {
+  const page = await browser.newPage();
+  page.setDefaultTimeout(0);
+  return page;
+}
 
 /** `expected` are parts of messages on the console that are no errors of the page. `slowness`: of the page's clock. `prepare`
  * sees the page before it loads. */
@@ -62,14 +71,14 @@ export async function opened(work, { expected = [], slowness = 1, prepare = () =
   const site = await served(true, slowness);
   const browser = await launched();
   try {
-    const page = await browser.newPage();
+    const page = await newPage(browser);
     const errors = [];
     page.on("pageerror", (error) => errors.push(error.message));
     page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
     await page.setViewport({ width: 900, height: 640 });
     await prepare(page);
     await page.goto(site.address);
-    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0, { timeout: 150000 });
+    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
     await work(page, site);
     assert.deepEqual(errors.filter((error) => !expected.some((part) => error.includes(part))), []);
   } finally {
@@ -79,7 +88,7 @@ export async function opened(work, { expected = [], slowness = 1, prepare = () =
 }
 
 const waits = (page, id, { source }) =>
-  page.waitForFunction((at, text) => new RegExp(text).test(document.getElementById(at).textContent), { timeout: 150000 }, id, source);
+  page.waitForFunction((at, text) => new RegExp(text).test(document.getElementById(at).textContent), {}, id, source);
 export const says = (page, pattern) => waits(page, "state", pattern);
 /** To those who do not see the page. */
 export const announces = (page, pattern) => waits(page, "said", pattern);

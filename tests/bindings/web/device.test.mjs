@@ -8,7 +8,7 @@ import { Service, connect, felt } from "./service.mjs";
 
 const without = skip || (!installed("ws") && "ws is not installed (scripts/deep/web)");
 const expected = ["ERR_CONNECTION_REFUSED", "WebSocket connection"];
-const slowness = 20;
+const slowness = 60;
 
 const gone = (service) => service.until(({ size }) => size === 0);
 const presses = (service) => service.until(({ size }) => size > felt);
@@ -23,16 +23,17 @@ test("an Inverse3 presses until the page is blocked, hidden or closed, or the co
       await page.waitForFunction(() => document.getElementById("report").textContent.includes("Inverse3 049D"));
       await picture(page, "inverse3");
 
-      const blocked = page.evaluate(() => {
-        const until = Date.now() + 5000;
+      const blocked = page.evaluate((ms) => {
+        const until = Date.now() + ms;
         while (Date.now() < until);
-      });
+      }, 150 * slowness);
       await gone(service);
       await blocked;
       await presses(service);
 
       const { connections } = service;
       service.drop();
+      service.forces = [];
       await service.until(() => service.connections > connections);
       await presses(service);
 
@@ -84,10 +85,13 @@ test("a simulated hand touches, and gives way to the mouse", { skip, timeout: 15
   await opened(async (page) => {
     await page.click("main details:nth-of-type(2) summary");
     await page.select("#motion", "hold");
+    await page.evaluate(() => (document.body.dataset.surface = "0"));
     await page.focus("#simulate");
     await page.keyboard.press("Enter");
     await says(page, /In contact/);
     await page.waitForFunction(() => document.getElementById("report").textContent.includes("simulated"));
+    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
+    await page.evaluate(() => scrollTo(0, 0));
     await picture(page, "simulated");
     await page.focus("#simulate");
     await page.keyboard.press("Enter");

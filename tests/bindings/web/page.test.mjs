@@ -5,7 +5,7 @@ import { mkdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 
-import { launched, opened, picture, pictures, says, served, skip, volumes } from "./browser.mjs";
+import { launched, newPage, opened, picture, pictures, says, served, skip, volumes } from "./browser.mjs";
 
 test("the head is touched, pressed through, drilled and recorded", { skip, timeout: 1500000 }, async () => {
   await opened(async (page, site) => {
@@ -32,7 +32,7 @@ test("the head is touched, pressed through, drilled and recorded", { skip, timeo
 
     await page.click("#drill");
     const surfaces = () => page.evaluate(() => Number(document.body.dataset.surface));
-    const more = () => page.waitForFunction((n) => Number(document.body.dataset.surface) > n, { timeout: 150000 }, before);
+    const more = () => page.waitForFunction((n) => Number(document.body.dataset.surface) > n, {}, before);
     await page.mouse.move(x, y);
     let before = await surfaces();
     await page.mouse.down();
@@ -66,7 +66,7 @@ test("DICOM that is chosen and OME-Zarr at an address are opened, and what canno
     const surface = async (act) => {
       await page.evaluate(() => (document.body.dataset.surface = "0"));
       await act();
-      await page.waitForFunction(() => Number(document.body.dataset.surface) > 0, { timeout: 150000 });
+      await page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
     };
     await page.click("summary");
     const slices = ["0", "1", "2", "3"].map((name) => join(volumes, "implicit", `${name}.dcm`));
@@ -90,8 +90,8 @@ test("once loaded, the page works without a network, and sleeps between ticks on
   const site = await served(false);
   const browser = await launched();
   try {
-    const page = await browser.newPage();
-    const drawn = () => page.waitForFunction(() => Number(document.body.dataset.surface) > 0, { timeout: 150000 });
+    const page = await newPage(browser);
+    const drawn = () => page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
     await page.goto(site.address);
     await drawn();
     assert.equal(await page.evaluate(() => crossOriginIsolated), false);
@@ -114,25 +114,25 @@ test("another volume ends the recording of the one before", { skip, timeout: 150
     await page.click("#record");
     await page.evaluate(() => (document.body.dataset.surface = "0"));
     await page.select("#volume", "synthetic:torus:64x64x64");
-    await page.waitForSelector("#save:not([hidden])", { timeout: 150000 });
+    await page.waitForSelector("#save:not([hidden])");
     const text = await page.evaluate(async () => (await fetch(document.getElementById("save").href)).text());
     assert.match(text, /visible_human_head[^]*# end \{/);
     assert.equal(await page.$eval("#record", (button) => button.getAttribute("aria-pressed")), "false");
-    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0, { timeout: 150000 });
+    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
     await says(page, /press to touch/);
   });
 });
 
 test("a volume that arrives late does not replace the one that was asked for after it", { skip, timeout: 1500000 }, async () => {
   await opened(async (page, site) => {
-    const late = page.waitForResponse((response) => response.url().includes("held"), { timeout: 150000 });
+    const late = page.waitForResponse((response) => response.url().includes("held"));
     await page.evaluate(() => {
       document.getElementById("address").value = "/page/visible_human_head.nrrd?held";
       document.getElementById("remote").requestSubmit();
       document.body.dataset.surface = "0";
     });
     await page.select("#volume", "synthetic:torus:64x64x64");
-    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0, { timeout: 150000 });
+    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
     const most = () => page.$eval("#isovalue", ({ max }) => Number(max));
     const torus = await most();
     site.release();
@@ -155,14 +155,15 @@ test("settings are changed by keyboard, and one that is refused is told", { skip
     };
     const value = () => page.$eval(id, (input) => input.value);
     assert.equal(await page.$eval(id, (input) => document.getElementById(input.getAttribute("aria-describedby")).textContent), "Stiffness");
-    const box = await (await page.$("#scene")).boundingBox();
-    await page.mouse.move(box.x + box.width / 2, box.y + box.height * 0.4);
-    await page.mouse.down();
+    const press = async () => {
+      await page.hover("#scene");
+      await page.mouse.down();
+    };
+    await press();
     await says(page, /In contact: 2\.[45]/); // 5 mm at 0.5 N/mm
     await page.mouse.up();
     await enter("0.1");
-    await page.mouse.move(box.x + box.width / 2, box.y + box.height * 0.4);
-    await page.mouse.down();
+    await press();
     await says(page, /In contact: 0\.[45]/);
     await page.mouse.up();
     await enter("-1");
@@ -235,7 +236,7 @@ for (const isolated of [true, false]) {
     const browser = await launched();
     try {
       for (const hinder of ["block", "hide"]) {
-        const page = await browser.newPage();
+        const page = await newPage(browser);
         await page.goto(site.address.replace("index.html", "page.css"));
         const { before, after, report } = await page.evaluate(hindered, hinder);
         t.diagnostic(`${hinder}: ${JSON.stringify(report)}`);
