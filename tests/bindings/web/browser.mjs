@@ -92,6 +92,13 @@ const waits = (page, id, { source }) =>
 export const says = (page, pattern) => waits(page, "state", pattern);
 /** To those who do not see the page. */
 export const announces = (page, pattern) => waits(page, "said", pattern);
+/** Moves the mouse over the forehead, wherever the page has been scrolled to. */
+export async function hover(page) {
+  const scene = await page.$("#scene");
+  await scene.scrollIntoView();
+  const { x, y, width, height } = await scene.boundingBox();
+  await page.mouse.move(x + width / 2, y + height * 0.4);
+}
 mkdirSync(pictures, { recursive: true });
 export const picture = (page, name) => page.screenshot({ path: join(pictures, `${name}.png`) });
 

@@ -5,16 +5,14 @@ import { mkdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import test from "node:test";
 
-import { launched, newPage, opened, picture, pictures, says, served, skip, volumes } from "./browser.mjs";
+import { hover, launched, newPage, opened, picture, pictures, says, served, skip, volumes } from "./browser.mjs";
 
 test("the head is touched, pressed through, drilled and recorded", { skip, timeout: 1500000 }, async () => {
   await opened(async (page, site) => {
     assert.ok(site.bytes() < 1e6, `${site.bytes()} bytes`);
     await picture(page, "loaded");
-    const box = await (await page.$("#scene")).boundingBox();
-    const [x, y] = [box.x + box.width / 2, box.y + box.height * 0.4];
     await page.click("#record");
-    await page.mouse.move(x, y);
+    await hover(page);
     await says(page, /press to touch/);
     await page.mouse.down();
     await says(page, /In contact: .* at level 35/);
@@ -23,7 +21,7 @@ test("the head is touched, pressed through, drilled and recorded", { skip, timeo
     await says(page, /press to touch/);
 
     await page.click("#through");
-    await page.mouse.move(x, y);
+    await hover(page);
     await page.mouse.down();
     await says(page, /at level ([4-9]\d|1\d\d)/);
     await picture(page, "through");
@@ -33,7 +31,7 @@ test("the head is touched, pressed through, drilled and recorded", { skip, timeo
     await page.click("#drill");
     const surfaces = () => page.evaluate(() => Number(document.body.dataset.surface));
     const more = () => page.waitForFunction((n) => Number(document.body.dataset.surface) > n, {}, before);
-    await page.mouse.move(x, y);
+    await hover(page);
     let before = await surfaces();
     await page.mouse.down();
     await more(); // while the hand presses
@@ -156,7 +154,7 @@ test("settings are changed by keyboard, and one that is refused is told", { skip
     const value = () => page.$eval(id, (input) => input.value);
     assert.equal(await page.$eval(id, (input) => document.getElementById(input.getAttribute("aria-describedby")).textContent), "Stiffness");
     const press = async () => {
-      await page.hover("#scene");
+      await hover(page);
       await page.mouse.down();
     };
     await press();
