@@ -38,7 +38,7 @@ python=/usr/bin/python3 # Debian's, which has MkDocs
 doxygen docs/site/Doxyfile
 mv "$out/doxygen/html" "$out/pages/api"
 web=build/web/bindings/web/package # scripts/deep/web builds it
-if [ -f "$web/palpate_core.wasm" ]; then
+if [ -f "$web/palpate_core.wasm.gz" ]; then
     cp -r "$web" "$out/pages/touch"
     rm "$out/pages/touch/README.md" # it would become a page
 fi

@@ -2,34 +2,14 @@
 #include "bindings/c/settings.hpp"
 
 #include <deque>
-#include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "bindings/c/handles.hpp"
 #include "bindings/c/structs.hpp"
-#include "palpate/names.hpp"
 
 namespace palpate::c {
 namespace {
-
-/// Calls visit(path, setting, number, group) for each number that a run can change, where a command
-/// changes all of its group.
-void for_each_of(auto& settings, auto&& visit) {
-    const auto walk = [&](const char* path, auto& group) {
-        for_each_number(path, group, [&](const std::string& name, const auto& one, auto& number) {
-            visit(name, one, number, group);
-        });
-    };
-    walk("force", settings.force);
-    walk("friction", settings.proxy.friction);
-    walk("limits", settings.device);
-}
-
-[[noreturn]] void refuse(const std::string& name) {
-    std::vector<std::string> names;
-    for (const palpate_setting& one : all_settings()) names.emplace_back(one.name);
-    throw std::invalid_argument("there is no setting '" + name + "': " + use_one_of(names, name));
-}
 
 struct SettingList {
     std::deque<std::string> names;  // which the settings point to
@@ -39,7 +19,7 @@ struct SettingList {
 SettingList described() {
     SettingList made;
     const RendererSettings usual;
-    for_each_of(usual, [&](const std::string& name, const auto& one, double value, const auto&) {
+    for_each_live_number(usual, [&](const auto& name, const auto& one, double value, const auto&) {
         auto setting = sized<palpate_setting>();
         setting.open = one.range.open;
         setting.name = made.names.emplace_back(name).c_str();
@@ -61,23 +41,9 @@ const std::vector<palpate_setting>& all_settings() {
 }
 
 double value_of(const RendererSettings& settings, const std::string& name) {
-    std::optional<double> value;
-    for_each_of(settings, [&](const std::string& one, const auto&, double number, const auto&) {
-        if (one == name) value = number;
-    });
-    if (!value) refuse(name);
-    return *value;
-}
-
-Command change(RendererSettings& settings, const std::string& name, double value) {
-    std::optional<Command> command;
-    for_each_of(settings, [&](const std::string& one, const auto&, double& number, auto& group) {
-        if (one != name) return;
-        number = value;
-        command = group;
-    });
-    if (!command) refuse(name);
-    return *command;
+    double value = 0;
+    visit_live_number(settings, name, [&](double number, const auto&) { value = number; });
+    return value;
 }
 
 extern "C" PALPATE_API size_t palpate_setting_count(void) {

@@ -11,9 +11,7 @@ namespace palpate::c {
 
 /// Every setting, as the header describes it. Their texts live as long as the library.
 const std::vector<palpate_setting>& all_settings();
-/// Throws std::invalid_argument, suggesting one, for a name that there is not; likewise below.
+/// Throws std::invalid_argument, suggesting one, for a name that there is not.
 double value_of(const RendererSettings& settings, const std::string& name);
-/// Changes one setting, without a check, and returns the command that does the same in a run.
-Command change(RendererSettings& settings, const std::string& name, double value);
 
 }  // namespace palpate::c

@@ -1,5 +1,5 @@
 // A session in a Worker of the browser. Not for Node.
-import type { Geometry, Report, Samples, SessionSetup, Snapshot, Surface, Vector } from "./palpate.js";
+import type { Geometry, Report, Samples, SessionSetup, Setting, Snapshot, Surface, Vector } from "./palpate.js";
 
 /** The session has begun: its samples, which the page owns, and their geometry. */
 export interface Ready extends Required<Geometry> {
@@ -11,6 +11,9 @@ export interface Ready extends Required<Geometry> {
   maximum: number;
   /** Whether the loop sleeps between ticks (docs/web.md). */
   isolated: boolean;
+  settings: Setting[];
+  /** As it was sent with the request. */
+  about: unknown;
 }
 
 /** Called with the messages of the worker. */
@@ -24,16 +27,27 @@ export interface Hearing {
   edited?(changed: boolean): void;
   recording?(text: string): void;
   report?(report: Report): void;
+  /** After each request that changes one. */
+  settings?(all: Setting[]): void;
+  /** If it ends the session, a snapshot without force comes before it. */
   error?(message: string): void;
 }
 
 /** The functions of Session by name, with their argument. Surfaces are made by the thread that renders. */
 export interface Requests {
   /** Either a scene, or samples and their geometry. Ends the session before it, unless it fails. */
-  begin: { scene?: string; samples?: Samples; geometry?: Geometry; setup: Omit<SessionSetup, "isovalue"> & { isovalue?: number } };
+  begin: { scene?: string; samples?: Samples; geometry?: Geometry; setup: Omit<SessionSetup, "isovalue"> & { isovalue?: number };
+    /** The address of a device's service, for example ws://127.0.0.1:10001. */
+    line?: string;
+    /** Comes back with the answer. */
+    about?: unknown };
   read: { position: Vector; buttons: number; at: number };
+  /** A report of a 3D mouse, for the device "spacenav". */
+  puck: { number: number; bytes: Uint8Array };
   lose: null;
   command: [name: string, members: Record<string, unknown>];
+  /** A setting by name. */
+  set: [name: string, value: number];
   /** Radius [mm] of the burr that drills, 0 for none. Each call begins a step of undo. */
   burr: number;
   undo: null;
@@ -45,6 +59,9 @@ export interface Requests {
   report: null;
   end: null;
 }
+
+export function endedBy(why: string, remedy: string): string;
+export function withoutForce(snapshot: Snapshot): Snapshot;
 
 export class Hand {
   constructor(hear: Hearing);

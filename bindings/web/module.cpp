@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bindings/web/page_channel.hpp"
 #include "bindings/web/session.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "palpate/surface.hpp"
@@ -174,8 +175,13 @@ class WebSurface {
     Index3 low_;  // of the next box
 };
 
-std::shared_ptr<WebSession> new_session(const WebVolume& volume, const std::string& setup) {
-    return guarded([&] { return std::make_shared<WebSession>(volume.samples(), setup); });
+/// `line` connects to the device (line.js), or is null.
+std::shared_ptr<WebSession> new_session(const WebVolume& volume, const std::string& setup,
+                                        const val& line) {
+    return guarded([&] {
+        Channel channel = line.isNull() ? nullptr : std::make_unique<PageChannel>(line);
+        return std::make_shared<WebSession>(volume.samples(), setup, std::move(channel));
+    });
 }
 
 std::shared_ptr<WebSurface> surface(const WebSession& session, double isovalue) {
@@ -217,11 +223,14 @@ EMSCRIPTEN_BINDINGS(palpate) {
         .smart_ptr<std::shared_ptr<WebSession>>("shared_ptr<Session>")
         .function("read", &WebSession::read)
         .function("lose", &WebSession::lose)
+        .function("puck", &caught<&WebSession::puck, int, Text>)
         .function("step", &WebSession::step)
         .function("stepAt", &WebSession::step_at)
         .function("due", &WebSession::due)
         .function("stop", &WebSession::stop)
         .function("send", &caught<&WebSession::send, Text>)
+        .function("settings", &WebSession::settings)
+        .function("set", &caught<&WebSession::set, Text, double>)
         .function("edit", &caught<&WebSession::edit, Text, bool>)
         .function("drill", &caught<&WebSession::drill, double, bool>)
         .function("undo", &caught<&WebSession::undo>)

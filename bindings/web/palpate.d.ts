@@ -36,8 +36,11 @@ export interface SessionSetup {
   settings?: Record<string, unknown>;
   /** Clutch and dead-man buttons, plausible speed, overrun. */
   session?: Record<string, unknown>;
-  /** Names for recordings: of the device, and of the volume as the command line opens it. */
+  /** Names for recordings: of the device, and of the volume as the command line opens it. "simulated" and, with a Line,
+   * "haply" are native devices, with options as on the command line: "haply:host=127.0.0.1,port=10001". */
   device?: string;
+  /** The transform that fits the volume into the device's workspace, in place of that of the settings. */
+  fit?: boolean;
   volume?: string;
 }
 
@@ -69,6 +72,9 @@ export interface Snapshot {
 /** [ns] */
 export interface Times { p50: number; p99: number; p999: number; max: number }
 export interface Report {
+  /** The device as it reports itself, and what is wrong with it, or "". */
+  device: string;
+  problem: string;
   ticks: number;
   missed: number;
   overruns: number;
@@ -76,6 +82,18 @@ export interface Report {
   period: Times;
   lateness: Times;
   work: Times;
+}
+
+/** A number of a session that can be changed. */
+export interface Setting {
+  /** "force.stiffness" */
+  name: string;
+  unit: string;
+  about: string;
+  least: number;
+  /** Infinity, or a huge number, if there is no limit. */
+  most: number;
+  value: number;
 }
 
 export interface Surface {
@@ -90,6 +108,9 @@ export class Session {
   read(position: ArrayLike<number>, more?: { buttons?: number; measured?: number }): void;
   /** The device is gone until the next reading. */
   lose(): void;
+  /** A report of a 3D mouse (WebHID) if the session's device is "spacenav". It moves the hand, and read() is only a
+   * sign of life. */
+  puck(number: number, bytes: Uint8Array): void;
   /** A tick, now. False once the session has ended. */
   step(): boolean;
   /** A tick at a time of the caller's, without statistics: the same calls give the same bits. */
@@ -99,6 +120,9 @@ export class Session {
   stop(): void;
   /** For example command("isovalue", { value: 40 }) or command("penetrability", { on: true, ... }). */
   command(name: string, members?: Record<string, unknown>): void;
+  /** Of force, friction and device limits. Stiffness and damping are those in use: at most what the device renders stably. */
+  settings(): Setting[];
+  set(name: string, value: number): void;
   /** { stroke: {...} } or { fill: {...} }. */
   edit(edit: Record<string, unknown>, more?: { sameStep?: boolean }): void;
   /** Carves along the proxy's way since the last call while it touches. True if samples changed. */
@@ -118,11 +142,25 @@ export class Session {
   delete(): void;
 }
 
+/** A connection to a device: Line in line.js is one. No function waits. */
+export interface LineOfDevice {
+  readonly isOpen: boolean;
+  /** Why it is not. */
+  readonly error: string;
+  /** True if it is open and the first message is there. Otherwise it begins to connect. */
+  connect(): boolean;
+  send(message: string): boolean;
+  /** The oldest message, or null. */
+  next(): string | ArrayBuffer | null;
+  close(): void;
+}
+
 export interface Palpate {
   volume(samples: Samples, geometry: Geometry): Volume;
   /** A synthetic volume, for example "sphere:64x64x64". */
   scene(specification: string): { volume: Volume; isovalue: number; description: string };
-  session(volume: Volume, setup: SessionSetup): Session;
+  /** With a line, the session has a device of its own (docs/web.md), and read() is only a sign of life. */
+  session(volume: Volume, setup: SessionSetup, line?: LineOfDevice | null): Session;
 }
 
 export function joined(parts: Surface[]): Surface;

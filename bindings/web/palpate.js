@@ -13,16 +13,23 @@ const sampleTypes = new Map([
 ]);
 const arrayTypes = { uint8: Uint8Array, int16: Int16Array, uint16: Uint16Array, float32: Float32Array };
 
-/** The module's bytes, from beside this file: emscripten's own loader cannot read files in Node. */
+/** The module's bytes, from beside this file: emscripten's own loader cannot read files in Node, and unpacks nothing. */
 async function readCore() {
-  const address = new URL("./palpate_core.wasm", import.meta.url);
+  const address = new URL("./palpate_core.wasm.gz", import.meta.url);
   if (address.protocol !== "file:") {
     const answer = await fetch(address);
     if (!answer.ok) throw new Error(`${address}: ${answer.status} ${answer.statusText}`);
-    return answer.arrayBuffer();
+    return unpacked(await answer.arrayBuffer());
   }
   const { readFile } = await import("node:fs/promises");
-  return readFile(address);
+  return unpacked(await readFile(address));
+}
+
+/** Some servers let the browser unpack what is named .gz. */
+async function unpacked(bytes) {
+  const stream = new Blob([bytes]).stream();
+  const isPacked = new DataView(await new Blob([bytes]).slice(0, 2).arrayBuffer()).getUint16(0) === 0x1f8b;
+  return new Response(isPacked ? stream.pipeThrough(new DecompressionStream("gzip")) : stream).arrayBuffer();
 }
 
 /** Samples of a grid. */
@@ -53,6 +60,9 @@ export class Session {
   lose() {
     this.core.lose();
   }
+  puck(number, bytes) {
+    this.core.puck(number, bytes);
+  }
   step() {
     return this.core.step();
   }
@@ -68,6 +78,13 @@ export class Session {
   }
   command(name, members = {}) {
     this.core.send(JSON.stringify({ [name]: members }));
+  }
+  settings() {
+    const number = (value) => (typeof value === "string" ? Number(value.replace("inf", "Infinity")) : value);
+    return JSON.parse(this.core.settings()).map((one) => ({ ...one, least: number(one.least), most: number(one.most), value: number(one.value) }));
+  }
+  set(name, value) {
+    this.core.set(name, value);
   }
   edit(edit, { sameStep = false } = {}) {
     this.core.edit(JSON.stringify(edit), sameStep);
@@ -164,8 +181,8 @@ class Palpate {
     const { volume, ...rest } = this.core.scene(specification);
     return { volume: new Volume(volume), ...rest };
   }
-  session(volume, setup) {
-    return new Session(this.core.newSession(volume.core, JSON.stringify(setup)));
+  session(volume, setup, line = null) {
+    return new Session(this.core.newSession(volume.core, JSON.stringify(setup), line));
   }
 }
 

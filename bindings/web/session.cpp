@@ -6,10 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "devices/haply/haply.hpp"
+#include "devices/simulated/simulated.hpp"
 #include "io/recording/samples_json.hpp"
+#include "palpate/settings.hpp"
 
 namespace palpate::web {
 namespace {
@@ -42,11 +46,19 @@ RendererSettings settings_from(const Json& setup) {
     return settings;
 }
 
-Session session_from(const Field& field, const Json& setup) {
-    Session session{
-        make_renderer(field, io::number_from_json(io::member(setup, "isovalue"), "isovalue"),
-                      settings_from(setup)),
-        {}};
+double isovalue_from(const Json& setup) {
+    return io::number_from_json(io::member(setup, "isovalue"), "isovalue");
+}
+
+DeviceTransform transform_from(const Field& field, const Json& setup, const DeviceInfo& device) {
+    if (setup.value("fit", false)) return fit_workspace(field.geometry(), device);
+    return settings_from(setup).transform;
+}
+
+Session session_from(const Field& field, const Json& setup, const DeviceInfo& device) {
+    RendererSettings settings = settings_from(setup);
+    settings.transform = transform_from(field, setup, device);
+    Session session{make_renderer(field, isovalue_from(setup), settings), {}};
     if (setup.contains("session")) io::from_json(setup["session"], session.settings);
     return session;
 }
@@ -58,30 +70,69 @@ DeviceInfo info_from(const Json& setup) {
     return info;
 }
 
+/// A page cannot wait: what has not arrived comes in a later tick.
+void do_not_wait(std::int64_t) noexcept {}
+
+PageDevice device_from(const Field& field, const Json& setup, Channel channel) {
+    const devices::DeviceChoice choice = devices::parse_device(setup.value("device", "page"));
+    const devices::DeviceScene scene{
+        field, isovalue_from(setup), setup.value("rate", 1000.0),
+        [&](const DeviceInfo& device) { return transform_from(field, setup, device); }};
+    if (channel) {
+        return PageDevice(devices::haply::open(choice, scene, {std::move(channel), {}},
+                                               {.now = &clock_ns, .sleep_until = &do_not_wait}));
+    }
+    if (choice.name == "simulated") return PageDevice(devices::open_simulated(choice, scene));
+    return PageDevice(info_from(setup));
+}
+
 Json json_of(const LatencySummary& times) {
     return {{"p50", times.p50}, {"p99", times.p99}, {"p999", times.p999}, {"max", times.max}};
 }
 
 }  // namespace
 
-WebSession::WebSession(std::shared_ptr<const Samples> samples, const std::string& setup)
+WebSession::WebSession(std::shared_ptr<const Samples> samples, const std::string& setup,
+                       Channel channel)
     : setup_(Json::parse(setup)),
-      device_(info_from(setup_)),
       editor_(std::move(samples)),
       field_(field_from(editor_.samples(), setup_)),
-      start_(session_from(field_, setup_)),
+      device_(device_from(field_, setup_, std::move(channel))),
+      start_(session_from(field_, setup_, device_.info())),
+      asked_(start_),
       servo_(std::make_unique<Servo>(
           start_, device_,
           ServoSettings{
               .rate = setup_.value("rate", 1000.0), .real_time = false, .clock = &clock_ns})) {
     versions_.emplace_back(editor_.samples(), command::Samples{});
+    if (device_.info().name == "spacenav") puck_.emplace();
 }
 
 void WebSession::read(double x, double y, double z, unsigned buttons, double measured) {
     device_.newest.status = DeviceStatus::ready;
+    device_.measured = measured;
+    if (puck_) return;
     device_.newest.position = {x, y, z};
     device_.newest.buttons = buttons;
-    device_.measured = measured;
+}
+
+void WebSession::puck(int number, const std::string& bytes) {
+    if (!puck_) throw std::logic_error("the device of this session is no 3D mouse");
+    const std::span report(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+    for (const auto& event : puck_->reports.take(static_cast<std::uint8_t>(number), report)) {
+        devices::spacenav::apply(puck_->hand, event, {});
+    }
+}
+
+/// To the time of this tick.
+void WebSession::move_puck() {
+    if (!puck_) return;
+    constexpr double longest = 0.02;  // [s] no jump after the page has stalled
+    const double passed = device_.now - std::exchange(puck_->moved_at, device_.now);
+    advance(puck_->hand, std::clamp(passed, 0., longest), {});
+    device_.newest.position = puck_->hand.position;
+    device_.newest.orientation = puck_->hand.orientation;
+    device_.newest.buttons = puck_->hand.buttons;
 }
 
 void WebSession::lose() {
@@ -89,7 +140,9 @@ void WebSession::lose() {
 }
 
 bool WebSession::step() {
+    device_.exchange();
     device_.now = 1e-9 * static_cast<double>(clock_ns());
+    move_puck();
     const bool goes_on = servo_->step();
     drain();
     return goes_on;
@@ -97,6 +150,7 @@ bool WebSession::step() {
 
 bool WebSession::step_at(double time) {
     device_.now = time;
+    move_puck();
     const bool goes_on = servo_->step(static_cast<std::int64_t>(std::llround(1e9 * time)));
     drain();
     return goes_on;
@@ -120,6 +174,26 @@ void WebSession::send(const std::string& command) {
 
 void WebSession::push(const Command& command) {
     if (!servo_->send(command)) throw std::runtime_error("too many commands wait");
+    if (!std::holds_alternative<command::Samples>(command)) apply(asked_, command);
+}
+
+std::string WebSession::settings() const {
+    Json list = Json::array();
+    for_each_live_number(asked_.renderer.settings,
+                         [&](const std::string& name, const auto& one, double value, const auto&) {
+                             list.push_back({{"name", name},
+                                             {"unit", one.unit},
+                                             {"about", one.about},
+                                             {"least", io::number_to_json(one.range.least)},
+                                             {"most", io::number_to_json(one.range.most)},
+                                             {"value", io::number_to_json(value)}});
+                         });
+    return list.dump();
+}
+
+void WebSession::set(const std::string& name, double value) {
+    RendererSettings changed = asked_.renderer.settings;
+    push(change(changed, name, value));
 }
 
 void WebSession::edit(const std::string& edit, bool same_step) {
@@ -208,7 +282,10 @@ const SnapshotNumbers& WebSession::snapshot() {
 
 std::string WebSession::report() const {
     const ServoReport now = servo_->report();
-    return Json{{"ticks", now.ticks},
+    const DeviceInfo device = device_.info();
+    return Json{{"device", device.model.empty() ? device.name : device.model},
+                {"problem", device_.problem()},
+                {"ticks", now.ticks},
                 {"missed", now.missed},
                 {"overruns", now.overruns},
                 {"unrecorded", now.unrecorded},

@@ -64,9 +64,17 @@ template <class Range, class Value>
 void fill(Range&& range, const Value& value) {
     std::fill(std::begin(range), std::end(range), value);
 }
+template <class Out>
+struct Copied {
+    Out out;
+};
 template <class Range, class Out>
-void copy(Range&& range, Out out) {
-    std::copy(std::begin(range), std::end(range), out);
+Copied<Out> copy(Range&& range, Out out) {
+    return {std::copy(std::begin(range), std::end(range), out)};
+}
+template <class One, class Other, class Same>
+bool equal(const One& one, const Other& other, Same same) {
+    return std::equal(std::begin(one), std::end(one), std::begin(other), std::end(other), same);
 }
 template <class Range, class Out, class Function>
 void transform(Range&& range, Out out, Function function) {
@@ -80,9 +88,20 @@ template <class Range, class Test, class Value>
 void replace_if(Range&& range, Test test, const Value& value) {
     std::replace_if(std::begin(range), std::end(range), test, value);
 }
+template <class Range, class Old, class New>
+void replace(Range&& range, const Old& old, const New& value) {
+    std::replace_if(
+        std::begin(range), std::end(range), [&](const auto& one) { return one == old; }, value);
+}
 template <class Range, class Value>
 auto find(Range&& range, const Value& value) {
     return std::find(std::begin(range), std::end(range), value);
+}
+
+template <class Range, class Value, class Key>
+auto find(Range&& range, const Value& value, Key key) {
+    return std::find_if(std::begin(range), std::end(range),
+                        [&](const auto& one) { return std::invoke(key, one) == value; });
 }
 
 /// By a projection: of two values, that whose member is less comes first.

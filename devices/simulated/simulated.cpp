@@ -18,7 +18,7 @@ namespace {
 
 /// After a gap between two reads at most this much [s] is simulated; the rest is skipped, so that a
 /// read after a stall does not itself cause the next stall.
-constexpr double longest_gap = 0.05;
+constexpr double longest_simulated = 0.05;
 
 const char* const usual_profile = "omni";
 
@@ -200,7 +200,7 @@ class Simulated final : public Device {
             if (!started_) now_ = time;
             started_ = true;
             if (time > now_) {
-                pass(std::min(time, now_ + longest_gap));
+                pass(std::min(time, now_ + longest_simulated));
                 now_ = time;
             }
         }

@@ -5,6 +5,7 @@ they stand. A linked file that is no page becomes one that shows it, a linked fo
 usage: stage.py ROOT OUT
 """
 
+import html
 import os
 import re
 import shutil
@@ -16,6 +17,7 @@ LINK = re.compile(r"(?<=\]\()([^)\s#]+)")
 TOUCH = """
 <p><a class="touch-here" href="touch/page/index.html">Touch a CT head here, in your browser</a></p>
 """
+PROGRAM = re.compile(r"^```js\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 ITEM = re.compile(r"( *)([-*]|\d+[.)]) +")
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".c": "c", ".h": "c", ".py": "python", ".cs": "csharp",
              ".sh": "sh", ".json": "json"}
@@ -78,16 +80,29 @@ class Site:
             self.embed()
         for path in sorted(self.shown):
             self.show(path)
-        shutil.copy(self.root / "docs/site/site.css", self.out)
+        for name in ("site.css", "cell.js"):
+            shutil.copy(self.root / "docs/site" / name, self.out)
         (self.out / "js").mkdir()
         shutil.copy(self.root / "docs/site/theme_extra.js", self.out / "js")
         # The name by which Debian's theme asks for it, which is not in its package.
         shutil.copy("/usr/share/javascript/jquery/jquery.min.js", self.out / "js/jquery-3.6.0.min.js")
 
     def embed(self):
-        """Puts the page for the browser below the first paragraph of the site."""
+        """Puts the page for the browser below the first paragraph of the site, and lets programs in JavaScript run."""
+        for page in sorted(self.out.rglob("*.md")):
+            text = page.read_text(encoding="utf-8")
+            if PROGRAM.search(text):
+                page.write_text(self.with_cells(text, "../" * (len(page.relative_to(self.out).parts) - 1)), encoding="utf-8")
         title, first, rest = (self.out / "README.md").read_text(encoding="utf-8").split("\n\n", 2)
         self.write("README.md", "\n\n".join((title, first, TOUCH.strip(), rest)))
+
+    def with_cells(self, text, top):
+        """Programs of a page become fields that cell.js runs; `top` leads to the top of the site."""
+        def cell(match):
+            program = html.escape(match[1].rstrip("\n"))
+            return (f'<div class="cell" data-module="{top}touch/palpate.js"><textarea aria-label="Program" spellcheck="false" '
+                    f'rows="{program.count(chr(10)) + 1}">\n{program}</textarea></div>')
+        return PROGRAM.sub(cell, text) + f'\n<script type="module" src="{top}cell.js"></script>\n'
 
     def write(self, relative, text):
         to = self.out / relative

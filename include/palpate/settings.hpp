@@ -6,10 +6,13 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <type_traits>
+#include <vector>
 
+#include "palpate/names.hpp"
 #include "palpate/session.hpp"
 
 namespace palpate {
@@ -256,5 +259,41 @@ inline constexpr auto settings_of<SessionSettings> = std::tuple{
         .within(ranges::limit),
     setting(&SessionSettings::overrun, "overrun", "s", "A tick that takes longer gives no force")
         .within(ranges::limit)};
+
+/// Calls visit(name, setting, number, group) for each number that a running session can change: a
+/// command changes all of its group. "force.stiffness" is a name.
+void for_each_live_number(auto& settings, auto&& visit) {
+    const auto walk = [&](const char* path, auto& group) {
+        for_each_number(path, group, [&](const std::string& name, const auto& one, auto& number) {
+            visit(name, one, number, group);
+        });
+    };
+    walk("force", settings.force);
+    walk("friction", settings.proxy.friction);
+    walk("limits", settings.device);
+}
+/// Calls visit(number, group) for the one of that name. Throws std::invalid_argument, suggesting
+/// another name, if there is none.
+void visit_live_number(auto& settings, const std::string& name, auto&& visit) {
+    std::vector<std::string> others;
+    bool found = false;
+    for_each_live_number(settings, [&](const auto& one, const auto&, auto& number, auto& group) {
+        others.push_back(one);
+        if (one != name) return;
+        found = true;
+        visit(number, group);
+    });
+    if (found) return;
+    throw std::invalid_argument("there is no setting '" + name + "': " + use_one_of(others, name));
+}
+/// Changes it, without a check, and returns the command that does the same in a session.
+inline Command change(RendererSettings& settings, const std::string& name, double value) {
+    Command command;
+    visit_live_number(settings, name, [&](double& number, auto& group) {
+        number = value;
+        command = group;
+    });
+    return command;
+}
 
 }  // namespace palpate

@@ -89,15 +89,15 @@ class Links(Folder):
 class Stage(Folder):
     def site(self, left_out=None, **pages):
         for name in stage.PAGES:
-            self.write(name, "# page\n")
-        for name in ("site.css", "theme_extra.js"):
+            self.write(name, "# page\n\nfirst\n\nrest\n")
+        for name in ("site.css", "theme_extra.js", "cell.js"):
             self.write(f"docs/site/{name}", "")
         for name, text in pages.items():
             self.write(f"docs/{name}.md", text)
         self.write("docs/site/mkdocs.yml", "\n".join(
             [*stage.PAGES, *(f"docs/{name}.md" for name in pages if name != left_out)]))
         out = self.folder / "out"
-        out.mkdir()
+        out.mkdir(exist_ok=True)
         stage.Site(self.folder, out).run()
         return out
 
@@ -109,6 +109,17 @@ class Stage(Folder):
                       (out / "docs/one.md").read_text())
         self.assertIn("```cpp\nint answer = 42;", (out / "src/a.cpp.md").read_text())
         self.assertTrue((out / "examples/b.py.md").exists())
+
+    def test_programs_in_javascript_run_where_the_page_for_the_browser_is(self):
+        text = "# one\n\n```js\nlet a = 1;\n\nif (a < 2) a = 3;\n```\n\nEnd\n"
+        self.assertEqual((self.site(one=text) / "docs/one.md").read_text(), text)
+        self.setUp()
+        self.write("out/touch/page/index.html", "")
+        page = (self.site(one=text, two="# two\n") / "docs/one.md").read_text()
+        self.assertNotIn("```", page)
+        self.assertIn('data-module="../touch/palpate.js"', page)
+        self.assertIn("let a = 1;\n\nif (a &lt; 2) a = 3;</textarea>", page)
+        self.assertIn('src="../cell.js"', page)
 
     def test_a_link_to_what_is_not_there_is_found(self):
         with self.assertRaisesRegex(SystemExit, "one.md: links to ../gone.cpp"):

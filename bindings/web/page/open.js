@@ -12,6 +12,20 @@ const isVolume = /\.(nrrd|nii|nii\.gz)$/i;
 const isBare = (name, bytes) => /\.(dcm|ima)$/i.test(name) || ([2, 8].includes(bytes[0]) && bytes[1] === 0 && bytes[3] === 0 && /^[A-Z]{2}$/.test(String.fromCharCode(bytes[4], bytes[5])));
 const isZarr = /(^|\/)(zarr\.json|\.zattrs|\.zarray)$/;
 
+/** Calls `use` or `fail` with what a function reads. Of several that read at the same time, the last one that began counts. */
+export function lastAsked(use, fail) {
+  let newest = 0;
+  return async (read) => {
+    const mine = ++newest;
+    try {
+      const data = await read();
+      if (mine === newest) use(data);
+    } catch (error) {
+      if (mine === newest) fail(error);
+    }
+  };
+}
+
 /** `files` have a path and a file each. Returns samples, geometry, a name, and marks if levels are known. */
 export async function readFiles(files) {
   if (files.length === 0) refuse("there is no file in it", "choose another");

@@ -2,8 +2,11 @@
 // as asked for. What it does goes through Hand, what it shows comes from there.
 import { Hand } from "../hand.js";
 import { drawHistogram, drawSlices, histogramOf, rangeOf } from "./charts.js";
-import { chosenFiles, droppedFiles, readAddress, readFiles } from "./open.js";
+import { chooseSpaceMouse, far, idleText, isService, isSimulated, sessionWith, transformFor } from "./devices.js";
+import { Sound, contactOf, shake } from "./feedback.js";
+import { chosenFiles, droppedFiles, lastAsked, readAddress, readFiles } from "./open.js";
 import { Scene } from "./scene.js";
+import { showSettings } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 const headAddress = new URL("./visible_human_head.nrrd", import.meta.url);
@@ -17,7 +20,6 @@ const headLayers = {
 };
 const speed = 90; // [device mm/s] at which the hand approaches
 const slowly = 15; // [device mm/s] while surfaces give way
-const far = 75; // [device mm] where it rests
 
 const scene = new Scene($("scene"));
 let volume = null; // of the worker's answer `ready`
@@ -25,21 +27,17 @@ let snapshot = null;
 let histogram = null;
 let marks = {};
 let level = 0;
+let device = "mouse"; // of the session, see devices.js
+let wanted = device; // of the session that was asked for last
+let connecting = false;
 let pressing = false;
 let meshing = false; // a surface was asked for and has not come
 let stale = false; // another one is needed
 let recording = false;
-let opened = {}; // the volume: its name, levels that are known
+let opened = {}; // of the volume: its name, levels that are known
 let parts = []; // of the surface that is on its way
 let shown = 0; // level of the surface
 const hand = [0, 0, far];
-
-/** Volume and device, centre on centre, the front of the body towards the viewer. */
-function transformFor({ size, spacing, origin, direction }) {
-  const middle = [0, 1, 2].map((row) => origin[row] + [0, 1, 2].reduce((sum, a) => sum + direction[3 * row + a] * spacing[a] * (size[a] - 1) * 0.5, 0));
-  const longest = Math.max(...size.map((n, a) => n * spacing[a]));
-  return { rotation: [[1, 0, 0], [0, 0, -1], [0, 1, 0]], translation: middle, scale: longest / 140 };
-}
 
 let toldUntil = 0;
 /** Shows a state, which stays for `least` ms or until the next action. */
@@ -62,26 +60,35 @@ function complain(error) {
 }
 
 const to = new Hand({
-  ready(made) {
+  ready({ about, ...made }) {
+    if (connecting) toldUntil = 0;
+    if (about.device !== device) say(about.device === "mouse" ? "The mouse moves the hand" : "Connected");
+    opened = about;
+    device = about.device;
+    connecting = false;
     $("notes").textContent = (opened.notes ?? []).join("; ");
+    $("layersLabel").hidden = !opened.layers;
     volume = { ...made, oriented: opened.oriented, number: (volume?.number ?? 0) + 1 };
     snapshot = null;
+    showDevices();
+    showAll(made.settings);
     scene.clear();
     meshing = false; // the worker has dropped the surface of the volume before
     hand[2] = far;
     histogram = histogramOf(volume);
     showMarks(opened.marks ?? {});
-    useLevel(Object.values(marks)[0] ?? made.isovalue ?? histogram.otsu);
+    useLevel(opened.level ?? Object.values(marks)[0] ?? made.isovalue ?? histogram.otsu);
     document.body.dataset.ready = "1";
     to.send("report");
   },
   snapshot(now) {
+    if (snapshot) respond(contactOf(snapshot, now));
     snapshot = now;
     if (Number.isFinite(now.isovalue) && $("through").checked) level = now.isovalue;
     if (volume && Math.abs(level - shown) > 0.03 * (volume.maximum - volume.minimum)) remesh(); // pressed through
     const pull = Math.hypot(...now.force);
     if (now.constrained !== touching) say((touching = now.constrained) ? "In contact" : "No contact");
-    tell(now.constrained ? `In contact: ${pull.toFixed(1)} N at level ${now.isovalue.toFixed(0)}` : pressing ? "Approaching ..." : "Move, and press to touch");
+    tell(now.constrained ? `In contact: ${pull.toFixed(1)} N at level ${now.isovalue.toFixed(0)}` : pressing ? "Approaching ..." : idleText(device));
   },
   surface(part) {
     parts.push(part);
@@ -93,6 +100,7 @@ const to = new Hand({
     document.body.dataset.surface = String(Number(document.body.dataset.surface ?? 0) + 1);
     if (stale) remesh();
   },
+  settings: (all) => showAll(all),
   edited: () => remesh(),
   recording(text) {
     const link = $("save");
@@ -100,17 +108,38 @@ const to = new Hand({
     link.href = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
     link.hidden = false;
   },
-  report({ ticks, missed, lateness, work }) {
+  report({ device, problem, ticks, missed, lateness, work }) {
+    if (problem) tell(problem, 2000);
     const us = (ns) => `${(ns / 1000).toFixed(0)} µs`;
-    const rows = [["ticks", ticks], ["missed", missed], ["late, median", us(lateness.p50)], ["late, 99 %", us(lateness.p99)],
-      ["late, 99.9 %", us(lateness.p999)], ["work, median", us(work.p50)], ["sleeps between ticks", volume.isolated ? "yes" : "no, until the page is loaded again"]];
-    $("report").innerHTML = rows.map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("");
+    const rows = [["device", device], ["ticks", ticks], ["missed", missed], ["late, median", us(lateness.p50)], ["late, 99 %", us(lateness.p99)],
+      ["late, 99.9 %", us(lateness.p999)], ["late at most", us(lateness.max)], ["work, median", us(work.p50)], ["sleeps between ticks", volume.isolated ? "yes" : "no, until the page is loaded again"]];
+    const part = (kind, text) => Object.assign(document.createElement(kind), { textContent: text });
+    $("report").replaceChildren(...rows.flatMap(([name, value]) => [part("dt", name), part("dd", value)]));
   },
   error(text) {
     meshing = false;
+    if (connecting) use("mouse"); // the session before has ended for it
     complain(text);
   },
 });
+
+const showAll = (all) => showSettings($("usual"), $("rest"), all, (name, value) => to.send("set", [name, value]));
+
+let sound = null;
+/** To a contact, in addition to the picture. */
+function respond(contact) {
+  sound?.hear(contact);
+  if ($("shakes").checked && contact.push > 0) shake(navigator.getGamepads(), contact);
+}
+
+/** Which device holds the hand, on the buttons that connect and disconnect. */
+function showDevices() {
+  for (const [id, is, name] of [["connect", isService, "the Inverse3"], ["puck", (one) => one === "spacenav", "the SpaceMouse"], ["simulate", isSimulated, "the simulated hand"]]) {
+    $(id).disabled = false;
+    $(id).classList.toggle("on", is(device));
+    $(id).textContent = `${is(device) ? "Disconnect" : "Connect"} ${name}`;
+  }
+}
 
 /** For visits without a network; after the first picture, which should not wait for it. */
 function keep() {
@@ -147,39 +176,41 @@ function useLevel(value) {
   remesh();
 }
 
-function begin(data) {
+/** Asks for a session. What is known of the volume comes back with `ready`. */
+function begin(data, using = wanted) {
   if (recording) setRecording(false); // the worker still has its session
-  const { geometry, samples, scene: made, name } = data;
-  opened = { name, marks: data.marks, oriented: data.oriented, notes: data.notes };
+  const { geometry, samples, scene: made, ...about } = data;
   $("through").checked = $("layers").checked = $("drill").checked = false;
-  $("layersLabel").hidden = data.marks !== headMarks;
   to.send("burr", 0);
-  const fit = geometry && transformFor(geometry);
+  const { line, setup } = sessionWith(using, geometry);
+  [wanted, connecting] = [using, line !== undefined];
+  const isovalue = () => about.level ?? Object.values(about.marks ?? {})[0] ?? histogramOf({ samples, ...rangeOf(samples) }).otsu;
   to.send("begin", {
-    samples, geometry, scene: made,
-    setup: {
-      ...(made ? {} : { isovalue: Object.values(data.marks ?? {})[0] ?? histogramOf({ samples, ...rangeOf(samples) }).otsu }), volume: name, device: "mouse",
-      // A page reads its mouse 60 times a second.
-      settings: { force: { stiffness: 0.5, stale_after: 0.08, limit: 3.3 }, transform: fit ?? { rotation: [[1, 0, 0], [0, 0, -1], [0, 1, 0]], scale: 64 / 140 } },
-    },
+    samples, geometry, scene: made, line, about: { ...about, device: using },
+    setup: { ...(made ? {} : { isovalue: isovalue() }), volume: about.name, ...setup },
   }, samples ? [samples.buffer] : []);
 }
 
-let newest = 0;
-/** The last one that was asked for wins. */
-async function open(read) {
-  const mine = ++newest;
-  toldUntil = 0;
-  tell("Loading ...");
-  try {
-    const data = await read();
-    if (mine === newest) begin(data);
-  } catch (error) {
-    if (mine === newest) complain(error.message);
-  }
+/** The same volume with another device. */
+function use(name) {
+  if (isService(name)) tell("Connecting ...", Infinity);
+  const { size, spacing, origin, direction, samples } = volume;
+  begin({ ...opened, level, samples: samples.slice(), geometry: { size, spacing, origin, direction } }, name);
 }
 
-const openHead = () => open(async () => ({ ...(await readAddress(headAddress)), marks: headMarks }));
+async function useSpaceMouse() {
+  const report = (bytes) => device === "spacenav" && to.send("puck", bytes);
+  if (await chooseSpaceMouse(report, () => device === "spacenav" && use("mouse"))) use("spacenav");
+}
+
+const beginLast = lastAsked((data) => begin(data), (error) => complain(error.message));
+function open(read) {
+  toldUntil = 0;
+  tell("Loading ...");
+  beginLast(read);
+}
+
+const openHead = () => open(async () => ({ ...(await readAddress(headAddress)), marks: headMarks, layers: headLayers }));
 
 // The hand.
 let then = performance.now();
@@ -189,7 +220,8 @@ function frame(now) {
   moveByKeys(dt);
   const asked = Number($("press").value);
   $("pressText").textContent = `${asked} mm`;
-  if (snapshot && scene.transform) {
+  if (device !== "mouse" && snapshot && scene.transform) hand.splice(0, 3, ...scene.device(snapshot.hip));
+  else if (snapshot && scene.transform) {
     const proxy = scene.device(snapshot.scp);
     const pull = proxy[2] - hand[2];
     if (!pressing) hand[2] = Math.min(far, hand[2] + speed * dt);
@@ -214,8 +246,9 @@ const follow = (event) => {
 };
 const setPressing = (on) => {
   pressing = on;
-  if ($("drill").checked) to.send("burr", on ? drillRadius() : 0); // each press is a step of undo
+  if ($("drill").checked) to.send("burr", drills() ? drillRadius() : 0); // each press is a step of undo
 };
+const drills = () => $("drill").checked && (pressing || device !== "mouse");
 const drillRadius = () => 2.5 * Math.max(...volume.spacing);
 canvas.addEventListener("pointermove", follow);
 canvas.addEventListener("pointerdown", (event) => {
@@ -252,7 +285,7 @@ function moveByKeys(dt) {
 }
 
 // The panel.
-$("volume").onchange = ({ target: { value } }) => (value === "head" ? openHead() : open(() => ({ scene: value, name: value })));
+$("volume").onchange = ({ target: { value } }) => (value === "head" ? openHead() : open(async () => ({ scene: value, name: value })));
 for (const id of ["file", "folder"]) $(id).onchange = ({ target }) => target.files.length > 0 && open(() => readFiles(chosenFiles(target.files)));
 $("remote").onsubmit = (event) => {
   event.preventDefault();
@@ -264,6 +297,16 @@ document.ondrop = (event) => {
   const files = droppedFiles(event.dataTransfer.items);
   open(async () => readFiles(await files));
 };
+$("haply").onsubmit = (event) => {
+  event.preventDefault();
+  use(isService(device) ? "mouse" : $("service").value);
+};
+$("puckLine").hidden = !navigator.hid;
+$("puck").onclick = () => (device === "spacenav" ? use("mouse") : useSpaceMouse().catch((error) => complain(error.message)));
+$("simulated").onsubmit = (event) => {
+  event.preventDefault();
+  use(isSimulated(device) ? "mouse" : `simulated:hand=${$("motion").value},loop=yes`);
+};
 $("isovalue").oninput = ({ target }) => useLevel(Number(target.value));
 $("histogram").onclick = (event) => {
   event.preventDefault();
@@ -274,8 +317,14 @@ $("through").onchange = ({ target }) => {
   to.command("penetrability", target.checked ? { on: true, threshold: 3, range_count: 1, range_1: { low: level, high: volume.maximum } } : { on: false });
   if (!target.checked) useLevel(Number($("isovalue").value)); // back to where it began
 };
-$("layers").onchange = ({ target }) => to.command("layers", target.checked ? { layers: headLayers } : {});
-$("drill").onchange = ({ target }) => to.send("burr", target.checked && pressing ? drillRadius() : 0);
+$("layers").onchange = ({ target }) => to.command("layers", target.checked ? { layers: opened.layers } : {});
+$("drill").onchange = () => to.send("burr", drills() ? drillRadius() : 0);
+$("sound").onclick = ({ target }) => {
+  if (sound) sound.close();
+  sound = sound ? null : new Sound();
+  target.setAttribute("aria-pressed", String(sound !== null));
+};
+addEventListener("gamepadconnected", () => ($("shakesLabel").hidden = false));
 $("undo").onclick = () => to.send("undo");
 $("redo").onclick = () => to.send("redo");
 function setRecording(on) {

@@ -8,7 +8,7 @@ import { join, relative } from "node:path";
 import test from "node:test";
 
 const page = join(process.env.PALPATE_WEB, "page");
-const { readAddress, readFiles } = await import(join(page, "open.js"));
+const { lastAsked, readAddress, readFiles } = await import(join(page, "open.js"));
 const { readVolume } = await import(join(page, "files.js"));
 globalThis.location = { href: "http://localhost/" };
 
@@ -218,4 +218,23 @@ test("the native program reads and writes the same", { skip: !process.env.PALPAT
   if (!zstdIsThere) return;
   convert("blosc_lz4.zarr", "native.zarr"); // OME-Zarr 0.5, zstd
   sameVolume(await open("native.zarr"), await open("blosc_lz4.zarr"));
+});
+
+test("of several that are read at the same time, the last one that was asked for is used", async () => {
+  const used = [];
+  const ask = lastAsked((data) => used.push(data), (error) => used.push(error.message));
+  const slow = {};
+  const read = (name) => () => new Promise((done, fail) => (slow[name] = { done: () => done(name), fail: () => fail(new Error(name)) }));
+  const all = ["a", "b", "c"].map((name) => ask(read(name)));
+  slow.c.done();
+  slow.a.done();
+  slow.b.fail();
+  await Promise.all(all);
+  assert.deepEqual(used, ["c"]);
+
+  const again = [ask(read("d")), ask(read("e"))];
+  slow.e.fail();
+  slow.d.done();
+  await Promise.all(again);
+  assert.deepEqual(used, ["c", "e"]);
 });

@@ -1,86 +1,18 @@
 // The page in Chromium: a mouse touches, presses through, drills, undoes and records. Pictures are kept for people.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { createServer } from "node:http";
-import { createRequire } from "node:module";
-import { extname, join } from "node:path";
+import { mkdirSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import test from "node:test";
 
-const folder = process.env.PALPATE_WEB;
-const pictures = join(folder, "..", "pictures");
-const chromium = "/usr/bin/chromium";
-const volumes = join(folder, "..", "volumes"); // served below the package
-const types = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
-
-/** puppeteer-core beside the package (scripts/deep/web installs it), or null. */
-function puppeteer() {
-  try {
-    return createRequire(join(folder, "..", "node", "index.js"))("puppeteer-core");
-  } catch {
-    return null;
-  }
-}
-
-/** Serves the package, isolated or not; counts the bytes without the volume. */
-async function served(isolated) {
-  let bytes = 0;
-  const server = createServer((request, answer) => {
-    const path = new URL(request.url, "http://localhost").pathname;
-    const file = path.startsWith("/volumes/") ? join(volumes, path.slice(8)) : join(folder, path);
-    if (!existsSync(file) || !statSync(file).isFile()) return answer.writeHead(404).end();
-    const data = readFileSync(file);
-    if (extname(file) !== ".nrrd") bytes += data.length;
-    answer.writeHead(200, {
-      "content-type": types[extname(file)] ?? "application/octet-stream",
-      ...(isolated ? { "cross-origin-opener-policy": "same-origin", "cross-origin-embedder-policy": "require-corp" } : {}),
-    });
-    answer.end(data);
-  });
-  await new Promise((listens) => server.listen(0, "127.0.0.1", listens));
-  return { server, address: `http://127.0.0.1:${server.address().port}/page/index.html`, bytes: () => bytes };
-}
-
-const launched = () => puppeteer().launch({
-  executablePath: chromium,
-  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
-
-/** `expected` are parts of messages on the console that are no errors of the page. */
-async function opened(work, expected = []) {
-  const site = await served(true);
-  const browser = await launched();
-  try {
-    const page = await browser.newPage();
-    const errors = [];
-    page.on("pageerror", (error) => errors.push(error.message));
-    page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
-    await page.setViewport({ width: 900, height: 640 });
-    await page.goto(site.address);
-    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0, { timeout: 150000 });
-    await work(page, site);
-    assert.deepEqual(errors.filter((error) => !expected.some((part) => error.includes(part))), []);
-  } finally {
-    await browser.close();
-    site.server.close();
-  }
-}
-
-const says = (page, pattern) =>
-  page.waitForFunction((text) => new RegExp(text).test(document.getElementById("state").textContent), { timeout: 150000 }, pattern.source);
-const picture = (page, name) => page.screenshot({ path: join(pictures, `${name}.png`) });
-
-const skip = (!existsSync(chromium) && "there is no Chromium") || (!puppeteer() && "puppeteer-core is not installed (scripts/deep/web)");
+import { hover, launched, newPage, opened, picture, pictures, says, served, skip, volumes } from "./browser.mjs";
 
 test("the head is touched, pressed through, drilled and recorded", { skip, timeout: 1500000 }, async () => {
-  mkdirSync(pictures, { recursive: true });
   await opened(async (page, site) => {
     assert.ok(site.bytes() < 1e6, `${site.bytes()} bytes`);
     await picture(page, "loaded");
-    const box = await (await page.$("#scene")).boundingBox();
-    const [x, y] = [box.x + box.width / 2, box.y + box.height * 0.4];
     await page.click("#record");
-    await page.mouse.move(x, y);
+    await hover(page);
     await says(page, /press to touch/);
     await page.mouse.down();
     await says(page, /In contact: .* at level 35/);
@@ -89,7 +21,7 @@ test("the head is touched, pressed through, drilled and recorded", { skip, timeo
     await says(page, /press to touch/);
 
     await page.click("#through");
-    await page.mouse.move(x, y);
+    await hover(page);
     await page.mouse.down();
     await says(page, /at level ([4-9]\d|1\d\d)/);
     await picture(page, "through");
@@ -98,8 +30,8 @@ test("the head is touched, pressed through, drilled and recorded", { skip, timeo
 
     await page.click("#drill");
     const surfaces = () => page.evaluate(() => Number(document.body.dataset.surface));
-    const more = () => page.waitForFunction((n) => Number(document.body.dataset.surface) > n, { timeout: 150000 }, before);
-    await page.mouse.move(x, y);
+    const more = () => page.waitForFunction((n) => Number(document.body.dataset.surface) > n, {}, before);
+    await hover(page);
     let before = await surfaces();
     await page.mouse.down();
     await more(); // while the hand presses
@@ -132,7 +64,7 @@ test("DICOM that is chosen and OME-Zarr at an address are opened, and what canno
     const surface = async (act) => {
       await page.evaluate(() => (document.body.dataset.surface = "0"));
       await act();
-      await page.waitForFunction(() => Number(document.body.dataset.surface) > 0, { timeout: 150000 });
+      await page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
     };
     await page.click("summary");
     const slices = ["0", "1", "2", "3"].map((name) => join(volumes, "implicit", `${name}.dcm`));
@@ -149,15 +81,15 @@ test("DICOM that is chosen and OME-Zarr at an address are opened, and what canno
     assert.match(await page.$eval("#said", ({ textContent }) => textContent), /Error: .*convert it first/);
     await page.keyboard.press("Shift"); // an error stays until the next action
     await says(page, /Move, and press/);
-  }, ["404 (Not Found)"]); // where a Zarr has no zarr.json
+  }, { expected: ["404 (Not Found)"] }); // where a Zarr has no zarr.json
 });
 
 test("once loaded, the page works without a network, and sleeps between ticks on any server", { skip, timeout: 1500000 }, async () => {
   const site = await served(false);
   const browser = await launched();
   try {
-    const page = await browser.newPage();
-    const drawn = () => page.waitForFunction(() => Number(document.body.dataset.surface) > 0, { timeout: 150000 });
+    const page = await newPage(browser);
+    const drawn = () => page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
     await page.goto(site.address);
     await drawn();
     assert.equal(await page.evaluate(() => crossOriginIsolated), false);
@@ -180,12 +112,86 @@ test("another volume ends the recording of the one before", { skip, timeout: 150
     await page.click("#record");
     await page.evaluate(() => (document.body.dataset.surface = "0"));
     await page.select("#volume", "synthetic:torus:64x64x64");
-    await page.waitForSelector("#save:not([hidden])", { timeout: 150000 });
+    await page.waitForSelector("#save:not([hidden])");
     const text = await page.evaluate(async () => (await fetch(document.getElementById("save").href)).text());
     assert.match(text, /visible_human_head[^]*# end \{/);
     assert.equal(await page.$eval("#record", (button) => button.getAttribute("aria-pressed")), "false");
-    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0, { timeout: 150000 });
+    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
     await says(page, /press to touch/);
+  });
+});
+
+test("a volume that arrives late does not replace the one that was asked for after it", { skip, timeout: 1500000 }, async () => {
+  await opened(async (page, site) => {
+    const late = page.waitForResponse((response) => response.url().includes("held"));
+    await page.evaluate(() => {
+      document.getElementById("address").value = "/page/visible_human_head.nrrd?held";
+      document.getElementById("remote").requestSubmit();
+      document.body.dataset.surface = "0";
+    });
+    await page.select("#volume", "synthetic:torus:64x64x64");
+    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
+    const most = () => page.$eval("#isovalue", ({ max }) => Number(max));
+    const torus = await most();
+    site.release();
+    await (await late).buffer();
+    await page.evaluate(async () => {
+      for (let i = 0; i < 60; ++i) await new Promise(requestAnimationFrame);
+    });
+    assert.equal(await most(), torus);
+    assert.equal(await page.evaluate(() => document.body.dataset.surface), "1", "no other surface was made");
+  });
+});
+
+test("settings are changed by keyboard, and one that is refused is told", { skip, timeout: 1500000 }, async () => {
+  await opened(async (page) => {
+    const id = '[id="set.force.stiffness"]';
+    const enter = async (text) => {
+      await page.click(id, { count: 3 });
+      await page.keyboard.type(text);
+      await page.keyboard.press("Enter");
+    };
+    const value = () => page.$eval(id, (input) => input.value);
+    assert.equal(await page.$eval(id, (input) => document.getElementById(input.getAttribute("aria-describedby")).textContent), "Stiffness");
+    const press = async () => {
+      await hover(page);
+      await page.mouse.down();
+    };
+    await press();
+    await says(page, /In contact: 2\.[45]/); // 5 mm at 0.5 N/mm
+    await page.mouse.up();
+    await enter("0.1");
+    await press();
+    await says(page, /In contact: 0\.[45]/);
+    await page.mouse.up();
+    await enter("-1");
+    await says(page, /Error: stiffness .* must be/);
+    assert.equal(await value(), "0.1");
+  }, { slowness: 20 });
+});
+
+test("a contact is heard, and silence is silent", { skip, timeout: 1500000 }, async () => {
+  await opened(async (page) => {
+    const loudness = (contact) => page.evaluate(async (heard) => {
+      const { Sound } = await import("./feedback.js");
+      const context = new OfflineAudioContext(1, 24000, 24000);
+      const sound = new Sound(context);
+      if (heard) sound.hear(heard, 0.1);
+      const samples = (await context.startRendering()).getChannelData(0);
+      const rms = (from, to) => Math.hypot(...samples.subarray(from * 24000, to * 24000)) / Math.sqrt((to - from) * 24000);
+      return [rms(0, 0.09), rms(0.1, 0.2), rms(0.5, 1)];
+    }, contact);
+    assert.deepEqual(await loudness(null), [0, 0, 0]);
+    const [before, during, after] = await loudness({ strike: 0, push: 1, scrape: 1 });
+    assert.equal(before, 0);
+    assert.ok(during > 0.02, String(during));
+    assert.ok(after < 1e-4 * during, "it ends by itself");
+    assert.ok((await loudness({ strike: 1, push: 1, scrape: 0 }))[1] > 0.01);
+    for (const pressed of ["true", "false"]) {
+      await page.focus("#sound");
+      await page.keyboard.press("Enter");
+      assert.equal(await page.$eval("#sound", (button) => button.getAttribute("aria-pressed")), pressed);
+    }
   });
 });
 
@@ -228,7 +234,7 @@ for (const isolated of [true, false]) {
     const browser = await launched();
     try {
       for (const hinder of ["block", "hide"]) {
-        const page = await browser.newPage();
+        const page = await newPage(browser);
         await page.goto(site.address.replace("index.html", "page.css"));
         const { before, after, report } = await page.evaluate(hindered, hinder);
         t.diagnostic(`${hinder}: ${JSON.stringify(report)}`);

@@ -195,3 +195,195 @@ test("the loop's statistics count late and missed ticks", async () => {
   assert.equal(report.ticks, 2);
   assert.ok(report.missed >= 4 && report.lateness.max >= 4e6, JSON.stringify(report));
 });
+
+/** A stand-in for Haply's Inverse Service behind a line, which answers each message with one, in a time of the test's. */
+class Service {
+  constructor() {
+    this.now = 1000; // [ms]
+    this.y = -0.25; // [m, service axes] away from the person
+    Object.assign(this, { isOpen: true, error: "", waiting: [], forces: [], answers: true, closed: false, connects: 0 });
+    this.greet();
+  }
+  greet() {
+    const state = { cursor_position: this.place(), cursor_velocity: { x: 0, y: 0, z: 0 } };
+    const config = { type: "inverse3", device_info: { major_version: 7, minor_version: 4, id: "049D" }, basis: { permutation: "XYZ" } };
+    const status = { calibrated: true, in_use: false, power_supply: true, ready: true, started: true };
+    this.waiting = [JSON.stringify({ session_id: 7, inverse3: [{ device_id: "049D", config, state, status }] })];
+  }
+  place() {
+    return { x: -0.007, y: this.y, z: 0.13 };
+  }
+  connect() {
+    ++this.connects;
+    return this.isOpen;
+  }
+  send(message) {
+    const { values } = JSON.parse(message).inverse3?.[0].commands.set_cursor_force ?? {};
+    if (values) this.forces.push(values);
+    if (this.answers) this.waiting.push(JSON.stringify({ inverse3: [{ device_id: "049D", state: { cursor_position: this.place() } }] }));
+    return this.isOpen;
+  }
+  next() {
+    return this.waiting.shift() ?? null;
+  }
+  close() {
+    this.closed = true;
+  }
+  get newest() {
+    return Math.hypot(...Object.values(this.forces.at(-1)));
+  }
+}
+
+/** A session with that service in which the hand has come to press with more than 1 N. */
+function pressed(t) {
+  const service = new Service();
+  t.mock.method(performance, "now", () => service.now);
+  const { volume, isovalue } = palpate.scene("sphere:48x48x48");
+  const device = "haply:host=127.0.0.1,port=10001";
+  const force = { limit: 3, rate_limit: 2000, ramp: 0.05 };
+  const session = palpate.session(volume, { isovalue, device, fit: true, settings: { force } }, service);
+  const run = (ticks, { alive = true, moves = 0 } = {}) => {
+    for (let i = 0; i < ticks; ++i) {
+      service.now += 1;
+      service.y += moves;
+      if (alive) session.read([0, 0, 0]);
+      session.step();
+    }
+  };
+  for (let i = 0; i < 400 && !(service.forces.length > 0 && service.newest > 1); ++i) run(5, { moves: 0.0002 });
+  run(100);
+  assert.ok(service.newest > 1);
+  return { service, session, run };
+}
+/** Ticks until no force arrives; at most `most`. */
+const ticksToZero = ({ service, run }, how, most = 1000) => {
+  let ticks = 0;
+  while (service.newest > 0 && ++ticks < most) run(1, how);
+  return ticks;
+};
+
+test("an Inverse3 touches over its service, by the native device's own code", (t) => {
+  const { service, session, run } = pressed(t);
+  const { y } = service.forces.at(-1);
+  assert.ok(y < -0.99 * service.newest, "towards the person");
+  assert.ok(session.snapshot().constrained);
+  assert.ok(service.forces.every((force) => Math.hypot(...Object.values(force)) <= 3 + 1e-9));
+  assert.match(session.report().device, /Inverse3 049D, firmware 7\.4/);
+  assert.equal(session.report().problem, "");
+  run(500, { moves: -0.0003 });
+  assert.equal(service.newest, 0, "in the air");
+});
+
+test("a page without a sign of life, a hidden one and a silent service end the force in time", (t) => {
+  const here = pressed(t);
+  assert.ok(ticksToZero(here, { alive: false }) <= 82, "a page that is blocked, or draws no frames");
+  here.run(600);
+  assert.ok(here.service.newest > 1, "it comes back");
+  here.session.lose();
+  assert.ok(ticksToZero(here, { alive: false }) <= 3, "hidden");
+  here.run(600);
+  here.service.answers = false;
+  const sent = here.service.forces.length;
+  assert.ok(ticksToZero(here, {}) <= 30, "a service that says nothing");
+  assert.ok(here.service.forces.length > sent, "it is told the zero");
+});
+
+test("a lost connection ends the force, and it begins with a ramp when the service is there again", (t) => {
+  const { service, session, run } = pressed(t);
+  service.isOpen = false;
+  service.waiting = [];
+  run(40);
+  assert.match(session.report().problem, /lost the Inverse Service at 127\.0\.0\.1:10001/);
+  assert.equal(Math.hypot(...session.snapshot().force), 0);
+  service.isOpen = true;
+  service.greet();
+  const before = service.forces.length;
+  run(1500);
+  const again = service.forces.slice(before).map((force) => Math.hypot(...Object.values(force)));
+  assert.equal(again[0], 0);
+  assert.ok(service.newest > 1);
+  again.forEach((force, i) => assert.ok(i === 0 || force - again[i - 1] < 0.5, "no step"));
+});
+
+test("the last message of a session is a zero", (t) => {
+  const { service, session } = pressed(t);
+  session.delete();
+  assert.equal(service.newest, 0);
+  assert.ok(service.closed);
+});
+
+test("a service without a device is an error that says so", (t) => {
+  const service = new Service();
+  service.waiting = [JSON.stringify({ session_id: 7, inverse3: [] })];
+  const { volume, isovalue } = palpate.scene("sphere:48x48x48");
+  assert.throws(() => palpate.session(volume, { isovalue, device: "haply:host=127.0.0.1,port=10001" }, service), /no Inverse3 attached/);
+  assert.throws(() => palpate.session(volume, { isovalue, device: "haply:speed=3" }, new Service()), /speed/);
+});
+
+test("a 3D mouse moves the hand by its reports", (t) => {
+  let now = 1000; // [ms]
+  t.mock.method(performance, "now", () => now);
+  const { volume, isovalue } = palpate.scene("sphere:48x48x48");
+  const session = palpate.session(volume, { isovalue, device: "spacenav", settings: { transform: { scale: 0.5 } } });
+  const run = (ticks) => {
+    for (let i = 0; i < ticks; ++i) {
+      now += 1;
+      session.read([9, 9, 9]);
+      session.step();
+    }
+  };
+  run(10);
+  assert.deepEqual(session.snapshot().hip, [0, 0, 0]);
+  session.puck(1, Uint8Array.of(0, 0, 0xa2, 0xfe, 0, 0)); // -350: away
+  run(500);
+  const { hip } = session.snapshot();
+  assert.ok(Math.abs(Math.hypot(...hip) - 25) < 0.2, String(hip));
+  session.puck(1, new Uint8Array(6));
+  run(100);
+  assert.deepEqual(session.snapshot().hip, hip);
+  assert.throws(() => ball().session.puck(1, new Uint8Array(6)), /no 3D mouse/);
+});
+
+test("the settings are those of the table, and change the feel by name", () => {
+  const { session } = ball({ settings: { force: { stiffness: 0.2, rate_limit: "inf", start_below: "inf" } } });
+  const value = (name) => session.settings().find((one) => one.name === name)?.value;
+  assert.ok(session.settings().length > 20);
+  const { unit, about, least, most } = session.settings().find(({ name }) => name === "force.limit");
+  assert.deepEqual([unit, about, least, most], ["N", "Largest force, in addition to the device's limit", 0, Number.MAX_VALUE]);
+  assert.equal(value("force.rate_limit"), Infinity);
+  assert.equal(value("force.stiffness"), 0.2);
+
+  session.replay(path(1500));
+  const force = () => Math.hypot(...session.snapshot().force);
+  const soft = force();
+  session.set("force.stiffness", 0.4);
+  for (let i = 0; i < 5; ++i) session.stepAt(1.501 + i / 1000, path(1500).at(-1));
+  assert.ok(Math.abs(force() - 2 * soft) < 1e-6, `${soft} ${force()}`);
+  session.set("friction.static_coefficient", 0.5);
+  assert.equal(value("friction.static_coefficient"), 0.5);
+  session.set("force.rate_limit", Infinity);
+
+  assert.throws(() => session.set("force.stiffness", -1), /stiffness/);
+  assert.throws(() => session.set("force.stifness", 1), /did you mean force\.stiffness/);
+  assert.equal(value("force.stiffness"), 0.4);
+});
+
+test("a simulated hand touches by itself, with the same bits each time", () => {
+  const run = () => {
+    const { session } = ball({ device: "simulated:hand=hold,depth=6", fit: true });
+    const ticks = [];
+    for (let i = 0; i < 2000; ++i) {
+      session.stepAt(i / 1000);
+      ticks.push(session.snapshot());
+    }
+    assert.match(session.report().device, /simulated .*, normal grip/);
+    return ticks;
+  };
+  const ticks = run();
+  assert.equal(ticks[0].constrained, false);
+  assert.ok(ticks.at(-1).constrained);
+  assert.ok(Math.hypot(...ticks.at(-1).force) > 0.2);
+  assert.deepEqual(run(), ticks);
+  assert.throws(() => ball({ device: "simulated:hand=waves" }), /waves/);
+  assert.throws(() => ball({ device: "simulated:file=a.csv" }), /a page has no files/);
+});

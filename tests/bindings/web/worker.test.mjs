@@ -55,12 +55,20 @@ test("a session that cannot begin leaves the one before it", { timeout: 300000 }
   assert.deepEqual(messages("error"), []);
 });
 
-test("an error in the loop ends its session and is told, and the next session begins", { timeout: 300000 }, async () => {
+test("an error in the loop ends its session without force and is told, and the next session begins", { timeout: 300000 }, async () => {
   await begin();
+  send("record");
+  await press(() => messages("snapshot").some(({ force }) => Math.hypot(...force) > 0.1));
   send("burr", Infinity);
   await press(() => messages("error").length > 0);
-  assert.deepEqual(messages("error").map((text) => /radius/.test(text)), [true]);
+  assert.deepEqual(messages("error").map((text) => /^the session has ended, and there is no force any more: .*radius/.test(text)), [true]);
+  const { force, constrained } = messages("snapshot").at(-1);
+  assert.deepEqual({ force, constrained }, { force: [0, 0, 0], constrained: false });
+  assert.match(messages("recording")[0], /# end \{/);
   heard = [];
+  send("undo"); // of no session
+  send("recording");
+  assert.deepEqual(heard, []);
 
   await begin();
   await press(touches);
@@ -85,4 +93,16 @@ test("ticks go on while a surface is made, and a new session drops it", { timeou
   send("surface", 0);
   while (!messages("surface").some(({ last }) => last)) await new Promise((resolve) => setTimeout(resolve, 5));
   assert.equal(messages("surface").reduce((sum, { triangles }) => sum + triangles.length, 0), corners, "of one surface");
+});
+
+test("a setting that is refused is told, and the settings in use come back", { timeout: 300000 }, async () => {
+  await begin({ about: { name: "ball" } });
+  const [{ settings, about }] = messages("ready");
+  assert.deepEqual(about, { name: "ball" });
+  const stiffness = (all) => all.find(({ name }) => name === "force.stiffness").value;
+  const value = stiffness(settings) / 2;
+  await send("set", ["force.stiffness", value]);
+  await send("set", ["force.stiffness", -1]);
+  assert.deepEqual(messages("settings").map(stiffness), [value, value]);
+  assert.match(messages("error")[0], /^stiffness .* = -1: must be/);
 });

@@ -1,0 +1,101 @@
+// Measures the page with an Inverse3 in Chromium, against the stand-in for Haply's service: how late ticks begin, and how
+// soon the force is zero when the page or the connection fails. For an idle machine.
+//
+//     PALPATE_WEB=build/web/bindings/web/package node benchmarks/web.mjs [SECONDS] [TIMES]
+import { announces, opened } from "../tests/bindings/web/browser.mjs";
+import { Service, connect, felt } from "../tests/bindings/web/service.mjs";
+
+const seconds = Number(process.argv[2] ?? 60);
+const times = Number(process.argv[3] ?? 10);
+const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+const within = 700; // [ms] what happens later belongs to the next event
+
+const service = new Service();
+const pressed = () => service.until(({ size }) => size > felt);
+
+/** The forces of the session as the page hears them. */
+const listen = () => {
+  window.heard = [];
+  window.Worker = class extends window.Worker {
+    constructor(...all) {
+      super(...all);
+      this.addEventListener("message", ({ data }) => data.snapshot && window.heard.push([Date.now(), Math.hypot(...data.snapshot.force)]));
+    }
+  };
+};
+
+/** Each lets something happen, and returns the time until the last force, or until none is rendered [ms]. */
+const events = {
+  async "blocked page"(page) {
+    const from = await page.evaluate((ms) => {
+      const begun = Date.now();
+      while (Date.now() < begun + ms);
+      return begun;
+    }, within);
+    return service.lastForceSince(from, within);
+  },
+  async "hidden page"(page) {
+    const from = Date.now();
+    const other = await page.browser().newPage();
+    await sleep(within);
+    const last = service.lastForceSince(from, within);
+    await other.close();
+    await page.bringToFront();
+    return last;
+  },
+  async "silent service"() {
+    const from = Date.now();
+    service.answers = false;
+    await sleep(within);
+    service.answers = true;
+    return service.lastForceSince(from, within);
+  },
+  async "lost connection"(page) {
+    const from = Date.now();
+    service.drop();
+    await sleep(within);
+    const heard = await page.evaluate(() => window.heard);
+    return heard.find(([at, size]) => at >= from && size === 0)[0] - from;
+  },
+};
+
+async function closed(page) {
+  const from = Date.now();
+  await page.close();
+  while (service.server.clients.size > 0) await sleep(1);
+  return Math.max(service.lastForceSince(from), service.closedAt - from);
+}
+
+const show = (name, list) => {
+  list.sort((a, b) => a - b);
+  console.log(`${name.padEnd(16)} median ${list[Math.floor(list.length / 2)]} ms, at most ${list.at(-1)} ms (${list.length} times)`);
+};
+
+try {
+  const address = await service.listens();
+  const closings = [];
+  for (let i = 0; i < times; ++i) {
+    await opened(async (page) => {
+      await connect(page, address);
+      await pressed();
+      if (i === 0) {
+        await announces(page, /In contact/);
+        await sleep(1000 * seconds);
+        console.log(await page.$eval("#report", (list) => [...list.children].map(({ textContent }) => textContent).join("  ")));
+        for (const [name, happen] of Object.entries(events)) {
+          const all = [];
+          for (let n = 0; n < times; ++n) {
+            await pressed();
+            all.push(await happen(page));
+          }
+          show(name, all);
+        }
+        await pressed();
+      }
+      closings.push(await closed(page));
+    }, { prepare: (page) => page.evaluateOnNewDocument(listen), expected: ["WebSocket connection"] });
+  }
+  show("closed page", closings);
+} finally {
+  service.close();
+}
