@@ -236,8 +236,10 @@ bool Player::send_frames() {
 }
 
 void Player::update() {
-    if (!listeners_.empty()) {
-        if (const auto now = listeners_.front().servo->snapshot()) time_ = now->session.moment;
+    const auto first = std::ranges::find_if(
+        listeners_, [](const Listener& listener) { return !listener.servo->has_ended(); });
+    if (first != listeners_.end()) {
+        if (const auto now = first->servo->snapshot()) time_ = now->session.moment;
     }
     if (loader_) loader_->look(target_.value_or(time_), speed_);
     const std::shared_ptr<const Samples> newest = this->newest();

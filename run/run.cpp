@@ -152,9 +152,9 @@ void Run::launch(Session session) {
     const Pace pace = data_->pace();
     const ServoSettings settings{.rate = rate,
                                  .real_time = setup_.real_time,
-                                 .recorder = recording_ ? &recording_->queue() : nullptr};
+                                 .recorder = recording_ ? &recording_->queue(hand_) : nullptr};
     servo_ = data_->attach(std::move(session), [&](Session now, const auto& history) {
-        if (recording_) recording_->begin_with(history);
+        if (recording_) recording_->begin_with(history, hand_);
         auto servo = std::make_unique<Servo>(std::move(now), *device_, settings);
         if (pace == Pace::own_thread) servo->start();
         return servo;
@@ -307,38 +307,64 @@ void Run::use_field(Solid solid, Interpolation interpolation, std::optional<doub
 }
 
 void Run::record(const std::filesystem::path& path) {
-    data_->check_recording();
-    const Session session = session_now();
-    auto recording = std::make_unique<io::RecordingWriter>(
-        path, recording_head(session, device_->info(), data_->loaded().source, setup_.render),
-        data_->pace());
-    std::exception_ptr lost;
-    try {
-        stop_recording();
-    } catch (const io::OutputError&) {
-        lost = std::current_exception();
+    Run* const self = this;
+    record_together(std::span(&self, 1), path);
+}
+
+void Run::record_together(std::span<Run* const> runs, const std::filesystem::path& path) {
+    if (runs.empty()) throw std::invalid_argument("there is no run to record");
+    Data& data = *runs.front()->data_;
+    std::vector<io::RecordingHead> heads;
+    for (Run* const run : runs) {
+        if (run->data_.get() != &data) {
+            throw std::invalid_argument("only runs on the same data can be recorded together");
+        }
+        if (std::ranges::count(runs, run) > 1) {
+            throw std::invalid_argument("a run is recorded once, not as two hands");
+        }
+        if (heads.empty()) data.check_recording();
+        heads.push_back(recording_head(run->session_now(), run->device_->info(),
+                                       data.loaded().source, run->setup_.render));
     }
-    recording_ = std::move(recording);
-    recorded_as_ = path;
-    data_->keep(path);
-    if (running_) record_from_now();
+    const auto recording = std::make_shared<io::RecordingWriter>(path, heads, data.pace());
+    std::exception_ptr lost;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        Run& run = *runs[i];
+        try {
+            run.stop_recording();
+        } catch (const io::OutputError&) {
+            lost = std::current_exception();
+        }
+        run.recording_ = recording;
+        run.hand_ = static_cast<int>(i) + 1;
+        run.recorded_as_ = path;
+        data.keep(path);
+    }
+    try {
+        for (Run* const run : runs) {
+            if (run->running_) run->record_from_now();
+        }
+    } catch (...) {  // where a session takes no commands, an empty recording is left
+        for (Run* const run : runs) run->drop_recording();
+        throw;
+    }
     if (lost) std::rethrow_exception(lost);
 }
 
-/// Where the session takes no commands, an empty recording is left.
 void Run::record_from_now() {
-    try {
-        data_->record(*servo_, [this](const std::vector<Command>& history) {
-            recording_->begin_with(history);
-            if (!servo_->record(recording_->queue())) {
-                throw QueueFull("too many commands at once: nothing is recorded");
-            }
-        });
-    } catch (...) {
-        recording_.reset();
-        data_->release(recorded_as_);
-        throw;
-    }
+    data_->record(*servo_, [this](const std::vector<Command>& history) {
+        recording_->begin_with(history, hand_);
+        if (!servo_->record(recording_->queue(hand_))) {
+            throw QueueFull("too many commands at once: nothing is recorded");
+        }
+    });
+}
+
+/// Without its end.
+void Run::drop_recording() {
+    if (servo_) servo_->stop_recording();
+    recording_.reset();
+    data_->release(recorded_as_);
 }
 
 std::int64_t Run::stop_recording() {
@@ -348,8 +374,8 @@ std::int64_t Run::stop_recording() {
     lost_before_ += lost;
     const auto recording = std::move(recording_);
     data_->release(recorded_as_);
-    recording->finish(lost);
-    return recording->ticks();
+    recording->finish(lost, hand_);
+    return recording->ticks(hand_);
 }
 
 }  // namespace palpate::run

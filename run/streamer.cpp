@@ -98,7 +98,7 @@ void Streamer::look(io::SteadyTime now) {
     std::vector<stream::Interest> interests;
     for (Hand& hand : hands_) {
         const auto felt = hand.servo->snapshot();
-        if (!felt) continue;
+        if (!felt || hand.servo->has_ended()) continue;  // memory is for those that go on
         const Tick& tick = felt->session.tick;
         const double passed = tick.time - hand.time;
         if (hand.tick >= 0 && passed > 0) {

@@ -178,6 +178,7 @@ void Servo::stop() noexcept {
 }
 
 bool Servo::record(Queue<SessionEvent>& recorder) {
+    if (has_ended()) return true;
     next_point_ = std::make_shared<SessionPoint>();
     hold(next_point_);
     next_recorder_ = &recorder;
@@ -202,6 +203,10 @@ bool Servo::send(const Command& command) {
         throw std::invalid_argument("a session that runs goes on from where it is");
     }
     const CheckedCommand checked(command, start_, field_);
+    if (has_ended()) {
+        sent_.fetch_add(1, std::memory_order_relaxed);  // waits for good
+        return true;
+    }
     if (const auto* samples = std::get_if<command::Samples>(&command)) {
         hold(samples->samples);
         hold(samples->recipe);
@@ -251,6 +256,11 @@ DeviceFailure Servo::device_failure() const noexcept {
     return device_->failure();
 }
 
+bool Servo::has_ended() const noexcept {
+    return stopping_.load(std::memory_order_acquire) || device_->failure() != DeviceFailure::none ||
+           state_.load(std::memory_order_acquire) == State::ended;
+}
+
 const Session& Servo::session() const {
     if (state_.load(std::memory_order_acquire) == State::running) {
         throw std::logic_error("a running servo's session is its own");
@@ -288,13 +298,9 @@ bool Servo::step(const TickClock& clock) noexcept {
     State idle = State::idle;
     if (state_.compare_exchange_strong(idle, State::running)) begin(clock.start);
     if (state_.load(std::memory_order_relaxed) == State::ended) return false;
-    const auto is_over = [&] {
-        return stopping_.load(std::memory_order_acquire) ||
-               device_->failure() != DeviceFailure::none;
-    };
     in_step_ = true;
-    if (!is_over()) tick(clock);
-    const bool over = is_over();
+    if (!has_ended()) tick(clock);
+    const bool over = has_ended();
     in_step_ = false;
     if (over) end(clock.read());
     return !over;

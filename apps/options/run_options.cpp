@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -26,11 +27,17 @@ run::ButtonSetup button_from(const std::string& option, const std::string& text)
     return run::Button{*number};
 }
 
+std::vector<devices::DeviceChoice> choices_from(const std::vector<std::string>& texts) {
+    std::vector<devices::DeviceChoice> choices;
+    for (const std::string& text : texts) choices.push_back(devices::parse_device(text));
+    return choices;
+}
+
 }  // namespace
 
 void RunOptions::add_to(CLI::App& command, For purpose) {
     source.add_to(command, purpose == For::view);
-    add_device_options(command);
+    add_device_options(command, purpose);
     CLI::Option* file = command
                             .add_option(purpose == For::record ? "-o,--output" : "--record", record,
                                         "Recording to write (never replaces a file)")
@@ -50,12 +57,15 @@ void RunOptions::add_to(CLI::App& command, For purpose) {
         "Do not ask for real-time priority");
 }
 
-void RunOptions::add_device_options(CLI::App& command) {
+void RunOptions::add_device_options(CLI::App& command, For purpose) {
+    const std::string several =
+        purpose == For::view ? "" : ". Given again: one more hand, which feels the same volume";
     command
-        .add_option_function<std::string>(
+        .add_option_function<std::vector<std::string>>(
             "-d,--device",
-            [this](const std::string& text) { device = devices::parse_device(text); },
-            "Device and its options; palpate devices lists them")
+            [this](const std::vector<std::string>& texts) { devices = choices_from(texts); },
+            "Device and its options; palpate devices lists them" + several)
+        ->allow_extra_args(false)
         ->type_name(fmt::format("{{{}}}[:KEY=VALUE,...]", fmt::join(devices::device_names(), ",")))
         ->default_str(run::text_of(given.device));
     command
@@ -124,11 +134,18 @@ void RunOptions::add_data_options(CLI::App& command) {
         ->default_str(std::to_string(given.playback.loader.memory_bytes >> 20));
 }
 
-run::Setup RunOptions::setup() const {
+std::vector<run::Setup> RunOptions::setups() const {
     run::Setup setup = given;
     setup.render = render.setup();
-    if (device) setup.device = *device;
-    return setup;
+    std::vector<run::Setup> setups(std::max<std::size_t>(1, devices.size()), setup);
+    for (std::size_t i = 0; i < devices.size(); ++i) setups[i].device = devices[i];
+    return setups;
+}
+
+run::Setup RunOptions::setup() const {
+    if (devices.size() <= 1) return setups().front();
+    throw std::invalid_argument(
+        "--device: the window has one hand; palpate touch --headless takes several");
 }
 
 }  // namespace palpate::app

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/options/render_options.hpp"
 #include "apps/options/source_options.hpp"
@@ -13,8 +13,8 @@ namespace palpate::app {
 struct RunOptions {
     SourceOptions source;
     RenderOptions render;
-    run::Setup given;                             ///< but for `render` and `device`: take setup()
-    std::optional<devices::DeviceChoice> device;  ///< nothing: `given.device`
+    run::Setup given;                            ///< but for `render` and `device`: take setup()
+    std::vector<devices::DeviceChoice> devices;  ///< of the hands; none: one with `given.device`
     std::string record, commands;
     double seconds = 0;  ///< 0: until the hand has finished or the run is stopped
     std::string brush;   ///< as the command's words: "carve 3"; empty: none
@@ -26,11 +26,13 @@ struct RunOptions {
     /// options for scripts (--commands, --seconds, --json).
     enum class For { touch, record, view };
     void add_to(CLI::App& command, For purpose);
-    /// Once the command line has been read. Throws std::invalid_argument.
+    /// Once the command line has been read: how each hand feels. Throws std::invalid_argument.
+    std::vector<run::Setup> setups() const;
+    /// That of the only hand. Throws for several, too.
     run::Setup setup() const;
 
   private:
-    void add_device_options(CLI::App& command);
+    void add_device_options(CLI::App& command, For purpose);
     void add_script_options(CLI::App& command);
     void add_data_options(CLI::App& command);
 };

@@ -191,7 +191,25 @@ std::string LiveCommands::key_help() {
            "k play or pause a sequence, , . a frame back or on, q quit, ? this";
 }
 
-std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& commands) {
+/// The hand that words begin with, which are left without it; 0: none. Throws
+/// std::invalid_argument.
+static int addressed(std::string& words, int count) {
+    std::istringstream stream(words);
+    std::string first, number, rest;
+    if (!(stream >> first) || first != "hand") return 0;
+    stream >> number;
+    std::getline(stream, rest);
+    const auto hand = io::number_from<int>(number);
+    if (!hand || *hand < 1 || *hand > count) {
+        throw std::invalid_argument("hand N COMMAND: N is 1 to " + std::to_string(count) +
+                                    ", in the order of --device");
+    }
+    words = rest;
+    return *hand;
+}
+
+std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& commands,
+                                        const WhichHand& hand) {
     std::istringstream lines(io::read_text(path, stop_if_interrupted));
     std::vector<TimedRequest> requests;
     std::size_t number = 0;
@@ -214,7 +232,12 @@ std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& c
             fail("the time goes back: put the lines in order");
         }
         try {
-            requests.push_back({*seconds, commands.from_words(rest)});
+            const int whose = addressed(rest, hand.count);
+            if (whose != 0 && whose != hand.number) continue;
+            Request request = commands.from_words(rest);
+            const bool is_done_once = !std::holds_alternative<Command>(request);
+            if (whose == 0 && is_done_once && hand.number > 1) continue;
+            requests.push_back({*seconds, std::move(request)});
         } catch (const std::invalid_argument& e) {
             fail(e.what());
         }

@@ -54,8 +54,16 @@ struct TimedRequest {
     double time;
     Request request;
 };
-/// Lines `SECONDS WORDS`, in order of time; # begins a comment. Throws io::InputError with the line
-/// for words that are not understood.
-std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& commands);
+/// One of several hands.
+struct WhichHand {
+    int number = 1;  ///< from 1
+    int count = 1;
+};
+/// Lines `SECONDS WORDS`, in order of time; # begins a comment. Those of a hand: `SECONDS hand N
+/// WORDS` are the hand's that they name, the others are for all hands, but what is done once, as
+/// edits, is the first one's. Throws io::InputError with the line for words that are not
+/// understood.
+std::vector<TimedRequest> read_commands(const std::string& path, LiveCommands& commands,
+                                        const WhichHand& hand = {});
 
 }  // namespace palpate::app

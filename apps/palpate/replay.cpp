@@ -47,28 +47,25 @@ std::string excuses(io::RecordingReader& reader) {
     return words;
 }
 
-/// Renders every tick of a recording again and compares it bit for bit, update times excepted; an
-/// io::InputError tells the first difference. `volume` is used instead of the name in the recording
-/// where it is not empty.
-void validate(const std::string& recording, const std::string& volume, bool quiet) {
-    io::RecordingReader reader(io::read_text(recording, stop_if_interrupted), recording);
-    const run::LoadedVolume loaded =
-        load_for_terminal(run::recorded_source(reader.head(), recording, volume), quiet);
+/// Renders every tick of a hand again and compares it bit for bit, update times excepted; an
+/// io::InputError tells the first difference. `hand`: words for it, empty for the only one.
+void validate(io::RecordingReader& reader, const run::LoadedVolume& loaded,
+              const std::string& recording, const std::string& hand, bool quiet) {
     run::Replay replay(reader, loaded, recording, [] { stop_if_interrupted(); });
     ProgressBar bar("validating", quiet);
     while (const auto tick = replay.next()) {
         if (const auto differs = run::difference(tick->recorded, tick->again)) {
             throw io::InputError(
-                fmt::format("{}: tick {} (line {}, {} s) differs: {}: recorded {}, "
+                fmt::format("{}: {}tick {} (line {}, {} s) differs: {}: recorded {}, "
                             "now {}{}",
-                            recording, tick->number, reader.line(), tick->recorded.tick.time,
+                            recording, hand, tick->number, reader.line(), tick->recorded.tick.time,
                             differs->part, differs->recorded, differs->again, excuses(reader)));
         }
         if (replay.ticks() % 1024 == 0) bar.at(reader.progress());
     }
     if (quiet) return;
-    fmt::print("{}: {} ticks and {} commands, rendered again, are the same bit for bit\n",
-               recording, replay.ticks(), replay.commands());
+    fmt::print("{}: {}{} ticks and {} commands, rendered again, are the same bit for bit\n",
+               recording, hand, replay.ticks(), replay.commands());
     if (reader.lost() > 0) {
         fmt::print("the recording lost {} events while it was made\n", reader.lost());
     }
@@ -80,6 +77,20 @@ void validate(const std::string& recording, const std::string& volume, bool quie
         fmt::print(
             "an earlier version made it, without checksums: whether something was removed from it "
             "cannot be known\n");
+    }
+}
+
+/// All hands of a recording. `volume` is used instead of the name in the recording where it is not
+/// empty.
+void validate(const std::string& recording, const std::string& volume, bool quiet) {
+    const std::string text = io::read_text(recording, stop_if_interrupted);
+    io::RecordingReader first(text, recording);
+    const run::LoadedVolume loaded =
+        load_for_terminal(run::recorded_source(first.head(), recording, volume), quiet);
+    validate(first, loaded, recording, first.hands() > 1 ? "hand 1, " : "", quiet);
+    for (int hand = 2; hand <= first.hands(); ++hand) {
+        io::RecordingReader reader(text, recording, hand);
+        validate(reader, loaded, recording, fmt::format("hand {}, ", hand), quiet);
     }
 }
 

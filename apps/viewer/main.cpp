@@ -41,7 +41,9 @@ void open(viewer::MainWindow& window, const app::ViewOptions& options) {
 }
 
 int show(QApplication& application, const app::ViewOptions& options) {
-    viewer::MainWindow window({options.run.setup(), options.run.device, options.run.record});
+    std::optional<devices::DeviceChoice> device;
+    if (!options.run.devices.empty()) device = options.run.devices.front();
+    viewer::MainWindow window({options.run.setup(), device, options.run.record});
     if (const auto size = options.window_size()) window.resize((*size)[0], (*size)[1]);
     if (!options.size.empty() || !options.screenshot.empty()) window.forget_layout();
     if (!options.screenshot.empty()) window.messages().set_unattended();

@@ -82,7 +82,7 @@ DeviceFinding find_recorded() {
             .found = true,
             .what = "a trajectory or a recording (CSV), played back; takes any force, feels none",
             .missing = "",
-            .options = "file=FILE.csv,speed=1,loop=no"};
+            .options = "file=FILE.csv,speed=1,loop=no,hand=1"};
 }
 
 std::unique_ptr<Device> open_recorded(const DeviceChoice& choice, const DeviceScene& scene) {
@@ -90,6 +90,7 @@ std::unique_ptr<Device> open_recorded(const DeviceChoice& choice, const DeviceSc
     const std::string file = options.text("file", "");
     const double speed = options.number("speed", 1, 0.01, 100);
     const bool loop = options.flag("loop", false);
+    const int hand = static_cast<int>(options.number("hand", 1, 1, 1000));
     options.finish();
     if (file.empty()) {
         throw std::invalid_argument("device " + choice.name + ": file= is needed: write " +
@@ -100,8 +101,8 @@ std::unique_ptr<Device> open_recorded(const DeviceChoice& choice, const DeviceSc
     info.model = "recording " + file;
     // No force can do harm here, so none is limited: N, N s/mm.
     info.limits = {.maximum_force = 1000, .rate = scene.rate, .physical_damping = 1};
-    return std::make_unique<Recorded>(info, read_recording(file, scene.transform(info)), speed,
-                                      loop);
+    return std::make_unique<Recorded>(info, read_recording(file, scene.transform(info), hand),
+                                      speed, loop);
 }
 
 }  // namespace palpate::devices

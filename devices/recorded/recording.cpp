@@ -31,7 +31,8 @@ class DeviceColumns {
           status_(column_if_any(rows, "device_status")),
           buttons_(column_if_any(rows, "buttons")),
           age_(column_if_any(rows, "age")),
-          opening_(column_if_any(rows, "opening")) {
+          opening_(column_if_any(rows, "opening")),
+          hand_(column_if_any(rows, "hand")) {
         if (!rows.has_column("tool_xx")) return;
         for (const char r : {'x', 'y', 'z'}) {
             for (const char c : {'x', 'y', 'z'}) {
@@ -40,6 +41,8 @@ class DeviceColumns {
         }
     }
 
+    /// Whose row it is; without the column the only hand's.
+    std::int64_t hand(const io::CsvReader& rows) const { return hand_ ? rows.integer(*hand_) : 1; }
     double time(const io::CsvReader& rows, const std::vector<double>& before) const {
         const double time = rows.finite_number(time_);
         if (before.empty() || time > before.back()) return time;
@@ -83,23 +86,26 @@ class DeviceColumns {
     }
 
     std::size_t time_, x_, y_, z_;
-    std::optional<std::size_t> status_, buttons_, age_, opening_;
+    std::optional<std::size_t> status_, buttons_, age_, opening_, hand_;
     static constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
     std::vector<std::size_t> tool_;
 };
 
-Recording raw_recording(const std::string& text, const std::string& name) {
+Recording raw_recording(const std::string& text, const std::string& name, int hand) {
     io::CsvReader rows(io::whole_lines(text), name);
     const DeviceColumns columns(rows);
     Recording recording;
     while (rows.next()) {
+        if (columns.hand(rows) != hand) continue;
         recording.time.push_back(columns.time(rows, recording.time));
         recording.position.push_back(columns.position(rows));
         recording.told.push_back(columns.told(rows));
         if (columns.has_tool()) recording.orientation.push_back(columns.tool(rows));
     }
     if (recording.time.empty()) {
-        throw io::InputError(name + ": has a header and no rows: add at least one position");
+        const std::string whose = hand == 1 ? "" : " of hand " + std::to_string(hand);
+        throw io::InputError(name + ": has a header and no rows" + whose +
+                             ": add at least one position");
     }
     const bool turned = std::ranges::any_of(
         recording.orientation, [](const Mat3& tool) { return tool != Mat3::Identity(); });
@@ -123,16 +129,17 @@ void move_from(const DeviceTransform& recorded, const DeviceTransform& now, Reco
 
 }  // namespace
 
-Recording read_recording(const std::string& file, const DeviceTransform& transform) {
+Recording read_recording(const std::string& file, const DeviceTransform& transform, int hand) {
     std::string text = io::read_text(file);
     if (io::CsvReader(text, file).has_column("device_x")) {
-        Recording recording = raw_recording(text, file);
+        Recording recording = raw_recording(text, file, hand);
         if (text.starts_with("# palpate recording")) {
-            const io::RecordingReader reader(std::move(text), file);
+            const io::RecordingReader reader(std::move(text), file, hand);
             move_from(reader.head().settings.transform, transform, recording);
         }
         return recording;
     }
+    if (hand != 1) throw io::InputError(file + ": is a trajectory, which has one hand");
     io::Trajectory trajectory = io::parse_trajectory(text, file);
     for (Vec3& point : trajectory.position) point = device_from_physical(transform, point);
     return {std::move(trajectory.time), std::move(trajectory.position), {}, {}};

@@ -144,8 +144,8 @@ class Servo {
     /// Begins to record while the session runs, after the commands sent so far. The force goes on.
     /// The recording begins with the limits, force settings and transform in use and with
     /// command::Resume, so that a session of the same settings and samples goes on from here. False
-    /// if the queue of commands is full. Nothing may be recorded before. Any thread but that of
-    /// step(). Throws std::bad_alloc.
+    /// if the queue of commands is full. Nothing is recorded of a session that has ended, and
+    /// nothing may be recorded before. Any thread but that of step(). Throws std::bad_alloc.
     bool record(Queue<SessionEvent>& recorder);
     /// Nothing is recorded any more when this returns. The session goes on. Any thread but that of
     /// step().
@@ -153,7 +153,9 @@ class Servo {
 
     /// Checks a command and puts it in the queue. False if the queue is full. Throws
     /// std::invalid_argument as check(Command) does. Any thread; never waits for the servo thread.
-    /// Keeps samples alive until the servo uses others, so that its thread never frees them.
+    /// A session that has ended takes every command and carries out none, so that it does not hold
+    /// up who sends to several. Keeps samples alive until the servo uses others, so that its thread
+    /// never frees them.
     bool send(const Command& command);
     /// A command that was sent after tick n shows in tick n + sure_after at the latest.
     static constexpr std::int64_t sure_after = 2;
@@ -164,6 +166,8 @@ class Servo {
     std::int64_t waiting() const noexcept;
     /// Other than none: the session has ended. Any thread, never waits.
     DeviceFailure device_failure() const noexcept;
+    /// There are no more ticks: stop() was called, or the device has failed. Any thread.
+    bool has_ended() const noexcept;
     /// The session after its last tick, for example to continue it in another servo. Throws
     /// std::logic_error while the thread runs.
     const Session& session() const;

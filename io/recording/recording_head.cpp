@@ -11,6 +11,8 @@ namespace palpate::io {
 namespace {
 
 constexpr std::array<std::string_view, 4> type_names{"uint8", "int16", "uint16", "float32"};
+/// Members that are the same for all hands.
+constexpr std::array shared_members{"version", "begun", "volume"};
 
 std::string text_of(const Json& json, const char* name) {
     const Json& value = member(json, name);
@@ -47,21 +49,7 @@ VolumeIdentity volume_from_json(const Json& json) {
     return volume;
 }
 
-}  // namespace
-
-std::uint32_t checksum_with(std::string_view line, std::uint32_t before) {
-    const auto* bytes = reinterpret_cast<const Bytef*>(line.data());
-    return static_cast<std::uint32_t>(::crc32_z(before, bytes, line.size()));
-}
-
-VolumeIdentity identify(const Volume& volume, std::map<std::string, std::string> options) {
-    const auto* bytes = static_cast<const Bytef*>(volume.data());
-    const auto crc = ::crc32_z(::crc32_z(0, nullptr, 0), bytes, volume.bytes());
-    return {std::move(options), volume.geometry().size, volume.type(),
-            static_cast<std::uint32_t>(crc)};
-}
-
-Json to_json(const RecordingHead& head) {
+Json json_of_one(const RecordingHead& head) {
     Json json;
     json["version"] = head.version;
     json["begun"] = head.begun;
@@ -101,6 +89,49 @@ RecordingHead head_from_json(const Json& json) {
     from_json(member(json, "settings"), head.settings);
     from_json(member(json, "session"), head.session);
     return head;
+}
+
+}  // namespace
+
+std::uint32_t checksum_with(std::string_view line, std::uint32_t before) {
+    const auto* bytes = reinterpret_cast<const Bytef*>(line.data());
+    return static_cast<std::uint32_t>(::crc32_z(before, bytes, line.size()));
+}
+
+VolumeIdentity identify(const Volume& volume, std::map<std::string, std::string> options) {
+    const auto* bytes = static_cast<const Bytef*>(volume.data());
+    const auto crc = ::crc32_z(::crc32_z(0, nullptr, 0), bytes, volume.bytes());
+    return {std::move(options), volume.geometry().size, volume.type(),
+            static_cast<std::uint32_t>(crc)};
+}
+
+Json to_json(std::span<const RecordingHead> heads) {
+    Json json = json_of_one(heads.front());
+    if (heads.size() == 1) return json;
+    Json hands = Json::array();
+    for (const RecordingHead& head : heads) {
+        hands.push_back(json_of_one(head));
+        for (const char* member : shared_members) hands.back().erase(member);
+    }
+    for (const auto& [member, value] : hands.front().items()) json.erase(member);
+    json["hands"] = std::move(hands);
+    return json;
+}
+
+std::vector<RecordingHead> heads_from_json(const Json& json, int format) {
+    if (format <= format_of_one_hand) return {head_from_json(json)};
+    const Json& hands = member(json, "hands");
+    if (!hands.is_array() || hands.empty()) {
+        throw std::invalid_argument("'hands' must be a list of at least one");
+    }
+    std::vector<RecordingHead> heads;
+    for (const Json& own : hands) {
+        if (!own.is_object()) throw std::invalid_argument("'hands' must hold objects only");
+        Json whole = own;
+        for (const char* shared : shared_members) whole[shared] = member(json, shared);
+        heads.push_back(head_from_json(whole));
+    }
+    return heads;
 }
 
 }  // namespace palpate::io

@@ -2,6 +2,7 @@
 #include <deque>
 #include <fstream>
 #include <limits>
+#include <numeric>
 
 #include "io/json_text.hpp"
 #include "io/recording/recording_head.hpp"
@@ -15,7 +16,7 @@ constexpr std::size_t longest_head = std::size_t{64} << 20;
 
 struct Head {
     int format = 0;
-    RecordingHead head;
+    std::vector<RecordingHead> hands;
 };
 
 /// The comment lines before the table: the mark with the format's number, then JSON.
@@ -27,7 +28,7 @@ Head read_head(const std::string& comments, const std::string& name) {
     const std::string_view first(comments.data(), std::min(first_end, comments.size()));
     if (!first.starts_with(recording_mark)) {
         fail("is no recording: its first line is not '#" + std::string(recording_mark) +
-             std::to_string(recording_format) + "'; give one that a live session has recorded");
+             std::to_string(format_of_one_hand) + "'; give one that a live session has recorded");
     }
     const auto format = number_from<int>(first.substr(recording_mark.size()));
     if (!format || *format < 1) fail("the format of the recording is not a number");
@@ -36,7 +37,7 @@ Head read_head(const std::string& comments, const std::string& name) {
              ", made by a later version: use that");
     }
     try {
-        return {*format, head_from_json(parsed_json(comments.substr(first.size())))};
+        return {*format, heads_from_json(parsed_json(comments.substr(first.size())), *format)};
     } catch (const Json::exception&) {
         fail("the head is not valid JSON: the file was changed or cut off");
     } catch (const std::invalid_argument& e) {
@@ -50,11 +51,12 @@ Head read_head(const std::string& comments, const std::string& name) {
 struct RecordingReader::Rows {
     std::string text;
     std::string name;
+    const int hand;       // that is read, from 1
     bool in_head = true;  // comments belong to the head
     std::deque<SessionEvent> waiting;
     bool complete = false;
     std::int64_t lost = 0;
-    std::int64_t ticks = 0;  // so far
+    std::vector<std::int64_t> ticks;  // of each hand so far
     Bodies bodies;
     std::uint32_t checksum = 0;  // of the events so far
     CsvReader csv;
@@ -70,12 +72,15 @@ struct RecordingReader::Rows {
     };
     std::optional<ToolColumns> felt_tool;      // from format 4 on
     std::optional<std::size_t> opening;        // from format 6 on
+    std::optional<std::size_t> hand_column;    // of format 7
     std::optional<std::size_t> number, crc32;  // format 1 does
     std::array<std::size_t, 9> tool;
 
-    Rows(std::string whole, std::string called, int format)
+    Rows(std::string whole, std::string called, int format, std::size_t hands, int its_hand)
         : text(std::move(whole)),
           name(std::move(called)),
+          hand(its_hand),
+          ticks(hands),
           csv(whole_lines(text), name, [this](std::string_view comment) { on_comment(comment); }),
           trace(csv),
           position(csv, "device"),
@@ -98,6 +103,7 @@ struct RecordingReader::Rows {
                                     VectorColumns(csv, "torque"), csv.column("contacts")};
         }
         if (format > 5) opening = csv.column("opening");
+        if (format > format_of_one_hand) hand_column = csv.column("hand");
         if (format > 1) {
             number = csv.column("tick");
             crc32 = csv.column("crc32");
@@ -116,8 +122,9 @@ struct RecordingReader::Rows {
             require_before_end();
             checksum = checksum_with(comment, checksum_with("#", checksum));
             try {
-                waiting.emplace_back(
-                    command_from_json(parsed_json(comment.substr(command_mark.size())), bodies));
+                Json command = parsed_json(comment.substr(command_mark.size()));
+                if (hand_column && taken_hand(command) != hand) return;
+                waiting.emplace_back(command_from_json(command, bodies));
             } catch (const std::exception&) {  // JSON's own, or what is wrong with a member
                 csv.fail("the command " + quoted(comment) + " is not valid");
             }
@@ -125,6 +132,17 @@ struct RecordingReader::Rows {
             require_before_end();
             on_end(parsed_or_discarded(comment.substr(end_mark.size())));
         }
+    }
+
+    /// Whose command it is.
+    int taken_hand(Json& command) const {
+        const Json whose = member(command, "hand");
+        command.erase("hand");
+        const std::int64_t number = whose.is_number_integer() ? whose.get<std::int64_t>() : 0;
+        if (number < 1 || number > static_cast<std::int64_t>(ticks.size())) {
+            throw std::invalid_argument("'hand' is out of range");
+        }
+        return static_cast<int>(number);
     }
 
     void require_before_end() const {
@@ -140,9 +158,10 @@ struct RecordingReader::Rows {
             }
             return value->get<std::int64_t>();
         };
-        if (const std::int64_t recorded = count("ticks"); recorded != ticks) {
+        const auto there = std::accumulate(ticks.begin(), ticks.end(), std::int64_t{0});
+        if (const std::int64_t recorded = count("ticks"); recorded != there) {
             csv.fail(std::to_string(recorded) + " ticks were recorded, there are " +
-                     std::to_string(ticks) + changed);
+                     std::to_string(there) + changed);
         }
         if (crc32 && count("crc32") != std::int64_t{checksum}) {
             csv.fail(std::string("the checksum of all events does not fit") + changed);
@@ -155,15 +174,32 @@ struct RecordingReader::Rows {
         ": ticks or commands were removed, added, moved or changed since it was recorded: use the "
         "original file";
 
-    /// That this row follows the one before, and nothing between them is missing.
-    void check_order() {
+    /// That this row follows the one before, and nothing between them is missing. Returns whose it
+    /// is.
+    int check_order() {
         require_before_end();
-        if (number && csv.integer(*number) != ticks) {
-            csv.fail("tick " + std::to_string(ticks) + " is expected, there is tick " +
+        const int whose = hand_column ? hand_of_row() : 1;
+        std::int64_t& expected = ticks[static_cast<std::size_t>(whose - 1)];
+        if (number && csv.integer(*number) != expected) {
+            csv.fail("tick " + std::to_string(expected) + " is expected, there is tick " +
                      std::string(csv.cell(*number)) + changed);
         }
-        ++ticks;
-        if (!crc32) return;
+        ++expected;
+        if (crc32) check_sum();
+        return whose;
+    }
+
+    int hand_of_row() const {
+        const auto last = static_cast<std::int64_t>(ticks.size());
+        const std::int64_t whose = csv.integer(*hand_column);
+        if (whose < 1 || whose > last) {
+            csv.fail(quoted(csv.cell(*hand_column)) + " is out of range: hands are 1 to " +
+                     std::to_string(last));
+        }
+        return static_cast<int>(whose);
+    }
+
+    void check_sum() {
         checksum = checksum_with(csv.row().substr(0, csv.row().rfind(',')), checksum);
         if (csv.integer(*crc32) != std::int64_t{checksum}) {
             csv.fail(std::string("the checksum of the events up to here does not fit") + changed);
@@ -255,16 +291,16 @@ RecordingHead read_recording_head(const std::filesystem::path& path) {
         return RecordingReader(path).head();
     }
     try {
-        return read_head(head, path.string()).head;
+        return read_head(head, path.string()).hands.front();
     } catch (const InputError&) {
         return RecordingReader(path).head();
     }
 }
 
-RecordingReader::RecordingReader(const std::filesystem::path& path)
-    : RecordingReader(read_text(path), path.string()) {}
+RecordingReader::RecordingReader(const std::filesystem::path& path, int hand)
+    : RecordingReader(read_text(path), path.string(), hand) {}
 
-RecordingReader::RecordingReader(std::string text, const std::string& name) {
+RecordingReader::RecordingReader(std::string text, const std::string& name, int hand) {
     // The head is checked first, so that another kind of table is refused as such and not for the
     // columns it lacks.
     std::string head;
@@ -277,17 +313,21 @@ RecordingReader::RecordingReader(std::string text, const std::string& name) {
         if (!head.starts_with(recording_mark)) read_head(head, name);
         throw;
     }
-    const auto [format, parsed] = read_head(head, name);
-    head_ = parsed;
-    rows_ = std::make_unique<Rows>(std::move(text), name, format);
+    const auto [format, heads] = read_head(head, name);
+    hands_ = static_cast<int>(heads.size());
+    if (hand < 1 || hand > hands_) {
+        throw InputError(name + ": has no hand " + std::to_string(hand) + ": there " +
+                         (hands_ == 1 ? "is one" : "are " + std::to_string(hands_)));
+    }
+    head_ = heads[static_cast<std::size_t>(hand - 1)];
+    rows_ = std::make_unique<Rows>(std::move(text), name, format, heads.size(), hand);
 }
 
 RecordingReader::~RecordingReader() = default;
 
 std::optional<SessionEvent> RecordingReader::next() {
-    if (rows_->waiting.empty() && rows_->csv.next()) {
-        rows_->check_order();
-        rows_->waiting.emplace_back(rows_->tick());
+    while (rows_->waiting.empty() && rows_->csv.next()) {
+        if (rows_->check_order() == rows_->hand) rows_->waiting.emplace_back(rows_->tick());
     }
     if (rows_->waiting.empty()) return std::nullopt;
     std::optional<SessionEvent> event(std::move(rows_->waiting.front()));

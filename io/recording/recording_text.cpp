@@ -12,6 +12,7 @@ constexpr std::string_view session_columns =
     ",status,force_flags,device_status,device_x,device_y,device_z,buttons,age,"
     "tool_xx,tool_xy,tool_xz,tool_yx,tool_yy,tool_yz,tool_zx,tool_zy,tool_zz,frozen,clutched,"
     "moment,samples,layer_touched,layers_inside,layers_punctured,opening";
+constexpr std::string_view hand_column = ",hand";
 constexpr std::string_view check_columns = ",tick,crc32";
 
 /// The cells of a tick that the session gave, without the end of the line.
@@ -35,13 +36,14 @@ void append_session(std::string& text, const SessionTick& tick) {
     append_tool(text, trace_row(tick.tick));
 }
 
-std::string head_text(const RecordingHead& head) {
+std::string head_text(std::span<const RecordingHead> heads) {
+    const bool has_several = heads.size() > 1;
     std::string text = "#";
     text += recording_mark;
-    append_number(text, std::int64_t{recording_format});
+    append_number(text, std::int64_t{has_several ? recording_format : format_of_one_hand});
     text += "\n# ";
     // A name that is not UTF-8 must not prevent a recording.
-    for (const char c : to_json(head).dump(1, ' ', true, Json::error_handler_t::replace)) {
+    for (const char c : to_json(heads).dump(1, ' ', true, Json::error_handler_t::replace)) {
         text += c;
         if (c == '\n') text += "# ";
     }
@@ -49,36 +51,44 @@ std::string head_text(const RecordingHead& head) {
     text += trace_header;
     text += session_columns;
     text += tool_header;
+    if (has_several) text += hand_column;
     text += check_columns;
     return text + '\n';
 }
 
 }  // namespace
 
-RecordingText::RecordingText(const RecordingHead& head) : lines(head_text(head)) {}
+RecordingText::RecordingText(std::span<const RecordingHead> heads)
+    : lines(head_text(heads)), hands_(heads.size()) {}
 
-void RecordingText::append(const SessionTick& tick) {
+void RecordingText::append(const SessionTick& tick, int hand) {
     const std::size_t begin = lines.size();
     append_session(lines, tick);
-    append_cell(lines, ticks_.fetch_add(1, std::memory_order_relaxed));
+    if (has_several()) append_cell(lines, std::int64_t{hand});
+    auto& ticks = hands_[static_cast<std::size_t>(hand - 1)].ticks;
+    append_cell(lines, ticks.fetch_add(1, std::memory_order_relaxed));
     checksum_ = checksum_with(std::string_view(lines).substr(begin), checksum_);
     append_cell(lines, std::int64_t{checksum_});
     lines += '\n';
 }
 
-void RecordingText::append(const Command& command) {
+void RecordingText::append(const Command& command, int hand) {
     const std::size_t begin = lines.size();
+    Json json = to_json(command, hands_[static_cast<std::size_t>(hand - 1)].bodies);
+    if (has_several()) json["hand"] = hand;
     lines += "#";
     lines += command_mark;
-    lines += to_json(command, bodies_).dump();
+    lines += json.dump();
     checksum_ = checksum_with(std::string_view(lines).substr(begin), checksum_);
     lines += '\n';
 }
 
 void RecordingText::end(std::int64_t lost) {
+    std::int64_t ticks = 0;
+    for (const Hand& hand : hands_) ticks += hand.ticks.load(std::memory_order_relaxed);
     lines += "#";
     lines += end_mark;
-    lines += Json{{"ticks", ticks()}, {"lost", lost}, {"crc32", checksum_}}.dump() + "\n";
+    lines += Json{{"ticks", ticks}, {"lost", lost}, {"crc32", checksum_}}.dump() + "\n";
 }
 
 }  // namespace palpate::io

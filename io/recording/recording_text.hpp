@@ -3,7 +3,9 @@
 #pragma once
 
 #include <atomic>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "io/recording/recording_head.hpp"
 
@@ -12,22 +14,32 @@ namespace palpate::io {
 class RecordingText {
   public:
     /// Begins with the head.
-    explicit RecordingText(const RecordingHead& head);
+    explicit RecordingText(const RecordingHead& head) : RecordingText(std::span(&head, 1)) {}
+    /// Of a head for each hand.
+    explicit RecordingText(std::span<const RecordingHead> heads);
 
-    void append(const SessionTick& tick);
-    void append(const Command& command);
+    // Hands are numbered from 1.
+    void append(const SessionTick& tick, int hand = 1);
+    void append(const Command& command, int hand = 1);
     /// The last line, see RecordingWriter::finish().
     void end(std::int64_t lost);
 
     /// Any thread.
-    std::int64_t ticks() const { return ticks_.load(std::memory_order_relaxed); }
+    std::int64_t ticks(int hand = 1) const {
+        return hands_[static_cast<std::size_t>(hand - 1)].ticks.load(std::memory_order_relaxed);
+    }
 
     std::string lines;  ///< those that the caller has not taken yet
 
   private:
+    struct Hand {
+        Bodies bodies;  // of its edits, by number
+        std::atomic<std::int64_t> ticks{0};
+    };
+    bool has_several() const { return hands_.size() > 1; }
+
     std::uint32_t checksum_ = 0;  // of all events so far
-    Bodies bodies_;               // of its edits, by number
-    std::atomic<std::int64_t> ticks_{0};
+    std::vector<Hand> hands_;
 };
 
 }  // namespace palpate::io

@@ -25,9 +25,12 @@ std::size_t room_for(double rate) {
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHead& head,
-                                 Pace pace)
-    : path_(path), queue_(room_for(head.rate)), text_(std::make_unique<RecordingText>(head)) {
+RecordingWriter::RecordingWriter(const std::filesystem::path& path,
+                                 std::span<const RecordingHead> heads, Pace pace)
+    : path_(path), text_(std::make_unique<RecordingText>(heads)) {
+    for (const RecordingHead& head : heads) {
+        hands_.push_back(std::make_unique<Hand>(room_for(head.rate)));
+    }
     text_->lines.reserve(most_buffered);
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
@@ -69,8 +72,8 @@ void RecordingWriter::end_threads() {
     syncer_ = {};
 }
 
-std::int64_t RecordingWriter::ticks() const {
-    return text_->ticks();
+std::int64_t RecordingWriter::ticks(int hand) const {
+    return text_->ticks(hand);
 }
 
 std::string RecordingWriter::problem() const {
@@ -78,18 +81,28 @@ std::string RecordingWriter::problem() const {
     return problem_;
 }
 
-void RecordingWriter::finish(std::int64_t lost) {
-    end_threads();
-    drain();
-    text_->end(lost);
-    flush();
-    (void)synchronise(descriptor_);
-    close();
+void RecordingWriter::finish(std::int64_t lost, int hand) {
+    bool is_last = false;
+    {
+        const std::scoped_lock lock(file_mutex_);
+        drain(hand);
+        flush();
+        lost_ += lost;
+        is_last = ++ended_ == hands_.size();
+    }
+    if (is_last) {
+        end_threads();  // they may wait for the lock
+        text_->end(lost_);
+        flush();
+        (void)synchronise(descriptor_);
+        close();
+    }
     if (const std::string wrong = problem(); !wrong.empty()) throw OutputError(wrong);
 }
 
 void RecordingWriter::step() {
     try {
+        const std::scoped_lock lock(file_mutex_);
         drain();
         flush();
     } catch (const std::bad_alloc&) {  // an event is lost, so that nothing may follow
@@ -100,27 +113,32 @@ void RecordingWriter::step() {
     }
 }
 
-void RecordingWriter::begin_with(std::vector<Command> commands) {
+void RecordingWriter::begin_with(std::vector<Command> commands, int hand) {
     const std::scoped_lock lock(mutex_);
-    first_ = std::move(commands);
+    of(hand).first = std::move(commands);
 }
 
 void RecordingWriter::drain() {
+    for (int hand = 1; hand <= static_cast<int>(hands_.size()); ++hand) drain(hand);
+}
+
+void RecordingWriter::drain(int hand) {
+    Hand& from = of(hand);
     const auto begin = [&] {
         std::vector<Command> first;
         {
             const std::scoped_lock lock(mutex_);
-            first.swap(first_);
+            first.swap(from.first);
         }
         for (const Command& command : first) {
-            text_->append(command);
+            text_->append(command, hand);
             if (text_->lines.size() > most_buffered) flush();
         }
     };
     begin();
-    while (const auto event = queue_.pop()) {
+    while (const auto event = from.queue.pop()) {
         begin();  // those that were given meanwhile, before the first event
-        std::visit([this](const auto& one) { text_->append(one); }, *event);
+        std::visit([&](const auto& one) { text_->append(one, hand); }, *event);
         if (text_->lines.size() > most_buffered) flush();
     }
 }

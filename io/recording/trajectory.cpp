@@ -62,7 +62,9 @@ Trajectory parse_trajectory(std::string_view text, const std::string& name) {
             std::string before;
             append_number(before, trajectory.time.back());
             rows.fail("the time " + quoted(rows.cell(time)) + " does not come after " + before +
-                      ", that of the row before: sort the rows and remove doubles");
+                      ", that of the row before: " +
+                      (rows.has_column("hand") ? "keep the rows of one hand"
+                                               : "sort the rows and remove doubles"));
         }
         trajectory.time.push_back(t);
         trajectory.position.emplace_back(rows.finite_number(x), rows.finite_number(y),

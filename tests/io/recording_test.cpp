@@ -241,7 +241,7 @@ TEST(Recording, a_damaged_one_is_an_input_error_that_names_the_file) {
     };
     expect(refusal(""), "is no recording");
     expect(refusal("t,x,y,z\n0,1,2,3\n"), "is no recording");
-    expect(refusal(with("recording 6", "recording 7")), "later version");
+    expect(refusal(with("recording 6", "recording 8")), "later version");
     expect(refusal(with("\"version\": ", "\"version\" ")), "not valid JSON");
     expect(refusal(with("\"version\"", "\"edition\"")), "'version' is missing");
     expect(refusal(with("\"stiffness\": 0.5", "\"stiffness\": \"hard\"")), "'force.stiffness'");

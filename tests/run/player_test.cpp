@@ -42,7 +42,7 @@ struct Playing {
     void step() {
         const auto follow = [&](auto now) { player.step(now); };
         time.step({servo.get()}, follow);
-        if (second) second->step(1e-3 * double(++second_ticks));
+        if (second) second->step(std::int64_t{1'000'000} * second_ticks++);
     }
     template <class Condition>
     bool until(Condition&& holds) {
@@ -179,6 +179,38 @@ TEST(Player, two_servos_get_the_same_frames_and_moments) {
     p.second.reset();
     p.player.seek(0.6);
     EXPECT_TRUE(p.until([&] { return p.now().moment == 0.6; })) << "the first goes on alone";
+}
+
+TEST(Player, goes_on_with_the_other_servo_when_the_device_of_the_first_fails) {
+    bool fails = false;
+    const auto still = [](double) { return support::ready_at({3, 3, 3}); };
+    test::Failing device(std::make_unique<support::ScriptedDevice>(still), fails);
+    support::ScriptedDevice other{still};
+    Playing p;
+    p.player.play(0);
+    p.servo = p.player.attach({make_renderer(p.field, 1000, {}), {}}, test::servo_on(device));
+    ASSERT_TRUE(p.all_loaded());
+    p.second = p.player.attach({make_renderer(p.field, 1000, {}), {}}, test::servo_on(other));
+    p.player.play(0.5);
+    fails = true;
+    const auto second_at = [&](double moment) {
+        return p.until([&] {
+            const auto now = p.second->snapshot();
+            return now && now->session.moment >= moment && p.player.state().time >= moment;
+        });
+    };
+    EXPECT_TRUE(second_at(0.2));
+    EXPECT_EQ(p.servo->device_failure(), DeviceFailure::threw);
+    for (int i = 0; i < 2000; ++i) {  // more than a servo has room for that carries out nothing
+        p.player.play(0);
+        if (i % 10 == 0) p.step();
+    }
+    p.player.play(0.5);
+    EXPECT_TRUE(second_at(0.5));
+    p.player.seek(0.1);
+    EXPECT_TRUE(p.until([&] { return p.second->snapshot()->session.moment < 0.2; }));
+    p.second->stop();
+    p.player.detach(*p.second);
 }
 
 TEST(PacedPlayer, follows_a_servo_at_its_real_pace_by_itself) {

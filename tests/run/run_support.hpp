@@ -30,6 +30,34 @@ inline Setup with_device(const std::string& device) {
     return setup;
 }
 
+/// Another device, until `fails`: then its driver throws.
+class Failing final : public Device {
+  public:
+    Failing(std::unique_ptr<Device> device, const bool& fails)
+        : device_(std::move(device)), fails_(fails) {}
+
+    DeviceInfo info() const override { return device_->info(); }
+    DeviceReading read(double time) override {
+        if (fails_) throw std::runtime_error("the cable was pulled");
+        return device_->read(time);
+    }
+    void write(const Wrench& wrench, double time) override { device_->write(wrench, time); }
+    void stop() noexcept override { device_->stop(); }
+
+  private:
+    std::unique_ptr<Device> device_;
+    const bool& fails_;
+};
+
+/// The device of this name, which fails as above.
+inline Setup with_failing(const std::string& device, const bool& fails) {
+    Setup setup = with_device(device);
+    setup.open_device = [&fails](const auto& choice, const auto& scene) {
+        return std::make_unique<Failing>(devices::open_device(choice, scene), fails);
+    };
+    return setup;
+}
+
 /// Steps until something holds; false if it does not within a minute of the session. While data is
 /// being read that time stands still, almost: it is the reader's threads that take long.
 template <class Step, class Settled, class Condition>

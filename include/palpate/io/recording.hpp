@@ -1,5 +1,6 @@
-// Recordings of live sessions: a trace with a head that says everything about the session, the
-// device's own readings beside each tick, and the commands between them. Rendered again, a
+// Recordings of live sessions, of one hand or several: a trace with a head that says everything
+// about the session, the device's own readings beside each tick, and the commands between them.
+// Rendered again, a
 // recording gives the same ticks bit for bit (`palpate replay --validate`), so a bug report is a
 // recording. Format: docs/recordings.md.
 #pragma once
@@ -11,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -32,7 +34,7 @@ struct VolumeIdentity {
 };
 VolumeIdentity identify(const Volume& volume, std::map<std::string, std::string> options);
 
-/// What a session was at its start.
+/// What a session of one hand was at its start.
 struct RecordingHead {
     std::string version;  ///< of the program that recorded
     std::string begun;    ///< date and time, ISO 8601
@@ -52,67 +54,85 @@ class RecordingText;
 
 /// Writes a recording while the session runs. The file has its own name from the start and is
 /// brought to the disk twice a second, so that whatever ends the program, all but the last second
-/// is there. An existing file is never touched.
+/// is there. An existing file is never touched. Hands are numbered from 1, and each may be a
+/// thread's own.
 class RecordingWriter {
   public:
     /// Creates the file and writes the head. Throws OutputError: the file exists, or cannot be
     /// written.
     RecordingWriter(const std::filesystem::path& path, const RecordingHead& head,
+                    Pace pace = Pace::own_thread)
+        : RecordingWriter(path, std::span(&head, 1), pace) {}
+    /// The same for several hands that feel one volume, at least one.
+    RecordingWriter(const std::filesystem::path& path, std::span<const RecordingHead> heads,
                     Pace pace = Pace::own_thread);
     /// finish(), but silent.
     ~RecordingWriter();
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-    /// Writes what is in the queue. Its thread calls this ten times a second, and a second one
+    /// Writes what is in the queues. Its thread calls this ten times a second, and a second one
     /// brings the file to the disk; with Pace::by_steps there is neither.
     void step();
-    /// Commands before all that is in the queue, and before the servo uses it.
-    void begin_with(std::vector<Command> commands);
-    /// The queue into which the servo puts its ticks. It has room for eight seconds.
-    Queue<SessionEvent>& queue() { return queue_; }
+    /// Commands before all that is in the hand's queue, and before its servo uses it.
+    void begin_with(std::vector<Command> commands, int hand = 1);
+    /// The queue into which the hand's servo puts its ticks. It has room for eight seconds.
+    Queue<SessionEvent>& queue(int hand = 1) { return of(hand).queue; }
     /// Why nothing is written any more (a full disk). Empty while all is well. What was written
     /// stays. Any thread.
     std::string problem() const;
-    /// Ticks on the disk or on their way to it.
-    std::int64_t ticks() const;
-    /// Writes what is left and the last line, which tells a whole recording from one cut off, with
-    /// the number of events that were lost on their way here. After the servo has stopped. Throws
-    /// OutputError for what problem() says.
-    void finish(std::int64_t lost);
+    /// Ticks of the hand on the disk or on their way to it.
+    std::int64_t ticks(int hand = 1) const;
+    /// Once for each hand, after its servo has stopped: writes the rest of its events. `lost`:
+    /// those that were lost on their way here. The last hand brings the last line, which tells a
+    /// whole recording from one cut off. Throws OutputError for what problem() says.
+    void finish(std::int64_t lost, int hand = 1);
 
   private:
+    struct Hand {
+        explicit Hand(std::size_t room) : queue(room) {}
+        Queue<SessionEvent> queue;
+        std::vector<Command> first;
+    };
+
+    Hand& of(int hand) { return *hands_[static_cast<std::size_t>(hand - 1)]; }
     void end_threads();
     void drain();
+    void drain(int hand);
     void flush();
     void close();
 
     std::filesystem::path path_;
+    std::vector<std::unique_ptr<Hand>> hands_;
+    std::mutex file_mutex_;  // of what follows, for as long as the disk takes
     int descriptor_ = -1;
-    Queue<SessionEvent> queue_;
     std::unique_ptr<RecordingText> text_;
     std::int64_t written_ = 0;  // bytes that are whole lines on the disk
     bool seekable_ = false;
-    mutable std::mutex mutex_;  // of what follows. The servo never comes near
+    std::size_t ended_ = 0;  // hands
+    std::int64_t lost_ = 0;
+    mutable std::mutex mutex_;  // of problem_ and Hand::first. The servo never comes near
     std::string problem_;
-    std::vector<Command> first_;
     std::jthread thread_, syncer_;
 };
 
-/// What a recording says of itself, without reading all of it. Throws as the constructor of
-/// RecordingReader does because of the head.
+/// What a recording says of itself, of several hands of the first, without reading all of it.
+/// Throws as the constructor of RecordingReader does because of the head.
 RecordingHead read_recording_head(const std::filesystem::path& path);
 
-/// Reads a recording event by event. A last line that is not whole is left out. Ticks and commands
-/// that were removed, added, moved or changed since the recording was made are an InputError.
+/// Reads one hand of a recording event by event: by itself it is the recording of a session. A last
+/// line that is not whole is left out. Ticks and commands, of any hand, that were removed, added,
+/// moved or changed since the recording was made are an InputError.
 class RecordingReader {
   public:
-    /// Throws InputError: no recording, a later format, a head that is not valid.
-    explicit RecordingReader(const std::filesystem::path& path);
+    /// Throws InputError: no recording, a later format, a head that is not valid, no such hand.
+    explicit RecordingReader(const std::filesystem::path& path, int hand = 1);
     /// The same from text that errors call `name`.
-    RecordingReader(std::string text, const std::string& name);
+    RecordingReader(std::string text, const std::string& name, int hand = 1);
     ~RecordingReader();
 
+    /// How many there are.
+    int hands() const { return hands_; }
     const RecordingHead& head() const { return head_; }
     /// The next event. Nothing at the end. Throws InputError for a line that is not valid.
     std::optional<SessionEvent> next();
@@ -125,12 +145,13 @@ class RecordingReader {
     /// Ticks are numbered and carry a checksum of all events up to them. Without (format 1), only
     /// ticks missing from a complete recording are noticed.
     bool has_checksums() const;
-    /// After the last event: events that the recording lost while it was made.
+    /// After the last event: events, of all hands, that the recording lost while it was made.
     std::int64_t lost() const;
 
   private:
     struct Rows;
     RecordingHead head_;
+    int hands_ = 1;
     std::unique_ptr<Rows> rows_;
 };
 

@@ -40,7 +40,8 @@ class Player {
     Player(const Player&) = delete;
     Player& operator=(const Player&) = delete;
 
-    /// Follows the first servo and sends what has come; its thread calls this every 5 ms.
+    /// Follows the first servo that has not ended and sends what has come; its thread calls this
+    /// every 5 ms.
     void step(std::chrono::steady_clock::time_point now);
     /// Starts a servo at the play position and keeps it up to date until detach(). What `start`
     /// throws is passed on.
@@ -93,7 +94,7 @@ class Player {
     std::shared_ptr<const io::LiveFrames> live_;  // of a live source
     std::vector<Listener> listeners_;
     double speed_ = 0;
-    double time_ = 0;               // of the first servo when last seen; laps included
+    double time_ = 0;               // of the servo followed when last seen; laps included
     std::optional<double> target_;  // where to go once its frames are in memory
     command::Samples sent_;
     std::jthread thread_;  // last: it uses all of the above

@@ -1,11 +1,13 @@
 // A live run: a servo with its device, the data it feels and a recording. Several runs may share
-// the same data; what one of them edits, all of them feel.
+// the same data, as the hands of one session: what one of them edits, all of them feel, and where
+// one device fails the others go on.
 #pragma once
 
 #include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -66,6 +68,8 @@ class Run {
     Field field_now() const;
     /// Edits and playback. They go on when the session starts anew.
     Data& data() const { return *data_; }
+    /// For another run on the same data.
+    const std::shared_ptr<Data>& shared_data() const { return data_; }
     const Setup& setup() const { return setup_; }
     DeviceInfo device() const { return device_->info(); }
     /// What is wrong with the device and what to do; usually empty.
@@ -113,6 +117,10 @@ class Run {
     /// says so, but the new one runs. std::runtime_error and QueueFull, with an empty recording
     /// left, for a session that takes no commands.
     void record(const std::filesystem::path& path);
+    /// The same for several runs on the same data, into one file: they are its hands, in this order
+    /// (docs/recordings.md). It is whole once the last of them has ended its recording. Throws
+    /// std::invalid_argument for runs on different data, none, and one that is there twice.
+    static void record_together(std::span<Run* const> runs, const std::filesystem::path& path);
     /// Ends the recording; the session goes on. Returns its ticks, 0 without a recording.
     /// Throws io::OutputError for what could not be written.
     std::int64_t stop_recording();
@@ -126,6 +134,7 @@ class Run {
     void launch(Session session);
     void stop_servo();
     void record_from_now();
+    void drop_recording();
     Session session_from(double isovalue, const DeviceTransform& transform,
                          std::int64_t last) const;
     std::int64_t last_tick() const;
@@ -148,7 +157,8 @@ class Run {
         Command command;
     };
     std::deque<Sent> sent_;
-    std::unique_ptr<io::RecordingWriter> recording_;
+    std::shared_ptr<io::RecordingWriter> recording_;  // of all its hands
+    int hand_ = 1;                                    // which of them this run is
     std::filesystem::path recorded_as_;
     std::int64_t lost_before_ = 0;  // events of the recordings of this servo before
     std::unique_ptr<Servo> servo_;  // none before start()

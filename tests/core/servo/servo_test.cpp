@@ -264,6 +264,21 @@ TEST(Servo, refuses_commands_that_cannot_be_carried_out_and_says_when_it_has_no_
     EXPECT_FALSE(servo.send(command::Isovalue{30}));  // it does not run yet
 }
 
+TEST(Servo, a_session_that_has_ended_takes_commands_without_end_and_keeps_nothing_of_them) {
+    ScriptedDevice device(&press);
+    Servo servo(ramp_session(), device, stepped({.command_room = 4}));
+    EXPECT_FALSE(servo.has_ended());
+    run(servo, 2);
+    EXPECT_FALSE(servo.has_ended());
+    servo.stop();
+    EXPECT_TRUE(servo.has_ended());
+    const auto samples = std::make_shared<const Samples>(ramp_field().samples());
+    for (int i = 0; i < 9; ++i) EXPECT_TRUE(servo.send(command::Samples{samples, 1}));
+    EXPECT_EQ(samples.use_count(), 1);
+    EXPECT_EQ(servo.waiting(), 9);
+    EXPECT_THROW(servo.send(command::Isovalue{std::nan("")}), std::invalid_argument);
+}
+
 TEST(Servo, settings_that_cannot_be_run_are_refused) {
     ScriptedDevice device(&press);
     EXPECT_THROW(Servo(ramp_session(), device, {.rate = 249}), std::invalid_argument);
