@@ -1,6 +1,6 @@
-// A node of ROS 2 on eProsima Fast DDS, for ros_test.py. It publishes the messages that it reads from
-// standard input, and writes those that it receives, one per line. It shares no code with Palpate, and
-// it uses the loopback only.
+// A node of ROS 2 on eProsima Fast DDS, for ros_test.py. It publishes the messages that it reads
+// from standard input, and writes those that it receives, one per line. It shares no code with
+// Palpate, and it uses the loopback only.
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -17,6 +17,7 @@
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -28,7 +29,6 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
 namespace fast = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
@@ -80,7 +80,9 @@ struct Status {
     std::uint8_t level = 0;
     std::string name, message, hardware;
     std::vector<KeyValue> values;
-    void each(auto& visit) { visit(level), visit(name), visit(message), visit(hardware), visit(values); }
+    void each(auto& visit) {
+        visit(level), visit(name), visit(message), visit(hardware), visit(values);
+    }
 };
 
 struct DiagnosticArray {
@@ -139,7 +141,7 @@ void read(std::istream& in, auto& message) {
 
 template <typename Message>
 class Type : public fast::TopicDataType {
-public:
+  public:
     explicit Type(const std::string& name) { setName(name.c_str()), m_typeSize = 65536; }
 
     bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
@@ -174,13 +176,13 @@ void say(const std::string& line) {
 
 /// A publisher or a subscriber of a topic with the quality of service that ROS 2 has by default.
 class Endpoint : public fast::DataWriterListener, public fast::DataReaderListener {
-public:
+  public:
     virtual void publish(std::istream&) = 0;
 };
 
 template <typename Message>
 class Of : public Endpoint {
-public:
+  public:
     Of(fast::DomainParticipant& node, std::string name, const std::string& type, bool publishes)
         : node_(node), name_(std::move(name)) {
         fast::TypeSupport support(new Type<Message>(type));
@@ -202,7 +204,8 @@ public:
     }
     ~Of() override {
         if (publisher_) publisher_->delete_datawriter(writer_), node_.delete_publisher(publisher_);
-        if (subscriber_) subscriber_->delete_datareader(reader_), node_.delete_subscriber(subscriber_);
+        if (subscriber_)
+            subscriber_->delete_datareader(reader_), node_.delete_subscriber(subscriber_);
         node_.delete_topic(topic_);
     }
     void publish(std::istream& in) override {
@@ -221,14 +224,16 @@ public:
             if (info.valid_data) say(line.str());
         }
     }
-    void on_publication_matched(fast::DataWriter*, const fast::PublicationMatchedStatus& s) override {
+    void on_publication_matched(fast::DataWriter*,
+                                const fast::PublicationMatchedStatus& s) override {
         say("matched " + name_ + ' ' + std::to_string(s.current_count));
     }
-    void on_subscription_matched(fast::DataReader*, const fast::SubscriptionMatchedStatus& s) override {
+    void on_subscription_matched(fast::DataReader*,
+                                 const fast::SubscriptionMatchedStatus& s) override {
         say("matched " + name_ + ' ' + std::to_string(s.current_count));
     }
 
-private:
+  private:
     fast::DomainParticipant& node_;
     std::string name_;
     fast::Topic* topic_ = nullptr;
@@ -255,7 +260,8 @@ fast::DomainParticipant& node_on_loopback(std::uint32_t domain) {
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
-    fast::DomainParticipant& node = node_on_loopback(static_cast<std::uint32_t>(std::atoi(argv[1])));
+    fast::DomainParticipant& node =
+        node_on_loopback(static_cast<std::uint32_t>(std::atoi(argv[1])));
     std::map<std::string, std::unique_ptr<Endpoint>> endpoints;
     std::string line;
     while (std::getline(std::cin, line)) {
@@ -273,7 +279,8 @@ int main(int argc, char** argv) {
                     node, name, folder + "_msgs::msg::dds_::" + kind + "_", what == "publish");
             };
             if (kind == "PoseStamped") make.operator()<Stamped<7>>("geometry");
-            if (kind == "TwistStamped" || kind == "WrenchStamped") make.operator()<Stamped<6>>("geometry");
+            if (kind == "TwistStamped" || kind == "WrenchStamped")
+                make.operator()<Stamped<6>>("geometry");
             if (kind == "JointState") make.operator()<JointState>("sensor");
             if (kind == "Joy") make.operator()<Joy>("sensor");
             if (kind == "DiagnosticArray") make.operator()<DiagnosticArray>("diagnostic");

@@ -58,7 +58,7 @@ def model_info(name):
     if name is None:
         return None
     scene = palpate.scene("sphere:8x8x8", "float32")  # the simulated hand needs one
-    return palpate.simulated_info(f"simulated:{name},grip=light", palpate.Field(scene.volume), scene.isovalue, 1000)
+    return palpate.simulated_info(f"simulated:{name},jitter=no,grip=light", palpate.Field(scene.volume), scene.isovalue, 1000)
 
 
 def touch(options, ros):
