@@ -93,7 +93,7 @@ This package has the Python module."
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-scipy, python3-matplotlib")  # palpate.evaluate
   # palpate.distributed and study, palpate.ros, report.pdf
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-distributed, python3-rospy, weasyprint")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "libddsc0debian, python3-distributed, python3-rospy, weasyprint")
 endif()
 
 set(CPACK_COMPONENTS_ALL ${palpate_packaged})

@@ -21,7 +21,7 @@ groups (default: all)
   viewer   io, and VTK's and Qt's windows and translations, Xvfb to test them
   package  what scripts/package.sh uses in addition to viewer
   test     package, and what only the tests use: lintian and pkg-config for the Debian packages, Mono for C#,
-           umockdev and libftdi for devices, ROS 1
+           umockdev and libftdi for devices, ROS 1, and Cyclone DDS and Fast DDS for ROS 2
   dev      clang, lld, its sanitizers and fuzzer, clang-format, clang-tidy, shellcheck
   docs     MkDocs and Doxygen, for the documentation as a site
   web      core, emscripten, and Chromium for the tests of the page; not in all
@@ -41,7 +41,8 @@ io=("${program[@]}" libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
 package=(dpkg-dev file)
 test=("${package[@]}" lintian pkg-config mono-mcs mono-runtime umockdev libftdi1-2
-    python3-rospy python3-rosmaster python3-geometry-msgs python3-sensor-msgs python3-diagnostic-msgs)
+    python3-rospy python3-rosmaster python3-geometry-msgs python3-sensor-msgs python3-diagnostic-msgs
+    libddsc0debian libfastrtps-dev)
 dev=(clang lld clang-format-14 clang-tidy libclang-rt-14-dev shellcheck)
 docs=(mkdocs doxygen python3-pygments libjs-jquery)
 web=("${core[@]}" emscripten node-acorn nlohmann-json3-dev googletest chromium python3-pydicom python3-zarr)

@@ -58,6 +58,9 @@ constexpr TurningRow turning_rows[] = {
 };
 // clang-format on
 
+/// Whose servo was measured.
+constexpr std::string_view uneven = "touch";
+
 void add_rotation(DeviceProfile& profile) {
     const auto row = std::ranges::find(turning_rows, profile.name, &TurningRow::name);
     if (row == std::end(turning_rows)) return;
@@ -83,6 +86,7 @@ DeviceProfile profile_of(const Row& row) {
     profile.delay = 1e-3 * model.delay;
     profile.continuous_force = model.continuous;
     profile.stiffness = model.stiffness;
+    profile.jitter = profile.name == uneven;
     profile.has_orientation = model.has_wrist;
     profile.maximum_torque = model.torque;
     profile.workspace_low = -corner;

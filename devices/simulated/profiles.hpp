@@ -23,6 +23,7 @@ struct DeviceProfile {
     double force_step = 0;        ///< [N] the motors' command has multiples of it; 0: any
     double delay = 0;             ///< [s] from writing a force until it acts
     double stiffness = 0;         ///< [N/mm] it is rated for
+    bool jitter = false;          ///< its own servo runs at the times of ServoTicks
     Vec3 workspace_low = Vec3::Zero();
     Vec3 workspace_high = Vec3::Zero();  ///< [device mm]
 

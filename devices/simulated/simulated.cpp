@@ -8,7 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "devices/link.hpp"
 #include "devices/simulated/dynamics.hpp"
+#include "devices/simulated/servo_ticks.hpp"
 #include "devices/timed_path.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "palpate/scenes/motions.hpp"
@@ -96,6 +98,7 @@ Choice choose(const DeviceChoice& given) {
     device.encoder_step = options.number("encoder", device.encoder_step, 0, 5);
     device.delay = 1e-3 * options.number("delay", 1e3 * device.delay, 0, 100);
     device.force_step = options.number("force_step", device.force_step, 0, 5);
+    device.jitter = options.flag("jitter", device.jitter);
 
     choice.grip = options.one_of("grip", choice.grip, grip_names());
     HandGrip& numbers = choice.grip_numbers = grip(choice.grip);
@@ -160,6 +163,7 @@ DeviceInfo info_of(const Choice& choice, double rate) {
     info.limits.maximum_force = device.maximum_force;
     info.limits.rate = rate;
     info.limits.delay = device.delay;
+    if (device.jitter) info.limits.delay += exchange_delay(1 / ServoTicks::usual);
     info.limits.continuous_force = device.continuous_force;
     info.limits.physical_damping = device.damping + choice.grip_numbers.damping;
     if (device.has_orientation) {
@@ -177,7 +181,8 @@ DeviceInfo info_of(const Choice& choice, double rate) {
 
 /// Twice the wrenches that are under way at this rate.
 std::size_t room_for(double delay, double rate) {
-    return 16 + static_cast<std::size_t>(2 * delay * std::min(1e5, std::max(1.0, rate)));
+    rate = std::max(rate, ServoTicks::fastest);
+    return 16 + static_cast<std::size_t>(2 * delay * std::min(1e5, rate));
 }
 
 class Simulated final : public Device {
@@ -188,6 +193,7 @@ class Simulated final : public Device {
           path_(std::move(path)),
           loop_(choice.hand.loop),
           line_(device_.delay, longest_force, room_for(device_.delay, info.limits.rate)),
+          ticks_(static_cast<std::uint64_t>(choice.hand.seed)),
           system_(hand_and_device(device_, choice.grip_numbers, path_.at(path_.begin()).position)),
           turn_(choice.turn),
           turn_axis_(Vec3::Unit(turn_.axis[0] - 'x')),
@@ -197,13 +203,30 @@ class Simulated final : public Device {
 
     DeviceReading read(double time) noexcept override {
         if (std::isfinite(time)) {
-            if (!started_) now_ = time;
+            if (!started_) now_ = next_tick_ = time;
             started_ = true;
             if (time > now_) {
                 pass(std::min(time, now_ + longest_simulated));
                 now_ = time;
             }
+            tick_if_due();
         }
+        return device_.jitter ? link_.read(nanoseconds(now_)) : measured();
+    }
+
+    void write(const Wrench& wrench, double time) noexcept override {
+        if (device_.jitter) return link_.write(wrench, nanoseconds(now_));
+        line_.send(wrench, time);
+    }
+
+    void stop() noexcept override { stopped_.store(true, std::memory_order_relaxed); }
+
+  private:
+    static std::int64_t nanoseconds(double time) noexcept {
+        return std::llround(1e9 * std::clamp(time, -9e9, 9e9));
+    }
+
+    DeviceReading measured() const noexcept {
         DeviceReading reading;
         reading.position = encoder_position(device_, system_.position);
         if (device_.has_orientation) {
@@ -215,16 +238,21 @@ class Simulated final : public Device {
         return reading;
     }
 
-    void write(const Wrench& wrench, double time) noexcept override { line_.send(wrench, time); }
+    /// What the thread of a device does that has a servo of its own.
+    void tick_if_due() noexcept {
+        if (!device_.jitter || now_ < next_tick_) return;
+        const std::int64_t now = nanoseconds(now_);
+        link_.report(measured(), now);
+        line_.send(link_.wrench(now), now_);
+        next_tick_ = now_ + ticks_.next();
+    }
 
-    void stop() noexcept override { stopped_.store(true, std::memory_order_relaxed); }
-
-  private:
-    /// Lets the system move on to a time, from one change of the wrench to the next.
+    /// Lets the system move on to a time, from one change of the wrench, or tick, to the next.
     void pass(double end) noexcept {
         while (now_ < end) {
             const WrenchLine::Acting acting = line_.at(now_);
-            const double until = std::min(end, acting.until);
+            double until = std::min(end, acting.until);
+            if (device_.jitter) until = std::min(until, next_tick_);
             Wrench given;
             if (!stopped_.load(std::memory_order_relaxed)) {
                 given = {motor_force(device_, acting.wrench.force),
@@ -232,6 +260,7 @@ class Simulated final : public Device {
             }
             integrate(given, until - now_);
             now_ = until;
+            tick_if_due();
         }
     }
 
@@ -278,6 +307,9 @@ class Simulated final : public Device {
     TimedPath path_;
     const bool loop_;
     WrenchLine line_;
+    Link link_;  // with jitter
+    ServoTicks ticks_;
+    double next_tick_ = 0;  // [s] of the session
     HandAndDevice system_;
     const TurnOptions turn_;
     const Vec3 turn_axis_;
@@ -308,7 +340,8 @@ DeviceFinding find_simulated() {
                        choice_of("hand", usual.hand.motion, hand_names()) +
                        choice_of("grip", usual.grip, grip_names()) +
                        "file=TRAJECTORY.csv instead of hand, loop=no, seconds=30, speed=50, "
-                       "depth=4, seed=1, friction=yes; the profile's and the grip's own: "
+                       "depth=4, seed=1, friction=yes, jitter=no (touch: yes); the profile's and "
+                       "the grip's own: "
                        "encoder=MM, delay=MS, force_step=N, hand_mass=KG, "
                        "hand_damping=N_S_PER_MM, hand_stiffness=N_PER_MM; of a profile with "
                        "orientation: turn=DEG (0), turn_time=1, turn_axis=z (x|y|z), sway=no, "

@@ -1,4 +1,4 @@
-"""ROS 1: a real master, a real peer in this process, and the node in a process of its own."""
+"""ROS 1 with a real master and rospy as the peer, ROS 2 with Fast DDS as the peer, and the node in a process of its own."""
 
 import contextlib
 import importlib.util
@@ -14,7 +14,7 @@ import xmlrpc.client
 
 import numpy
 import pytest
-from live_test import Still, renderer, surface_height, until
+from live_test import Still, renderer, until
 
 import palpate
 
@@ -23,6 +23,7 @@ if importlib.util.find_spec("rospy") is None or importlib.util.find_spec("rosmas
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
+from ros_peers import Peer, ros_1, ros_2, second_peer
 from sensor_msgs.msg import JointState, Joy
 
 from palpate.ros import POSES, Arm, Node, axes_from, velocity
@@ -30,73 +31,10 @@ from palpate.ros.__main__ import arguments_from
 from palpate.ros import node as records
 
 
-@pytest.fixture(scope="module", autouse=True)
-def ros(tmp_path_factory):
-    """rospy as another node, with a master of its own."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    os.environ.update(ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1",
-                      ROS_LOG_DIR=str(tmp_path_factory.mktemp("log")))
-    with pytest.raises(palpate.DeviceError, match="no ROS master at .*: start roscore"):
-        Node()
-    master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL)
-    import rosgraph
-    import rospy
-    until(rosgraph.is_master_online)
-    rospy.init_node("peer", disable_signals=True)
-    yield rospy
-    rospy.signal_shutdown("done")
-    master.terminate()
-    master.wait()
-
-
-class Peer:
-    """A device of ROS whose pose is sent again and again. Palpate's z, towards the person, is ROS's -x."""
-
-    def __init__(self, ros, arm):
-        self.ros, self.height, self.opening, self.buttons = ros, surface_height() + 1, None, None
-        self.stamped = self.sends = True
-        self.forces, self.stamp = [], None
-        self.topic = ros.Publisher(f"{arm}/measured_cp", PoseStamped, queue_size=1, tcp_nodelay=True)
-        self.gripper = ros.Publisher(f"{arm}/gripper/measured_js", JointState, queue_size=1)
-        self.joy = ros.Publisher(f"{arm}/button", Joy, queue_size=1)
-        self.wrench = ros.Subscriber(f"{arm}/servo_cf", WrenchStamped, self.forces.append, tcp_nodelay=True)
-        self.ends = False
-        self.thread = threading.Thread(target=self.run)
-        self.thread.start()
-
-    def run(self):
-        while not self.ends:
-            time.sleep(0.002)
-            if not self.sends:
-                continue
-            message = PoseStamped()
-            self.stamp = self.ros.Time.now() if self.stamped else self.stamp
-            message.header.stamp, message.header.frame_id = self.stamp, "base"
-            message.pose.position.x, message.pose.orientation.w = -self.height / 1000, 1
-            self.topic.publish(message)
-            if self.opening is not None:
-                self.gripper.publish(JointState(position=[self.opening]))
-            if self.buttons is not None:
-                self.joy.publish(Joy(buttons=self.buttons))
-
-    def pushes(self):
-        """Outwards, which is to the person."""
-        return bool(self.forces) and self.forces[-1].wrench.force.x < -0.2
-
-    def rests(self):
-        force = self.forces[-1].wrench.force
-        return force.x == force.y == force.z == 0
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.ends = True
-        self.thread.join()
-        for topic in (self.topic, self.gripper, self.joy, self.wrench):
-            topic.unregister()
+@pytest.fixture(scope="module", params=[1, 2])
+def ros(request, tmp_path_factory):
+    """Another node."""
+    yield from ros_1(tmp_path_factory.mktemp("log")) if request.param == 1 else ros_2()
 
 
 def felt(node):
@@ -131,7 +69,7 @@ def test_topics_are_the_session_in_metres_newtons_and_the_axes_of_the_volume(ros
     device = Still(60)
     loaded = palpate.load("synthetic:sphere:40x40x40")
     setup = palpate.Setup(real_time=False, facing="left", isovalue=palpate.scene("sphere:40x40x40").isovalue)
-    with Node(arm="", frame="patient") as node, palpate.Run(loaded, setup, device=device) as run:
+    with Node(arm="", frame="patient", ros=ros.version) as node, palpate.Run(loaded, setup, device=device) as run:
         topics = {"hand/measured_cp": PoseStamped, "hand/measured_cv": TwistStamped,
                   "hand/setpoint_cf": WrenchStamped, "proxy/measured_cp": PoseStamped, "status": DiagnosticArray}
         subscribed = {name: newest(ros, f"/palpate/{name}", kind) for name, kind in topics.items()}
@@ -164,7 +102,7 @@ def test_topics_are_the_session_in_metres_newtons_and_the_axes_of_the_volume(ros
 
 
 def test_a_device_of_ros_is_felt_and_its_force_ends_with_its_poses(ros):
-    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+    with Peer(ros, "/left") as peer, Node(arm="/left", ros=ros.version) as node:
         servo = palpate.Servo(renderer(), felt(node), real_time=False)
         with servo:
             until(lambda: servo.snapshot() and servo.snapshot().device.status == "ready")
@@ -185,7 +123,7 @@ def test_a_device_of_ros_is_felt_and_its_force_ends_with_its_poses(ros):
 
 
 def test_a_run_with_a_device_of_ros_has_its_gripper_and_its_buttons_and_is_recorded(ros, tmp_path):
-    with Peer(ros, "/left") as peer, Node(arm="/left/") as node:
+    with Peer(ros, "/left") as peer, Node(arm="/left/", ros=ros.version) as node:
         run = palpate.Run(palpate.load("synthetic:sphere:40x40x40"), palpate.Setup(real_time=False, clutch=2),
                           device=felt(node))
         run.record(tmp_path / "hand.csv")
@@ -214,7 +152,7 @@ def test_a_run_with_a_device_of_ros_has_its_gripper_and_its_buttons_and_is_recor
 
 
 def test_without_the_process_of_ros_the_device_is_lost_and_the_servo_goes_on(ros):
-    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+    with Peer(ros, "/left") as peer, Node(arm="/left", ros=ros.version) as node:
         with palpate.Servo(renderer(), felt(node), real_time=False) as servo:
             peer.height -= 2.2
             until(peer.pushes)
@@ -237,6 +175,7 @@ def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
     with Peer(ros, "/left") as peer:
         peer.height = 100  # the hand begins outside
         program = subprocess.Popen([sys.executable, "-B", "-m", "palpate.ros", "synthetic:sphere:40x40x40",
+                                    "--ros", str(ros.version),
                                     "--arm", "/left", "--pose-rate", "50", "__name:=killed"], stdout=subprocess.PIPE, text=True)
         try:
             assert "with ros" in program.stdout.readline()
@@ -264,15 +203,19 @@ def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
             program.communicate()
 
 
-@pytest.mark.parametrize("end", ["rosnode kill", "a node of the same name"])
+@pytest.mark.parametrize("end", ["rosnode kill", "a node of the same name", "SIGTERM"])
 def test_a_node_that_ros_ends_leaves_no_force_and_the_device_is_lost(ros, end):
-    import rosgraph
-    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+    if ros.version == 2 and end != "SIGTERM":
+        pytest.skip("ROS 2 ends no node")
+    with Peer(ros, "/left") as peer, Node(arm="/left", ros=ros.version) as node:
         with palpate.Servo(renderer(), felt(node), real_time=False) as servo:
             until(lambda: servo.snapshot() and servo.snapshot().device.status == "ready")
             peer.height -= 2.2
             until(peer.pushes)
-            if end == "rosnode kill":
+            if end == "SIGTERM":
+                node._process.terminate()
+            elif end == "rosnode kill":
+                import rosgraph
                 place = rosgraph.Master("/peer").lookupNode("/palpate")
                 with contextlib.suppress(OSError):  # it may end before it answers
                     xmlrpc.client.ServerProxy(place).shutdown("/peer", "killed by a test")
@@ -316,7 +259,7 @@ def test_states_do_not_keep_a_force_that_the_session_does_not_renew():
 
 
 def test_forces_that_waited_for_the_process_of_ros_are_not_sent(ros):
-    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+    with Peer(ros, "/left") as peer, Node(arm="/left", ros=ros.version) as node:
         arm = node.device()
         until(lambda: peer.forces)
         os.kill(node._process.pid, signal.SIGSTOP)
@@ -332,7 +275,7 @@ def test_forces_that_waited_for_the_process_of_ros_are_not_sent(ros):
 
 def test_axes_are_rotations_and_work_is_the_same_in_both(ros):
     random = numpy.random.default_rng(5)
-    with Node(arm="/left") as node:
+    with Node(arm="/left", ros=ros.version) as node:
         for text in ("-y,z,-x", "x,y,z", "y, z, x", "-x,-y,z"):
             arm = node.device(axes=text)
             arm._link, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -357,7 +300,7 @@ def test_axes_are_rotations_and_work_is_the_same_in_both(ros):
     for wrong in ("y,z,-x", "x,x,y", "x,y", "x,y,up", "", "x,-y,z"):
         with pytest.raises(ValueError, match="axes"):
             axes_from(wrong)
-    with Node() as node, pytest.raises(ValueError, match="arm"):
+    with Node(ros=ros.version) as node, pytest.raises(ValueError, match="arm"):
         node.device()
 
 
@@ -403,33 +346,20 @@ def test_poses_that_come_too_slowly_for_the_stiffness_give_no_force():
                 Arm(ours, palpate.DeviceInfo(), "x,y,z", pose_rate=rate)
 
 
-SECOND = """
-import rospy
-from geometry_msgs.msg import PoseStamped
-rospy.init_node("second")
-pose = rospy.Publisher("/left/measured_cp", PoseStamped, queue_size=1)
-rospy.spin()
-"""
-
-
 def test_a_second_node_that_sends_poses_ends_the_force(ros):
-    with Peer(ros, "/left") as peer, Node(arm="/left") as node:
+    with Peer(ros, "/left") as peer, Node(arm="/left", ros=ros.version) as node:
         with palpate.Servo(renderer(), felt(node), real_time=False) as servo:
             until(lambda: servo.snapshot() and servo.snapshot().device.status == "ready")
             peer.height -= 2.2
             until(peer.pushes)
-            second = subprocess.Popen([sys.executable, "-c", SECOND])
-            try:
+            with second_peer(ros, "/left/measured_cp"):
                 until(lambda: "2 nodes send measured_cp" in servo.device_problem)
                 until(peer.rests)
-            finally:
-                second.kill()
-                second.wait()
             until(peer.pushes)
 
 
 def test_a_volume_that_is_not_there_and_ctrl_c_have_their_exit_statuses(ros, tmp_path):
-    command = [sys.executable, "-B", "-m", "palpate.ros"]
+    command = [sys.executable, "-B", "-m", "palpate.ros", "--ros", str(ros.version)]
     lost = subprocess.run([*command, tmp_path / "lost.nrrd"], stderr=subprocess.PIPE, text=True, check=False)
     assert lost.returncode == 3 and lost.stderr == f"palpate.ros: {tmp_path / 'lost.nrrd'}: does not exist; check the name\n"
     recorded = tmp_path / "hand.csv"
@@ -443,7 +373,8 @@ def test_a_volume_that_is_not_there_and_ctrl_c_have_their_exit_statuses(ros, tmp
 
 SLOW_START = """
 import sys, time
-from palpate.ros import node
+sys.path.insert(0, sys.argv.pop(1))
+import node
 make = node.Arm.__init__
 def slowly(arm, *arguments):
     make(arm, *arguments)
@@ -457,7 +388,8 @@ def test_no_pose_comes_before_the_answer_that_the_node_is_ready(ros):
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with Peer(ros, "/left"), ours:
         with theirs:
-            process = subprocess.Popen([sys.executable, "-c", SLOW_START, str(theirs.fileno()), "/left"],
+            process = subprocess.Popen([sys.executable, "-c", SLOW_START, os.path.dirname(records.__file__),
+                                        str(theirs.fileno()), str(ros.version), "/left"],
                                        pass_fds=[theirs.fileno()])
         assert ours.recv(1000) == records.IS_READY
         assert len(ours.recv(1000)) == records.READING.size
@@ -465,8 +397,29 @@ def test_no_pose_comes_before_the_answer_that_the_node_is_ready(ros):
         process.wait()
 
 
+def test_a_node_that_has_ended_is_gone_for_its_peers_before_its_lease_ends(ros, monkeypatch):
+    monkeypatch.setenv("CYCLONEDDS_URI", '<Domain Id="any"><Discovery><LeaseDuration>3600s</LeaseDuration></Discovery></Domain>')
+    with Peer(ros, "/left") as peer:
+        with Node(arm="/left", ros=ros.version):
+            until(lambda: peer.wrench.get_num_connections() == 1)
+        until(lambda: peer.wrench.get_num_connections() == 0)
+
+
+def test_names_and_settings_of_ros_2_are_those_of_its_command_line_and_its_environment(monkeypatch):
+    monkeypatch.syspath_prepend(os.path.dirname(records.__file__))
+    from ros2 import HASHES, LOOPBACK, Names, settings
+    plain, renamed = Names([]), Names(["__ns:=/lab/", "__node:=left", "~hand/measured_cp:=/hand", "status:=/diagnostics"])
+    names = ("~hand/measured_cp", "~/hand/measured_cp", "/arm/servo_cf", "status")
+    assert [plain.topic(name) for name in names] == [
+        "rt/palpate/hand/measured_cp", "rt/palpate/hand/measured_cp", "rt/arm/servo_cf", "rt/status"]
+    assert [renamed.topic(name) for name in (*names, "~status")] == [
+        "rt/hand", "rt/hand", "rt/arm/servo_cf", "rt/diagnostics", "rt/lab/left/status"]
+    assert settings({}) == HASHES
+    assert settings({"ROS_LOCALHOST_ONLY": "1", "CYCLONEDDS_URI": "file:mine.xml"}) == f"{HASHES},{LOOPBACK},file:mine.xml"
+
+
 def test_a_process_of_ros_that_hangs_is_ended(ros):
-    node = Node()
+    node = Node(ros=ros.version)
     os.kill(node._process.pid, signal.SIGSTOP)
     closing = threading.Thread(target=node.close, daemon=True)
     closing.start()

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "devices/link.hpp"
 #include "devices/simulated/closed_loop.hpp"
 #include "devices/simulated/profiles.hpp"
 #include "palpate/io/error.hpp"
@@ -66,7 +67,8 @@ TEST(Simulated, limits_pass_the_check_at_the_rated_stiffness_in_every_grip) {
             const bool is_lowered = hand == "light" && (name == "falcon" || name == "premium6dof");
             EXPECT_EQ(stable(force, info.limits) != force, is_lowered) << name << hand;
             EXPECT_NO_THROW(check(stable(force, info.limits), info.limits)) << name << hand;
-            EXPECT_EQ(info.limits.delay, profile(name).delay);
+            EXPECT_EQ(info.limits.delay,
+                      profile(name).delay + (profile(name).jitter ? exchange_delay(1e-3) : 0));
             EXPECT_EQ(info.limits.continuous_force, profile(name).continuous_force);
             EXPECT_EQ(info.limits.maximum_force, profile(name).maximum_force);
             EXPECT_EQ(info.limits.physical_damping, profile(name).damping + grip(hand).damping);

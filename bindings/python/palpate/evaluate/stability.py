@@ -69,7 +69,7 @@ def pressed(subject, part, profile, friction, interpolation, encoder, rate, stif
     """A row: a light hand presses and holds."""
     field = palpate.Field(subject.field.volume, interpolation=interpolation, solid=subject.field.solid,
                           background=subject.field.background)
-    device = (f"simulated:{profile},grip=light,friction={'yes' if friction else 'no'},encoder={encoder:g},hand=hold,depth=6,"
+    device = (f"simulated:{profile},jitter=no,grip=light,friction={'yes' if friction else 'no'},encoder={encoder:g},hand=hold,depth=6,"
               f"seconds={SECONDS}")
     limit = palpate.simulated_info(device, field, subject.isovalue, rate).limits.maximum_force
     loop = loop_of(field, subject.isovalue, device, rate, 1, stiffness=stiffness, limit=limit)
@@ -95,7 +95,7 @@ def trembled(subject, part, profile, rate, stiffness):
     """A row: a modelled person presses and holds, and trembles (human.py). The force above 20 Hz, of which tremor has hardly any, is
     what the loop adds."""
     person, field, (surface, out) = Human(), subject.field, place_to_press(subject)
-    own = palpate.simulated_info(f"simulated:{profile}", field, subject.isovalue, rate)
+    own = palpate.simulated_info(f"simulated:{profile},jitter=no", field, subject.isovalue, rate)
     scale = palpate.fit_workspace(field.geometry, own).scale  # [mm of volume per mm of device]
     time = numpy.arange(SECONDS * RATE + 1) / RATE
     depth = numpy.clip(PRESSED * time, 0, PRESSED)  # in the first second; from the surface on, where the field is free
@@ -103,7 +103,7 @@ def trembled(subject, part, profile, rate, stiffness):
     target = surface + scale * ((1 - depth)[:, None] * out + shaking)
     with tempfile.NamedTemporaryFile(suffix=".csv") as file:
         numpy.savetxt(file.name, numpy.column_stack([time, target]), delimiter=",", header="t,x,y,z", comments="")
-        device = (f"simulated:{profile},file={file.name},hand_mass={person.mass},hand_damping={person.damping / 1000},"
+        device = (f"simulated:{profile},jitter=no,file={file.name},hand_mass={person.mass},hand_damping={person.damping / 1000},"
                   f"hand_stiffness={person.stiffness / 1000}")
         loop = loop_of(field, subject.isovalue, device, rate, 1, stiffness=stiffness, limit=own.limits.maximum_force)
     last = slice(rate, None)
@@ -119,7 +119,7 @@ def trembled(subject, part, profile, rate, stiffness):
 def turned(subject, part, profile, rate, share):
     """A row: a light hand turns the handle by 20 degrees against a spring that holds it straight. The theory: at rest while
     k (period / 2 + delay) < damping."""
-    device = f"simulated:{profile},grip=light,hand=hold,depth=0,seconds={SECONDS},turn=20,turn_time=0.5"
+    device = f"simulated:{profile},jitter=no,grip=light,hand=hold,depth=0,seconds={SECONDS},turn=20,turn_time=0.5"
     if part != "rotation":
         device += ",friction=no,angle_step=0,torque_step=0" + (",delay=0" if part == "rotation, ideal" else "")
     field, known = subject.field, PROFILES[profile]

@@ -1,4 +1,4 @@
-"""ROS 1: a session's hand, proxy, force and status as topics, and a device that ROS moves (docs/ros.md).
+"""ROS 1 and ROS 2: a session's hand, proxy, force and status as topics, and a device that ROS moves (docs/ros.md).
 
 The node runs in a process of its own. Neither the servo nor the device's thread ever waits for it.
 """
@@ -78,16 +78,19 @@ def state_record(snapshot: Snapshot, before: Any, problem: str, frame: str) -> b
 class Node:
     """A ROS node in a process of its own, until close(). Use it as a context manager, around the run."""
 
-    def __init__(self, arguments: Sequence[str] = (), *, arm: str = "", frame: str = "volume") -> None:
+    def __init__(self, arguments: Sequence[str] = (), *, arm: str = "", frame: str = "volume",
+                 ros: int = 1) -> None:
         """arguments: ROS's own, such as __name:=left or a remapping. arm: the namespace of a device that
-        device() connects to; empty: none. frame: frame_id of the volume's space (LPS). Raises DeviceError
-        without rospy or a ROS master."""
+        device() connects to; empty: none. frame: frame_id of the volume's space (LPS). ros: 1 or 2. Raises
+        ValueError for another number, and DeviceError without rospy or a ROS master (ROS 1), or Cyclone DDS (ROS 2)."""
+        if ros not in (1, 2):
+            raise ValueError(f"ros: {ros} must be 1 or 2")
         self._link, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._arm, self._frame, self._before = arm, frame, None
         with theirs:
             # A session of its own, so that Ctrl-C ends Palpate first.
             self._process = subprocess.Popen(
-                [sys.executable, node.__file__, str(theirs.fileno()), arm.rstrip("/"), *arguments],
+                [sys.executable, node.__file__, str(theirs.fileno()), str(ros), arm.rstrip("/"), *arguments],
                 pass_fds=[theirs.fileno()], start_new_session=True)
         answer = self._link.recv(1 << 16)
         if answer != node.IS_READY:

@@ -13,11 +13,12 @@ from . import POSE_RATE, Node
 
 def arguments_from(given):
     parser = argparse.ArgumentParser(
-        prog="python3 -m palpate.ros", description="Touch a volume with ROS 1: hand, proxy, force and status are "
+        prog="python3 -m palpate.ros", description="Touch a volume with ROS: hand, proxy, force and status are "
         "topics, and with --arm the device is one of ROS.", epilog="Arguments with := go to ROS: __name:=left, "
-        "measured_cp:=/elsewhere")
+        "~status:=/diagnostics")
     parser.add_argument("volume", help="as for palpate touch")
     parser.add_argument("--isovalue", help="a number or a percentage [a suggested one]")
+    parser.add_argument("--ros", type=int, choices=(1, 2), default=1, help="version of ROS [%(default)s]")
     hand = parser.add_mutually_exclusive_group()
     hand.add_argument("--device", help="as for palpate touch [simulated]")
     hand.add_argument("--arm", help="namespace of a device of ROS: measured_cp moves the hand, servo_cf gets the force")
@@ -57,12 +58,12 @@ def model_info(name):
     if name is None:
         return None
     scene = palpate.scene("sphere:8x8x8", "float32")  # the simulated hand needs one
-    return palpate.simulated_info(f"simulated:{name},grip=light", palpate.Field(scene.volume), scene.isovalue, 1000)
+    return palpate.simulated_info(f"simulated:{name},jitter=no,grip=light", palpate.Field(scene.volume), scene.isovalue, 1000)
 
 
 def touch(options, ros):
     loaded = palpate.load(options.volume)
-    with Node(ros, arm=options.arm or "") as node:
+    with Node(ros, arm=options.arm or "", ros=options.ros) as node:
         arm = node.device(model_info(options.model), options.axes, options.pose_rate) if options.arm else None
         run = palpate.Run(loaded, setup_from(options), device=arm)
         if options.record:

@@ -1,10 +1,11 @@
-"""The process that speaks ROS 1 for a session: it passes the session's state to topics, an arm's pose to the
+"""The process that speaks ROS for a session: it passes the session's state to topics, an arm's pose to the
 session, and the session's force to the arm.
 
-palpate.ros starts it as a program and exchanges records with it over a socket. It uses rospy but not
-palpate, and ROS's units: m, rad, N, N m.
+palpate.ros starts it as a program and exchanges records with it over a socket. It uses ros1.py or ros2.py, which
+are alike, but not palpate, and ROS's units: m, rad, N, N m.
 """
 
+import importlib
 import json
 import math
 import select
@@ -27,25 +28,25 @@ STATE, IS_STATE = struct.Struct("=3d4d3d3d3d4d6d"), b"s"
 IS_READY, IS_PROBLEM = b"r", b"p"
 SILENCE = 0.02  # [s] after which a force that was not renewed ends
 ZERO = (0,) * 6
-PACKAGES = "python3-rospy python3-geometry-msgs python3-sensor-msgs python3-diagnostic-msgs"
 
 
-class Input:
-    """The newest message of a topic, while the connection that brought it stands: nobody holds a button of a
-    node that is gone."""
+def fill(vector, numbers):
+    vector.x, vector.y, vector.z = numbers
 
-    def __init__(self, ros, name, kind):
-        self.message = None
-        self.topic = ros.subscriber(name, kind, self.take)
 
-    def take(self, message):
-        self.message = message
+def stamped_pose(ros, frame, numbers):
+    message = ros.PoseStamped(header=ros.header(frame))
+    fill(message.pose.position, numbers[:3])
+    turn = message.pose.orientation
+    turn.x, turn.y, turn.z, turn.w = numbers[3:]
+    return message
 
-    def newest(self):
-        message = self.message
-        if message and any(link.header is message._connection_header for link in self.topic.impl.connections):
-            return message
-        return None
+
+def stamped_wrench(ros, frame, numbers):
+    message = ros.WrenchStamped(header=ros.header(frame))
+    fill(message.wrench.force, numbers[:3])
+    fill(message.wrench.torque, numbers[3:])
+    return message
 
 
 class Arm:
@@ -57,13 +58,13 @@ class Arm:
         self.frame = ""
         self.lock, self.released = threading.Lock(), False
         self.force = ros.publisher(f"{name}/servo_cf", ros.WrenchStamped)
-        self.gripper = Input(ros, f"{name}/gripper/measured_js", ros.JointState)
-        self.joy = Input(ros, f"{name}/button", ros.Joy)
-        self.pose_topic = ros.subscriber(f"{name}/measured_cp", ros.PoseStamped, None)
+        self.gripper = ros.subscriber(f"{name}/gripper/measured_js", ros.JointState)
+        self.joy = ros.subscriber(f"{name}/button", ros.Joy)
+        self.poses = ros.subscriber(f"{name}/measured_cp", ros.PoseStamped)
 
     def start(self):
         """The first record of the link is the answer to the session, so poses are passed on from here."""
-        self.pose_topic.impl.add_callback(self.pose, None)
+        self.poses.listen(self.pose)
 
     def opening(self):
         gripper = self.gripper.newest()
@@ -76,13 +77,13 @@ class Arm:
 
     def pose(self, message):
         """A stamp that stands still is a pose that was not measured again: it becomes stale."""
-        arrived, stamp = time.monotonic(), message.header.stamp
+        arrived, stamp = time.monotonic(), self.ros.nanoseconds(message.header.stamp)
         if stamp and stamp == self.stamp:
             return
         self.stamp, self.frame = stamp, message.header.frame_id
         p, q = message.pose.position, message.pose.orientation
         reading = READING.pack(arrived, p.x, p.y, p.z, q.x, q.y, q.z, q.w, self.opening(), self.buttons(),
-                               self.pose_topic.get_num_connections())
+                               self.poses.writers())
         try:
             self.link.send(reading, socket.MSG_DONTWAIT)
         except OSError:  # the session does not read, or has ended
@@ -91,13 +92,13 @@ class Arm:
     def push(self, wrench):
         with self.lock:
             if not self.released:
-                self.force.publish(self.ros.stamped_wrench(self.frame, wrench))
+                self.force.publish(stamped_wrench(self.ros, self.frame, wrench))
 
     def release(self):
         """Zero, after which no force follows. It takes 100 ms, because other threads send it."""
         with self.lock:
             for _ in range(0 if self.released else 5):
-                self.force.publish(self.ros.stamped_wrench(self.frame, ZERO))
+                self.force.publish(stamped_wrench(self.ros, self.frame, ZERO))
                 time.sleep(SILENCE)
             self.released = True
 
@@ -116,61 +117,16 @@ class Topics:
     def tell(self, record):
         numbers, rest = STATE.unpack_from(record), json.loads(record[STATE.size:])
         ros, frame = self.ros, rest["frame"]
-        self.hand.publish(ros.stamped_pose(frame, numbers[0:7]))
+        self.hand.publish(stamped_pose(ros, frame, numbers[0:7]))
         twist = ros.TwistStamped(header=ros.header(frame))
-        ros.fill(twist.twist.linear, numbers[7:10])
-        ros.fill(twist.twist.angular, numbers[10:13])
+        fill(twist.twist.linear, numbers[7:10])
+        fill(twist.twist.angular, numbers[10:13])
         self.velocity.publish(twist)
-        self.proxy.publish(ros.stamped_pose(frame, numbers[13:20]))
-        self.force.publish(ros.stamped_wrench(frame, numbers[20:26]))
-        values = [ros.KeyValue(key, value) for key, value in rest["values"].items()]
+        self.proxy.publish(stamped_pose(ros, frame, numbers[13:20]))
+        self.force.publish(stamped_wrench(ros, frame, numbers[20:26]))
+        values = [ros.KeyValue(key=key, value=value) for key, value in rest["values"].items()]
         status = ros.DiagnosticStatus(level=rest["level"], name="palpate", message=rest["message"], values=values)
         self.status.publish(ros.DiagnosticArray(header=ros.header(frame), status=[status]))
-
-
-class Ros:
-    """rospy and the messages. Everything is sent by threads of rospy, so that a subscriber that hangs holds
-    up nobody else; a message that could not be sent gives way to the next."""
-
-    def __init__(self, arguments):
-        import rosgraph
-        import rospy
-        from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-        from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
-        from sensor_msgs.msg import JointState, Joy
-        from std_msgs.msg import Header
-        self.rospy, self.Header, self.Joy, self.JointState = rospy, Header, Joy, JointState
-        self.PoseStamped, self.TwistStamped, self.WrenchStamped = PoseStamped, TwistStamped, WrenchStamped
-        self.DiagnosticArray, self.DiagnosticStatus, self.KeyValue = DiagnosticArray, DiagnosticStatus, KeyValue
-        if not rosgraph.is_master_online():
-            raise ConnectionError(f"no ROS master at {rosgraph.get_master_uri()}: start roscore, or set ROS_MASTER_URI")
-        rospy.init_node("palpate", [sys.argv[0], *arguments], disable_signals=True)
-
-    def publisher(self, name, kind):
-        return self.rospy.Publisher(name, kind, queue_size=1, tcp_nodelay=True)
-
-    def subscriber(self, name, kind, callback):
-        return self.rospy.Subscriber(name, kind, callback, queue_size=1, tcp_nodelay=True)
-
-    def header(self, frame):
-        return self.Header(stamp=self.rospy.Time.now(), frame_id=frame)
-
-    @staticmethod
-    def fill(vector, numbers):
-        vector.x, vector.y, vector.z = numbers
-
-    def stamped_pose(self, frame, numbers):
-        message = self.PoseStamped(header=self.header(frame))
-        self.fill(message.pose.position, numbers[:3])
-        turn = message.pose.orientation
-        turn.x, turn.y, turn.z, turn.w = numbers[3:]
-        return message
-
-    def stamped_wrench(self, frame, numbers):
-        message = self.WrenchStamped(header=self.header(frame))
-        self.fill(message.wrench.force, numbers[:3])
-        self.fill(message.wrench.torque, numbers[3:])
-        return message
 
 
 def drained(link):
@@ -207,26 +163,27 @@ def serve(link, topics, arm, clock=time.monotonic, wait=select.select):
             topics.tell(newest[IS_STATE])
 
 
-def main(number, name, *arguments):
+def main(number, version, name, *arguments):
     link = socket.socket(fileno=int(number))
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # past the zero below
+    transport = importlib.import_module(f"ros{version}")
     try:
-        ros = Ros(arguments)
+        ros = transport.Ros(arguments)
         topics, arm = Topics(ros), Arm(ros, link, name) if name else None
     except ImportError as error:
-        link.send(IS_PROBLEM + f"{error}: apt install {PACKAGES}".encode())
+        link.send(IS_PROBLEM + f"{error}: apt install {transport.PACKAGES}".encode())
         return
     except Exception as error:
         link.send(IS_PROBLEM + str(error).encode())
         return
 
     def end():
-        """Also when ROS ends the node, after which rospy sends nothing."""
+        """Also when ROS ends the node, after which nothing is sent."""
         if arm:
             arm.release()
         link.shutdown(socket.SHUT_RDWR)
 
-    ros.rospy.on_shutdown(end)
+    ros.on_shutdown(end)
     try:
         link.send(IS_READY)
         if arm:
@@ -237,7 +194,7 @@ def main(number, name, *arguments):
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         end()
-        ros.rospy.signal_shutdown("the session has ended")
+        ros.shutdown()
 
 
 if __name__ == "__main__":
