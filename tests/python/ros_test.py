@@ -93,7 +93,11 @@ def test_topics_are_the_session_in_metres_newtons_and_the_axes_of_the_volume(ros
             node.publish(run)
             status = got["status"][-1].status[0]
             return status.level == level and {value.key: value.value for value in status.values}
-        until(lambda: feels(device, run) and told(0) and told(0)["mode"] == "constrained" and float(told(0)["force [N]"]) > 0.1)
+
+        def pressed():
+            values = feels(device, run) and told(0)
+            return values and values["mode"] == "constrained" and float(values["force [N]"]) > 0.1
+        until(pressed)
         device.read = lambda: palpate.DeviceReading(status="lost")
         until(lambda: told(2))
         assert got["status"][-1].status[0].message == "lost"
