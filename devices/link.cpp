@@ -58,6 +58,12 @@ Wrench Link::wrench(std::int64_t now) const noexcept {
     return good ? wrench : Wrench{};
 }
 
+bool Link::is_driven(std::int64_t now) const noexcept {
+    const auto newest = wrench_.get();
+    return !stopped() && newest &&
+           1e-9 * static_cast<double>(now - newest->at) <= Device::longest_force;
+}
+
 void Link::stop() noexcept {
     stopped_.store(true, std::memory_order_release);
 }

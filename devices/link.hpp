@@ -33,6 +33,9 @@ class Link {
     /// after stop(). A backend sends it at least every 5 ms, changed or not, and takes no locks and
     /// allocates nothing in doing so.
     Wrench wrench(std::int64_t now) const noexcept;
+    /// Whether the servo has set a wrench within `Device::longest_force`, and has not stopped. For
+    /// a force that a device makes itself.
+    bool is_driven(std::int64_t now) const noexcept;
 
     // Either side.
 

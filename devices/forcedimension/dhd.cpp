@@ -29,6 +29,17 @@ constexpr Type types[] = {
 };
 constexpr int falcon = 60;
 
+/// The force on the gripper counts upwards where it opens one for the right hand, and downwards for
+/// the left hand (CHAI3D's driver).
+constexpr int right_grippers[] = {35, 104, 108}, left_grippers[] = {37, 105, 109};
+
+double sign_that_opens(const Dhd& dhd, int number, bool has_torque, char id) {
+    if (!dhd.has_active_gripper || !dhd.has_active_gripper(id) || !dhd.get_gripper_angle) return 0;
+    if (has_torque ? !dhd.set_all : !dhd.set_force_and_gripper) return 0;
+    if (std::ranges::count(right_grippers, number) > 0) return 1;
+    return std::ranges::count(left_grippers, number) > 0 ? -1 : 0;
+}
+
 }  // namespace
 
 Arm arm_of(const Dhd& dhd, char id) {
@@ -44,6 +55,7 @@ Arm arm_of(const Dhd& dhd, char id) {
     if (dhd.has_gripper) model.has_gripper = dhd.has_gripper(id);
     const bool is_active = dhd.has_active_wrist ? dhd.has_active_wrist(id) : is_known;
     if (!model.has_wrist || !is_active || !dhd.has_torque()) model.torque = 0;
+    arm.opens = sign_that_opens(dhd, number, model.torque > 0, id);
     const double limit = dhd.get_max_force ? dhd.get_max_force(id) : -1;
     if (limit > 0) model.force = is_known ? std::min(model.force, limit) : std::min(limit, 20.);
     model.continuous = std::min(model.continuous, model.force);
@@ -75,12 +87,14 @@ Dhd::Dhd(const std::string& path)
     library.take(has_wrist, "dhdHasWrist");
     library.take(has_active_wrist, "dhdHasActiveWrist");
     library.take(has_gripper, "dhdHasGripper");
+    library.take(has_active_gripper, "dhdHasActiveGripper");
     library.take(get_gripper_angle, "dhdGetGripperAngleRad");
     library.take(get_max_force, "dhdGetMaxForce");
     library.take(emulate_button, "dhdEmulateButton");
     library.take(enable_expert_mode, "dhdEnableExpertMode");
     library.take(disable_expert_mode, "dhdDisableExpertMode");
     library.take(set_all, "dhdSetForceAndTorqueAndGripperForce");
+    library.take(set_force_and_gripper, "dhdSetForceAndGripperForce");
     library.take(set_force_and_torque, "dhdSetForceAndTorque");
     library.take(set_max_torque, "dhdSetMaxTorque");
     library.take(set_watchdog, "dhdSetWatchdog");

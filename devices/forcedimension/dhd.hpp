@@ -72,6 +72,7 @@ struct Dhd {
     bool (*has_wrist)(char id);
     bool (*has_active_wrist)(char id);
     bool (*has_gripper)(char id);
+    bool (*has_active_gripper)(char id);
     int (*get_gripper_angle)(double*, char id);        // [rad]
     double (*get_max_force)(char id);                  // [N] negative: no limit is set
     int (*emulate_button)(unsigned char on, char id);  // closing the gripper is button 0
@@ -79,6 +80,8 @@ struct Dhd {
     int (*disable_expert_mode)();
     // [N], [N m], and of the gripper [N]
     int (*set_all)(double, double, double, double, double, double, double gripper, char id);
+    int (*set_force_and_gripper)(double, double, double, double gripper,
+                                 char id);  // without torque
     int (*set_force_and_torque)(double, double, double, double, double, double, char id);
     int (*set_max_torque)(double, char id);  // [N m]
     // In expert mode only.
@@ -115,6 +118,7 @@ struct Arm {
     Model model;                  ///< `torque` is 0 without motors at its wrist
     Vec3 centre = Vec3::Zero();   ///< of its workspace [device mm]
     bool has_button_row = false;  ///< a Falcon's four buttons
+    double opens = 0;             ///< sign of the force that opens its gripper. 0: none does
 };
 /// What the library tells; figures that it does not know are those of the model's data sheet. For a
 /// model that is not in the table they are the smallest of all.

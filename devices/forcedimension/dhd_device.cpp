@@ -117,12 +117,17 @@ DhdDevice::DhdDevice(const std::string& library, const Settings& settings, const
       emulates_button_(arm_.model.has_gripper && dhd_.emulate_button &&
                        dhd_.emulate_button(1, id_) >= 0),
       info_(ask(settings)),
+      spring_(settings.spring),
       is_to_initialise_(settings.initialise),
       is_to_centre_(settings.centre) {
     if (settings.initialise && !dhd_.has_drd()) {
         throw DeviceError("autoinit=yes: " + dhd_.library.path() +
                           " cannot initialise devices: install libdrd beside it, or "
                           "library=PATH of that one");
+    }
+    if (spring_ > 0 && arm_.opens == 0) {
+        throw DeviceError("spring=: " + info_.model + " has no gripper with a motor, or " +
+                          dhd_.library.path() + " cannot drive it: leave it out");
     }
     if (settings.centre && !(renders_torque_ && dhd_.can_centre())) {
         throw DeviceError(renders_torque_
@@ -137,7 +142,7 @@ DhdDevice::~DhdDevice() {
     link_.stop();
     quit_.store(true);
     if (thread_.joinable()) thread_.join();
-    send({});
+    send({}, 0);
     if (emulates_button_) dhd_.emulate_button(0, id_);
     if (!old_watchdog_) return;
     const ExpertMode expert(dhd_);
@@ -201,16 +206,35 @@ void DhdDevice::centre_wrist() noexcept {
     dhd_.drd_regulate_rotation(false, id_);
 }
 
-int DhdDevice::send(const Wrench& wrench) noexcept {
+/// A spring that is loose at half a radian.
+double DhdDevice::opening_force(const DeviceReading& reading, std::int64_t now) const noexcept {
+    constexpr double loose = 0.5;  // [rad]
+    if (!reading.opening || !link_.is_driven(now)) return 0;
+    const double force = spring_ * (1 - std::clamp(*reading.opening / loose, 0., 1.));
+    return gate_.pass(Vec3(force, 0, 0), spring_, now).x();
+}
+
+int DhdDevice::send(const Wrench& wrench, double gripper) noexcept {
     const Vec3 f = axes().transpose() * wrench.force;
+    const double g = arm_.opens * gripper;
+    if (!renders_torque_ && spring_ > 0) {
+        const int result = dhd_.set_force_and_gripper(f[0], f[1], f[2], g, id_);
+        if (result < 0) release();
+        return result;
+    }
     if (!renders_torque_) return dhd_.set_force(f[0], f[1], f[2], id_);
     const Vec3 t = axes().transpose() * wrench.torque * 1e-3;  // [N m]
     const int result = dhd_.set_all
-                           ? dhd_.set_all(f[0], f[1], f[2], t[0], t[1], t[2], 0, id_)
+                           ? dhd_.set_all(f[0], f[1], f[2], t[0], t[1], t[2], g, id_)
                            : dhd_.set_force_and_torque(f[0], f[1], f[2], t[0], t[1], t[2], id_);
-    // What was not taken must not leave the force before it.
-    if (result < 0) dhd_.set_force(0, 0, 0, id_);
+    if (result < 0) release();
     return result;
+}
+
+/// A force that was not taken must not leave the force before it.
+void DhdDevice::release() noexcept {
+    if (dhd_.set_force_and_gripper) dhd_.set_force_and_gripper(0, 0, 0, 0, id_);
+    dhd_.set_force(0, 0, 0, id_);
 }
 
 void DhdDevice::step() noexcept {
@@ -229,7 +253,7 @@ void DhdDevice::step() noexcept {
     const Wrench wanted = link_.wrench(now);
     const Wrench passed{gate_.pass(wanted.force, arm_.model.force, now),
                         gate_.pass(wanted.torque, info_.limits.maximum_torque, now)};
-    if (send(passed) < 0 && trouble.kind == Trouble::Kind::none) {
+    if (send(passed, opening_force(reading, now)) < 0 && trouble.kind == Trouble::Kind::none) {
         trouble = failure();
         gate_.note(false, now);
     }

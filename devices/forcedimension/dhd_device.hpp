@@ -19,6 +19,7 @@ struct Settings {
     bool initialise = false;  ///< let it find its reference by itself; it moves to do so
     bool centre = false;      ///< let it turn its wrist straight by itself
     bool simulator = false;   ///< the vendor's, in place of hardware
+    double spring = 0;        ///< [N] that opens a closed gripper
     double rate = 1000;       ///< [Hz] of the servo
 };
 
@@ -83,7 +84,10 @@ class DhdDevice final : public LinkedDevice {
     void look_after_device() noexcept;
     bool switch_on() noexcept;
     bool set_watchdog() noexcept;
-    int send(const Wrench& wrench) noexcept;
+    /// `gripper` [N]: opens it.
+    int send(const Wrench& wrench, double gripper) noexcept;
+    void release() noexcept;
+    double opening_force(const DeviceReading& reading, std::int64_t now) const noexcept;
     Trouble read_device(DeviceReading& reading) noexcept;
     Trouble failure() const noexcept;
 
@@ -94,6 +98,7 @@ class DhdDevice final : public LinkedDevice {
     const bool renders_torque_;
     const bool emulates_button_;
     const DeviceInfo info_;
+    const double spring_;  // [N]
     LatestTrouble<Trouble> trouble_;
     std::atomic<bool> quit_{false};
     std::atomic<bool> has_watchdog_{false};  // the device drops a force that is not renewed

@@ -22,7 +22,7 @@ std::string version_of(const forcedimension::Dhd& dhd) {
 DeviceFinding forcedimension::find(const std::string& library) {
     DeviceFinding finding;
     finding.name = "forcedimension";
-    finding.options = std::string("index=0,autoinit=no,centre=no,simulator=no,library=") +
+    finding.options = std::string("index=0,autoinit=no,centre=no,simulator=no,spring=0,library=") +
                       forcedimension::names_in_words;
     try {
         const Dhd dhd(library);
@@ -66,6 +66,7 @@ std::unique_ptr<forcedimension::DhdDevice> forcedimension::open(const DeviceChoi
     settings.simulator = options.flag("simulator", false);
     settings.rate = scene.rate;
     const std::string library = options.text("library", "");
+    settings.spring = options.number("spring", 0, 0, 3);
     options.finish();
     try {
         return std::make_unique<DhdDevice>(library, settings, timing);

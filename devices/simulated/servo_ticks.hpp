@@ -1,5 +1,6 @@
-// The uneven servo of a simulated device. Its vendor's tool measured the servo of a Touch in several
-// runs: means of 977 to 1012 Hz, standard deviations of 21 to 41 Hz, extremes of 414 and 1237 Hz.
+// The uneven servo of a simulated device. Its vendor's tool measured the servo of a Touch in
+// several runs: means of 977 to 1012 Hz, standard deviations of 21 to 41 Hz, extremes of 414 and
+// 1237 Hz.
 #pragma once
 
 #include <algorithm>

@@ -27,11 +27,13 @@ int fail(int code) {
 }
 
 void apply(MockDhdState& state, const std::array<double, 3>& force,
-           const std::array<double, 3>& torque = {}) {
+           const std::array<double, 3>& torque = {}, std::optional<double> gripper = {}) {
     const bool held = state.is_regulating && state.regulates_position;
     const bool works =
         state.initialised && state.force_on && !state.brakes && !held && state.force_off_cause == 0;
     state.force = works ? force : std::array<double, 3>{};
+    if (gripper) state.gripper_force = *gripper;  // the force alone leaves it
+    if (!works) state.gripper_force = 0;
     const double size = std::hypot(state.force[0], state.force[1], state.force[2]);
     state.largest_force = std::max(state.largest_force, size);
     const bool turns = works && state.active_wrist && !state.is_regulating;
@@ -136,7 +138,7 @@ MOCK_EXPORT int dhdStop(char id) {
     call->force_at_stop = call->force;
     call->force_on = false;
     call->brakes = true;
-    apply(mock.state, {});
+    apply(mock.state, {}, {}, 0);
     return 0;
 }
 
@@ -219,6 +221,11 @@ MOCK_EXPORT bool dhdHasGripper(char id) {
     return has_gripper(mock.state);
 }
 
+MOCK_EXPORT bool dhdHasActiveGripper(char id) {
+    const Call call(id);
+    return has_gripper(mock.state) && call->active_gripper;
+}
+
 MOCK_EXPORT int dhdGetGripperAngleRad(double* angle, char id) {
     const Call call(id);
     if (call->opening_error) return fail(call->opening_error);
@@ -239,17 +246,26 @@ MOCK_EXPORT int dhdSetForce(double x, double y, double z, char id) {
     return call->force_result;
 }
 
+MOCK_EXPORT int dhdSetForceAndGripperForce(double x, double y, double z, double gripper, char id) {
+    const Call call(id);
+    ++call->loops;
+    if (call->force_error) return fail(call->force_error);
+    apply(mock.state, {x, y, z}, {}, gripper);
+    return call->force_result;
+}
+
 MOCK_EXPORT bool dhdHasActiveWrist(char id) {
     const Call call(id);
     return call->active_wrist;
 }
 
 namespace {
-int set_both(const std::array<double, 3>& force, const std::array<double, 3>& torque, char id) {
+int set_both(const std::array<double, 3>& force, const std::array<double, 3>& torque, char id,
+             std::optional<double> gripper = {}) {
     const Call call(id);
     ++call->loops;
     if (call->torque_error) return fail(call->torque_error);
-    apply(mock.state, force, torque);
+    apply(mock.state, force, torque, gripper);
     return call->force_result;
 }
 }  // namespace
@@ -263,7 +279,7 @@ MOCK_EXPORT int dhdSetForceAndTorque(double fx, double fy, double fz, double tx,
 #else
 MOCK_EXPORT int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx,
                                                     double ty, double tz, double gripper, char id) {
-    return set_both({fx, fy, fz}, {tx, ty, tz + gripper}, id);
+    return set_both({fx, fy, fz}, {tx, ty, tz}, id, gripper);
 }
 #endif
 

@@ -24,6 +24,7 @@ struct MockDhdState {
     bool wrist_initialised = true;
     bool active_wrist = false;
     std::optional<bool> wrist, gripper;  // where they are not those of its type
+    bool active_gripper = true;          // of a device that has one
     double limit = -1;                   // [N] dhdGetMaxForce before anybody sets one
 
     // How it misbehaves.
@@ -48,6 +49,7 @@ struct MockDhdState {
     // What it saw.
     std::array<double, 3> force{};   // [N] as applied: zero with brakes on or force off
     std::array<double, 3> torque{};  // [N m] the same; zero also while the wrist is regulated
+    double gripper_force = 0;        // [N] the same
     double largest_force = 0, largest_torque = 0;
     double max_torque = -1;  // dhdSetMaxTorque
     // While it regulates the position, forces that are set have no effect.

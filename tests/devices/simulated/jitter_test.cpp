@@ -1,8 +1,11 @@
 // The uneven servo of a simulated device: its times, and their effect on poses and forces.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "devices/link.hpp"
 #include "devices/simulated/closed_loop.hpp"
