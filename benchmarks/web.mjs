@@ -11,7 +11,15 @@ const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const within = 700; // [ms] what happens later belongs to the next event
 
 const service = new Service();
-const pressed = () => service.until(({ size }) => size > felt);
+/** The hand has felt a force for a while. */
+async function pressed() {
+  for (;;) {
+    const from = Date.now();
+    await sleep(300);
+    const sizes = service.forces.filter(({ at }) => at >= from).map(({ size }) => size);
+    if (sizes.length > 0 && Math.min(...sizes) > felt) return;
+  }
+}
 
 /** The forces of the session as the page hears them. */
 const listen = () => {

@@ -2,7 +2,7 @@
 // service. How a session with it begins, and reports of a SpaceMouse.
 
 export const far = 75; // [device mm] from the middle, where the hand rests
-const mouseForce = { stiffness: 0.5, stale_after: 0.08, limit: 3.3 }; // a page reads its mouse 60 times a second
+const drawnForce = { stiffness: 0.5, stale_after: 0.08, limit: 3.3 }; // only drawn. A page reads its mouse 60 times a second
 // As in `palpate touch`, and no more than a Touch has.
 const deviceForce = { stiffness: 0.5, limit: 3.3, rate_limit: 2000, ramp: 0.25, start_below: 0.3 };
 
@@ -28,9 +28,9 @@ export function sessionWith(device, geometry) {
     const { hostname, port } = new URL(device);
     return { line: device, setup: { device: `haply:host=${hostname},port=${port || 80}`, fit: true, settings: { force: deviceForce } } };
   }
-  if (isSimulated(device)) return { setup: { device, fit: true, settings: { force: deviceForce } } };
+  if (isSimulated(device)) return { setup: { device, fit: true, settings: { force: drawnForce } } };
   const transform = geometry ? transformFor(geometry) : sceneTransform;
-  return { setup: { device, settings: { force: mouseForce, transform: device === "spacenav" ? inFront(transform) : transform } } };
+  return { setup: { device, settings: { force: drawnForce, transform: device === "spacenav" ? inFront(transform) : transform } } };
 }
 
 /** What to do, or wait for, while nothing is touched. */
