@@ -55,8 +55,8 @@ void take_stored_layout(const Objects& objects, ChunkedArray& array,
     const Layout declared{array.prefix, array.separator};
     if (may_hold(objects, array.folder, declared, array.axes())) return;
     std::vector<ChunkedArray> stored;
-    for (const Layout& layout :
-         {Layout{"", '.'}, Layout{"", '/'}, Layout{"c/", '/'}, Layout{"c.", '.'}, Layout{"c/", '.'}}) {
+    for (const Layout& layout : {Layout{"", '.'}, Layout{"", '/'}, Layout{"c/", '/'},
+                                 Layout{"c.", '.'}, Layout{"c/", '.'}}) {
         if (layout == declared || !may_hold(objects, array.folder, layout, array.axes())) continue;
         ChunkedArray& other = stored.emplace_back(array);
         other.prefix = layout.prefix;
@@ -73,8 +73,8 @@ void take_stored_layout(const Objects& objects, ChunkedArray& array,
         notes.push_back(level + " has no chunk at all: all of it is the fill value");
         return;
     }
-    add_once(notes, "its chunks are named " + first_name(stored[0]) + ", not " +
-                        first_name(array) + " as its metadata say: they were read");
+    add_once(notes, "its chunks are named " + first_name(stored[0]) + ", not " + first_name(array) +
+                        " as its metadata say: they were read");
     array = stored[0];
 }
 

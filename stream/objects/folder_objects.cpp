@@ -36,7 +36,8 @@ class FolderObjects : public Objects {
             std::error_code unknown;
             if (enough(entry->path().filename().string(), entry->is_directory(unknown))) break;
         }
-        return !error || error == std::errc::no_such_file_or_directory;
+        return !error || error == std::errc::no_such_file_or_directory ||
+               error == std::errc::not_a_directory;
     }
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {

@@ -122,6 +122,13 @@ def test_files_beside_the_chunks_and_empty_folders_are_no_chunks(tmp_path):
     assert numpy.array_equal(opened(tmp_path)[1], ramp())
 
 
+def test_a_file_in_place_of_the_folder_of_chunks_holds_none(tmp_path):
+    put(tmp_path / "zarr.json", metadata3(ramp()))
+    put(tmp_path / "c", b"x")
+    put_chunks(tmp_path, ramp(), "c.0.0.0")
+    assert numpy.array_equal(opened(tmp_path)[1], ramp())
+
+
 def test_a_level_without_any_chunk_is_noted(tmp_path):
     path = image(tmp_path, [ramp(), ramp(2)], [[scaled(1, 1, 1)], [scaled(2, 2, 2)]])
     assert not any("no chunk" in note for note in opened(path)[0].notes)
