@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <sstream>
 #include <utility>
 
+#include "io/chunked_image.hpp"
 #include "io/units.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/orientation.hpp"
@@ -52,6 +54,21 @@ double millimetres_of(const ImageAxis& axis, std::vector<std::string>& notes) {
     return 1;
 }
 
+Vec3 extent_of(const Geometry& grid) {
+    return grid.spacing.cwiseProduct(grid.size.cast<double>());
+}
+
+bool within(const Vec3& apart, const Vec3& most) {
+    return (apart.cwiseAbs().array() <= most.array()).all();
+}
+
+/// "20 x 10 x 5 mm"
+std::string lengths(const Vec3& v) {
+    std::ostringstream text;
+    text << v[0] << " x " << v[1] << " x " << v[2] << " mm";
+    return text.str();
+}
+
 class Taking {
   public:
     Taking(const Image& image, ChunkedVolume begun, const StoreOptions& options)
@@ -78,6 +95,8 @@ class Taking {
         for (std::size_t i = 0; i < volume_.arrays.size(); ++i) {
             info.levels.push_back(level_of(volume_.arrays[i], image, image.levels[i], roles));
         }
+        info.notes.insert(info.notes.end(), image.notes.begin(), image.notes.end());
+        leave_out_contradictions();
         use_given();
         return std::move(volume_);
     }
@@ -146,6 +165,30 @@ class Taking {
         return level;
     }
 
+    /// Sizes of coarser levels are rounded either way, and written scales to some digits.
+    void leave_out_contradictions() {
+        std::vector<Level>& levels = volume_.info.levels;
+        const Geometry finest = levels[0].geometry;
+        const Vec3 whole = extent_of(finest);
+        for (std::size_t i = levels.size() - 1; i > 0; --i) {
+            const Geometry& level = levels[i].geometry;
+            const Vec3 extent = extent_of(level);
+            const Vec3 corner = grid_axes_from_physical(finest, level.origin - finest.origin) -
+                                (level.spacing - finest.spacing) / 2;
+            const Vec3 most = 1.001 * level.spacing.cwiseMax(finest.spacing).cwiseMax(whole / 100);
+            const bool is_as_large = within(extent - whole, most);
+            if (is_as_large && within(corner, most)) continue;
+            volume_.info.notes.push_back(
+                "its level " + std::to_string(i) + " was left out: by its " +
+                (is_as_large
+                     ? "translation it lies elsewhere than the finest"
+                     : "scale it is " + lengths(extent) + ", and the finest " + lengths(whole)));
+            const auto at = static_cast<std::ptrdiff_t>(i);
+            levels.erase(levels.begin() + at);
+            volume_.arrays.erase(volume_.arrays.begin() + at);
+        }
+    }
+
     /// The spacing that the caller gives is that of the finest level.
     void use_given() {
         const Geometry finest = volume_.info.levels[0].geometry;
@@ -188,6 +231,16 @@ void check_axes(const std::vector<ImageAxis>& axes) {
 
 ChunkedVolume volume_of(const Image& image, ChunkedVolume begun, const StoreOptions& options) {
     return Taking(image, std::move(begun), options).volume();
+}
+
+std::vector<double> factors_by_size(std::span<const ChunkedArray> arrays, std::size_t at) {
+    std::vector<double> factors(arrays[0].axes(), 1);
+    for (std::size_t i = 0; i < at; ++i) {
+        for (std::size_t a = 0; a < factors.size(); ++a) {
+            factors[a] *= io::factor_between(arrays[i].shape[a], arrays[i + 1].shape[a]);
+        }
+    }
+    return factors;
 }
 
 std::vector<int> axes_in_order(const ChunkedArray& array) {

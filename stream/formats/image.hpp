@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -33,9 +34,11 @@ struct Image {
     std::vector<std::string> channels = {};     ///< names, as far as they are given
     std::optional<Range> range = std::nullopt;  ///< of the finest level
     std::optional<Mat3> direction =
-        std::nullopt;       ///< of the grid's axes; translations are then LPS
-    bool oriented = false;  ///< the grid's axes are the body's
-    bool measured = true;   ///< false: the scales are assumed
+        std::nullopt;                     ///< of the grid's axes; translations are then LPS
+    bool oriented = false;                ///< the grid's axes are the body's
+    bool measured = true;                 ///< false: the scales are assumed
+    bool scaled = true;                   ///< false: the levels do not tell their scales
+    std::vector<std::string> notes = {};  ///< about its metadata
 };
 
 /// The axes of an array that does not name them: its last three are z, y, x, before them c and t.
@@ -46,9 +49,14 @@ std::vector<ImageAxis> usual_axes(std::size_t count);
 void check_axes(const std::vector<ImageAxis>& axes);
 
 /// Completes a volume whose info has address, format and perhaps notes, channels and times, and
-/// whose arrays are those of the levels: type, range, levels, the choice of channel and time.
+/// whose arrays are those of the levels: type, range, levels, the choice of channel and time. A
+/// level that does not cover the space of the finest is left out, with a note.
 /// Throws BadMetadata, io::InputError about a choice that there is not.
 ChunkedVolume volume_of(const Image& image, ChunkedVolume begun, const StoreOptions& options);
+
+/// How many samples of the finest level one of level `at` has along each axis, by the sizes of the
+/// levels between them.
+std::vector<double> factors_by_size(std::span<const ChunkedArray> arrays, std::size_t at);
 
 /// All of an array, the slowest first.
 std::vector<int> axes_in_order(const ChunkedArray& array);

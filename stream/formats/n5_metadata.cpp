@@ -104,17 +104,6 @@ std::optional<Numbers> factors_of(std::span<const Json> groups, const Json& leve
     return at == 0 ? std::optional(Numbers(axes, 1)) : std::nullopt;
 }
 
-/// Those of the first `at` levels, each to the next one.
-Numbers factors_by_size(std::span<const ChunkedArray> arrays, std::size_t at) {
-    Numbers factors(arrays[0].axes(), 1);
-    for (std::size_t i = 0; i < at; ++i) {
-        for (std::size_t a = 0; a < factors.size(); ++a) {
-            factors[a] *= io::factor_between(arrays[i].shape[a], arrays[i + 1].shape[a]);
-        }
-    }
-    return factors;
-}
-
 /// Where a level lies along axes that have names.
 struct NamedPlace {
     std::vector<ImageAxis> axes;

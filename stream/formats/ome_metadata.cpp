@@ -1,4 +1,5 @@
-// Metadata of OME-Zarr images, versions 0.4 and 0.5: https://ngff.openmicroscopy.org.
+// Metadata of OME-Zarr images, versions 0.1 to 0.5: https://ngff.openmicroscopy.org.
+#include <charconv>
 #include <cmath>
 
 #include "palpate/io/error.hpp"
@@ -13,6 +14,7 @@ constexpr std::size_t most_channels = 1024;
 
 struct Placement {
     std::vector<double> scale, translation;
+    bool scaled = false;
 };
 
 std::vector<double> numbers_of(const Json& list, std::size_t axes, const char* what) {
@@ -30,22 +32,28 @@ std::vector<double> numbers_of(const Json& list, std::size_t axes, const char* w
     return numbers;
 }
 
-/// A scale and perhaps a translation, in either order of the list: the scale comes first.
+/// At most one scale, then at most one translation.
 Placement placement_of(const Json& object, std::size_t axes) {
     Placement place{std::vector<double>(axes, 1), std::vector<double>(axes, 0)};
     const Json list = object.value("coordinateTransformations", Json::array());
     if (!list.is_array() || list.size() > 8)
         throw BadMetadata("its transformations are not sensible");
+    bool translated = false;
     for (const Json& one : list) {
         const std::string type = one.at("type").get<std::string>();
-        if (type == "scale" && one.contains("scale")) {
-            place.scale = numbers_of(one["scale"], axes, "scale");
-        } else if (type == "translation" && one.contains("translation")) {
-            place.translation = numbers_of(one["translation"], axes, "translation");
-        } else if (type != "identity") {
+        if (type == "identity") continue;
+        const bool is_scale = type == "scale";
+        if ((!is_scale && type != "translation") || !one.contains(type)) {
             throw BadMetadata("its transformation '" + type +
                               "' is not read; use scale and translation");
         }
+        if (translated || (is_scale && place.scaled)) {
+            throw BadMetadata(
+                "its transformations are not one scale and then one translation; write them so");
+        }
+        (is_scale ? place.scale : place.translation) =
+            numbers_of(one[type], axes, is_scale ? "scale" : "translation");
+        (is_scale ? place.scaled : translated) = true;
     }
     return place;
 }
@@ -85,6 +93,27 @@ std::vector<std::string> channel_names(const Json& attributes) {
     return names;
 }
 
+/// Versions after 0.5, and images that are not read.
+std::vector<std::string> notes_on(const Json& attributes, const Json& images) {
+    std::vector<std::string> notes;
+    Json version = attributes.value("version", Json());
+    if (version.is_null()) version = images[0].value("version", Json());
+    const std::string text = version.is_string() ? version.get<std::string>() : version.dump();
+    const char* const end = text.data() + text.size();
+    int major = 0, minor = 0;
+    const char* const dot = std::from_chars(text.data(), end, major).ptr;
+    if (dot != end) std::from_chars(dot + 1, end, minor);
+    if (major > 0 || minor > 5) {
+        notes.push_back("its version of OME-Zarr is " + io::one_line(text.substr(0, 20)) +
+                        ": it was read as 0.5");
+    }
+    if (images.size() > 1) {
+        notes.push_back("it has " + std::to_string(images.size()) +
+                        " images (multiscales): the first was taken");
+    }
+    return notes;
+}
+
 std::optional<Range> range_of(const Json& attributes) {
     const Json ours = attributes.value("palpate", Json::object());
     if (!ours.is_object() || !ours.contains("range")) return std::nullopt;
@@ -122,8 +151,10 @@ std::optional<Image> ome_image(const Json& given) {
     if (!datasets.is_array() || datasets.empty() || datasets.size() > most_levels) {
         throw BadMetadata("it has no levels, or more than 64");
     }
+    found.scaled = false;
     for (const Json& dataset : datasets) {
         Placement place = placement_of(dataset, axes);
+        found.scaled |= place.scaled;
         for (std::size_t a = 0; a < axes; ++a) {
             place.translation[a] = whole.scale[a] * place.translation[a] + whole.translation[a];
             place.scale[a] *= whole.scale[a];
@@ -133,6 +164,7 @@ std::optional<Image> ome_image(const Json& given) {
     }
     found.channels = channel_names(attributes);
     found.range = range_of(given);
+    found.notes = notes_on(attributes, all);
     take_direction(given, found);
     return found;
 }

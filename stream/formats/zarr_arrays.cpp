@@ -1,6 +1,7 @@
 // Metadata of Zarr 2 and 3 arrays. Formats: https://zarr-specs.readthedocs.io/en/latest, v2/v2.0
 // and v3/core, with the codecs of v3.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -35,22 +36,47 @@ void take_dtype(const Json& json, SampleBytes& bytes) {
         (type[0] == '>') == (std::endian::native == std::endian::little) && bytes.size() > 1;
 }
 
-/// A number, "NaN", "Infinity", or the bits of a float in hexadecimal digits.
-double fill_of(const Json& json, io::Stored stored) {
-    if (json.is_boolean()) return json.get<bool>() ? 1 : 0;
-    if (json.is_number()) return json.get<double>();
-    if (json.is_null()) return 0;
-    const std::string text = json.is_string() ? json.get<std::string>() : "";
+/// The numbers that an integer type can have: from the first to below the second.
+std::pair<double, double> whole_numbers_of(io::Stored stored) {
+    const int bits = static_cast<int>(8 * io::size_of(stored));
+    if (io::name_of(stored).starts_with('u')) return {0, std::ldexp(1, bits)};
+    return {-std::ldexp(1, bits - 1), std::ldexp(1, bits - 1)};
+}
+
+/// "NaN", "Infinity", or the bits of a float in hexadecimal digits.
+std::optional<double> float_of(const std::string& text, io::Stored stored) {
     if (text == "NaN" || text == "Infinity" || text == "-Infinity") return std::nan("");
     std::uint64_t bits = 0;
     const char* const end = text.data() + text.size();
-    if (text.starts_with("0x") && std::from_chars(text.data() + 2, end, bits, 16).ptr == end) {
-        if (stored == io::Stored::float32) {
-            return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
-        }
-        if (stored == io::Stored::float64) return std::bit_cast<double>(bits);
+    if (text.size() != 2 + 2 * io::size_of(stored) || !text.starts_with("0x") ||
+        std::from_chars(text.data() + 2, end, bits, 16).ptr != end) {
+        return std::nullopt;
     }
-    throw BadMetadata("its fill_value '" + io::one_line(text.substr(0, 40)) + "' is not read");
+    if (stored == io::Stored::float64) return std::bit_cast<double>(bits);
+    return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+}
+
+/// Refuses what the type does not have. `wraps`: in Zarr 2, a negative number of an unsigned type
+/// is the signed one of as many bits, as zarr-python has it.
+double fill_of(const Json& json, const SampleBytes& bytes, bool wraps) {
+    const io::Stored stored = bytes.stored;
+    const bool is_float = stored == io::Stored::float32 || stored == io::Stored::float64;
+    std::optional<double> fill;
+    if (json.is_null()) fill = 0;
+    if (json.is_boolean()) fill = json.get<bool>() ? 1 : 0;
+    if (json.is_number()) fill = json.get<double>();
+    if (json.is_string() && is_float) fill = float_of(json.get<std::string>(), stored);
+    if (fill && !is_float) {
+        const auto [low, high] = whole_numbers_of(stored);
+        if (wraps && low == 0 && *fill < 0 && *fill >= -high / 2) *fill += high;
+        if (*fill < low || *fill >= high || *fill != std::floor(*fill)) fill.reset();
+    }
+    if (!fill) {
+        throw BadMetadata("its fill_value " + io::one_line(json.dump().substr(0, 40)) +
+                          " is no number of its type " + io::name_of(stored) +
+                          "; its metadata are damaged");
+    }
+    return fitting_fill(*fill, bytes);
 }
 
 char separator_of(const std::string& text) {
@@ -74,8 +100,7 @@ ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
     array.shape = sizes_of(zarray.at("shape"), "shape");
     array.chunk = sizes_of(zarray.at("chunks"), "chunks");
     take_dtype(zarray.at("dtype"), array.bytes);
-    array.bytes.fill =
-        fitting_fill(fill_of(zarray.value("fill_value", Json()), array.bytes.stored), array.bytes);
+    array.bytes.fill = fill_of(zarray.value("fill_value", Json()), array.bytes, true);
     array.separator = separator_of(zarray.value("dimension_separator", std::string(".")));
     const std::string order = zarray.value("order", std::string("C"));
     if (order != "C" && order != "F")
@@ -99,9 +124,11 @@ ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
 
 namespace {
 
-bool is_little(const Json& codec) {
+/// `each`: bytes of a number; the order of one has no name.
+bool is_little(const Json& codec, std::size_t each) {
     const Json configuration = codec.value("configuration", Json::object());
-    const std::string endian = configuration.value("endian", std::string("little"));
+    if (each == 1 && !configuration.contains("endian")) return true;
+    const std::string endian = configuration.value("endian", std::string("(not given)"));
     if (endian != "little" && endian != "big") {
         throw BadMetadata("its byte order is '" + endian + "'; it is little or big");
     }
@@ -132,7 +159,7 @@ void take_index_codecs(const Json& codecs, Shards& shards) {
         const std::string name = codec.at("name").get<std::string>();
         if (name == "crc32c") {
             shards.index_codecs.insert(shards.index_codecs.begin(), Codec::crc32c);
-        } else if (name != "bytes" || !is_little(codec)) {
+        } else if (name != "bytes" || !is_little(codec, sizeof(std::uint64_t))) {
             throw BadMetadata("the index of its shards is packed with '" + name +
                               "', which is not read; write it with bytes and crc32c");
         }
@@ -170,9 +197,9 @@ void take_codecs(const Json& codecs, ChunkedArray& array) {
         if (name == "transpose" && !as_bytes) {
             transpose(codec, array);
         } else if (name == "bytes" && !as_bytes) {
-            array.bytes.swapped =
-                is_little(codec) != (std::endian::native == std::endian::little) &&
-                array.bytes.size() > 1;
+            array.bytes.swapped = is_little(codec, array.bytes.size()) !=
+                                      (std::endian::native == std::endian::little) &&
+                                  array.bytes.size() > 1;
             as_bytes = true;
         } else if (name == "sharding_indexed" && !as_bytes) {
             if (codecs.size() > 1) {
@@ -205,10 +232,34 @@ void take_key_encoding(const Json& encoding, ChunkedArray& array) {
 
 }  // namespace
 
+void check_members(const Json& zarr) {
+    constexpr std::array known = {"zarr_format",
+                                  "node_type",
+                                  "shape",
+                                  "data_type",
+                                  "chunk_grid",
+                                  "fill_value",
+                                  "codecs",
+                                  "attributes",
+                                  "chunk_key_encoding",
+                                  "storage_transformers",
+                                  "dimension_names",
+                                  "consolidated_metadata"};
+    for (const auto& [name, value] : zarr.items()) {
+        if (std::ranges::find(known, name) != known.end()) continue;
+        const Json must = value.is_object() ? value.value("must_understand", Json()) : Json();
+        if (must == false) continue;
+        throw BadMetadata(
+            "its member '" + io::one_line(name.substr(0, 40)) +
+            "' of Zarr 3 is not known, and has to be understood; store it without it");
+    }
+}
+
 ChunkedArray zarr3_array(const Json& zarr, const std::string& folder) {
     if (zarr.at("zarr_format") != 3 || zarr.at("node_type") != "array") {
         throw BadMetadata("its zarr.json is not that of a Zarr 3 array");
     }
+    check_members(zarr);
     ChunkedArray array;
     array.folder = folder;
     array.shape = sizes_of(zarr.at("shape"), "shape");
@@ -222,8 +273,7 @@ ChunkedArray zarr3_array(const Json& zarr, const std::string& folder) {
     const auto stored = io::stored_named(name == "bool" ? "uint8" : name);
     if (!stored) refuse_type(name);
     array.bytes.stored = *stored;
-    array.bytes.fill =
-        fitting_fill(fill_of(zarr.value("fill_value", Json()), array.bytes.stored), array.bytes);
+    array.bytes.fill = fill_of(zarr.value("fill_value", Json()), array.bytes, false);
     array.stored_axes = axes_in_order(array);
     take_key_encoding(zarr.at("chunk_key_encoding"), array);
     for (const Json& transformer : zarr.value("storage_transformers", Json::array())) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <numeric>
 
 #include "palpate/io/error.hpp"
 #include "stream/formats/metadata_files.hpp"
@@ -17,9 +18,10 @@ constexpr std::size_t most_series = 16;  // that are looked for
 
 /// What the metadata of a folder say, of either version.
 struct Node {
-    Json array;       ///< null unless it is one
+    Json metadata;    ///< of an array, or of a group of Zarr 3
     Json attributes;  ///< null if there are none
     int version = 0;  ///< of Zarr; 0: there is nothing
+    bool is_array = false;
 };
 
 /// Looks into several folders at once.
@@ -40,14 +42,23 @@ std::vector<Node> nodes_in(const Objects& objects, std::span<const std::string> 
         if (Json zarr = json(0); zarr.is_object()) {
             node.version = 3;
             node.attributes = zarr.value("attributes", Json());
-            if (zarr.value("node_type", Json()) == "array") node.array = std::move(zarr);
+            node.is_array = zarr.value("node_type", Json()) == "array";
+            node.metadata = std::move(zarr);
         } else if (Json attributes = json(1), array = json(2);
                    !attributes.is_null() || !array.is_null() || all[i * names.size() + 3]) {
-            node = {std::move(array), std::move(attributes), 2};
+            const bool is_array = !array.is_null();
+            node = {std::move(array), std::move(attributes), 2, is_array};
         }
         nodes.push_back(std::move(node));
     }
     return nodes;
+}
+
+/// Roughly: more than 2^64 are no error here.
+double samples_in(const ChunkedArray& array) {
+    double count = 1;
+    for (const std::int64_t size : array.shape) count *= static_cast<double>(size);
+    return count;
 }
 
 ChunkedArray array_from(const Json& array, int version, const std::string& folder) {
@@ -64,7 +75,7 @@ class Opening {
         volume_.info.address = address;
         Node root = nodes_in(objects_, std::array{folder_})[0];
         if (root.version == 0) return std::nullopt;
-        if (!root.array.is_null()) return of_array(root);
+        if (root.is_array) return of_array(root);
         auto image = ome_image(root.attributes);
         if (!image) {
             root = first_series();
@@ -74,13 +85,14 @@ class Opening {
             throw BadMetadata(
                 "has neither an image nor an array of its own; give one in a folder below it");
         }
+        if (root.version == 3) check_members(root.metadata);
         take_levels(*image, root.version);
         return volume_of(*image, std::move(volume_), options_);
     }
 
   private:
     ChunkedVolume of_array(const Node& root) {
-        const ChunkedArray array = array_from(root.array, root.version, folder_);
+        ChunkedArray array = array_from(root.metadata, root.version, folder_);
         volume_.info.format = "Zarr " + std::to_string(root.version);
         volume_.info.notes.push_back("it is an array without a place in space: 1 mm was taken");
         Image image;
@@ -95,13 +107,14 @@ class Opening {
         }
         image.levels = {
             {"", std::vector<double>(array.axes(), 1), std::vector<double>(array.axes(), 0)}};
+        take_stored_layout(objects_, array, volume_.info.notes);
         volume_.arrays = {array};
         return volume_of(image, std::move(volume_), options_);
     }
 
     /// The names of its dimensions: Zarr 3 has a place for them, xarray an attribute.
     void take_names(const Node& root, std::vector<ImageAxis>& axes) {
-        Json names = root.array.value("dimension_names", Json());
+        Json names = root.metadata.value("dimension_names", Json());
         if (!names.is_array() && root.attributes.is_object()) {
             names = root.attributes.value("_ARRAY_DIMENSIONS", Json());
         }
@@ -143,7 +156,7 @@ class Opening {
         return nodes[0];
     }
 
-    void take_levels(const Image& image, int version) {
+    void take_levels(Image& image, int version) {
         volume_.info.format = version == 3 ? "OME-Zarr 0.5" : "OME-Zarr 0.4";
         // Over a network each file that is asked for in vain costs as much as one that is there.
         std::vector<Wanted> wanted;
@@ -160,7 +173,47 @@ class Opening {
             if (!is_array)
                 throw BadMetadata("its level '" + folder + "' is not there; copy it again");
             volume_.arrays.push_back(array_from(array, version, folder));
+            take_stored_layout(objects_, volume_.arrays.back(), volume_.info.notes);
         }
+        sort_levels(image);
+        if (!image.scaled && image.levels.size() > 1) compare_sizes(image);
+    }
+
+    void sort_levels(Image& image) {
+        const auto finer = [&](std::size_t one, std::size_t other) {
+            return samples_in(volume_.arrays[one]) > samples_in(volume_.arrays[other]);
+        };
+        std::vector<std::size_t> order(image.levels.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        if (std::ranges::is_sorted(order, finer)) return;
+        std::ranges::stable_sort(order, finer);
+        std::vector<ImageLevel> levels;
+        std::vector<ChunkedArray> arrays;
+        for (const std::size_t i : order) {
+            levels.push_back(image.levels[i]);
+            arrays.push_back(volume_.arrays[i]);
+        }
+        image.levels = std::move(levels);
+        volume_.arrays = std::move(arrays);
+        volume_.info.notes.emplace_back(
+            "its levels were not listed from fine to coarse: they were sorted");
+    }
+
+    /// For images of versions before 0.4, whose levels tell no scales.
+    void compare_sizes(Image& image) {
+        for (const ChunkedArray& array : volume_.arrays) {
+            if (array.axes() != image.axes.size()) return;  // which is refused
+        }
+        const ImageLevel finest = image.levels[0];
+        for (std::size_t i = 1; i < image.levels.size(); ++i) {
+            const std::vector<double> factors = factors_by_size(volume_.arrays, i);
+            for (std::size_t a = 0; a < factors.size(); ++a) {
+                image.levels[i].scale[a] *= factors[a];
+                image.levels[i].translation[a] += finest.scale[a] * (factors[a] - 1) / 2;
+            }
+        }
+        volume_.info.notes.emplace_back(
+            "it does not tell the scales of its levels: their sizes were compared");
     }
 
     const Objects& objects_;

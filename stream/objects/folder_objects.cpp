@@ -27,6 +27,19 @@ class FolderObjects : public Objects {
         return error ? std::nullopt : std::optional<std::uint64_t>(size);
     }
 
+    bool list(const std::string& folder,
+              const std::function<bool(const std::string&, bool)>& enough) const override {
+        std::error_code error;
+        for (std::filesystem::directory_iterator entry(folder_ / folder, error), end;
+             entry != end && !error; entry.increment(error)) {
+            if (stop_.stop_requested()) throw Cancelled{};
+            std::error_code unknown;
+            if (enough(entry->path().filename().string(), entry->is_directory(unknown))) break;
+        }
+        return !error || error == std::errc::no_such_file_or_directory ||
+               error == std::errc::not_a_directory;
+    }
+
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
         if (!stop.stop_possible()) stop = stop_;
         if (stop.stop_requested()) throw Cancelled{};
@@ -78,6 +91,10 @@ std::vector<std::optional<Bytes>> Objects::get_all(std::span<const Wanted> wante
     std::vector<std::optional<Bytes>> all;
     for (const Wanted& one : wanted) all.push_back(get(one, stop));
     return all;
+}
+
+bool Objects::list(const std::string&, const std::function<bool(const std::string&, bool)>&) const {
+    return false;
 }
 
 std::shared_ptr<const Objects> folder_objects(const std::filesystem::path& folder,

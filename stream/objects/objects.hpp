@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -49,6 +50,11 @@ class Objects {
     /// [bytes] of an object; nothing if there is none, or its size cannot be known. Throws as
     /// get().
     virtual std::optional<std::uint64_t> size_of(const std::string& key) const = 0;
+    /// Shows `enough` the names in a folder, and whether each is one of a folder, until it returns
+    /// true. False if they cannot be listed, as on a web server: then it was not called. Throws
+    /// Cancelled.
+    virtual bool list(const std::string& folder,
+                      const std::function<bool(const std::string&, bool)>& enough) const;
     virtual Traffic traffic() const = 0;
     /// Of an object among all that have had its name; changes when what was read each time, not
     /// lasting, has changed: its bytes, or its version or time as a server tells them.

@@ -77,7 +77,8 @@ TEST(Store, metadata_that_ask_for_more_than_there_can_be_are_refused_in_bounded_
               R"("chunk_grid":{"name":"regular","configuration":{"chunk_shape":[4096,4096,4096]}},)"
               R"("chunk_key_encoding":{"name":"default"},"fill_value":0,"codecs":[)"
               R"({"name":"sharding_indexed","configuration":{"chunk_shape":[1,1,1],"codecs":[)"
-              R"({"name":"bytes"}],"index_codecs":[{"name":"bytes"}]}}]})");
+              R"({"name":"bytes"}],"index_codecs":[)"
+              R"({"name":"bytes","configuration":{"endian":"little"}}]}}]})");
     fs::create_directories(folder / "long.zarr");
     put_bytes(folder / "long.zarr/.zarray", std::string(9 << 20, ' '));
     const std::pair<const char*, const char*> wrong[] = {

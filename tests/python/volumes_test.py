@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import warnings
 
 import nibabel
 import numpy
@@ -123,6 +124,39 @@ def test_a_nibabel_image_keeps_its_place_and_its_samples():
     for index in ((0, 0, 0), (1, 2, 3)):
         ras = affine @ (*index, 1)
         assert numpy.allclose(place.physical(index), ras[:3] * (-1, -1, 1))
+
+
+@pytest.mark.parametrize("ones", (1, 2, 3))
+def test_axes_of_length_one_need_no_frame(ones, tmp_path):
+    array = samples("int16")
+    image = nibabel.Nifti1Image(array.T.reshape(*array.T.shape, *(1,) * ones), numpy.diag([-2, -3, 4, 1]))
+    nibabel.save(image, tmp_path / "a.nii")
+    whole = palpate.load(tmp_path / "a.nii").volume
+    for data in (image, nibabel.load(tmp_path / "a.nii")):
+        for frame in (None, 0):
+            assert numpy.array_equal(palpate.as_volume(data, frame=frame).array, whole.array)
+    assert numpy.array_equal(palpate.as_volume(array.reshape(*(1,) * ones, *array.shape)).array, array)
+    with pytest.raises(ValueError, match="axes"):
+        palpate.as_volume(numpy.stack([array, array])[None, :])
+
+
+@pytest.mark.parametrize("kind", (nibabel.AnalyzeImage, nibabel.Spm99AnalyzeImage, nibabel.Spm2AnalyzeImage))
+def test_analyze_is_oriented_only_by_a_file_mat(kind, tmp_path):
+    array, affine = samples("int16"), numpy.diag([-2.0, -3.0, 4.0, 1.0])
+    affine[:3, 3] = (5, 6, 7)
+    has_mat = kind is not nibabel.AnalyzeImage
+    kind(array.T, affine).to_filename(tmp_path / "a.img")
+    for image in (kind(array.T, affine), kind.from_filename(tmp_path / "a.img")):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            volume = palpate.as_volume(image)
+        assert numpy.array_equal(volume.array, array) and numpy.allclose(volume.geometry.spacing, (2, 3, 4))
+        assert volume.geometry.oriented == has_mat
+        assert any("nothing of its orientation" in str(one.message) for one in caught) != has_mat
+        if has_mat:
+            assert numpy.allclose(volume.geometry.origin, (-5, -6, 7))
+        else:
+            assert numpy.array_equal(volume.geometry.direction, numpy.eye(3))
 
 
 def test_a_nifti_file_read_by_nibabel_and_by_palpate_is_the_same(tmp_path):

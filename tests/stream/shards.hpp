@@ -18,7 +18,8 @@ inline void put_shards(const std::filesystem::path& folder) {
         R"("chunk_grid":{"name":"regular","configuration":{"chunk_shape":[4,4,4]}},)"
         R"("chunk_key_encoding":{"name":"default"},"fill_value":0,"codecs":[)"
         R"({"name":"sharding_indexed","configuration":{"chunk_shape":[2,4,4],)"
-        R"("codecs":[{"name":"bytes"}],"index_codecs":[{"name":"bytes"}]}}]})");
+        R"("codecs":[{"name":"bytes"}],"index_codecs":[)"
+        R"({"name":"bytes","configuration":{"endian":"little"}}]}}]})");
     const auto entry = [](std::uint64_t a, std::uint64_t b) {
         return io::test::little(a) + io::test::little(b);
     };

@@ -23,7 +23,7 @@ def as_volume(data, spacing=None, origin=None, direction=None, frame=None):
     ValueError: fill them first.
     spacing, origin [mm] (x, y, z) and direction (3, 3) go before what `data` says.
     frame: of four-dimensional data this one, from 0; an axis in front ([t, z, y, x]), in nibabel
-    the last.
+    the last. It is not needed if there is only one, and further axes may have a length of 1.
     """
     given = {"spacing": spacing, "origin": origin, "direction": direction}
     given = {name: value for name, value in given.items() if value is not None}
@@ -50,16 +50,21 @@ def _placed(volume, given):
 
 def _frame_of(data, frame, axis):
     data = data if hasattr(data, "shape") else numpy.asanyarray(data)
-    axes = len(data.shape)
-    if axes == 4 and frame is None:
-        raise ValueError("the data have four axes: choose a frame")
-    if axes == 4:
-        frame, count = operator.index(frame), data.shape[axis]
+    shape = data.shape if axis == 0 else data.shape[::-1]  # the three of space come last
+    beyond = len(shape) - 4
+    if beyond > 0 and all(length == 1 for length in shape[:beyond]):
+        data, shape = data[(0,) * beyond if axis == 0 else (..., *(0,) * beyond)], shape[beyond:]
+    if len(shape) == 4 and frame is None:
+        if shape[0] != 1:
+            raise ValueError("the data have four axes: choose a frame")
+        frame = 0
+    if len(shape) == 4:
+        frame, count = operator.index(frame), shape[0]
         if not 0 <= frame < count:
             raise ValueError(f"frame {frame}: there are {count}, from 0")
         return data[frame] if axis == 0 else data[..., frame]
     if frame is not None:
-        raise ValueError(f"the data have {axes} axes, so they have no frames")
+        raise ValueError(f"the data have {len(shape)} axes, so they have no frames")
     return data[...] if hasattr(data, "__getitem__") else data
 
 
@@ -78,22 +83,28 @@ def _from_nibabel(image, frame):
 
 
 def _affine_of(image):
-    """Index to RAS [mm], chosen as load() chooses it for a NIfTI file (docs/io.md), and whether the header
+    """Index to RAS [mm], chosen as load() chooses it for a NIfTI file (docs/io.md), and whether the image
     says it."""
     affine, header = numpy.asarray(image.affine, dtype=float), image.header
-    if not hasattr(header, "get_qform"):
+    is_nifti = hasattr(header, "get_qform")
+    if not is_nifti and not hasattr(header, "get_base_affine"):
         return affine, True
-    unit = {"meter": 1000.0, "micron": 1e-3}.get(header.get_xyzt_units()[0], 1.0)
-    placed = header["sform_code"] > 0 or header["qform_code"] > 0
-    placed = placed or image.affine is not None and not numpy.allclose(affine, header.get_base_affine())
+    if is_nifti:
+        placed = header["sform_code"] > 0 or header["qform_code"] > 0
+        placed = placed or image.affine is not None and not numpy.allclose(affine, header.get_base_affine())
+    else:  # Analyze has no orientation; SPM keeps one in a file .mat
+        placed = "mat" in dict(image.files_types) and not numpy.allclose(affine, header.get_best_affine())
     if not placed:
         warnings.warn("the image's header says nothing of its orientation in the body: its axes "
                       "were taken as those of LPS", stacklevel=4)
         affine = numpy.diag([-1.0, -1.0, 1.0, 1.0]) @ numpy.diag([*header["pixdim"][1:4], 1.0])
-    elif _is_sheared(affine) and header["qform_code"] > 0:
+    elif _is_sheared(affine) and is_nifti and header["qform_code"] > 0:
         warnings.warn("the image's affine is sheared, which a grid cannot be: its qform was taken",
                       stacklevel=4)
         affine = header.get_qform()
+    if not is_nifti:
+        return affine, placed
+    unit = {"meter": 1000.0, "micron": 1e-3}.get(header.get_xyzt_units()[0], 1.0)
     return numpy.diag([unit, unit, unit, 1.0]) @ affine, placed
 
 
