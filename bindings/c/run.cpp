@@ -1,5 +1,8 @@
 // Live runs of the C interface.
+#include <algorithm>
+#include <functional>
 #include <limits>
+#include <vector>
 
 #include "bindings/c/handles.hpp"
 #include "bindings/c/own_device.hpp"
@@ -171,6 +174,25 @@ extern "C" PALPATE_API palpate_status palpate_run_record(palpate_run* run, const
     return guarded([&] {
         const std::scoped_lock lock(given(run, "run").mutex);
         run->run->record(&given(path, "path"));
+    });
+}
+
+extern "C" PALPATE_API palpate_status palpate_run_record_together(palpate_run* const* runs,
+                                                                  size_t count, const char* path) {
+    return guarded([&] {
+        given(runs, "runs");
+        std::vector<palpate_run*> all;
+        for (std::size_t i = 0; i < count; ++i) all.push_back(&given(runs[i], "runs"));
+        std::vector<run::Run*> hands;
+        for (palpate_run* const one : all) hands.push_back(one->run.get());
+        // In one order for all threads.
+        std::ranges::sort(all, std::less<>());
+        if (std::ranges::adjacent_find(all) != all.end()) {
+            throw std::invalid_argument("runs: one is there twice");
+        }
+        std::vector<std::unique_lock<std::mutex>> locks;
+        for (palpate_run* const one : all) locks.emplace_back(one->mutex);
+        run::Run::record_together(hands, &given(path, "path"));
     });
 }
 

@@ -169,6 +169,9 @@ class Header:
         if pointer:
             result, name, arguments = pointer.groups()
             return [f"{self.delegate(pascal(function) + pascal(name), result, arguments)} {name}"]
+        handles = re.fullmatch(r"\w+ \*const \*(\w+)", text)
+        if handles:
+            return [f"IntPtr[] {handles.group(1)}"]
         constant, kind, stars, name, array = re.fullmatch(
             r"(const )?(\w+) (\**)(\w+)(\[\d\])?", text).groups()
         name = "@" + name if name in ("out", "object") else name

@@ -25,8 +25,8 @@ py::dict dict_of(const io::RecordingHead& head) {
         py::arg("limits") = head.settings.device, py::arg("transform") = head.settings.transform);
 }
 
-py::tuple read(const fs::path& path) {
-    io::RecordingReader reader(path);
+py::tuple read(const fs::path& path, int hand) {
+    io::RecordingReader reader(path, hand);
     std::vector<io::TraceRow> rows;
     std::vector<std::int64_t> commands;
     {
@@ -40,7 +40,7 @@ py::tuple read(const fs::path& path) {
         }
     }
     return py::make_tuple(dict_of(reader.head()), columns_of(rows), array_from(std::move(commands)),
-                          reader.complete(), reader.lost());
+                          reader.complete(), reader.lost(), reader.hands());
 }
 
 /// Throws io::InputError for the first tick that differs.
@@ -52,35 +52,50 @@ void compare(const run::Replay::Tick& tick, const std::string& recording) {
                          ", now " + differs->again);
 }
 
-py::dict validate(const fs::path& path, const fs::path& volume, const ProgressFunction& progress) {
-    constexpr std::int64_t ticks_between_progress = 1024;
-    const auto tell = progress_of(progress);
+/// What was rendered again of all hands.
+struct Counted {
     std::int64_t ticks = 0, commands = 0;
+};
+
+void validate_hand(io::RecordingReader& reader, const run::LoadedVolume& loaded,
+                   const std::string& recording, const io::Progress& tell, Counted& counted) {
+    constexpr std::int64_t ticks_between_progress = 1024;
+    run::Replay replay(reader, loaded, recording, [&] { tell(reader.progress()); });
+    while (const auto tick = replay.next()) {
+        compare(*tick, recording);
+        if (tick->number % ticks_between_progress == 0) tell(reader.progress());
+    }
+    counted.ticks += replay.ticks();
+    counted.commands += replay.commands();
+}
+
+py::dict validate(const fs::path& path, const fs::path& volume, const ProgressFunction& progress) {
+    const auto tell = progress_of(progress);
+    Counted counted;
     io::RecordingReader reader(path);
     {
         const py::gil_scoped_release unlocked;
         const run::LoadedVolume loaded =
             run::load(run::recorded_source(reader.head(), path, volume.string()), tell);
-        run::Replay replay(reader, loaded, path.string(), [&] { tell(reader.progress()); });
-        while (const auto tick = replay.next()) {
-            compare(*tick, path.string());
-            if (tick->number % ticks_between_progress == 0) tell(reader.progress());
+        validate_hand(reader, loaded, path.string(), tell, counted);
+        for (int hand = 2; hand <= reader.hands(); ++hand) {
+            io::RecordingReader other(path, hand);
+            validate_hand(other, loaded, path.string(), tell, counted);
         }
-        ticks = replay.ticks();
-        commands = replay.commands();
     }
-    return py::dict(py::arg("ticks") = ticks, py::arg("commands") = commands,
+    return py::dict(py::arg("ticks") = counted.ticks, py::arg("commands") = counted.commands,
                     py::arg("complete") = reader.complete(), py::arg("lost") = reader.lost());
 }
 
 }  // namespace
 
 void bind_recordings(py::module_& module) {
-    module.def("_read_recording", &read, py::arg("path"));
+    module.def("_read_recording", &read, py::arg("path"), py::arg("hand"));
     module.def(
         "validate", &validate, py::arg("path"), py::arg("volume") = "",
         py::arg("progress") = py::none(),
-        "Renders every tick of a recording again and compares it bit for bit, with\n"
+        "Renders every tick of a recording, of all its hands, again and compares it bit for bit, "
+        "with\n"
         "`volume` in place of the recorded name where it is given. A dict of ticks, commands,\n"
         "complete (not cut off) and lost events; InputError for the first tick that differs.");
 }

@@ -89,20 +89,29 @@ struct LiveRun : run::Run {
     PythonDevice* const python_device;  ///< where the device is written in Python, the run's own
 };
 
-/// `what`: LoadedVolume, Volume or Store. A Store is not converted by itself: what its reading
-/// raises would be lost.
-std::shared_ptr<LiveRun> make(const py::object& what, const std::optional<Setup>& given,
-                              const py::object& device, double device_rate) {
+/// `what`: LoadedVolume, Volume, Store, or a Run, whose data this is to share. A Store is not
+/// converted by itself: what its reading raises would be lost.
+std::shared_ptr<run::Data> data_from(const py::object& what, const run::PlaybackSetup& playback) {
     const py::module_ module = py::module_::import("palpate._palpate");
+    if (py::isinstance<LiveRun>(what)) {
+        const auto& other = what.cast<const LiveRun&>();
+        other.process.check();
+        return other.shared_data();
+    }
     const bool is_store = py::isinstance(what, module.attr("Store"));
     if (!is_store && !py::isinstance<Volume>(what) && !py::isinstance<run::LoadedVolume>(what)) {
-        throw py::type_error("Run(): volume must be Volume, LoadedVolume or Store, not " +
+        throw py::type_error("Run(): volume must be Volume, LoadedVolume, Store or Run, not " +
                              std::string(py::str(py::type::of(what).attr("__name__"))));
     }
     const auto loaded = is_store ? module.attr("LoadedVolume")(what).cast<run::LoadedVolume>()
                                  : what.cast<run::LoadedVolume>();
+    return made_without_gil<run::Data>(loaded, playback);
+}
+
+std::shared_ptr<LiveRun> make(const py::object& what, const std::optional<Setup>& given,
+                              const py::object& device, double device_rate) {
     run::Setup setup = live_setup(given.value_or(Setup{}));
-    std::shared_ptr<run::Data> data = made_without_gil<run::Data>(loaded, setup.playback);
+    std::shared_ptr<run::Data> data = data_from(what, setup.playback);
     PythonDevice* python_device = nullptr;
     if (!device.is_none()) {
         // Made here, with the GIL: copies of the setup must not hold a Python object.
@@ -172,6 +181,15 @@ void start(const py::object& self) {
     r.start();
 }
 
+void record_together(const std::vector<std::shared_ptr<LiveRun>>& runs, const fs::path& path) {
+    std::vector<run::Run*> hands;
+    for (const auto& one : runs) {
+        one->process.check();
+        hands.push_back(one.get());
+    }
+    run::Run::record_together(hands, path);
+}
+
 void send(LiveRun& r, const Sent& sent) {
     const Field field = r.field_now();
     r.send(command_of(sent, field, r.isovalue(), r.settings().force));
@@ -186,12 +204,15 @@ void bind_run(py::module_& module) {
         module, "Run",
         "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
         "By one thread at a time.");
-    live.def(py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(), py::kw_only(),
-             py::arg("device") = py::none(), py::arg("device_rate") = 1000.0,
-             "loaded: from load(), a Volume or a Store. setup: Setup, by default Setup(). device: "
-             "one that is\nwritten in Python, as for a Servo, in place of the setup's; device_rate "
-             "[Hz]: how often it is asked.\nOpens the "
-             "device; nothing moves before start(). Raises ValueError, InputError, DeviceError.")
+    live.def(
+            py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(), py::kw_only(),
+            py::arg("device") = py::none(), py::arg("device_rate") = 1000.0,
+            "loaded: from load(), a Volume, a Store, or another Run: then both are hands in the "
+            "same "
+            "data, and\neach feels what the other edits. setup: Setup, by default Setup(). device: "
+            "one that is\nwritten in Python, as for a Servo, in place of the setup's; device_rate "
+            "[Hz]: how often it is asked.\nOpens the "
+            "device; nothing moves before start(). Raises ValueError, InputError, DeviceError.")
         .def("start", &start, "Once.")
         .def("stop", &stop_session<R>, Unlocked(),
              "Forces go to zero; for good. Raises DeviceError for a device in Python that hangs, "
@@ -230,6 +251,11 @@ void bind_run(py::module_& module) {
         });
     bind_playback(live);
     bind_editing(live);
+    module.def(
+        "record_together", &record_together, py::arg("runs"), py::arg("path"), Unlocked(),
+        "Records several Runs on the same data into one new file, as its hands 1, 2, ... Each "
+        "ends with\nits stop_recording(); the file is whole after the last. Raises OutputError, "
+        "ValueError.");
 }
 
 }  // namespace palpate::python

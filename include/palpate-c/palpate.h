@@ -427,6 +427,8 @@ PALPATE_API palpate_status palpate_data_seek(palpate_data *data, double time);
 PALPATE_API void palpate_data_destroy(palpate_data *data);
 
 /* ---- Runs: a servo on a device ---------------------------------------------------------------- */
+/* Several runs on the same data are the hands of one session: all feel each other's edits, and where one
+ * device fails the others go on. */
 
 typedef struct palpate_run palpate_run;
 
@@ -534,6 +536,10 @@ PALPATE_API palpate_status palpate_run_lift(palpate_run *run);
 PALPATE_API palpate_status palpate_run_use_device(palpate_run *run, const char *device);
 /* Records into a new file (an existing one is never touched): the session goes on, with its force. */
 PALPATE_API palpate_status palpate_run_record(palpate_run *run, const char *path);
+/* The same for several runs on the same data, into one file: they are its hands, in this order. It is whole
+ * once the last of them has stopped its recording. Since 0.3. */
+PALPATE_API palpate_status palpate_run_record_together(palpate_run *const *runs, size_t count,
+                                                       const char *path);
 /* ticks (may be null): how many were recorded. */
 PALPATE_API palpate_status palpate_run_stop_recording(palpate_run *run, int64_t *ticks);
 /* Sets the target of the hand of the device "mouse" [device mm]. */

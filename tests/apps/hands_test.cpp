@@ -137,7 +137,10 @@ TEST(PacedTouchWithTwo, goes_on_with_one_when_the_other_is_unplugged) {
         const auto ticks = ticks_of_hand(folder / "both.csv", hand, false);
         return ticks.empty() ? SessionTick{} : ticks.back();
     };
-    const auto is_recorded = [&] { return std::filesystem::exists(folder / "both.csv"); };
+    const auto is_recorded = [&] {
+        const auto file = folder / "both.csv";
+        return std::filesystem::exists(file) && contains(support::bytes_of(file), ",tick,crc32\n");
+    };
     ASSERT_TRUE(comes_true(is_recorded)) << program.finish(SIGINT).err;
     ASSERT_TRUE(comes_true([&] { return last(1).device.status == DeviceStatus::ready; }))
         << program.finish(SIGINT).err;

@@ -135,8 +135,7 @@ TEST(RecordingOfHands, that_is_not_there_or_was_changed_is_refused) {
     EXPECT_TRUE(with(",2,0,", ",1,0,").find("is expected") != std::string::npos);
     EXPECT_TRUE(with(",2,0,", ",3,0,").find("hands are 1 to 2") != std::string::npos);
     EXPECT_TRUE(with("\"hand\":2}", "\"hand\":1}").find("checksum") != std::string::npos);
-    EXPECT_TRUE(with("\"hand\":2}", "\"hand\":4294967297}").find("not valid") !=
-                std::string::npos);
+    EXPECT_TRUE(with("\"hand\":2}", "\"hand\":4294967297}").find("not valid") != std::string::npos);
     EXPECT_TRUE(with("\"hands\"", "\"bands\"").find("'hands' is missing") != std::string::npos);
     EXPECT_TRUE(with("recording 7", "recording 6").starts_with("r.csv: the head is not valid"));
 }

@@ -333,6 +333,30 @@ def test_a_run_with_the_simulated_device_records_what_validates(tmp_path):
             pytest.fail("an existing file was replaced")
 
 
+def test_two_runs_on_the_same_data_are_two_hands_in_one_recording(tmp_path):
+    left = palpate.Run(palpate.load("synthetic:torus:32x32x32"),
+                       palpate.Setup(real_time=False, device="simulated:hand=hold"))
+    right = palpate.Run(left, palpate.Setup(real_time=False, device="simulated:omega6,hand=circle"))
+    path = tmp_path / "both.csv"
+    palpate.record_together([left, right], path)
+    with left, right:
+        until(lambda: all(run.snapshot() and run.snapshot().number > 200 for run in (left, right)))
+        left.edit(palpate.Fill((0, 0, 0), (3, 3, 3), 0.25))
+        until(lambda: all(run.snapshot().version == 1 for run in (left, right)))
+        assert left.stop_recording() > 200
+        assert right.stop_recording() > 200
+    hands = [palpate.read_recording(path, hand) for hand in (1, 2)]
+    assert [hand.hands for hand in hands] == [2, 2]
+    assert "omega" in hands[1].head["device"] and "omega" not in hands[0].head["device"]
+    told = palpate.validate(path)
+    assert told["complete"] and told["ticks"] == sum(len(hand.trace) for hand in hands)
+    with pytest.raises(palpate.InputError, match="no hand 3"):
+        palpate.read_recording(path, 3)
+    with pytest.raises(ValueError, match="same data"):
+        alone = palpate.Run(palpate.load("synthetic:torus:32x32x32"), palpate.Setup(real_time=False))
+        palpate.record_together([left, alone], tmp_path / "more.csv")
+
+
 def test_a_limit_that_was_set_in_the_setup_is_the_limit_of_the_run(tmp_path):
     setup = palpate.Setup(isovalue=0.3, device="simulated:touchx,hand=press,depth=4", real_time=False)
     setup.render.force.limit = 0.5

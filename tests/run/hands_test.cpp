@@ -31,7 +31,8 @@ std::vector<SessionTick> ticks_of(const std::filesystem::path& path, int hand = 
 }
 
 std::int64_t with_force(const std::vector<SessionTick>& ticks) {
-    return std::ranges::count_if(ticks, [](const auto& tick) { return tick.tick.force.norm() > 0.05; });
+    return std::ranges::count_if(ticks,
+                                 [](const auto& tick) { return tick.tick.force.norm() > 0.05; });
 }
 
 void expect_the_same(const std::vector<SessionTick>& ticks, const std::vector<SessionTick>& alone) {
@@ -218,8 +219,10 @@ TEST(Hands, on_different_data_or_twice_are_not_recorded_together) {
     const ScratchFolder folder;
     const auto data = shared_ball();
     run::Run a(data, test::with_device("mouse")), b(shared_ball(), test::with_device("mouse"));
-    EXPECT_THROW(run::Run::record_together(std::array{&a, &b}, folder / "r.csv"), std::invalid_argument);
-    EXPECT_THROW(run::Run::record_together(std::array{&a, &a}, folder / "r.csv"), std::invalid_argument);
+    EXPECT_THROW(run::Run::record_together(std::array{&a, &b}, folder / "r.csv"),
+                 std::invalid_argument);
+    EXPECT_THROW(run::Run::record_together(std::array{&a, &a}, folder / "r.csv"),
+                 std::invalid_argument);
     EXPECT_THROW(run::Run::record_together({}, folder / "r.csv"), std::invalid_argument);
     EXPECT_FALSE(std::filesystem::exists(folder / "r.csv"));
     EXPECT_EQ(a.recording(), nullptr);

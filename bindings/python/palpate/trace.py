@@ -113,24 +113,25 @@ def read_trajectory(path):
 
 @dataclasses.dataclass(repr=False, eq=False)
 class Recording:
-    """A live session as it was recorded.
+    """One hand of a live session as it was recorded.
 
     head: what it was at its start (version, begun, volume, solid, interpolation, background,
     isovalue, device, rate, method, force, limits, transform). trace: its ticks; commands: for each
     command, the number of the tick that it came before. complete: not cut off; lost: events that
-    the recording lost.
+    the recording lost; hands: how many the recording has.
     """
     head: dict
     trace: Trace
     commands: numpy.ndarray
     complete: bool
     lost: int
+    hands: int = 1
 
     def __repr__(self):
         return f"Recording({len(self.trace)} ticks, {len(self.commands)} commands)"
 
 
-def read_recording(path):
-    """A recording as a Recording. Raises InputError; validate() renders it again."""
-    head, table, commands, complete, lost = _palpate._read_recording(path)
-    return Recording(head, Trace(**table), commands, complete, lost)
+def read_recording(path, hand=1):
+    """A recording as a Recording; hand: which one of several, from 1. Raises InputError; validate() renders it again."""
+    head, table, commands, complete, lost, hands = _palpate._read_recording(path, hand)
+    return Recording(head, Trace(**table), commands, complete, lost, hands)

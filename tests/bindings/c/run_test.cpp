@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <thread>
+#include <utility>
 
 #include "palpate/io/recording.hpp"
 #include "support/eventually.hpp"
@@ -321,6 +322,35 @@ TEST_F(CRun, a_recording_is_written_and_an_existing_file_is_left_alone) {
     EXPECT_GT(ticks, 100);
     EXPECT_GT(std::filesystem::file_size(path), 10'000U);
     EXPECT_EQ(palpate_run_record(run_, path.c_str()), PALPATE_OUTPUT);
+}
+
+TEST_F(CRun, two_on_the_same_data_are_recorded_together_and_one_goes_on_without_the_other) {
+    const support::ScratchFolder folder;
+    const std::string path = (folder.path() / "both.csv").string();
+    ASSERT_EQ(create(nullptr, "simulated:omega6,hand=hold"), PALPATE_OK);
+    palpate_run* const first = std::exchange(run_, nullptr);
+    ASSERT_EQ(create(nullptr, "simulated:touchx,hand=hold"), PALPATE_OK);
+    const std::array runs{first, run_}, twice{first, first};
+    EXPECT_EQ(palpate_run_record_together(nullptr, 2, path.c_str()), PALPATE_INVALID);
+    EXPECT_EQ(palpate_run_record_together(runs.data(), 0, path.c_str()), PALPATE_INVALID);
+    EXPECT_EQ(palpate_run_record_together(twice.data(), 2, path.c_str()), PALPATE_INVALID);
+    ASSERT_EQ(palpate_run_record_together(runs.data(), 2, path.c_str()), PALPATE_OK)
+        << palpate_last_error();
+    ASSERT_EQ(palpate_run_start(first), PALPATE_OK);
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK);
+    EXPECT_TRUE(shows([](const auto& s) { return s.number > 100; }));
+    palpate_run_destroy(first);
+    const std::int64_t then = now().number;
+    EXPECT_TRUE(shows([&](const auto& s) { return s.number > then + 50; }));
+    ASSERT_EQ(palpate_run_stop_recording(run_, nullptr), PALPATE_OK);
+    for (const int hand : {1, 2}) {
+        io::RecordingReader reader(path, hand);
+        EXPECT_EQ(reader.hands(), 2);
+        std::int64_t events = 0;
+        while (reader.next()) ++events;
+        EXPECT_GT(events, hand == 1 ? 0 : 150);
+        EXPECT_TRUE(reader.complete());
+    }
 }
 
 TEST_F(CRun, one_run_may_be_watched_and_commanded_from_two_threads_each_with_its_own_errors) {
