@@ -341,7 +341,7 @@ def test_two_runs_on_the_same_data_are_two_hands_in_one_recording(tmp_path):
     palpate.record_together([left, right], path)
     with left, right:
         until(lambda: all(run.snapshot() and run.snapshot().number > 200 for run in (left, right)))
-        left.edit(palpate.Fill((0, 0, 0), (3, 3, 3), 0.25))
+        left.edit(palpate.Fill((0, 0, 0), (3, 3, 3), 100))
         until(lambda: all(run.snapshot().version == 1 for run in (left, right)))
         assert left.stop_recording() > 200
         assert right.stop_recording() > 200
