@@ -67,6 +67,47 @@ def test_a_slice_of_nrrd_lies_in_space(tmp_path):
     assert numpy.array_equal(volume.geometry.direction[:, :2], [[1, 0], [0, 0], [0, 1]]) and volume.geometry.oriented
 
 
+PLACED = ("space: left-posterior-superior", "space directions: (2,0,0) (0,2,0) (0,0,3)", "space origin: (7,8,9)")
+
+
+@pytest.mark.parametrize("fields, words", (
+    (("line skip: 9",), "line skip of 9 goes beyond"), (("line skip: -1",), "line skip"),
+    (('space units: "um"',), "'space units' has 1 entries for 3 axes"), (('units: "um"',), "'units' has 1 entries for 3 axes"),
+    (("units: um um",), "'units' has 2 entries for 3 axes"), (("space origin: (7,8,9)",), "'space origin' twice"),
+    (("type: int16",), "'type' twice"), (("centers: cell cell cell", "centerings: cell cell cell"), "'centerings' twice")))
+def test_nrrd_headers_that_say_too_much_or_too_little_are_refused(tmp_path, fields, words):
+    refused(nrrd(tmp_path / "a.nrrd", ramp("i2") % 9, *PLACED, *fields), words)  # no sample is the end of a line
+
+
+def test_a_line_of_blanks_is_not_the_end_of_a_nrrd_header_and_keys_may_repeat(tmp_path):
+    path = nrrd(tmp_path / "a.nrrd", ramp("i2"), "   ", "key:=1", "key:=2", 'kinds: "space" "space" "space"', *PLACED)
+    loaded = palpate.load(path)
+    assert numpy.array_equal(loaded.volume.array, ramp("i2")) and not loaded.notes
+    assert numpy.array_equal(loaded.volume.geometry.origin, (7, 8, 9))
+
+
+def test_an_origin_that_a_nrrd_header_leaves_open_is_noted(tmp_path):
+    path = nrrd(tmp_path / "a.nrrd", ramp("i2"), *PLACED[:2], "space origin: (nan,nan,nan)")
+    assert numpy.array_equal(noted(path, "0 was taken").geometry.origin, (0, 0, 0))
+
+
+def test_samples_twice_as_wide_as_the_header_says_are_refused(tmp_path):
+    data = ramp("i2")
+    path = nrrd(tmp_path / "a.nrrd", data, *PLACED)
+    path.write_bytes(path.read_bytes().replace(b"int16", b"uint8"))
+    refused(path, "asks for 120 bytes of samples, there are 240")
+    head = "NDims = 3\nDimSize = 6 4 5\nElementSpacing = 1 1 1\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n"
+    (tmp_path / "a.mha").write_bytes(head.encode() + data.tobytes())
+    refused(tmp_path / "a.mha", "asks for 120 bytes of samples, there are 240")
+    (tmp_path / "a.mha").write_bytes(head.encode() + data.tobytes()[:239])  # less may be padding
+    noted(tmp_path / "a.mha", "the rest was ignored")
+    nibabel.Nifti1Image(data, numpy.eye(4)).to_filename(tmp_path / "a.nii")
+    header = bytearray((tmp_path / "a.nii").read_bytes())
+    header[70:74] = struct.pack("<2h", 2, 8)
+    (tmp_path / "a.nii").write_bytes(header)
+    refused(tmp_path / "a.nii", "asks for 120 bytes of samples, there are 240")
+
+
 # Folders of TIFF slices ---------------------------------------------------------------------------------
 
 
