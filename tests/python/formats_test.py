@@ -319,3 +319,29 @@ def test_a_space_of_absurd_dimensions_is_refused(tmp_path):
     path = tmp_path / "a.nrrd"
     path.write_bytes(b"NRRD0005\ntype: uint8\ndimension: 3\nspace dimension: 2000000000\nsizes: 2 2 2\nencoding: raw\n\n" + bytes(8))
     refused(path, "beyond 8")
+@pytest.mark.parametrize("change, words", (
+    (('WholeExtent="0 5 0 3 0 4"', 'WholeExtent="0 5 0 3 0 8"'), "do not fill its WholeExtent"),
+    (('Spacing="1 2 3"', 'Spacing="1 2"'), "Spacing has 2 numbers where 3 belong"),
+    (('Origin="1 2 3"', 'Origin = "1 2 3 4"'), "Origin has 4 numbers where 3 belong")))
+def test_a_vti_whose_header_does_not_fit_is_refused(tmp_path, change, words):
+    text = VTI.format(active="", arrays=vti_array("density", ramp("i2")))
+    (tmp_path / "a.vti").write_text(text.replace(*change))
+    refused(tmp_path / "a.vti", words)
+
+
+def test_a_vti_without_spacing_has_one_millimetre_and_that_is_noted(tmp_path):
+    text = VTI.format(active="", arrays=vti_array("density", ramp("i2")))
+    (tmp_path / "a.vti").write_text(text.replace(' Spacing="1 2 3"', ""))
+    assert not noted(tmp_path / "a.vti", "1 mm was taken").geometry.measured
+    (tmp_path / "a.vti").write_text(text)
+    assert not palpate.load(tmp_path / "a.vti").notes
+
+
+def test_pieces_of_a_vti_may_share_samples_and_fill_its_extent_together(tmp_path):
+    low, high = (vti_array("density", ramp("i2")[part]) for part in (slice(0, 3), slice(2, 5)))
+    piece = '<Piece Extent="0 5 0 3 {}"><PointData>{}</PointData></Piece>'
+    start = VTI.split("<Piece")[0]
+    (tmp_path / "a.vti").write_text(start + piece.format("0 2", low) + piece.format("2 4", high) + "</ImageData></VTKFile>")
+    assert numpy.array_equal(palpate.load(tmp_path / "a.vti").volume.array, ramp("i2"))
+
+
