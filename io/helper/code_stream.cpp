@@ -107,9 +107,8 @@ std::optional<CodeStreamSize> code_stream_size(std::span<const std::byte> stream
 
 bool ends_code_stream(std::span<const std::byte> stream) {
     std::size_t end = stream.size();
-    while (end > 2 && stream[end - 1] == std::byte{0} && stream.size() - end < segment_padding) {
-        --end;
-    }
+    const auto is_padding = [](std::byte b) { return b == std::byte{0} || b == std::byte{0xff}; };
+    while (end > 2 && is_padding(stream[end - 1]) && stream.size() - end < segment_padding) --end;
     return end >= 4 && stream[end - 2] == std::byte{0xff} && stream[end - 1] == std::byte{0xd9};
 }
 

@@ -11,6 +11,7 @@
 #include <map>
 #include <new>
 #include <optional>
+#include <sstream>
 
 #include "io/byte_order.hpp"
 #include "io/helper/code_stream.hpp"
@@ -43,7 +44,15 @@ class DecoderWords {
         put_back();
         char text[512];
         const ssize_t size = pread(memory_, text, sizeof text, 0);
-        return library_words({text, static_cast<std::size_t>(std::max<ssize_t>(size, 0))}, 120);
+        std::istringstream lines({text, static_cast<std::size_t>(std::max<ssize_t>(size, 0))});
+        std::string damage;
+        for (std::string line; std::getline(lines, line);) {
+            // GDCM tries libraries for 8, 12 and 16 bits in turn; the wrong ones say this.
+            if (line.find("Unsupported JPEG data precision") == std::string::npos) {
+                damage += line + '\n';
+            }
+        }
+        return library_words(damage, 120);
     }
 
   private:

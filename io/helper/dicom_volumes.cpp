@@ -252,19 +252,56 @@ Result read_file(const Request& request) {
     return read_chosen(all, request);
 }
 
-Result read_folder(const Request& request) {
-    std::vector<fs::path> files;
-    const auto take = [&](const fs::directory_entry& entry) {
-        if (entry.is_regular_file() && looks_like_dicom(entry.path())) {
-            files.push_back(entry.path());
+/// A file's path with "#" for every number in its name: the same for all slices of most series.
+std::string numberless(const fs::path& file) {
+    std::string name;
+    for (const char c : file.filename().string()) {
+        const bool digit = c >= '0' && c <= '9';
+        if (!digit || !name.ends_with('#')) name += digit ? '#' : c;
+    }
+    return (file.parent_path() / name).string();
+}
+
+/// Whether a file that is no DICOM was to be a slice: its name says so, or is that of a slice but
+/// for its numbers, or it is empty and without an extension, as slices are. Passing over such a
+/// file would hide a gap, or make the body too short.
+void check_others(const std::vector<fs::path>& slices, const std::vector<fs::path>& others) {
+    std::set<std::string> names;
+    std::set<fs::path> bare;  // folders of slices without an extension
+    for (const fs::path& slice : slices) {
+        names.insert(numberless(slice));
+        if (!slice.has_extension()) bare.insert(slice.parent_path());
+    }
+    for (const fs::path& file : others) {
+        const bool empty = fs::file_size(file) == 0;
+        const bool is_bare = !file.has_extension() && bare.contains(file.parent_path());
+        if (!has_dicom_name(file) && !names.contains(numberless(file)) && !(empty && is_bare)) {
+            continue;
         }
+        const bool packed = lower(file.extension().string()) == ".gz";
+        throw Failure(quoted(file) +
+                      (empty ? " is empty (0 bytes), though slices have such names; copy it again"
+                       : packed
+                           ? " is packed; unpack it with gunzip"
+                           : " is no DICOM file, though slices have such names; copy it again") +
+                      ", or take it away");
+    }
+}
+
+Result read_folder(const Request& request) {
+    std::vector<fs::path> files, others;
+    const auto take = [&](const fs::directory_entry& entry) {
+        if (!is_shown_file(entry)) return;
+        (begins_as_dicom(entry.path()) ? files : others).push_back(entry.path());
     };
     if (has_dicom_index(request.path)) {
         std::ranges::for_each(fs::recursive_directory_iterator(request.path), take);
     } else {
         std::ranges::for_each(fs::directory_iterator(request.path), take);
     }
-    std::sort(files.begin(), files.end());
+    std::ranges::sort(files);
+    std::ranges::sort(others);
+    check_others(files, others);
     std::vector<DicomSlice> slices;
     for (const fs::path& file : files) {
         say_doing(file.filename().string());

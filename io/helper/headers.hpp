@@ -63,12 +63,14 @@ ReadHeader* header_reader(const std::filesystem::path& path);
 /// In lower case; of a.nii.gz both.
 std::string extension_of(const std::filesystem::path& path);
 
-/// Throws Failure unless the file has the bytes that raw samples take; up to 4096 more give a note.
+/// Throws Failure unless the file has the bytes that raw samples take. Up to 4096 more give a note,
+/// unless they are as many as the samples.
 void check_raw_length(VolumeHeader& header);
 
 /// Hands the bytes of all samples to `sink` in order, in the machine's byte order and in pieces of
-/// whole samples. Throws Failure if the data are damaged, fewer than the header says or more than
-/// 4096 bytes longer; up to that, a note is added. With an empty sink it only checks.
+/// whole samples. Throws Failure if the data are damaged, fewer than the header says, or longer by
+/// more than 4096 bytes or as much again; up to that, a note is added. With an empty sink it only
+/// checks.
 void stream_samples(VolumeHeader& header, const ByteSink& sink);
 
 /// Numbers separated by blanks; throws Failure that names the `field`.

@@ -50,6 +50,12 @@ bool looks_like_dicom(const fs::path& file) {
     return !is_hidden(file) && begins_as_dicom(file);
 }
 
+bool has_dicom_name(const fs::path& file) {
+    const fs::path name = lower(file.filename().string());
+    const std::string extension = (name.extension() == ".gz" ? name.stem() : name).extension();
+    return extension == ".dcm" || extension == ".dicom" || extension == ".ima";
+}
+
 bool has_dicom_index(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
         if (entry.is_regular_file() && lower(entry.path().filename().string()) == "dicomdir") {

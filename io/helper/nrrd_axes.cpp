@@ -54,7 +54,10 @@ std::vector<std::string> words_of(const HeaderFields& fields, const std::string&
                                   std::size_t axes) {
     std::vector<std::string> words;
     std::istringstream text(lower(fields.value(field)));
-    for (std::string word; text >> word;) words.push_back(word);
+    for (std::string word; text >> word;) {
+        std::erase(word, '"');  // as units have them
+        words.push_back(word);
+    }
     if (fields.has(field)) check_count(words.size(), axes, field);
     words.resize(axes, "???");
     return words;
@@ -71,8 +74,10 @@ std::vector<std::optional<double>> numbers_of(const HeaderFields& fields, const 
     return found;
 }
 
-/// Units, each in "..." or, as some programs write them, without.
-std::vector<std::string> units_in(const std::string& text) {
+/// Units, each in "..." or, as some programs write them, without; none, or one for each axis.
+std::vector<std::string> units_of(const HeaderFields& fields, const std::string& field,
+                                  std::size_t axes) {
+    const std::string text = fields.value(field);
     std::vector<std::string> units;
     if (text.find('"') == std::string::npos) {
         std::istringstream words(text);
@@ -84,6 +89,7 @@ std::vector<std::string> units_in(const std::string& text) {
         units.push_back(trimmed(text.substr(at + 1, close - at - 1)));
         at = close + 1;
     }
+    if (!text.empty()) check_count(units.size(), axes, field);
     std::replace(units.begin(), units.end(), std::string("???"), std::string());
     return units;
 }
@@ -142,11 +148,13 @@ Space space_of(const HeaderFields& fields, std::vector<std::string>& notes) {
         notes.push_back("its space is '" + name +
                         "', which is not the patient's: its axes were taken as those of LPS");
     }
-    const auto units = units_in(fields.value("space units"));
-    if (space.dimension == 0 && !units.empty()) {
-        notes.emplace_back("its header has space units but no space: they were ignored");
+    if (space.dimension == 0) {
+        if (!fields.value("space units").empty()) {
+            notes.emplace_back("its header has space units but no space: they were ignored");
+        }
         return space;
     }
+    const auto units = units_of(fields, "space units", space.dimension);
     for (std::size_t i = 0; i < std::min<std::size_t>(3, units.size()); ++i) {
         space.to_lps[static_cast<Eigen::Index>(i)] *= length_unit(units[i], notes);
     }
@@ -208,7 +216,7 @@ std::vector<Axis> axes_of(const HeaderFields& fields, const std::vector<std::int
     const auto spacings = numbers_of(fields, "spacings", sizes.size());
     const auto minima = numbers_of(fields, "axis mins", sizes.size());
     const auto maxima = numbers_of(fields, "axis maxs", sizes.size());
-    const auto units = units_in(fields.value("units"));
+    const auto units = units_of(fields, "units", sizes.size());
     for (std::size_t a = 0; a < axes.size(); ++a) {
         axes[a] = {sizes[a],  kinds[a],   spacings[a],  minima[a],
                    maxima[a], centers[a], std::nullopt, a < units.size() ? units[a] : ""};
@@ -391,7 +399,11 @@ Geometry geometry_of(const HeaderFields& fields, const Space& space, const Space
     const bool directed = std::ranges::any_of(spatial, [](const Axis& a) { return !!a.direction; });
     g.oriented = space.is_body && directed;
     complete_directions(spatial, g.direction);
-    if (space.dimension > 0 && !std::isnan(origin.place[0])) g.origin = origin.place;
+    if (std::isnan(origin.place[0])) {
+        add_note(notes, "its header leaves the space origin open: 0 was taken");
+    } else if (space.dimension > 0) {
+        g.origin = origin.place;
+    }
     return g;
 }
 

@@ -62,20 +62,23 @@ HeaderFields read_fields(const std::filesystem::path& path) {
         throw Failure("is not a NRRD file (it does not begin with NRRD000); check its name");
     }
     HeaderFields fields;
-    while (std::getline(in, line)) {
+    // A line of blanks does not end it.
+    while (std::getline(in, line) && !line.empty() && line != "\r") {
         const std::string text = trimmed(line);
-        if (text.empty()) break;
         if (in.tellg() > static_cast<std::streamoff>(longest_header)) {
             throw Failure("its header has no end; the file is damaged");
         }
         const auto colon = text.find(':');
-        if (text[0] == '#' || colon == std::string::npos) continue;
+        if (text.starts_with('#') || colon == std::string::npos) continue;
         if (text.substr(colon, 2) == ":=") {
             fields.keys[text.substr(0, colon)] = text.substr(colon + 2);
             continue;
         }
-        fields.values[field_named(lower(trimmed(text.substr(0, colon))))] =
-            trimmed(text.substr(colon + 1));
+        const std::string name = field_named(lower(trimmed(text.substr(0, colon))));
+        if (!fields.values.emplace(name, trimmed(text.substr(colon + 1))).second) {
+            throw Failure("its header has the field '" + name.substr(0, 40) +
+                          "' twice; remove the wrong one");
+        }
     }
     if (in) fields.data_offset = static_cast<std::uint64_t>(in.tellg());
     if (!in && !fields.has("data file")) {
@@ -136,18 +139,22 @@ DataPlace place_of(const HeaderFields& fields, const std::filesystem::path& path
 
 /// "line skip" and "byte skip"; a byte skip of -1 means that the samples are the file's end.
 void apply_skips(const HeaderFields& fields, std::uint64_t bytes, DataPlace& place) {
-    const auto skip_of = [&](const std::string& name) {
-        return fields.has(name) ? whole_number_in(fields.value(name), name, -1) : 0;
+    const auto skip_of = [&](const std::string& name, double least) {
+        return fields.has(name) ? whole_number_in(fields.value(name), name, least) : 0;
     };
-    const std::int64_t lines = skip_of("line skip");
-    const std::int64_t skip = skip_of("byte skip");
-    if (lines > 0) {
-        std::ifstream in(place.file, std::ios::binary);
+    const std::int64_t lines = skip_of("line skip", 0);
+    const std::int64_t skip = skip_of("byte skip", -1);
+    std::ifstream in(place.file, std::ios::binary);
+    if (lines > 0 && in) {  // reading says it of a file that is not there
         in.seekg(static_cast<std::streamoff>(place.offset));
         std::string line;
         for (std::int64_t i = 0; i < lines && std::getline(in, line); ++i) {
         }
-        if (in) place.offset = static_cast<std::uint64_t>(in.tellg());
+        if (!in.good()) {
+            throw Failure("its line skip of " + std::to_string(lines) +
+                          " goes beyond its data; correct the header");
+        }
+        place.offset = static_cast<std::uint64_t>(in.tellg());
     }
     if (skip > 0) place.skip = static_cast<std::uint64_t>(skip);
     if (skip == -1 && place.encoding != DataPlace::Encoding::raw) {

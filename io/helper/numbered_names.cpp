@@ -186,11 +186,12 @@ long missing_in(const Field& field) {
     return span / step - (static_cast<long>(numbers.size()) - 1);
 }
 
-void note_missing(long missing, std::vector<std::string>& notes) {
+/// Put together without them, lengths across the stack would be too short.
+void check_missing(long missing) {
     if (missing == 0) return;
-    notes.push_back(std::to_string(missing) +
-                    " numbers are missing among its slices' names: the slices were put together "
-                    "without a gap, so lengths across it are too short");
+    throw Failure("of the numbers in its slices' names, " + std::to_string(missing) +
+                  (missing == 1 ? " is" : " are") +
+                  " missing; copy the missing slices, or number the others without a gap");
 }
 
 /// All files, in the order of their names.
@@ -208,7 +209,7 @@ NumberedSlices one_stack(const std::vector<NamedFile>& files, const std::vector<
         if (field.values.size() != files.size()) continue;
         missing = std::min(missing.value_or(missing_in(field)), missing_in(field));
     }
-    note_missing(missing.value_or(0), slices.notes);
+    check_missing(missing.value_or(0));
     if (fields.size() == 1 && fields[0].is_of_others()) {
         slices.notes.push_back(
             "the numbers in its names (" + text_of(fields, files.front().name).substr(0, 100) +
@@ -257,7 +258,7 @@ NumberedSlices first_channel(std::vector<NamedFile> files, const std::vector<Fie
         }
         slices.times[time].push_back(file.path);
     }
-    note_missing(missing_in(z), slices.notes);
+    check_missing(missing_in(z));
     return slices;
 }
 

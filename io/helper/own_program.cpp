@@ -75,10 +75,7 @@ const char* program_for_file(const fs::path& path) {
     const std::string extension = extension_of(path);
     if (extension == ".vti") return vtk;
     if (extension == ".tif" || extension == ".tiff") return images;
-    if (extension == ".dcm" || extension == ".dicom" || extension == ".ima" ||
-        begins_as_dicom(path)) {
-        return dicom;
-    }
+    if (has_dicom_name(path) || begins_as_dicom(path)) return dicom;
     if (extension == ".hdr" || extension == ".img") {
         throw Failure(
             "is one of a pair of files (.hdr and .img), which is not read; save the pair as one "

@@ -28,6 +28,8 @@ bool is_shown_file(const std::filesystem::directory_entry& entry);
 bool begins_as_dicom(const std::filesystem::path& file);
 /// The same for a file in a folder, where hidden ones do not count.
 bool looks_like_dicom(const std::filesystem::path& file);
+/// Whether a name says DICOM, also of a packed file.
+bool has_dicom_name(const std::filesystem::path& file);
 /// Whether a folder is a disc's: its slices are in folders of folders.
 bool has_dicom_index(const std::filesystem::path& folder);
 bool looks_like_tiff(const std::filesystem::path& file);

@@ -58,15 +58,23 @@ class SampleBytes {
     double told_ = 0;
 };
 
-void compare(std::uint64_t have, std::uint64_t need, const std::string& what,
+void compare(std::uint64_t have, std::uint64_t need, const std::string& what, std::uint64_t surplus,
              std::vector<std::string>& notes) {
     const std::string numbers = "its header asks for " + std::to_string(need) + " " + what +
                                 ", there are " + std::to_string(have);
     if (have < need) throw Failure(numbers + "; it is cut off: copy or download it again");
-    if (have - need > padding_allowed) {
+    if (have - need > surplus) {
         throw Failure(numbers + "; correct the sizes or the type in its header");
     }
     if (have > need) notes.push_back(numbers + "; the rest was ignored");
+}
+
+/// The same for samples, where as much again or more is no padding: their type is twice as wide as
+/// the header says, or there are other samples.
+void compare_samples(std::uint64_t have, std::uint64_t need, const std::string& what,
+                     std::vector<std::string>& notes) {
+    const bool doubled = have >= need && have - need >= need;
+    compare(have, need, what, doubled ? 0 : padding_allowed, notes);
 }
 
 template <class T>
@@ -153,7 +161,7 @@ void read_text(VolumeHeader& header, const ByteSink& sink) {
         throw Failure(
             "its numbers have decimal commas, which are not read; write them with points");
     }
-    compare(count, wanted, "numbers", header.notes);
+    compare_samples(count, wanted, "numbers", header.notes);
     samples(bytes);
 }
 
@@ -188,7 +196,7 @@ void read_raw_bytes(VolumeHeader& header, const ByteSink& sink) {
 void read_compressed(VolumeHeader& header, std::uint64_t available, const ByteSink& sink) {
     const DataPlace& place = header.place;
     if (place.length != UINT64_MAX) {
-        compare(available, place.length, "compressed bytes", header.notes);
+        compare(available, place.length, "compressed bytes", padding_allowed, header.notes);
     }
     SampleBytes samples(header, sink);
     std::uint64_t unpacked = 0;
@@ -199,16 +207,16 @@ void read_compressed(VolumeHeader& header, std::uint64_t available, const ByteSi
     } catch (const DamagedStream& e) {
         throw Failure(std::string(e.what()) + "; copy or download it again");
     }
-    compare(unpacked - std::min(place.skip, unpacked), header.bytes(), "bytes of samples",
-            header.notes);
+    compare_samples(unpacked - std::min(place.skip, unpacked), header.bytes(), "bytes of samples",
+                    header.notes);
 }
 
 }  // namespace
 
 void check_raw_length(VolumeHeader& header) {
     const std::uint64_t available = available_at(header.place);
-    compare(available - std::min(header.place.skip, available), header.bytes(), "bytes of samples",
-            header.notes);
+    compare_samples(available - std::min(header.place.skip, available), header.bytes(),
+                    "bytes of samples", header.notes);
 }
 
 void stream_samples(VolumeHeader& header, const ByteSink& sink) {

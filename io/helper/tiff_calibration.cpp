@@ -1,5 +1,6 @@
 // ImageJ's description: lines of key=value after a first line ImageJ=VERSION. Lengths are in its
-// unit. XResolution and YResolution are pixels per unit, whatever ResolutionUnit says.
+// unit. XResolution and YResolution are pixels per unit, whatever ResolutionUnit says. ImageJ2
+// writes SCIFIO=VERSION, and lists of axes with their lengths, scales and units.
 #include "io/helper/tiff_calibration.hpp"
 
 #include <cmath>
@@ -15,7 +16,49 @@ namespace {
 
 using Description = std::map<std::string, std::string>;
 
-/// Empty unless ImageJ wrote it.
+/// The parts of a list such as "X,Y,Z".
+std::vector<std::string> listed(const Description& description, const char* name) {
+    std::vector<std::string> parts;
+    const auto found = description.find(name);
+    std::istringstream text(found == description.end() ? "" : found->second);
+    for (std::string part; std::getline(text, part, ',');) parts.push_back(trimmed(part));
+    return parts;
+}
+
+/// Says the axes of SCIFIO (ImageJ2) in ImageJ's words: channels, frames, slices, units, distances.
+/// Axes that ImageJ does not have count as channels.
+void take_scifio_axes(Description& description) {
+    const auto axes = listed(description, "axes");
+    auto lengths = listed(description, "lengths"), scales = listed(description, "scales"),
+         units = listed(description, "units");
+    for (auto* list : {&lengths, &scales, &units}) list->resize(axes.size());
+    double channels = 1, frames = 1;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        const std::string axis = lower(axes[i]);
+        const double length = number_from<double>(lengths[i]).value_or(1);
+        if (axis == "x" || axis == "y" || axis == "z") {
+            description[axis + "scale"] = scales[i];
+            description[axis == "x" ? "unit" : axis + "unit"] = units[i];
+        }
+        if (axis == "z") {
+            if (frames > 1 && length > 1) {
+                throw Failure(
+                    "counts its times before its slices, which is not read; save it "
+                    "with the slices of a time together");
+            }
+            description["slices"] = lengths[i];
+            description["spacing"] = scales[i];
+        } else if (axis == "time") {
+            description["frames"] = lengths[i];
+            frames = length;
+        } else if (axis != "x" && axis != "y") {
+            channels *= length;
+        }
+    }
+    if (!axes.empty()) description["channels"] = std::to_string(channels);
+}
+
+/// Empty unless ImageJ or SCIFIO wrote it.
 Description fields_of(const std::string& text) {
     std::istringstream lines(text);
     Description description;
@@ -24,7 +67,11 @@ Description fields_of(const std::string& text) {
         if (equals == std::string::npos) continue;
         description.emplace(trimmed(line.substr(0, equals)), trimmed(line.substr(equals + 1)));
     }
-    if (!description.contains("ImageJ")) description.clear();
+    if (description.contains("SCIFIO")) {
+        take_scifio_axes(description);
+    } else if (!description.contains("ImageJ")) {
+        description.clear();
+    }
     return description;
 }
 
@@ -92,8 +139,13 @@ std::optional<Vec3> image_j_spacing(TIFF* tiff, const std::string& text) {
                along_z = unit_in(description, "zunit");
     const double distance = slice_distance(description);
     float x = 0, y = 0;
-    TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x);
-    TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y);
+    if (description.contains("SCIFIO")) {  // its resolution is that of ResolutionUnit
+        x = static_cast<float>(1 / number_in(description, "xscale").value_or(0));
+        y = static_cast<float>(1 / number_in(description, "yscale").value_or(0));
+    } else {
+        TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x);
+        TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y);
+    }
     if (!along_x || !along_y || !along_z || !(x > 0) || !(y > 0)) return std::nullopt;
     const Vec3 spacing(*along_x / double(x), *along_y / double(y), *along_z * distance);
     const bool possible = std::isfinite(spacing[0]) && spacing.head<2>().minCoeff() > 0;

@@ -32,40 +32,59 @@ void check_errors(const ErrorKeeper& errors) {
                   "); copy it again or export it again");
 }
 
-/// The numbers of an attribute in the file's first bytes; none if it is not there.
-std::vector<double> attribute(const std::string& head, const std::string& name) {
-    const auto at = head.find(" " + name + "=");
-    if (at == std::string::npos || at + name.size() + 2 >= head.size()) return {};
-    const auto begin = at + name.size() + 3;
-    const auto end = head.find(head[begin - 1], begin);
-    if (end == std::string::npos) return {};
-    return numbers_in(head.substr(begin, end - begin), name);
+/// The start tag of the image among the file's first bytes; empty if it is not there.
+std::string image_tag(const std::string& head) {
+    const auto at = head.find("<ImageData");
+    return at == std::string::npos ? "" : head.substr(at, head.find('>', at) - at);
 }
 
-/// VTK inverts the matrix that these make.
-void check_placement(const std::string& head) {
-    for (const double spacing : attribute(head, "Spacing")) {
+/// The numbers of an attribute, as many as belong there; none if there is no such attribute.
+std::vector<double> attribute(const std::string& tag, const std::string& name, std::size_t count) {
+    constexpr const char* blanks = " \t\r\n";
+    for (std::size_t at = 0; (at = tag.find(name, at)) != std::string::npos; at += name.size()) {
+        const auto equals = tag.find_first_not_of(blanks, at + name.size());
+        const bool alone = at > 0 && std::string(blanks).find(tag[at - 1]) != std::string::npos;
+        if (!alone || equals == std::string::npos || tag[equals] != '=') continue;
+        const auto quote = tag.find_first_not_of(blanks, equals + 1);
+        if (quote == std::string::npos) break;
+        const auto end = tag.find(tag[quote], quote + 1);
+        if (end == std::string::npos) break;
+        const auto numbers = numbers_in(tag.substr(quote + 1, end - quote - 1), name);
+        if (numbers.size() == count) return numbers;
+        throw Failure("its " + name + " has " + std::to_string(numbers.size()) + " numbers where " +
+                      std::to_string(count) + " belong; correct it");
+    }
+    return {};
+}
+
+/// VTK inverts the matrix that these make. Whether there is a spacing.
+bool check_placement(const std::string& tag) {
+    const auto spacings = attribute(tag, "Spacing", 3);
+    for (const double spacing : spacings) {
         if (spacing != 0) check_spacing(spacing, "Spacing");  // 0: of one sample, replaced later
     }
-    for (const double coordinate : attribute(head, "Origin"))
+    for (const double coordinate : attribute(tag, "Origin", 3))
         check_coordinate(coordinate, "Origin");
-    for (const double cosine : attribute(head, "Direction")) {
+    for (const double cosine : attribute(tag, "Direction", 9)) {
         if (std::abs(cosine) <= 1.01) continue;
         throw Failure("its Direction has the number " + text_of(cosine) +
                       ", which is no direction cosine; correct it");
     }
+    return !spacings.empty();
 }
 
-/// Checks the first and the last tag, because VTK accepts raw data that are cut off.
-void check_ends(const Request& request) {
+/// Checks the first and the last tag, because VTK accepts raw data that are cut off. Whether there
+/// is a spacing.
+bool check_ends(const Request& request) {
     std::ifstream in(request.path, std::ios::binary);
-    std::string text(4096, '\0');
+    std::string text(65536, '\0');
     in.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(in.gcount()));
-    if (text.find("<VTKFile") == std::string::npos || text.find("ImageData") == std::string::npos) {
+    const std::string tag = image_tag(text);
+    if (text.find("<VTKFile") == std::string::npos || tag.empty()) {
         throw Failure("is not a VTI file (no VTKFile of type ImageData in it); check its name");
     }
-    check_placement(text);
+    const bool has_spacing = check_placement(tag);
     const auto size = static_cast<std::streamoff>(std::filesystem::file_size(request.path));
     in.clear();
     in.seekg(std::max<std::streamoff>(0, size - 256));
@@ -75,7 +94,48 @@ void check_ends(const Request& request) {
     if (end.size() < last.size() || end.substr(end.size() - last.size()) != last) {
         throw Failure("it is cut off (no </VTKFile> at its end); copy or download it again");
     }
+    return has_spacing;
 }
+
+/// VTK's reader, which leaves open what its pieces hold.
+class PieceReader : public vtkXMLImageDataReader {
+  public:
+    static PieceReader* New() { VTK_STANDARD_NEW_BODY(PieceReader); }
+    vtkTypeMacro(PieceReader, vtkXMLImageDataReader) PieceReader(const PieceReader&) = delete;
+    PieceReader& operator=(const PieceReader&) = delete;
+
+    /// Whether its pieces give every sample of `extent` a value. `cells`: samples lie between the
+    /// extent's numbers, not at them.
+    bool covers(const int extent[6], bool cells) const {
+        const auto end = [cells](const int* e, int a) {
+            return e[2 * a + 1] - (cells && e[2 * a + 1] > e[2 * a] ? 1 : 0);
+        };
+        std::size_t sizes[3];
+        for (int a = 0; a < 3; ++a) {
+            sizes[a] = static_cast<std::size_t>(end(extent, a) - extent[2 * a] + 1);
+        }
+        std::vector<bool> has(sizes[0] * sizes[1] * sizes[2]);
+        for (int p = 0; p < NumberOfPieces; ++p) {
+            const int* const piece = PieceExtents + 6 * p;
+            const auto first = [&](int a) { return std::max(piece[2 * a], extent[2 * a]); };
+            const auto last = [&](int a) { return std::min(end(piece, a), end(extent, a)); };
+            for (int z = first(2); z <= last(2); ++z) {
+                for (int y = first(1); y <= last(1); ++y) {
+                    const std::size_t row = (static_cast<std::size_t>(z - extent[4]) * sizes[1] +
+                                             static_cast<std::size_t>(y - extent[2])) *
+                                            sizes[0];
+                    for (int x = first(0); x <= last(0); ++x) {
+                        has[row + static_cast<std::size_t>(x - extent[0])] = true;
+                    }
+                }
+            }
+        }
+        return std::ranges::find(has, false) == has.end();
+    }
+
+  protected:
+    PieceReader() = default;
+};
 
 Stored stored_of(vtkDataArray& array) {
     const int type = array.GetDataType();
@@ -143,10 +203,10 @@ void check_size(vtkXMLImageDataReader& reader, const Request& request) {
 }  // namespace
 
 Result read_vti(const Request& request) {
-    check_ends(request);
+    const bool has_spacing = check_ends(request);
     const vtkNew<ErrorKeeper> errors;
     vtkOutputWindow::SetInstance(errors);
-    const vtkNew<vtkXMLImageDataReader> reader;
+    const vtkNew<PieceReader> reader;
     reader->SetFileName(request.path.c_str());
     reader->UpdateInformation();
     check_errors(*errors);
@@ -171,7 +231,14 @@ Result read_vti(const Request& request) {
                       " values a sample (colours or vectors); give a volume with one");
     }
     checked_time_step(request, 1);
+    if (!reader->covers(image.GetExtent(), at_cells)) {
+        throw Failure(
+            "its pieces do not fill its WholeExtent; it is damaged or a part of it is missing: "
+            "export it again");
+    }
     result.geometry = geometry_of(image, at_cells);
+    result.geometry.measured = has_spacing;
+    if (!has_spacing) result.notes.emplace_back("it gives no spacing: 1 mm was taken");
     for (int a = 0; a < 3; ++a) {
         if (result.geometry.size[a] == 1 && !(result.geometry.spacing[a] > 0)) {
             result.geometry.spacing[a] = 1;

@@ -307,6 +307,59 @@ def test_a_stream_of_fewer_bits_than_are_allocated_is_read(tmp_path):
     assert numpy.array_equal(palpate.load(folder).volume.array, array)
 
 
+def jpeg(folder, array, padding):
+    """JPEG, 8 bits, with bytes behind the end marker."""
+    SYNTAXES["JPEG"] = "1.2.840.10008.1.2.4.50"
+    slices = stack(array)
+    for data, plane in zip(slices, array):
+        out = io.BytesIO()
+        Image.fromarray(plane).save(out, "JPEG", quality=95)
+        data.PixelData = encapsulate([out.getvalue() + padding])
+        data["PixelData"].is_undefined_length = True
+    return save(folder, slices, "JPEG")
+
+
+def test_a_jpeg_stream_may_be_padded_with_ones(tmp_path):
+    array = numpy.full((2, 40, 20), 100, "u1")
+    for number, padding in enumerate((b"", b"\xff", b"\xff\xff\xff", b"\xff\0")):
+        loaded = palpate.load(jpeg(tmp_path / str(number), array, padding))
+        assert numpy.abs(loaded.volume.array.astype(int) - 100).max() < 3
+        assert not any("warned" in note for note in loaded.notes), loaded.notes
+
+
+# Folders with broken slices -------------------------------------------------------------------------
+
+
+def broken(path, name, data):
+    save(path, stack(ramp("u2")))
+    if "." not in name:
+        for slice_ in path.iterdir():
+            slice_.rename(path / f"IM{slice_.stem}")
+    (path / name).write_bytes(data)
+    return path
+
+
+@pytest.mark.parametrize("name, words", (
+    ("009.dcm", "is no DICOM file"), ("cut.DCM", "is no DICOM file"), ("009.ima", "is no DICOM file"),
+    ("009.dcm.gz", "is packed"), ("IM009", "is no DICOM file")))
+def test_a_broken_slice_is_named_and_never_passed_over(tmp_path, name, words):
+    for number, data in enumerate((b"<html>404</html>", bytes(1000), bytes(100))):
+        refused(broken(tmp_path / str(number), name, data), f"'{name}'", words)
+    refused(broken(tmp_path / "empty", name, b""), f"'{name}'", "is empty (0 bytes)")
+
+
+def test_an_empty_file_among_slices_without_an_extension_is_named(tmp_path):
+    refused(broken(tmp_path / "a", "scan", b""), "'scan'", "is empty")
+
+
+@pytest.mark.parametrize("name, data", (
+    ("notes.txt", b"seen"), ("empty.txt", b""), ("Thumbs.db", bytes(99)), ("._001.dcm", bytes(99)), ("a.xml", b"<a/>"),
+    ("README", b"a disc"), ("001.jpg", b"picture"), ("VERSION", b"1")))
+def test_other_files_among_slices_are_passed_over(tmp_path, name, data):
+    loaded = palpate.load(broken(tmp_path / "a", name, data))
+    assert numpy.array_equal(loaded.volume.array, ramp("u2")) and not loaded.notes
+
+
 # Headers and samples that do not fit ----------------------------------------------------------------
 
 def test_bits_above_the_stored_ones_are_shifted_down_in_run_lengths_too(tmp_path):

@@ -67,6 +67,47 @@ def test_a_slice_of_nrrd_lies_in_space(tmp_path):
     assert numpy.array_equal(volume.geometry.direction[:, :2], [[1, 0], [0, 0], [0, 1]]) and volume.geometry.oriented
 
 
+PLACED = ("space: left-posterior-superior", "space directions: (2,0,0) (0,2,0) (0,0,3)", "space origin: (7,8,9)")
+
+
+@pytest.mark.parametrize("fields, words", (
+    (("line skip: 9",), "line skip of 9 goes beyond"), (("line skip: -1",), "line skip"),
+    (('space units: "um"',), "'space units' has 1 entries for 3 axes"), (('units: "um"',), "'units' has 1 entries for 3 axes"),
+    (("units: um um",), "'units' has 2 entries for 3 axes"), (("space origin: (7,8,9)",), "'space origin' twice"),
+    (("type: int16",), "'type' twice"), (("centers: cell cell cell", "centerings: cell cell cell"), "'centerings' twice")))
+def test_nrrd_headers_that_say_too_much_or_too_little_are_refused(tmp_path, fields, words):
+    refused(nrrd(tmp_path / "a.nrrd", ramp("i2") % 9, *PLACED, *fields), words)  # no sample is the end of a line
+
+
+def test_a_line_of_blanks_is_not_the_end_of_a_nrrd_header_and_keys_may_repeat(tmp_path):
+    path = nrrd(tmp_path / "a.nrrd", ramp("i2"), "   ", "key:=1", "key:=2", 'kinds: "space" "space" "space"', *PLACED)
+    loaded = palpate.load(path)
+    assert numpy.array_equal(loaded.volume.array, ramp("i2")) and not loaded.notes
+    assert numpy.array_equal(loaded.volume.geometry.origin, (7, 8, 9))
+
+
+def test_an_origin_that_a_nrrd_header_leaves_open_is_noted(tmp_path):
+    path = nrrd(tmp_path / "a.nrrd", ramp("i2"), *PLACED[:2], "space origin: (nan,nan,nan)")
+    assert numpy.array_equal(noted(path, "0 was taken").geometry.origin, (0, 0, 0))
+
+
+def test_samples_twice_as_wide_as_the_header_says_are_refused(tmp_path):
+    data = ramp("i2")
+    path = nrrd(tmp_path / "a.nrrd", data, *PLACED)
+    path.write_bytes(path.read_bytes().replace(b"int16", b"uint8"))
+    refused(path, "asks for 120 bytes of samples, there are 240")
+    head = "NDims = 3\nDimSize = 6 4 5\nElementSpacing = 1 1 1\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n"
+    (tmp_path / "a.mha").write_bytes(head.encode() + data.tobytes())
+    refused(tmp_path / "a.mha", "asks for 120 bytes of samples, there are 240")
+    (tmp_path / "a.mha").write_bytes(head.encode() + data.tobytes()[:239])  # less may be padding
+    noted(tmp_path / "a.mha", "the rest was ignored")
+    nibabel.Nifti1Image(data, numpy.eye(4)).to_filename(tmp_path / "a.nii")
+    header = bytearray((tmp_path / "a.nii").read_bytes())
+    header[70:74] = struct.pack("<2h", 2, 8)
+    (tmp_path / "a.nii").write_bytes(header)
+    refused(tmp_path / "a.nii", "asks for 120 bytes of samples, there are 240")
+
+
 # Folders of TIFF slices ---------------------------------------------------------------------------------
 
 
@@ -107,13 +148,39 @@ def test_names_of_slices_that_leave_a_doubt_are_refused(tmp_path, names, words):
     (["a9", "a10", "a11"], ""), (["s1_1", "s1_2", "s2_3", "s2_4"], ""), (["0001_z1.25", "0001_z1.5", "0001_z2.0"], ""),
     (["20240101_120301_001", "20240101_120305_002", "20240101_120311_003"], ""), (["scan.001.0001", "scan.001.0002"], ""),
     (["z1_t1200", "z2_t1200", "z3_t1201"], ""), (["a", "b", "c"], ""), (["one", "slice1", "slice2"], "not alike"),
-    (["t1", "t2", "t3"], "count times"), (["1", "2", "4"], "1 numbers are missing"),
-    (["2", "4", "8"], "1 numbers are missing"), (["01", "1", "2"], ""), (["1", "3", "5"], ""),
-    (["1", "9000000000000000000", "9000000000000000001"], "numbers are missing")))
+    (["t1", "t2", "t3"], "count times"), (["01", "1", "2"], ""), (["1", "3", "5"], "")))
 def test_numbers_that_go_together_are_slices(tmp_path, names, note):
     values, notes = slices_of(folder(tmp_path / "a", names))
     assert values == list(range(len(names)))
-    assert all((word in notes) == (word in note) for word in ("not alike", "count times", "numbers are missing"))
+    assert all((word in notes) == (word in note) for word in ("not alike", "count times"))
+
+
+@pytest.mark.parametrize("names, words", (
+    (["1", "2", "4"], "1 is missing"), (["2", "4", "8"], "1 is missing"), (["z1_c1", "z2_c1", "z5_c1"], "2 are missing"),
+    (["z1_t1", "z1_t2", "z2_t1", "z2_t2", "z4_t1", "z4_t2"], "1 is missing"),
+    (["1", "9000000000000000000", "9000000000000000001"], "are missing")))
+def test_a_folder_that_lacks_slices_is_refused(tmp_path, names, words):
+    refused(folder(tmp_path / "a", names), words, "copy the missing slices")
+
+
+SCIFIO = "SCIFIO=0.37.3\naxes=X,Y,{}\nlengths=6,4,{}\nscales=0.5,0.25,{}\nunits=micron,micron,{}\n"
+
+
+def test_axes_of_scifio_are_those_of_image_j(tmp_path):
+    def written(*axes):
+        path = tmp_path / "a.tif"
+        tifffile.imwrite(path, ramp("u2", (6, 4, 6)), photometric="minisblack", metadata=None, description=SCIFIO.format(*axes),
+                         resolution=(7, 7))
+        return path
+    loaded = palpate.load(written("Z", "6", "2.0", "micron"))
+    assert numpy.array_equal(loaded.volume.array, ramp("u2", (6, 4, 6))) and not loaded.notes
+    assert numpy.allclose(loaded.volume.geometry.spacing, (5e-4, 2.5e-4, 2e-3))
+    loaded = palpate.load(written("Z,Time", "3,2", "2.0,null", "micron,null"), frame=1)
+    assert loaded.time_steps == 2 and numpy.array_equal(loaded.volume.array, ramp("u2", (6, 4, 6))[3:])
+    noted(written("Z", "6", "2.0", "null"), "1 mm was taken")
+    refused(written("Channel,Z", "2,3", "null,2.0", "null,micron"), "holds 2 channels")
+    refused(written("Lifetime,Z", "2,3", "null,2.0", "null,micron"), "holds 2 channels")
+    refused(written("Time,Z", "2,3", "null,2.0", "null,micron"), "times before its slices")
 
 
 def test_hidden_files_are_no_slices(tmp_path):
@@ -261,6 +328,32 @@ def test_scalars_of_a_vti_are_found_beside_vectors_and_ghosts(tmp_path, active):
               vti_array("density", ramp("i2")))
     (tmp_path / "a.vti").write_text(VTI.format(active=active, arrays=arrays))
     assert numpy.array_equal(noted(tmp_path / "a.vti", "'density' was taken").array, ramp("i2"))
+
+
+@pytest.mark.parametrize("change, words", (
+    (('WholeExtent="0 5 0 3 0 4"', 'WholeExtent="0 5 0 3 0 8"'), "do not fill its WholeExtent"),
+    (('Spacing="1 2 3"', 'Spacing="1 2"'), "Spacing has 2 numbers where 3 belong"),
+    (('Origin="1 2 3"', 'Origin = "1 2 3 4"'), "Origin has 4 numbers where 3 belong")))
+def test_a_vti_whose_header_does_not_fit_is_refused(tmp_path, change, words):
+    text = VTI.format(active="", arrays=vti_array("density", ramp("i2")))
+    (tmp_path / "a.vti").write_text(text.replace(*change))
+    refused(tmp_path / "a.vti", words)
+
+
+def test_a_vti_without_spacing_has_one_millimetre_and_that_is_noted(tmp_path):
+    text = VTI.format(active="", arrays=vti_array("density", ramp("i2")))
+    (tmp_path / "a.vti").write_text(text.replace(' Spacing="1 2 3"', ""))
+    assert not noted(tmp_path / "a.vti", "1 mm was taken").geometry.measured
+    (tmp_path / "a.vti").write_text(text)
+    assert not palpate.load(tmp_path / "a.vti").notes
+
+
+def test_pieces_of_a_vti_may_share_samples_and_fill_its_extent_together(tmp_path):
+    low, high = (vti_array("density", ramp("i2")[part]) for part in (slice(0, 3), slice(2, 5)))
+    piece = '<Piece Extent="0 5 0 3 {}"><PointData>{}</PointData></Piece>'
+    start = VTI.split("<Piece")[0]
+    (tmp_path / "a.vti").write_text(start + piece.format("0 2", low) + piece.format("2 4", high) + "</ImageData></VTKFile>")
+    assert numpy.array_equal(palpate.load(tmp_path / "a.vti").volume.array, ramp("i2"))
 
 
 # What to do instead -----------------------------------------------------------------------------------------
