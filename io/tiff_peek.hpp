@@ -1,4 +1,5 @@
-// A look at the first page of a TIFF file, to choose a reader. Private to io/ and stream/.
+// A look at the first page of a TIFF file, to choose a reader. Private to io/,
+// stream/ and run/.
 #pragma once
 
 #include <filesystem>

@@ -151,6 +151,38 @@ class Workshop {
     fs::path folder_;
 };
 
+/// A pipe or a device.
+bool is_stream(const fs::path& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    return fs::exists(status) && !fs::is_regular_file(status);
+}
+
+/// By way of a file, because the formats' libraries write files only.
+void write_to_stream(const Volume& volume, const fs::path& path, const WriteOptions& options) {
+    const std::string extension(written_extension_of(path));
+    if (extension == ".nhdr" || extension == ".mhd") {
+        throw OutputError(path.string() + ": is no file, and " + extension +
+                          " takes two of them: name it .nrrd or .mha");
+    }
+    PendingFile stream(path);
+    const Workshop workshop(path);
+    const fs::path& folder = workshop.folder();
+    std::error_code error;
+    fs::create_directory(folder, error);
+    if (error) throw OutputError(folder.string() + ": cannot be written: " + error.message());
+    const Descriptor lock(lock_temporary(folder));
+    std::ofstream(folder / temporary_marker).close();
+    const fs::path file = folder / ("volume" + extension);
+    write_volume(volume, file, options);
+    std::ifstream in(file, std::ios::binary);
+    std::string block(std::size_t{1} << 20, '\0');
+    while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0) {
+        stream.write({block.data(), static_cast<std::size_t>(in.gcount())});
+    }
+    stream.commit();
+}
+
 }  // namespace
 
 void write_volume(const Volume& volume, const fs::path& path, const WriteOptions& options) {
@@ -158,6 +190,7 @@ void write_volume(const Volume& volume, const fs::path& path, const WriteOptions
     const std::string problem = why_not_written(path, volume.geometry());
     if (!problem.empty()) throw OutputError(problem);
     if (written_extension_of(path) == ".raw") return write_raw(volume, path, options.progress);
+    if (is_stream(path)) return write_to_stream(volume, path, options);
     const Workshop workshop(path);
     const nlohmann::json request = {{"caller", getpid()},
                                     {"geometry", json_from(volume.geometry())},

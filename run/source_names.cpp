@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "io/system/number.hpp"
+#include "io/tiff_peek.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/orientation.hpp"
 #include "palpate/io/raw_options.hpp"
@@ -108,15 +109,16 @@ std::optional<StoreSource> store_of(const FileSource& file, const Names& names) 
     options.spacing = file.spacing;
     options.orientation = file.orientation;
     options.channel = count_of(names, "channel");
-    const bool asked =
-        names.contains("level") || names.contains("memory") || names.contains("all-times");
+    const bool asked = names.contains("level") || names.contains("memory") ||
+                       names.contains("all-times") ||
+                       (options.channel > 0 && io::is_tiff_name(file.path));  // may have channels
     const bool chunked = !file.raw && stream::is_chunked(file.path);
     if (!asked && !chunked && !is_large(file.path)) return std::nullopt;
     if (!io::is_web_address(file.path) && !stream::is_store(file.path, options)) {
         if (!asked) return std::nullopt;
         throw std::invalid_argument(
             file.path +
-            ": level, memory and all times are for what can be read in parts "
+            ": level, channel, memory and all times are for what can be read in parts "
             "(docs/streaming.md); this is read as a whole");
     }
     StoreSource store{file.path, options, {}};

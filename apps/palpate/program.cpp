@@ -88,7 +88,8 @@ int run_program(int argc, char** argv, const std::function<void(CLI::App&)>& add
     } catch (const std::exception& e) {
         const Failure failure = failure_of(e);
         // Ctrl-C reaches the helper process as well, and its end may be seen first.
-        if (failure.status == bad_input && interrupted())
+        const bool has_ended = dynamic_cast<const palpate::io::WaitEnded*>(&e) != nullptr;
+        if ((failure.status == bad_input || has_ended) && interrupted())
             return fail("interrupted", status_of_signal(stop_signal));
         if (std::ferror(stdout) != 0) {
             return reader_has_gone() ? status_of_signal(broken_pipe) : finish_output();

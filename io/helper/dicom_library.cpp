@@ -47,10 +47,14 @@ class DecoderWords {
         std::istringstream lines({text, static_cast<std::size_t>(std::max<ssize_t>(size, 0))});
         std::string damage;
         for (std::string line; std::getline(lines, line);) {
-            // GDCM tries libraries for 8, 12 and 16 bits in turn; the wrong ones say this.
-            if (line.find("Unsupported JPEG data precision") == std::string::npos) {
-                damage += line + '\n';
+            // GDCM tries libraries for 8, 12 and 16 bits in turn; for the wrong ones, it says the
+            // last two of these.
+            const auto says = [&](const char* words) { return line.find(words) != line.npos; };
+            if (says("Warning: In ") || says("Unsupported JPEG data precision") ||
+                says("DICOM header said it was ")) {
+                continue;
             }
+            damage += line + '\n';
         }
         return library_words(damage, 120);
     }

@@ -2,6 +2,8 @@
 #include "io/system/system.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -61,7 +63,29 @@ int open_to_read(const std::filesystem::path& path) {
 }
 
 int open_to_write(const std::filesystem::path& path) {
-    return ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    const auto lacks_reader = [&] {
+        struct stat about {};
+        const bool is_pipe = errno == ENXIO && ::stat(path.c_str(), &about) == 0;
+        return is_pipe && S_ISFIFO(about.st_mode);
+    };
+    // A signal restarts an opening that waits, but never this wait. It comes here only, so that
+    // none between two of them is missed.
+    sigset_t all, before;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before);
+    constexpr timespec between{0, 50'000'000};
+    int file = -1, problem = 0;
+    while ((file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) < 0) {
+        problem = errno;
+        if (!lacks_reader()) break;
+        if (::ppoll(nullptr, 0, &between, &before) == 0) continue;
+        problem = errno;
+        break;
+    }
+    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    if (file >= 0) ::fcntl(file, F_SETFL, ::fcntl(file, F_GETFL) & ~O_NONBLOCK);
+    errno = problem;
+    return file;
 }
 
 int open_standard_output() {

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <functional>
 #include <thread>
@@ -316,6 +317,26 @@ TEST(Output, a_process_looks_for_leftovers_once_in_a_folder) {
     EXPECT_EQ(folder.names(), Names{name});
     write_in_another_process(folder);
     EXPECT_EQ(folder.names(), Names{});
+}
+
+TEST(Output, to_a_pipe_that_nobody_reads_is_waited_for_until_a_signal_comes) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    const auto before = std::signal(SIGUSR1, [](int) {});  // restarts what it interrupts
+    const pthread_t writer = ::pthread_self();
+    std::atomic<bool> ended{false};
+    std::thread sender([&] {  // one that comes before the wait does not end it
+        while (!ended) {
+            ::pthread_kill(writer, SIGUSR1);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    });
+    EXPECT_TRUE(contains(message_of<WaitEnded>([&] { PendingFile file(folder / "pipe"); }),
+                         "start the reader first"));
+    ended = true;
+    sender.join();
+    std::signal(SIGUSR1, before);
+    EXPECT_EQ(folder.names(), Names{"pipe"});
 }
 
 TEST(Output, that_waits_for_the_others_of_its_run_is_still_locked) {

@@ -1,6 +1,9 @@
 // Files read back as they were written: samples, type, spacing, origin and direction, in every
 // format.
+#include <sys/stat.h>
 #include <zlib.h>
+
+#include <thread>
 
 #include "volume_support.hpp"
 
@@ -48,6 +51,28 @@ TEST_P(RoundTrip, keeps_every_type_spacing_and_direction) {
             for (const std::string& name : folder.names()) std::filesystem::remove(folder / name);
         }
     }
+}
+
+TEST_P(RoundTrip, goes_through_a_pipe_or_refuses_it_and_never_replaces_it) {
+    const std::string& extension = GetParam();
+    const ScratchFolder folder;
+    std::mt19937 random(9);
+    const Volume volume =
+        random_volume<std::int16_t>(random, random_geometry(random, false, false));
+    const auto pipe = folder / ("pipe" + extension), path = folder / ("volume" + extension);
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    if (extension == ".nhdr" || extension == ".mhd") {
+        EXPECT_TRUE(contains(message_of<OutputError>([&] { write_volume(volume, pipe); }),
+                             "takes two of them"));
+    } else {
+        std::thread reader([&] { put_bytes(path, bytes_of(pipe)); });
+        write_volume(volume, pipe);
+        reader.join();
+        EXPECT_TRUE(same_samples(read_volume(path).volume, volume));
+        std::filesystem::remove(path);
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"pipe" + extension});
+    EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST_P(RoundTrip, keeps_an_axis_aligned_grid_to_the_bit_or_to_32_bits) {

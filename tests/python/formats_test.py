@@ -183,6 +183,13 @@ def test_axes_of_scifio_are_those_of_image_j(tmp_path):
     refused(written("Time,Z", "2,3", "null,2.0", "null,micron"), "times before its slices")
 
 
+def test_a_channel_of_a_tiff_that_is_read_whole_is_refused(tmp_path):
+    path = tmp_path / "a.ome.tif"
+    tifffile.imwrite(path, ramp("u2", (2, 3, 4, 6)), photometric="minisblack", metadata={"axes": "CZYX"})
+    assert "channel 0" in program("info", path) and "does nothing" not in program("info", path)
+    assert "channel, memory and all times are for what can be read in parts" in program("info", path, "--channel", 1)
+
+
 def test_hidden_files_are_no_slices(tmp_path):
     path = folder(tmp_path / "a", ["a1", "a2", ".a0"])
     (path / "._a1.tif").write_bytes(b"\0\5\x16\7\0\2\0\0Mac OS X        " + bytes(100))

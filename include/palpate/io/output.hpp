@@ -17,6 +17,11 @@ class ReaderGone : public OutputError {
     using OutputError::OutputError;
 };
 
+/// A signal came while a pipe was waited for that nobody reads.
+class WaitEnded : public OutputError {
+    using OutputError::OutputError;
+};
+
 /// Throws OutputError if a file cannot be written here: no such folder, no permission, a folder has
 /// its name. Makes and opens nothing, so a long run can begin with it; a PendingFile does so, too.
 void check_output(const std::filesystem::path& path);
@@ -34,8 +39,9 @@ inline std::filesystem::path without_slash(const std::filesystem::path& path) {
 /// that killed processes have left in the folder are removed when a process opens its first file
 /// there. Without commit() the target stays unchanged and nothing is left behind. A target that
 /// exists and is not a regular file (/dev/stdout, a pipe, /dev/full) and "-", the standard output,
-/// are written directly instead: they cannot be replaced, and their reader is waiting. A symbolic
-/// link is followed. Everything here throws OutputError.
+/// are written directly instead: they cannot be replaced, and their reader is waiting. A pipe
+/// without a reader is waited for, and a signal ends that (WaitEnded). A symbolic link is followed.
+/// Everything here throws OutputError.
 class PendingFile {
   public:
     /// Opens the temporary file, so what cannot be written is known before the work is done.
