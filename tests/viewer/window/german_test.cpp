@@ -75,13 +75,12 @@ QSet<QString> all_words(const QWidget& top) {
 
 /// Words that are the same in both languages.
 bool is_international(const QString& text) {
-    const QSet<QString> same{"Name",       "Rate",         "Palpate", "Maximum", "Radius",
-                             "linear",     "max",          "Labels",  "Patient", "English",
-                             "Deutsch",    "uint8",        "int16",   "uint16",  "float32",
-                             "Axial",      "Sagittal",     "Viridis", "N s/mm",  "N mm/rad",
-                             "N mm s/rad", "KEY=VALUE,..."};
+    const QSet<QString> same{"Name",    "Rate",     "Palpate", "Maximum", "Radius",
+                             "linear",  "max",      "Labels",  "Patient", "English",
+                             "Deutsch", "uint8",    "int16",   "uint16",  "float32",
+                             "Axial",   "Sagittal", "Viridis", "N s/mm",  "KEY=VALUE,..."};
     return same.contains(text) || text.endsWith(" – Palpate") ||
-           text.contains(QRegExp("^[-0-9., x/]*(mm|mm/mm|N/mm|N s/mm)?$"));
+           text.contains(QRegExp("^[-0-9., x/]*(mm|mm/mm|N/mm|N s/mm|N mm/rad|N mm s/rad)?$"));
 }
 
 QString mnemonic_of(QString text) {
