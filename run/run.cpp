@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "devices/claim.hpp"
 #include "io/system/number.hpp"
 
 namespace palpate::run {
@@ -38,13 +39,16 @@ Field seen(const Field& field) {
                  field.interpolation());
 }
 
-std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup) {
+/// For the run `hand`.
+std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup,
+                                 const Run* hand) {
     const double rate = setup.render.rate.value_or(usual_rate);
     if (!(rate >= 250 && rate <= 8000)) {
         std::string text;
         io::append_number(text, rate);
         throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
     }
+    const devices::OpenedBy opened_by(hand);
     return setup.open_device(setup.device,
                              {seen(field), isovalue, rate, [&](const DeviceInfo& info) {
                                   return transform_for(field.geometry(), info, setup);
@@ -82,7 +86,7 @@ Run::Run(std::shared_ptr<Data> data, const Setup& setup)
       setup_(setup),
       field_(make_field(data_->start(), setup.field, setup.render.method.method)) {
     const double isovalue = isovalue_of(data_->loaded(), setup);
-    auto device = open_for(field_, isovalue, setup);
+    auto device = open_for(field_, isovalue, setup, this);
     take(make_session(field_, isovalue, device->info(), setup));
     hold(std::move(device));
 }
@@ -271,7 +275,7 @@ void Run::use_device(const devices::DeviceChoice& device) {
     // A simulated hand goes for the surface that is felt now.
     const double isovalue =
         std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_);
-    auto opened = open_for(field_, isovalue, setup);
+    auto opened = open_for(field_, isovalue, setup, this);
     const Session fitted = make_session(field_, isovalue, opened->info(), setup);
     const RendererSettings& fit = fitted.renderer.settings;
     RendererSettings settings = settings_;

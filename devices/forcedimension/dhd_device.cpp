@@ -78,7 +78,8 @@ DeviceStatus status_of(Trouble::Kind kind) {
     }
 }
 
-Opened::Opened(const Dhd& dhd, const Settings& settings) : dhd_(dhd) {
+Opened::Opened(const Dhd& dhd, const Settings& settings)
+    : claim_("the device with index=" + std::to_string(settings.index)), dhd_(dhd) {
     if (settings.simulator && !dhd.enable_simulator) {
         throw DeviceError("simulator=yes: " + dhd.library.path() +
                           " knows no simulator: install the SDK's current version");

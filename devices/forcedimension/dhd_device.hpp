@@ -8,6 +8,7 @@
 #include <string_view>
 #include <thread>
 
+#include "devices/claim.hpp"
 #include "devices/forcedimension/dhd.hpp"
 #include "devices/latest_trouble.hpp"
 #include "devices/linked_device.hpp"
@@ -55,6 +56,7 @@ class Opened {
     char id() const { return id_; }
 
   private:
+    const Claim claim_;
     const Dhd& dhd_;
     char id_ = 0;
 };

@@ -105,6 +105,8 @@ Inverse3::Inverse3(Settings settings, Address address, Talk talk, const Timing& 
       is_minverse_(talk.state.list == "minverse"),
       talk_(std::move(talk)),
       wait_(first_wait) {
+    const std::string& id = talk_.state.device_id;
+    if (!id.empty()) claim_.emplace(id + " at " + place_of(address_));
     tell_identity(talk_.state);
     // The release whose documentation says "vector" tells preset and mount, too.
     const bool is_new = !talk_.state.mapping.preset.empty();
@@ -239,11 +241,27 @@ std::optional<std::string> Inverse3::converse() {
     return std::nullopt;
 }
 
+/// Whether no other hand has this device, which may have been plugged in just now.
+bool Inverse3::claims(const std::string& id) {
+    const std::string device = id + " at " + place_of(address_);
+    if (claim_ && claim_->device() == device) return true;
+    claim_.reset();
+    try {
+        claim_.emplace(device);
+    } catch (const DeviceError& taken) {
+        gate_.note(false, timing_.now());
+        tell(taken.what());
+    }
+    return claim_.has_value();
+}
+
 /// Sends the force; the answer is the next state.
 bool Inverse3::ask(Clock::time_point now) {
     questions_.asked(now);
     const std::string& id = talk_.state.device_id;
-    if (id.empty()) return talk_.channel->send(snapshot_command(), now + send_limit);
+    if (id.empty() || !claims(id)) {
+        return talk_.channel->send(snapshot_command(), now + send_limit);
+    }
     const bool pins = !std::exchange(has_pinned_, true) && settings_.preset != "keep";
     if (pins) pinned_at_ = now;
     const bool wants_all = now >= next_full_;

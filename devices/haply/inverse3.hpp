@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "devices/claim.hpp"
 #include "devices/haply/protocol.hpp"
 #include "devices/haply/socket.hpp"
 #include "devices/linked_device.hpp"
@@ -87,6 +88,7 @@ class Inverse3 final : public LinkedDevice {
     void reconnect();
     std::optional<std::string> converse();
     bool ask(Clock::time_point now);
+    bool claims(const std::string& id);
     void take(const Received& received, Clock::time_point asked, Clock::time_point now);
     DeviceStatus status_of_mapping(Clock::time_point now);
     bool is_as_pinned() const;
@@ -120,6 +122,7 @@ class Inverse3 final : public LinkedDevice {
 
     // Used by the thread only.
     Talk talk_;
+    std::optional<Claim> claim_;  // of the device that it talks of
     bool connected_ = true;
     Questions questions_;
     std::string told_;

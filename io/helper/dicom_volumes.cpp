@@ -269,6 +269,7 @@ void check_others(const std::vector<fs::path>& slices, const std::vector<fs::pat
     std::set<std::string> names;
     std::set<fs::path> bare;  // folders of slices without an extension
     for (const fs::path& slice : slices) {
+        if (slice.filename() == "DICOMDIR") continue;  // lists them
         names.insert(numberless(slice));
         if (!slice.has_extension()) bare.insert(slice.parent_path());
     }

@@ -118,10 +118,6 @@ PendingFile::PendingFile(const std::filesystem::path& target) : target_(followed
     const auto status = std::filesystem::status(target_, error);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
         descriptor_ = open_to_write(target_);
-        if (descriptor_ < 0 && errno == EINTR) {
-            throw WaitEnded(target_.string() +
-                            ": the wait for its reader was interrupted: start the reader first");
-        }
         if (descriptor_ < 0) fail("cannot be opened for writing: " + because(errno));
         return;
     }

@@ -14,6 +14,7 @@
 #include <new>
 
 #include "io/system/open_file.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::io {
 
@@ -84,6 +85,10 @@ int open_to_write(const std::filesystem::path& path) {
     }
     ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
     if (file >= 0) ::fcntl(file, F_SETFL, ::fcntl(file, F_GETFL) & ~O_NONBLOCK);
+    if (file < 0 && problem == EINTR) {
+        throw WaitEnded(path.string() +
+                        ": the wait for its reader was interrupted: start the reader first");
+    }
     errno = problem;
     return file;
 }

@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 from pydicom.encaps import encapsulate
 from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
+from pydicom.fileset import FileSet
 
 from readers_test import SYNTAXES, noted, ramp, refused, save, slice_of, stack
 
@@ -350,6 +351,17 @@ def test_a_broken_slice_is_named_and_never_passed_over(tmp_path, name, words):
 
 def test_an_empty_file_among_slices_without_an_extension_is_named(tmp_path):
     refused(broken(tmp_path / "a", "scan", b""), "'scan'", "is empty")
+
+
+def test_an_empty_file_beside_the_list_of_a_disc_is_no_slice(tmp_path):
+    disc = FileSet()
+    for file in save(tmp_path / "series", stack(ramp("u2"), change=lambda _: {
+            "PatientID": "1", "PatientName": "A", "StudyID": "1", "StudyDate": "20260101", "StudyTime": "120000",
+            "SeriesNumber": 1})).iterdir():
+        disc.add(file)
+    disc.write(tmp_path / "disc")
+    (tmp_path / "disc" / "LICENSE").write_bytes(b"")
+    assert numpy.array_equal(palpate.load(tmp_path / "disc").volume.array, ramp("u2"))
 
 
 @pytest.mark.parametrize("name, data", (

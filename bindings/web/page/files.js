@@ -54,6 +54,13 @@ export function samplesOf(bytes, type, big, count) {
   return Type.from({ length: count }, (_, i) => view[read](i * size, !big));
 }
 
+/** The same of a file. As much again or more is no padding: the type is wider than its header says. */
+function samplesOfFile(bytes, type, big, count) {
+  const needed = (count * Number(type.match(/\d+$/)?.[0])) / 8;
+  if (bytes.byteLength >= 2 * needed) refuse(`its header asks for ${needed} bytes of samples, there are ${bytes.byteLength}`, "correct the sizes or the type in its header");
+  return samplesOf(bytes, type, big, count);
+}
+
 const unitsOfLength = new Map([["m", 1000], ["cm", 10], ["mm", 1], ["um", 0.001], ["", 1]]); // [mm]
 export function millimetresIn(unit) {
   if (!unitsOfLength.has(unit)) refuse(`the unit of length '${unit}' is not read`);
@@ -153,7 +160,7 @@ async function readNrrd(bytes) {
   const place = placeOfNrrd(fields, size, notes);
   const rest = bytes.subarray(begin);
   const data = encoding === "raw" ? rest : await inflated(rest, "gzip", 8 * count + 2 ** 20);
-  return { samples: finite(samplesOf(data, type, endian === "big", count), notes), ...place, notes };
+  return { samples: finite(samplesOfFile(data, type, endian === "big", count), notes), ...place, notes };
 }
 
 function readNifti(bytes) {
@@ -172,7 +179,7 @@ function readNifti(bytes) {
   if (short(72) !== 0 && !type.endsWith(String(short(72)))) refuse("the bits of a sample of this NIfTI do not fit their type");
   const offset = real(108);
   if (!(offset >= 348 && offset < 1e9 && Number.isInteger(offset))) refuse(`the header of this NIfTI puts the samples at byte ${offset} (vox_offset)`);
-  let samples = samplesOf(bytes.subarray(offset), type, !little, countOf(size));
+  let samples = samplesOfFile(bytes.subarray(offset), type, !little, countOf(size));
   const [slope, intercept] = [real(112), real(116)];
   if (slope !== 0 && Number.isFinite(slope)) { // else none is given
     if (!Number.isFinite(intercept)) refuse(`the intercept ${intercept} of this NIfTI is not a number`);

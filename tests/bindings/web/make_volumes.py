@@ -207,7 +207,7 @@ SAME_ZARR = {
     "checked": array3(codecs=[BYTES, {"name": "crc32c"}]) | {"c/0/0/0": EIGHT + crc32c(EIGHT)},
 }
 SAME_FILES = {
-    "plain.nrrd": nrrd(), "longer.nrrd": nrrd(data=2 * EIGHT), "magic.nrrd": nrrd(data=b"\x1f\x8b" + EIGHT[2:]), "uint.nrrd": nrrd(type="uint", data=2 * EIGHT),
+    "plain.nrrd": nrrd(), "longer.nrrd": nrrd(data=EIGHT + EIGHT[:4]), "magic.nrrd": nrrd(data=b"\x1f\x8b" + EIGHT[2:]), "uint.nrrd": nrrd(type="uint", data=2 * EIGHT),
     "ras.nrrd": nrrd("space: RAS", LPS[1], "space origin: (1,2,3)"), "las.nrrd": nrrd("space: left-anterior-superior", LPS[1]),
     "dimension.nrrd": nrrd("space dimension: 3", LPS[1], 'space units: "m" "m" "m"'), "key.nrrd": nrrd("type:=none"),
     "holes.nrrd": nrrd(type="float", data=HOLES), "holes.nii": nifti(16, data=HOLES), "plain.nii": nifti(),
@@ -229,7 +229,7 @@ REFUSED_ZARR = {
 REFUSED_FILES = {
     "rpi.nrrd": ("RPI", nrrd("space: RPI", LPS[1])), "scanner.nrrd": ("scanner-xyz", nrrd("space: scanner-xyz", LPS[1])), "spaceless.nrrd": ("no space", nrrd(LPS[1])),
     "mins.nrrd": ("axismins", nrrd("spacings: 1 2 3", "axis mins: 5 6 7")), "none.nrrd": ("space directions", nrrd(LPS[0], "space directions: none (0,2,0) (0,0,3)")),
-    "endian.nrrd": ("endian", nrrd(endian=None)), "nan.nrrd": ("spacings", nrrd("spacings: NaN 2 3")), "twice.nrrd": ("twice", nrrd("sizes: 2 2 1")),
+    "doubled.nrrd": ("asks for 16 bytes", nrrd(data=2 * EIGHT)), "endian.nrrd": ("endian", nrrd(endian=None)), "nan.nrrd": ("spacings", nrrd("spacings: NaN 2 3")), "twice.nrrd": ("twice", nrrd("sizes: 2 2 1")),
     "time.nrrd": ("time", nrrd("kinds: domain domain time")), "units.nrrd": ("units", nrrd("spacings: 1 2 3", 'units: "m" "m" "m"')), "both.nrrd": ("both", nrrd(*LPS, "spacings: 1 2 3")),
     "sheared.nrrd": ("right angles", nrrd(LPS[0], "space directions: (1,0,0) (1,2,0) (0,0,3)")), "huge.nrrd": ("million samples", nrrd(sizes="9999 9999 9999")),
     "offset.nii": ("vox_offset", nifti(offset=0)), "steps.nii": ("pixdim", nifti(steps=[1, -1, 2, 3])), "sheared.nii": ("right angles", nifti(sform=[1, 0.5, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0])),

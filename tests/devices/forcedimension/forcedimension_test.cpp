@@ -71,6 +71,29 @@ TEST_F(ForceDimension, a_device_that_is_not_there_or_does_not_open_is_told_with_
     EXPECT_TRUE(contains(refusal(), "no device (0 found): connect it"));
 }
 
+TEST_F(ForceDimension, one_device_does_not_serve_two_hands_and_is_not_closed_for_the_first) {
+    auto first = open();
+    with([](auto& dhd) { dhd.calls.clear(); });
+    EXPECT_TRUE(contains(refusal(",index=0"), "serves another hand"));
+    EXPECT_TRUE(with([](auto& dhd) { return dhd.calls.empty(); }));
+    first.reset();
+    EXPECT_NO_THROW(open(",index=0"));
+}
+
+TEST_F(ForceDimension, a_hand_may_open_its_device_again_before_it_lets_go_of_it) {
+    const int hands[2] = {};
+    const auto open_by = [&](const int& hand) {
+        const OpenedBy opened_by(&hand);
+        return open();
+    };
+    auto first = open_by(hands[0]);
+    auto again = open_by(hands[0]);
+    first.reset();
+    EXPECT_THROW(open_by(hands[1]), DeviceError);
+    again.reset();
+    EXPECT_NO_THROW(open_by(hands[1]));
+}
+
 TEST_F(ForceDimension, each_model_has_its_own_limits) {
     const DeviceInfo omega = open()->info();
     EXPECT_EQ(omega.name, "forcedimension");

@@ -74,9 +74,10 @@ TEST_F(ForceDimensionWrist, force_and_torque_go_to_zero_when_stopped_silent_or_c
     ASSERT_TRUE(turns(*device));
     device->stop();
     EXPECT_TRUE(stays_at_zero(*device));
-    auto other = open();
-    ASSERT_TRUE(turns(*other));
-    other.reset();
+    device.reset();
+    device = open();
+    ASSERT_TRUE(turns(*device));
+    device.reset();
     EXPECT_EQ(with([](auto& dhd) { return dhd.force_at_stop; }), (std::array<double, 3>{}));
     EXPECT_TRUE(torque().isZero(0));
 }

@@ -4,6 +4,15 @@
 namespace palpate::devices {
 namespace {
 
+TEST_F(HaplyTest, one_device_does_not_serve_two_hands) {
+    {
+        const auto first = open();
+        EXPECT_NE(refusal(std::string("device=") + id).find("serves another hand"),
+                  std::string::npos);
+    }
+    EXPECT_EQ(refusal(std::string("device=") + id), "");
+}
+
 TEST_F(HaplyTest, positions_are_mm_in_our_axes) {
     const auto device = open();
     ASSERT_TRUE(becomes(*device, DeviceStatus::ready));

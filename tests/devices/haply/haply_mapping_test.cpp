@@ -195,11 +195,13 @@ TEST_F(HaplyMapping, the_force_goes_under_the_key_that_the_service_renders) {
         EXPECT_GT(rendered, 3);
     }
     key = "values";  // though it looks like a service that takes the other one
-    const auto device = open();
-    EXPECT_TRUE(within(
-        200ms, [&] { return rendered > 3; }, [&] { press(*device); }));
-    EXPECT_TRUE(throughout(
-        100ms, [&] { return rendered > 3; }, [&] { press(*device); }));
+    {
+        const auto device = open();
+        EXPECT_TRUE(within(
+            200ms, [&] { return rendered > 3; }, [&] { press(*device); }));
+        EXPECT_TRUE(throughout(
+            100ms, [&] { return rendered > 3; }, [&] { press(*device); }));
+    }
     key = "newtons";
     const auto neither = open();
     EXPECT_TRUE(within(
