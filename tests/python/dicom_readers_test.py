@@ -356,7 +356,7 @@ def test_an_empty_file_among_slices_without_an_extension_is_named(tmp_path):
 def test_an_empty_file_beside_the_list_of_a_disc_is_no_slice(tmp_path):
     disc = FileSet()
     for file in save(tmp_path / "series", stack(ramp("u2"), change=lambda _: {
-            "PatientID": "1", "PatientName": "A", "StudyID": "1", "StudyDate": "20260101", "StudyTime": "120000",
+            "PatientID": "1", "PatientName": "A", "StudyID": "1", "StudyInstanceUID": "1.2.3", "StudyDate": "20260101", "StudyTime": "120000",
             "SeriesNumber": 1})).iterdir():
         disc.add(file)
     disc.write(tmp_path / "disc")
