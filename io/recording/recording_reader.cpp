@@ -138,11 +138,11 @@ struct RecordingReader::Rows {
     int taken_hand(Json& command) const {
         const Json whose = member(command, "hand");
         command.erase("hand");
-        const std::int64_t number = whose.is_number_integer() ? whose.get<std::int64_t>() : 0;
-        if (number < 1 || number > static_cast<std::int64_t>(ticks.size())) {
+        const std::int64_t named = whose.is_number_integer() ? whose.get<std::int64_t>() : 0;
+        if (named < 1 || named > static_cast<std::int64_t>(ticks.size())) {
             throw std::invalid_argument("'hand' is out of range");
         }
-        return static_cast<int>(number);
+        return static_cast<int>(named);
     }
 
     void require_before_end() const {
