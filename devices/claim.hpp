@@ -5,8 +5,8 @@
 
 namespace palpate::devices {
 
-/// While there is one, devices that this thread opens are those of `hand`, which may open the one
-/// that it has once more before it lets go of it.
+/// While it exists, the devices that this thread opens are those of `hand`. A hand may open its
+/// device again before it closes the first one, as when its options change.
 class OpenedBy {
   public:
     explicit OpenedBy(const void* hand);

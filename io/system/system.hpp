@@ -32,7 +32,7 @@ bool means_full(int error) noexcept;
 /// else that is no file. Everything that is not meant for streams opens files by this.
 int open_to_read(const std::filesystem::path& path);
 /// A file that is there, or a stream. A pipe is waited for until it has a reader, or until a signal
-/// comes to this thread: throws WaitEnded then.
+/// comes to this thread. Then it throws WaitEnded.
 int open_to_write(const std::filesystem::path& path);
 /// A descriptor of its own.
 int open_standard_output();
