@@ -54,14 +54,15 @@ force_settings = palpate.ForceSettings(stiffness=1, limit=20)
 renderer = palpate.Renderer(palpate.Field(volume), 0, palpate.RenderSetup(force=force_settings),
                             limits=device.info().limits, transform=transform)
 with palpate.Servo(renderer, device) as servo:
-    for _ in range(10):
+    height, force = 8.0, 0.0
+    # Until the spring of 1 N/mm carries the weight of 0.98 N.
+    while abs(height + 0.98) + abs(force - 0.98) > 0.02 and not servo.device_problem:
         time.sleep(0.1)
         snapshot = servo.snapshot()
         if snapshot is None:
             continue
         tick = snapshot.tick
-        print(f"{tick.time:.2f} s  height {tick.hip[2]:6.2f} mm  "
-              f"force {numpy.linalg.norm(tick.force):.2f} N")
-    if servo.device_problem:
-        print(servo.device_problem)
+        height, force = tick.hip[2], float(numpy.linalg.norm(tick.force))
+        print(f"{tick.time:.2f} s  height {height:6.2f} mm  force {force:.2f} N")
+    print(servo.device_problem or f"rests at {height:.1f} mm with {force:.1f} N")
 print("compute time a tick: p50 {p50} ns, p99 {p99} ns".format(**servo.report().compute))

@@ -28,7 +28,5 @@ def test_what_is_felt_lies_within_a_tenth_of_a_millimetre_of_the_analytic_surfac
 
 
 def test_a_device_in_python_comes_to_rest_on_the_floor():
-    rows = re.findall(r"height +(-?[\d.]+) mm +force ([\d.]+) N", output_of("write_a_device.py"))
-    # Its weight, 1 N, sinks the spring of 1 N/mm by a millimetre; a busy machine lets it sink more.
-    assert rows and -5 < float(rows[-1][0]) < 2
-    assert any(float(force) > 0.3 for _, force in rows)
+    # However late its machine, the example goes on until the spring carries the weight of 0.98 N.
+    assert output_of("write_a_device.py").splitlines()[-2] == "rests at -1.0 mm with 1.0 N"
