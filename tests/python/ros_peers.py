@@ -63,23 +63,34 @@ class Peer:
         self.joy = ros.Publisher(f"{arm}/button", Joy, queue_size=1)
         self.wrench = ros.Subscriber(f"{arm}/servo_cf", WrenchStamped, self.forces.append, tcp_nodelay=True)
         self.ends = False
+        self.lock = threading.Lock()  # of what is sent: a topic that is closed meanwhile raises
         self.thread = threading.Thread(target=self.run)
         self.thread.start()
 
     def run(self):
         while not self.ends:
             time.sleep(0.002)
-            if not self.sends:
-                continue
-            message = PoseStamped()
-            self.stamp = self.ros.Time.now() if self.stamped else self.stamp
-            message.header.stamp, message.header.frame_id = self.stamp, "base"
-            message.pose.position.x, message.pose.orientation.w = -self.height / 1000, 1
-            self.topic.publish(message)
-            if self.opening is not None:
-                self.gripper.publish(JointState(position=[self.opening]))
-            if self.buttons is not None:
-                self.joy.publish(Joy(buttons=self.buttons))
+            with self.lock:
+                if self.sends:
+                    self.send()
+
+    def send(self):
+        message = PoseStamped()
+        self.stamp = self.ros.Time.now() if self.stamped else self.stamp
+        message.header.stamp, message.header.frame_id = self.stamp, "base"
+        message.pose.position.x, message.pose.orientation.w = -self.height / 1000, 1
+        self.topic.publish(message)
+        if self.opening is not None:
+            self.gripper.publish(JointState(position=[self.opening]))
+        if self.buttons is not None:
+            self.joy.publish(Joy(buttons=self.buttons))
+
+    def lose_buttons_and_gripper(self):
+        """Their node is gone."""
+        with self.lock:
+            self.buttons = self.opening = None
+            self.joy.unregister()
+            self.gripper.unregister()
 
     def pushes(self):
         """Outwards, which is to the person."""

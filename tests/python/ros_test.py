@@ -139,9 +139,7 @@ def test_a_run_with_a_device_of_ros_has_its_gripper_and_its_buttons_and_is_recor
             assert run.snapshot().device.buttons == 2
             peer.buttons = [1, 2]  # the second was clicked and is not held
             until(lambda: not run.snapshot().clutched and run.snapshot().device.buttons == 1)
-            peer.buttons = peer.opening = None
-            peer.joy.unregister()  # its node is gone: nobody holds the button
-            peer.gripper.unregister()
+            peer.lose_buttons_and_gripper()  # nobody holds the button
             until(lambda: run.snapshot().device.buttons == 0 and run.snapshot().device.opening is None)
             # It is back, and has not said anything.
             peer.joy = ros.Publisher("/left/button", Joy, queue_size=1)
