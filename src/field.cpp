@@ -92,6 +92,25 @@ void Field::cover(const std::shared_ptr<const Field>& labels, std::uint32_t soli
     background_ = (solid_labels & 1U) != 0 ? solid : cover_.background;
 }
 
+namespace {
+
+/// Whether samples of a box belong to bricks of another level than its own. A brick's margin is
+/// made from samples of its own level. If it counted beside a finer brick, the field would jump
+/// between the two, and a proxy could go from what one calls free into what the other calls solid.
+bool meets_other_level(const ResidentBricks& resident, const Brick& own, const Index3& low,
+                       const Index3& high) {
+    const Index3 first = ResidentBricks::brick_of(low), last = ResidentBricks::brick_of(high);
+    if (first == last) return false;
+    for (int i = 0; i < 8; ++i) {
+        const Brick* brick = resident.at(
+            {i & 1 ? last[0] : first[0], i & 2 ? last[1] : first[1], i & 4 ? last[2] : first[2]});
+        if (brick && brick->level != own.level) return true;
+    }
+    return false;
+}
+
+}  // namespace
+
 template <int count>
 Field::Run Field::stored_run(const Index3& low) const {
     const Index3 high(low[0] + count - 1, low[1] + count - 1, low[2] + count - 1);
@@ -119,6 +138,7 @@ Field::Run Field::stored_run(const Index3& low) const {
     }
     if (resident) {
         constexpr std::ptrdiff_t row = ResidentBricks::row, slice = ResidentBricks::slice;
+        if (meets_other_level(*resident_, *resident, low, high)) return {};
         const std::ptrdiff_t back = count == 3 ? 1 + row + slice : 0;
         return in(*resident, ResidentBricks::place_of(owner) - back, row);
     }

@@ -10,6 +10,7 @@
 
 #include "palpate/edit.hpp"
 #include "palpate/field.hpp"
+#include "palpate/renderer.hpp"
 #include "support/constants.hpp"
 #include "support/edits.hpp"
 #include "support/resident.hpp"
@@ -75,6 +76,86 @@ TEST(Resident, samples_that_are_missing_are_solid_on_either_side) {
         for (std::size_t i = 0; i < 27; ++i) EXPECT_EQ(here[i], i % 3 == 0 ? whole[i] : most);
         EXPECT_EQ(field.cell({63, 5, 5}), plain.cell({63, 5, 5}));
         EXPECT_EQ(field.around({63, 5, 5}), plain.around({63, 5, 5}));
+    }
+}
+
+/// Of each level the same grid with other samples; bricks come at any of them.
+struct Levels {
+    std::vector<Volume> volumes;
+    ResidentBricks bricks{volumes.front().geometry().size};
+
+    void add(const Index3& brick, std::uint8_t level) {
+        const ResidentBricks::Change change{brick, brick_of(volumes[level], brick, 0x55, level)};
+        bricks = bricks.with({&change, 1});
+    }
+    std::shared_ptr<const Samples> samples() const {
+        const Volume& first = volumes.front();
+        return std::make_shared<const Samples>(first, first.geometry(), bricks, 0, 255);
+    }
+};
+
+TEST(Resident, where_bricks_of_different_levels_meet_each_sample_has_one_value) {
+    Random random(8);
+    const Geometry geometry = grid({130, 70, 66});
+    Levels levels{{noise_volume<float>(geometry, 1, 0, 255),
+                   noise_volume<float>(geometry, 2, 0, 255),
+                   noise_volume<float>(geometry, 3, 0, 255)}};
+    std::map<std::array<int, 3>, std::uint8_t> level_of;
+    for_each_sample(grid(levels.bricks.count()), [&](const Index3& brick) {
+        const auto level = static_cast<std::uint8_t>(random.below(3));
+        levels.add(brick, level_of[{brick[0], brick[1], brick[2]}] = level);
+    });
+    const Field field(levels.samples());
+    std::vector<Field> plain;
+    for (const Volume& volume : levels.volumes) plain.emplace_back(volume);
+    const auto sample = [&](const Index3& at) {
+        const Index3 brick = ResidentBricks::brick_of(at);
+        return plain[level_of.at({brick[0], brick[1], brick[2]})].cell(at)[0];
+    };
+    for_each_sample(geometry, [&](const Index3& at) {
+        const Index3 beside = at - Index3(at[0] % 64 == 0, at[1] % 64 == 0, at[2] % 64 == 0);
+        if ((beside.array() < 0).any() || beside == at) return;
+        const CellSamples cell = field.cell(beside);
+        const Neighbours around = field.around(beside);
+        for (int i = 0; i < 8; ++i) {
+            const Index3 corner = beside + Index3(i & 1, i >> 1 & 1, i >> 2);
+            if ((corner.array() >= geometry.size.array()).any()) continue;
+            ASSERT_EQ(cell[std::size_t(i)], sample(corner)) << corner.transpose();
+            const Index3 place = corner - beside + Index3::Ones();
+            ASSERT_EQ(around[std::size_t(place[0] + 3 * place[1] + 9 * place[2])], sample(corner));
+        }
+    });
+}
+
+/// Solid up to a height [voxel].
+Volume floor_of(const Geometry& geometry, double height) {
+    std::vector<float> samples;
+    for_each_sample(geometry, [&](const Index3& at) {
+        samples.push_back(static_cast<float>(128 + 2 * (height - at[2])));
+    });
+    return {geometry, std::move(samples)};
+}
+
+TEST(Resident, a_proxy_does_not_go_into_a_finer_brick_that_says_solid) {
+    const Geometry geometry = grid({128, 64, 64});
+    for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
+        for (const double coarse : {24.0, 29.5, 36.0}) {
+            Levels levels{{floor_of(geometry, 30), floor_of(geometry, coarse)}};
+            levels.add({0, 0, 0}, 0);
+            levels.add({1, 0, 0}, 1);
+            const Field field(levels.samples(), Solid::above, 0, interpolation);
+            Renderer renderer = make_renderer(field, 128.0);
+            int held = 0;
+            for (int tick = 0; tick < 400; ++tick) {  // down beside the border, then across it
+                const Vec3 hand(std::min(100.0, 120.0 - 0.2 * tick), 32,
+                                std::max(12.0, 45 - 0.5 * tick));
+                const ProxyUpdate update = render(renderer, {0.001 * tick, hand}).proxy;
+                ASSERT_EQ(update.status, UpdateStatus::done);
+                ASSERT_LE(value_at(field, update.scp), 128 + 255e-9) << tick;
+                held += update.mode == Mode::constrained;
+            }
+            EXPECT_GT(held, 200);
+        }
     }
 }
 
