@@ -20,8 +20,8 @@ from palpate.evaluate import bodies
 from palpate.evaluate import drift, fall_through, fidelity, notice, penetration, report, sampling, walk_through
 from palpate.evaluate.experiment import Claim, Options, Result, Table
 from palpate.evaluate.outside import Outside
-from palpate.evaluate.subjects import Subject, of_text
-from palpate.evaluate.walls import Lines, closed_shell
+from palpate.evaluate.subjects import Subject, of_text, of_texts, real
+from palpate.evaluate.walls import closed_shell, lines_through
 
 # Quick tables of the C++ programs, 28 November 2026: of layers, tools and scaling the parts without curves and random numbers.
 # The filter is a newer one in the rows of dequantized data.
@@ -131,6 +131,14 @@ def test_a_level_that_nothing_meets_is_refused(name):
         MODULES[name].run(Options(quick=True, subjects=(of_text("synthetic:sphere:16x16x16@1000"),)))
 
 
+def test_a_volume_at_two_levels_is_two_volumes_with_a_hand_each():
+    low, high, other = of_texts(["synthetic:sphere:24x24x24@40", "synthetic:sphere:24x24x24@120", "synthetic:torus:24x24x16"])
+    assert (low.name, high.name, other.name) == ("sphere at 40", "sphere at 120", "torus")
+    table = drift.run(Options(quick=True, subjects=(low, high))).table
+    turn = [table.where(volume=volume, method="exact")[0]["updates"] for volume in (low.name, high.name)]
+    assert turn[0] > 1.1 * turn[1]  # the hand goes around the larger ball at the lower level
+
+
 def test_ranges_of_interest_are_those_that_were_asked_for():
     chosen = program.arguments(["penetration", "--range", "60%:70%", "--range", "80%:90%"])
     ball = of_text("synthetic:sphere:32x32x32@50%")
@@ -234,7 +242,7 @@ def test_walls_are_closed_and_have_the_thickness_that_is_asked_for():
 def test_every_line_leads_from_free_space_into_what_cannot_be_reached():
     wall = closed_shell("ball", 0.75, "linear")
     outside = Outside(wall)
-    lines = Lines(wall, outside, False, 300, numpy.random.default_rng(1))
+    lines = lines_through(wall, outside, False, 300, numpy.random.default_rng(1))
     at = {name: lines.entry + numpy.reshape(way, (-1, 1)) * lines.along
           for name, way in (("before", -1e-3), ("within", 0.5 * lines.wall), ("end", lines.end))}
     assert outside.holds(at["before"]).all()
@@ -432,9 +440,8 @@ def test_an_interrupt_while_the_folder_is_made_leaves_nothing(tmp_path, monkeypa
 def test_real_volumes_are_known_by_their_bytes(tmp_path):
     notes = []
     (tmp_path / "lobster.nrrd").write_bytes((pathlib.Path(palpate.sample_volume())).read_bytes())
-    data = []
-    assert drift.real("lobster", Options(data=tmp_path, note=notes.append), data)
-    assert "not the file" in notes[0]
-    assert data[0][1] == hashlib.sha256((tmp_path / "lobster.nrrd").read_bytes()).hexdigest()
-    assert drift.real("ct-head", Options(data=tmp_path, note=notes.append)) is None
+    options = Options(data=tmp_path, note=notes.append)
+    assert real("lobster", options) and "not the file" in notes[0]
+    assert options.used[0][1] == hashlib.sha256((tmp_path / "lobster.nrrd").read_bytes()).hexdigest()
+    assert real("ct-head", options) is None and len(options.used) == 1
     assert "without the volume ct-head" in notes[1]

@@ -244,7 +244,7 @@ class Folder:
 
 def options_of(chosen, name):
     from palpate.evaluate.experiment import Options
-    from palpate.evaluate.subjects import of_text
+    from palpate.evaluate.subjects import of_texts
 
     def progress(part):
         if sys.stderr.isatty() and not (chosen.quiet or chosen.json):
@@ -256,7 +256,7 @@ def options_of(chosen, name):
 
     return Options(quick=chosen.quick, seed=chosen.seed, seeds=chosen.seeds, method=chosen.method,
                    ranges=tuple(chosen.range),
-                   subjects=tuple(map(of_text, chosen.volume)), progress=progress, note=note,
+                   subjects=of_texts(chosen.volume), progress=progress, note=note,
                    data=Path(chosen.data) if chosen.data else None)
 
 
@@ -272,6 +272,7 @@ def run(name, chosen, folder, words):
     options = options_of(chosen, name)
     module = importlib.import_module(f"palpate.evaluate.{name.replace('-', '_')}")
     result = module.run(options)
+    result.data = options.used
     options.progress(1)
     made = report.Report(name, module.TITLE, result, f"{machine.described(command_of(words))} Seed {chosen.seed}, " + (
         "quick mode (too short for the times to mean anything)." if chosen.quick else "full run."))

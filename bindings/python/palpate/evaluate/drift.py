@@ -25,7 +25,7 @@ def subjects_of(options, data):
     if options.quick:
         return [*own, synthetic("sphere:40x40x40")]
     own += [synthetic(name) for name in ("sphere", "torus", "marschner-lobb")]
-    lobster = real("lobster", options, data)
+    lobster = real("lobster", options)
     return [*own, lobster] if lobster else own
 
 

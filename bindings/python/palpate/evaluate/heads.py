@@ -72,7 +72,7 @@ def heads_of(options, data):
     heads = [known("sample head", field, *levels, *line)]
     wanted = {"ct-head": (500, 1200, (103, 64, 44), (0, 1, 0.6)), "visible-human": (*levels, *line)}
     for name, rest in wanted.items() if not options.quick else ():
-        subject = real(name, options, data)
+        subject = real(name, options)
         if subject:
             heads.append(known(name, subject.field, *rest))
     return heads

@@ -49,7 +49,7 @@ def bodies_of(options, data):
         return [functools.partial(steady, subject) for subject in options.subjects]
     found = [functools.partial(ball_by, "circle", grid, samples) for grid in ((64,) if options.quick else (128, 256))
              for samples in SAMPLES]
-    head = None if options.quick else real("ct-head", options, data)
+    head = None if options.quick else real("ct-head", options)
     return found + ([functools.partial(steady, head)] if head else [])
 
 

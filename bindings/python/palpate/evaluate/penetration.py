@@ -86,7 +86,7 @@ def of_a_user(subject):
 def lines_of(options, data):
     lines = [of_a_user(subject) for subject in options.subjects]
     if not lines:
-        head = None if options.quick else real("ct-head", options, data)
+        head = None if options.quick else real("ct-head", options)
         lines = [*([ct_head(head)] if head else []), shepp_logan(options.quick)]
     for line in lines if options.ranges else ():
         volume = line.subject.field.volume

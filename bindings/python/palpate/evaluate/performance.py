@@ -62,7 +62,7 @@ def cases_of(options, data):
     if options.quick:
         return [*cases, Case(synthetic("shepp-logan:64x64x64"), "visible-male")]
     for name, row in STAND_INS.items():
-        subject = real(name, options, data)
+        subject = real(name, options)
         if subject:
             cases.append(Case(dataclasses.replace(subject, name="other-neuron") if name == "neuron" else subject, row))
     return cases

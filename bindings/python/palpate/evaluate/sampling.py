@@ -15,6 +15,11 @@ def none_of(count, what):
     return f"0 of {count:,} {what}, so a share below {bound_of_none(count):.2g} at 95 % confidence"
 
 
+def quantile(values, share):
+    """One of the values, so that this share of them is not larger; NaN for none."""
+    return float(numpy.quantile(values, share, method="inverted_cdf")) if len(values) else numpy.nan
+
+
 def bootstrap(values, statistic=numpy.median, seed=1):
     """(statistic, low, high): percentiles of 2000 resamples with replacement."""
     values = numpy.asarray(values)[~numpy.isnan(values)]

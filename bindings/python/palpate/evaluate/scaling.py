@@ -257,7 +257,7 @@ def by_approach(plan, options, data):
     if options.subjects:
         return [(explored, (lambda own=own: own,)) for own in options.subjects]
     return [(ball, (size,)) for size in plan.explicit_sizes] + [
-        (explored, (lambda name=name: real(name, options, data),)) for name in plan.real]
+        (explored, (lambda name=name: real(name, options),)) for name in plan.real]
 
 
 def crossings(table):
