@@ -55,7 +55,7 @@ def test_drag_is_drag_times_length_in_what_gave_way():
 
 
 def test_a_drill_meets_bone_after_the_skin_and_again_from_behind():
-    head, = heads.heads_of(Options(quick=True), [])
+    head, = heads.heads_of(Options(quick=True))
     rows = Table(heads.press_into(head, "drilling", 0.5))
     assert [row["order"] for row in rows.where(part="head event")] == [
         "on skin", "through skin", "on bone", "through bone", "on bone from behind", "through bone from behind"]
@@ -63,17 +63,17 @@ def test_a_drill_meets_bone_after_the_skin_and_again_from_behind():
 
 def test_real_heads_that_are_missing_are_named():
     notes = []
-    assert len(heads.heads_of(Options(note=notes.append), [])) == 1
+    assert len(heads.heads_of(Options(note=notes.append))) == 1
     assert "ct-head" in notes[0] and "visible-human" in notes[1]
 
 
 def test_a_volume_of_the_user_takes_the_place_of_heads():
     subject = of_text("synthetic:sphere:24x24x24")
-    head, = heads.heads_of(Options(quick=True, subjects=(subject,)), [])
+    head, = heads.heads_of(Options(quick=True, subjects=(subject,)))
     table = Table(row for name in heads.SETS for row in heads.press_into(head, name, 0.5))
-    assert head.name == "sphere" and all(claim.held for claim in heads.claims_of_heads(table))
+    assert head.subject.name == "sphere" and all(claim.held for claim in heads.claims_of_heads(table))
     with pytest.raises(ValueError, match="level"):
-        heads.heads_of(Options(subjects=(of_text("synthetic:sphere:16x16x16@1000"),)), [])
+        heads.heads_of(Options(subjects=(of_text("synthetic:sphere:16x16x16@1000"),)))
 
 
 def test_rendering_many_ticks_is_rendering_each():

@@ -13,7 +13,8 @@ import scipy.ndimage
 from . import figures, sampling
 from .bodies import unit
 from .experiment import Claim, Figure, Result, Table, in_parallel
-from .tissues import RATE, Way, renderer, times
+from .hands import Way
+from .tissues import RATE, renderer, times
 
 TITLE = "How wrong is the force on a needle without a full segmentation?"
 SPEED, BEFORE = 50, 3  # [mm/s] of the hand, [mm] of air before the skin

@@ -5,6 +5,8 @@ import dataclasses
 import numpy
 import palpate
 
+from .hands import Way
+
 RATE = 1000  # [Hz] of every hand here
 BALL_RADIUS = 80.0  # [mm]
 DEEPEST = 64.0  # [mm] of a hand in either body
@@ -12,17 +14,6 @@ DEEPEST = 64.0  # [mm] of a hand in either body
 TISSUES = {"skin": (10, 0.4, 1.2, 0.03), "fat": (16, 0.2, 0.7, 0.01), "fascia": (30, 0.9, 2.0, 0.05),
            "muscle": (33.5, 0.5, 1.0713, 0.03), "bone": (60, 1.5, numpy.inf, 0)}
 LEVEL, STIFFNESS, PUNCTURE, DRAG = (numpy.array(column, dtype=float) for column in zip(*TISSUES.values()))
-
-
-@dataclasses.dataclass
-class Way:
-    """A straight way of a hand: where depth 0 is [mm, physical], and a unit vector."""
-
-    origin: numpy.ndarray
-    inward: numpy.ndarray
-
-    def at(self, depth):
-        return self.origin + numpy.multiply.outer(depth, self.inward)
 
 
 @dataclasses.dataclass
@@ -80,6 +71,16 @@ def renderer(field, made):
 
 def times(count):
     return (1 + numpy.arange(count)) / RATE
+
+
+def thinned(depth, is_apart, wanted=()):
+    """Rows whose depths are apart from the one before, and others that are wanted."""
+    kept, last = [], -numpy.inf
+    for row, one in enumerate(depth):
+        if is_apart(one, last) or (len(wanted) and wanted[row]):
+            kept.append(row)
+            last = one
+    return kept
 
 
 def spring(depth):
