@@ -19,6 +19,7 @@ from palpate.evaluate import __main__ as program
 from palpate.evaluate import bodies
 from palpate.evaluate import drift, fall_through, fidelity, notice, penetration, report, sampling, walk_through
 from palpate.evaluate.experiment import Claim, Options, Result, Table
+from palpate.evaluate.meshes import nearest_points
 from palpate.evaluate.outside import Outside
 from palpate.evaluate.subjects import Subject, of_text, of_texts, real
 from palpate.evaluate.walls import closed_shell, lines_through
@@ -201,7 +202,7 @@ def test_nearest_points_agree_with_a_fine_search():
     weights = numpy.stack([u, v, 12 - u - v], axis=-1)[u + v <= 12] / 12
     fine = numpy.einsum("wc,tcx->twx", weights, mesh.vertices[mesh.triangles]).reshape(-1, 3)
     points = numpy.random.default_rng(11).uniform(-4, 4, (5, 3))
-    for point, found in zip(points, fidelity.nearest_points(mesh, points)):
+    for point, found in zip(points, nearest_points(mesh, points)):
         least, distance = numpy.linalg.norm(fine - point, axis=1).min(), numpy.linalg.norm(found - point)
         assert least - 0.1 < distance <= least + 1e-12
 

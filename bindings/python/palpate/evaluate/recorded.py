@@ -15,7 +15,7 @@ import scipy.spatial
 from . import figures, sampling
 from .bodies import tilt, unit
 from .experiment import Claim, Figure, Result, Table, largest
-from .fidelity import nearest_in_triangles
+from .meshes import nearest_in_triangles
 from .human import RATE, Human, press
 from .subjects import CONTESTANTS, Subject
 
