@@ -219,7 +219,7 @@ def test_times_of_updates_are_in_order_and_each_is_measured():
     assert list(weights) == 2 * ([50] * 10 + [3]) and len(palpate.update_times(*of, batch=50)) == len(weights)
     assert len(palpate.update_times(*of)) == 1006 and len(palpate.update_times(*of, cold=100)) == 10
     effort = performance.Effort(2, 0.503, 3, 5)
-    taken = performance.timed(subject, [performance.CONTESTANTS["exact"]], hand, effort)["exact"]
+    taken = performance.timed(subject, ["exact"], hand, effort)["exact"]
     found = performance.numbers_of(taken, hand, 20)
     assert 0 < found["p50_ns"] <= found["p99_ns"] <= found["p999_ns"] <= found["max_ns"] <= found["interrupted_max_ns"]
     assert found["updates"] == 1006 and found["cold_p50_ns"] > 0
@@ -438,6 +438,6 @@ def test_a_trembling_hand_feels_a_surface_that_is_too_stiff_buzz():
     assert calm["in_contact"] == "yes" and calm["above_20_hz_percent"] < 1 < stability.FORCE < wild["above_20_hz_percent"]
     row = {"part": "trembling", "rate_hz": 1000, **{name: calm[name] for name in ("in_contact", "above_20_hz_percent")}}
     for change, held in (({}, True), ({"above_20_hz_percent": 8}, False), ({"in_contact": "no"}, False)):
-        claim, = stability.trembling_claim(Table([{**row, **change}]))
+        claim, = stability.claims_of_trembling(Table([{**row, **change}]))
         assert claim.held == held
-    assert not list(stability.trembling_claim(Table()))
+    assert not list(stability.claims_of_trembling(Table()))

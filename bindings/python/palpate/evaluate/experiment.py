@@ -27,6 +27,10 @@ class Options:
     progress: Callable[[float], Any] = lambda part: None
     note: Callable[[str], Any] = lambda text: None
 
+    def refuse_volumes(self, reason):
+        if self.subjects:
+            raise ValueError(f"{reason} of its own: leave out --volume")
+
     def each(self, cases, begin=0, end=1):
         """The cases, one after the other, with reports of progress between two parts of the whole."""
         cases = list(cases)

@@ -165,9 +165,9 @@ def figure_of_ball(table):
     draw_lines(left, rows, BALL, "off_ideal_mean_deg", "no method is good on raw 8-bit samples")
     draw_lines(right, rows, SOURCES, "off_ideal_mean_deg", "the smooth field is, if dequantized")
     figures.label_ends(left, right)
-    return Figure("", """A ball, touched 0.03 of its box below the surface along a great circle: the mean angle between the force and that of a
-        perfect ball. Left: Palpate on raw 8-bit samples and the peers that were measured with this protocol. Right: where the error comes
-        from.""", drawn)
+    return Figure("", """A ball, touched 0.03 of its box below the surface along a great circle: the mean angle between the force and that
+        of a perfect ball. Left: Palpate on raw 8-bit samples and the peers that were measured with this protocol. Right: where the error
+        comes from.""", drawn)
 
 
 def figure_of_turn(grid):
@@ -186,7 +186,8 @@ def figure_of_turn(grid):
     right.set(xlabel="turn per tick [degrees]", ylabel="ticks with no larger turn [%]", xscale="log")
     figures.label_ends(right)
     return Figure("turn", f"""Turn of the force from tick to tick along {arc} degrees of the circle on the ball of {grid} samples, and its
-        distribution. The hand moves by {arc / steps:g} degrees per tick, and the force of a perfect ball turns by as much (dashed).""", drawn)
+        distribution. The hand moves by {arc / steps:g} degrees per tick, and the force of a perfect ball turns by as much
+        (dashed).""", drawn)
 
 
 def figure_of_losses(table):
@@ -204,9 +205,9 @@ def figure_of_losses(table):
     draw_lines(right, table.where(body="ball", trajectory="circle"), SOURCES[2::2], "surface_error_mean_voxel", "curved surfaces move a little",
                "distance from the true surface [voxel]")
     figures.label_ends(right)
-    return Figure("losses", """Costs of the smooth field. Left: density across walls of one, two and three samples of 1 in 0; the linear field
-        (dashed) keeps their height. Right: mean distance of the SCP from the true surface of the ball; the smooth field lies inside a convex
-        body by an eighth of its Laplacian.""", drawn)
+    return Figure("losses", """Costs of the smooth field. Left: density across walls of one, two and three samples of 1 in 0; the linear
+        field (dashed) keeps their height. Right: mean distance of the SCP from the true surface of the ball; the smooth field lies inside a
+        convex body by an eighth of its Laplacian.""", drawn)
 
 
 def figure_of_shapes(table):
@@ -214,8 +215,8 @@ def figure_of_shapes(table):
     for axes, body in zip(panels, ("torus", "marschner-lobb")):
         draw_lines(axes, table.where(body=body), SOURCES, "angle_mean_deg", body)
     figures.label_ends(*panels)
-    return Figure("shapes", """Torus, with the hand in its tube on a helix, and Marschner-Lobb ripples, with the hand under them on a spiral:
-        mean angle between the force and the true normal at the SCP.""", drawn)
+    return Figure("shapes", """Torus, with the hand in its tube on a helix, and Marschner-Lobb ripples, with the hand under them on a
+        spiral: mean angle between the force and the true normal at the SCP.""", drawn)
 
 
 def figure_of_users(table):
@@ -284,12 +285,13 @@ def run(options):
     claims = list(claims_of(table, not options.subjects, steps))
     if options.subjects:
         return Result(table, [figure_of_users(table)], claims, paragraphs("""
-            A hand moves around each of the user's volumes, 0.03 of the shortest axis below the surface. Angles are known for volumes with an
-            analytic density."""))
+            A hand moves around each of the user's volumes, 0.03 of the shortest axis below the surface. Angles are known for volumes with
+            an analytic density."""))
     shown = [figure_of_ball(table), figure_of_turn(64 if options.quick else 128), figure_of_losses(table), figure_of_shapes(table)]
     return Result(table, shown, claims, paragraphs(f"""
-        A ball of radius 0.35 in a unit box has the density 1/2 + 1.4 (0.35 - r) in 8 bits and is touched at 1/2. A hand moves around it 0.03
-        below the surface on a tilted great circle in {steps} steps. The angle is between the force and the direction of a perfect force.
+        A ball of radius 0.35 in a unit box has the density 1/2 + 1.4 (0.35 - r) in 8 bits and is touched at 1/2. A hand moves around it
+        0.03 below the surface on a tilted great circle in {steps} steps. The angle is between the force and the direction of a perfect
+        force.
 
         On raw 8-bit samples of less than about 1.4 levels per voxel, the isosurface is a terrace, and a proxy that only moves nearer to the
         hand rests in its dents. There, Palpate loses: at 128 samples to CHAI3D's shaded mesh, at 512 to this mesh and to CHAI3D's voxel

@@ -124,9 +124,9 @@ def figure_of(table):
         colour, marker = figures.LOOKS[name]
         panels[2].plot(1.1, 0.85 - 0.3 * number, marker, color=colour, transform=panels[2].transAxes, clip_on=False)
     figures.names(panels[2], [(name, figures.LOOKS[name][0]) for name in METHODS], 1.16, 0.85, 0.3, va="center")
-    return Figure("", """Strokes at 60 voxels per second and a mean force of 2 N. Left: how much the force changes in a tick, 99th percentile.
-        Middle: the motion of a mass of 50 g that the force above 100 Hz drives. Right: the angle to the force of a perfect ball. Dashed:
-        published thresholds, which are passed in the shaded area.""", drawn)
+    return Figure("", """Strokes at 60 voxels per second and a mean force of 2 N. Left: how much the force changes in a tick, 99th
+        percentile. Middle: the motion of a mass of 50 g that the force above 100 Hz drives. Right: the angle to the force of a perfect
+        ball. Dashed: published thresholds, which are passed in the shaded area.""", drawn)
 
 
 def claims_of(table):
@@ -170,16 +170,16 @@ def run(options):
     return Result(whole, [figure_of(table)], list(claims_of(table)), paragraphs(f"""
         {" ".join(in_short(table))}
 
-        A hand strokes a ball of which the true surface is known, and a scanned head, at a mean force of {PRESS:g} N, {SPEED} voxels per second
-        and 1 kHz. Its own motion has nothing above 5 Hz. The force is that of the spring alone, without damping and friction.
+        A hand strokes a ball of which the true surface is known, and a scanned head, at a mean force of {PRESS:g} N, {SPEED} voxels per
+        second and 1 kHz. Its own motion has nothing above 5 Hz. The force is that of the spring alone, without damping and friction.
 
         The thresholds are published ones. People notice a change of the force by about {FORCE:g} % (Pang, Tan and Durlach 1991) and of its
         direction by {DIRECTION:g} degrees (Barbagli et al. 2006, touch alone). The most sensitive people feel a rod in the hand vibrate by
-        {VIBRATION:g} µm at 150 to 200 Hz (Brisben, Hsiao and Johnson 1999). The motion here is that of a free mass of {1000 * MASS:g} g that
-        the force above {FAST} Hz drives. A hand damps it, so it is an upper estimate.
+        {VIBRATION:g} µm at 150 to 200 Hz (Brisben, Hsiao and Johnson 1999). The motion here is that of a free mass of {1000 * MASS:g} g
+        that the force above {FAST} Hz drives. A hand damps it, so it is an upper estimate.
 
         A change in one tick is compared with a threshold for forces that last, which is strict. No person took part.
 
-        Rows with (measured) are from 27 November 2026, with Palpate 3688b00, CHAI3D 3.3 (commit 7c76b1f2) and a god object on VTK flying edges
-        and Embree 3. There the hand pressed the bone of a CT head with a constant 2 N. These rows are not run again."""),
+        Rows with (measured) are from 27 November 2026, with Palpate 3688b00, CHAI3D 3.3 (commit 7c76b1f2) and a god object on VTK flying
+        edges and Embree 3. There the hand pressed the bone of a CT head with a constant 2 N. These rows are not run again."""),
         Table(summary_of(whole)))
