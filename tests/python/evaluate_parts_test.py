@@ -399,8 +399,8 @@ def test_a_scanned_ball_is_felt_as_it_was_recorded(tmp_path):
 
 def test_a_shifted_surface_is_an_error_of_its_spring_in_the_metrics_of_recordings():
     made = recorded.modelled(2, 2)
-    off = recorded.metrics(made.force, made.force + [0, 3, 4])
-    assert off["mean"] == pytest.approx(5) and off["rms"] == pytest.approx(5) and off["max"] == pytest.approx(5)
+    off = recorded.metrics("off", made.force, made.force + [0, 3, 4])
+    assert off == pytest.approx({"off_mean": 5, "off_rms": 5, "off_max": 5})
     plane = recorded.plane_through(made)
     out, hands, force = recorded.device_of(made, plane)
     sunk = numpy.linalg.norm(out - hands, axis=1)
@@ -422,13 +422,13 @@ def test_a_needle_in_the_wrong_tissue_is_counted_as_an_error():
     assert {*scans[needle.PARTLY][made.depths[3] > 0]} == {175} and scans[needle.PARTLY][made.depths[2] <= 0].max() == 55
     truth = made.felt(scans[needle.TRUTH])
     softer = made.felt(numpy.where(made.depths[2] > -9, 55, scans[needle.TRUTH]).astype(numpy.float32))  # without a liver
-    table = needle.rows_of([needle.path(random) for _ in range(4)], {needle.TRUTH: truth, needle.RAW: softer})
+    table = Table(needle.rows_of([(number, needle.path(random)) for number in range(4)], {needle.TRUTH: truth, needle.RAW: softer}))
     assert (table.where(scan=needle.TRUTH)["rms_n"] == 0).all() and (table.where(scan=needle.RAW)["rms_n"] > 0.02).all()
     assert (table.where(scan=needle.TRUTH)["punctures"] == 4).all() and (table.where(scan=needle.RAW)["punctures"] < 4).all()
     assert (table.where(scan=needle.RAW)["missed"] >= 1).all() and (table.where(scan=needle.RAW)["extra"] == 0).all()
     other = numpy.where(made.depths[3] > -9, 110, scans[needle.TRUTH])  # without the vessel, but with a gap under the skin
     other = made.felt(numpy.where(abs(made.depths[0] - 4) < 2, -1000, other).astype(numpy.float32))
-    row = needle.rows_of([needle.path(random)], {needle.TRUTH: truth, needle.RAW: other}).where(scan=needle.RAW)[0]
+    row = Table(needle.rows_of([(0, needle.path(random))], {needle.TRUTH: truth, needle.RAW: other})).where(scan=needle.RAW)[0]
     assert row["extra"] == 1 and row["missed"] == 1 and row["punctures"] == 4
 
 
