@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 
+import matplotlib.pyplot
 import numpy
 import palpate
 import pytest
@@ -130,6 +131,17 @@ def test_a_volume_of_the_user_takes_the_place_of_the_experiments_own(name):
 def test_a_level_that_nothing_meets_is_refused(name):
     with pytest.raises(ValueError, match="level"):
         MODULES[name].run(Options(quick=True, subjects=(of_text("synthetic:sphere:16x16x16@1000"),)))
+
+
+@pytest.mark.parametrize("name, said", [("notice", "smooth field stays below"), ("fall-through", "keep the proxy out"),
+                                        ("fall-through", "the thinner the wall")])
+def test_figures_say_in_advance_what_they_show_of_our_own_bodies_only(name, said):
+    def words(*subjects):
+        drawn = [figure.drawn for figure in MODULES[name].run(Options(quick=True, seeds=1, subjects=subjects)).figures]
+        return " ".join(text.get_text() for one in drawn for text in (one._suptitle, *(axes._left_title for axes in one.axes)) if text)
+
+    assert said in words() and said not in words(of_text("synthetic:sphere:24x24x24"))
+    matplotlib.pyplot.close("all")
 
 
 def test_a_volume_at_two_levels_is_two_volumes_with_a_hand_each():

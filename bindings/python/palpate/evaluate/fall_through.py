@@ -142,9 +142,15 @@ def summary_of(table):
                "wall not felt at all": share_in_words(rows, "unfelt_share")}
 
 
+def is_a_users(table):
+    """Walls of a user have no known thickness, and nothing is said of them in advance."""
+    return bool(numpy.isnan(table["thickness_voxel"]).any())
+
+
 def figure_of(table):
     """Three shares against the hand's step, the mean over the walls with their spread."""
-    drawn, panels = figures.panels(columns=3, height=2.9, sharey=True, title="Only methods that look at the whole step keep the proxy out")
+    title = "How often a wall fails" if is_a_users(table) else "Only methods that look at the whole step keep the proxy out"
+    drawn, panels = figures.panels(columns=3, height=2.9, title=title, sharey=True)
     shares = {"inside_share": "inside behind the wall", "inside_while_pressed_share": "inside, hand in the wall",
               "unfelt_share": "wall not felt"}
     for axes, (column, title) in zip(panels, shares.items()):
@@ -164,15 +170,15 @@ def figure_of(table):
 
 def map_of(table, name="gradient"):
     """How often a method does not feel walls of each thickness, or each volume of the user."""
-    rows = table.where(method=name)
-    column = "wall" if numpy.isnan(rows["thickness_voxel"]).any() else "thickness_voxel"
+    rows, users = table.where(method=name), is_a_users(table)
+    column = "wall" if users else "thickness_voxel"
     steps, walls = sorted(rows.distinct("step_mm")), rows.distinct(column)
-    walls = walls if column == "wall" else sorted(walls)
+    walls = walls if users else sorted(walls)
     share = [[100 * rows.where(**{column: wall, "step_mm": step})["unfelt_share"].mean() for step in steps] for wall in walls]
     drawn, axes = figures.panels(width=figures.PAGE, height=0.9 + 0.27 * len(walls))
     figures.number_map(axes, share, walls, [f"{step:g}" for step in steps], 140)
-    axes.set(title=f"{name}: the faster the hand and the thinner the wall, the less is felt", xlabel="hand per tick [mm]",
-             ylabel="volume" if column == "wall" else "wall [voxel]")
+    title = f"{name}: how often a wall is not felt" if users else f"{name}: the faster the hand and the thinner the wall, the less is felt"
+    axes.set(title=title, xlabel="hand per tick [mm]", ylabel="volume" if users else "wall [voxel]")
     axes.tick_params(axis="x", rotation=45, labelsize=6.5)
     return Figure("unfelt", f"""Share of the crossings [%] in which the proxy of the method {name} is in contact in no tick, so that the
         wall is not felt.""", drawn)

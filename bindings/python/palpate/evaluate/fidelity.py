@@ -202,8 +202,8 @@ def figure_of_losses(table):
             left.plot(at, palpate.Field(palpate.Volume(wall), interpolation=interpolation).value(points), dashes, color=colour)
         left.text(0.5 * samples + 0.25, 0.3 + 0.2 * samples, f"{samples} thick", color=colour, fontsize=7)
     left.set(title="a wall of one sample loses a quarter", xlabel="across the wall [voxel]", ylabel="density")
-    draw_lines(right, table.where(body="ball", trajectory="circle"), SOURCES[2::2], "surface_error_mean_voxel", "curved surfaces move a little",
-               "distance from the true surface [voxel]")
+    draw_lines(right, table.where(body="ball", trajectory="circle"), SOURCES[2::2], "surface_error_mean_voxel",
+               "curved surfaces move a little", "distance from the true surface [voxel]")
     figures.label_ends(right)
     return Figure("losses", """Costs of the smooth field. Left: density across walls of one, two and three samples of 1 in 0; the linear
         field (dashed) keeps their height. Right: mean distance of the SCP from the true surface of the ball; the smooth field lies inside a

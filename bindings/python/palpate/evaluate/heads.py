@@ -118,8 +118,9 @@ def draw_head(density, force, head, table):
 
 def figure_of_heads(table, heads):
     shown = heads[:3]
-    drawn, panels = figures.panels(2, len(shown), height=4.4, width=figures.PAGE if len(shown) > 1 else 4.2, sharex="col", squeeze=False,
-                                   title="Skin, bone, bone from behind, in one stroke")
+    title = "Skin, bone, bone from behind, in one stroke" if heads[0].subject.name == "sample head" else "Two surfaces in one stroke"
+    drawn, panels = figures.panels(2, len(shown), height=4.4, width=figures.PAGE if len(shown) > 1 else 4.2, title=title, sharex="col",
+                                   squeeze=False)
     for (density, force), head in zip(panels.T, shown):
         draw_head(density, force, head, table)
     panels[0, 0].set_ylabel("density at the hand\n[data units]")

@@ -14,10 +14,10 @@ SMOOTH = 1.0  # [mm/s] below which friction falls to 0, so that a slow hand does
 
 @dataclasses.dataclass(frozen=True)
 class Human:
-    """Mass, damping and stiffness: fitted to one trial of one person who held a haptic handle (van Beek et al. 2015, Scientific Reports
-    5, 18004, Fig. 3). Tremor of the hand: 50 to 200 µm root mean square, commonly at 8 to 12 Hz (reviewed in PMC3989364), and 182 µm in
-    surgery (Riviere and Jensen 2000). Willed motion: 98.9 % of its power is below 2 Hz (Riviere, Rader and Khosla 1997). Delay: of a simple reaction to
-    touch (Robinson 1934). The gain is assumed."""
+    """Mass, damping and stiffness: fitted to one trial of one person who held a haptic handle (van Beek et al. 2015, Scientific Reports 5,
+    18004, Fig. 3). Tremor of the hand: 50 to 200 µm root mean square, commonly at 8 to 12 Hz (reviewed in PMC3989364), and 182 µm in
+    surgery (Riviere and Jensen 2000). Willed motion: 98.9 % of its power is below 2 Hz (Riviere, Rader and Khosla 1997). Delay: of a
+    simple reaction to touch (Robinson 1934). The gain is assumed."""
 
     mass: float = 0.554  # [kg]
     damping: float = 6.45  # [N s/m]

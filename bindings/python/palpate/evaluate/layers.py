@@ -103,8 +103,9 @@ def insertions(body, interpolation, options):
         offs = [off for _, _, off, _ in runs]
         ticks = sum(map(len, offs))
         _, low, high = numpy.sqrt(sampling.bootstrap([(off**2).mean() for off in offs], numpy.mean))
-        yield {"part": "insertion", **where, "runs": count, "ticks": ticks, "rms_n": numpy.sqrt(sum((off**2).sum() for off in offs) / ticks),
-               "worst_n": max(off.max() for off in offs), "rms_low_n": low, "rms_high_n": high}
+        yield {"part": "insertion", **where, "runs": count, "ticks": ticks,
+               "rms_n": numpy.sqrt(sum((off**2).sum() for off in offs) / ticks), "worst_n": max(off.max() for off in offs),
+               "rms_low_n": low, "rms_high_n": high}
         yield from puncture_rows(where, [puncture for *_, punctures in runs for puncture in punctures])
 
 
@@ -332,8 +333,8 @@ def needle_figure(table):
 def claims_of_insertions(table):
     runs, punctures = table.where(part="insertion"), table.where(part="puncture")
     offs, count, wanted = punctures["extrapolated_off_percent"], int(punctures["punctures"].sum()), 4 * int(runs["runs"].sum())
-    yield at_most(MOST_ERROR, runs["rms_n"], f"straight in, the force is that of the closed form to {MOST_ERROR:g} N RMS, at every speed, on "
-                  "either body and field", "largest {:.2g} N")
+    yield at_most(MOST_ERROR, runs["rms_n"], f"straight in, the force is that of the closed form to {MOST_ERROR:g} N RMS, at every speed, "
+                  "on either body and field", "largest {:.2g} N")
     yield Claim(f"every surface gives way at its puncture force to {MOST_OFF:g} %: forces extended along the spring to where it did",
                 count == wanted and bool((offs <= MOST_OFF).all()), f"{count} of {wanted} punctures, the worst {largest(offs):.2g} % off")
 

@@ -17,7 +17,8 @@ def nearest_in_triangles(a, b, c, point):
     for p, q in ((a, b), (b, c), (c, a)):
         within &= (numpy.cross(q - p, point - p) * normal).sum(axis=1) >= 0
     part = ((point - a) * normal).sum(axis=1) / numpy.where(squared > 0, squared, 1)
-    found = numpy.stack([on_edge(a, b), on_edge(b, c), on_edge(c, a), numpy.where(within[:, None], point - part[:, None] * normal, numpy.inf)])
+    inner = numpy.where(within[:, None], point - part[:, None] * normal, numpy.inf)
+    found = numpy.stack([on_edge(a, b), on_edge(b, c), on_edge(c, a), inner])
     return found[((found - point)**2).sum(axis=2).argmin(axis=0), numpy.arange(len(a))]
 
 

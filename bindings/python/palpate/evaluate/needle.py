@@ -120,7 +120,8 @@ def rows_of(paths, fields):
 def summary_of(table):
     for name in (PARTLY, SMOOTHED, RAW):
         rows = table.where(scan=name)
-        yield {"scan": name, "paths": f"{len(rows):,}", "RMS error, mean [95 % interval] [N]": sampling.in_words(rows["rms_n"], "{:.2g}", numpy.mean),
+        yield {"scan": name, "paths": f"{len(rows):,}",
+               "RMS error, mean [95 % interval] [N]": sampling.in_words(rows["rms_n"], "{:.2g}", numpy.mean),
                "greatest error [N]": rows["most_n"].max(), "forces off by more than 0.01 N [%]": rows["affected_percent"].mean(),
                "extra punctures per path": rows["extra"].mean(), "missed punctures per path": rows["missed"].mean()}
     yield {"scan": "10 patients, partly segmented (published)", "paths": f"{MASTMEYER['paths']:,}",
@@ -145,8 +146,8 @@ def figure_of(table, paths, fields):
     right.axvline(MASTMEYER["mean_rms_n"], color=figures.GREY, ls="--", lw=0.8)
     right.text(MASTMEYER["mean_rms_n"], 3, " Mastmeyer\n (mean)", color=figures.GREY, fontsize=7)
     right.set(title="error of all paths", xlabel="root mean square [N]", ylabel="part of the paths [%]", xlim=(0, None), ylim=(0, 103))
-    return Figure("", """Left: force on a needle on its way from the skin into the vessel. Right: error of the force on every path, as the part
-        of the paths with at most so much. Dashed: the mean of Mastmeyer et al. 2017 in patients.""", drawn)
+    return Figure("", """Left: force on a needle on its way from the skin into the vessel. Right: error of the force on every path, as the
+        part of the paths with at most so much. Dashed: the mean of Mastmeyer et al. 2017 in patients.""", drawn)
 
 
 def claims_of(table):
@@ -164,20 +165,20 @@ def claims_of(table):
 def paragraphs_of(count, seed):
     (_, muscle, *_), (_, liver, *_), (_, vessel, *_) = TISSUES[1:]
     return paragraphs(f"""
-        A needle goes in at {SPEED} mm/s on {count:,} random paths, from the front of a phantom through skin and fat, muscle and liver into a
-        vessel. All are ellipsoids. The truth is a volume without noise. The CT is the truth, blurred by {BLUR:g} mm, with {NOISE} HU of noise
-        (seed {seed}), rounded to whole HU, 1 mm per sample. Liver and vessel are segmented by binary labels: a sample whose centre is inside
-        gets the tissue's intensity ({liver} or {vessel} HU). Outside the labels, samples above {muscle} HU are set to that of muscle, because
-        the labels say that no liver is there. All surfaces are levels half way between two tissues. The same program, with the same
-        properties of tissues, renders both, so that the difference is that of the data.
+        A needle goes in at {SPEED} mm/s on {count:,} random paths, from the front of a phantom through skin and fat, muscle and liver into
+        a vessel. All are ellipsoids. The truth is a volume without noise. The CT is the truth, blurred by {BLUR:g} mm, with {NOISE} HU of
+        noise (seed {seed}), rounded to whole HU, 1 mm per sample. Liver and vessel are segmented by binary labels: a sample whose centre
+        is inside gets the tissue's intensity ({liver} or {vessel} HU). Outside the labels, samples above {muscle} HU are set to that of
+        muscle, because the labels say that no liver is there. All surfaces are levels half way between two tissues. The same program, with
+        the same properties of tissues, renders both, so that the difference is that of the data.
 
-        A puncture is extra if its surface gives way more often than in the truth, and missed if it does so less often. They are counted for
-        each surface.
+        A puncture is extra if its surface gives way more often than in the truth, and missed if it does so less often. They are counted
+        for each surface.
 
         Mastmeyer et al. (2017, Scientific Reports 7, 671) compared forces in partly segmented CT of 10 patients with those in full
         segmentations. On {MASTMEYER["paths"]:,} paths, the error was {MASTMEYER["mean_rms_n"]:g} N RMS on average and at most
-        {MASTMEYER["most_n"]:g} N. It affected {MASTMEYER["affected_percent"]} % of the forces (threshold not stated). The protocols differ:
-        theirs has anatomy, ribs and deformation, and errors of their segmentations. No claim is made about their numbers.
+        {MASTMEYER["most_n"]:g} N. It affected {MASTMEYER["affected_percent"]} % of the forces (threshold not stated). The protocols
+        differ: theirs has anatomy, ribs and deformation, and errors of their segmentations. No claim is made about their numbers.
 
         The properties of tissues are chosen, not measured. Most of the error is that a surface gives way a little earlier or later than in
         the truth. The whole force of the surface is then missing, or too much, for some ticks.""")

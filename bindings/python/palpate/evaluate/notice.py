@@ -1,7 +1,7 @@
 """notice: what would a person notice?
 
-Slow strokes over smooth bodies. Whatever the force does beside turning with the body comes from samples, facets and terraces. It is compared
-with published thresholds of people.
+Slow strokes over smooth bodies. Whatever the force does beside turning with the body comes from samples, facets and terraces. It is
+compared with published thresholds of people.
 """
 
 import dataclasses
@@ -108,8 +108,9 @@ def summary_of(table):
 
 def figure_of(table):
     cases = list(dict.fromkeys((row["body"], row["grid"], row["samples"]) for row in table))
-    drawn, panels = figures.panels(columns=3, height=0.6 + 0.27 * len(cases), sharey=True,
-                                   title="With unrounded or dequantized samples, the smooth field stays below what people notice")
+    title = ("With unrounded or dequantized samples, the smooth field stays below what people notice" if table.where(body="ball")
+             else "Strokes beside what people notice")
+    drawn, panels = figures.panels(columns=3, height=0.6 + 0.27 * len(cases), title=title, sharey=True)
     for axes, (column, limit, _, title, label) in zip(panels, NOTICED):
         for row in table:
             at = cases.index((row["body"], row["grid"], row["samples"]))
@@ -154,14 +155,14 @@ def in_short(table):
         return f"{largest(balls.where(method=method).only(lambda row: row['samples'] in samples)['motion_um']):.2g}"
 
     if balls:
-        yield f"""With unrounded and with dequantized samples, the force on the smooth field drives at most {most("smooth", *SAMPLES[:2])} µm of
-            vibration, below the threshold of {VIBRATION:g} µm. The facets of the linear field drive up to {most("exact", *SAMPLES[:2])} µm. On
-            raw 8-bit ramps it is up to {most("smooth", "uint8")} µm on the smooth field and {most("exact", "uint8")} µm on the linear one,
-            which people notice."""
+        yield f"""With unrounded and with dequantized samples, the force on the smooth field drives at most {most("smooth", *SAMPLES[:2])}
+            µm of vibration, below the threshold of {VIBRATION:g} µm. The facets of the linear field drive up to
+            {most("exact", *SAMPLES[:2])} µm. On raw 8-bit ramps it is up to {most("smooth", "uint8")} µm on the smooth field and
+            {most("exact", "uint8")} µm on the linear one, which people notice."""
     for name in scans.distinct("body"):
         exact, smooth = (scans.where(body=name, method=method)[0]["motion_um"] for method in METHODS[:2])
-        yield (f"On {name}, as it was scanned, {smooth:.2g} µm on the smooth field and {exact:.2g} µm on the linear one contain the shape of "
-               "the body itself.")
+        yield (f"On {name}, as it was scanned, {smooth:.2g} µm on the smooth field and {exact:.2g} µm on the linear one contain the shape "
+               "of the body itself.")
 
 
 def run(options):

@@ -31,6 +31,7 @@ OURS = (50, 0.6)  # speed [mm/s] and share on volumes that the paper does not ha
 TOLERANCE = 0.15  # of the target, for speed and share
 DEPTH = 0.5  # [mm] of hand below the surface
 BATCH = 50
+SHARES = {"p50": 0.5, "p99": 0.99, "p999": 0.999, "max": 1}
 TIMES = {"max_ns": ("max", figures.VERMILION, "D"), "cold_p50_ns": ("p50, caches emptied", figures.SKY, "o"),
          "p999_ns": ("p99.9", figures.ORANGE, "v"), "p99_ns": ("p99", figures.GREEN, "^"), "mean_ns": ("mean", figures.BLACK, "x"),
          "p50_ns": ("p50", figures.BLUE, ".")}
@@ -104,8 +105,8 @@ def numbers_of(taken, hand, clock=numpy.nan):
     trace, moved = taken["trace"], moved_rows(hand)
     medians = numpy.median(taken["single"], axis=0)
     return {"updates": int(moved.sum()), "mean_ns": numpy.average(numpy.median(taken["batch"], axis=0), weights=weights_of(hand)),
-            **{f"{name}_ns": sampling.quantile(medians, share) for name, share in (("p50", 0.5), ("p99", 0.99), ("p999", 0.999), ("max", 1))},
-            "interrupted_max_ns": numpy.max(taken["single"]), "cold_p50_ns": numpy.median(taken["cold"]) if len(taken["cold"]) else numpy.nan,
+            **{f"{name}_ns": sampling.quantile(medians, share) for name, share in SHARES.items()},
+            "interrupted_max_ns": numpy.max(taken["single"]), "cold_p50_ns": sampling.quantile(taken["cold"], 0.5),
             "clock_ns": clock, "constrained_share": trace.constrained[moved].mean(), "tetrahedra": int(trace.tetrahedra[moved].sum()),
             "tetrahedra_per_update": trace.tetrahedra[moved].mean(), "unfinished_updates": int(trace.unfinished[moved].sum())}
 
@@ -133,7 +134,8 @@ def rows_of(case, resolution, effort, seed):
 def summary_of(table):
     """The paper's Table 1 beside the same rows here."""
     for exact in table.where(method="exact", target_from="paper"):
-        paper, smooth = (table.where(method=name, volume=exact["volume"], resolution=exact["resolution"])[0] for name in ("paper", "smooth"))
+        same = table.where(volume=exact["volume"], resolution=exact["resolution"])
+        paper, smooth = (same.where(method=name)[0] for name in ("paper", "smooth"))
         volume, row = exact["volume"], exact["paper_row"]
         yield {"volume": volume if volume == row else f"{volume} for {row}", "resolution": exact["resolution"],
                "size in the paper": PAPER[row][0], "size here": exact["size"],

@@ -133,8 +133,8 @@ def volume_of(surface, hands, voxel, levels):
 
 
 def device_of(recording, surface):
-    """(the way on the surface, the way of a device that is felt at STIFFNESS, normal forces): the out- and the in-trajectory. Raises ValueError
-    for a force that does not push the hand out of the surface."""
+    """(the way on the surface, the way of a device that is felt at STIFFNESS, normal forces): the out- and the in-trajectory. Raises
+    ValueError for a force that does not push the hand out of the surface."""
     on, normal = surface.nearest(recording.position)
     pressure = numpy.maximum(0, (recording.force * normal).sum(axis=1))
     touches, strong = pressure > CONTACT, numpy.linalg.norm(recording.force, axis=1) > CONTACT
@@ -230,9 +230,10 @@ def paragraphs_of(names):
     human = Human()
     return paragraphs(f"""
         Ruffaldi, Morris et al. (2006) scanned rigid objects with a probe that measures position and force, and published the recordings
-        (.traj) for the comparison of rendering algorithms. The steps are theirs. The recorded way is moved onto the surface (out). A device
-        that is felt with {STIFFNESS:g} N/mm would be where this spring gives the recorded normal force (in). Each method gets that way, and
-        its force and its SCP are compared with the recorded force and with the way on the surface. On a plane, a perfect proxy has no error.
+        (.traj) for the comparison of rendering algorithms. The steps are theirs. The recorded way is moved onto the surface (out). A
+        device that is felt with {STIFFNESS:g} N/mm would be where this spring gives the recorded normal force (in). Each method gets that
+        way, and its force and its SCP are compared with the recorded force and with the way on the surface. On a plane, a perfect proxy
+        has no error.
 
         Recordings: {", ".join(names)}. Published ones are read from the data folder (NAME/probe.traj). They were not at hand, so the
         recordings here are modelled. The one named plane comes with the program.

@@ -100,7 +100,7 @@ def over(subject, speed, voxels, ticks, seed):
 
 def cells_of(part, subject, **others):
     size = subject.field.geometry.size
-    return {"part": part, "volume": subject.name, "size": "x".join(map(str, size)), "samples": float(numpy.prod(size, dtype=float)), **others}
+    return {"part": part, "volume": subject.name, "size": "x".join(map(str, size)), "samples": numpy.prod(size, dtype=float), **others}
 
 
 def path_of(subject, hand):
@@ -211,8 +211,8 @@ def explicit_numbers(subject, segments, options):
     apart = numpy.linalg.norm(theirs - ours, axis=1) / subject.voxel
     ready, kept = found["extraction_s"] + found["tree_s"], found["mesh_bytes"] + found["tree_bytes"]
     found = {**found, "ready_s": ready, "kept_bytes": kept}
-    return {**{f"explicit_{name}": found[name] for name in ("triangles", "extraction_s", "tree_s", "ready_s", "cpu_s", "mesh_bytes", "tree_bytes",
-                                                            "kept_bytes", "peak_bytes", "segment_ns")},
+    return {**{f"explicit_{name}": found[name] for name in ("triangles", "extraction_s", "tree_s", "ready_s", "cpu_s", "mesh_bytes",
+                                                            "tree_bytes", "kept_bytes", "peak_bytes", "segment_ns")},
             "one_sided_hits_share": (numpy.isnan(theirs[:, 0]) != numpy.isnan(ours[:, 0])).mean(),
             "hit_difference_voxel": numpy.nanmax(apart, initial=0)}
 
@@ -274,8 +274,9 @@ def edges_of(rows):
 def growth_figure(table):
     """Times above, tetrahedra below. Of several volumes the first."""
     parts = [part for part in GROWTH if table.where(part=part)]
-    drawn, panels = figures.panels(2, len(parts), height=3.8, sharex="col", sharey="row", squeeze=False, gridspec_kw={"height_ratios": [3, 1.4]},
-                                   title="An update costs the tetrahedra that the proxy passes, whatever the size of the volume")
+    title = "An update costs the tetrahedra that the proxy passes" + (", whatever the size of the volume" if "size" in parts else "")
+    drawn, panels = figures.panels(2, len(parts), height=3.8, title=title, sharex="col", sharey="row", squeeze=False,
+                                   gridspec_kw={"height_ratios": [3, 1.4]})
     for (above, below), part in zip(panels.T, parts):
         column, axis, title, ticks = GROWTH[part]
         rows = table.where(part=part, volume=table.where(part=part)[0]["volume"])
@@ -314,7 +315,8 @@ def explicit_figure(table):
     rows = table.where(part="explicit")
     balls = rows.where(volume="ball") or rows
     others = rows.only(lambda row: row not in balls)
-    drawn, panels = figures.panels(columns=2, height=3, title="A new level costs us one update, and the explicit approach the whole surface")
+    drawn, panels = figures.panels(columns=2, height=3,
+                                   title="A new level costs us one update, and the explicit approach the whole surface")
     for panel, column, unit, label, colour, marker, dash in APPROACHES:
         panels[panel].plot(edges_of(balls), unit * balls[column], dash, color=colour, marker=marker, label=label)
         panels[panel].plot(edges_of(others), unit * others[column], marker, color=colour, mfc="none", label="_")
@@ -344,7 +346,8 @@ def claims_of(table, own_volumes):
     within = [(both, "heap_growth_bytes", 0, 0, "updates and changes of the level take no memory", "heap grew by {:g} to {:g} bytes")]
     if own_volumes:
         within += [
-            (sizes, "tetrahedra", first, first, "the same motion enters the same tetrahedra in a volume of any size", "{:.0f} to {:.0f} tetrahedra"),
+            (sizes, "tetrahedra", first, first, "the same motion enters the same tetrahedra in a volume of any size",
+             "{:.0f} to {:.0f} tetrahedra"),
             (balls, "unfinished_changes", 0, 0, "on the ball one update after a change of the level is on the new surface",
              "{:g} to {:g} changes unfinished"),
             (balls, "worst_deviation_of_range", 0, GRANTED, "and is on it to 1e-9 of the range", "{:.2g} to {:.2g}"),
@@ -374,16 +377,13 @@ def paragraphs_of(table, own_volumes):
         found, edges = crossings(table), table.where(part="size").distinct("size")
         moved = table.where(part="noise", method="exact")["tetrahedra_per_update"]
         own = f"""
-        The cost is in the tetrahedra passed: {found.min():.2f} to {found.max():.2f} of them per voxel of path at every speed. With the size of
-        the volume, from {edges[0]} to {edges[-1]} samples: {mean("size")}. With noise added to the ball, up to all of its range:
-        {mean("noise")}, while the proxy moves through {moved.max():.2g} to {moved.min():.2g} tetrahedra per update.
-
-        """
+        The cost is in the tetrahedra passed: {found.min():.2f} to {found.max():.2f} of them per voxel of path at every speed. With the
+        size of the volume, from {edges[0]} to {edges[-1]} samples: {mean("size")}. With noise added to the ball, up to all of its range:
+        {mean("noise")}, while the proxy moves through {moved.max():.2g} to {moved.min():.2g} tetrahedra per update."""
     if not numpy.isnan(rows["explicit_segment_ns"]).all():
         segments = f"""
-
-        Once the hierarchy is built, an explicit proxy pays at least one segment query per tick, {span(rows["explicit_segment_ns"])} here, beside
-        {span(rows["mean_ns"])} for a whole update of ours."""
+        Once the hierarchy is built, an explicit proxy pays at least one segment query per tick, {span(rows["explicit_segment_ns"])} here,
+        beside {span(rows["mean_ns"])} for a whole update of ours."""
     return paragraphs(f"""
         How the time of an update grows, at {RATE} Hz, in contact {DEPTH:g} mm of hand below the surface. Otherwise the hand moves at
         {SPEED} mm/s and {VOXELS} voxels per mm. The mean with the speed of the hand: {mean("speed")}, on the smooth field {mean("speed",
@@ -401,5 +401,5 @@ def run(options):
         options.note("a given volume has one size and its own noise: those parts are left out")
     makers = by_hand(plan, options) + (by_body(plan, options) if own_volumes else []) + by_approach(plan, options)
     table = Table(row for rows, *case in options.each(makers) for row in rows(*case))
-    return Result(table, [growth_figure(table), explicit_figure(table)], list(claims_of(table, own_volumes)), paragraphs_of(table, own_volumes),
-                  Table(summary_of(table)))
+    return Result(table, [growth_figure(table), explicit_figure(table)], list(claims_of(table, own_volumes)),
+                  paragraphs_of(table, own_volumes), Table(summary_of(table)))

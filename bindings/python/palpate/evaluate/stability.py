@@ -79,8 +79,8 @@ def pressed(subject, part, profile, friction, interpolation, encoder, rate, stif
     position, force = loop["position"][last], loop["force"][last]
     push = numpy.linalg.norm(force[-1])
     moved = numpy.ptp(position, axis=0).max()
-    return {"part": part, "profile": profile, "friction": yes(friction), "field": interpolation, "encoder_step_mm": encoder, "rate_hz": rate,
-            "stiffness_N_mm": stiffness, "position_peak_to_peak_mm": moved,
+    return {"part": part, "profile": profile, "friction": yes(friction), "field": interpolation, "encoder_step_mm": encoder,
+            "rate_hz": rate, "stiffness_N_mm": stiffness, "position_peak_to_peak_mm": moved,
             "along_force_peak_to_peak_mm": numpy.ptp(position @ (force[-1] / (push if push > 0 else 1))),
             "force_peak_to_peak_N": numpy.ptp(force, axis=0).max(), "push_N": push, "in_contact": yes(loop["constrained"][last].any()),
             "at_rest": yes(moves_within(2, moved, encoder))}
@@ -93,8 +93,8 @@ def place_to_press(subject):
 
 
 def trembled(subject, part, profile, rate, stiffness):
-    """A row: a modelled person presses and holds, and trembles (human.py). The force above 20 Hz, of which tremor has hardly any, is what the
-    loop adds."""
+    """A row: a modelled person presses and holds, and trembles (human.py). The force above 20 Hz, of which tremor has hardly any, is what
+    the loop adds."""
     person, field, (surface, out) = Human(), subject.field, place_to_press(subject)
     own = palpate.simulated_info(f"simulated:{profile},jitter=no", field, subject.isovalue, rate)
     scale = palpate.fit_workspace(field.geometry, own).scale  # [mm of volume per mm of device]
@@ -152,7 +152,8 @@ def measured(cases, options):
 
 
 def largest_stable(rows, rate, steps=2):
-    """The largest stiffness up to which every one tried moves by so many encoder steps at most, which is at rest for two; 0 if none does."""
+    """The largest stiffness up to which every one tried moves by so many encoder steps at most, which is at rest for two; 0 if none
+    does."""
     found = 0.0
     for row in rows.where(rate_hz=rate):
         if not moves_within(steps, row["position_peak_to_peak_mm"], row["encoder_step_mm"]):
@@ -263,16 +264,16 @@ def claims_of_trembling(table):
     rows = table.where(part="trembling", rate_hz=1000)
     most = largest(rows["above_20_hz_percent"])
     if rows:
-        yield Claim(f"in the hand of a modelled person who trembles, at its rated stiffness and 1 kHz, no profile adds more than the {FORCE:g} % of "
-                    "force above 20 Hz that people notice", most < FORCE and all(row["in_contact"] == "yes" for row in rows),
+        yield Claim("in the hand of a modelled person who trembles, at its rated stiffness and 1 kHz, no profile adds more than "
+                    f"the {FORCE:g} % of force above 20 Hz that people notice", most < FORCE and all(row["in_contact"] == "yes" for row in rows),
                     f"at most {most:.2g} %, {len(rows)} profiles")
 
 
 def claims_of_rotation(table):
     """Whether all cases of a part so near the bound are, or are not, at rest."""
     for part, low, high, rests, statement in (
-            ("rotation, ideal", 0, 0.9, "yes", "without delay, friction and steps a handle comes to rest at 0.9 of the rotational stiffness that "
-             "check() accepts, and below"),
+            ("rotation, ideal", 0, 0.9, "yes", "without delay, friction and steps a handle comes to rest at 0.9 of the rotational "
+             "stiffness that check() accepts, and below"),
             ("rotation, ideal", 1.25, numpy.inf, "no", "and shakes at 1.25 of it, and above"),
             ("rotation, delayed", 0, 0.8, "yes", "with its delay alone it comes to rest up to 0.8 of damping / (period / 2 + delay)"),
             ("rotation, delayed", 1.25, numpy.inf, "no", "and shakes at 1.25 of that, and above"),

@@ -89,8 +89,8 @@ def traffic_figure(table, plan):
 
 def claims_of(table):
     beyond = numpy.nanmax(table["beyond_allowed_voxel"])
-    return [Claim("no point of the proxy's path lies in a ball deeper than the samples' rounding and the interpolation at the level felt may "
-                  "take", bool(beyond <= 0), f"at most {beyond:.2f} voxel beyond, {table['ticks'].sum():.0f} ticks"),
+    return [Claim("no point of the proxy's path lies in a ball deeper than the samples' rounding and the interpolation at the level felt "
+                  "may take", bool(beyond <= 0), f"at most {beyond:.2f} voxel beyond, {table['ticks'].sum():.0f} ticks"),
             at_most(1e-6 * MEMORY, table["most_mb"], "bricks and decoded pieces never take more memory than they may",
                     f"at most {{:.1f}} of {1e-6 * MEMORY:.0f} MB")]
 

@@ -1,6 +1,7 @@
 """walk-through: how does a proxy move in an update, step by step? (Corenthy et al. 2012, Fig. 5 and 6)
 
-One update in a volume that is the same in every slice. The motion stays in a plane of samples, so the cut through that plane shows all of it.
+One update in a volume that is the same in every slice. The motion stays in a plane of samples, so the cut through that plane shows all of
+it.
 """
 
 import dataclasses
@@ -179,19 +180,20 @@ def figure_of(cut, walks, suffix):
     for axes, walk in zip(panels[0], walks):
         draw_field(axes, cut, walk.felt)
         draw_walk(axes, cut, walk)
-        axes.set(title=f"{walk.name} ends {'in the solid' if walk.excess_at_end() > 0.01 else 'outside or on the surface'}", xlabel="x [mm]",
-                 aspect="equal", ylabel="y [mm]" if walk is walks[0] else "", xlim=x, ylim=y)
+        place = "in the solid" if walk.excess_at_end() > 0.01 else "outside or on the surface"
+        axes.set(title=f"{walk.name} ends {place}", xlabel="x [mm]", ylabel="y [mm]" if walk is walks[0] else "", aspect="equal", xlim=x,
+                 ylim=y)
         axes.grid(False)
-    return Figure(suffix, f"""{cut.subject.name}: one update of {" and ".join(walk.name for walk in walks)} in a plane cut of the lattice, with
-        the solid in blue and the density of each sample. 0 is the SCP before the update, the other numbers are its moves. Dots are walls
-        that were crossed, diamonds GOALs that are not the position of the hand.""", drawn)
+    return Figure(suffix, f"""{cut.subject.name}: one update of {" and ".join(walk.name for walk in walks)} in a plane cut of the lattice,
+        with the solid in blue and the density of each sample. 0 is the SCP before the update, the other numbers are its moves. Dots are
+        walls that were crossed, diamonds GOALs that are not the position of the hand.""", drawn)
 
 
 def claims_of(cut, walks, own_cut):
     name = cut.subject.name
     for walk in map(walks.get, GUARDED):
-        yield at_most(GRANTED, [walk.worst()], f"{name}: every SCP of {walk.name} and the path between them is outside to {GRANTED:g} of the "
-                      "data's range", f"largest excess {{:.2g}} over {len(walk.steps['kind'])} steps")
+        yield at_most(GRANTED, [walk.worst()], f"{name}: every SCP of {walk.name} and the path between them is outside to {GRANTED:g} of "
+                      "the data's range", f"largest excess {{:.2g}} over {len(walk.steps['kind'])} steps")
     yield at_most(1e-9, [abs(walk.path[1:, 2] - cut.z).max() for walk in walks.values()],
                   f"{name}: all motion stays in the plane that is shown", "farthest {:.2g} mm")
     if own_cut:
@@ -214,7 +216,7 @@ def run(options):
         jumps += f"""{cut.subject.name}: in one update, the hand jumps from ({cut.hip_before[0]:.2f}, {cut.hip_before[1]:.2f}) to
             ({cut.hip[0]:.2f}, {cut.hip[1]:.2f}) mm.\n\n"""
     result.paragraphs = paragraphs(f"""
-        {jumps}The volume is the same in every slice, so the motion stays in a plane of samples and the cut shows all of it. Each square between
-        four samples consists of four triangles with a linear density. For the smooth field, the squares lie around the samples, and the
-        density is a cubic in each triangle. Nothing here is random.""")
+        {jumps}The volume is the same in every slice, so the motion stays in a plane of samples and the cut shows all of it. Each square
+        between four samples consists of four triangles with a linear density. For the smooth field, the squares lie around the samples,
+        and the density is a cubic in each triangle. Nothing here is random.""")
     return result
