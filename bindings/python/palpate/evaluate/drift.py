@@ -76,9 +76,9 @@ def figure_of(table, last):
         figures.curve(left, name, rows["turn"], rows["density"], markevery=0.25)
         figures.curve(right, name, rates, [max(1e-17, largest(last.where(method=name, rate_hz=rate)["worst_deviation_of_range"]))
                                            for rate in rates])
-    left.set(title=f"{table[0]['volume']}: {in_words(shown, False)} leaves the surface", xlabel="turns around the surface",
+    left.set(title=f"{table[0]['volume']}, off the surface:\n{in_words(shown, False)}", xlabel="turns around the surface",
              xlim=(0, None), ylabel="density at the SCP [data units]")
-    right.set(title=f"always on it: {in_words(last, True)}", xlabel="update rate [Hz]", xscale="log", yscale="log",
+    right.set(title=f"always on it:\n{in_words(last, True)}", xlabel="update rate [Hz]", xscale="log", yscale="log",
               ylabel="largest deviation [part of the range]", ylim=(1e-17, 10))
     figures.limit(right, GRANTED, "granted (G2)")
     figures.label_ends(left, right)

@@ -42,8 +42,8 @@ class Recording:
 
 
 def read(path):
-    """A .traj file: a sample per line, its numbers apart by blanks or commas: t [s], x, y, z [mm], fx, fy, fz [N]. A comment (#, %) that
-    lists names of columns gives another order. Raises ValueError."""
+    """A .traj file: a sample per line, its numbers apart by blanks or commas: t [s], x, y, z [mm], fx, fy, fz [N], an order that is assumed
+    (docs/evaluation.md). A comment (#, %) that lists names of columns gives another one. Raises ValueError."""
     names, rows = list(COLUMNS), []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         words = line.replace(",", " ").split()
