@@ -104,8 +104,8 @@ def torus_by_helix(grid, samples):
 
 
 def ripples_by_spiral(grid, samples):
-    """In a plane below the deepest trough of the Marschner-Lobb signal, a spiral of 20 turns over its ripples. On the level,
-    sin(pi z / 2) is a quarter of the ripple: troughs are at -0.161 of half the box."""
+    """In a plane below the deepest trough of the Marschner-Lobb signal, a spiral of 20 turns over its ripples. On the level, sin(pi z /
+    2) is a quarter of the ripple: troughs are at -0.161 of half the box."""
     subject = with_samples(synthetic(f"marschner-lobb:{grid}x{grid}x{grid}", type=stored(samples)), samples)
     half, trough = 0.5 * (grid - 1), -2 / numpy.pi * numpy.arcsin(0.25)
 

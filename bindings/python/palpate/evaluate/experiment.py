@@ -82,6 +82,10 @@ class Table(list):
     def columns(self):
         return list(dict.fromkeys(name for row in self for name in row))
 
+    def cells(self, form):
+        """Rows of all columns as text, where form() makes text of a cell; an absent one is NaN."""
+        return [[form(row.get(name, numpy.nan)) for name in self.columns] for row in self]
+
 
 @dataclasses.dataclass
 class Result:

@@ -1,5 +1,5 @@
-"""How figures look: for print at the width of one or two columns, in colours that color-blind readers
-can tell apart (Okabe and Ito), with labels at the curves. The same numbers give the same file."""
+"""How figures look: for print at the width of one or two columns, in colours that color-blind readers can tell apart (Okabe and Ito),
+with labels at the curves. The same numbers give the same file."""
 
 import io
 import re
@@ -71,8 +71,8 @@ def number_map(axes, values, rows, columns, darkest, form="{:.0f}", fontsize=6.5
 
 
 def label_ends(*panels, apart=0.075):
-    """Writes each curve's label at its right end, in its colour, pushed apart where ends meet, and a
-    thin line to it where it was pushed away."""
+    """Writes each curve's label at its right end, in its colour, pushed apart where ends meet, and a thin line to it where it was pushed
+    away."""
     panels[0].figure.canvas.draw()  # before any label, as labels move the panels
     for axes in panels:
         ends = []

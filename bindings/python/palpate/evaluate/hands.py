@@ -25,8 +25,8 @@ def way_in(subject, through, inward):
 
 
 def way_from_a_side(subject):
-    """(way, its length [mm]) to the middle of the volume, from the first side of its box where it meets the surface. Raises
-    ValueError where none does."""
+    """(way, its length [mm]) to the middle of the volume, from the first side of its box where it meets the surface. Raises ValueError
+    where none does."""
     geometry = subject.field.geometry
     centre = numpy.array(geometry.centre)
     for side in (1, -1):
@@ -40,9 +40,8 @@ def way_from_a_side(subject):
 class Ring:
     """A closed trajectory of a hand around a body, travelled by its length.
 
-    It goes around the grid's z axis through its centre: where rays from outside towards the centre
-    first meet the surface, pushed in by `depth` [mm]. Rays that meet nothing take their neighbour's
-    radius. Raises ValueError where fewer than half of them meet the surface.
+    It goes around the grid's z axis through its centre: where rays from outside towards the centre first meet the surface, pushed in by
+    `depth` [mm]. Rays that meet nothing take their neighbour's radius. Raises ValueError where fewer than half of them meet the surface.
     """
 
     RAYS = 360

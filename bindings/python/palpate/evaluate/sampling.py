@@ -5,8 +5,7 @@ import scipy.stats
 
 
 def bound_of_none(count):
-    """The largest share that is compatible at 95 % with none in `count` independent trials (one-sided,
-    exact): about 3 / count."""
+    """The largest share that is compatible at 95 % with none in `count` independent trials (one-sided, exact): about 3 / count."""
     return 1 - 0.05 ** (1 / count)
 
 

@@ -43,8 +43,7 @@ def flat():
 
 
 def balls():
-    """Concentric balls around (0, 0, 0), 0.125 mm apart, in an upright block from above the outermost surface to below
-    the innermost."""
+    """Concentric balls around (0, 0, 0), 0.125 mm apart, in an upright block from above the outermost surface to below the innermost."""
     x, z = -5.9 + 0.125 * numpy.arange(96), 8 + 0.125 * numpy.arange(576)
     radius = numpy.sqrt(z[:, None, None]**2 + x[:, None]**2 + x**2)
     return Body("balls", palpate.Volume((BALL_RADIUS - radius).astype(numpy.float32), [0.125] * 3, [x[0], x[0], z[0]]))
@@ -61,8 +60,8 @@ def layers(needle=False, count=None):
 
 
 def renderer(field, made):
-    """Without damping, ramp and limits, so that the force is what the layers make it. made: Layers, or None for the
-    skin's level alone."""
+    """Without damping, ramp and limits, so that the force is what the layers make it. made: Layers, or None for the skin's level
+    alone."""
     force = palpate.ForceSettings(ramp=0, rate_limit=numpy.inf, limit=1e6)
     level = made.layers[0].level if made else LEVEL[0]
     return palpate.Renderer(field, level, palpate.RenderSetup(layers=made, force=force),
@@ -84,8 +83,8 @@ def thinned(depth, is_apart, wanted=()):
 
 
 def spring(depth):
-    """The spring's force [N] on a hand that went straight in to these depths: each surface holds until its puncture
-    force, and the next is met at its level, or where the last one let the hand go behind it."""
+    """The spring's force [N] on a hand that went straight in to these depths: each surface holds until its puncture force, and the next
+    is met at its level, or where the last one let the hand go behind it."""
     gone = numpy.concatenate([[-numpy.inf], (LEVEL + PUNCTURE / STIFFNESS)[:-1]])
     stretch = numpy.asarray(depth)[:, None] - LEVEL
     force = STIFFNESS * stretch

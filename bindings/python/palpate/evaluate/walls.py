@@ -25,8 +25,8 @@ def corners_of(cells):
 
 
 def full_samples(body, layers):
-    """The four samples of each face between a cell of the body and one that is not, then layer by layer
-    the corners of every cell of the body that has a full one."""
+    """The four samples of each face between a cell of the body and one that is not, then layer by layer the corners of every cell of the
+    body that has a full one."""
     full = numpy.zeros([SAMPLES] * 3, dtype=bool)
     for axis in range(3):
         flat = numpy.moveaxis(body, axis, 0)
@@ -50,12 +50,12 @@ def across_layers(layers, x):
 
 
 def closed_shell(shape, thickness, interpolation):
-    """A wall around a hollow 'box' (flat, with corners) or 'ball' of voxels (stepped), `thickness` [voxel]
-    on every flat face; spacing 1 mm.
+    """A wall around a hollow 'box' (flat, with corners) or 'ball' of voxels (stepped), `thickness` [voxel] on every flat face; spacing 1
+    mm.
 
-    Every face of the body has its four samples full, so a linear field is full all over the face, and the
-    wall is closed at any level below: the level sets its thickness. A ramp sampled thinner than a voxel
-    would have real holes. A smooth field needs two full layers, between which it is full.
+    Every face of the body has its four samples full, so a linear field is full all over the face, and the wall is closed at any level
+    below: the level sets its thickness. A ramp sampled thinner than a voxel would have real holes. A smooth field needs two full layers,
+    between which it is full.
     """
     if not 0 < thickness <= 4:
         raise ValueError(f"a shell of {thickness} voxels: it can be above 0 and up to 4 thick")
@@ -78,8 +78,8 @@ def candidates(random, count, size):
 
 @dataclasses.dataclass
 class Lines:
-    """Lines from outside into the solid: where they first meet the surface (entry [mm]), unit directions (along), their way in
-    the wall and the hand's way, both from the entry [mm]."""
+    """Lines from outside into the solid: where they first meet the surface (entry [mm]), unit directions (along), their way in the wall
+    and the hand's way, both from the entry [mm]."""
 
     entry: numpy.ndarray
     along: numpy.ndarray
@@ -91,10 +91,10 @@ class Lines:
 
 
 def lines_through(subject, outside, anywhere, count, random, draw=candidates):
-    """Lines at most 75 degrees off the normal where they meet the surface. A line goes through the first wall to 3 voxels behind
-    it, or half the distance to the next wall, if no free path from outside leads there. With `anywhere`, lines into a body thicker
-    than 16 voxels, or one that a proxy may go around, end 4 voxels deep or half way through. Raises ValueError if hardly a line
-    meets such a wall or body."""
+    """Lines at most 75 degrees off the normal where they meet the surface. A line goes through the first wall to 3 voxels behind it, or
+    half the distance to the next wall, if no free path from outside leads there. With `anywhere`, lines into a body thicker than 16
+    voxels, or one that a proxy may go around, end 4 voxels deep or half way through. Raises ValueError if hardly a line meets such a wall
+    or body."""
     kept, tried = [], 0
     while sum(len(part[0]) for part in kept) < count:
         if tried > 1000 + 100 * count:
