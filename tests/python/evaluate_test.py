@@ -297,6 +297,15 @@ def test_bounds_and_intervals_are_those_of_the_textbook():
     assert sampling.bootstrap([2.0, numpy.nan, 2.0]) == (2, 2, 2)
 
 
+def test_a_ratio_of_times_is_not_that_of_interruptions():
+    random = numpy.random.default_rng(2)
+    others, times = (slow * random.uniform(99, 101, (9, 200)) for slow in (1, 2))
+    interrupted = random.uniform(size=times.shape) < 0.01
+    ratio, low, high = sampling.ratio_of_means(times + 1e6 * interrupted, others)
+    assert 1.98 < low <= ratio <= high < 2.02
+    assert sampling.ratio_of_means(times, times) == (1, 1, 1)
+
+
 def test_numbers_read_back_as_the_same_and_what_was_not_measured_is_empty(tmp_path):
     table = Table([{"name": 'a, "b"', "x": 1 / 3}, {"name": "c", "y": 2.0}])
     report.write_csv(table, tmp_path / "t.csv")

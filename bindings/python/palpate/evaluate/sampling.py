@@ -31,6 +31,17 @@ def bootstrap(values, statistic=numpy.median, seed=1):
     return float(statistic(values)), float(interval.low), float(interval.high)
 
 
+def ratio_of_means(times, others, weights=None):
+    """(ratio, low, high) of the mean times of two that took turns in passes, (passes, pieces) each. The time of a piece is the median of
+    its passes, because other work on the machine interrupts some of them. The passes are resampled. A time counts as twice its piece's
+    median at most, so that an interruption that is drawn often stays a small one."""
+    def mean(passes):
+        return numpy.average(numpy.median(passes, axis=0), weights=weights)
+
+    times, others = (numpy.minimum(passes, 2 * numpy.median(passes, axis=0)) for passes in (times, others))
+    return bootstrap(numpy.arange(len(times)), lambda picked: mean(times[picked]) / mean(others[picked]))
+
+
 def in_words(values, form="{:.3g}", statistic=numpy.median):
     """'0.31 [0.28, 0.35]'."""
     return "{0} [{1}, {2}]".format(*map(form.format, bootstrap(values, statistic)))
