@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 
+import matplotlib.pyplot
 import numpy
 import palpate
 import pytest
@@ -19,9 +20,10 @@ from palpate.evaluate import __main__ as program
 from palpate.evaluate import bodies
 from palpate.evaluate import drift, fall_through, fidelity, notice, penetration, report, sampling, walk_through
 from palpate.evaluate.experiment import Claim, Options, Result, Table
+from palpate.evaluate.meshes import nearest_points
 from palpate.evaluate.outside import Outside
-from palpate.evaluate.subjects import Subject, of_text
-from palpate.evaluate.walls import Lines, closed_shell
+from palpate.evaluate.subjects import Subject, of_text, of_texts, real
+from palpate.evaluate.walls import closed_shell, lines_through
 
 # Quick tables of the C++ programs, 28 November 2026: of layers, tools and scaling the parts without curves and random numbers.
 # The filter is a newer one in the rows of dequantized data.
@@ -131,6 +133,25 @@ def test_a_level_that_nothing_meets_is_refused(name):
         MODULES[name].run(Options(quick=True, subjects=(of_text("synthetic:sphere:16x16x16@1000"),)))
 
 
+@pytest.mark.parametrize("name, said", [("notice", "smooth field stays below"), ("fall-through", "keep the proxy out"),
+                                        ("fall-through", "the thinner the wall")])
+def test_figures_say_in_advance_what_they_show_of_our_own_bodies_only(name, said):
+    def words(*subjects):
+        drawn = [figure.drawn for figure in MODULES[name].run(Options(quick=True, seeds=1, subjects=subjects)).figures]
+        return " ".join(text.get_text() for one in drawn for text in (one._suptitle, *(axes._left_title for axes in one.axes)) if text)
+
+    assert said in words() and said not in words(of_text("synthetic:sphere:24x24x24"))
+    matplotlib.pyplot.close("all")
+
+
+def test_a_volume_at_two_levels_is_two_volumes_with_a_hand_each():
+    low, high, other = of_texts(["synthetic:sphere:24x24x24@40", "synthetic:sphere:24x24x24@120", "synthetic:torus:24x24x16"])
+    assert (low.name, high.name, other.name) == ("sphere at 40", "sphere at 120", "torus")
+    table = drift.run(Options(quick=True, subjects=(low, high))).table
+    turn = [table.where(volume=volume, method="exact")[0]["updates"] for volume in (low.name, high.name)]
+    assert turn[0] > 1.1 * turn[1]  # the hand goes around the larger ball at the lower level
+
+
 def test_ranges_of_interest_are_those_that_were_asked_for():
     chosen = program.arguments(["penetration", "--range", "60%:70%", "--range", "80%:90%"])
     ball = of_text("synthetic:sphere:32x32x32@50%")
@@ -193,7 +214,7 @@ def test_nearest_points_agree_with_a_fine_search():
     weights = numpy.stack([u, v, 12 - u - v], axis=-1)[u + v <= 12] / 12
     fine = numpy.einsum("wc,tcx->twx", weights, mesh.vertices[mesh.triangles]).reshape(-1, 3)
     points = numpy.random.default_rng(11).uniform(-4, 4, (5, 3))
-    for point, found in zip(points, fidelity.nearest_points(mesh, points)):
+    for point, found in zip(points, nearest_points(mesh, points)):
         least, distance = numpy.linalg.norm(fine - point, axis=1).min(), numpy.linalg.norm(found - point)
         assert least - 0.1 < distance <= least + 1e-12
 
@@ -234,7 +255,7 @@ def test_walls_are_closed_and_have_the_thickness_that_is_asked_for():
 def test_every_line_leads_from_free_space_into_what_cannot_be_reached():
     wall = closed_shell("ball", 0.75, "linear")
     outside = Outside(wall)
-    lines = Lines(wall, outside, False, 300, numpy.random.default_rng(1))
+    lines = lines_through(wall, outside, False, 300, numpy.random.default_rng(1))
     at = {name: lines.entry + numpy.reshape(way, (-1, 1)) * lines.along
           for name, way in (("before", -1e-3), ("within", 0.5 * lines.wall), ("end", lines.end))}
     assert outside.holds(at["before"]).all()
@@ -274,6 +295,15 @@ def test_bounds_and_intervals_are_those_of_the_textbook():
     assert low < middle < high
     assert high - low == pytest.approx(2 * 1.96 / 20, rel=0.15)
     assert sampling.bootstrap([2.0, numpy.nan, 2.0]) == (2, 2, 2)
+
+
+def test_a_ratio_of_times_is_not_that_of_interruptions():
+    random = numpy.random.default_rng(2)
+    others, times = (slow * random.uniform(99, 101, (9, 200)) for slow in (1, 2))
+    interrupted = random.uniform(size=times.shape) < 0.01
+    ratio, low, high = sampling.ratio_of_means(times + 1e6 * interrupted, others)
+    assert 1.98 < low <= ratio <= high < 2.02
+    assert sampling.ratio_of_means(times, times) == (1, 1, 1)
 
 
 def test_numbers_read_back_as_the_same_and_what_was_not_measured_is_empty(tmp_path):
@@ -432,9 +462,8 @@ def test_an_interrupt_while_the_folder_is_made_leaves_nothing(tmp_path, monkeypa
 def test_real_volumes_are_known_by_their_bytes(tmp_path):
     notes = []
     (tmp_path / "lobster.nrrd").write_bytes((pathlib.Path(palpate.sample_volume())).read_bytes())
-    data = []
-    assert drift.real("lobster", Options(data=tmp_path, note=notes.append), data)
-    assert "not the file" in notes[0]
-    assert data[0][1] == hashlib.sha256((tmp_path / "lobster.nrrd").read_bytes()).hexdigest()
-    assert drift.real("ct-head", Options(data=tmp_path, note=notes.append)) is None
+    options = Options(data=tmp_path, note=notes.append)
+    assert real("lobster", options) and "not the file" in notes[0]
+    assert options.used[0][1] == hashlib.sha256((tmp_path / "lobster.nrrd").read_bytes()).hexdigest()
+    assert real("ct-head", options) is None and len(options.used) == 1
     assert "without the volume ct-head" in notes[1]

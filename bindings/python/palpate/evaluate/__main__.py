@@ -244,7 +244,7 @@ class Folder:
 
 def options_of(chosen, name):
     from palpate.evaluate.experiment import Options
-    from palpate.evaluate.subjects import of_text
+    from palpate.evaluate.subjects import of_texts
 
     def progress(part):
         if sys.stderr.isatty() and not (chosen.quiet or chosen.json):
@@ -255,23 +255,25 @@ def options_of(chosen, name):
             tell(f"note: {name}: {text.removeprefix(name + ': ')}")
 
     return Options(quick=chosen.quick, seed=chosen.seed, seeds=chosen.seeds, method=chosen.method,
-                   ranges=tuple(chosen.range),
-                   subjects=tuple(map(of_text, chosen.volume)), progress=progress, note=note,
+                   ranges=tuple(chosen.range), subjects=of_texts(chosen.volume), progress=progress, note=note,
                    data=Path(chosen.data) if chosen.data else None)
 
 
 def command_of(words):
     """Without the folders of this machine."""
-    return shlex.join(["palpate", "evaluate",
-                       *(Path(word).name if word.startswith("/") else word for word in words)])
+    return shlex.join(["palpate", "evaluate", *(Path(word).name if word.startswith("/") else word for word in words)])
+
+
+def module_of(name):
+    return importlib.import_module(f"palpate.evaluate.{name.replace('-', '_')}")
 
 
 def run(name, chosen, folder, words):
     """The Report of an experiment whose files are written."""
     from palpate.evaluate import machine, report
-    options = options_of(chosen, name)
-    module = importlib.import_module(f"palpate.evaluate.{name.replace('-', '_')}")
+    options, module = options_of(chosen, name), module_of(name)
     result = module.run(options)
+    result.data = options.used
     options.progress(1)
     made = report.Report(name, module.TITLE, result, f"{machine.described(command_of(words))} Seed {chosen.seed}, " + (
         "quick mode (too short for the times to mean anything)." if chosen.quick else "full run."))
@@ -329,12 +331,6 @@ def interrupt(number, frame):
     raise Stop(128 + number, "interrupted")
 
 
-def load(names):
-    """Imports everything that the experiments use."""
-    for name in ("report", "machine", "figures", *names):
-        importlib.import_module(f"palpate.evaluate.{name.replace('-', '_')}")
-
-
 def main(words):
     for number in ENDS:
         signal.signal(number, interrupt)
@@ -354,7 +350,8 @@ def main(words):
             return 0
         chosen = arguments(words)
         import palpate
-        load(EXPERIMENTS if chosen.name == "all" else (chosen.name,))
+        for name in ("report", "machine", "figures", *(EXPERIMENTS if chosen.name == "all" else (chosen.name,))):
+            module_of(name)  # with everything that it uses
         signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDS)
         try:
             evaluate(chosen, words)

@@ -12,15 +12,14 @@ from .subjects import Subject, synthetic
 RADIUS, SLOPE = 0.35, 1.4  # of the ball, in a unit box
 DEPTH = 0.03  # of the hand, in the same unit
 TURNS = 20
-# 8 bits as they are, smoothed in one pass, dequantized, and not rounded at all.
-SAMPLES = ("uint8", "uint8 smoothed", "uint8 dequantized", "float32")
+FILTERS = {"uint8 smoothed": palpate.smoothed, "uint8 dequantized": palpate.dequantized}
+SAMPLES = ("uint8", *FILTERS, "float32")  # 8 bits as they are, smoothed in one pass, dequantized, and not rounded at all
 
 
 @dataclasses.dataclass
 class Body:
-    """grid: samples along the longest axis; depth [mm] of the hand below the true surface, where that is
-    constant; start: a free place [mm]; hand(parts): from 0 to 1, points [mm], (n, 3); ideal(hands): unit
-    vectors of a perfect force, where they are known."""
+    """grid: samples along the longest axis; depth [mm] of the hand below the true surface, where that is constant; start: a free place
+    [mm]; hand(parts): from 0 to 1, points [mm], (n, 3); ideal(hands): unit vectors of a perfect force, where they are known."""
 
     subject: Subject
     trajectory: str
@@ -41,14 +40,9 @@ def around(angle, *others):
 
 
 def with_samples(subject, samples):
-    volume = subject.field.volume
-    if samples == "uint8 smoothed":
-        volume = palpate.smoothed(volume)
-    elif samples == "uint8 dequantized":
-        volume = palpate.dequantized(volume)
-    else:
+    if samples not in FILTERS:
         return subject
-    return dataclasses.replace(subject, field=palpate.Field(volume, interpolation="linear"))
+    return dataclasses.replace(subject, field=palpate.Field(FILTERS[samples](subject.field.volume), interpolation="linear"))
 
 
 def stored(samples):
@@ -96,8 +90,7 @@ def ball_by(trajectory, grid, samples):
 
 
 def torus_by_helix(grid, samples):
-    """Once around the ring and 20 times around its tube. docs/scenes.md: a ring of 0.3 of the box, and at
-    level 0.4 a tube of 0.12."""
+    """Once around the ring and 20 times around its tube. docs/scenes.md: a ring of 0.3 of the box, and at level 0.4 a tube of 0.12."""
     subject = with_samples(synthetic(f"torus:{grid}x{grid}x{grid // 2}", type=stored(samples)), samples)
     ring, tube = 0.3 * grid, 0.12 * grid
 
@@ -106,16 +99,13 @@ def torus_by_helix(grid, samples):
         out, turned = around(along, 0 * along), TURNS * along[:, None]
         return ring * out + from_ring * (numpy.cos(turned) * out + numpy.sin(turned) * [0, 0, 1])
 
-    def ideal(hands):
-        return unit(hands - ring * unit(hands * [1, 1, 0]))
-
-    return Body(subject, "helix", samples, grid, DEPTH * grid, at([0], 1.3 * tube)[0],
-                lambda parts: at(parts, tube - DEPTH * grid), ideal)
+    return Body(subject, "helix", samples, grid, DEPTH * grid, at([0], 1.3 * tube)[0], lambda parts: at(parts, tube - DEPTH * grid),
+                lambda hands: unit(hands - ring * unit(hands * [1, 1, 0])))
 
 
 def ripples_by_spiral(grid, samples):
-    """In a plane below the deepest trough of the Marschner-Lobb signal, a spiral of 20 turns over its ripples.
-    On the level, sin(pi z / 2) is a quarter of the ripple: troughs are at -0.161 of half the box."""
+    """In a plane below the deepest trough of the Marschner-Lobb signal, a spiral of 20 turns over its ripples. On the level, sin(pi z /
+    2) is a quarter of the ripple: troughs are at -0.161 of half the box."""
     subject = with_samples(synthetic(f"marschner-lobb:{grid}x{grid}x{grid}", type=stored(samples)), samples)
     half, trough = 0.5 * (grid - 1), -2 / numpy.pi * numpy.arcsin(0.25)
 
@@ -128,14 +118,12 @@ def ripples_by_spiral(grid, samples):
 
 
 def of_a_user(subject):
-    """Around the z axis. Raises ValueError where a hand cannot go around it."""
+    """Around the z axis, from outside. Raises ValueError where a hand cannot go around it."""
     geometry = subject.field.geometry
     if subject.sign * (subject.field.background - subject.isovalue) > 0:
-        raise ValueError(f"{subject.name}: all around the data is solid at this level, so a hand cannot come to it; "
-                         "choose another level")
+        raise ValueError(f"{subject.name}: all around the data is solid at this level, so a hand cannot come to it; choose another level")
     depth = float(DEPTH * (geometry.size * geometry.spacing).min())
     ring = Ring(subject, depth)
-    # Outside the grid, on the ray that found the ring's first point.
     start = ring.centre + subject.diagonal * unit(ring.at([0.0])[0] - ring.centre)
     return Body(subject, "ring", subject.field.volume.type, int(max(geometry.size)), depth, start,
                 lambda parts: ring.at(numpy.asarray(parts) * ring.length))

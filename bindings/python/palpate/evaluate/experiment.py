@@ -23,8 +23,20 @@ class Options:
     subjects: tuple = ()  # instead of the experiment's own volumes
     ranges: tuple = ()  # (low, high) of interest, for penetration
     data: Optional[Path] = None  # folder of the real volumes
+    used: list = dataclasses.field(default_factory=list)  # of them: (file, SHA-256, where to get it)
     progress: Callable[[float], Any] = lambda part: None
     note: Callable[[str], Any] = lambda text: None
+
+    def refuse_volumes(self, reason):
+        if self.subjects:
+            raise ValueError(f"{reason} of its own: leave out --volume")
+
+    def each(self, cases, begin=0, end=1):
+        """The cases, one after the other, with reports of progress between two parts of the whole."""
+        cases = list(cases)
+        for number, case in enumerate(cases):
+            self.progress(begin + (end - begin) * number / len(cases))
+            yield case
 
 
 @dataclasses.dataclass
@@ -44,12 +56,18 @@ class Figure:
     caption: str
     drawn: Any
 
+    def __post_init__(self):
+        self.caption = joined(self.caption)
+
 
 class Table(list):
     """Rows, each a dict of cells by column; an absent cell was not measured."""
 
     def where(self, **cells):
         return Table(row for row in self if all(row.get(name) == cell for name, cell in cells.items()))
+
+    def only(self, holds):
+        return Table(row for row in self if holds(row))
 
     def __getitem__(self, column):
         """A column as an array, NaN where nothing was measured; or a row by its number."""
@@ -63,6 +81,10 @@ class Table(list):
     @property
     def columns(self):
         return list(dict.fromkeys(name for row in self for name in row))
+
+    def cells(self, form):
+        """Rows of all columns as text, where form() makes text of a cell; an absent one is NaN."""
+        return [[form(row.get(name, numpy.nan)) for name in self.columns] for row in self]
 
 
 @dataclasses.dataclass
@@ -79,6 +101,22 @@ def in_parallel(function, items):
     """The results in the order of the items. Calls into the module leave the GIL, so that all processors work."""
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
         return list(threads.map(function, items))
+
+
+def joined(text):
+    """Text that is broken into lines as the code is, in one line."""
+    return " ".join(text.split())
+
+
+def paragraphs(text):
+    """The same for paragraphs, which are apart by empty lines."""
+    return [joined(part) for part in text.strip().split("\n\n")]
+
+
+def at_most(limit, values, statement, measured="largest {:.2g}"):
+    """The Claim that no value is above the limit."""
+    most = largest(values)
+    return Claim(statement, most <= limit, measured.format(most))
 
 
 def largest(values):

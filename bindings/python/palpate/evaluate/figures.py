@@ -1,5 +1,5 @@
-"""How figures look: for print at the width of one or two columns, in colours that color-blind readers
-can tell apart (Okabe and Ito), with labels at the curves. The same numbers give the same file."""
+"""How figures look: for print at the width of one or two columns, in colours that color-blind readers can tell apart (Okabe and Ito),
+with labels at the curves. The same numbers give the same file."""
 
 import io
 import re
@@ -27,10 +27,13 @@ matplotlib.rcParams.update({
     "figure.titleweight": "bold"})
 
 
-def panels(rows=1, columns=1, height=2.6, width=None, **settings):
+def panels(rows=1, columns=1, height=2.6, width=None, title=None, **settings):
     """A figure and its axes, as wide as a column of a page, or a page for several panels."""
-    return matplotlib.pyplot.subplots(
+    drawn, axes = matplotlib.pyplot.subplots(
         rows, columns, figsize=(width or (COLUMN if columns == 1 else PAGE), height), **settings)
+    if title:
+        drawn.suptitle(title, x=0.01, ha="left")
+    return drawn, axes
 
 
 def curve(axes, name, x, y, **look):
@@ -39,9 +42,37 @@ def curve(axes, name, x, y, **look):
     axes.plot(x, y, **{"color": colour, "marker": marker, "label": name, **look})
 
 
+def ticks(axis, places, labels=None):
+    """Ticks of axes.xaxis or axes.yaxis at these places only, with their numbers or with names."""
+    axis.set_ticks(places, [f"{place:g}" for place in places] if labels is None else labels)
+    axis.set_ticks([], minor=True)
+
+
+def limit(axes, value, text, ls="--"):
+    """A line across a panel at a bound, with its name."""
+    axes.axhline(value, color=GREY, ls=ls, lw=0.8)
+    axes.text(0.01, value, text, transform=axes.get_yaxis_transform(), color=GREY, fontsize=6.5, va="bottom")
+
+
+def names(axes, entries, x=1.03, top=0.98, apart=0.1, **look):
+    """(name, colour) below one another, from a place in parts of the panel."""
+    for number, (name, colour) in enumerate(entries):
+        axes.text(x, top - apart * number, name, color=colour, transform=axes.transAxes, **{"fontsize": 7.5, "va": "top", **look})
+
+
+def number_map(axes, values, rows, columns, darkest, form="{:.0f}", fontsize=6.5):
+    """A matrix as numbers on shades of blue, with names of its rows and columns."""
+    axes.imshow(values, cmap="Blues", vmin=0, vmax=darkest, aspect="auto")
+    for (row, column), value in numpy.ndenumerate(numpy.array(values)):
+        axes.text(column, row, form.format(value), ha="center", va="center", fontsize=fontsize)
+    ticks(axes.xaxis, range(len(columns)), columns)
+    ticks(axes.yaxis, range(len(rows)), rows)
+    axes.grid(False)
+
+
 def label_ends(*panels, apart=0.075):
-    """Writes each curve's label at its right end, in its colour, pushed apart where ends meet, and a
-    thin line to it where it was pushed away."""
+    """Writes each curve's label at its right end, in its colour, pushed apart where ends meet, and a thin line to it where it was pushed
+    away."""
     panels[0].figure.canvas.draw()  # before any label, as labels move the panels
     for axes in panels:
         ends = []

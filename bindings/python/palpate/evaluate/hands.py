@@ -1,40 +1,68 @@
-"""Hands that several experiments share."""
+"""Hands that several experiments share: straight in, and around a body."""
+
+import dataclasses
 
 import numpy
 import palpate
 
 
+@dataclasses.dataclass
+class Way:
+    """A straight way of a hand: where depth 0 is [mm, physical], and a unit vector."""
+
+    origin: numpy.ndarray
+    inward: numpy.ndarray
+
+    def at(self, depth):
+        return self.origin + numpy.multiply.outer(depth, self.inward)
+
+
+def way_in(subject, through, inward):
+    """From where the line through a place first meets the surface from outside; None where it does not."""
+    outside = through - 2 * subject.diagonal * inward
+    met = palpate.cast_rays(subject.field, subject.isovalue, [outside], [through])[0][0]
+    return None if numpy.isnan(met[0]) or (met == outside).all() else Way(met, inward)
+
+
+def way_from_a_side(subject):
+    """(way, its length [mm]) to the middle of the volume, from the first side of its box where it meets the surface. Raises ValueError
+    where none does."""
+    geometry = subject.field.geometry
+    centre = numpy.array(geometry.centre)
+    for side in (1, -1):
+        for axis in (1, 0, 2):
+            way = way_in(subject, centre, side * numpy.asarray(geometry.direction)[:, axis])
+            if way is not None and (centre != way.origin).any():
+                return way, float(numpy.linalg.norm(centre - way.origin))
+    raise ValueError(f"{subject.name}: no line from a side of the volume to its middle meets the surface; choose another level")
+
+
 class Ring:
     """A closed trajectory of a hand around a body, travelled by its length.
 
-    It goes around the grid's z axis through its centre: where rays from outside towards the centre
-    first meet the surface, pushed in by `depth` [mm]. Rays that meet nothing take their neighbour's
-    radius. Raises ValueError where fewer than half of them meet the surface.
+    It goes around the grid's z axis through its centre: where rays from outside towards the centre first meet the surface, pushed in by
+    `depth` [mm]. Rays that meet nothing take their neighbour's radius. Raises ValueError where fewer than half of them meet the surface.
     """
 
     RAYS = 360
 
     def __init__(self, subject, depth):
         geometry = subject.field.geometry
-        centre = numpy.asarray(geometry.centre)
+        self.centre = numpy.asarray(geometry.centre)
         angle = 2 * numpy.pi * numpy.arange(self.RAYS) / self.RAYS
-        plane = numpy.stack([numpy.cos(angle), numpy.sin(angle)], axis=1)
-        outward = plane @ numpy.asarray(geometry.direction)[:, :2].T
-        points, _ = palpate.cast_rays(subject.field, subject.isovalue,
-                                      centre + subject.diagonal * outward,
-                                      numpy.tile(centre, (self.RAYS, 1)))
-        radius = numpy.linalg.norm(points - centre, axis=1)
+        outward = numpy.stack([numpy.cos(angle), numpy.sin(angle)], axis=1) @ numpy.asarray(geometry.direction)[:, :2].T
+        points, _ = palpate.cast_rays(subject.field, subject.isovalue, self.centre + subject.diagonal * outward,
+                                      numpy.tile(self.centre, (self.RAYS, 1)))
+        radius = numpy.linalg.norm(points - self.centre, axis=1)
         met = numpy.flatnonzero(~numpy.isnan(radius))
         if 2 * len(met) < self.RAYS:
-            raise ValueError(f"{subject.name}: rays to its centre hardly meet the surface, so a hand "
-                             "cannot go round it; choose another level or volume")
+            raise ValueError(f"{subject.name}: rays to its centre hardly meet the surface, so a hand cannot go round it; choose another "
+                             "level or volume")
         # The nearest ray before it that met the surface, around the circle.
         before = met[numpy.searchsorted(met, numpy.arange(self.RAYS), side="right") - 1]
-        corners = centre + numpy.maximum(0, radius[before] - depth)[:, None] * outward
-        self.centre = centre
+        corners = self.centre + numpy.maximum(0, radius[before] - depth)[:, None] * outward
         self._corners = numpy.concatenate([corners, corners[:1]])
-        pieces = numpy.linalg.norm(numpy.diff(self._corners, axis=0), axis=1)
-        self._arc = numpy.concatenate([[0], numpy.cumsum(pieces)])
+        self._arc = numpy.concatenate([[0], numpy.cumsum(numpy.linalg.norm(numpy.diff(self._corners, axis=0), axis=1))])
         self.length = float(self._arc[-1])
 
     def at(self, arc):

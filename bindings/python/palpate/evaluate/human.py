@@ -16,8 +16,8 @@ SMOOTH = 1.0  # [mm/s] below which friction falls to 0, so that a slow hand does
 class Human:
     """Mass, damping and stiffness: fitted to one trial of one person who held a haptic handle (van Beek et al. 2015, Scientific Reports
     5, 18004, Fig. 3). Tremor of the hand: 50 to 200 µm root mean square, commonly at 8 to 12 Hz (reviewed in PMC3989364), and 182 µm in
-    surgery (Riviere and Jensen 2000). Willed motion: 98.9 % of its power is below 2 Hz (Riviere, Rader and Khosla 1997). Delay: of a simple reaction to
-    touch (Robinson 1934). The gain is assumed."""
+    surgery (Riviere and Jensen 2000). Willed motion: 98.9 % of its power is below 2 Hz (Riviere, Rader and Khosla 1997). Delay: of a
+    simple reaction to touch (Robinson 1934). The gain is assumed."""
 
     mass: float = 0.554  # [kg]
     damping: float = 6.45  # [N s/m]
@@ -40,8 +40,8 @@ def noise(random, count, band, kind):
 
 
 def trembling(human, random, count):
-    """[mm] What tremor adds to a target, (count, 3), so that a free hand trembles by human.tremor: its mass, damper and spring pass
-    on only a fifth of what the target does at 10 Hz."""
+    """[mm] What tremor adds to a target, (count, 3), so that a free hand trembles by human.tremor: its mass, damper and spring pass on
+    only a fifth of what the target does at 10 Hz."""
     hand = human.tremor * noise(random, count + 2 * RATE, human.band, "bandpass")
     s = 2j * numpy.pi * numpy.fft.rfftfreq(len(hand), 1 / RATE)[:, None]
     given = human.stiffness + human.damping * s
@@ -49,8 +49,8 @@ def trembling(human, random, count):
 
 
 def press(human, random, seconds, wanted, wall, friction):
-    """(tip [mm], force on the hand [N]) at RATE, (n, 3), of a hand that strokes the plane z = 0 and presses with `wanted` [N] against
-    it, and lifts off in between. The plane is a spring of `wall` [N/mm] with Coulomb friction, and the flesh of the hand one behind it."""
+    """(tip [mm], force on the hand [N]) at RATE, (n, 3), of a hand that strokes the plane z = 0 and presses with `wanted` [N] against it,
+    and lifts off in between. The plane is a spring of `wall` [N/mm] with Coulomb friction, and the flesh of the hand one behind it."""
     count, step = int(seconds * RATE), 1 / (RATE * SUBSTEPS)
     presses = numpy.arange(count) / RATE % PERIOD >= (1 - PRESSED) * PERIOD
     target = trembling(human, random, count) + REACH * noise(random, count, human.willed / 4, "lowpass") * [1, 1, 0]

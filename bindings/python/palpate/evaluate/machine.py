@@ -1,5 +1,5 @@
-"""Describes the machine and the build that numbers come from: processor, clock, kernel, governor, compiler,
-flags, commit and command. Nothing in it identifies the machine itself."""
+"""Describes the machine and the build that numbers come from: processor, clock, kernel, governor, compiler, flags, commit and command.
+Nothing in it identifies the machine itself."""
 
 import os
 import platform

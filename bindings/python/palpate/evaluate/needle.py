@@ -1,7 +1,7 @@
 """needle: how wrong is the force on a needle without a full segmentation? (Mastmeyer et al. 2017)
 
-A needle goes from the skin of a phantom into a vessel of its liver. Its force in a CT that is segmented in part, or not at all, is
-compared with that in the whole truth.
+A needle goes from the skin of a phantom into a vessel of its liver. Its force in a CT that is segmented in part, or not at all, is compared
+with that in the whole truth.
 """
 
 import dataclasses
@@ -12,8 +12,9 @@ import scipy.ndimage
 
 from . import figures, sampling
 from .bodies import unit
-from .experiment import Claim, Figure, Result, Table, in_parallel
-from .tissues import RATE, Way, renderer, times
+from .experiment import Claim, Figure, Result, Table, in_parallel, paragraphs
+from .hands import Way
+from .tissues import RATE, renderer, times
 
 TITLE = "How wrong is the force on a needle without a full segmentation?"
 SPEED, BEFORE = 50, 3  # [mm/s] of the hand, [mm] of air before the skin
@@ -81,10 +82,10 @@ def layers():
 
 def path(random):
     """(way, length [mm]) from before the skin of the front to a place in the vessel."""
-    vessel = TISSUES[-1]
-    target = numpy.array(vessel[3]) + 0.5 * numpy.array(vessel[2]) * unit(random.standard_normal(3)) * random.uniform()**(1 / 3)
-    skin = unit(random.standard_normal(3) * [1, 1, 0.7]) * [1, 1, 1]
-    start = numpy.array(TISSUES[0][2]) * skin * numpy.sign(skin[1] or 1) * [1, -1, 1]
+    (_, _, skin, *_), (_, _, half, middle, *_) = TISSUES[0], TISSUES[-1]
+    target = numpy.array(middle) + 0.5 * numpy.array(half) * unit(random.standard_normal(3)) * random.uniform()**(1 / 3)
+    out = unit(random.standard_normal(3) * [1, 1, 0.7])
+    start = numpy.array(skin) * out * numpy.sign(out[1] or 1) * [1, -1, 1]
     inward = unit(target - start)
     return Way(start - BEFORE * inward, inward), BEFORE + numpy.linalg.norm(target - start)
 
@@ -99,20 +100,54 @@ def forces_on(fresh, way, length):
     return depth, -trace["force"] @ way.inward, numpy.bincount(gone, minlength=len(TISSUES))
 
 
+def rows_on(number, way, fresh):
+    """A row for each scan."""
+    made = {name: forces_on(renderer, *way) for name, renderer in fresh.items()}
+    _, wanted, punctured = made[TRUTH]
+    for name, (depth, force, punctures) in made.items():
+        off, extra = abs(force - wanted), punctures - punctured
+        yield {"path": number, "scan": name, "ticks": len(depth), "punctures": punctures.sum(), "extra": extra.clip(0).sum(),
+               "missed": (-extra).clip(0).sum(), "greatest_n": wanted.max(), "rms_n": numpy.sqrt((off**2).mean()), "most_n": off.max(),
+               "affected_percent": 100 * (off > AFFECTED).mean()}
+
+
 def rows_of(paths, fields):
-    """A row for each path and scan."""
+    """A row for each path and scan. paths: (number, way and length)."""
     fresh = {name: renderer(field, layers()) for name, field in fields.items()}
+    return [row for rows in in_parallel(lambda of: list(rows_on(*of, fresh)), paths) for row in rows]
 
-    def one(number):
-        made = {name: forces_on(fresh[name], *paths[number]) for name in fresh}
-        for name, (depth, force, punctures) in made.items():
-            off = abs(force - made[TRUTH][1])
-            extra = punctures - made[TRUTH][2]
-            yield {"path": number, "scan": name, "ticks": len(depth), "punctures": punctures.sum(),
-                   "extra": extra.clip(0).sum(), "missed": (-extra).clip(0).sum(), "greatest_n": made[TRUTH][1].max(),
-                   "rms_n": numpy.sqrt((off**2).mean()), "most_n": off.max(), "affected_percent": 100 * (off > AFFECTED).mean()}
 
-    return Table(row for rows in in_parallel(lambda number: list(one(number)), range(len(paths))) for row in rows)
+def summary_of(table):
+    for name in (PARTLY, SMOOTHED, RAW):
+        rows = table.where(scan=name)
+        yield {"scan": name, "paths": f"{len(rows):,}",
+               "RMS error, mean [95 % interval] [N]": sampling.in_words(rows["rms_n"], "{:.2g}", numpy.mean),
+               "greatest error [N]": rows["most_n"].max(), "forces off by more than 0.01 N [%]": rows["affected_percent"].mean(),
+               "extra punctures per path": rows["extra"].mean(), "missed punctures per path": rows["missed"].mean()}
+    yield {"scan": "10 patients, partly segmented (published)", "paths": f"{MASTMEYER['paths']:,}",
+           "RMS error, mean [95 % interval] [N]": f"{MASTMEYER['mean_rms_n']:g}", "greatest error [N]": MASTMEYER["most_n"],
+           "forces off by more than 0.01 N [%]": f"{MASTMEYER['affected_percent']} (threshold not stated)"}
+
+
+def figure_of(table, paths, fields):
+    drawn, (left, right) = figures.panels(columns=2, height=2.6, title="Labels and smoothing both lower the error of a needle's force")
+    looks = {TRUTH: ("#c0c0c0", 4), RAW: (figures.VERMILION, 0.8), PARTLY: (figures.BLUE, 1.2)}
+    for name, (colour, width) in looks.items():
+        depth, force, _ = forces_on(renderer(fields[name], layers()), *paths[0])
+        left.plot(depth - BEFORE, force, color=colour, lw=width)
+    figures.names(left, [(name, figures.GREY if name == TRUTH else colour) for name, (colour, _) in looks.items()], 0.02)
+    left.set(title="one path", xlabel="depth of the hand past the skin [mm]", ylabel="force on the needle [N]",
+             ylim=(0, 1.6 * table["greatest_n"].max()))
+    looks = {PARTLY: figures.BLUE, SMOOTHED: figures.GREEN, RAW: figures.VERMILION}
+    for name, colour in looks.items():
+        values = numpy.sort(table.where(scan=name)["rms_n"])
+        right.step(values, 100 * (1 + numpy.arange(len(values))) / len(values), color=colour, lw=1.4)
+    figures.names(right, [(name.replace(", ", ",\n"), colour) for name, colour in looks.items()], 1.03, 0.75, 0.25, va="baseline")
+    right.axvline(MASTMEYER["mean_rms_n"], color=figures.GREY, ls="--", lw=0.8)
+    right.text(MASTMEYER["mean_rms_n"], 3, " Mastmeyer\n (mean)", color=figures.GREY, fontsize=7)
+    right.set(title="error of all paths", xlabel="root mean square [N]", ylabel="part of the paths [%]", xlim=(0, None), ylim=(0, 103))
+    return Figure("", """Left: force on a needle on its way from the skin into the vessel. Right: error of the force on every path, as the
+        part of the paths with at most so much. Dashed: the mean of Mastmeyer et al. 2017 in patients.""", drawn)
 
 
 def claims_of(table):
@@ -127,67 +162,35 @@ def claims_of(table):
                 f"{raw['rms_n'].mean():.3g} N")
 
 
-def summary_of(table):
-    for name in (PARTLY, SMOOTHED, RAW):
-        rows = table.where(scan=name)
-        yield {"scan": name, "paths": f"{len(rows):,}", "RMS error, mean [95 % interval] [N]": sampling.in_words(rows["rms_n"], "{:.2g}", numpy.mean),
-               "greatest error [N]": rows["most_n"].max(), "forces off by more than 0.01 N [%]": rows["affected_percent"].mean(),
-               "extra punctures per path": rows["extra"].mean(), "missed punctures per path": rows["missed"].mean()}
-    yield {"scan": "10 patients, partly segmented (published)", "paths": f"{MASTMEYER['paths']:,}",
-           "RMS error, mean [95 % interval] [N]": f"{MASTMEYER['mean_rms_n']:g}", "greatest error [N]": MASTMEYER["most_n"],
-           "forces off by more than 0.01 N [%]": f"{MASTMEYER['affected_percent']} (threshold not stated)"}
-
-
-def figure_of(table, paths, fields):
-    drawn, (left, right) = figures.panels(columns=2, height=2.6)
-    looks = {TRUTH: ("#c0c0c0", 4), RAW: (figures.VERMILION, 0.8), PARTLY: (figures.BLUE, 1.2)}
-    for number, (name, (colour, width)) in enumerate(looks.items()):
-        depth, force, _ = forces_on(renderer(fields[name], layers()), *paths[0])
-        left.plot(depth - BEFORE, force, color=colour, lw=width)
-        left.text(0.02, 0.98 - 0.1 * number, name, color=figures.GREY if name == TRUTH else colour, transform=left.transAxes, fontsize=7.5,
-                  va="top")
-    left.set(title="one path", xlabel="depth of the hand past the skin [mm]", ylabel="force on the needle [N]",
-             ylim=(0, 1.6 * table["greatest_n"].max()))
-    for name, colour in ((PARTLY, figures.BLUE), (SMOOTHED, figures.GREEN), (RAW, figures.VERMILION)):
-        values = numpy.sort(table.where(scan=name)["rms_n"])
-        right.step(values, 100 * (1 + numpy.arange(len(values))) / len(values), color=colour, lw=1.4, label=name.replace(", ", ",\n"))
-    right.axvline(MASTMEYER["mean_rms_n"], color=figures.GREY, ls="--", lw=0.8)
-    right.text(MASTMEYER["mean_rms_n"], 3, " Mastmeyer\n (mean)", color=figures.GREY, fontsize=7)
-    right.set(title="error of all paths", xlabel="root mean square [N]", ylabel="part of the paths [%]", xlim=(0, None), ylim=(0, 103))
-    for line, place in zip(right.get_lines()[:3], (0.75, 0.5, 0.25)):
-        right.text(1.03, place, line.get_label(), color=line.get_color(), transform=right.transAxes, fontsize=7.5)
-    drawn.suptitle("Labels and smoothing both lower the error of a needle's force", x=0.01, ha="left")
-    return Figure("", "Left: force on a needle on its way from the skin into the vessel. Right: error of the force on every path, as the "
-                  "part of the paths with at most so much. Dashed: the mean of Mastmeyer et al. 2017 in patients.", drawn)
-
-
 def paragraphs_of(count, seed):
-    return [f"A needle goes in at {SPEED} mm/s on {count:,} random paths, from the front of a phantom through skin and fat, muscle and liver "
-            f"into a vessel. All are ellipsoids. The truth is a volume without noise. The CT is the truth, blurred by {BLUR:g} mm, with "
-            f"{NOISE} HU of noise (seed {seed}), rounded to whole HU, 1 mm per sample. Liver and vessel are segmented by binary labels: a sample "
-            f"whose centre is inside gets the tissue's intensity ({TISSUES[2][1]} or {TISSUES[3][1]} HU). Outside the labels, samples above "
-            f"{TISSUES[1][1]} HU are set to that of muscle, because the labels say that no liver is there. All surfaces are levels half way "
-            "between two tissues. The same program, with the same properties of tissues, renders both, so that the difference is that of the data.",
-            "A puncture is extra if its surface gives way more often than in the truth, and missed if it does so less often. They are counted "
-            "for each surface.",
-            "Mastmeyer et al. (2017, Scientific Reports 7, 671) compared forces in partly segmented CT of 10 patients with those in full "
-            f"segmentations. On {MASTMEYER['paths']:,} paths, the error was {MASTMEYER['mean_rms_n']:g} N RMS on average and at most "
-            f"{MASTMEYER['most_n']:g} N. It affected {MASTMEYER['affected_percent']} % of the forces (threshold not stated). The protocols differ: theirs has "
-            "anatomy, ribs and deformation, and errors of their segmentations. No claim is made about their numbers.",
-            "The properties of tissues are chosen, not measured. Most of the error is that a surface gives way a little earlier or later than in "
-            "the truth. The whole force of the surface is then missing, or too much, for some ticks."]
+    (_, muscle, *_), (_, liver, *_), (_, vessel, *_) = TISSUES[1:]
+    return paragraphs(f"""
+        A needle goes in at {SPEED} mm/s on {count:,} random paths, from the front of a phantom through skin and fat, muscle and liver into
+        a vessel. All are ellipsoids. The truth is a volume without noise. The CT is the truth, blurred by {BLUR:g} mm, with {NOISE} HU of
+        noise (seed {seed}), rounded to whole HU, 1 mm per sample. Liver and vessel are segmented by binary labels: a sample whose centre
+        is inside gets the tissue's intensity ({liver} or {vessel} HU). Outside the labels, samples above {muscle} HU are set to that of
+        muscle, because the labels say that no liver is there. All surfaces are levels half way between two tissues. The same program, with
+        the same properties of tissues, renders both, so that the difference is that of the data.
+
+        A puncture is extra if its surface gives way more often than in the truth, and missed if it does so less often. They are counted
+        for each surface.
+
+        Mastmeyer et al. (2017, Scientific Reports 7, 671) compared forces in partly segmented CT of 10 patients with those in full
+        segmentations. On {MASTMEYER["paths"]:,} paths, the error was {MASTMEYER["mean_rms_n"]:g} N RMS on average and at most
+        {MASTMEYER["most_n"]:g} N. It affected {MASTMEYER["affected_percent"]} % of the forces (threshold not stated). The protocols
+        differ: theirs has anatomy, ribs and deformation, and errors of their segmentations. No claim is made about their numbers.
+
+        The properties of tissues are chosen, not measured. Most of the error is that a surface gives way a little earlier or later than in
+        the truth. The whole force of the surface is then missing, or too much, for some ticks.""")
 
 
 def run(options):
-    if options.subjects:
-        raise ValueError("needle has a phantom of its own: leave out --volume")
+    options.refuse_volumes("needle has a phantom")
     made = phantom(1.0)
     fields = {name: made.felt(samples) for name, samples in scans(made, numpy.random.default_rng([options.seed, 0])).items()}
     random = numpy.random.default_rng([options.seed, 1])
     paths = [path(random) for _ in range(30 if options.quick else 1000)]
-    table = Table()
-    for begin in range(0, len(paths), 200):
-        options.progress(begin / len(paths))
-        table.extend({**row, "path": row["path"] + begin} for row in rows_of(paths[begin:begin + 200], fields))
+    parts = numpy.array_split(numpy.arange(len(paths)), 1 + len(paths) // 200)
+    table = Table(row for part in options.each(parts) for row in rows_of([(number, paths[number]) for number in part], fields))
     return Result(table, [figure_of(table, paths, fields)], list(claims_of(table)), paragraphs_of(len(paths), options.seed),
                   Table(summary_of(table)))

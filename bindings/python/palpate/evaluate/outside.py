@@ -1,5 +1,5 @@
-"""Which free space is connected with all that lies outside the grid: this tells a proxy that fell through
-a wall from one that went around it."""
+"""Which free space is connected with all that lies outside the grid: this tells a proxy that fell through a wall from one that went
+around it."""
 
 import itertools
 
@@ -9,14 +9,13 @@ import scipy.sparse.csgraph
 
 
 class Outside:
-    """Decided exactly for the linear field. The free part of a tetrahedron is convex and contains its
-    lowest corner, and two free corners are joined by a free edge, so connected corners are connected
-    free space. A free centre of a face or cell has a free sample among those that it is the mean of, and
-    an edge to each of them: it joins all free samples of its face or cell.
+    """Decided exactly for the linear field. The free part of a tetrahedron is convex and contains its lowest corner, and two free corners
+    are joined by a free edge, so connected corners are connected free space. A free centre of a face or cell has a free sample among
+    those that it is the mean of, and an edge to each of them: it joins all free samples of its face or cell.
 
-    A smooth field's free space is not decided that way. For the smooth field of a closed shell, whose
-    density falls from the middle of the wall to either side, a point goes down along the gradient until
-    it is clear of the wall, where the linear field of the same samples tells.
+    A smooth field's free space is not decided that way. For the smooth field of a closed shell, whose density falls from the middle of
+    the wall to either side, a point goes down along the gradient until it is clear of the wall, where the linear field of the same
+    samples tells.
 
     Raises ValueError where the background is solid: there is no outside then.
     """
@@ -56,8 +55,8 @@ class Outside:
         return numpy.unique(pairs[(pairs[:, 1] > 0) & (pairs[:, 0] != pairs[:, 1])], axis=0).reshape(-1, 2)
 
     def holds(self, points):
-        """Whether free points [mm, physical], (n, 3), belong to it. Of a point in the solid: whether the
-        lowest corner of its tetrahedron does."""
+        """Whether free points [mm, physical], (n, 3), belong to it. Of a point in the solid: whether the lowest corner of its tetrahedron
+        does."""
         points = numpy.array(points, dtype=float)
         subject = self._subject
         if subject.field.interpolation == "cubic":

@@ -1,10 +1,11 @@
 """recorded: does a hand feel what it felt on a real surface? (Ruffaldi, Morris et al. 2006)
 
-A hand with a force sensor strokes a rigid object. The recording determines where a haptic device would have been, and each method
-renders the force on it. A perfect method renders the recorded force.
+A hand with a force sensor strokes a rigid object. The recording determines where a haptic device would have been, and each method renders
+the force on it. A perfect method renders the recorded force.
 """
 
 import dataclasses
+import itertools
 from pathlib import Path
 from typing import Callable
 
@@ -14,8 +15,8 @@ import scipy.spatial
 
 from . import figures, sampling
 from .bodies import tilt, unit
-from .experiment import Claim, Figure, Result, Table, largest
-from .fidelity import nearest_in_triangles
+from .experiment import Claim, Figure, Result, Table, largest, paragraphs
+from .meshes import nearest_in_triangles
 from .human import RATE, Human, press
 from .subjects import CONTESTANTS, Subject
 
@@ -41,8 +42,8 @@ class Recording:
 
 
 def read(path):
-    """A .traj file: a sample per line, its numbers apart by blanks or commas: t [s], x, y, z [mm], fx, fy, fz [N]. A comment (#, %)
-    that lists names of columns gives another order. Raises ValueError."""
+    """A .traj file: a sample per line, its numbers apart by blanks or commas: t [s], x, y, z [mm], fx, fy, fz [N], an order that is assumed
+    (docs/evaluation.md). A comment (#, %) that lists names of columns gives another one. Raises ValueError."""
     names, rows = list(COLUMNS), []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         words = line.replace(",", " ").split()
@@ -62,7 +63,7 @@ def read(path):
 
 def write(recording, path):
     rows = numpy.column_stack([recording.time, recording.position, recording.force])
-    numpy.savetxt(path, rows, fmt=["%.3f"] + 3 * ["%.4f"] + 3 * ["%.4f"], header=" ".join(COLUMNS), comments="# ")
+    numpy.savetxt(path, rows, fmt=["%.3f"] + 6 * ["%.4f"], header=" ".join(COLUMNS), comments="# ")
 
 
 def modelled(seed, seconds):
@@ -85,8 +86,8 @@ class Surface:
 
 
 def plane_through(recording):
-    """The plane that fits best to where the probe touched, with its normal to the side where it was free. Without such a place the side
-    is that of the forces."""
+    """The plane that fits best to where the probe touched, with its normal to the side where it was free. Without such a place the side is
+    that of the forces."""
     strength = numpy.linalg.norm(recording.force, axis=1)
     touched = recording.position[strength > CONTACT]
     if len(touched) < 3:
@@ -141,14 +142,14 @@ def device_of(recording, surface):
         raise ValueError(f"{recording.name}: only {touches.sum()} of {strong.sum()} samples with a force push the hand out of the surface: "
                          "the force on the hand is needed, outwards")
     above = recording.position + numpy.maximum(0, 1e-6 - surface.height(recording.position))[:, None] * normal
-    out = numpy.where(touches[:, None], on, above)
-    return out, out - numpy.where(touches, pressure / STIFFNESS, 0)[:, None] * normal, numpy.where(touches, pressure, 0)[:, None] * normal
+    out, pressure = numpy.where(touches[:, None], on, above), numpy.where(touches, pressure, 0)[:, None]
+    return out, out - pressure / STIFFNESS * normal, pressure * normal
 
 
-def metrics(wanted, rendered):
+def metrics(name, wanted, rendered):
     """Of the difference of two paths or forces: mean, root mean square and greatest length."""
     off = numpy.linalg.norm(rendered - wanted, axis=1)
-    return {"mean": off.mean(), "rms": numpy.sqrt((off**2).mean()), "max": off.max()}
+    return {f"{name}_mean": off.mean(), f"{name}_rms": numpy.sqrt((off**2).mean()), f"{name}_max": off.max()}
 
 
 def rows_of(recording, surface, samples, voxel):
@@ -156,29 +157,56 @@ def rows_of(recording, surface, samples, voxel):
     volume, level = volume_of(surface, hands, voxel, SAMPLES[samples])
     subject = Subject(recording.name, palpate.Field(volume, interpolation="linear"), level)
 
+    start, strength = hands[0] + (BAND + 1) * voxel * surface.nearest(hands[:1])[1][0], numpy.linalg.norm(normal_force, axis=1)
+
     def row(contestant):
-        felt = contestant.felt(subject)
-        start = hands[0] + (BAND + 1) * voxel * surface.nearest(hands[:1])[1][0]
-        trace = palpate.Proxy(felt.field, level, start, contestant.method).follow(hands)
+        trace = contestant.proxy(subject, start).follow(hands)
         force = numpy.where(trace.constrained[:, None], STIFFNESS * (trace.scp - hands), 0)
-        found = {f"{what}_{name}": value for what, pair in (
-            ("force_n", (normal_force, force)), ("with_friction_n", (recording.force, force)), ("position_mm", (out, trace.scp)))
-            for name, value in metrics(*pair).items()}
-        return {"recording": recording.name, "surface": surface.name, "samples": samples, "voxel_mm": voxel, "method": contestant.name, "ticks": len(hands),
-                "contact_share": (numpy.linalg.norm(normal_force, axis=1) > 0).mean(),
-                "mean_force_n": numpy.linalg.norm(normal_force, axis=1).mean(), **found}, force
+        return {"recording": recording.name, "surface": surface.name, "samples": samples, "voxel_mm": voxel, "method": contestant.name,
+                "ticks": len(hands), "contact_share": (strength > 0).mean(), "mean_force_n": strength.mean(),
+                **metrics("force_n", normal_force, force), **metrics("with_friction_n", recording.force, force),
+                **metrics("position_mm", out, trace.scp)}, force
 
     return [row(contestant) for contestant in CONTESTANTS.values()]
 
 
 def recordings_of(options):
-    """(recording, surface): the sample, modelled hands, and what the data folder has: NAME/probe.traj, with NAME.obj where the object
-    is no plane."""
+    """(recording, surface): the sample, modelled hands, and what the data folder has: NAME/probe.traj, with NAME.obj where the object is no
+    plane."""
     found = [read(SAMPLE)] + [modelled(options.seed + part, 4 if options.quick else 30) for part in range(options.seeds)]
     yield from ((one, plane_through(one)) for one in found)
     for path in sorted(Path(options.data).glob("*/probe.traj")) if options.data else ():
         mesh, one = path.with_name(path.parent.name + ".obj"), read(path)
         yield one, scanned(palpate.read_mesh(mesh)) if mesh.exists() else plane_through(one)
+
+
+def summary_of(table):
+    for samples in SAMPLES:
+        for name in CONTESTANTS:
+            rows = table.where(samples=samples, method=name)
+            yield {"samples": samples, "method": name, "force, RMS error [N]": sampling.in_words(rows["force_n_rms"], "{:.2g}"),
+                   "force, greatest error [N]": largest(rows["force_n_max"]),
+                   "position, RMS error [mm]": sampling.in_words(rows["position_mm_rms"], "{:.2g}"),
+                   "force with friction, RMS error [N]": sampling.in_words(rows["with_friction_n_rms"], "{:.2g}")}
+
+
+def figure_of(recording, surface, forces, table):
+    drawn, (left, right) = figures.panels(columns=2, height=2.6, title="On a plane, the rendered force is the recorded one")
+    colour = figures.LOOKS["smooth"][0]
+    wanted = numpy.linalg.norm(device_of(recording, surface)[2], axis=1)
+    left.plot(recording.time, wanted, color="#c0c0c0", lw=4)
+    left.plot(recording.time, numpy.linalg.norm(forces["smooth"], axis=1), color=colour, lw=1)
+    figures.names(left, (("recorded (grey)", figures.GREY), ("rendered, smooth", colour)), 0.02, 0.97)
+    left.set(title=recording.name, xlabel="time [s]", ylabel="normal force [N]", ylim=(0, 1.35 * wanted.max()))
+    for (at, samples), (number, name) in itertools.product(enumerate(SAMPLES), enumerate(CONTESTANTS)):
+        rows = table.where(samples=samples, method=name)
+        figures.curve(right, name, numpy.maximum(rows["force_n_rms"], 1e-9), [at + 0.15 * (number - 2)] * len(rows), ls="")
+    figures.names(right, [(name, figures.LOOKS[name][0]) for name in CONTESTANTS], 1.03, 0.9, 0.13, va="baseline")
+    right.set(title="error of the force", xscale="log", xlabel="root mean square [N]", ylim=(1.5, -0.5))
+    figures.ticks(right.yaxis, range(len(SAMPLES)), SAMPLES)
+    return Figure("", """Left: normal force on the probe, as recorded (grey, wide) and as rendered on the smooth field. Right: error of the
+        force of each method, a mark for each recording, on samples that are not rounded and on 8-bit ones. Values below 1e-9 N are drawn
+        there.""", drawn)
 
 
 def claims_of(table):
@@ -198,66 +226,34 @@ def claims_of(table):
                 f"at least {rubbed['with_friction_n_rms'].min():.2g} N")
 
 
-def summary_of(table):
-    for samples in SAMPLES:
-        for name in CONTESTANTS:
-            rows = table.where(samples=samples, method=name)
-            yield {"samples": samples, "method": name, "force, RMS error [N]": sampling.in_words(rows["force_n_rms"], "{:.2g}"),
-                   "force, greatest error [N]": largest(rows["force_n_max"]),
-                   "position, RMS error [mm]": sampling.in_words(rows["position_mm_rms"], "{:.2g}"),
-                   "force with friction, RMS error [N]": sampling.in_words(rows["with_friction_n_rms"], "{:.2g}")}
-
-
-def figure_of(recording, surface, forces, table):
-    drawn, (left, right) = figures.panels(columns=2, height=2.6)
-    wanted = numpy.linalg.norm(device_of(recording, surface)[2], axis=1)
-    left.plot(recording.time, wanted, color="#c0c0c0", lw=4)
-    left.plot(recording.time, numpy.linalg.norm(forces["smooth"], axis=1), color=figures.LOOKS["smooth"][0], lw=1)
-    left.text(0.02, 0.97, "recorded (grey)", color=figures.GREY, transform=left.transAxes, fontsize=7.5, va="top")
-    left.text(0.02, 0.87, "rendered, smooth", color=figures.LOOKS["smooth"][0], transform=left.transAxes, fontsize=7.5, va="top")
-    left.set(title=recording.name, xlabel="time [s]", ylabel="normal force [N]", ylim=(0, 1.35 * wanted.max()))
-    for at, samples in enumerate(SAMPLES):
-        for number, name in enumerate(CONTESTANTS):
-            rows = table.where(samples=samples, method=name)
-            figures.curve(right, name, numpy.maximum(rows["force_n_rms"], 1e-9), [at + 0.15 * (number - 2)] * len(rows), ls="")
-            if at == 0:
-                right.text(1.03, 0.9 - 0.13 * number, name, color=figures.LOOKS[name][0], transform=right.transAxes, fontsize=7.5)
-    right.set(title="error of the force", xscale="log", xlabel="root mean square [N]", ylim=(1.5, -0.5))
-    right.set_yticks(range(len(SAMPLES)), SAMPLES)
-    drawn.suptitle("On a plane, the rendered force is the recorded one", x=0.01, ha="left")
-    return Figure("", "Left: normal force on the probe, as recorded (grey, wide) and as rendered on the smooth field. Right: error of the "
-                  "force of each method, a mark for each recording, on samples that are not rounded and on 8-bit ones. Values below "
-                  "1e-9 N are drawn there.", drawn)
-
-
-def paragraphs_of(table, names):
+def paragraphs_of(names):
     human = Human()
-    return ["Ruffaldi, Morris et al. (2006) scanned rigid objects with a probe that measures position and force, and published the recordings "
-            "(.traj) for the comparison of rendering algorithms. The steps are theirs. The recorded way is moved onto the surface (out). A "
-            f"device that is felt with {STIFFNESS:g} N/mm would be where this spring gives the recorded normal force (in). Each method gets "
-            "that way, and its force and its SCP are compared with the recorded force and with the way on the surface. On a plane, a perfect "
-            "proxy has no error.",
-            f"Recordings: {', '.join(names)}. Published ones are read from the data folder (NAME/probe.traj). They were not at hand, so "
-            "the recordings here are modelled. The one named plane comes with the program.",
-            f"The modelled hand has {human.mass:g} kg, {human.damping:g} N s/m and {human.stiffness:g} N/m (fitted by van Beek et al. 2015 to one "
-            f"trial of one person who held a handle). While it is free, it trembles by {1000 * human.tremor:g} µm RMS along each axis, at "
-            f"{human.band[0]} to {human.band[1]} Hz. It moves on purpose below {human.willed:g} Hz (Riviere et al. 1997) and reacts after {1000 * human.delay:g} ms (Robinson 1934). The plane has "
-            f"{WALL:g} N/mm and a friction of {FRICTION:g}, both assumed.",
-            "On a plane, the volume, the in-trajectory and the reference force are made from the same plane. The error is therefore that of the "
-            "renderer and of the samples. A modelled hand is no person, and a plane has no edges. The errors say how the methods render, not how the surface feels."]
+    return paragraphs(f"""
+        Ruffaldi, Morris et al. (2006) scanned rigid objects with a probe that measures position and force, and published the recordings
+        (.traj) for the comparison of rendering algorithms. The steps are theirs. The recorded way is moved onto the surface (out). A
+        device that is felt with {STIFFNESS:g} N/mm would be where this spring gives the recorded normal force (in). Each method gets that
+        way, and its force and its SCP are compared with the recorded force and with the way on the surface. On a plane, a perfect proxy
+        has no error.
+
+        Recordings: {", ".join(names)}. Published ones are read from the data folder (NAME/probe.traj). They were not at hand, so the
+        recordings here are modelled. The one named plane comes with the program.
+
+        The modelled hand has {human.mass:g} kg, {human.damping:g} N s/m and {human.stiffness:g} N/m (fitted by van Beek et al. 2015 to one
+        trial of one person who held a handle). While it is free, it trembles by {1000 * human.tremor:g} µm RMS along each axis, at
+        {human.band[0]} to {human.band[1]} Hz. It moves on purpose below {human.willed:g} Hz (Riviere et al. 1997) and reacts after
+        {1000 * human.delay:g} ms (Robinson 1934). The plane has {WALL:g} N/mm and a friction of {FRICTION:g}, both assumed.
+
+        On a plane, the volume, the in-trajectory and the reference force are made from the same plane. The error is therefore that of the
+        renderer and of the samples. A modelled hand is no person, and a plane has no edges. The errors say how the methods render, not how
+        the surface feels.""")
 
 
 def run(options):
-    if options.subjects:
-        raise ValueError("recorded has objects of its own: leave out --volume")
-    table, shown, names = Table(), None, []
-    cases = list(recordings_of(options))
-    for number, (recording, surface) in enumerate(cases):
-        options.progress(number / len(cases))
-        names.append(recording.name)
+    options.refuse_volumes("recorded has objects")
+    cases, found = list(recordings_of(options)), []
+    for (recording, surface), samples in options.each(itertools.product(cases, SAMPLES)):
         voxel = numpy.ptp(recording.position, axis=0).max() / (40 if options.quick else 80)
-        for samples in SAMPLES:
-            found = rows_of(recording, surface, samples, voxel)
-            table.extend(row for row, _ in found)
-            shown = shown or (recording, surface, {row["method"]: force for row, force in found})
-    return Result(table, [figure_of(*shown, table)], list(claims_of(table)), paragraphs_of(table, names), Table(summary_of(table)))
+        found += rows_of(recording, surface, samples, voxel)
+    table, shown = Table(row for row, _ in found), {row["method"]: force for row, force in found[:len(CONTESTANTS)]}
+    return Result(table, [figure_of(*cases[0], shown, table)], list(claims_of(table)),
+                  paragraphs_of([recording.name for recording, _ in cases]), Table(summary_of(table)))

@@ -39,15 +39,11 @@ def short(cell):
 
 def write_csv(table, path):
     with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        columns = table.columns
-        writer.writerow(columns)
-        writer.writerows([number(row.get(name, math.nan)) for name in columns] for row in table)
+        csv.writer(file, lineterminator="\n").writerows([table.columns, *table.cells(number)])
 
 
 def claims_of(result):
-    return Table({"claim": c.statement, "holds": "yes" if c.held else "**no**", "measured": c.measured}
-                 for c in result.claims)
+    return Table({"claim": c.statement, "holds": "yes" if c.held else "**no**", "measured": c.measured} for c in result.claims)
 
 
 def files_of(report):
@@ -57,11 +53,8 @@ def files_of(report):
 
 
 def markdown_table(table):
-    if not table:
-        return ""
-    columns = table.columns
-    lines = [columns, ["---"] * len(columns), *([short(row.get(name, math.nan)) for name in columns] for row in table)]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines) + "\n"
+    lines = [table.columns, ["---"] * len(table.columns), *table.cells(short)]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines) + "\n" if table else ""
 
 
 def markdown(report):
@@ -70,8 +63,7 @@ def markdown(report):
     text += markdown_table(result.summary)
     text += "".join(f"![{caption}]({file})\n\n{caption}\n\n" for file, caption in files_of(report))
     text += markdown_table(claims_of(result))
-    text += "".join(f"Data: `{file}` from the {origin}, SHA-256 `{sha256}`.\n\n"
-                    for file, sha256, origin in result.data)
+    text += "".join(f"Data: `{file}` from the {origin}, SHA-256 `{sha256}`.\n\n" for file, sha256, origin in result.data)
     return text + f"All numbers: [{report.name}.csv]({report.name}.csv). {report.circumstances}\n"
 
 
@@ -83,14 +75,9 @@ def write_files(report, folder):
 
 
 def html_table(table):
-    if not table:
-        return ""
-    columns = table.columns
-    rows = ["".join(f"<th>{html.escape(name)}</th>" for name in columns)]
-    for row in table:
-        cells = [row.get(name, math.nan) for name in columns]
-        rows.append("".join(f"<td>{html.escape(short(cell)).replace('**no**', '<b>NO</b>')}</td>" for cell in cells))
-    return "<table>\n" + "".join(f"<tr>{row}</tr>\n" for row in rows) + "</table>\n"
+    rows = [f"<th>{html.escape(name)}</th>" for name in table.columns], *(
+        [f"<td>{html.escape(text).replace('**no**', '<b>NO</b>')}</td>" for text in texts] for texts in table.cells(short))
+    return "<table>\n" + "".join(f"<tr>{''.join(row)}</tr>\n" for row in rows) + "</table>\n" if table else ""
 
 
 def section(report, folder, whole):
@@ -103,8 +90,9 @@ def section(report, folder, whole):
         caption = html.escape(caption)
         parts.append(f'<figure><img src="data:image/{kind};base64,{base64.b64encode(data).decode()}" alt="{caption}">'
                      f"<figcaption>{caption}</figcaption></figure>\n")
-    numbers = (f"<details><summary>All numbers ({len(report.result.table)} rows)</summary>\n{html_table(report.result.table)}</details>\n"
-               if whole else f"<p class=c>All {len(report.result.table)} rows of numbers are in {report.name}.csv.</p>\n")
+    table = report.result.table
+    numbers = (f"<details><summary>All numbers ({len(table)} rows)</summary>\n{html_table(table)}</details>\n" if whole else
+               f"<p class=c>All {len(table)} rows of numbers are in {report.name}.csv.</p>\n")
     return "".join([*parts, html_table(claims_of(report.result)), numbers, f"<p class=c>{html.escape(report.circumstances)}</p>\n"])
 
 

@@ -1,22 +1,22 @@
 """stability: how stiff may a surface be before it buzzes?
 
-A simulated device and hand in a closed loop with the renderer, pressed into a surface and held there, or with the handle
-held straight by a rotational spring. A loop that does not come to rest is in a limit cycle, felt as buzzing.
+A simulated device and hand in a closed loop with the renderer, pressed into a surface and held there, or with the handle held straight by a
+rotational spring. A loop that does not come to rest is in a limit cycle, felt as buzzing.
 """
 
 import copy
 import dataclasses
+import itertools
 import tempfile
 
 import numpy
 import palpate
-import scipy.signal
 from scipy.spatial.transform import Rotation
 
 from . import figures
-from .experiment import Claim, Figure, Result, Table, in_parallel, largest
+from .experiment import Claim, Figure, Result, Table, in_parallel, largest, paragraphs
 from .human import RATE, Human, trembling
-from .notice import FORCE, SLOW
+from .notice import FORCE, SLOW, above
 from .subjects import synthetic
 
 TITLE = "How stiff may a surface be before it buzzes?"
@@ -50,6 +50,10 @@ def plan_of(quick):
                 [0.05 * i for i in range(2, 51)])
 
 
+def yes(held):
+    return "yes" if held else "no"
+
+
 def moves_within(steps, position, encoder):
     """Whether a position that moves so much [mm] keeps to a number of encoder steps."""
     return position <= (steps + 0.01) * numpy.maximum(LEAST_STEP, encoder)
@@ -60,29 +64,26 @@ def loop_of(field, isovalue, device, rate, damping, straight=False, **force):
     info = palpate.simulated_info(device, field, isovalue, rate)
     limits = copy.copy(info.limits)
     setattr(limits, "physical_rotational_damping" if straight else "physical_damping", damping)
-    renderer = palpate.Renderer(field, isovalue, palpate.RenderSetup(rate=rate, force=palpate.ForceSettings(**force)), limits,
+    force = palpate.ForceSettings(**({} if straight else {"limit": limits.maximum_force}), **force)
+    renderer = palpate.Renderer(field, isovalue, palpate.RenderSetup(rate=rate, force=force), limits,
                                 palpate.fit_workspace(field.geometry, info))
     return palpate.closed_loop(renderer, device, SECONDS, rate, straight)
 
 
 def pressed(subject, part, profile, friction, interpolation, encoder, rate, stiffness):
     """A row: a light hand presses and holds."""
-    field = palpate.Field(subject.field.volume, interpolation=interpolation, solid=subject.field.solid,
-                          background=subject.field.background)
-    device = (f"simulated:{profile},jitter=no,grip=light,friction={'yes' if friction else 'no'},encoder={encoder:g},hand=hold,depth=6,"
-              f"seconds={SECONDS}")
-    limit = palpate.simulated_info(device, field, subject.isovalue, rate).limits.maximum_force
-    loop = loop_of(field, subject.isovalue, device, rate, 1, stiffness=stiffness, limit=limit)
+    field = palpate.Field(subject.field.volume, subject.field.solid, subject.field.background, interpolation)
+    device = (f"simulated:{profile},jitter=no,grip=light,friction={yes(friction)},encoder={encoder:g},hand=hold,depth=6,seconds={SECONDS}")
+    loop = loop_of(field, subject.isovalue, device, rate, 1, stiffness=stiffness)
     last = slice(int((SECONDS - 1) * rate), None)
     position, force = loop["position"][last], loop["force"][last]
     push = numpy.linalg.norm(force[-1])
     moved = numpy.ptp(position, axis=0).max()
-    return {"part": part, "profile": profile, "friction": "yes" if friction else "no", "field": interpolation,
-            "encoder_step_mm": encoder, "rate_hz": rate, "stiffness_N_mm": stiffness, "position_peak_to_peak_mm": moved,
+    return {"part": part, "profile": profile, "friction": yes(friction), "field": interpolation, "encoder_step_mm": encoder,
+            "rate_hz": rate, "stiffness_N_mm": stiffness, "position_peak_to_peak_mm": moved,
             "along_force_peak_to_peak_mm": numpy.ptp(position @ (force[-1] / (push if push > 0 else 1))),
-            "force_peak_to_peak_N": numpy.ptp(force, axis=0).max(), "push_N": push,
-            "in_contact": "yes" if loop["constrained"][last].any() else "no",
-            "at_rest": "yes" if moves_within(2, moved, encoder) else "no"}
+            "force_peak_to_peak_N": numpy.ptp(force, axis=0).max(), "push_N": push, "in_contact": yes(loop["constrained"][last].any()),
+            "at_rest": yes(moves_within(2, moved, encoder))}
 
 
 def place_to_press(subject):
@@ -92,8 +93,8 @@ def place_to_press(subject):
 
 
 def trembled(subject, part, profile, rate, stiffness):
-    """A row: a modelled person presses and holds, and trembles (human.py). The force above 20 Hz, of which tremor has hardly any, is
-    what the loop adds."""
+    """A row: a modelled person presses and holds, and trembles (human.py). The force above 20 Hz, of which tremor has hardly any, is what
+    the loop adds."""
     person, field, (surface, out) = Human(), subject.field, place_to_press(subject)
     own = palpate.simulated_info(f"simulated:{profile},jitter=no", field, subject.isovalue, rate)
     scale = palpate.fit_workspace(field.geometry, own).scale  # [mm of volume per mm of device]
@@ -105,15 +106,11 @@ def trembled(subject, part, profile, rate, stiffness):
         numpy.savetxt(file.name, numpy.column_stack([time, target]), delimiter=",", header="t,x,y,z", comments="")
         device = (f"simulated:{profile},jitter=no,file={file.name},hand_mass={person.mass},hand_damping={person.damping / 1000},"
                   f"hand_stiffness={person.stiffness / 1000}")
-        loop = loop_of(field, subject.isovalue, device, rate, 1, stiffness=stiffness, limit=own.limits.maximum_force)
-    last = slice(rate, None)
-    force = loop["force"][last]
+        loop = loop_of(field, subject.isovalue, device, rate, 1, stiffness=stiffness)
+    force, held = loop["force"][rate:], loop["constrained"][rate:]
     push = numpy.linalg.norm(force, axis=1).mean()
-    high = scipy.signal.butter(4, SLOW, "highpass", fs=rate, output="sos")
-    fast = numpy.sqrt((scipy.signal.sosfiltfilt(high, force, axis=0)**2).sum(axis=1).mean())
-    return {"part": part, "profile": profile, "friction": "yes", "field": field.interpolation, "rate_hz": rate,
-            "stiffness_N_mm": stiffness, "push_N": push, "above_20_hz_percent": 100 * fast / push,
-            "in_contact": "yes" if loop["constrained"][last].all() else "no"}
+    return {"part": part, "profile": profile, "friction": "yes", "field": field.interpolation, "rate_hz": rate, "stiffness_N_mm": stiffness,
+            "push_N": push, "above_20_hz_percent": 100 * above(SLOW, force, rate) / push, "in_contact": yes(held.all())}
 
 
 def turned(subject, part, profile, rate, share):
@@ -122,51 +119,41 @@ def turned(subject, part, profile, rate, share):
     device = f"simulated:{profile},jitter=no,grip=light,hand=hold,depth=0,seconds={SECONDS},turn=20,turn_time=0.5"
     if part != "rotation":
         device += ",friction=no,angle_step=0,torque_step=0" + (",delay=0" if part == "rotation, ideal" else "")
-    field, known = subject.field, PROFILES[profile]
-    limits = palpate.simulated_info(device, field, subject.isovalue, rate).limits
+    limits = palpate.simulated_info(device, subject.field, subject.isovalue, rate).limits
     damping = limits.physical_rotational_damping
-    bound = damping / (0.5 / rate + limits.delay)
-    loop = loop_of(field, subject.isovalue, device, rate, 1e6, True, rotational_stiffness=share * bound)
+    stiffness = share * (damping / (0.5 / rate + limits.delay))
+    loop = loop_of(subject.field, subject.isovalue, device, rate, 1e6, True, rotational_stiffness=stiffness)
     turns = Rotation.from_quat(loop["orientation_xyzw"][int((SECONDS - 1) * rate):]).inv().as_rotvec(degrees=True)
     moved = numpy.ptp(turns, axis=0).max()
-    step = numpy.degrees(known["angle_step"]) if part == "rotation" else 0
-    return {"part": part, "profile": profile, "friction": "yes" if part == "rotation" else "no", "rate_hz": rate,
-            "at_rest": "yes" if moved <= 2.01 * max(LEAST_ANGLE, step) else "no", "part_of_bound": share,
-            "rotational_stiffness_N_mm_rad": share * bound, "checked_N_mm_rad": 2 * rate * damping,
-            "turn_peak_to_peak_deg": moved, "torque_N_mm": numpy.linalg.norm(loop["torque"][-1])}
+    step = numpy.degrees(PROFILES[profile]["angle_step"]) if part == "rotation" else 0
+    return {"part": part, "profile": profile, "friction": yes(part == "rotation"), "rate_hz": rate,
+            "at_rest": yes(moved <= 2.01 * max(LEAST_ANGLE, step)), "part_of_bound": share, "rotational_stiffness_N_mm_rad": stiffness,
+            "checked_N_mm_rad": 2 * rate * damping, "turn_peak_to_peak_deg": moved, "torque_N_mm": numpy.linalg.norm(loop["torque"][-1])}
 
 
 def cases_of(subject, plan):
     """(function, arguments) of each row."""
-    def each(part, profile, friction, field, encoder):
-        return [(pressed, (subject, part, profile, friction, field, encoder, rate, stiffness))
-                for rate in plan.rates for stiffness in plan.stiffnesses]
-
-    cases = [case for encoder in plan.encoders for case in each("map", MAP_PROFILE, False, "linear", encoder)]
-    for part, (_, friction, field) in PARTS.items():
-        for name, profile in PROFILES.items():
-            cases += each(part, name, friction, field, profile["encoder_step"])
-    cases += [(pressed, (subject, "fastest", MAP_PROFILE, False, "linear", plan.encoders[0], FASTEST, stiffness))
-              for stiffness in plan.stiffnesses]
-    cases += [(pressed, (subject, "rated", name, True, "linear", profile["encoder_step"], 1000, profile["stiffness"]))
-              for name, profile in PROFILES.items()]
-    cases += [(trembled, (subject, "trembling", name, rate, profile["stiffness"])) for name, profile in PROFILES.items()
-              for rate in plan.rates if not numpy.isnan(place_to_press(subject)[0]).any()]
-    return cases + [(turned, (subject, part, profile, rate, share)) for part in ROTATION for profile in TORQUE
-                    for rate in plan.rates for share in plan.bound_parts]
+    steps = {name: profile["encoder_step"] for name, profile in PROFILES.items()}
+    rated = {name: profile["stiffness"] for name, profile in PROFILES.items()}
+    loops = [("map", MAP_PROFILE, False, "linear", encoder) for encoder in plan.encoders]
+    loops += [(part, name, friction, field, steps[name]) for part, (_, friction, field) in PARTS.items() for name in PROFILES]
+    cases = [(pressed, *loop) for loop in itertools.product(loops, plan.rates, plan.stiffnesses)]
+    cases += [(pressed, ("fastest", MAP_PROFILE, False, "linear", plan.encoders[0]), FASTEST, stiffness) for stiffness in plan.stiffnesses]
+    cases += [(pressed, ("rated", name, True, "linear", steps[name]), 1000, rated[name]) for name in PROFILES]
+    if not numpy.isnan(place_to_press(subject)[0]).any():
+        cases += [(trembled, ("trembling", name), rate, rated[name]) for name in PROFILES for rate in plan.rates]
+    cases += [(turned, loop, *of) for loop, *of in itertools.product(itertools.product(ROTATION, TORQUE), plan.rates, plan.bound_parts)]
+    return [(make, (subject, *loop, rate, strength)) for make, loop, rate, strength in cases]
 
 
-def measured(cases, progress):
-    table, step = Table(), 64
-    for begin in range(0, len(cases), step):
-        progress(begin / len(cases))
-        table.extend(in_parallel(lambda case: case[0](*case[1]), cases[begin:begin + step]))
-    return table
+def measured(cases, options):
+    return Table(row for part in options.each(itertools.zip_longest(*[iter(cases)] * 64))
+                 for row in in_parallel(lambda case: case[0](*case[1]), filter(None, part)))
 
 
 def largest_stable(rows, rate, steps=2):
-    """The largest stiffness up to which every one tried moves by so many encoder steps at most, which is at rest for two;
-    0 if none does."""
+    """The largest stiffness up to which every one tried moves by so many encoder steps at most, which is at rest for two; 0 if none
+    does."""
     found = 0.0
     for row in rows.where(rate_hz=rate):
         if not moves_within(steps, row["position_peak_to_peak_mm"], row["encoder_step_mm"]):
@@ -177,137 +164,14 @@ def largest_stable(rows, rate, steps=2):
 
 def compared(table, plan, on_linear, on_smooth, steps):
     """(profile, rate, largest stable stiffness on the linear field, and on the smooth one) of every case."""
-    for profile in PROFILES:
-        linear, smooth = (table.where(part=part, profile=profile) for part in (on_linear, on_smooth))
-        for rate in plan.rates:
-            yield profile, rate, largest_stable(linear, rate, steps), largest_stable(smooth, rate, steps)
+    return [(profile, rate, *(largest_stable(table.where(part=part, profile=profile), rate, steps) for part in (on_linear, on_smooth)))
+            for profile in PROFILES for rate in plan.rates]
 
 
 def counted(found):
     """How often the smooth field is stiffer, as stiff, and less stiff."""
     linear, smooth = numpy.array([one[2:] for one in found]).T
     return int((smooth > linear).sum()), int((smooth == linear).sum()), int((smooth < linear).sum())
-
-
-def rated_claim(table):
-    rows = table.where(part="rated")
-    said = f"at most {largest(rows['position_peak_to_peak_mm']):.2g} mm peak to peak, {len(rows)} profiles"
-    return Claim("every profile comes to rest at its rated stiffness at 1 kHz, to two encoder steps",
-                 all(r["at_rest"] == r["in_contact"] == "yes" for r in rows), said)
-
-
-def trembling_claim(table):
-    rows = table.where(part="trembling", rate_hz=1000)
-    most = largest(rows["above_20_hz_percent"])
-    if rows:
-        yield Claim(f"in the hand of a modelled person who trembles, at its rated stiffness and 1 kHz, no profile adds more than the {FORCE:g} % "
-                    "of force above 20 Hz that people notice", most < FORCE and all(r["in_contact"] == "yes" for r in rows),
-                    f"at most {most:.2g} %, {len(rows)} profiles")
-
-
-def smooth_claim(table, plan):
-    found = list(compared(table, plan, *list(PARTS)[:2], 2))
-    more, same, less = counted(found)
-    losses = "".join(f"{name} at {rate:g} Hz: {smooth:.1f} against {linear:.1f} N/mm; "
-                     for name, rate, linear, smooth in found if smooth < linear)
-    return Claim("on the smooth field every profile comes to rest at least as stiff as on the linear one, at every rate",
-                 less == 0, f"{losses}as stiff in {same} cases, stiffer in {more}")
-
-
-def control_claim(table):
-    """That the map can tell: the worst corner does not rest."""
-    corner = table.where(part="map", rate_hz=250, stiffness_N_mm=LARGEST, encoder_step_mm=0)[0]
-    return Claim(f"a loop that must buzz does: {MAP_PROFILE}, 3 N/mm at 250 Hz, no friction", corner["at_rest"] == "no",
-                 f"{corner['position_peak_to_peak_mm']:.3g} mm peak to peak")
-
-
-def bound_claims(table):
-    """Whether all cases of a part so near the bound are, or are not, at rest."""
-    for part, low, high, rests, statement in (
-            ("rotation, ideal", 0, 0.9, True, "without delay, friction and steps a handle comes to rest at 0.9 of the rotational "
-             "stiffness that check() accepts, and below"),
-            ("rotation, ideal", 1.25, numpy.inf, False, "and shakes at 1.25 of it, and above"),
-            ("rotation, delayed", 0, 0.8, True, "with its delay alone it comes to rest up to 0.8 of damping / (period / 2 + delay)"),
-            ("rotation, delayed", 1.25, numpy.inf, False, "and shakes at 1.25 of that, and above"),
-            ("rotation", 0, 0.8, True, "as it is, with friction, it comes to rest up to 0.8 of that")):
-        rows = Table(row for row in table.where(part=part) if low - 1e-9 <= row["part_of_bound"] <= high + 1e-9)
-        moved = rows["turn_peak_to_peak_deg"]
-        yield Claim(statement, len(rows) > 0 and all((row["at_rest"] == "yes") == rests for row in rows),
-                    f"{'at most' if rests else 'at least'} {moved.max() if rests else moved.min():.3g} degrees peak to peak in "
-                    f"{len(rows)} cases")
-
-
-def map_figure(table, plan):
-    """Stiffness over rate, the colour the movement at rest; a line where it ends."""
-    drawn, panels = figures.panels(columns=len(plan.encoders), height=2.7, sharey=True)
-    norm = figures.matplotlib.colors.LogNorm(1e-3, 10)
-    edges = numpy.append([0], 0.5 * numpy.add(plan.stiffnesses[1:], plan.stiffnesses[:-1])).tolist() + [LARGEST + 0.05]
-    for axes, encoder in zip(panels, plan.encoders):
-        rows = table.where(part="map", encoder_step_mm=encoder)
-        moved = [[max(1e-3, row["position_peak_to_peak_mm"]) for row in rows.where(rate_hz=rate)] for rate in plan.rates]
-        image = axes.pcolormesh(numpy.arange(len(plan.rates) + 1) - 0.5, edges, numpy.array(moved).T, cmap="Greys", norm=norm)
-        for number, rate in enumerate(plan.rates):
-            stable = largest_stable(rows, rate)
-            axes.plot([number - 0.5, number + 0.5], [stable + 0.05] * 2, color=figures.VERMILION, lw=2.5)
-        axes.set(title=f"steps of {encoder:g} mm", xlabel="update rate [kHz]", ylim=(0, LARGEST + 0.05))
-        axes.set_xticks(range(len(plan.rates)), [f"{rate / 1000:g}" for rate in plan.rates])
-        axes.grid(False)
-    panels[0].set_ylabel("stiffness [N/mm]")
-    drawn.colorbar(image, ax=panels, label="movement, peak to peak [mm]")
-    drawn.suptitle("Faster loops and finer encoders carry stiffer walls", x=0.01, ha="left")
-    return Figure("", f"How far the device goes on moving when a light hand presses and holds (simulated {MAP_PROFILE}, no friction in "
-                  "its mechanics), for encoder steps of different size: white is rest, dark a limit cycle. Below the vermilion line it "
-                  "moves by two encoder steps at most.", drawn)
-
-
-def rate_axis(axes, rates):
-    axes.set(xscale="log", xlabel="update rate [kHz]")
-    axes.set_xticks([rate / 1000 for rate in rates], [f"{rate / 1000:g}" for rate in rates])
-    axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
-
-
-def profile_figure(table, plan):
-    drawn, panels = figures.panels(columns=4, height=2.9, sharey=True)
-    for axes, (part, (title, *_)) in zip(panels, PARTS.items()):
-        stable = numpy.array([[largest_stable(table.where(part=part, profile=name), rate) for rate in plan.rates] for name in PROFILES])
-        axes.imshow(stable, cmap="Blues", vmin=0, vmax=1.6 * LARGEST, aspect="auto")
-        for (row, column), value in numpy.ndenumerate(stable):
-            axes.text(column, row, f"{value:.1f}", ha="center", va="center", fontsize=6)
-        axes.set_title(title.replace(", ", ",\n"), fontsize=7.5)
-        axes.set(xlabel="rate [kHz]")
-        axes.set_xticks(range(len(plan.rates)), [f"{rate / 1000:g}" for rate in plan.rates])
-        axes.set_yticks(range(len(PROFILES)), PROFILES)
-        axes.grid(False)
-    drawn.suptitle("Friction of the mechanics stills what would buzz", x=0.01, ha="left")
-    return Figure("profiles", "The largest stiffness up to 3 N/mm at which a simulated device in a light hand comes to rest. It has its "
-                  "own encoders and delay, with its friction and without it, on the linear and on the smooth field. Friction stills "
-                  "small limit cycles.", drawn)
-
-
-def rotation_figure(table, plan):
-    drawn, panels = figures.panels(columns=3, height=2.8, sharey=True)
-    for axes, (part, title) in zip(panels, ROTATION.items()):
-        for profile, colour in zip(TORQUE, (figures.BLUE, figures.VERMILION, figures.GREEN, figures.PURPLE)):
-            limits = []
-            for rate in plan.rates:
-                rests = 0.0
-                for row in table.where(part=part, profile=profile, rate_hz=rate):
-                    if row["at_rest"] == "no":
-                        break
-                    rests = row["rotational_stiffness_N_mm_rad"]
-                limits.append(rests or numpy.nan)
-            axes.plot([rate / 1000 for rate in plan.rates], limits, color=colour, marker="o", lw=1, ms=3, label=profile)
-        checked = [table.where(part=part, rate_hz=rate)[0]["checked_N_mm_rad"] for rate in plan.rates]
-        axes.plot([rate / 1000 for rate in plan.rates], checked, color=figures.GREY, ls="--", label="check(), no delay")
-        axes.set(title=title, yscale="log", ylim=(100, 1e5))
-        rate_axis(axes, plan.rates)
-    panels[0].set_ylabel("stiffness [N mm/rad]")
-    drawn.suptitle("A delay lowers the rotational stiffness that is stable", x=0.01, ha="left")
-    figures.label_ends(panels[2])
-    return Figure("rotation", "The largest rotational stiffness at which a simulated device with torque in a light hand comes to rest, "
-                  "of those tried up to 2.5 times the bound of the theory. Left: without delay, friction and steps, where the bound is "
-                  "the dashed one. Middle: with their delay alone. Right: as they are. Friction stills every case that was tried.",
-                  drawn)
 
 
 def summary_of(table, plan):
@@ -325,42 +189,142 @@ def summary_of(table, plan):
         yield {**row(profile, "profiles", profile=profile), "rated": PROFILES[profile]["stiffness"]}
 
 
+def map_figure(table, plan):
+    """Stiffness over rate, the colour the movement at rest; a line where it ends."""
+    drawn, panels = figures.panels(columns=len(plan.encoders), height=2.7, sharey=True,
+                                   title="Faster loops and finer encoders carry stiffer walls")
+    norm = figures.matplotlib.colors.LogNorm(1e-3, 10)
+    edges = [0, *(0.5 * numpy.add(plan.stiffnesses[1:], plan.stiffnesses[:-1])), LARGEST + 0.05]
+    for axes, encoder in zip(panels, plan.encoders):
+        rows = table.where(part="map", encoder_step_mm=encoder)
+        moved = [numpy.maximum(1e-3, rows.where(rate_hz=rate)["position_peak_to_peak_mm"]) for rate in plan.rates]
+        image = axes.pcolormesh(numpy.arange(len(plan.rates) + 1) - 0.5, edges, numpy.array(moved).T, cmap="Greys", norm=norm)
+        for number, rate in enumerate(plan.rates):
+            axes.plot([number - 0.5, number + 0.5], [largest_stable(rows, rate) + 0.05] * 2, color=figures.VERMILION, lw=2.5)
+        axes.set(title=f"steps of {encoder:g} mm", xlabel="update rate [kHz]", ylim=(0, LARGEST + 0.05))
+        figures.ticks(axes.xaxis, range(len(plan.rates)), [f"{rate / 1000:g}" for rate in plan.rates])
+        axes.grid(False)
+    panels[0].set_ylabel("stiffness [N/mm]")
+    drawn.colorbar(image, ax=panels, label="movement, peak to peak [mm]")
+    return Figure("", f"""How far the device goes on moving when a light hand presses and holds (simulated {MAP_PROFILE}, no friction in its
+        mechanics), for encoder steps of different size: white is rest, dark a limit cycle. Below the vermilion line it moves by two encoder
+        steps at most.""", drawn)
+
+
+def profile_figure(table, plan):
+    drawn, panels = figures.panels(columns=4, height=2.9, sharey=True, title="Friction of the mechanics stills what would buzz")
+    for axes, (part, (title, *_)) in zip(panels, PARTS.items()):
+        stable = [[largest_stable(table.where(part=part, profile=name), rate) for rate in plan.rates] for name in PROFILES]
+        figures.number_map(axes, stable, PROFILES, [f"{rate / 1000:g}" for rate in plan.rates], 1.6 * LARGEST, "{:.1f}", 6)
+        axes.set_title(title.replace(", ", ",\n"), fontsize=7.5)
+        axes.set_xlabel("rate [kHz]")
+    return Figure("profiles", """The largest stiffness up to 3 N/mm at which a simulated device in a light hand comes to rest. It has its
+        own encoders and delay, with its friction and without it, on the linear and on the smooth field. Friction stills small limit
+        cycles.""", drawn)
+
+
+def rotation_figure(table, plan):
+    drawn, panels = figures.panels(columns=3, height=2.8, sharey=True, title="A delay lowers the rotational stiffness that is stable")
+    for axes, (part, title) in zip(panels, ROTATION.items()):
+        kilohertz = [rate / 1000 for rate in plan.rates]
+        for profile, colour in zip(TORQUE, (figures.BLUE, figures.VERMILION, figures.GREEN, figures.PURPLE)):
+            rests = [itertools.takewhile(lambda row: row["at_rest"] == "yes", table.where(part=part, profile=profile, rate_hz=rate))
+                     for rate in plan.rates]
+            limits = [max((row["rotational_stiffness_N_mm_rad"] for row in rows), default=numpy.nan) for rows in rests]
+            axes.plot(kilohertz, limits, color=colour, marker="o", lw=1, ms=3, label=profile)
+        checked = [table.where(part=part, rate_hz=rate)[0]["checked_N_mm_rad"] for rate in plan.rates]
+        axes.plot(kilohertz, checked, color=figures.GREY, ls="--", label="check(), no delay")
+        axes.set(title=title, xscale="log", yscale="log", ylim=(100, 1e5), xlabel="update rate [kHz]")
+        figures.ticks(axes.xaxis, kilohertz)
+    panels[0].set_ylabel("stiffness [N mm/rad]")
+    figures.label_ends(panels[2])
+    return Figure("rotation", """The largest rotational stiffness at which a simulated device with torque in a light hand comes to rest, of
+        those tried up to 2.5 times the bound of the theory. Left: without delay, friction and steps, where the bound is the dashed one.
+        Middle: with their delay alone. Right: as they are. Friction stills every case that was tried.""", drawn)
+
+
+def claims_of_rest(table, plan):
+    rated = table.where(part="rated")
+    yield Claim("every profile comes to rest at its rated stiffness at 1 kHz, to two encoder steps",
+                all(row["at_rest"] == row["in_contact"] == "yes" for row in rated),
+                f"at most {largest(rated['position_peak_to_peak_mm']):.2g} mm peak to peak, {len(rated)} profiles")
+    yield from claims_of_trembling(table)
+    found = compared(table, plan, *list(PARTS)[:2], 2)
+    more, same, less = counted(found)
+    losses = "".join(f"{name} at {rate:g} Hz: {smooth:.1f} against {linear:.1f} N/mm; "
+                     for name, rate, linear, smooth in found if smooth < linear)
+    yield Claim("on the smooth field every profile comes to rest at least as stiff as on the linear one, at every rate", less == 0,
+                f"{losses}as stiff in {same} cases, stiffer in {more}")
+    corner = table.where(part="map", rate_hz=250, stiffness_N_mm=LARGEST, encoder_step_mm=0)[0]  # the map can tell
+    yield Claim(f"a loop that must buzz does: {MAP_PROFILE}, 3 N/mm at 250 Hz, no friction", corner["at_rest"] == "no",
+                f"{corner['position_peak_to_peak_mm']:.3g} mm peak to peak")
+
+
+def claims_of_trembling(table):
+    rows = table.where(part="trembling", rate_hz=1000)
+    most = largest(rows["above_20_hz_percent"])
+    if rows:
+        yield Claim("in the hand of a modelled person who trembles, at its rated stiffness and 1 kHz, no profile adds more than "
+                    f"the {FORCE:g} % of force above 20 Hz that people notice", most < FORCE and all(row["in_contact"] == "yes" for row in rows),
+                    f"at most {most:.2g} %, {len(rows)} profiles")
+
+
+def claims_of_rotation(table):
+    """Whether all cases of a part so near the bound are, or are not, at rest."""
+    for part, low, high, rests, statement in (
+            ("rotation, ideal", 0, 0.9, "yes", "without delay, friction and steps a handle comes to rest at 0.9 of the rotational "
+             "stiffness that check() accepts, and below"),
+            ("rotation, ideal", 1.25, numpy.inf, "no", "and shakes at 1.25 of it, and above"),
+            ("rotation, delayed", 0, 0.8, "yes", "with its delay alone it comes to rest up to 0.8 of damping / (period / 2 + delay)"),
+            ("rotation, delayed", 1.25, numpy.inf, "no", "and shakes at 1.25 of that, and above"),
+            ("rotation", 0, 0.8, "yes", "as it is, with friction, it comes to rest up to 0.8 of that")):
+        rows = table.where(part=part).only(lambda row: low - 1e-9 <= row["part_of_bound"] <= high + 1e-9)
+        moved = rows["turn_peak_to_peak_deg"]
+        said = f"at most {moved.max():.3g}" if rests == "yes" else f"at least {moved.min():.3g}"
+        yield Claim(statement, rows.distinct("at_rest") == [rests], f"{said} degrees peak to peak in {len(rows)} cases")
+
+
 def paragraphs_of(table, plan, subject):
     slow, fast = (largest_stable(table.where(part=part, encoder_step_mm=plan.encoders[0]), rate)
                   for part, rate in (("map", plan.rates[0]), ("fastest", FASTEST)))
     parts = list(PARTS)[2:]
-    rest = counted(list(compared(table, plan, *parts, 2)))
-    wide = list(compared(table, plan, *parts, 10))
+    rest, wide = counted(compared(table, plan, *parts, 2)), compared(table, plan, *parts, 10)
     later, same, earlier = counted(wide)
     most = max(max(linear - smooth for *_, linear, smooth in wide), 0)
-    return [f"A simulated device in a light hand is pressed into the volume {subject.name} and held for {SECONDS} s, of which the last second counts. "
-            "It is at rest if its position moves by two encoder steps at most, as the encoders tell it. A step counts for "
-            f"{LEAST_STEP:g} mm at least. Stiffnesses up to {LARGEST:g} N/mm were tried. The first rows of the table have {MAP_PROFILE} "
-            "without friction in its mechanics, for each encoder step, and the others each profile as it is.",
-            f"At {FASTEST:g} Hz, without friction and encoder steps, {MAP_PROFILE} is at rest up to {fast:.1f} N/mm, beside {slow:.1f} N/mm at "
-            f"{plan.rates[0]:g} Hz. In the study of Choi and Tan (2004), people held a real device. The largest stiffness of a virtual "
-            "texture that felt clean to them rose from 0.325 N/mm at 250 Hz to 0.904 N/mm at 40 kHz. Rest on a sphere is a weaker demand "
-            "than a clean texture.",
-            "Without friction nothing holds a hand sideways, and the smooth field has no facets to rest in. There are "
-            f"{sum(rest)} cases, each a profile at a rate. On the smooth field it comes to rest up to a larger stiffness than on the linear "
-            f"field in {rest[0]}, and up to a smaller one in {rest[2]}. Movement by more than 10 steps begins at the same stiffness in "
-            f"{same} of them, later in {later}, and earlier in {earlier}, by {most:.1f} N/mm at most.",
-            "For rotation, the light hand turns the handle by 20 degrees against a rotational spring that holds it straight. Rest is as "
-             f"above, and a step of angle counts for {LEAST_ANGLE:g} degrees at least. Without a delay, check() accepts 2 x rate x damping. "
-             "A handle begins to shake there, because its inertia is large against damping times period. A delay lowers that to "
-             "damping / (period / 2 + delay), and check() includes it. Without friction, a device with a delay of half a period takes "
-             "half of the stiffness. Friction of the wrist, which is assumed, stills such shaking.",
-            "A person does not hold still. In the part trembling, the hand has the mass, damping, stiffness and tremor of the experiment "
-            f"recorded, and presses each profile at its rated stiffness with its target {PRESSED} mm below the surface. The force above "
-            f"{SLOW} Hz is at most {largest(table.where(part='trembling')['above_20_hz_percent']):.2g} % of the push at any rate.",
-            "Everything here is simulated, and nothing but the tremor is random, so there are no intervals. The profiles' masses, frictions and delays "
-            "are partly assumed (docs/devices/simulated.md), so the shape of the map is worth more than its numbers."]
+    return paragraphs(f"""
+        A simulated device in a light hand is pressed into the volume {subject.name} and held for {SECONDS} s, of which the last second
+        counts. It is at rest if its position moves by two encoder steps at most, as the encoders tell it. A step counts for {LEAST_STEP:g}
+        mm at least. Stiffnesses up to {LARGEST:g} N/mm were tried. The first rows of the table have {MAP_PROFILE} without friction in its
+        mechanics, for each encoder step, and the others each profile as it is.
+
+        At {FASTEST:g} Hz, without friction and encoder steps, {MAP_PROFILE} is at rest up to {fast:.1f} N/mm, beside {slow:.1f} N/mm at
+        {plan.rates[0]:g} Hz. In the study of Choi and Tan (2004), people held a real device. The largest stiffness of a virtual texture
+        that felt clean to them rose from 0.325 N/mm at 250 Hz to 0.904 N/mm at 40 kHz. Rest on a sphere is a weaker demand than a clean
+        texture.
+
+        Without friction nothing holds a hand sideways, and the smooth field has no facets to rest in. There are {sum(rest)} cases, each a
+        profile at a rate. On the smooth field it comes to rest up to a larger stiffness than on the linear field in {rest[0]}, and up to a
+        smaller one in {rest[2]}. Movement by more than 10 steps begins at the same stiffness in {same} of them, later in {later}, and
+        earlier in {earlier}, by {most:.1f} N/mm at most.
+
+        For rotation, the light hand turns the handle by 20 degrees against a rotational spring that holds it straight. Rest is as above,
+        and a step of angle counts for {LEAST_ANGLE:g} degrees at least. Without a delay, check() accepts 2 x rate x damping. A handle
+        begins to shake there, because its inertia is large against damping times period. A delay lowers that to damping / (period / 2 +
+        delay), and check() includes it. Without friction, a device with a delay of half a period takes half of the stiffness. Friction of
+        the wrist, which is assumed, stills such shaking.
+
+        A person does not hold still. In the part trembling, the hand has the mass, damping, stiffness and tremor of the experiment
+        recorded, and presses each profile at its rated stiffness with its target {PRESSED} mm below the surface. The force above {SLOW} Hz
+        is at most {largest(table.where(part="trembling")["above_20_hz_percent"]):.2g} % of the push at any rate.
+
+        Everything here is simulated, and nothing but the tremor is random, so there are no intervals. The profiles' masses, frictions and
+        delays are partly assumed (docs/devices/simulated.md), so the shape of the map is worth more than its numbers.""")
 
 
 def run(options):
     plan = plan_of(options.quick)
     subject = options.subjects[0] if options.subjects else synthetic("sphere")
-    table = measured(cases_of(subject, plan), options.progress)
-    claims = [rated_claim(table), *trembling_claim(table), smooth_claim(table, plan), control_claim(table), *bound_claims(table)]
-    return Result(table, [map_figure(table, plan), profile_figure(table, plan), rotation_figure(table, plan)], claims,
-                  paragraphs_of(table, plan, subject), Table(summary_of(table, plan)))
+    table = measured(cases_of(subject, plan), options)
+    return Result(table, [map_figure(table, plan), profile_figure(table, plan), rotation_figure(table, plan)],
+                  [*claims_of_rest(table, plan), *claims_of_rotation(table)], paragraphs_of(table, plan, subject),
+                  Table(summary_of(table, plan)))

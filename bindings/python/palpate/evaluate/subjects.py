@@ -60,9 +60,15 @@ class Contestant:
         return dataclasses.replace(subject, field=palpate.Field(
             field.volume, field.solid, field.background, self.interpolation))
 
+    def proxy(self, subject, start):
+        """A proxy on that field, put at a free place [mm]."""
+        felt = self.felt(subject)
+        return palpate.Proxy(felt.field, felt.isovalue, start, self.method)
+
 
 CONTESTANTS = {c.name: c for c in (*(Contestant(name, name) for name in palpate.methods()),
                                    Contestant("smooth", "exact", "cubic"))}
+GUARDED = ("exact", "paper", "smooth")  # those that must never be in the solid
 
 # Real volumes by name: file, level that is felt, SHA-256 of the file, where it comes from.
 UNC = "Stanford volume data archive (University of North Carolina), CThead"
@@ -91,7 +97,12 @@ def synthetic(specification, isovalue=None, type=None):
                    scene.isovalue if isovalue is None else isovalue, exact)
 
 
-def real(name, options, result_data=None):
+def reals(names, options):
+    """Those of the real volumes that the data folder has."""
+    return [subject for name in names if (subject := real(name, options))]
+
+
+def real(name, options):
     """A real volume, or None with a note where the data folder lacks it."""
     file, isovalue, sha256, origin = REAL[name]
     path = Path(options.data or "") / file
@@ -101,8 +112,7 @@ def real(name, options, result_data=None):
     found = hashlib.sha256(path.read_bytes()).hexdigest()
     if found != sha256:
         options.note(f"{file} is not the file that the results in docs/results were made with")
-    if result_data is not None:
-        result_data.append((file, found, origin))
+    options.used.append((file, found, origin))
     return Subject(name, palpate.Field(palpate.load(path).volume, interpolation="linear"), isovalue)
 
 
@@ -112,3 +122,11 @@ def of_text(text):
     if text.startswith("synthetic:"):
         return synthetic(text.rpartition("@")[0] or text, found.isovalue)
     return Subject(found.name, found.field, found.isovalue)
+
+
+def of_texts(texts):
+    """Volumes of the user, each with a name of its own: a volume at two levels is two."""
+    found = [of_text(text) for text in texts]
+    names = [subject.name for subject in found]
+    return tuple(dataclasses.replace(subject, name=f"{subject.name} at {subject.isovalue:g}") if names.count(subject.name) > 1
+                 else subject for subject in found)

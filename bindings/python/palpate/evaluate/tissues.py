@@ -5,6 +5,8 @@ import dataclasses
 import numpy
 import palpate
 
+from .hands import Way
+
 RATE = 1000  # [Hz] of every hand here
 BALL_RADIUS = 80.0  # [mm]
 DEEPEST = 64.0  # [mm] of a hand in either body
@@ -12,17 +14,6 @@ DEEPEST = 64.0  # [mm] of a hand in either body
 TISSUES = {"skin": (10, 0.4, 1.2, 0.03), "fat": (16, 0.2, 0.7, 0.01), "fascia": (30, 0.9, 2.0, 0.05),
            "muscle": (33.5, 0.5, 1.0713, 0.03), "bone": (60, 1.5, numpy.inf, 0)}
 LEVEL, STIFFNESS, PUNCTURE, DRAG = (numpy.array(column, dtype=float) for column in zip(*TISSUES.values()))
-
-
-@dataclasses.dataclass
-class Way:
-    """A straight way of a hand: where depth 0 is [mm, physical], and a unit vector."""
-
-    origin: numpy.ndarray
-    inward: numpy.ndarray
-
-    def at(self, depth):
-        return self.origin + numpy.multiply.outer(depth, self.inward)
 
 
 @dataclasses.dataclass
@@ -52,8 +43,7 @@ def flat():
 
 
 def balls():
-    """Concentric balls around (0, 0, 0), 0.125 mm apart, in an upright block from above the outermost surface to below
-    the innermost."""
+    """Concentric balls around (0, 0, 0), 0.125 mm apart, in an upright block from above the outermost surface to below the innermost."""
     x, z = -5.9 + 0.125 * numpy.arange(96), 8 + 0.125 * numpy.arange(576)
     radius = numpy.sqrt(z[:, None, None]**2 + x[:, None]**2 + x**2)
     return Body("balls", palpate.Volume((BALL_RADIUS - radius).astype(numpy.float32), [0.125] * 3, [x[0], x[0], z[0]]))
@@ -70,8 +60,8 @@ def layers(needle=False, count=None):
 
 
 def renderer(field, made):
-    """Without damping, ramp and limits, so that the force is what the layers make it. made: Layers, or None for the
-    skin's level alone."""
+    """Without damping, ramp and limits, so that the force is what the layers make it. made: Layers, or None for the skin's level
+    alone."""
     force = palpate.ForceSettings(ramp=0, rate_limit=numpy.inf, limit=1e6)
     level = made.layers[0].level if made else LEVEL[0]
     return palpate.Renderer(field, level, palpate.RenderSetup(layers=made, force=force),
@@ -82,9 +72,19 @@ def times(count):
     return (1 + numpy.arange(count)) / RATE
 
 
+def thinned(depth, is_apart, wanted=()):
+    """Rows whose depths are apart from the one before, and others that are wanted."""
+    kept, last = [], -numpy.inf
+    for row, one in enumerate(depth):
+        if is_apart(one, last) or (len(wanted) and wanted[row]):
+            kept.append(row)
+            last = one
+    return kept
+
+
 def spring(depth):
-    """The spring's force [N] on a hand that went straight in to these depths: each surface holds until its puncture
-    force, and the next is met at its level, or where the last one let the hand go behind it."""
+    """The spring's force [N] on a hand that went straight in to these depths: each surface holds until its puncture force, and the next
+    is met at its level, or where the last one let the hand go behind it."""
     gone = numpy.concatenate([[-numpy.inf], (LEVEL + PUNCTURE / STIFFNESS)[:-1]])
     stretch = numpy.asarray(depth)[:, None] - LEVEL
     force = STIFFNESS * stretch

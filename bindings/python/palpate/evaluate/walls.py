@@ -1,5 +1,6 @@
 """Closed walls of any thickness, and straight lines of a hand through them."""
 
+import dataclasses
 import itertools
 
 import numpy
@@ -24,8 +25,8 @@ def corners_of(cells):
 
 
 def full_samples(body, layers):
-    """The four samples of each face between a cell of the body and one that is not, then layer by layer
-    the corners of every cell of the body that has a full one."""
+    """The four samples of each face between a cell of the body and one that is not, then layer by layer the corners of every cell of the
+    body that has a full one."""
     full = numpy.zeros([SAMPLES] * 3, dtype=bool)
     for axis in range(3):
         flat = numpy.moveaxis(body, axis, 0)
@@ -49,12 +50,12 @@ def across_layers(layers, x):
 
 
 def closed_shell(shape, thickness, interpolation):
-    """A wall around a hollow 'box' (flat, with corners) or 'ball' of voxels (stepped), `thickness` [voxel]
-    on every flat face; spacing 1 mm.
+    """A wall around a hollow 'box' (flat, with corners) or 'ball' of voxels (stepped), `thickness` [voxel] on every flat face; spacing 1
+    mm.
 
-    Every face of the body has its four samples full, so a linear field is full all over the face, and the
-    wall is closed at any level below: the level sets its thickness. A ramp sampled thinner than a voxel
-    would have real holes. A smooth field needs two full layers, between which it is full.
+    Every face of the body has its four samples full, so a linear field is full all over the face, and the wall is closed at any level
+    below: the level sets its thickness. A ramp sampled thinner than a voxel would have real holes. A smooth field needs two full layers,
+    between which it is full.
     """
     if not 0 < thickness <= 4:
         raise ValueError(f"a shell of {thickness} voxels: it can be above 0 and up to 4 thick")
@@ -75,48 +76,54 @@ def candidates(random, count, size):
     return random.random((count, 3)) * (size - 1), along / numpy.linalg.norm(along, axis=1, keepdims=True)
 
 
+@dataclasses.dataclass
 class Lines:
-    """Lines from outside into the solid: where they first meet the surface (entry [mm]), unit directions
-    (along), their way in the wall and the hand's way, both from the entry [mm].
+    """Lines from outside into the solid: where they first meet the surface (entry [mm]), unit directions (along), their way in the wall
+    and the hand's way, both from the entry [mm]."""
 
-    At most 75 degrees off the normal where they meet the surface. A line goes through the first wall to 3
-    voxels behind it, or half the distance to the next wall, if no free path from outside leads there. With
-    `anywhere`, lines into a body thicker than 16 voxels, or one that a proxy may go around, end 4 voxels
-    deep or half way through. Raises ValueError if hardly a line meets such a wall or body.
-    """
+    entry: numpy.ndarray
+    along: numpy.ndarray
+    wall: numpy.ndarray
+    end: numpy.ndarray
 
-    def __init__(self, subject, outside, anywhere, count, random, draw=candidates):
-        kept, tried = [], 0
-        while sum(len(part[0]) for part in kept) < count:
-            if tried > 1000 + 100 * count:
-                raise ValueError(f"{subject.name}: hardly a straight line through it meets anything solid; choose "
-                                 "another level or volume")
-            places, along = draw(random, 2 * count + 100, numpy.asarray(subject.field.geometry.size))
-            kept.append(self._through(subject, outside, anywhere, places, along))
-            tried += len(places)
-        self.entry, self.along, self.wall, self.end = (numpy.concatenate(parts)[:count] for parts in zip(*kept))
+    def part(self, rows):
+        return Lines(self.entry[rows], self.along[rows], self.wall[rows], self.end[rows])
 
-    @staticmethod
-    def _through(subject, outside, anywhere, places, along):
-        field, isovalue, voxel = subject.field, subject.isovalue, subject.voxel
-        through = subject.physical(places)
-        far = 2 * subject.diagonal * along
-        entry, normal = palpate.cast_rays(field, isovalue, through - far, through + far)
-        steep = -(normal * along).sum(axis=1) >= FLATTEST  # false for NaN
-        entry, along = entry[steep], along[steep]
-        inverse = palpate.Field(field.volume, "below" if field.solid == "above" else "above", field.background,
-                                field.interpolation)
-        hair = OFF_SURFACE * voxel
-        begin, farthest = entry + hair * along, entry + (hair + THICKEST_WALL * voxel) * along
-        out, _ = palpate.cast_rays(inverse, isovalue, begin, farthest)
-        leaves = ~numpy.isnan(out[:, 0])
-        wall = numpy.linalg.norm(numpy.where(leaves[:, None], out, farthest) - entry, axis=1)
-        behind = entry + (wall + hair)[:, None] * along
-        reach = behind + 2 * END_BEHIND_WALL * voxel * along
-        following, _ = palpate.cast_rays(field, isovalue, behind, reach)
-        following = numpy.where(numpy.isnan(following), reach, following)
-        end = wall + hair + 0.5 * numpy.linalg.norm(following - behind, axis=1)
-        closed = leaves & ~outside.holds(entry + end[:, None] * along)
-        kept = (wall >= THINNEST_WALL * voxel) & (closed | anywhere)  # the others graze, or lead to free space
-        end = numpy.where(closed, end, numpy.minimum(END_IN_BODY * voxel, 0.5 * wall))
-        return entry[kept], along[kept], numpy.where(closed, wall, numpy.inf)[kept], end[kept]
+
+def lines_through(subject, outside, anywhere, count, random, draw=candidates):
+    """Lines at most 75 degrees off the normal where they meet the surface. A line goes through the first wall to 3 voxels behind it, or
+    half the distance to the next wall, if no free path from outside leads there. With `anywhere`, lines into a body thicker than 16
+    voxels, or one that a proxy may go around, end 4 voxels deep or half way through. Raises ValueError if hardly a line meets such a wall
+    or body."""
+    kept, tried = [], 0
+    while sum(len(part[0]) for part in kept) < count:
+        if tried > 1000 + 100 * count:
+            raise ValueError(f"{subject.name}: hardly a straight line through it meets anything solid; choose another level or volume")
+        places, along = draw(random, 2 * count + 100, numpy.asarray(subject.field.geometry.size))
+        kept.append(usable(subject, outside, anywhere, places, along))
+        tried += len(places)
+    return Lines(*(numpy.concatenate(parts)[:count] for parts in zip(*kept)))
+
+
+def usable(subject, outside, anywhere, places, along):
+    """Of lines through places: entry, direction, way in the wall and way of the hand of those that can be used."""
+    field, isovalue, voxel = subject.field, subject.isovalue, subject.voxel
+    through, far = subject.physical(places), 2 * subject.diagonal * along
+    entry, normal = palpate.cast_rays(field, isovalue, through - far, through + far)
+    steep = -(normal * along).sum(axis=1) >= FLATTEST  # false for NaN
+    entry, along = entry[steep], along[steep]
+    inverse = palpate.Field(field.volume, "below" if field.solid == "above" else "above", field.background, field.interpolation)
+    hair = OFF_SURFACE * voxel
+    farthest = entry + (hair + THICKEST_WALL * voxel) * along
+    out, _ = palpate.cast_rays(inverse, isovalue, entry + hair * along, farthest)
+    leaves = ~numpy.isnan(out[:, 0])
+    wall = numpy.linalg.norm(numpy.where(leaves[:, None], out, farthest) - entry, axis=1)
+    behind = entry + (wall + hair)[:, None] * along
+    reach = behind + 2 * END_BEHIND_WALL * voxel * along
+    following, _ = palpate.cast_rays(field, isovalue, behind, reach)
+    following = numpy.where(numpy.isnan(following), reach, following)
+    end = wall + hair + 0.5 * numpy.linalg.norm(following - behind, axis=1)
+    closed = leaves & ~outside.holds(entry + end[:, None] * along)
+    kept = (wall >= THINNEST_WALL * voxel) & (closed | anywhere)  # the others graze, or lead to free space
+    end = numpy.where(closed, end, numpy.minimum(END_IN_BODY * voxel, 0.5 * wall))
+    return entry[kept], along[kept], numpy.where(closed, wall, numpy.inf)[kept], end[kept]
