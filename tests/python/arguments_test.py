@@ -99,7 +99,7 @@ def volume():
      "Friction(): arguments have names here, as in Friction(static_coefficient=...)"),
     (lambda: palpate.replay(3, 1, [0.0], [[0, 0, 0]]), "replay(): field must be Field, not 3"),
     (lambda: palpate.read_trace(3), "read_trace(): path must be a path, not 3"),
-    (lambda: palpate.Run(3), "Run(): volume must be Volume, LoadedVolume, Store or Run, not int"),
+    (lambda: palpate.Run(3), "Run(): loaded must be LoadedVolume or Volume or Store or Run, not 3"),
     (lambda: palpate.Field(volume(), solid="abve"),
      "solid 'abve': use one of above, below (did you mean above?)"),
 ])

@@ -47,6 +47,53 @@ def test_limits_that_a_run_cannot_raise_are_refused():
         run.send(limits)
 
 
+def test_limits_that_a_servo_cannot_raise_are_refused():
+    class Still:
+        def info(self):
+            return palpate.DeviceInfo()
+
+        def read(self):
+            return palpate.DeviceReading(status="ready")
+
+    with palpate.Servo(palpate.Renderer(*ball()), Still(), real_time=False) as servo:
+        for newton, good in ((100, False), (1, True), (2, False)):
+            limits = palpate.DeviceLimits(maximum_force=newton)
+            if good:
+                servo.send(limits)
+                continue
+            with pytest.raises(ValueError, match="can only be lowered"):
+                servo.send(limits)
+
+
+@pytest.mark.parametrize("words, setup", [
+    ("penetrability does nothing with layers", dict(
+        penetrability=palpate.Penetrability(), layers=palpate.Layers(layers=[palpate.Layer(name="a", level=0.5)]))),
+    ("minimum does nothing with ranges", dict(penetrability=palpate.Penetrability(minimum=1, ranges=[(1, 2)]))),
+    ("tool_spacing does nothing", dict(tool_spacing=1.0)),
+    ("tool_spacing does nothing", dict(tool_spacing=1.0, tool=palpate.Tool([[0, 0, 0], [1, 0, 0]])))],
+    ids=lambda given: next(iter(given)) if isinstance(given, dict) else given)
+def test_settings_that_would_be_ignored_are_refused(words, setup):
+    field, isovalue = ball()
+    made = palpate.RenderSetup(**setup)
+    for call in (lambda: palpate.Renderer(field, isovalue, made),
+                 lambda: palpate.replay(field, isovalue, [0, 1, 2], HIPS, setup=made),
+                 lambda: palpate.Run(field.volume, palpate.Setup(render=made))):
+        with pytest.raises(ValueError, match=words):
+            call()
+
+
+@pytest.mark.parametrize("playback", [dict(speed=2), dict(loop=False), dict(memory_bytes=10**8)], ids=str)
+def test_playback_is_set_by_the_first_run_on_a_sequence_only(playback):
+    beating = palpate.load("synthetic:beating:16x16x16")
+    setup = palpate.Setup(real_time=False, **playback)
+    first = palpate.Run(beating, setup)
+    with pytest.raises(ValueError, match="do nothing: the run that this one shares its data with"):
+        palpate.Run(first, setup)
+    palpate.Run(first, palpate.Setup(real_time=False))
+    with pytest.raises(ValueError, match="do nothing: this is no sequence"):
+        live(**playback)
+
+
 @pytest.mark.parametrize("rate, stiffness, good", [
     (250, 1, True), (250, 5, False), (1000, 4.9, True), (4000, 15, True), (NAN, 0.1, False), (-3, 0.1, False)])
 def test_the_rate_of_the_limits_bounds_the_stiffness(rate, stiffness, good):
