@@ -258,6 +258,17 @@ def test_the_message_says_which_numbers_are_needed():
         palpate.Mesh(numpy.eye(3), [[0, 1, -1]])
 
 
+@pytest.mark.parametrize("end", [(NAN, 0, 0), (0, float("inf"), 0)], ids=str)
+def test_a_ray_needs_two_ends_however_far(end):
+    field, isovalue = ball()
+    with pytest.raises(ValueError, match="finite"):
+        field.cast_ray(isovalue, end, (0, 0, 0))
+    with pytest.raises(ValueError, match="finite"):
+        field.cast_ray(isovalue, (-20, 0, 0), end)
+    near, far = (field.cast_ray(isovalue, (-x, 0, 0), (0, 0, 0)) for x in (20, 1e12))
+    assert numpy.allclose(near[0], far[0], atol=1e-3)
+
+
 @pytest.mark.parametrize("ending", (".ply", ".stl", ".obj", ".vtp"))
 def test_a_mesh_that_a_file_cannot_hold_is_not_written(tmp_path, ending):
     file = tmp_path / f"mesh{ending}"
