@@ -5,6 +5,7 @@ import copy
 import functools
 import http.server
 import json
+import os
 import sys
 import threading
 
@@ -267,6 +268,20 @@ def test_a_ray_needs_two_ends_however_far(end):
         field.cast_ray(isovalue, (-20, 0, 0), end)
     near, far = (field.cast_ray(isovalue, (-x, 0, 0), (0, 0, 0)) for x in (20, 1e12))
     assert numpy.allclose(near[0], far[0], atol=1e-3)
+
+
+def test_files_whose_names_are_no_text_are_read_and_told(tmp_path):
+    there, missing = (os.fsencode(tmp_path) + name for name in (b"/a\xff.nrrd", b"/b\xff.nrrd"))
+    palpate.write(ball()[0].volume, there)
+    loaded = palpate.load(there)
+    assert loaded.name == os.fsdecode(there) and repr(loaded)
+    assert palpate.load(loaded.name).volume.array.shape == (24, 24, 24)
+    for call in (palpate.load, palpate.read_trace, palpate.read_recording, palpate.open_store):
+        with pytest.raises(palpate.InputError) as raised:
+            call(missing)
+        assert "b\\xff.nrrd: " in str(raised.value)
+    with pytest.raises(palpate.OutputError, match=r"b\\xff"):
+        palpate.write(ball()[0].volume, missing + b"/c.nrrd")
 
 
 @pytest.mark.parametrize("ending", (".ply", ".stl", ".obj", ".vtp"))
