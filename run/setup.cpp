@@ -133,6 +133,11 @@ std::string layers_warning(const io::LayersFile& file, const LoadedVolume& loade
 
 RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
                                  const DeviceLimits& limits) {
+    if (setup.layers && !setup.layers->layers.layers.empty() &&
+        !std::holds_alternative<std::monostate>(setup.penetrability)) {
+        throw std::invalid_argument(
+            "penetrability does nothing with layers, whose surfaces give way by themselves");
+    }
     if (setup.friction && setup.method.method != &update_exact) {
         throw std::invalid_argument("friction is for the method exact; the others have none");
     }

@@ -126,6 +126,7 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
     keep_device_limits(device.info().limits);
     start_ = session_.renderer.settings;
     check(start_);
+    limits_ = start_.device;
     check(session_.settings);
     make_room_for_tools(session_.renderer);
     if (!(settings.rate >= 250 && settings.rate <= 8000)) {
@@ -213,7 +214,20 @@ bool Servo::send(const Command& command) {
     }
     if (const auto* layers = std::get_if<command::UseLayers>(&command)) hold(layers->layers);
     if (const auto* tool = std::get_if<command::UseTool>(&command)) hold(tool->tool);
+    if (const auto* limits = std::get_if<DeviceLimits>(&command)) return lower(*limits, checked);
     return push(checked);
+}
+
+bool Servo::lower(const DeviceLimits& limits, const CheckedCommand& checked) {
+    const std::lock_guard lock(sent_mutex_);
+    const DeviceLimits lowered = smaller(limits_, limits);
+    if (lowered == limits_ && limits != limits_) {
+        throw std::invalid_argument(
+            "limits can only be lowered, and the delay raised: none of these does it");
+    }
+    if (!push(checked)) return false;
+    limits_ = lowered;
+    return true;
 }
 
 bool Servo::push(const CheckedCommand& checked) {
@@ -227,7 +241,7 @@ bool Servo::push(const CheckedCommand& checked) {
 /// sent, because with two entries it would never look unused.
 void Servo::hold(const std::shared_ptr<const void>& sent) {
     if (!sent) return;
-    const std::lock_guard lock(held_mutex_);
+    const std::lock_guard lock(sent_mutex_);
     std::erase_if(held_, [](const auto& held) { return held.use_count() == 1; });
     if (std::find(held_.begin(), held_.end(), sent) == held_.end()) held_.push_back(sent);
 }

@@ -191,11 +191,6 @@ run::RenderSetup RenderOptions::setup() const {
     }
     if (minimum && penetrability != Penetrability::threshold) refuse("--minimum", "threshold");
     if (!ranges.empty() && penetrability != Penetrability::ranges) refuse("--range", "ranges");
-    if (given.layers && !given.layers->layers.layers.empty() &&
-        penetrability != Penetrability::off) {
-        throw std::invalid_argument(
-            "--penetrability does nothing with --layers, whose surfaces give way by themselves");
-    }
     warn_of_no_effect();
     run::RenderSetup setup = given;
     if (!labels.empty()) {

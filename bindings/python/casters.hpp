@@ -20,6 +20,12 @@
 
 namespace palpate::python {
 
+/// The name of a file, as os.fsdecode() gives it.
+inline py::str text_of_path(const std::string& name) {
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeFSDefaultAndSize(name.data(), static_cast<py::ssize_t>(name.size())));
+}
+
 template <class E>
 using Names = std::pair<const char*, E>;
 

@@ -30,10 +30,7 @@ void bind(py::module_& names, const char* name, const char* argument, Value C::*
                  return command;
              }),
              py::arg(argument))
-        .def_readonly(argument, member)
-        .def("__repr__", [name = std::string(name), member](const C& command) {
-            return py::str("command.{}({!r})").format(name, command.*member);
-        });
+        .def_readonly(argument, member);
 }
 
 }  // namespace
@@ -57,13 +54,15 @@ void bind_commands(py::module_& module) {
     py::class_<command::Lift>(names, "Lift",
                               "Lifts the hand off: the proxy starts at the hand with the next "
                               "tick, whatever holds it. The force starts again.")
-        .def(py::init<>())
-        .def("__repr__", [](const command::Lift&) { return "command.Lift()"; });
+        .def(py::init<>());
     py::class_<command::Samples>(names, "Samples", "Another version of the samples, same grid.")
         .def(py::init([](const std::shared_ptr<Samples>& samples, std::uint64_t version) {
                  return command::Samples{samples, version};
              }),
              py::arg("samples").none(false), py::arg("version") = 0)
+        .def_property_readonly(
+            "samples",
+            [](const command::Samples& s) { return std::const_pointer_cast<Samples>(s.samples); })
         .def_readonly("version", &command::Samples::version);
     py::class_<command::UseLayers>(names, "UseLayers", "Layers from the next tick on; None: none.")
         .def(
@@ -87,7 +86,12 @@ void bind_commands(py::module_& module) {
         .def(py::init([](const std::optional<std::shared_ptr<Tool>>& tool) {
                  return command::UseTool{tool.value_or(nullptr)};
              }),
-             py::arg("tool"));
+             py::arg("tool"))
+        .def_property_readonly("tool", [](const command::UseTool& to) {
+            std::optional<std::shared_ptr<Tool>> tool;
+            if (to.tool) tool = std::const_pointer_cast<Tool>(to.tool);
+            return tool;
+        });
 }
 
 }  // namespace palpate::python

@@ -9,17 +9,17 @@
 namespace palpate::python {
 namespace {
 
-py::list found_devices() {
+std::vector<py::dict> found_devices() {
     std::vector<devices::DeviceFinding> findings;
     {
         const py::gil_scoped_release unlocked;
         findings = devices::find_devices();
     }
-    py::list list;
+    std::vector<py::dict> list;
     for (const devices::DeviceFinding& f : findings) {
-        list.append(py::dict(py::arg("name") = f.name, py::arg("found") = f.found,
-                             py::arg("what") = f.what, py::arg("missing") = f.missing,
-                             py::arg("options") = f.options));
+        list.push_back(py::dict(py::arg("name") = f.name, py::arg("found") = f.found,
+                                py::arg("what") = f.what, py::arg("missing") = f.missing,
+                                py::arg("options") = f.options));
     }
     return list;
 }
@@ -29,7 +29,7 @@ void turn(DeviceReading& reading, const Quaternion& to) {
     const double length = to.norm();
     if (std::abs(length - 1) > 1e-3) {
         throw std::invalid_argument("orientation_xyzw must have length 1, not " +
-                                    std::to_string(length));
+                                    std::string(py::str(py::float_(length))));
     }
     reading.orientation = to.normalized().toRotationMatrix();
 }

@@ -43,18 +43,26 @@ void bind_edits(py::module_& module) {
     bind_brushes(module);
     py::class_<edit::Stroke>(module, "Stroke", "A brush swept along a straight line.")
         .def(py::init<Brush, Vec3, Vec3>(), py::arg("brush"), py::arg("start"), py::arg("end"),
-             "start and end [mm, physical].");
+             "start and end [mm, physical].")
+        .def_readonly("brush", &edit::Stroke::brush)
+        .def_readonly("start", &edit::Stroke::from, "[mm, physical]")
+        .def_readonly("end", &edit::Stroke::to, "[mm, physical]");
     py::class_<edit::Fill>(module, "Fill", "Sets all samples of a box to one value.")
         .def(py::init([](const Index3& low, const Index3& high, double value) {
                  return edit::Fill{{low, high}, value};
              }),
              py::arg("low"), py::arg("high"), py::arg("value"),
-             "Corners (i, j, k), both in the box; value [data units].");
+             "Corners (i, j, k), both in the box; value [data units].")
+        .def_property_readonly("low", [](const edit::Fill& f) { return f.box.low; })
+        .def_property_readonly("high", [](const edit::Fill& f) { return f.box.high; })
+        .def_readonly("value", &edit::Fill::value, "[data units]");
     py::class_<edit::Replace>(module, "Replace", "Puts another volume's samples into the grid.")
         .def(py::init([](const Index3& at, const Volume& samples) {
                  return edit::Replace{at, samples};
              }),
-             py::arg("at"), py::arg("samples"), "at: index (i, j, k) of the first one.");
+             py::arg("at"), py::arg("samples"), "at: index (i, j, k) of the first one.")
+        .def_readonly("at", &edit::Replace::at)
+        .def_readonly("samples", &edit::Replace::samples);
     py::class_<Editor>(module, "Editor",
                        "Applies edits to samples, with undo. One thread at a time.")
         .def(py::init([](const Volume& volume, std::size_t history_bytes) {

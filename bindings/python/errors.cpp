@@ -12,9 +12,16 @@
 namespace palpate::python {
 namespace {
 
+/// Names of files in it may have bytes that are no text.
+py::object message_of(const std::exception& error) {
+    const std::string text = error.what();
+    return py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
+        text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace"));
+}
+
 void raise(const char* kind, const std::exception& error) {
     const py::object type = py::module_::import("palpate.errors").attr(kind);
-    PyErr_SetString(type.ptr(), error.what());
+    PyErr_SetObject(type.ptr(), message_of(error).ptr());
 }
 
 void raise_choice(const io::SeriesChoice& choice) {
@@ -25,7 +32,7 @@ void raise_choice(const io::SeriesChoice& choice) {
                                py::arg("modality") = info.modality, py::arg("slices") = info.slices,
                                py::arg("text") = io::text_of(info)));
     }
-    PyErr_SetObject(type.ptr(), type(choice.what(), series).ptr());
+    PyErr_SetObject(type.ptr(), type(message_of(choice), series).ptr());
 }
 
 }  // namespace
@@ -46,6 +53,8 @@ void bind_errors() {
             raise("QueueFull", error);
         } catch (const std::system_error& error) {
             PyErr_SetString(PyExc_OSError, error.what());
+        } catch (const std::invalid_argument& error) {
+            PyErr_SetObject(PyExc_ValueError, message_of(error).ptr());
         }
     });
 }

@@ -33,9 +33,14 @@ py::array_t<double> gradients_at(const Field& field, const Doubles& points) {
     return array_from(std::move(at));
 }
 
-py::object ray(const Field& field, const io::Level& level, const Vec3& from, const Vec3& to) {
+std::optional<std::pair<Vec3, Vec3>> ray(const Field& field, const io::Level& level,
+                                         const Vec3& from, const Vec3& to) {
+    if (!from.allFinite() || !to.allFinite()) {
+        throw std::invalid_argument("the ends of a ray have to be finite");
+    }
     const RayHit hit = cast_ray(field, io::level_in(field.volume(), level), from, to);
-    return hit.hit ? py::object(py::make_tuple(hit.point, hit.normal)) : py::none();
+    if (!hit.hit) return std::nullopt;
+    return std::pair(hit.point, hit.normal);
 }
 
 using Moments = std::vector<std::pair<double, Volume>>;

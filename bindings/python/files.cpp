@@ -145,7 +145,8 @@ void bind_loaded(py::module_& module) {
         .def_property_readonly(
             "volume", [](const run::LoadedVolume& l) { return l.volume; },
             "The Volume; of a sequence its first frame.")
-        .def_readonly("name", &run::LoadedVolume::name)
+        .def_property_readonly("name",
+                               [](const run::LoadedVolume& l) { return text_of_path(l.name); })
         .def_readonly("format", &run::LoadedVolume::format, "For people: 'NRRD', 'DICOM series'.")
         .def_readonly("notes", &run::LoadedVolume::notes,
                       "Sentences on how it was read: conversions, gaps, missing spacing.")
@@ -159,7 +160,8 @@ void bind_loaded(py::module_& module) {
                                "Levels that are likely worth feeling [data units], the best first.")
         .def(py::pickle(&state_of, &loaded_again))
         .def("__repr__", [](const run::LoadedVolume& l) {
-            return py::str("LoadedVolume({!r}, {!r})").format(l.name, py::cast(l.volume));
+            return py::str("LoadedVolume({!r}, {!r})")
+                .format(text_of_path(l.name), py::cast(l.volume));
         });
 }
 

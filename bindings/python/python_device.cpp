@@ -121,7 +121,10 @@ void PythonDevice::step() {
     const std::string unread =
         tried("read()", [&] { reading = reading_from(self_.attr("read")()); });
     const std::int64_t now = devices::monotonic_ns();
-    if (!unread.empty()) rests_until_ = now + rest;
+    if (!unread.empty()) {
+        set_problem(unread);  // before the servo sees the fault
+        rests_until_ = now + rest;
+    }
     const bool rests = now < rests_until_;
     // Taken after the GIL was waited for, so that an old force is not sent, and before the servo
     // knows this reading: after a silence the first force is that of a servo that has let go.

@@ -22,6 +22,7 @@ py::dict dict_of(const io::RecordingHead& head) {
         py::arg("isovalue") = head.isovalue, py::arg("device") = head.device,
         py::arg("rate") = head.rate, py::arg("method") = head.method,
         py::arg("force") = AskedForce(head.settings.force),
+        py::arg("friction") = head.settings.proxy.friction,
         py::arg("limits") = head.settings.device, py::arg("transform") = head.settings.transform);
 }
 

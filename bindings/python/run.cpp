@@ -89,29 +89,64 @@ struct LiveRun : run::Run {
     PythonDevice* const python_device;  ///< where the device is written in Python, the run's own
 };
 
-/// `what`: LoadedVolume, Volume, Store, or a Run, whose data this is to share. A Store is not
-/// converted by itself: what its reading raises would be lost.
-std::shared_ptr<run::Data> data_from(const py::object& what, const run::PlaybackSetup& playback) {
-    const py::module_ module = py::module_::import("palpate._palpate");
+bool is_store(py::handle what) {
+    return py::isinstance(what, py::module_::import("palpate._palpate").attr("Store"));
+}
+bool can_be_felt(PyObject* what) {
+    return py::isinstance<run::LoadedVolume>(what) || py::isinstance<Volume>(what) ||
+           is_store(what) || py::isinstance<LiveRun>(what);
+}
+
+}  // namespace
+
+/// What a Run is of. A Store is not converted by itself: what its reading raises would be lost.
+struct Feelable : py::object {
+    PYBIND11_OBJECT(Feelable, py::object, can_be_felt)
+};
+
+}  // namespace palpate::python
+
+template <>
+struct pybind11::detail::handle_type_name<palpate::python::Feelable> {
+    static constexpr auto name = const_name(
+        "Union[palpate._palpate.LoadedVolume, palpate._palpate.Volume, "
+        "palpate._palpate.Store, palpate._palpate.Run]");
+};
+
+namespace palpate::python {
+namespace {
+
+/// Of a Run its data, which are then shared.
+std::shared_ptr<run::Data> data_from(const Feelable& what, const run::PlaybackSetup& playback) {
     if (py::isinstance<LiveRun>(what)) {
         const auto& other = what.cast<const LiveRun&>();
         other.process.check();
         return other.shared_data();
     }
-    const bool is_store = py::isinstance(what, module.attr("Store"));
-    if (!is_store && !py::isinstance<Volume>(what) && !py::isinstance<run::LoadedVolume>(what)) {
-        throw py::type_error("Run(): volume must be Volume, LoadedVolume, Store or Run, not " +
-                             std::string(py::str(py::type::of(what).attr("__name__"))));
-    }
-    const auto loaded = is_store ? module.attr("LoadedVolume")(what).cast<run::LoadedVolume>()
-                                 : what.cast<run::LoadedVolume>();
+    const py::module_ module = py::module_::import("palpate._palpate");
+    const auto loaded = is_store(what) ? module.attr("LoadedVolume")(what).cast<run::LoadedVolume>()
+                                       : what.cast<run::LoadedVolume>();
     return made_without_gil<run::Data>(loaded, playback);
 }
 
-std::shared_ptr<LiveRun> make(const py::object& what, const std::optional<Setup>& given,
+/// Throws std::invalid_argument for what only the first run on a sequence decides.
+void check_playback(const Setup& given, const Feelable& what, const run::Data& data) {
+    const Setup usual;
+    const bool is_usual = given.speed == usual.speed && given.loop == usual.loop &&
+                          given.memory_bytes == usual.memory_bytes;
+    const bool is_shared = py::isinstance<LiveRun>(what);
+    if (is_usual || (data.is_sequence() && !is_shared)) return;
+    throw std::invalid_argument(
+        std::string("speed, loop and memory_bytes do nothing: ") +
+        (is_shared ? "the run that this one shares its data with has set them; use play()"
+                   : "this is no sequence"));
+}
+
+std::shared_ptr<LiveRun> make(const Feelable& what, const std::optional<Setup>& given,
                               const py::object& device, double device_rate) {
     run::Setup setup = live_setup(given.value_or(Setup{}));
     std::shared_ptr<run::Data> data = data_from(what, setup.playback);
+    if (given) check_playback(*given, what, *data);
     PythonDevice* python_device = nullptr;
     if (!device.is_none()) {
         // Made here, with the GIL: copies of the setup must not hold a Python object.

@@ -18,8 +18,10 @@ py::array_t<double> exact_at(const scenes::Scene& scene, const Doubles& points) 
     return array_from(std::move(values));
 }
 
-py::tuple motion(const std::string& name, const Field& field, const io::Level& level,
-                 const scenes::MotionSettings& settings) {
+std::pair<py::array_t<double>, py::array_t<double>> motion(const std::string& name,
+                                                           const Field& field,
+                                                           const io::Level& level,
+                                                           const scenes::MotionSettings& settings) {
     const double isovalue = io::level_in(field.volume(), level);
     std::vector<scenes::HandSample> samples;
     const ProgressFunction none;
@@ -28,8 +30,8 @@ py::tuple motion(const std::string& name, const Field& field, const io::Level& l
         const py::gil_scoped_release unlocked;
         samples = scenes::make_motion(name, field, isovalue, settings, progress);
     }
-    return py::make_tuple(column(samples, [](const scenes::HandSample& s) { return s.t; }),
-                          column(samples, [](const scenes::HandSample& s) { return s.position; }));
+    return {column(samples, [](const scenes::HandSample& s) { return s.t; }),
+            column(samples, [](const scenes::HandSample& s) { return s.position; })};
 }
 
 }  // namespace

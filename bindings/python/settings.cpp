@@ -46,8 +46,17 @@ run::RenderSetup setup_of(const RenderSetup& setup, const ForceSettings& usual) 
     } else {
         made.tool = io::tool_spec_from(std::get<std::string>(setup.tool));
     }
+    if (made.tool_spacing && (std::holds_alternative<io::PointSpec>(made.tool) ||
+                              std::holds_alternative<io::PointsSpec>(made.tool))) {
+        throw std::invalid_argument(
+            "tool_spacing does nothing: it is for a tool whose points are made, such as sphere:2");
+    }
     if (!setup.penetrability) return made;
     const PressThrough& press = *setup.penetrability;
+    if (press.minimum && !press.ranges.empty()) {
+        throw std::invalid_argument(
+            "Penetrability.minimum does nothing with ranges, which have levels of their own");
+    }
     if (press.ranges.empty()) {
         made.penetrability = run::ThresholdSetup{press.threshold, press.minimum};
         return made;

@@ -11,12 +11,14 @@ py::dict dict_of(const LatencySummary& s) {
                     py::arg("p999") = s.p999, py::arg("max") = s.max);
 }
 
-py::tuple contacts_of(const Snapshot& snapshot) {
+using Column = py::array_t<double>;
+
+std::tuple<Column, Column, Column> contacts_of(const Snapshot& snapshot) {
     const std::vector<ToolContact> contacts(snapshot.contacts.begin(),
                                             snapshot.contacts.begin() + snapshot.contact_count);
-    return py::make_tuple(column(contacts, [](const ToolContact& c) { return c.place; }),
-                          column(contacts, [](const ToolContact& c) { return c.normal; }),
-                          column(contacts, [](const ToolContact& c) { return c.pressure; }));
+    return {column(contacts, [](const ToolContact& c) { return c.place; }),
+            column(contacts, [](const ToolContact& c) { return c.normal; }),
+            column(contacts, [](const ToolContact& c) { return c.pressure; })};
 }
 
 void bind_report(py::module_& module) {

@@ -85,7 +85,7 @@ void bind_store(py::module_& module) {
         .def("__repr__", [](const OpenStore& s) {
             const Index3& size = s.info().levels.front().geometry.size;
             return py::str("Store({!r}, {}, {}x{}x{} {}, {} levels)")
-                .format(s.info().address, s.info().format, size[0], size[1], size[2],
+                .format(text_of_path(s.info().address), s.info().format, size[0], size[1], size[2],
                         std::string(name_of(s.info().type)), s.info().levels.size());
         });
 }

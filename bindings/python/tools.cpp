@@ -1,6 +1,8 @@
 // Rigid tools.
 #include "palpate/tool.hpp"
 
+#include <algorithm>
+
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "palpate/io/tool_file.hpp"
@@ -44,6 +46,15 @@ void bind_tools(py::module_& module) {
         .def_property_readonly("gyration", &Tool::gyration, "[mm]")
         .def_property_readonly("radius", &Tool::radius, "Of the farthest point [mm].")
         .def_property_readonly("turns", &Tool::turns)
+        .def(
+            "__eq__",
+            [](const Tool& one, const Tool& other) {
+                return std::ranges::equal(one.points(), other.points()) &&
+                       one.gyration() == other.gyration() && one.turns() == other.turns() &&
+                       one.shape().vertices == other.shape().vertices &&
+                       one.shape().triangles == other.shape().triangles;
+            },
+            py::is_operator())
         .def("__repr__",
              [](const Tool& t) {
                  return py::str("Tool({} points, gyration {:g} mm, radius {:g} mm)")

@@ -183,7 +183,7 @@ typedef struct palpate_render_options {
     double viscosity;      /* [N s/mm] */
     double force_limit;    /* [N] 0: the device's; renderer: 3.3 */
     double static_friction, dynamic_friction;
-    double penetration;    /* [device mm] at which the surface gives way; 0: never */
+    double penetration;    /* [device mm] at which the surface gives way; 0: never; not with layers */
     double scale;          /* physical mm per device mm; 0: fits the workspace; renderer: 1 */
     double rate;           /* [Hz] 250 to 8000; 0: 1000, without force 250 */
     const char *tool;      /* "sphere:5", "needle", a file, ...; null: a point */

@@ -152,7 +152,8 @@ class Servo {
     void stop_recording() noexcept;
 
     /// Checks a command and puts it in the queue. False if the queue is full. Throws
-    /// std::invalid_argument as check(Command) does. Any thread; never waits for the servo thread.
+    /// std::invalid_argument as check(Command) does, and for limits that lower nothing. Any thread;
+    /// never waits for the servo thread.
     /// A session that has ended takes every command and carries out none, so that it does not hold
     /// up who sends to several. Keeps samples alive until the servo uses others, so that its thread
     /// never frees them.
@@ -204,6 +205,7 @@ class Servo {
     void publish(std::int64_t number, const SessionTick& tick) noexcept;
     void hold(const std::shared_ptr<const void>& sent);
     bool push(const CheckedCommand& checked);
+    bool lower(const DeviceLimits& limits, const CheckedCommand& checked);
 
     // These begin on cache lines of their own. Placed first, they waste no space.
     Queue<CheckedCommand> commands_;
@@ -230,11 +232,12 @@ class Servo {
     Queue<SessionEvent>* next_recorder_ = nullptr;
     std::atomic<const SessionPoint*> awaited_{nullptr};
 
-    std::mutex held_mutex_;  // between threads that send. The servo thread never takes it
+    std::mutex sent_mutex_;  // between threads that send. The servo thread never takes it
     std::vector<std::shared_ptr<const void>> held_;  // each object once
     LatencyHistogram period_, lateness_, work_, compute_;
     std::atomic<std::int64_t> ticks_{0}, missed_{0}, overruns_{0}, unrecorded_{0};
     std::atomic<std::int64_t> sent_{0}, obeyed_{0};  // commands
+    DeviceLimits limits_;                            // as sent, under sent_mutex_
 };
 
 }  // namespace palpate

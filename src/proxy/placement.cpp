@@ -1,4 +1,5 @@
 // Placing a proxy away from the servo thread, and straight rays that meet the surface.
+#include <algorithm>
 #include <optional>
 
 #include "proxy/update.hpp"
@@ -48,6 +49,36 @@ std::optional<LatticePoint> first_hit(const Field& field, double isovalue, const
     return site.point;
 }
 
+/// A straight way in index space.
+struct Segment {
+    Vec3 from, to;
+};
+
+/// The segment itself, or where it has an end that is too far for the lattice, its part in and
+/// around the grid: the rest lies in the background. Nothing if there is no such part.
+std::optional<Segment> near_grid(const Geometry& geometry, const Segment& whole) {
+    const auto reaches = [](const Vec3& end) {
+        return end.cwiseAbs().maxCoeff() <= farthest_index;
+    };
+    if (reaches(whole.from) && reaches(whole.to)) return whole;
+    constexpr double margin = 4;  // [voxels] beyond which no sample counts
+    const Vec3 way = whole.to - whole.from;
+    if (!way.allFinite()) return std::nullopt;
+    double enters = 0, leaves = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = -margin - whole.from[axis];
+        const double high = geometry.size[axis] + margin - whole.from[axis];
+        if (way[axis] == 0) {
+            if (low > 0 || high < 0) return std::nullopt;
+            continue;
+        }
+        enters = std::max(enters, std::min(low / way[axis], high / way[axis]));
+        leaves = std::min(leaves, std::max(low / way[axis], high / way[axis]));
+    }
+    if (enters > leaves) return std::nullopt;
+    return Segment{whole.from + enters * way, whole.from + leaves * way};
+}
+
 }  // namespace
 
 Vec3 normal_at(const Proxy& proxy, const Field& field) {
@@ -79,13 +110,17 @@ RayHit cast_ray(const Field& field, double isovalue, const Vec3& from, const Vec
     const Vec3 start = index_from_physical(geometry, from);
     const Vec3 target = index_from_physical(geometry, to);
     RayHit ray{false, to, Vec3::Zero()};
-    if (!(start.cwiseAbs().maxCoeff() <= farthest_index) ||
-        !(target.cwiseAbs().maxCoeff() <= farthest_index)) {
-        return ray;
+    if (!start.allFinite() || !target.allFinite()) return ray;
+    const std::optional<Segment> near = near_grid(geometry, {start, target});
+    const bool is_in_background = !near || near->from != start;
+    if (is_in_background && field.sign() * (field.background() - isovalue) > 0) {
+        return {true, from, Vec3::Zero()};
     }
+    if (!near) return ray;
     const auto hit_of =
         field.interpolation() == Interpolation::cubic ? first_hit<CubicSite> : first_hit<Site>;
-    const std::optional<LatticePoint> at = hit_of(field, isovalue, start, target, step_budget);
+    const std::optional<LatticePoint> at =
+        hit_of(field, isovalue, near->from, near->to, step_budget);
     if (!at) return ray;
     ray.hit = true;
     ray.point = physical_from_index(geometry, index_of(field.interpolation(), *at));

@@ -88,7 +88,7 @@ TEST(LayersOption, refuses_what_does_not_fit) {
     expect("--layers none-such", 3, "use one of ct-bone-drilling");
     expect("--layers bad.json", 3, "bad.json");
     expect("--layers two.json --isovalue 0.5", 2, "an isovalue does nothing with layers");
-    expect("--layers two.json --penetrability threshold", 2, "--penetrability does nothing");
+    expect("--layers two.json --penetrability threshold", 2, "penetrability does nothing");
     expect("--layers two.json --method paper", 2, "layers need the method exact");
     expect("--layers two.json --solid below", 2, "levels must fall");
     expect("--labels none.nrrd", 3, "none.nrrd");

@@ -116,6 +116,35 @@ TEST(Ray, passes_far_background_in_a_few_pieces) {
     }
 }
 
+TEST(Ray, from_any_distance_meets_what_lies_on_its_line) {
+    const TestField test = box_field();
+    const Vec3 centre = physical_centre(test.field.geometry());
+    Random random(64);
+    for (const double distance : {1e8, 1e10, 1e12}) {
+        for (int i = 0; i < 200; ++i) {
+            const Vec3 way = random.direction(), far = distance * way;
+            const RayHit near = cast_ray(test.field, test.isovalue, centre + 100 * way, centre);
+            for (const Vec3& end : {Vec3(centre - far), centre}) {
+                const RayHit ray = cast_ray(test.field, test.isovalue, centre + far, end);
+                ASSERT_TRUE(ray.hit);
+                ASSERT_LE((ray.point - near.point).norm(), 1e-14 * distance);
+            }
+            const Vec3 aside = way.unitOrthogonal() * 60;
+            EXPECT_FALSE(
+                cast_ray(test.field, test.isovalue, centre + far + aside, centre + aside).hit);
+        }
+    }
+    // Where the background is solid, a ray is in it from its start.
+    const Field solid(test.field.volume(), Solid::above, 1e9);
+    for (const Vec3& from : {Vec3(1e12, 0, 0), Vec3(1e12, 1e12, 0)}) {
+        const RayHit ray = cast_ray(solid, test.isovalue, from, Vec3(0, 1e12, 0));
+        EXPECT_TRUE(ray.hit);
+        EXPECT_EQ(ray.point, from);
+    }
+    EXPECT_FALSE(
+        cast_ray(test.field, test.isovalue, Vec3::Constant(-1e308), Vec3::Constant(1e308)).hit);
+}
+
 TEST(Ray, out_of_a_body_that_fills_the_grid_leaves_by_its_border) {
     // Solid below: the body is where the density is under the isovalue, the background above it.
     const Field field(volume_of<std::uint8_t>(grid(cube(8)), [](const Index3&) { return 10; }),

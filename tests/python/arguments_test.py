@@ -2,6 +2,7 @@
 type, in one line."""
 
 import inspect
+import pathlib
 
 import numpy
 import palpate
@@ -39,7 +40,7 @@ def complaint(call):
 @pytest.mark.parametrize("title, owner, function, is_static", ALL, ids=[one[0] for one in ALL])
 def test_a_wrong_argument_is_named_in_one_line(title, owner, function, is_static):
     is_method = isinstance(owner, type) and not is_static
-    for parameters in arguments._signatures(function.__wrapped__):
+    for parameters in arguments.signatures(function.__wrapped__):
         checked = [one for one in parameters if one.type not in ACCEPTS_ALL]
         required = [one for one in parameters if one.required]
         for one in checked:
@@ -99,7 +100,12 @@ def volume():
      "Friction(): arguments have names here, as in Friction(static_coefficient=...)"),
     (lambda: palpate.replay(3, 1, [0.0], [[0, 0, 0]]), "replay(): field must be Field, not 3"),
     (lambda: palpate.read_trace(3), "read_trace(): path must be a path, not 3"),
-    (lambda: palpate.Run(3), "Run(): volume must be Volume, LoadedVolume, Store or Run, not int"),
+    (lambda: palpate.Run(3), "Run(): loaded must be LoadedVolume or Volume or Store or Run, not 3"),
+    (lambda: palpate.load("a\0b"), "load(): source must be a path, not 'a\\x00b'"),
+    (lambda: palpate.read_trace(pathlib.Path("a\0b")), "read_trace(): path must be a path, not PosixPath"),
+    (lambda: palpate.Layer(colour="red"), "Layer.colour must be a list of 3, each a number, not 'red'"),
+    (lambda: palpate.Layer(colour=(1, 0)), "Layer.colour must be a list of 3, each a number, not (1, 0)"),
+    (lambda: palpate.Snapshot(), "Snapshot() cannot be called: functions of palpate return one"),
     (lambda: palpate.Field(volume(), solid="abve"),
      "solid 'abve': use one of above, below (did you mean above?)"),
 ])

@@ -156,6 +156,23 @@ def test_a_device_whose_read_goes_wrong_has_no_force_says_why_and_comes_back(mes
     assert device.closed and not numpy.any(device.forces[-1])
 
 
+def test_the_problem_of_a_device_is_told_with_its_fault():
+    class Flaky(Still):
+        said = None
+
+        def read(self):
+            raise RuntimeError("cable pulled")
+
+        def write(self, force, torque):  # the servo may have seen the fault by now
+            self.said = self.said or [servo.device_problem]
+
+    device = Flaky(60)
+    servo = palpate.Servo(renderer(), device, real_time=False)
+    with servo:
+        until(lambda: device.said)
+    assert "cable pulled" in device.said[0]
+
+
 def test_a_device_whose_write_raises_is_tried_with_zero_and_closed():
     class Stuck(Still):
         tried = ()
@@ -311,7 +328,8 @@ def test_while_python_does_not_come_back_to_a_device_there_is_no_force():
 
 def test_a_run_with_the_simulated_device_records_what_validates(tmp_path):
     loaded = palpate.load("synthetic:torus:32x32x32")
-    run = palpate.Run(loaded, palpate.Setup(real_time=False, device="simulated"))
+    friction = palpate.Friction(static_coefficient=0.3, dynamic_coefficient=0.2)
+    run = palpate.Run(loaded, palpate.Setup(real_time=False, device="simulated", render=palpate.RenderSetup(friction=friction)))
     run.record(tmp_path / "session.csv")
     with run:
         until(lambda: run.snapshot() and run.snapshot().number > 300)
@@ -323,7 +341,7 @@ def test_a_run_with_the_simulated_device_records_what_validates(tmp_path):
     assert told["ticks"] > 300 and told["complete"] and told["commands"] >= 1
     recording = palpate.read_recording(tmp_path / "session.csv")
     assert len(recording.trace) == told["ticks"] and recording.complete
-    assert recording.head["isovalue"] == loaded.isovalue
+    assert recording.head["isovalue"] == loaded.isovalue and recording.head["friction"] == friction
     text = (tmp_path / "session.csv").read_text()
     (tmp_path / "changed.csv").write_text(text.replace("free", "constrained", 3))
     with pytest.raises(palpate.InputError, match="changed.csv"):

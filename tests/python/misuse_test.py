@@ -5,6 +5,7 @@ import copy
 import functools
 import http.server
 import json
+import os
 import sys
 import threading
 
@@ -45,6 +46,53 @@ def test_limits_that_a_run_cannot_raise_are_refused():
             run.send(limits)
         limits.rate *= 0.5
         run.send(limits)
+
+
+def test_limits_that_a_servo_cannot_raise_are_refused():
+    class Still:
+        def info(self):
+            return palpate.DeviceInfo()
+
+        def read(self):
+            return palpate.DeviceReading(status="ready")
+
+    with palpate.Servo(palpate.Renderer(*ball()), Still(), real_time=False) as servo:
+        for newton, good in ((100, False), (1, True), (2, False)):
+            limits = palpate.DeviceLimits(maximum_force=newton)
+            if good:
+                servo.send(limits)
+                continue
+            with pytest.raises(ValueError, match="can only be lowered"):
+                servo.send(limits)
+
+
+@pytest.mark.parametrize("words, setup", [
+    ("penetrability does nothing with layers", dict(
+        penetrability=palpate.Penetrability(), layers=palpate.Layers(layers=[palpate.Layer(name="a", level=0.5)]))),
+    ("minimum does nothing with ranges", dict(penetrability=palpate.Penetrability(minimum=1, ranges=[(1, 2)]))),
+    ("tool_spacing does nothing", dict(tool_spacing=1.0)),
+    ("tool_spacing does nothing", dict(tool_spacing=1.0, tool=palpate.Tool([[0, 0, 0], [1, 0, 0]])))],
+    ids=lambda given: next(iter(given)) if isinstance(given, dict) else given)
+def test_settings_that_would_be_ignored_are_refused(words, setup):
+    field, isovalue = ball()
+    made = palpate.RenderSetup(**setup)
+    for call in (lambda: palpate.Renderer(field, isovalue, made),
+                 lambda: palpate.replay(field, isovalue, [0, 1, 2], HIPS, setup=made),
+                 lambda: palpate.Run(field.volume, palpate.Setup(render=made))):
+        with pytest.raises(ValueError, match=words):
+            call()
+
+
+@pytest.mark.parametrize("playback", [dict(speed=2), dict(loop=False), dict(memory_bytes=10**8)], ids=str)
+def test_playback_is_set_by_the_first_run_on_a_sequence_only(playback):
+    beating = palpate.load("synthetic:beating:16x16x16")
+    setup = palpate.Setup(real_time=False, **playback)
+    first = palpate.Run(beating, setup)
+    with pytest.raises(ValueError, match="do nothing: the run that this one shares its data with"):
+        palpate.Run(first, setup)
+    palpate.Run(first, palpate.Setup(real_time=False))
+    with pytest.raises(ValueError, match="do nothing: this is no sequence"):
+        live(**playback)
 
 
 @pytest.mark.parametrize("rate, stiffness, good", [
@@ -209,6 +257,31 @@ def test_the_message_says_which_numbers_are_needed():
     assert str(raised.value) == "Fill(): high must be 3 whole numbers, not (8589934592, 1, 1)"
     with pytest.raises(TypeError, match="triangles must be an array of whole numbers from 0, not"):
         palpate.Mesh(numpy.eye(3), [[0, 1, -1]])
+
+
+@pytest.mark.parametrize("end", [(NAN, 0, 0), (0, float("inf"), 0)], ids=str)
+def test_a_ray_needs_two_ends_however_far(end):
+    field, isovalue = ball()
+    with pytest.raises(ValueError, match="finite"):
+        field.cast_ray(isovalue, end, (0, 0, 0))
+    with pytest.raises(ValueError, match="finite"):
+        field.cast_ray(isovalue, (-20, 0, 0), end)
+    near, far = (field.cast_ray(isovalue, (-x, 0, 0), (0, 0, 0)) for x in (20, 1e12))
+    assert numpy.allclose(near[0], far[0], atol=1e-3)
+
+
+def test_files_whose_names_are_no_text_are_read_and_told(tmp_path):
+    there, missing = (os.fsencode(tmp_path) + name for name in (b"/a\xff.nrrd", b"/b\xff.nrrd"))
+    palpate.write(ball()[0].volume, there)
+    loaded = palpate.load(there)
+    assert loaded.name == os.fsdecode(there) and repr(loaded)
+    assert palpate.load(loaded.name).volume.array.shape == (24, 24, 24)
+    for call in (palpate.load, palpate.read_trace, palpate.read_recording, palpate.open_store):
+        with pytest.raises(palpate.InputError) as raised:
+            call(missing)
+        assert "b\\xff.nrrd: " in str(raised.value)
+    with pytest.raises(palpate.OutputError, match=r"b\\xff"):
+        palpate.write(ball()[0].volume, missing + b"/c.nrrd")
 
 
 @pytest.mark.parametrize("ending", (".ply", ".stl", ".obj", ".vtp"))

@@ -60,6 +60,27 @@ def test_tools_and_layers_survive_pickling():
     assert numpy.array_equal(pickle.loads(pickle.dumps(setup)).tool.points, tool.points)
 
 
+@pytest.mark.parametrize("make", [
+    lambda: palpate.command.Freeze(True), lambda: palpate.command.Isovalue(0.5), lambda: palpate.command.Lift(),
+    lambda: palpate.command.UseTool(palpate.Tool.named("burr:3", 1.0)), lambda: palpate.command.UseTool(None),
+    lambda: palpate.Fill((0, 0, 0), (1, 2, 3), 4.0), lambda: palpate.Stroke(palpate.Brush(), (0, 0, 0), (1, 1, 1)),
+    lambda: palpate.RenderSetup(tool=palpate.Tool.named("burr:3", 1.0))], ids=lambda make: repr(make())[:24])
+def test_commands_and_edits_are_values(make):
+    one = make()
+    assert one == make() and pickle.loads(pickle.dumps(one)) == one and copy.deepcopy(one) == one
+    assert "object at" not in repr(one)
+
+
+def test_values_that_differ_are_not_equal():
+    assert palpate.command.Freeze(True) != palpate.command.Freeze(False) != palpate.command.Clutch(False)
+    assert palpate.Fill((0, 0, 0), (1, 2, 3), 4.0) != palpate.Fill((0, 0, 0), (1, 2, 4), 4.0)
+    assert palpate.Tool.named("burr:3", 1.0) != palpate.Tool.named("burr:2", 1.0)
+    volume = palpate.scene("torus:16x16x16").volume
+    put = palpate.Replace((1, 2, 3), volume)
+    assert put == palpate.Replace((1, 2, 3), volume) and put.samples.array is not None
+    assert repr(palpate.command.Freeze(True)) == "command.Freeze(on=True)"
+
+
 def test_names_that_there_are_not_are_refused_with_those_that_there_are():
     volume = palpate.scene("torus:16x16x16").volume
     with pytest.raises(ValueError, match="above, below"):

@@ -113,6 +113,54 @@ def test_settings_are_found_by_name_and_plans_are_checked():
     assert psychometric(0.1, 0.1, 2) == pytest.approx(trials.GUESS + (0.5 - trials.LAPSE) * (2 * trials.AT - 1)) == pytest.approx(0.782, abs=1e-3)
 
 
+def test_settings_that_are_none_by_default_are_numbers_too():
+    setup = RenderSetup()
+    put(setup, "friction.static_coefficient", 0.3)
+    put(setup, "penetrability.threshold", 2)
+    assert setup.friction == palpate.Friction(static_coefficient=0.3) and setup.penetrability.threshold == 2
+    with pytest.raises(ValueError, match="did you mean force.damping"):
+        put(setup, "force.dampng", 1)
+    for name in ("tool", "layers", "friction", "colour.of.hat"):
+        with pytest.raises(ValueError):
+            put(setup, name, 0.5)
+
+
+BALL = ("synthetic:sphere:24x24x24", "x.csv", "--standard", "0.2")
+
+
+@pytest.mark.parametrize("words, status, said", [
+    (("run",), 2, "the following arguments are required"), (("run", *BALL, "--secnds", "1"), 2, "unrecognized arguments"),
+    (("run", *BALL[:2], "--standard", "x"), 2, "invalid float value"),
+    (("run", BALL[0] + "@abc", *BALL[1:]), 2, "'abc' is not a level"), (("run", *BALL, "--seconds", "0"), 2, "above 0"),
+    (("run", *BALL, "--setting", "stifness"), 2, "did you mean stiffness?"), (("run", *BALL, "--device", "haplo"), 2, "no device"),
+    (("run", BALL[0], "nowhere/x.csv", *BALL[2:]), 5, "nowhere/x.csv: cannot be written"),
+    (("analyse", "nowhere.csv"), 3, "nowhere.csv: No such file"), (("analyse", "text.csv"), 3, "no session of trials")],
+    ids=lambda given: given if isinstance(given, str) else "")
+def test_what_is_wrong_is_said_in_a_line(tmp_path, monkeypatch, capsys, words, status, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "text.csv").write_text("a,b\n")
+    try:
+        assert trials.main(words) == status
+    except SystemExit as end:
+        assert end.code == status
+    told = capsys.readouterr().err
+    assert told.startswith("palpate: ") and said in told and told.count("\n") == 1
+
+
+@pytest.mark.parametrize("given, level", [("", None), ("@50%", "50%"), ("@60", "60")])
+def test_the_level_is_the_suggested_one_a_number_or_a_percentage(tmp_path, monkeypatch, given, level):
+    made = []
+
+    def touching(volume, level, *rest):
+        made.append((volume, level))
+        palpate.Run(palpate.load(volume), palpate.Setup(isovalue=level))
+        return lambda trial: 1
+
+    monkeypatch.setattr(trials, "touching", touching)
+    assert trials.main(("run", BALL[0] + given, str(tmp_path / "x.csv"), *BALL[2:], "--differences", "0.5", "--repeats", "1")) == 0
+    assert made == [(BALL[0], level)]
+
+
 def test_a_device_that_tells_only_once_it_is_connected_that_it_is_too_weak_ends_the_session(tmp_path, monkeypatch):
     class Weak(palpate.Run):
         def __enter__(self):

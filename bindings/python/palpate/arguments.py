@@ -43,7 +43,7 @@ class _Parameter:
         return f"argument {int(unnamed[1]) + 1}" if unnamed else self.name
 
 
-def _signatures(function):
+def signatures(function):
     """The parameters of each overload, without self."""
     found = []
     for text in re.findall(r"^(?:\d+\. )?\w*\((.*?)\)(?: -> [^\n]*)?$", function.__doc__ or "",
@@ -63,6 +63,12 @@ def _inside(kind):
     return _split(kind[kind.index("[") + 1:-1])
 
 
+def _items(kind):
+    """Of a list: the kind of its items, and how many it has, or None."""
+    kind, count = re.fullmatch(r"(.*?)(?:\[(\d+)\])?", _inside(kind)[0]).groups()
+    return kind, count and int(count)
+
+
 def _holds(dtype, numbers):
     """Whether an argument of this type takes these numbers (bindings/python/numbers.hpp)."""
     if not dtype.startswith(("int", "uint")):
@@ -78,8 +84,9 @@ def _fits(value, kind):
     if kind.startswith("Union["):
         return any(_fits(value, one) for one in _inside(kind))
     if kind.startswith(("List[", "Sequence[")):
-        return (isinstance(value, (list, tuple, numpy.ndarray))
-                and all(_fits(one, _inside(kind)[0]) for one in value))
+        inside, count = _items(kind)
+        return (isinstance(value, (list, tuple, numpy.ndarray)) and count in (None, len(value))
+                and all(_fits(one, inside) for one in value))
     if kind.startswith("Tuple["):
         kinds = _inside(kind)
         return (isinstance(value, (list, tuple)) and len(value) == len(kinds)
@@ -96,8 +103,9 @@ def _fits(value, kind):
         return not shape or (len(shape) == got.ndim and all(
             not side.isdigit() or int(side) == size for side, size in zip(shape, got.shape)))
     plain = {"numpy.ndarray": numpy.ndarray, "str": str, "bool": bool, "float": numbers.Real,
-             "int": numbers.Integral, "os.PathLike": (str, bytes, os.PathLike), "None": type(None),
-             "dict": dict, "list": list, "tuple": tuple}
+             "int": numbers.Integral, "None": type(None), "dict": dict, "list": list, "tuple": tuple}
+    if kind == "os.PathLike":
+        return isinstance(value, (str, bytes, os.PathLike)) and "\0" not in os.fsdecode(value)
     if kind in plain:
         return isinstance(value, plain[kind])
     if kind in ("function", "Callable") or kind.startswith("Callable["):
@@ -115,7 +123,8 @@ def _expected(kind):
     if kind.startswith("Union["):
         return " or ".join(_expected(one) for one in _inside(kind) if not one.startswith("palpate::"))
     if kind.startswith(("List[", "Sequence[")):
-        return f"a list, each {_expected(_inside(kind)[0])}"
+        inside, count = _items(kind)
+        return f"a list{f' of {count}' if count else ''}, each {_expected(inside)}"
     if kind.startswith("Tuple["):
         return f"({', '.join(map(_expected, _inside(kind)))})"
     if array := _ARRAY.fullmatch(kind):
@@ -175,7 +184,7 @@ def _flaw(parameters, args, keywords):
 
 
 def _problem(function, args, keywords):
-    flaws = [_flaw(parameters, args, keywords) for parameters in _signatures(function)]
+    flaws = [_flaw(parameters, args, keywords) for parameters in signatures(function)]
     furthest = max((at for at, flaw in flaws), default=-1)
     flaws = [flaw for at, flaw in flaws if at == furthest]
     wrong = [flaw for flaw in flaws if isinstance(flaw, tuple)]
@@ -213,12 +222,20 @@ def _told_setter(setter, name):
         except TypeError as error:
             if not _MARK.search(str(error)):
                 raise
-        kinds = dict.fromkeys(_expected(one[-1].type) for one in _signatures(setter))
+        kinds = dict.fromkeys(_expected(one[-1].type) for one in signatures(setter))
         raise TypeError(f"{name} must be {' or '.join(kinds)}, not {_given(value)}")
     return change
 
 
+def _unmade(kind):
+    def __init__(self, *args, **keywords):
+        raise TypeError(f"{kind.__name__}() cannot be called: functions of palpate return one")
+    return __init__
+
+
 def _complete_class(kind):
+    if type(vars(kind).get("__init__")).__name__ != "instancemethod":
+        kind.__init__ = _unmade(kind)
     for name, raw in list(vars(kind).items()):
         if name.startswith("_") and name != "__init__":
             continue

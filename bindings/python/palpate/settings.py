@@ -13,7 +13,7 @@ import weakref
 
 import numpy
 
-from .arguments import unknown
+from .arguments import signatures, unknown
 
 
 def _refuse(self, *args, **keywords):
@@ -139,6 +139,8 @@ def _set(self, name, value):
 def _same(one, other):
     if isinstance(one, numpy.ndarray):
         return numpy.array_equal(one, other)
+    if hasattr(one, "array") and hasattr(other, "array"):  # volumes
+        return one.geometry == other.geometry and numpy.array_equal(one.array, other.array)
     return one == other
 
 
@@ -162,6 +164,27 @@ class _Settings:
 
 def _made(kind, fields):
     return kind(**fields)
+
+
+def _complete_value(kind, within):
+    """A class whose objects are what they were made of: repr, equality and pickling."""
+    names = [one.name for one in signatures(kind.__init__)[0]]
+    assert all(hasattr(kind, name) for name in names), kind
+
+    def parts(self):
+        return tuple(getattr(self, name) for name in names)
+
+    def __repr__(self):
+        text = ", ".join(f"{name}={part!r}" for name, part in zip(names, parts(self)))
+        return f"{within}{kind.__name__}({text})"
+
+    def __eq__(self, other):
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(map(_same, parts(self), parts(other)))
+
+    kind.__repr__, kind.__eq__, kind.__hash__ = __repr__, __eq__, None
+    kind.__reduce__ = lambda self: (kind, parts(self))
 
 
 def _initializer(raw, kind, fields):
@@ -219,5 +242,10 @@ def complete(module):
                 if name != "__reduce__" or "__getstate__" not in own:
                     setattr(kind, name, vars(_Settings)[name])
             kind.__init__ = _initializer(kind.__init__, kind.__name__, kind._fields)
+    for kind in (module.Stroke, module.Fill, module.Replace):
+        _complete_value(kind, "")
+    for kind in vars(module.command).values():
+        if isinstance(kind, type) and kind.__name__ != "UseLayers":
+            _complete_value(kind, "command.")
     for name in ("limit", "stiffness"):
         setattr(module.RenderSetup, name, _alias(module.ForceSettings, "force", name))

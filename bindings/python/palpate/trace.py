@@ -116,7 +116,7 @@ class Recording:
     """One hand of a live session as it was recorded.
 
     head: what it was at its start (version, begun, volume, solid, interpolation, background,
-    isovalue, device, rate, method, force, limits, transform). trace: its ticks; commands: for each
+    isovalue, device, rate, method, force, friction, limits, transform). trace: its ticks; commands: for each
     command, the number of the tick that it came before. complete: not cut off; lost: events that
     the recording lost; hands: how many the recording has.
     """

@@ -8,16 +8,17 @@ an interrupted session continues, and the fit of a psychometric function (docs/t
 import argparse
 import csv
 import dataclasses
+import difflib
 import math
 import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any, NoReturn, Optional, Union
 
 import numpy
 
-from .errors import exit_status
+from .errors import InputError, OutputError, exit_status
 
 _Path = Union[str, Path]
 _Row = dict[str, float]
@@ -91,9 +92,12 @@ def next_trial(plan: Plan, correct: Sequence[float]) -> Optional[Trial]:
 
 
 def read(path: _Path, plan: Optional[Plan] = None) -> list[_Row]:
-    """Rows of a session: dicts of numbers. With a plan, they have to be its trials. Raises ValueError."""
-    with open(path, encoding="utf-8", newline="") as file:
-        lines = list(csv.reader(file))
+    """Rows of a session: dicts of numbers. With a plan, they have to be its trials. Raises InputError."""
+    try:
+        with open(path, encoding="utf-8", newline="") as file:
+            lines = list(csv.reader(file))
+    except (OSError, UnicodeError) as error:
+        raise InputError(f"{path}: {getattr(error, 'strerror', None) or 'is no text'}: check the name") from error
     rows = []
     for number, line in enumerate(lines[1:], 2):
         try:
@@ -101,13 +105,13 @@ def read(path: _Path, plan: Optional[Plan] = None) -> list[_Row]:
             if len(line) != len(COLUMNS):
                 raise ValueError
         except ValueError as error:
-            raise ValueError(f"{path}, line {number}: {len(COLUMNS)} numbers are needed") from error
+            raise InputError(f"{path}, line {number}: {len(COLUMNS)} numbers are needed") from error
         trial = next_trial(plan, [r["correct"] for r in rows]) if plan else None
         if plan and (trial is None or any(abs(row[name] - value) > 1e-9 for name, value in dataclasses.asdict(trial).items())):
-            raise ValueError(f"{path}, line {number}: this is no trial of the plan; use another file for another plan")
+            raise InputError(f"{path}, line {number}: this is no trial of the plan; use another file for another plan")
         rows.append(row)
     if lines[:1] != [list(COLUMNS)]:
-        raise ValueError(f"{path}: no session of trials")
+        raise InputError(f"{path}: no session of trials")
     return rows
 
 
@@ -116,15 +120,22 @@ def session(path: _Path, plan: Plan, ask: Callable[[Trial], int]) -> list[_Row]:
     next trial begins."""
     path = Path(path)
     if not path.exists() or path.stat().st_size == 0:
-        path.write_text(",".join(COLUMNS) + "\n", encoding="utf-8")
+        _append(path, ",".join(COLUMNS))
     rows = read(path, plan)
     while trial := next_trial(plan, [row["correct"] for row in rows]):
         answer = ask(trial)
         row = {**dataclasses.asdict(trial), "answer": answer, "correct": int((answer == 2) == (trial.second > trial.first))}
-        with path.open("a", encoding="utf-8") as file:
-            file.write(",".join(repr(row[name]) for name in COLUMNS) + "\n")
+        _append(path, ",".join(repr(row[name]) for name in COLUMNS))
         rows.append(row)
     return rows
+
+
+def _append(path: Path, line: str) -> None:
+    try:
+        with path.open("a", encoding="utf-8") as file:
+            file.write(line + "\n")
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
 
 
 def psychometric(difference: Any, threshold: float, slope: float) -> Any:
@@ -168,22 +179,32 @@ class Observer:
 
 
 def put(render: Any, name: str, value: float) -> None:
-    """A setting by its name in RenderSetup, such as stiffness or force.damping. Raises ValueError."""
+    """A setting by its name in RenderSetup, such as stiffness or friction.static_coefficient. Raises ValueError."""
+    import palpate
     *path, last = name.split(".")
     owner = render
     for part in path:
+        if part in ("friction", "penetrability") and getattr(owner, part, None) is None:
+            setattr(owner, part, getattr(palpate, part.capitalize())())
         owner = getattr(owner, part, None)
-    if not hasattr(owner, last):
-        raise ValueError(f"there is no setting {name} in RenderSetup")
-    setattr(owner, last, value)
+    if last not in getattr(owner, "_fields", ()):
+        near = difflib.get_close_matches(last, getattr(owner, "_fields", ()), 1)
+        raise ValueError(f"there is no setting {name} in RenderSetup"
+                         + (f" (did you mean {'.'.join([*path, *near])}?)" if near else ""))
+    try:
+        setattr(owner, last, value)
+    except TypeError as error:
+        raise ValueError(str(error)) from error
 
 
-def touching(volume: _Path, level: float, device: str, name: str, seconds: float, folder: _Path, largest: float,
+def touching(volume: _Path, level: Union[float, str, None], device: str, name: str, seconds: float, folder: _Path, largest: float,
              key: Callable[[str], str] = input) -> Callable[[Trial], int]:
     """Asks by two touches of a device, one after the other, and a key. Each touch is recorded in the
     folder. A trial in which nothing was felt is asked again. largest: value of the setting. Raises ValueError if the device cannot
     render it as it is."""
     import palpate
+    if not 0 < seconds < math.inf:
+        raise ValueError("the seconds of a touch have to be above 0")
     loaded, folder = palpate.load(volume), Path(folder)
 
     def opened(value):
@@ -223,11 +244,16 @@ def touching(volume: _Path, level: float, device: str, name: str, seconds: float
     return ask
 
 
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"palpate: {message} (see {self.prog} --help)\n")
+
+
 def main(words: Optional[Sequence[str]] = None) -> int:
-    parser = argparse.ArgumentParser(prog="python3 -m palpate.trials", description="Two-alternative trials over a setting of touch")
+    parser = _Parser(prog="python3 -m palpate.trials", description="Two-alternative trials over a setting of touch")
     commands = parser.add_subparsers(dest="command", required=True)
     run = commands.add_parser("run", help="ask the trials that are missing in FILE; it continues after an interruption")
-    run.add_argument("volume", help="VOLUME@ISOVALUE")
+    run.add_argument("volume", help="VOLUME@ISOVALUE, such as head.nrrd@34.5 or head.nrrd@20%%; without @ the suggested level")
     run.add_argument("file", help="CSV of the session")
     run.add_argument("--setting", default="stiffness", help="name in RenderSetup, such as force.damping [stiffness]")
     run.add_argument("--standard", type=float, required=True, help="value of the setting that others are compared with")
@@ -243,11 +269,12 @@ def main(words: Optional[Sequence[str]] = None) -> int:
     chosen = parser.parse_args(words)
     try:
         if chosen.command == "run":
-            volume, _, level = chosen.volume.rpartition("@")
+            volume, at, level = chosen.volume.rpartition("@")
+            volume, level = (volume, level) if at else (level, None)
             plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed, chosen.most)
             largest = plan.standard * (1 + (max(plan.differences) if plan.differences else plan.most))
             touches = Path(chosen.file).with_suffix(".touches")
-            session(chosen.file, plan, touching(volume, float(level), chosen.device, chosen.setting, chosen.seconds, touches, largest))
+            session(chosen.file, plan, touching(volume, level, chosen.device, chosen.setting, chosen.seconds, touches, largest))
             return 0
         print("file,trials,threshold,low,high,slope")
         for file in chosen.files:

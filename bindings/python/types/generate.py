@@ -13,10 +13,8 @@ from palpate import _palpate
 from palpate.arguments import _split
 
 SPECIAL = ("__init__", "__enter__", "__exit__", "__array__")
-BARE = {"list": "list[Any]", "dict": "dict[str, Any]", "tuple": "tuple[Any, ...]", "object": "Any", "function": "Any",
-        "Callable": "Callable[..., Any]"}
-# What the compiled part takes as any object.
-GIVEN = {"progress": "Optional[Callable[..., Any]]", "loaded": "Union[LoadedVolume, Volume, Store]"}
+BARE = {"list": "list[Any]", "dict": "dict[str, Any]", "tuple": "tuple[Any, ...]", "object": "Any",
+        "function": "Callable[..., Any]", "Callable": "Callable[..., Any]"}
 
 
 def type_of(text, given):
@@ -43,7 +41,9 @@ def parameter_of(text):
         return text.split(":")[0] + ": Any"
     name, _, rest = text.partition(": ")
     kind, _, default = rest.partition(" = ")
-    kind = GIVEN.get(name) or type_of(kind, given=True)
+    kind = type_of(kind, given=True)
+    if (name, kind) == ("device", "Any"):  # one that is written in Python
+        kind = "Optional[_Device]" if default == "None" else "_Device"
     return f"{name}: {kind}" + (f" = {default_of(default)}" if default else "") if kind else name
 
 

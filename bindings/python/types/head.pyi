@@ -3,21 +3,26 @@ those of the compiled part."""
 
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
 from pathlib import Path
-from typing import Any, ClassVar, Optional, Union, overload
+from typing import Any, ClassVar, Optional, Protocol, Union, overload
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Self
 
 __version__: str
-_Path = Union[str, Path]
+_Path = Union[str, bytes, PathLike[str]]
 
 BALL_VOXEL: float
 FORCE_FLAGS: dict[str, int]
 STEP_KINDS: tuple[str, ...]
 SAMPLE_BONE: float
 SAMPLE_SKIN: float
+
+class _Device(Protocol):
+    def info(self) -> DeviceInfo: ...
+    def read(self) -> DeviceReading: ...
 
 class Error(Exception): ...
 class InputError(Error, ValueError): ...

@@ -73,6 +73,23 @@ struct Recorded {
     }
 };
 
+TEST(ServoLimits, limits_that_lower_nothing_are_refused_and_leave_those_that_hold) {
+    ScriptedDevice device(&press_deep, {.maximum_force = 1});
+    Servo servo(session_of(careless()), device, stepped({}));
+    DeviceLimits limits = servo.settings().device;
+    EXPECT_TRUE(servo.send(limits));
+    limits.maximum_force = 2;
+    EXPECT_THROW(servo.send(limits), std::invalid_argument);
+    limits.maximum_force = 0.2;
+    EXPECT_TRUE(servo.send(limits));
+    limits.maximum_force = 0.5;
+    EXPECT_THROW(servo.send(limits), std::invalid_argument);
+    run(servo, 300);
+    EXPECT_GT(device.force().norm(), 0.19);
+    EXPECT_LE(device.force().norm(), 0.2 * limit_rounding);
+    servo.stop();
+}
+
 TEST(ServoLimits, a_device_for_1_newton_gets_no_more_whatever_is_asked) {
     ScriptedDevice device(&press_deep, {.maximum_force = 1});
     Queue<SessionEvent> queue(1 << 14);
@@ -82,7 +99,8 @@ TEST(ServoLimits, a_device_for_1_newton_gets_no_more_whatever_is_asked) {
     ForceSettings more = careless().force;
     more.limit = 1000;
     EXPECT_TRUE(servo.send(more));
-    EXPECT_TRUE(servo.send(DeviceLimits{.maximum_force = 20}));  // never wider
+    EXPECT_THROW(servo.send(DeviceLimits{.maximum_force = 20}), std::invalid_argument);
+    EXPECT_TRUE(servo.send(servo.settings().device));
     run(servo, 200);
     servo.stop();
     EXPECT_LE(device.largest_force(), limit_rounding);
