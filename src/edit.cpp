@@ -49,7 +49,11 @@ double blurred(const Before& before, const Index3& at) {
 template <class T>
 T brushed(const Brush& brush, double w, const Before& before, const Index3& at, T old) {
     if (!(w > 0)) return old;  // or NaN, where the ends are so far apart that squares overflow
-    if (brush.kind == BrushKind::paint) return moved(old, brush.value, w * brush.strength);
+    if (brush.kind == BrushKind::paint) {
+        // A value between two whole numbers would be passed with every touch, to and fro.
+        const bool whole = std::is_integral_v<T>;
+        return moved(old, whole ? std::nearbyint(brush.value) : brush.value, w * brush.strength);
+    }
     if (brush.kind == BrushKind::smooth) {
         return fitted<T>(double(old) + w * brush.strength * (blurred(before, at) - double(old)));
     }

@@ -415,9 +415,9 @@ void lift(Renderer& renderer) noexcept {
 }
 
 std::string isovalue_warning(const Field& field, double isovalue) {
-    const Volume& volume = field.volume();
+    const Samples& samples = field.samples();
     const double s = field.sign();
-    const double most = s > 0 ? volume.maximum() : volume.minimum();
+    const double most = s > 0 ? samples.maximum() : samples.minimum();
     if (s * isovalue >= s * most && s * isovalue >= s * field.background()) {
         return "the isovalue lies outside the data's range: nothing is solid, there is nothing to "
                "feel";

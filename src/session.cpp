@@ -15,7 +15,9 @@ namespace {
 
 /// Whether a hand can have moved here since the last good position.
 bool plausible(const Session& session, double time, const Vec3& position) {
-    if (!position.allFinite() || !(position.cwiseAbs().maxCoeff() <= farthest_hand)) return false;
+    // After an infinite time no later one could count.
+    if (!std::isfinite(time) || !position.allFinite()) return false;
+    if (!(position.cwiseAbs().maxCoeff() <= farthest_hand)) return false;
     if (!session.past.seen) return true;
     const double distance = (position - session.past.hand).norm();
     return distance <= session.settings.fastest_hand * (time - session.past.seen_at);
@@ -75,16 +77,15 @@ void change_data(Renderer& renderer, Change&& change) noexcept {
 
 /// Moves a playing sequence on with the time of the ticks, within its frames.
 void play(Session& session, double time) {
+    if (!std::isfinite(time)) return;
     Field& field = session.renderer.field;
     const double dt = session.past.begun ? time - session.past.last_tick : 0;
     if (session.speed != 0 && dt > 0) {
         const double to = field.samples().within(field.time() + session.speed * dt);
         change_data(session.renderer, [to](Field& changed) { changed.set_time(to); });
     }
-    if (std::isfinite(time)) {
-        session.past.begun = true;
-        session.past.last_tick = time;
-    }
+    session.past.begun = true;
+    session.past.last_tick = time;
 }
 
 }  // namespace

@@ -15,14 +15,17 @@ void require_length(double length) {
     }
 }
 
+void check_number(double points) {
+    if (points <= double(most_tool_points)) return;
+    throw std::invalid_argument("a tool has at most 20000 points: space them farther apart");
+}
+
 /// How many equal steps of at most `spacing` a length has.
 int steps_along(double length, double spacing) {
     require_length(length);
     require_length(spacing);
     const double steps = std::ceil(length / spacing - 1e-9);
-    if (steps > double(most_tool_points)) {
-        throw std::invalid_argument("a tool has at most 20000 points: space them farther apart");
-    }
+    check_number(steps);
     return std::max(1, static_cast<int>(steps));
 }
 
@@ -32,9 +35,7 @@ std::vector<Vec3> turned_profile(const std::vector<Eigen::Vector2d>& profile, do
     const auto ring = [&](const Eigen::Vector2d& at) {
         const double around = 2 * std::numbers::pi * at[0];
         const int count = around > spacing ? steps_along(around, spacing) : 1;
-        if (points.size() + static_cast<std::size_t>(count) > most_tool_points) {
-            steps_along(2 * double(most_tool_points), 1);  // refuses
-        }
+        check_number(double(points.size()) + count);
         for (int i = 0; i < count; ++i) {
             const double angle = 2 * std::numbers::pi * i / count;
             const double r = count == 1 ? 0 : at[0];
@@ -121,9 +122,7 @@ void check_shape(const ToolShape& shape) {
 Tool::Tool(std::vector<Vec3> points, std::optional<double> gyration, bool turns, ToolShape shape)
     : points_(std::move(points)), shape_(std::move(shape)) {
     if (points_.empty()) throw std::invalid_argument("a tool needs at least one point");
-    if (points_.size() > most_tool_points) {
-        throw std::invalid_argument("a tool has at most 20000 points: space them farther apart");
-    }
+    check_number(double(points_.size()));
     double sum = 0;
     for (const Vec3& point : points_) {
         const double arm = point.norm();
@@ -152,7 +151,7 @@ Tool sphere_tool(double radius, double spacing) {
     // Points of a spiral, each with the area of a hexagon.
     const double area = 4 * std::numbers::pi * radius * radius;
     const double count = std::ceil(area / (0.5 * std::sqrt(3.0) * spacing * spacing));
-    steps_along(count, 1);
+    check_number(count);
     const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
     std::vector<Vec3> points;
     const int n = std::max(4, static_cast<int>(count));
@@ -181,7 +180,7 @@ Tool box_tool(const Vec3& size, double spacing) {
     const double count =
         2.0 * (double(steps[0] + 1) * (steps[1] + 1) + double(steps[1] + 1) * (steps[2] + 1) +
                double(steps[2] + 1) * (steps[0] + 1));
-    steps_along(count, 1);
+    check_number(count);
     for (int z = 0; z <= steps[2]; ++z) {
         for (int y = 0; y <= steps[1]; ++y) {
             const bool inside = z > 0 && z < steps[2] && y > 0 && y < steps[1];

@@ -189,9 +189,9 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
 void warn_of_isovalue(const Field& field, double isovalue) {
     const std::string warning = isovalue_warning(field, isovalue);
     if (warning.empty()) return;
-    const Volume& volume = field.volume();
-    say("palpate: warning: isovalue {} (data {} to {}): {}\n", isovalue, volume.minimum(),
-        volume.maximum(), warning);
+    const Samples& samples = field.samples();
+    say("palpate: warning: isovalue {} (data {} to {}): {}\n", isovalue, samples.minimum(),
+        samples.maximum(), warning);
 }
 
 void warn_of_layers(const io::LayersFile& layers, const run::LoadedVolume& loaded) {

@@ -215,6 +215,26 @@ TEST(Edit, faint_touches_of_whole_numbers_do_not_stand_still) {
     }
 }
 
+TEST(Edit, a_brush_that_paints_any_value_comes_to_an_end_where_it_rests) {
+    for (const SampleType type : sample_types) {
+        for (const double value : {100.4, 100.5, 99.6}) {
+            for (const double strength : {0.3, 1.0}) {
+                edit::Stroke stroke;
+                stroke.brush = {BrushKind::paint, 3, 1, strength, 0, Solid::above, value};
+                stroke.from = stroke.to = Vec3(6, 6, 6);
+                auto samples = samples_of(noise_of(type, grid(cube(13)), 3));
+                int touches = 0;
+                for (Edited next = edited(samples, stroke); !next.changed.empty();
+                     next = edited(next.samples, stroke)) {
+                    ASSERT_LT(++touches, 2000) << value;
+                    samples = next.samples;
+                }
+                EXPECT_NEAR(samples->sample({6, 6, 6}), value, 0.5);
+            }
+        }
+    }
+}
+
 TEST(Edit, values_are_cut_at_the_limits_of_the_type) {
     const double lowest[] = {0, -32768, 0}, highest[] = {255, 32767, 65535};
     for (int i = 0; i < 3; ++i) {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <stdexcept>
+
 #include "support/edits.hpp"
 
 using namespace palpate;
@@ -57,6 +60,16 @@ TEST(Editor, undo_and_redo_lead_through_the_versions_as_they_were) {
         EXPECT_GT(undone, 0);
         EXPECT_GT(redone, 0);
     }
+}
+
+TEST(Editor, a_stroke_whose_first_edit_fails_is_a_step_of_its_own) {
+    Editor editor(samples_of(noise_of(SampleType::uint8, grid(cube(8)), 1)));
+    editor.apply(fill(3, 1));
+    EXPECT_THROW(editor.apply(fill(4, std::nan(""))), std::invalid_argument);
+    editor.apply(fill(5, 2), EditStep::same);
+    editor.apply(fill(6, 3), EditStep::same);
+    EXPECT_EQ(editor.undo_steps(), 2U);
+    EXPECT_EQ(editor.undo(), (SampleBox{Index3::Constant(5), Index3::Constant(6)}));
 }
 
 TEST(Editor, a_stroke_of_many_edits_is_one_step) {

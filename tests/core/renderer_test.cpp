@@ -310,4 +310,10 @@ TEST(Renderer, warns_of_isovalues_with_nothing_to_feel_or_everything_solid) {
         EXPECT_STREQ(about(side, sign * 50.0, sign * 50.0), "fine");
         EXPECT_STREQ(about(side, sign * 150.0, sign * 200.0), "background");
     }
+    // A beating heart: the first frame alone has nothing to feel at this level.
+    const Volume first = ramp_field().volume();
+    const Volume later =
+        volume_of<float>(first.geometry(), [](const Index3& i) { return 2 * i[2]; });
+    const std::vector<Frame> frames{{0, first}, {1, later}};
+    EXPECT_EQ(isovalue_warning(Field(std::make_shared<const Samples>(frames)), 150), "");
 }

@@ -131,6 +131,18 @@ TEST(Session, only_finite_ages_from_0_count_even_where_none_is_too_old) {
     }
 }
 
+TEST(Session, a_tick_whose_time_is_not_finite_has_no_force_and_the_hand_counts_again_afterwards) {
+    for (const double time : {infinity, -infinity, not_a_number}) {
+        for (const bool begun : {false, true}) {
+            Live live;
+            if (begun) live.rest_at(31);
+            EXPECT_EQ(advance(live.session, time, live.reading).tick.force, Vec3(0, 0, 0));
+            live.rest_at(31);
+            EXPECT_GT(live.force(), 0.4) << time;
+        }
+    }
+}
+
 TEST(Session, a_place_that_was_too_far_counts_once_the_hand_could_have_come_there) {
     Live live;
     live.rest_at(28);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "support/allocation_counter.hpp"
 #include "support/fields.hpp"
 #include "support/hand.hpp"
@@ -445,6 +447,24 @@ TEST(Tool, refuses_what_is_no_tool) {
     EXPECT_THROW(sphere_tool(1000, 0.1), std::invalid_argument);
     EXPECT_THROW(rod_tool(1, 0), std::invalid_argument);
     EXPECT_THROW(box_tool({1000, 1000, 1}, 0.5), std::invalid_argument);
+}
+
+TEST(Tool, names_the_number_of_points_however_many_they_would_be) {
+    const auto expect_number = [](auto&& make) {
+        try {
+            make();
+            ADD_FAILURE() << "not refused";
+        } catch (const std::invalid_argument& e) {
+            EXPECT_TRUE(std::string(e.what()).starts_with("a tool has at most 20000 points"));
+        }
+    };
+    for (const double spacing : {1.0, 0.1, 0.01, 1e-6}) {
+        expect_number([=] { sphere_tool(200, spacing); });
+        expect_number([=] { rod_tool(30'000, spacing); });
+        expect_number([=] { box_tool(Vec3::Constant(190), spacing); });
+        expect_number([=] { needle_tool(20'000, 1, spacing); });
+        expect_number([=] { burr_tool(200, spacing); });
+    }
 }
 
 TEST(Tool, has_points_no_farther_apart_than_asked) {

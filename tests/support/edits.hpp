@@ -191,7 +191,9 @@ inline double brushed(const Brush& brush, double distance, const Volume& before,
     const double old = before.sample(at);
     const double w = brush_weight(brush, before.geometry(), distance);
     if (w == 0) return old;
-    double aim = brush.value, part = w * brush.strength;
+    const bool whole_numbers = before.type() != SampleType::float32;
+    double aim = whole_numbers ? std::nearbyint(brush.value) : brush.value;
+    double part = w * brush.strength;
     if (brush.kind == BrushKind::smooth) {
         aim = binomial_mean(before, at);
     } else if (brush.kind != BrushKind::paint) {
@@ -201,7 +203,6 @@ inline double brushed(const Brush& brush, double distance, const Volume& before,
         if (brush.kind == BrushKind::carve ? more_solid > 0 : more_solid < 0) return old;
     }
     const double way = part * (aim - old);
-    const bool whole_numbers = before.type() != SampleType::float32;
     if (whole_numbers && brush.kind != BrushKind::smooth && std::abs(way) >= 1.0 / 16 &&
         std::abs(way) < 0.5) {
         return old + (way > 0 ? 1 : -1);
