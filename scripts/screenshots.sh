@@ -48,6 +48,11 @@ screenshot surfaces 2 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "field": "c
     "measurements": [{"kind": "length", "points": [[62, 127, 112], [190, 127, 112]]}],
     "camera": {"focus": [127.5, 127.5, 112], "up": [0, 0, -1],
         "towards_viewer": [-0.6, -0.6, -0.5], "half_height": 130}'
+screenshot two-hands 2 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "field": "cubic", "isovalue": 500,
+    "device": "simulated:hand=hold,seconds=60", "look": {"box": false},
+    "hands": [{"device": "simulated:omega6,hand=press,seed=3,seconds=60", "isovalue": 500}],
+    "camera": {"focus": [127.5, 127.5, 112], "up": [0, 0, -1],
+        "towards_viewer": [-0.6, -0.6, -0.5], "half_height": 130}'
 screenshot local 2 '"volume": {"volume": "synthetic:sphere:14x14x14"}, "isovalue": 100,
     "device": "simulated:hand=press", "slices_shown": false,
     "look": {"surface_opacity": 0.4, "tetrahedra": true, "planes": true},

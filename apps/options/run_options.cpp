@@ -37,7 +37,7 @@ std::vector<devices::DeviceChoice> choices_from(const std::vector<std::string>& 
 
 void RunOptions::add_to(CLI::App& command, For purpose) {
     source.add_to(command, purpose == For::view);
-    add_device_options(command, purpose);
+    add_device_options(command);
     CLI::Option* file = command
                             .add_option(purpose == For::record ? "-o,--output" : "--record", record,
                                         "Recording to write (never replaces a file)")
@@ -57,14 +57,13 @@ void RunOptions::add_to(CLI::App& command, For purpose) {
         "Do not ask for real-time priority");
 }
 
-void RunOptions::add_device_options(CLI::App& command, For purpose) {
-    const std::string several =
-        purpose == For::view ? "" : ". Given again: one more hand, which feels the same volume";
+void RunOptions::add_device_options(CLI::App& command) {
     command
         .add_option_function<std::vector<std::string>>(
             "-d,--device",
             [this](const std::vector<std::string>& texts) { devices = choices_from(texts); },
-            "Device and its options; palpate devices lists them" + several)
+            "Device and its options; palpate devices lists them. Given again: one more hand, which "
+            "feels the same volume")
         ->allow_extra_args(false)
         ->type_name(fmt::format("{{{}}}[:KEY=VALUE,...]", fmt::join(devices::device_names(), ",")))
         ->default_str(run::text_of(given.device));
@@ -140,12 +139,6 @@ std::vector<run::Setup> RunOptions::setups() const {
     std::vector<run::Setup> setups(std::max<std::size_t>(1, devices.size()), setup);
     for (std::size_t i = 0; i < devices.size(); ++i) setups[i].device = devices[i];
     return setups;
-}
-
-run::Setup RunOptions::setup() const {
-    if (devices.size() <= 1) return setups().front();
-    throw std::invalid_argument(
-        "--device: the window has one hand; palpate touch --headless takes several");
 }
 
 }  // namespace palpate::app

@@ -28,11 +28,9 @@ struct RunOptions {
     void add_to(CLI::App& command, For purpose);
     /// Once the command line has been read: how each hand feels. Throws std::invalid_argument.
     std::vector<run::Setup> setups() const;
-    /// That of the only hand. Throws for several, too.
-    run::Setup setup() const;
 
   private:
-    void add_device_options(CLI::App& command, For purpose);
+    void add_device_options(CLI::App& command);
     void add_script_options(CLI::App& command);
     void add_data_options(CLI::App& command);
 };

@@ -279,9 +279,11 @@ void touch(const CLI::App& command, const TouchOptions& options) {
 
 /// False for scripts and without a display.
 bool wants_window(const TouchOptions& options) {
-    const bool script = options.has_bridge() || options.devices.size() > 1 || options.json ||
-                        options.seconds > 0 || options.unpaced || !options.commands.empty() ||
-                        !options.brush.empty() || !options.save.empty();
+    constexpr std::size_t most_hands = 2;  // in a window
+    const bool script = options.has_bridge() || options.devices.size() > most_hands ||
+                        options.json || options.seconds > 0 || options.unpaced ||
+                        !options.commands.empty() || !options.brush.empty() ||
+                        !options.save.empty();
     return !options.headless && !script && has_display() && !viewer_program().empty();
 }
 
@@ -298,7 +300,7 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
     if (!is_record) {
         command->add_flag("--headless", options->headless,
                           "Open no window, even if there is a display. The options --json, "
-                          "--seconds, --commands and --igtl do the same, and a second --device");
+                          "--seconds, --commands and --igtl do the same, and a third --device");
     }
     command
         ->add_option("--igtl", options->igtl,

@@ -11,6 +11,7 @@
 #include "apps/options/exit_status.hpp"
 #include "apps/options/values.hpp"
 #include "apps/options/view_options.hpp"
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/raw_preview.hpp"
 #include "apps/viewer/window/appearance.hpp"
 #include "apps/viewer/window/language.hpp"
@@ -41,9 +42,13 @@ void open(viewer::MainWindow& window, const app::ViewOptions& options) {
 }
 
 int show(QApplication& application, const app::ViewOptions& options) {
-    std::optional<devices::DeviceChoice> device;
-    if (!options.run.devices.empty()) device = options.run.devices.front();
-    viewer::MainWindow window({options.run.setup(), device, options.run.record});
+    const std::vector<devices::DeviceChoice>& devices = options.run.devices;
+    viewer::RunRequest request{options.run.setups().front(), {}, options.run.record};
+    if (!devices.empty()) {
+        request.device = devices.front();
+        request.others.assign(devices.begin() + 1, devices.end());
+    }
+    viewer::MainWindow window(request);
     if (const auto size = options.window_size()) window.resize((*size)[0], (*size)[1]);
     if (!options.size.empty() || !options.screenshot.empty()) window.forget_layout();
     if (!options.screenshot.empty()) window.messages().set_unattended();
@@ -77,6 +82,10 @@ int main(int argc, char** argv) {
         app::refuse_impossible_values(command, argc, argv);
         command.parse(argc, argv);
         options.settle();
+        if (options.run.devices.size() > viewer::most_hands) {
+            throw std::invalid_argument(
+                "--device: the window has two hands at most; palpate touch --headless takes more");
+        }
         options.warn();
     } catch (const CLI::Success& e) {
         return command.exit(e);

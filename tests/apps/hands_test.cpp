@@ -115,7 +115,7 @@ TEST(TouchWithTwo, commands_are_for_both_or_for_the_hand_that_they_name) {
 
 TEST(TouchWithTwo, refuses_what_only_one_hand_can_have) {
     const ScratchFolder folder;
-    const std::string sphere = "touch synthetic:sphere:32x32x32";
+    const std::string sphere = "touch synthetic:sphere:32x32x32 --headless";
     expect_failure(palpate(folder, sphere + " --device haply --device haply"), 2,
                    "a device serves one hand");
     expect_failure(palpate(folder, sphere + " --device simulated --device recorded:r.csv --igtl 0"),
@@ -129,10 +129,11 @@ TEST(PacedTouchWithTwo, goes_on_with_one_when_the_other_is_unplugged) {
     auto service = std::make_unique<support::MockService>();
     service->greet(support::snapshot({support::whole_device("049D", {0, 0, 0.2})}));
     service->answer(support::moved("049D", {0, 0, 0.2}));
-    Running program(words_of("touch synthetic:sphere:32x32x32 --device haply:host=127.0.0.1,port=" +
-                             std::to_string(service->port()) + " --device " + presses +
-                             ",seconds=600 --record both.csv"),
-                    folder.path());
+    Running program(
+        words_of("touch synthetic:sphere:32x32x32 --headless --device haply:host=127.0.0.1,port=" +
+                 std::to_string(service->port()) + " --device " + presses +
+                 ",seconds=600 --record both.csv"),
+        folder.path());
     const auto last = [&](int hand) {  // of what is in the file by now
         const auto ticks = ticks_of_hand(folder / "both.csv", hand, false);
         return ticks.empty() ? SessionTick{} : ticks.back();

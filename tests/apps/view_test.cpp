@@ -41,6 +41,12 @@ TEST_F(WithViewer, touch_opens_it_where_there_is_a_display) {
     EXPECT_EQ(seen.out, "viewer synthetic:sphere:8x8x8\n");
 }
 
+TEST_F(WithViewer, touch_opens_it_for_two_hands_but_not_for_more) {
+    const std::string two = "touch synthetic:sphere:8x8x8 --device mouse --device simulated";
+    EXPECT_EQ(palpate(folder_, two).status, 7);
+    expect_failure(palpate(folder_, two + " --device simulated:seed=2"), 4, "no window");
+}
+
 TEST_F(WithViewer, touch_for_scripts_and_record_stay_without_a_window) {
     for (const std::string words :
          {"touch synthetic:sphere:8x8x8 --seconds 0.05",

@@ -1,7 +1,9 @@
 // Several hands in one session: runs on the same data, and one recording of all of them.
 #include <array>
 
+#include "palpate/io/volume_file.hpp"
 #include "palpate/run/replay.hpp"
+#include "palpate/scenes/volumes.hpp"
 #include "run/run_support.hpp"
 #include "support/recordings.hpp"
 #include "support/scratch_folder.hpp"
@@ -191,6 +193,55 @@ TEST(Hands, feel_what_the_brush_of_the_other_carves_and_their_recording_replays)
         EXPECT_GT(ticks_of(folder / "both.csv", hand).back().version, 10U);
         expect_replays(folder / "both.csv", *data, hand);
     }
+}
+
+TEST(Hands, on_a_store_touch_where_each_reads_feel_one_brush_and_their_recording_replays) {
+    const ScratchFolder folder;
+    const auto file = folder / "ball.nrrd", recording = folder / "both.csv";
+    const Volume ball = scenes::make_volume("sphere:128x126x125").volume;
+    io::write_volume(ball, file);
+    Source source = source_from({{"volume", file.string()}, {"level", "0"}});
+    std::get<StoreSource>(source.from).loader.memory = std::uint64_t{200} << 20;
+    const auto data = test::stepped_data(load(source));
+    ASSERT_TRUE(data->is_streamed());
+    run::Run a(data, test::with_device("simulated:hand=explore,seconds=60"));
+    run::Run b(data, test::with_device("simulated:omega6,hand=explore,seed=7,seconds=60"));
+    run::Run::record_together(std::array{&a, &b}, recording);
+    a.start();
+    b.start();
+    const auto step = [&] {
+        a.step();
+        b.step();
+    };
+    const auto is_settled = [&] { return data->is_settled(); };
+    const auto touches = [](const run::Run& run) {
+        const auto now = run.snapshot();
+        return now && now->session.tick.proxy.mode == Mode::constrained &&
+               now->session.tick.proxy.status == UpdateStatus::done;
+    };
+    int contacts[2] = {};
+    EXPECT_TRUE(steps_until(step, is_settled, [&] {
+        contacts[0] += touches(a);
+        contacts[1] += touches(b);
+        return contacts[0] > 20 && contacts[1] > 20;
+    }));
+    data->editor().set_brush(usual_brush(ball.geometry()));
+    EXPECT_TRUE(
+        steps_until(step, is_settled, [&] { return data->editor().state().undo_steps > 1; }));
+    data->editor().set_brush(std::nullopt);
+    const std::uint64_t version = data->editor().state().version;
+    EXPECT_TRUE(steps_until(step, is_settled, [&] {
+        return a.snapshot()->session.version >= version && b.snapshot()->session.version >= version;
+    }));
+    for (int i = 0; i < 150; ++i) step();
+    // One ends, and the other goes on.
+    a.stop();
+    const std::int64_t before = b.snapshot()->number;
+    test::step(b, 150);
+    EXPECT_EQ(b.snapshot()->number, before + 150);
+    a.stop_recording();
+    b.stop_recording();
+    for (const int hand : {1, 2}) expect_replays(recording, *data, hand);
 }
 
 TEST(Hands, are_recorded_from_now_on_without_a_change_of_their_forces) {

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/viewer/model/hands.hpp"
+#include "palpate/io/csv.hpp"
+
 namespace palpate::viewer {
 namespace {
 
@@ -43,9 +46,35 @@ void Overview::Piece::add(const Piece& other) {
 
 Playback Playback::read(const std::filesystem::path& recording, const run::LoadedVolume& loaded,
                         const io::Progress& progress, std::size_t most_bytes) {
-    const std::size_t most = std::max(most_bytes / sizeof(Snapshot), least_snapshots);
     io::RecordingReader reader(recording);
-    run::Replay replay(reader, loaded, recording.string());
+    return read(reader, recording.string(), loaded, progress, most_bytes);
+}
+
+std::vector<Playback> Playback::read_hands(const std::filesystem::path& recording,
+                                           const run::LoadedVolume& loaded,
+                                           const io::Progress& progress) {
+    const std::string text = io::read_text(recording), name = recording.string();
+    io::RecordingReader first(text, name);
+    const int hands = std::min(first.hands(), most_hands);
+    const auto read_one = [&](io::RecordingReader& reader, int before) {
+        const auto part = [&](double of_one) {
+            if (progress) progress((before + of_one) / hands);
+        };
+        return read(reader, name, loaded, part, usual_bytes / static_cast<std::size_t>(hands));
+    };
+    std::vector<Playback> playbacks{read_one(first, 0)};
+    for (int hand = 2; hand <= hands; ++hand) {
+        io::RecordingReader reader(text, name, hand);
+        playbacks.push_back(read_one(reader, hand - 1));
+    }
+    return playbacks;
+}
+
+Playback Playback::read(io::RecordingReader& reader, const std::string& recording,
+                        const run::LoadedVolume& loaded, const io::Progress& progress,
+                        std::size_t most_bytes) {
+    const std::size_t most = std::max(most_bytes / sizeof(Snapshot), least_snapshots);
+    run::Replay replay(reader, loaded, recording);
     Playback playback(reader.head(), replay.session().renderer.field);
     Snapshot last;
     bool kept = true;
@@ -65,12 +94,13 @@ Playback Playback::read(const std::filesystem::path& recording, const run::Loade
         if (kept) playback.keep(last, most);
     }
     if (playback.snapshots_.empty()) {
-        throw io::InputError(recording.string() + ": has no ticks: nothing was recorded");
+        throw io::InputError(recording + ": has no ticks: nothing was recorded");
     }
     if (!kept) playback.snapshots_.push_back(last);
     playback.ticks_ = static_cast<std::size_t>(replay.ticks());
     playback.samples_ = std::move(replay.samples());
     playback.complete_ = reader.complete();
+    playback.hands_ = reader.hands();
     playback.finish();
     if (progress) progress(1);
     return playback;

@@ -51,6 +51,11 @@ class Playback {
     /// cut off is read up to there.
     static Playback read(const std::filesystem::path& recording, const run::LoadedVolume& loaded,
                          const io::Progress& progress, std::size_t most_bytes = usual_bytes);
+    /// The same for each of its hands, of more than most_hands for the first ones. They share
+    /// `usual_bytes`.
+    static std::vector<Playback> read_hands(const std::filesystem::path& recording,
+                                            const run::LoadedVolume& loaded,
+                                            const io::Progress& progress);
 
     /// [s] of the first and the last tick, by the session's clock.
     double begin() const { return overview_.begin; }
@@ -63,6 +68,8 @@ class Playback {
     const io::RecordingHead& head() const { return head_; }
     /// It was finished, not cut off.
     bool complete() const { return complete_; }
+    /// Of the recording, of which this is one.
+    int hands() const { return hands_; }
     /// Ticks that did not come out as they were recorded: the recording lost events, or another
     /// version made it. 0 where all is well.
     std::size_t different() const { return different_; }
@@ -80,6 +87,9 @@ class Playback {
   private:
     Playback(io::RecordingHead head, Field field)
         : head_(std::move(head)), field_(std::move(field)) {}
+    static Playback read(io::RecordingReader& reader, const std::string& recording,
+                         const run::LoadedVolume& loaded, const io::Progress& progress,
+                         std::size_t most_bytes);
     void keep(const Snapshot& snapshot, std::size_t most);
     void survey(const SessionTick& tick);
     void finish();
@@ -109,6 +119,7 @@ class Playback {
     double interval_ = least_interval;  // [s] between snapshots
     std::size_t ticks_ = 0, different_ = 0;
     bool complete_ = false;
+    int hands_ = 1;
     Overview overview_;
 };
 

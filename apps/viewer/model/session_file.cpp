@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "apps/viewer/model/colour_map.hpp"
+#include "apps/viewer/model/hands.hpp"
 #include "io/json_members.hpp"
 #include "io/json_text.hpp"
 #include "palpate/io/address.hpp"
@@ -257,24 +258,31 @@ void check_measurements(const std::vector<Measurement>& measurements) {
     }
 }
 
-/// Throws std::invalid_argument naming the member.
-void check_session(const SessionFile& s) {
-    if (name_of(s.source).empty()) wrong("volume", "must have a name");
-    if (s.overlay && name_of(*s.overlay).empty()) wrong("overlay", "must have a name");
-    check_finite("isovalue", s.isovalue);
-    if (s.background) check_finite("background", *s.background);
-    if (s.device.name.empty()) wrong("device", "must have a name");
-    RendererSettings settings = s.settings.value_or(RendererSettings{});
+/// `name` is that of its members.
+void check_hand(const std::string& name, const SessionHand& hand, const SessionFile& s) {
+    check_finite(name + "isovalue", hand.isovalue);
+    if (hand.device.name.empty()) wrong(name + "device", "must have a name");
+    RendererSettings settings = hand.settings.value_or(RendererSettings{});
     settings.method = s.method.method;
     check(settings.penetrability, s.solid);
     if (settings.layers) check(*settings.layers, s.solid);
     if (settings.layers && settings.layers->by_label) {
         if (settings.layers->label_volume.empty()) {
-            wrong("settings.layers.label_volume", "is missing");
+            wrong(name + "settings.layers.label_volume", "is missing");
         }
         settings.layers.reset();  // their places are read later
     }
     check(settings);
+}
+
+/// Throws std::invalid_argument naming the member.
+void check_session(const SessionFile& s) {
+    if (name_of(s.source).empty()) wrong("volume", "must have a name");
+    if (s.overlay && name_of(*s.overlay).empty()) wrong("overlay", "must have a name");
+    if (s.background) check_finite("background", *s.background);
+    check_hand("", s, s);
+    if (s.others.size() >= most_hands) wrong("hands", "must not be more than the window has");
+    for (const SessionHand& hand : s.others) check_hand("hands.", hand, s);
     check_look(s.look);
     if (s.camera) check_camera(*s.camera);
     check_measurements(s.measurements);
@@ -329,6 +337,16 @@ const Json& needed(const Json& json, const char* name) {
     return *found;
 }
 
+void write_hand(io::JsonWriter& writer, const SessionHand& hand,
+                const std::filesystem::path& folder) {
+    writer.json["isovalue"] = hand.isovalue;
+    if (hand.settings) {
+        writer.json["settings"] = io::to_json(with_label_volume(
+            *hand.settings, [&](const std::string& volume) { return name_from(volume, folder); }));
+    }
+    writer("device", run::text_of(hand.device));
+}
+
 void check_head(const Json& json) {
     if (!json.is_object() || json.value("format", Json()) != format_name) {
         throw std::invalid_argument(
@@ -345,6 +363,37 @@ void check_head(const Json& json) {
     }
 }
 
+SessionHand hand_from(const Json& json, const std::filesystem::path& folder) {
+    SessionHand hand;
+    io::JsonReader::get(needed(json, "isovalue"), "isovalue", hand.isovalue);
+    io::JsonReader reader{json};
+    if (const Json* const settings = reader.find("settings")) {
+        if (!settings->is_object()) wrong("settings", "must be an object");
+        RendererSettings read;
+        io::from_json(*settings, read);
+        hand.settings = with_label_volume(
+            read, [&](const std::string& volume) { return name_in(volume, folder); });
+    }
+    std::string device = run::text_of(hand.device);
+    reader("device", device);
+    if (device.empty()) wrong("device", "must have a name");
+    hand.device = devices::parse_device(device);
+    return hand;
+}
+
+/// Those beside the first.
+std::vector<SessionHand> others_from(const Json& json, const std::filesystem::path& folder) {
+    std::vector<SessionHand> others;
+    const auto hands = json.find("hands");
+    if (hands == json.end()) return others;
+    if (!hands->is_array()) wrong("hands", "must be a list");
+    for (const Json& hand : *hands) {
+        if (!hand.is_object()) wrong("hands", "must be a list of objects");
+        others.push_back(hand_from(hand, folder));
+    }
+    return others;
+}
+
 SessionFile session_from(const Json& json, const std::filesystem::path& folder) {
     check_head(json);
     SessionFile session;
@@ -352,25 +401,16 @@ SessionFile session_from(const Json& json, const std::filesystem::path& folder) 
     if (const auto overlay = json.find("overlay"); overlay != json.end()) {
         session.overlay = source_from(*overlay, "overlay", folder);
     }
-    io::JsonReader::get(needed(json, "isovalue"), "isovalue", session.isovalue);
+    static_cast<SessionHand&>(session) = hand_from(json, folder);
+    session.others = others_from(json, folder);
     io::JsonReader reader{json};
     std::string solid = "above";
     reader("solid", solid);
     if (solid != "above" && solid != "below") wrong("solid", "must be above or below");
     session.solid = solid == "above" ? Solid::above : Solid::below;
-    if (const Json* const settings = reader.find("settings")) {
-        if (!settings->is_object()) wrong("settings", "must be an object");
-        RendererSettings read;
-        io::from_json(*settings, read);
-        session.settings = with_label_volume(
-            read, [&](const std::string& volume) { return name_in(volume, folder); });
-    }
     reader("background", session.background);
-    std::string device = run::text_of(session.device), method = session.method.name;
-    reader("device", device);
+    std::string method = session.method.name;
     reader("method", method);
-    if (device.empty()) wrong("device", "must have a name");
-    session.device = devices::parse_device(device);
     session.method = run::named_method(method);
     // Other methods than the exact one feel the linear field only.
     std::string field = session.method.method == &update_exact ? "cubic" : "linear";
@@ -380,6 +420,9 @@ SessionFile session_from(const Json& json, const std::filesystem::path& folder) 
     members(reader, session);
     check_session(session);
     if (session.settings) session.settings->method = session.method.method;
+    for (SessionHand& hand : session.others) {
+        if (hand.settings) hand.settings->method = session.method.method;
+    }
     return session;
 }
 
@@ -416,15 +459,13 @@ void write_session(const std::filesystem::path& path, const SessionFile& session
     if (session.overlay) writer.json["overlay"] = names_of(*session.overlay);
     writer.json["solid"] = session.solid == Solid::above ? "above" : "below";
     writer.json["field"] = name_of(session.interpolation);
-    writer.json["isovalue"] = session.isovalue;
-    if (session.settings) {
-        writer.json["settings"] =
-            io::to_json(with_label_volume(*session.settings, [&](const std::string& volume) {
-                return name_from(volume, path.parent_path());
-            }));
+    write_hand(writer, session, path.parent_path());
+    for (const SessionHand& hand : session.others) {
+        io::JsonWriter other;
+        write_hand(other, hand, path.parent_path());
+        writer.json["hands"].push_back(other.json);
     }
     writer("background", session.background);
-    writer("device", run::text_of(session.device));
     writer("method", std::string(session.method.name));
     members(writer, session);
     std::string text;

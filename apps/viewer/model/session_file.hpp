@@ -12,18 +12,23 @@
 
 namespace palpate::viewer {
 
-struct SessionFile {
+struct SessionHand {
+    devices::DeviceChoice device{"simulated", {}};
+    double isovalue = 0;  ///< [data units] finite
+    /// `settings->method` is that of the session when it is read, and ignored when it is written; a
+    /// penetrability function is code and is not kept. Layers by label lack their places when they
+    /// are read: run::with_labels(). Nothing: the defaults for device and volume.
+    std::optional<RendererSettings> settings = {};
+};
+
+/// With the first hand.
+struct SessionFile : SessionHand {
     run::Source source;
     Solid solid = Solid::above;
     Interpolation interpolation = Interpolation::cubic;
     std::optional<double> background;  ///< [data units] nothing: the usual one
-    double isovalue = 0;               ///< [data units] finite
-    devices::DeviceChoice device{"simulated", {}};
     baselines::NamedMethod method = baselines::methods().front();
-    /// `settings->method` is that of `method` when it is read, and ignored when it is written; a
-    /// penetrability function is code and is not kept. Layers by label lack their places when they
-    /// are read: run::with_labels(). Nothing: the defaults for device and volume.
-    std::optional<RendererSettings> settings;
+    std::vector<SessionHand> others;  ///< beside the first
     Look look;
     std::optional<run::Source> overlay;      ///< a label map or image over the volume
     std::optional<pictures::Camera> camera;  ///< nothing: one that shows the whole volume

@@ -58,6 +58,10 @@ DeviceControls::DeviceControls(Effect& effect)
                      tr("Look for devices again; takes about a second"))),
       connect_(named(new QPushButton(tr("Connect")), "connect_device",
                      tr("Go on with this device; forces ramp up anew"))),
+      add_(named(new QPushButton(tr("Add as second hand")), "add_hand",
+                 tr("One more hand with the device above. Each feels what the other edits"))),
+      remove_(named(new QPushButton(tr("Remove this hand")), "remove_hand",
+                    tr("Its force ends; the other hand goes on"))),
       missing_(new Note("device_missing", Note::Kind::plain)),
       dot_(named(new QLabel, "device_dot")),
       state_(named(new QLabel, "device_state")),
@@ -81,6 +85,7 @@ DeviceControls::DeviceControls(Effect& effect)
     connect_inputs();
     connect_effect();
     set_devices({}, {});
+    set_hands(1);
 }
 
 void DeviceControls::build() {
@@ -92,15 +97,18 @@ void DeviceControls::build() {
     form->addRow(tr("Model"), model_);
     form->addRow(tr("Reach"), workspace_);
     form->addRow(tr("Scale of the hand"), scale_);
-    column_in(this,
-              {row_of({picker_, refresh_}, 0), row_of({options_, connect_}, 0), missing_, problem_})
+    column_in(this, {row_of({picker_, refresh_}, 0), row_of({options_, connect_}, 0),
+                     row_of({add_, remove_}), missing_, problem_})
         ->addLayout(form);
 }
 
 void DeviceControls::connect_inputs() {
     connect(refresh_, &QPushButton::clicked, this, &DeviceControls::refresh_wanted);
-    connect(connect_, &QPushButton::clicked, this, &DeviceControls::connect_device);
-    connect(options_, &QLineEdit::returnPressed, this, &DeviceControls::connect_device);
+    const auto ask_to_connect = [this] { ask_for_device(&DeviceControls::chosen); };
+    connect(connect_, &QPushButton::clicked, this, ask_to_connect);
+    connect(options_, &QLineEdit::returnPressed, this, ask_to_connect);
+    connect(add_, &QPushButton::clicked, this, [this] { ask_for_device(&DeviceControls::added); });
+    connect(remove_, &QPushButton::clicked, this, &DeviceControls::removed);
     connect(picker_, qOverload<int>(&QComboBox::currentIndexChanged), this,
             &DeviceControls::choose);
     connect(scale_, qOverload<double>(&NumberBox::valueChanged), this,
@@ -171,7 +179,7 @@ void DeviceControls::choose(int row) {
     picker_->setToolTip(picker_->itemData(row, Qt::ToolTipRole).toString());
 }
 
-void DeviceControls::connect_device() {
+void DeviceControls::ask_for_device(void (DeviceControls::*signal)(const QString&)) {
     const QString options = options_->text().trimmed();
     const QString option =
         picker_->currentData().toString() + (options.isEmpty() ? "" : ":" + options);
@@ -181,7 +189,12 @@ void DeviceControls::connect_device() {
         Q_EMIT nonsense(QString::fromStdString(error.what()));
         return;
     }
-    Q_EMIT chosen(option);
+    Q_EMIT(this->*signal)(option);
+}
+
+void DeviceControls::set_hands(int hands) {
+    add_->setVisible(hands < 2);
+    remove_->setVisible(hands > 1);
 }
 
 void DeviceControls::show_status(DeviceStatus status) {

@@ -26,9 +26,15 @@ class DeviceControls : public QWidget {
     /// ("haply:port=10001").
     void set_devices(const std::vector<devices::DeviceFinding>& findings, const QString& current);
     void show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem);
+    /// How many hands there are: one can be added, or one of them removed.
+    void set_hands(int hands);
 
   Q_SIGNALS:
     void chosen(const QString& option);
+    /// For one hand more.
+    void added(const QString& option);
+    /// The hand whose device this is.
+    void removed();
     void refresh_wanted();
     void nonsense(const QString& why);
 
@@ -40,12 +46,12 @@ class DeviceControls : public QWidget {
     void clear();
     void choose(int row);
     void show_current();
-    void connect_device();
+    void ask_for_device(void (DeviceControls::*signal)(const QString&));
 
     Effect& effect_;
     QComboBox* picker_;
     QLineEdit* options_;
-    QPushButton *refresh_, *connect_;
+    QPushButton *refresh_, *connect_, *add_, *remove_;
     Note* missing_;
     QLabel *dot_, *state_, *model_, *workspace_;
     Note* problem_;

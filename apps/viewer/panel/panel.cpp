@@ -10,6 +10,7 @@
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/force_controls.hpp"
+#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/layout.hpp"
@@ -44,6 +45,7 @@ QScrollArea* page_of(std::initializer_list<QWidget*> sections) {
 Panel::Panel(Effect& effect, QWidget* parent)
     : QWidget(parent),
       effect_(effect),
+      hands_(new HandSwitch),
       isovalue_(new IsovalueControls(effect)),
       layers_(new LayersControls(effect)),
       penetrability_(new PenetrabilityControls(effect, isovalue_->chart())),
@@ -95,6 +97,7 @@ void Panel::build() {
     add(tr("Devi&ce"), {device_part_, loop_part_});
     auto* column = new QVBoxLayout(this);
     column->setContentsMargins(6, 6, 6, 0);
+    column->addWidget(hands_);
     column->addWidget(session_part_);
     column->addWidget(isovalue_part_);
     column->addWidget(tabs_, 1);
@@ -140,7 +143,9 @@ void Panel::connect_sections() {
     connect(penetrability_, &PenetrabilityControls::nonsense, penetrability_part_, &Section::say);
     connect(tool_, &ToolControls::nonsense, tool_part_, &Section::say);
     connect(device_, &DeviceControls::nonsense, device_part_, &Section::say);
-    connect(device_, &DeviceControls::chosen, device_part_, [this] { device_part_->say({}); });
+    for (const auto asked : {&DeviceControls::chosen, &DeviceControls::added}) {
+        connect(device_, asked, device_part_, [this] { device_part_->say({}); });
+    }
     connect_layers();
     connect_edits();
     connect_look();

@@ -15,6 +15,7 @@ namespace palpate::viewer {
 class BrushControls;
 class DeviceControls;
 class ForceControls;
+class HandSwitch;
 class IsovalueControls;
 class LayersControls;
 class LookControls;
@@ -43,6 +44,7 @@ class Panel : public QWidget {
     LayersControls& layers_controls() { return *layers_; }
     BrushControls& brush_controls() { return *edit_; }
     DeviceControls& device_controls() { return *device_; }
+    HandSwitch& hand_switch() { return *hands_; }
     ToolControls& tool_controls() { return *tool_; }
     LoopView& loop_view() { return *loop_; }
 
@@ -62,6 +64,7 @@ class Panel : public QWidget {
     void show_marks();
 
     Effect& effect_;
+    HandSwitch* hands_;
     IsovalueControls* isovalue_;
     LayersControls* layers_;
     PenetrabilityControls* penetrability_;

@@ -78,7 +78,7 @@ std::optional<Contact> contact_of(const std::optional<Snapshot>& snapshot, const
     return contact;
 }
 
-Markers::Markers(vtkRenderer& solid, vtkRenderer& overlay)
+Markers::Markers(vtkRenderer& solid, vtkRenderer& overlay, const HandColours& colours)
     : solid_(solid), patch_actor_(vtkSmartPointer<vtkActor>::New()) {
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->ScalarVisibilityOff();
@@ -91,12 +91,12 @@ Markers::Markers(vtkRenderer& solid, vtkRenderer& overlay)
     edges_ = twin_of(pictures::spring_colour, nothing());
     spring_ = twin_of(pictures::spring_colour, nothing());
     arrow_ = twin_of(pictures::force_colour, nothing());
-    scp_ = twin_of(pictures::scp_colour, unit_ball());
-    hip_ = twin_of(pictures::hip_colour, unit_ball());
+    scp_ = twin_of(colours.scp, unit_ball());
+    hip_ = twin_of(colours.hip, unit_ball());
     brush_ = twin_of(brush_colour, three_circles());
     normals_ = twin_of(plane_colour, nothing());
     discs_ = twin_of(plane_colour, nothing());
-    patches_ = twin_of(pictures::scp_colour, nothing());
+    patches_ = twin_of(colours.scp, nothing());
     for (const Twin* twin :
          {&edges_, &spring_, &arrow_, &scp_, &hip_, &brush_, &normals_, &discs_, &patches_}) {
         solid_.AddActor(twin->solid);

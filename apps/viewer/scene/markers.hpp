@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/scene/local.hpp"
 #include "apps/viewer/scene/twin.hpp"
@@ -40,7 +41,7 @@ class Markers {
   public:
     /// Draws into `solid`, and faintly into `overlay`, which is drawn over it, so that markers
     /// behind a surface can be seen.
-    Markers(vtkRenderer& solid, vtkRenderer& overlay);
+    Markers(vtkRenderer& solid, vtkRenderer& overlay, const HandColours& colours);
 
     /// `origin` [mm, physical] of what is drawn; `pixel` [mm] is a logical pixel.
     void show(const std::optional<Contact>& contact, const Look& look, const Vec3& origin,

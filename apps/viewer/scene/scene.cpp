@@ -74,7 +74,7 @@ ViewSize Scene::view_size() const {
 }
 
 void Scene::set_field(const Field& field, double isovalue) {
-    parts_->snapshot.reset();
+    parts_->forget_hands();
     parts_->pressed.reset();
     parts_->patch_detail.reset();
     parts_->patched_level = std::nan("");
@@ -86,11 +86,14 @@ void Scene::set_field(const Field& field, double isovalue) {
 
 void Scene::update_field(const Field& field, const std::optional<SampleBox>& changed) {
     parts_->background.update_field(field, changed);
-    if (parts_->snapshot) refresh();  // the lattice round the proxy is that of the new version
+    // The lattice round a proxy is that of the new version.
+    if (std::ranges::any_of(parts_->hands, [](const auto& h) { return h.snapshot.has_value(); })) {
+        refresh();
+    }
 }
 
 void Scene::clear() {
-    parts_->snapshot.reset();
+    parts_->forget_hands();
     parts_->patch_detail.reset();
     parts_->background.clear();
     refresh();
@@ -107,29 +110,30 @@ void Scene::set_look(const Look& look) {
     changed();
 }
 
-void Scene::set_pressed(const std::optional<double>& level) {
-    if (level == parts_->pressed) return;
+void Scene::set_pressed(const std::optional<double>& level, int hand) {
+    if (level == parts_->pressed && hand == parts_->pressing) return;
+    parts_->pressing = hand;
     const bool was = parts_->pressed.has_value();
     parts_->pressed = level;
     refresh();
     if (was != level.has_value()) changed();
 }
 
-void Scene::show_snapshot(const std::optional<Snapshot>& snapshot) {
-    const bool was = parts_->snapshot.has_value();
-    if (!snapshot && !was) return;
+void Scene::show_snapshot(const std::optional<Snapshot>& snapshot, int hand) {
+    std::optional<Snapshot>& shown = parts_->hands[hand].snapshot;
+    if (!snapshot && !shown) return;
     constexpr double unseen_px = 0.1;
-    if (snapshot && was &&
-        looks_same(*snapshot, *parts_->snapshot, unseen_px * mm_per_pixel(camera_, view_size()))) {
+    if (snapshot && shown &&
+        looks_same(*snapshot, *shown, unseen_px * mm_per_pixel(camera_, view_size()))) {
         return;
     }
-    parts_->snapshot = snapshot;
+    shown = snapshot;
     refresh();
 }
 
-void Scene::set_tool(const std::shared_ptr<const Tool>& tool) {
-    if (tool == parts_->tool) return;
-    parts_->tool = tool;
+void Scene::set_tool(const std::shared_ptr<const Tool>& tool, int hand) {
+    if (tool == parts_->hands[hand].tool) return;
+    parts_->hands[hand].tool = tool;
     refresh();
 }
 
@@ -251,13 +255,13 @@ void Scene::refresh() {
 }
 
 /// A patch stays until the proxy has moved by a part of a voxel.
-std::optional<Contact> Scene::contact(const Field& field) {
+std::optional<Contact> Scene::contact(int hand, const Field& field) {
     const Look& look = parts_->wanted.look;
-    auto contact =
-        contact_of(parts_->snapshot, finest_at_proxy(field), look.tetrahedra || look.planes);
+    auto contact = contact_of(parts_->hands[hand].snapshot, finest_at_proxy(hand, field),
+                              look.tetrahedra || look.planes);
     if (!contact) return contact;
     contact->brush = parts_->brush;
-    if (!parts_->pressed || !look.surface) return contact;
+    if (!parts_->pressed || hand != parts_->pressing || !look.surface) return contact;
     const double unmoved = 0.5 * field.geometry().spacing.minCoeff();
     if (!((contact->scp - parts_->patched).norm() < unmoved) ||
         parts_->patched_level != *parts_->pressed) {
@@ -267,6 +271,20 @@ std::optional<Contact> Scene::contact(const Field& field) {
     }
     contact->patch = parts_->patch;
     return contact;
+}
+
+void Scene::show_hand(int hand, const Field& field, const pictures::Camera& camera) {
+    const Parts::Hand& its = parts_->hands[hand];
+    const Look& look = parts_->wanted.look;
+    const Vec3 origin = physical_centre(field.geometry());
+    const double pixel = mm_per_pixel(camera, view_size()), ratio = devicePixelRatioF();
+    auto contact = this->contact(hand, field);
+    const auto tool = look.contact ? seen_tool(its.snapshot, its.tool) : std::nullopt;
+    // One that would be smaller than the markers is better seen by those.
+    if (contact) contact->as_tool = tool && tool->tool->radius() > ball_radius_px * pixel;
+    its.markers->show(contact, look, origin, pixel, field.geometry().spacing.mean(),
+                      ink_of(palette()), ratio);
+    its.tool_marks->show(contact ? tool : std::nullopt, origin, pixel, ratio);
 }
 
 void Scene::lay_out() {
@@ -283,14 +301,8 @@ void Scene::lay_out() {
     if (field) {
         const Vec3 origin = physical_centre(field->geometry());
         direct(*parts_->front->GetActiveCamera(), camera, origin, reach_of(field->geometry()));
-        const double voxel = field->geometry().spacing.mean();
-        auto contact = this->contact(*field);
         const double pixel = mm_per_pixel(camera, view_size());
-        const auto tool = look.contact ? seen_tool(parts_->snapshot, parts_->tool) : std::nullopt;
-        // One that would be smaller than the markers is better seen by those.
-        if (contact) contact->as_tool = tool && tool->tool->radius() > ball_radius_px * pixel;
-        parts_->markers->show(contact, look, origin, pixel, voxel, ink, ratio);
-        parts_->tool_marks->show(contact ? tool : std::nullopt, origin, pixel, ratio);
+        for (int hand = 1; hand <= most_hands; ++hand) show_hand(hand, *field, camera);
         parts_->cut->show(look, field->geometry(), origin, pixel, ratio, held_);
         parts_->measures->show(parts_->measurements,
                                {origin, camera, view_size(), ratio,
@@ -298,8 +310,10 @@ void Scene::lay_out() {
     } else {
         parts_->measures->show({}, {});
         parts_->cut->hide();
-        parts_->markers->show({}, look, Vec3::Zero(), 1, 1, ink, ratio);
-        parts_->tool_marks->show({}, Vec3::Zero(), 1, ratio);
+        for (const Parts::Hand& hand : parts_->hands) {
+            hand.markers->show({}, look, Vec3::Zero(), 1, 1, ink, ratio);
+            hand.tool_marks->show({}, Vec3::Zero(), 1, ratio);
+        }
     }
     Annotations::Content annotations;
     annotations.orientation = look.orientation && field;

@@ -60,11 +60,11 @@ class Scene : public QVTKOpenGLNativeWidget {
     void set_look(const Look& look);
     /// The hand has pressed through the surface shown to another `level` [data units]: the surface
     /// is shown as glass, and a patch of that level round the proxy. Nothing: not so.
-    void set_pressed(const std::optional<double>& level);
-    /// As often as the screen shows; nothing: no probe.
-    void show_snapshot(const std::optional<Snapshot>& snapshot);
-    /// With which it is felt; null: a point.
-    void set_tool(const std::shared_ptr<const Tool>& tool);
+    void set_pressed(const std::optional<double>& level, int hand = 1);
+    /// As often as the screen shows; nothing: no such hand. Hands are numbered from 1.
+    void show_snapshot(const std::optional<Snapshot>& snapshot, int hand = 1);
+    /// With which it feels; null: a point.
+    void set_tool(const std::shared_ptr<const Tool>& tool, int hand = 1);
     /// Where the three slices cut [mm, physical]; to begin with the middle of the grid.
     void set_crosshair(const Vec3& physical);
 
@@ -148,8 +148,9 @@ class Scene : public QVTKOpenGLNativeWidget {
     void changed();
     void refresh();
     void lay_out();
-    std::optional<Contact> contact(const Field& field);
-    const Field& finest_at_proxy(const Field& field) const;
+    void show_hand(int hand, const Field& field, const pictures::Camera& camera);
+    std::optional<Contact> contact(int hand, const Field& field);
+    const Field& finest_at_proxy(int hand, const Field& field) const;
 
     std::unique_ptr<Parts> parts_;
     QTimer refresh_;

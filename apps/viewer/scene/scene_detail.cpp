@@ -33,12 +33,12 @@ bool Scene::shows_whole() const {
     return parts_->background.shows_whole();
 }
 
-const Field& Scene::finest_at_proxy(const Field& field) const {
-    if (!parts_->patch_detail || !parts_->snapshot) return field;
+const Field& Scene::finest_at_proxy(int hand, const Field& field) const {
+    const auto& snapshot = parts_->hands[hand].snapshot;
+    if (!parts_->patch_detail || !snapshot) return field;
     constexpr double border = 3;  // [voxel] of other samples
     const Field& finer = parts_->patch_detail->field;
-    const Vec3 index =
-        index_from_physical(finer.geometry(), parts_->snapshot->session.tick.proxy.scp);
+    const Vec3 index = index_from_physical(finer.geometry(), snapshot->session.tick.proxy.scp);
     const Vec3 last = finer.geometry().size.cast<double>().array() - 1 - border;
     const bool inside = (index.array() >= border).all() && (index.array() <= last.array()).all();
     return inside ? finer : field;

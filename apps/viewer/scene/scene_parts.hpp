@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/scene/annotations.hpp"
 #include "apps/viewer/scene/background_renderer.hpp"
 #include "apps/viewer/scene/cut_marks.hpp"
@@ -27,13 +28,19 @@ namespace palpate::viewer {
 struct Scene::Parts {
     BackgroundRenderer background;
     RenderRequest wanted;  // look, crosshair; changed() fills in the rest
-    std::optional<Snapshot> snapshot;
-    std::shared_ptr<const Tool> tool;
+    struct Hand {
+        std::optional<Snapshot> snapshot;
+        std::shared_ptr<const Tool> tool;
+        std::unique_ptr<Markers> markers;
+        std::unique_ptr<ToolMarks> tool_marks;
+    };
+    PerHand<Hand> hands;
     double brush = 0;
     std::vector<Measurement> measurements;
     LengthUnit unit = LengthUnit::automatic;
     std::shared_ptr<const DetailField> patch_detail;  // null: none
     std::optional<double> pressed;                    // to this level
+    int pressing = 1;                                 // the hand that does
     std::shared_ptr<const RenderMesh> patch;
     Vec3 patched = Vec3::Zero();  // where, and at which level
     double patched_level = std::nan("");
@@ -43,11 +50,12 @@ struct Scene::Parts {
     vtkNew<vtkRenderer> front, overlay;
     vtkNew<LayerProp> solid, glass;
     Annotations annotations{2};
-    std::unique_ptr<Markers> markers;
-    std::unique_ptr<ToolMarks> tool_marks;
     std::unique_ptr<CutMarks> cut;
     std::unique_ptr<MeasureMarks> measures;
 
+    void forget_hands() {
+        for (Hand& hand : hands) hand.snapshot.reset();
+    }
     explicit Parts(MakePainter make_painter) : background(std::move(make_painter)) {
         vtkTimerLog::LoggingOff();  // one log for all threads, unprotected; windows write into it
         window->SetMultiSamples(0);
@@ -56,8 +64,11 @@ struct Scene::Parts {
         overlay->SetLayer(1);
         overlay->SetActiveCamera(front->GetActiveCamera());
         front->AddViewProp(solid);
-        markers = std::make_unique<Markers>(*front, *overlay);
-        tool_marks = std::make_unique<ToolMarks>(*front, *overlay);
+        for (int hand = 1; hand <= most_hands; ++hand) {
+            const HandColours colours = colours_of(hand);
+            hands[hand].markers = std::make_unique<Markers>(*front, *overlay, colours);
+            hands[hand].tool_marks = std::make_unique<ToolMarks>(*front, *overlay, colours);
+        }
         cut = std::make_unique<CutMarks>(*front);
         measures = std::make_unique<MeasureMarks>(*overlay, annotations.writing());
         front->AddViewProp(glass);  // after all that it may cover

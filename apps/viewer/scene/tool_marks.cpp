@@ -88,18 +88,17 @@ std::optional<SeenTool> seen_tool(const std::optional<Snapshot>& snapshot,
     return seen;
 }
 
-ToolMarks::ToolMarks(vtkRenderer& solid, vtkRenderer& overlay)
+ToolMarks::ToolMarks(vtkRenderer& solid, vtkRenderer& overlay, const HandColours& colours)
     : hand_(vtkSmartPointer<vtkActor>::New()) {
     const auto nothing = [] { return vtkSmartPointer<vtkPolyData>::New(); };
-    proxy_ = twin_of(pictures::scp_colour, nothing());
+    proxy_ = twin_of(colours.scp, nothing());
     contacts_ = twin_of(contact_colour, nothing());
     torque_ = twin_of(pictures::force_colour, nothing());
     vtkNew<vtkPolyDataMapper> mapper;
     mapper->SetInputData(proxy_.data);
     mapper->ScalarVisibilityOff();
     hand_->SetMapper(mapper);
-    const Colour& colour = pictures::hip_colour;
-    hand_->GetProperty()->SetColor(colour.red, colour.green, colour.blue);
+    hand_->GetProperty()->SetColor(colours.hip.red, colours.hip.green, colours.hip.blue);
     pictures::look_matt(*hand_);
     hand_->GetProperty()->SetOpacity(hand_opacity);
     hand_->SetVisibility(false);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/scene/twin.hpp"
 #include "palpate/servo.hpp"
 
@@ -29,7 +30,7 @@ std::optional<SeenTool> seen_tool(const std::optional<Snapshot>& snapshot,
 class ToolMarks {
   public:
     /// As Markers.
-    ToolMarks(vtkRenderer& solid, vtkRenderer& overlay);
+    ToolMarks(vtkRenderer& solid, vtkRenderer& overlay, const HandColours& colours);
 
     /// `origin` [mm, physical] of what is drawn; `pixel` [mm] is a logical pixel.
     void show(const std::optional<SeenTool>& seen, const Vec3& origin, double pixel,

@@ -121,7 +121,8 @@ void paint_crosshair(QPainter& painter, const SliceSheet& sheet, const QPointF& 
     painter.drawLines(lines);
 }
 
-void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& snapshot) {
+void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& snapshot,
+                 const HandColours& colours, const QString& name) {
     const ProxyUpdate& proxy = snapshot.session.tick.proxy;
     if (!proxy.hip.allFinite() || !proxy.scp.allFinite()) return;
     painter.save();
@@ -137,8 +138,12 @@ void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& sna
                0.15 * unit);
     }
     paint_force(painter, sheet, snapshot, scp_opacity, unit);
-    if (apart) dot(painter, scp, qt_colour(pictures::scp_colour, scp_opacity), 0.5 * unit);
-    dot(painter, hip, qt_colour(pictures::hip_colour, hip_opacity), 0.5 * unit);
+    if (apart) dot(painter, scp, qt_colour(colours.scp, scp_opacity), 0.5 * unit);
+    dot(painter, hip, qt_colour(colours.hip, hip_opacity), 0.5 * unit);
+    painter.setOpacity(hip_opacity);
+    const double em = QFontMetricsF(painter.font()).height();
+    shadowed(painter, QRectF(hip + QPointF(0.4 * em, 0.1 * em), QSizeF(2 * em, em)),
+             Qt::AlignLeft | Qt::AlignVCenter, name);
     painter.restore();
 }
 

@@ -4,6 +4,7 @@
 #include <QPainter>
 #include <QStringList>
 
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/slices/slice_map.hpp"
 #include "palpate/servo.hpp"
@@ -27,10 +28,11 @@ struct SliceSheet {
 /// Lines through a pixel, open round it so that they hide nothing.
 void paint_crosshair(QPainter& painter, const SliceSheet& sheet, const QPointF& at);
 
-/// Hand (blue), proxy (vermilion), the spring between them and the force (green; a newton is an
-/// eighth of the widget's height). Marks off the slice are paler the farther they are, but always
-/// visible.
-void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& snapshot);
+/// Hand, proxy, the spring between them and the force (green; a newton is an eighth of the widget's
+/// height). Marks off the slice are paler the farther they are, but always visible. `name` stands
+/// beside the hand.
+void paint_probe(QPainter& painter, const SliceSheet& sheet, const Snapshot& snapshot,
+                 const HandColours& colours, const QString& name);
 
 /// Where the slice cuts a ball of this radius [mm] round a physical point.
 void paint_brush(QPainter& painter, const SliceSheet& sheet, const Vec3& centre, double radius);

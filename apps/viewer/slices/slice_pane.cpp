@@ -71,7 +71,7 @@ void SlicePane::set_field(const Field& field, double isovalue,
         high_ = whole_range(field).high;
         crosshair_ = physical_centre(field.geometry());
         view_ = {};
-        snapshot_.reset();
+        snapshots_ = {};
     }
     setAccessibleName(tr("%1 slice").arg(title()));
     set_crosshair(crosshair_);
@@ -88,7 +88,7 @@ void SlicePane::update_field(const Field& field) {
 
 void SlicePane::clear() {
     content_.reset();
-    snapshot_.reset();
+    snapshots_ = {};
     drag_ = Drag::none;
     setAccessibleName(tr("Slice"));
     update();
@@ -140,14 +140,14 @@ double SlicePane::layer_in(const Geometry& other) const {
     return std::abs(at - std::round(at)) < hair ? std::round(at) : at;
 }
 
-void SlicePane::show_snapshot(const std::optional<Snapshot>& snapshot) {
+void SlicePane::show_snapshot(const std::optional<Snapshot>& snapshot, int hand) {
     constexpr double unseen_px = 0.1;
-    if (!snapshot && !snapshot_) return;
-    if (snapshot && snapshot_ && content_ &&
-        looks_same(*snapshot, *snapshot_, unseen_px / map().per_mm)) {
+    std::optional<Snapshot>& shown = snapshots_[hand];
+    if (!snapshot && !shown) return;
+    if (snapshot && shown && content_ && looks_same(*snapshot, *shown, unseen_px / map().per_mm)) {
         return;
     }
-    snapshot_ = snapshot;
+    shown = snapshot;
     update();
 }
 
@@ -338,9 +338,12 @@ void SlicePane::paintEvent(QPaintEvent*) {
     painter.drawImage(QPointF(0, 0), content_->picture);
     const SliceSheet sheet{content_->plane, geometry(), where, content_->layer, size()};
     paint_crosshair(painter, sheet, sheet.pixel(crosshair_));
-    if (snapshot_) {
-        paint_brush(painter, sheet, snapshot_->session.tick.proxy.scp, brush_);
-        paint_probe(painter, sheet, *snapshot_);
+    const bool several = snapshots_[2].has_value();
+    for (int hand = 1; hand <= most_hands; ++hand) {
+        if (!snapshots_[hand]) continue;
+        const Snapshot& now = *snapshots_[hand];
+        paint_brush(painter, sheet, now.session.tick.proxy.scp, brush_);
+        paint_probe(painter, sheet, now, colours_of(hand), several ? QString::number(hand) : "");
     }
     for (const Measurement& measurement : measurements_) {
         paint_measurement(painter, sheet, measurement, unit_);

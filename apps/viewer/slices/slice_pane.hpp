@@ -11,6 +11,7 @@
 
 #include "apps/viewer/model/detail_choice.hpp"
 #include "apps/viewer/model/detail_field.hpp"
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/slices/slice_map.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
@@ -57,8 +58,8 @@ class SlicePane : public QWidget {
     /// The slice goes through it. Not finite: nothing happens.
     void set_crosshair(const Vec3& physical);
     const Vec3& crosshair() const { return crosshair_; }
-    /// Hand, proxy, spring and force; nothing: none are shown. The slice stays where it is.
-    void show_snapshot(const std::optional<Snapshot>& snapshot);
+    /// Hand, proxy, spring and force; nothing: no such hand. The slice stays where it is.
+    void show_snapshot(const std::optional<Snapshot>& snapshot, int hand = 1);
     /// Grey levels [data units]: up to `low` black, from `high` white. Unless low < high, nothing
     /// happens. Those that are set first for a volume are its usual ones; until then the least
     /// sample is black and the greatest white.
@@ -136,7 +137,7 @@ class SlicePane : public QWidget {
     std::unique_ptr<Content> content_;  // null without a volume
     SliceStyle style_;                  // but for the window
     Vec3 crosshair_ = Vec3::Zero();
-    std::optional<Snapshot> snapshot_;
+    HandSnapshots snapshots_;
     double low_ = 0, high_ = 1;
     bool probe_ = false;
     double brush_ = 0;

@@ -877,6 +877,22 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
         <source>gives no force</source>
         <translation>gibt keine Kraft</translation>
     </message>
+    <message>
+        <source>Add as second hand</source>
+        <translation>Als zweite Hand hinzufügen</translation>
+    </message>
+    <message>
+        <source>One more hand with the device above. Each feels what the other edits</source>
+        <translation>Noch eine Hand mit dem Gerät darüber. Jede fühlt, was die andere verändert</translation>
+    </message>
+    <message>
+        <source>Remove this hand</source>
+        <translation>Diese Hand entfernen</translation>
+    </message>
+    <message>
+        <source>Its force ends; the other hand goes on</source>
+        <translation>Ihre Kraft endet; die andere Hand fühlt weiter</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::EditController</name>
@@ -1147,6 +1163,25 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
     </message>
 </context>
 <context>
+    <name>palpate::viewer::HandSwitch</name>
+    <message>
+        <source>Settings of</source>
+        <translation>Einstellungen von</translation>
+    </message>
+    <message>
+        <source>The panel shows the settings of this hand (N: the next one). Commands, keys and the mouse are for it</source>
+        <translation>Die Leiste zeigt die Einstellungen dieser Hand (N: die nächste). Befehle, Tasten und Maus gelten ihr</translation>
+    </message>
+    <message>
+        <source>Hand %1: %2</source>
+        <translation>Hand %1: %2</translation>
+    </message>
+    <message>
+        <source>Settings of hand %1, %2</source>
+        <translation>Einstellungen von Hand %1, %2</translation>
+    </message>
+</context>
+<context>
     <name>palpate::viewer::Hints</name>
     <message>
         <source>Forces are off: the space bar switches them on</source>
@@ -1175,6 +1210,10 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
     <message>
         <source>A recording is played: Esc leaves it</source>
         <translation>Eine Aufzeichnung wird abgespielt: Esc verlässt sie</translation>
+    </message>
+    <message>
+        <source>Hand %1: %2</source>
+        <translation>Hand %1: %2</translation>
     </message>
 </context>
 <context>
@@ -2228,6 +2267,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>From a corner</source>
         <translation>Von einer Ecke</translation>
     </message>
+    <message>
+        <source>Settings of the &amp;next hand</source>
+        <translation>Einstellungen der &amp;nächsten Hand</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::MeasureController</name>
@@ -2814,6 +2857,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
             <numerusform>%n davon kommen anders heraus als aufgezeichnet</numerusform>
         </translation>
     </message>
+    <message>
+        <source>the first %1 of %2 hands are shown</source>
+        <translation>die ersten %1 von %2 Händen werden gezeigt</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::RunController</name>
@@ -2839,6 +2886,14 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
             <numerusform>%n Takt aufgezeichnet, bis zum anderen Gerät</numerusform>
             <numerusform>%n Takte aufgezeichnet, bis zum anderen Gerät</numerusform>
         </translation>
+    </message>
+    <message>
+        <source>Felt through the devices %1</source>
+        <translation>Gefühlt mit den Geräten %1</translation>
+    </message>
+    <message>
+        <source>The panel shows the settings of hand %1</source>
+        <translation>Die Leiste zeigt die Einstellungen von Hand %1</translation>
     </message>
 </context>
 <context>

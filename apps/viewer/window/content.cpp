@@ -7,45 +7,85 @@ namespace palpate::viewer {
 
 /// Before anything else hears of it, the effect is that of the run.
 Content::Content() {
-    connect(this, &Content::run_changed, &effect_, [this] {
-        effect_.begin(live_->field(), live_->isovalue(), live_->settings(), live_->device(),
-                      volume_->histogram, [this](const Command& command) {
-                          if (live_) live_->send(command);
-                      });
-    });
+    connect(this, &Content::run_changed, &effect_, [this] { begin_effect(); });
 }
 
-void Content::start_run(std::shared_ptr<Opened> volume, const run::Setup& setup) {
+/// Of the chosen hand.
+void Content::begin_effect() {
+    if (const run::Run* run = live()) {
+        return effect_.begin(run->field(), run->isovalue(), run->settings(), run->device(),
+                             volume_->histogram, [this](const Command& command) {
+                                 if (live()) live()->send(command);
+                             });
+    }
+    const io::RecordingHead& head = playback()->head();
+    DeviceInfo device;
+    device.name = device.model = head.device;
+    device.limits = head.settings.device;
+    effect_.begin(playback()->field(), head.isovalue, head.settings, device, volume_->histogram,
+                  nullptr);
+}
+
+void Content::start_run(std::shared_ptr<Opened> volume, const std::vector<run::Setup>& hands) {
     close();
-    auto data = std::make_shared<run::Data>(volume->loaded, setup.playback);
-    auto live = std::make_unique<run::Run>(data, setup);
-    live->start();
+    auto data = std::make_shared<run::Data>(volume->loaded, hands.front().playback);
+    std::vector<std::unique_ptr<run::Run>> runs;
+    for (const run::Setup& hand : hands) runs.push_back(std::make_unique<run::Run>(data, hand));
+    for (const auto& run : runs) run->start();
     data_ = std::move(data);
-    live_ = std::move(live);
+    runs_ = std::move(runs);
     volume_ = std::move(volume);
     Q_EMIT run_started();
     Q_EMIT run_changed();
 }
 
-void Content::start_playback(std::shared_ptr<Opened> volume, Playback playback) {
+void Content::start_playback(std::shared_ptr<Opened> volume, std::vector<Playback> hands) {
     close();
     volume_ = std::move(volume);
-    playback_ = std::move(playback);
-    time_ = playback_->begin();
-    const io::RecordingHead& head = playback_->head();
-    DeviceInfo device;
-    device.name = device.model = head.device;
-    device.limits = head.settings.device;
-    effect_.begin(playback_->field(), head.isovalue, head.settings, device, volume_->histogram,
-                  nullptr);
+    playbacks_ = std::move(hands);
+    time_ = playback()->begin();
+    begin_effect();
     Q_EMIT playback_started();
+}
+
+void Content::choose_hand(int hand) {
+    if (hand == hand_ || hand < 1 || hand > hands()) return;
+    if (playback()) time_ = time_of(hand);
+    hand_ = hand;
+    if (live()) {
+        Q_EMIT run_changed();
+    } else {
+        begin_effect();
+    }
+    Q_EMIT hand_changed();
+}
+
+void Content::add_hand(const devices::DeviceChoice& device) {
+    if (!live() || hands() == most_hands) return;
+    run::Setup setup = live()->setup();
+    const Field& field = live()->field();
+    setup.device = device;
+    setup.field = {field.solid(), field.background(), live()->isovalue(), field.interpolation()};
+    auto added = std::make_unique<run::Run>(data_, setup);
+    added->start();
+    runs_.push_back(std::move(added));
+    choose_hand(hands());
+}
+
+void Content::remove_hand() {
+    if (runs_.size() < 2) return;
+    runs_.erase(runs_.begin() + (hand_ - 1));
+    hand_ = 1;
+    Q_EMIT run_changed();
+    Q_EMIT hand_changed();
 }
 
 void Content::close() {
     Q_EMIT closing();
-    live_.reset();
+    runs_.clear();
     data_.reset();
-    playback_.reset();
+    playbacks_.clear();
+    hand_ = 1;
     volume_.reset();
     overview_.reset();
     saved_.reset();
@@ -65,53 +105,64 @@ void Content::set_session(const QString& path) {
 }
 
 void Content::use_device(const devices::DeviceChoice& device) {
-    live_->use_device(device);
+    live()->use_device(device);
     Q_EMIT run_changed();
 }
 
 void Content::use_field(Solid solid, Interpolation interpolation) {
-    live_->use_field(solid, interpolation);
+    for (const auto& run : runs_) run->use_field(solid, interpolation);
     Q_EMIT field_replaced();
     Q_EMIT run_changed();
 }
 
 run::VolumeEditor* Content::editor() const {
-    return live_ && !live_->data().is_sequence() ? &live_->data().editor() : nullptr;
+    return live() && !data_->is_sequence() ? &data_->editor() : nullptr;
 }
 
 run::Player* Content::player() const {
-    return live_ && live_->data().is_sequence() ? &live_->data().player() : nullptr;
+    return live() && data_->is_sequence() ? &data_->player() : nullptr;
 }
 
 SharedLayers Content::layers() const {
-    if (live_) return live_->settings().layers;
-    return playback_ ? playback_->layers_at(time_) : nullptr;
+    if (live()) return live()->settings().layers;
+    return playback() ? playback()->layers_at(time_) : nullptr;
 }
 
-std::shared_ptr<const Tool> Content::tool() const {
-    if (live_) return live_->settings().tool;
-    return playback_ ? playback_->tool_at(time_) : nullptr;
+std::shared_ptr<const Tool> Content::tool(int hand) const {
+    if (live(hand)) return live(hand)->settings().tool;
+    return playback(hand) ? playback(hand)->tool_at(time_of(hand)) : nullptr;
 }
 
 Content::OuterSurface Content::outer_surface() {
     const SharedLayers now = layers();
     if (levels_in(now) > 0) return {seen(felt()), now->layers.front().level};
-    if (!have_surfaces(now)) return {seen(felt()), live_->isovalue()};
+    if (!have_surfaces(now)) return {seen(felt()), live()->isovalue()};
     return {labelled_space(*now), 0.5};
 }
 
-std::optional<Snapshot> Content::snapshot() const {
-    if (live_) return live_->snapshot();
-    if (playback_) return playback_->at(time_);
+std::optional<Snapshot> Content::snapshot(int hand) const {
+    if (live(hand)) return live(hand)->snapshot();
+    if (playback(hand)) return playback(hand)->at(time_of(hand));
     return std::nullopt;
 }
 
+/// That which is shown, by the clock of this hand.
+double Content::time_of(int hand) const {
+    return time_ - playback()->begin() + playback(hand)->begin();
+}
+
+HandSnapshots Content::snapshots() const {
+    HandSnapshots all;
+    for (int hand = 1; hand <= hands(); ++hand) all[hand] = snapshot(hand);
+    return all;
+}
+
 Field Content::felt() const {
-    return live_ ? live_->field_now() : playback_->field();
+    return live() ? live()->field_now() : playback()->field();
 }
 
 Field Content::felt_at(const Snapshot& snapshot) {
-    Field field = live_ ? live_->field_now() : playback_->field_at(snapshot);
+    Field field = live() ? live()->field_now() : playback()->field_at(snapshot);
     field.set_time(snapshot.session.moment);
     return field;
 }

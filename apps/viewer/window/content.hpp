@@ -1,12 +1,16 @@
 // What is open in the window: a volume, and with it either a live run, in which it is felt, or the
-// playback of a recording.
+// playback of a recording. Both have a hand or two, one of which is chosen: the panel shows its
+// settings, and commands are for it.
 #pragma once
 
 #include <QObject>
 #include <QString>
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <vector>
 
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/model/opening.hpp"
 #include "apps/viewer/model/playback.hpp"
@@ -22,14 +26,26 @@ class Content : public QObject {
     Content();
     /// Closes what was open first: a device serves one run. Throws as run::Run; then nothing is
     /// open.
-    void start_run(std::shared_ptr<Opened> volume, const run::Setup& setup);
-    void start_playback(std::shared_ptr<Opened> volume, Playback playback);
+    void start_run(std::shared_ptr<Opened> volume, const std::vector<run::Setup>& hands);
+    void start_playback(std::shared_ptr<Opened> volume, std::vector<Playback> hands);
     void close();
-    /// As run::Run::use_device and use_field. If they throw, the run is unchanged.
+    /// As run::Run::use_device, of the chosen hand, and use_field, of all. If they throw, the runs
+    /// are unchanged.
     void use_device(const devices::DeviceChoice& device);
     void use_field(Solid solid, Interpolation interpolation);
+
+    /// None if nothing is open. They are numbered from 1.
+    int hands() const { return static_cast<int>(std::max(runs_.size(), playbacks_.size())); }
+    /// The chosen one.
+    int hand() const { return hand_; }
+    void choose_hand(int hand);
+    /// One more beside that of a live run, which feels as that began to, at the level that is felt
+    /// now. It is chosen. Throws as run::Run; then nothing has changed.
+    void add_hand(const devices::DeviceChoice& device);
+    /// The chosen one, of two: its force ends.
+    void remove_hand();
     /// Ends the run, forces are zero; emits nothing.
-    void end_run() { live_.reset(); }
+    void end_run() { runs_.clear(); }
 
     /// The settings of the live run, which commands change, or of the recording.
     Effect& effect() { return effect_; }
@@ -50,8 +66,9 @@ class Content : public QObject {
     /// The session file that was opened or saved last; empty: none.
     const QString& session() const { return session_; }
     void set_session(const QString& path);
-    /// Null unless there is a live run.
-    run::Run* live() const { return live_.get(); }
+    /// Null unless there is a live run, and in it this hand.
+    run::Run* live() const { return live(hand_); }
+    run::Run* live(int hand) const { return has(runs_, hand) ? runs_[index(hand)].get() : nullptr; }
     /// The live run's data, for threads that may outlive the run.
     const std::shared_ptr<run::Data>& data() const { return data_; }
     /// Null unless the run's data can be edited.
@@ -59,16 +76,21 @@ class Content : public QObject {
     /// Null unless the run's data are a sequence.
     run::Player* player() const;
     /// Null unless a recording is open.
-    Playback* playback() { return playback_ ? &*playback_ : nullptr; }
-    const Playback* playback() const { return playback_ ? &*playback_ : nullptr; }
-    /// [s] The time of the recording that is shown.
+    Playback* playback() { return playbacks_.empty() ? nullptr : &playbacks_[index(hand_)]; }
+    const Playback* playback() const { return playback(hand_); }
+    const Playback* playback(int hand) const {
+        return has(playbacks_, hand) ? &playbacks_[index(hand)] : nullptr;
+    }
+    /// [s] The time of the recording that is shown, by the clock of the chosen hand. Hands are
+    /// shown as long after their first ticks.
     double time() const { return time_; }
     void set_time(double time) { time_ = time; }
 
     /// The layers in use now, or at the time shown; null: none.
     SharedLayers layers() const;
     /// The tool in use now, or at the time shown; null: a point.
-    std::shared_ptr<const Tool> tool() const;
+    std::shared_ptr<const Tool> tool() const { return tool(hand_); }
+    std::shared_ptr<const Tool> tool(int hand) const;
     /// The outermost surface that is felt: a field and its level. For a live run.
     struct OuterSurface {
         Field field;
@@ -76,7 +98,9 @@ class Content : public QObject {
     };
     OuterSurface outer_surface();
     /// What is felt now, or was at the time shown. Nothing before the first tick.
-    std::optional<Snapshot> snapshot() const;
+    std::optional<Snapshot> snapshot() const { return snapshot(hand_); }
+    std::optional<Snapshot> snapshot(int hand) const;
+    HandSnapshots snapshots() const;
     /// The data that are felt now, or as a recording began; those of such a snapshot.
     Field felt() const;
     Field felt_at(const Snapshot& snapshot);
@@ -95,17 +119,25 @@ class Content : public QObject {
     /// The run has started, or has another device, field or settings.
     void run_changed();
     void playback_started();
+    /// Another hand is chosen, added or removed. After run_changed().
+    void hand_changed();
     /// source() or session() is another one.
     void renamed();
 
   private:
+    static std::size_t index(int hand) { return static_cast<std::size_t>(hand - 1); }
+    static bool has(const auto& all, int hand) { return index(hand) < all.size(); }
+    void begin_effect();
+    double time_of(int hand) const;
+
     Effect effect_;
     std::shared_ptr<Opened> volume_;
     std::optional<run::Source> saved_;
     QString session_;
     std::shared_ptr<run::Data> data_;
-    std::unique_ptr<run::Run> live_;
-    std::optional<Playback> playback_;
+    std::vector<std::unique_ptr<run::Run>> runs_;  // of the hands, on the same data
+    std::vector<Playback> playbacks_;              // the same of a recording
+    int hand_ = 1;                                 // the chosen one
     double time_ = 0;
     std::optional<ShownEdits> overview_;  // of a store
 };

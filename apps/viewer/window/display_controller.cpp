@@ -89,15 +89,18 @@ void DisplayController::show_volume(const Field& field, double isovalue,
     views_.set_window(content_.volume()->dark(), content_.volume()->bright());
 }
 
-std::optional<Snapshot> DisplayController::observe() {
-    const std::optional<Snapshot> now = held_ ? held_ : content_.snapshot();
-    views_.scene().set_tool(content_.tool());
-    views_.show_snapshot(now);
-    if (!now) return now;
-    observe_data(*now);
-    observe_layers();
-    observe_level(*now);
-    return now;
+HandSnapshots DisplayController::observe() {
+    const HandSnapshots all = held_ ? *held_ : content_.snapshots();
+    for (int hand = 1; hand <= content_.hands(); ++hand) {
+        views_.scene().set_tool(content_.tool(hand), hand);
+    }
+    views_.show_snapshots(all, content_.hand());
+    if (const auto& now = all[content_.hand()]) {
+        observe_data(*now);
+        observe_layers();
+        observe_level(*now);
+    }
+    return all;
 }
 
 /// Their surfaces are seen with the look.
@@ -138,8 +141,9 @@ void DisplayController::observe_level(const Snapshot& now) {
         isovalue_ = proxy.isovalue;
         views_.set_isovalue(proxy.isovalue);
     }
-    views_.set_pressed(pressing && std::isfinite(proxy.isovalue) ? std::optional(proxy.isovalue)
-                                                                 : std::nullopt);
+    views_.set_pressed(
+        pressing && std::isfinite(proxy.isovalue) ? std::optional(proxy.isovalue) : std::nullopt,
+        content_.hand());
 }
 
 void DisplayController::observe_data(const Snapshot& now) {
@@ -150,7 +154,7 @@ void DisplayController::observe_data(const Snapshot& now) {
 }
 
 void DisplayController::hold() {
-    if (content_.live()) held_ = content_.snapshot();
+    if (content_.live()) held_ = content_.snapshots();
 }
 
 void DisplayController::set_look(const Look& look) {

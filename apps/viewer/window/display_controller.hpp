@@ -4,6 +4,7 @@
 #include <QObject>
 #include <optional>
 
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/model/session_file.hpp"
 #include "palpate/servo.hpp"
@@ -21,9 +22,10 @@ class DisplayController : public QObject {
     DisplayController(Content& content, Views& views, Panel& panel, MeasureController& measuring,
                       OverlayController& overlays);
 
-    /// Shows the newest snapshot, and its data where they have changed. Returns it.
-    std::optional<Snapshot> observe();
-    /// Freezes the snapshot shown, for a picture; the live run goes on.
+    /// Shows the newest snapshots, and the data of the chosen hand's where they have changed.
+    /// Returns them.
+    HandSnapshots observe();
+    /// Freezes the snapshots shown, for a picture; the live run goes on.
     void hold();
     /// The level of the surface in the scene; nothing if no volume is open.
     const std::optional<double>& isovalue() const { return isovalue_; }
@@ -54,7 +56,7 @@ class DisplayController : public QObject {
     Panel& panel_;
     MeasureController& measuring_;
     OverlayController& overlays_;
-    std::optional<Snapshot> held_;
+    std::optional<HandSnapshots> held_;
     std::optional<double> isovalue_;
     SharedLayers layers_;               // as they are shown
     std::optional<double> next_level_;  // of layers

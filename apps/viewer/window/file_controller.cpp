@@ -146,7 +146,7 @@ void FileController::ask_level() {
 void FileController::open_volume(const run::Source& source) {
     messages_.forget();
     load(source, [this, request = run_.take_request()](std::shared_ptr<Opened> opened) mutable {
-        request.setup.device = run_.device();
+        request.use_devices_of(run_.request());
         run::Setup& setup = request.setup;
         if (!setup.field.isovalue && !setup.render.layers) {
             setup.field.isovalue = first_isovalue(*opened);
@@ -165,7 +165,7 @@ void FileController::open_sample() {
 }
 
 void FileController::feel(std::shared_ptr<Opened> opened, const RunRequest& request) {
-    run_.start(opened, request.setup);
+    run_.start(opened, request.setups());
     if (!request.record.empty()) recordings_.start(QString::fromStdString(request.record));
     remember_file(QString::fromStdString(io::address_to_keep(opened->loaded.name)));
     for (const std::string& note : opened->loaded.notes) {
@@ -199,9 +199,16 @@ void FileController::feel_again(const run::Source& source) {
     if (!content_.live()) return;
     SessionFile session = session_now();
     session.source = source;
-    load(source, [this, session, request = run_.take_request()](std::shared_ptr<Opened> opened) {
+    load(source, [this, session, request = request_for_same()](std::shared_ptr<Opened> opened) {
         feel_session(std::move(opened), session, request);
     });
+}
+
+/// The devices are those in use, whatever the command line named.
+RunRequest FileController::request_for_same() {
+    RunRequest request = run_.take_request();
+    request.device.reset();
+    return request;
 }
 
 void FileController::use_grid(const io::GivenGrid& grid) {
@@ -213,13 +220,20 @@ void FileController::use_grid(const io::GivenGrid& grid) {
     session.crosshair.reset();
     session.measurements.clear();
     session.look.cut = Cut::nothing;
-    const RendererSettings settings = *std::exchange(session.settings, std::nullopt);
     load(session.source,
-         [this, session, settings, request = run_.take_request()](std::shared_ptr<Opened> opened) {
-             feel_session(std::move(opened), session, request);
-             RendererSettings placed = settings;
-             placed.transform = content_.live()->settings().transform;
-             run_.restore(placed);
+         [this, session, request = request_for_same()](std::shared_ptr<Opened> opened) {
+             SessionFile elsewhere = session;
+             elsewhere.settings.reset();
+             for (SessionHand& other : elsewhere.others) other.settings.reset();
+             feel_session(std::move(opened), elsewhere, request);
+             elsewhere = session;
+             elsewhere.settings->transform = content_.live(1)->settings().transform;
+             int hand = 1;
+             for (SessionHand& other : elsewhere.others) {
+                 const run::Run* live = content_.live(++hand);
+                 if (live) other.settings->transform = live->settings().transform;
+             }
+             restore_hands(elsewhere);
          });
 }
 
@@ -236,15 +250,15 @@ void FileController::open_recording(const QString& path) {
 }
 
 void FileController::play(std::shared_ptr<Opened> opened, const QString& path) {
-    auto result = std::make_shared<std::optional<Playback>>();
+    auto result = std::make_shared<std::vector<Playback>>();
     loader_.start(
         tr("Reading %1").arg(short_name(path)),
         [result, opened, path](const io::Progress& progress) {
-            *result = Playback::read(path_of(path), opened->loaded, progress);
+            *result = Playback::read_hands(path_of(path), opened->loaded, progress);
         },
         [this, result, opened, path] {
             const bool same = content_.volume() == opened;
-            content_.start_playback(opened, std::move(**result));
+            content_.start_playback(opened, std::move(*result));
             if (!same) display_.use_usual_look();
             remember_file(path);
         });
@@ -256,7 +270,7 @@ void FileController::leave_playback() {
     session.isovalue = display_.isovalue().value_or(session.isovalue);
     session.settings.reset();  // the recorded device's
     const SharedLayers layers = content_.layers();
-    feel_session(content_.volume(), session, run_.take_request());
+    feel_session(content_.volume(), session, request_for_same());
     if (!layers || !content_.live()) return;
     content_.effect().request(command::UseLayers{layers});
     Q_EMIT content_.run_changed();
@@ -265,23 +279,30 @@ void FileController::leave_playback() {
 SessionFile FileController::session_now() const {
     SessionFile session;
     session.source = content_.source();
-    if (const run::Run* live = content_.live()) {
-        const auto now = live->snapshot();
+    const auto hand_now = [](const run::Run& live) {
+        SessionHand hand{live.setup().device, live.isovalue(), live.settings()};
+        if (const auto now = live.snapshot()) hand.settings->transform = now->session.transform;
+        return hand;
+    };
+    if (const run::Run* live = content_.live(1)) {
         session.solid = live->field().solid();
         session.interpolation = live->field().interpolation();
         session.background = live->field().background();
-        session.isovalue = live->isovalue();
-        session.device = live->setup().device;
         session.method = live->setup().render.method;
-        session.settings = live->settings();
-        if (now) session.settings->transform = now->session.transform;
+        static_cast<SessionHand&>(session) = hand_now(*live);
+        for (int hand = 2; hand <= content_.hands(); ++hand) {
+            session.others.push_back(hand_now(*content_.live(hand)));
+        }
     } else {
         const io::RecordingHead& head = content_.playback()->head();
         session.solid = head.solid;
         session.interpolation = head.interpolation;
         session.background = head.background;
         session.isovalue = head.isovalue;
-        session.device = run_.device();
+        session.device = run_.request().setup.device;
+        for (const devices::DeviceChoice& device : run_.request().others) {
+            session.others.push_back({device, head.isovalue, {}});
+        }
         session.method = run::named_method(head.method);
         session.settings = head.settings;
     }
@@ -315,29 +336,46 @@ void FileController::open_session(const QString& path) {
     });
 }
 
-/// The device is the one of the command line, else the session's; where that cannot be had, the one
+/// The devices are those of the command line, else the session's; where they cannot be had, those
 /// chosen in this window.
 void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
                                   RunRequest request) {
     run::Setup& setup = request.setup;
     setup.field = {session.solid, session.background, session.isovalue, session.interpolation};
+    if (!request.device) {
+        request.others.clear();
+        for (const SessionHand& other : session.others) request.others.push_back(other.device);
+    }
     setup.device = request.device.value_or(session.device);
     setup.render.method = session.method;
     setup.render.layers.reset();  // the session's are in its settings
     try {
         feel(opened, request);
-        run_.set_device(setup.device);
+        run_.set_devices(request);
     } catch (const std::exception& e) {
-        if (setup.device == run_.device()) throw;
+        const RunRequest& chosen = run_.request();
+        if (setup.device == chosen.setup.device && request.others == chosen.others) throw;
         const QString why = QString::fromStdString(app::failure_of(e).text);
-        setup.device = run_.device();
+        request.use_devices_of(chosen);
         feel(opened, request);
         messages_.show_done(tr("%1; felt through the device %2")
                                 .arg(why, QString::fromStdString(run::text_of(setup.device))));
     }
     display_.use_usual_look();
-    if (session.settings) run_.restore(*session.settings);
+    restore_hands(session);
     display_.restore_view(session);
+}
+
+void FileController::restore_hands(const SessionFile& session) {
+    if (session.settings) run_.restore(*session.settings);
+    int hand = 1;
+    for (const SessionHand& other : session.others) {
+        if (!content_.live(++hand)) break;  // its device cannot be had
+        content_.choose_hand(hand);
+        content_.effect().request(command::Isovalue{other.isovalue});
+        if (other.settings) run_.restore(*other.settings);
+    }
+    content_.choose_hand(1);
 }
 
 }  // namespace palpate::viewer

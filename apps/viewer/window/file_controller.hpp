@@ -70,6 +70,8 @@ class FileController : public QObject {
     void feel(std::shared_ptr<Opened> opened, const RunRequest& request);
     void feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
                       RunRequest request);
+    void restore_hands(const SessionFile& session);
+    RunRequest request_for_same();
     void play(std::shared_ptr<Opened> opened, const QString& path);
     SessionFile session_now() const;
 

@@ -2,6 +2,7 @@
 #include "apps/viewer/window/hints.hpp"
 
 #include "apps/viewer/model/hand_state.hpp"
+#include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/scene/scene.hpp"
@@ -13,7 +14,7 @@ namespace palpate::viewer {
 namespace {
 
 /// A label that lets the mouse through.
-QLabel* label_over(QWidget& owner, const char* name, const QString& style) {
+QLabel* label_over(QWidget& owner, const QString& name, const QString& style) {
     auto* label = named(new QLabel(&owner), name);
     label->setAttribute(Qt::WA_TransparentForMouseEvents);
     label->setStyleSheet("QLabel { border-radius: 4px; padding: 3px 8px; " + style + " }");
@@ -44,6 +45,13 @@ Hints::Hints(const Content& content, const RecordingController& recordings, Scen
       depth_(label_over(scene, "depth", "background-color: rgba(0, 0, 0, 150); color: white;")),
       recording_(label_over(scene, "recording_clock",
                             "background-color: rgba(0, 0, 0, 150); color: white;")) {
+    for (int hand = 1; hand <= most_hands; ++hand) {
+        const QString colour = to_qt(colours_of(hand).hip).name();
+        numbers_[hand] = label_over(scene, QString("hand_number_%1").arg(hand),
+                                    "padding: 1px 4px; color: black; background-color: "
+                                    "rgba(255, 255, 255, 190); border: 2px solid " +
+                                        colour + ";");
+    }
     connect(&recordings, &RecordingController::changed, this, [this] { recorded_.start(); });
 }
 
@@ -64,10 +72,13 @@ QString Hints::reason_of(const Snapshot& now) {
     return {};
 }
 
-void Hints::observe(const std::optional<Snapshot>& now, bool brush) {
+void Hints::observe(const HandSnapshots& hands, bool brush) {
+    const std::optional<Snapshot>& now = hands[content_.hand()];
     const int line = 2 * scene_.fontMetrics().height();
     const bool live = content_.live() && now;
-    const QString reason = live                  ? reason_of(*now)
+    const QString problem = problem_of_hands();
+    const QString reason = !problem.isEmpty()    ? problem
+                           : live                ? reason_of(*now)
                            : content_.playback() ? tr("A recording is played: Esc leaves it")
                                                  : QString();
     say(*reason_, reason, {scene_.width() / 2, line});
@@ -75,12 +86,42 @@ void Hints::observe(const std::optional<Snapshot>& now, bool brush) {
         live && brush ? tr("The brush is on: it changes what it touches (B: off)") : QString(),
         {scene_.width() / 2, scene_.height() - line});
     show_depth(live ? now : std::nullopt);
+    show_numbers(hands);
     if (!recordings_.recording()) return recording_->hide();
     const auto seconds = recorded_.elapsed() / 1000;
     const QString clock = QString("<span style='color: #ff4040'>●</span> %1:%2")
                               .arg(seconds / 60)
                               .arg(seconds % 60, 2, 10, QChar('0'));
     say(*recording_, clock, {scene_.width() - 3 * line, line});
+}
+
+/// What is wrong with a device, and whose it is, where there are several; empty: nothing.
+QString Hints::problem_of_hands() const {
+    QStringList words;
+    for (int hand = 1; hand <= content_.hands() && content_.hands() > 1 && content_.live();
+         ++hand) {
+        const std::string problem = content_.live(hand)->device_problem();
+        if (problem.empty()) continue;
+        words << tr("Hand %1: %2").arg(hand).arg(QString::fromStdString(problem));
+    }
+    return words.join('\n');
+}
+
+/// Beside each hand, where there are several.
+void Hints::show_numbers(const HandSnapshots& hands) {
+    for (int hand = 1; hand <= most_hands; ++hand) {
+        const auto& now = hands[hand];
+        const bool shown = content_.hands() > 1 && now &&
+                           now->session.device.status == DeviceStatus::ready &&
+                           now->session.tick.proxy.hip.allFinite();
+        if (!shown) {
+            numbers_[hand]->hide();
+            continue;
+        }
+        const Pixel at = pixel_of(scene_.camera(), scene_.view_size(), now->session.tick.proxy.hip);
+        const int line = scene_.fontMetrics().height();
+        say(*numbers_[hand], QString::number(hand), QPoint(int(at.x) + line, int(at.y) - line));
+    }
 }
 
 /// Beside the hand, while it presses with the mouse.

@@ -7,7 +7,7 @@
 #include <QObject>
 #include <optional>
 
-#include "palpate/servo.hpp"
+#include "apps/viewer/model/hands.hpp"
 
 namespace palpate::viewer {
 
@@ -21,17 +21,21 @@ class Hints : public QObject {
   public:
     Hints(const Content& content, const RecordingController& recordings, Scene& scene);
 
-    /// Often: shows what holds now. Nothing: no run is felt or played. `brush`: it is on.
-    void observe(const std::optional<Snapshot>& now, bool brush);
+    /// Often: shows what holds now. Without the chosen hand no run is felt or played. `brush`: it
+    /// is on.
+    void observe(const HandSnapshots& hands, bool brush);
 
   private:
     QString reason_of(const Snapshot& now);
+    QString problem_of_hands() const;
+    void show_numbers(const HandSnapshots& hands);
     void show_depth(const std::optional<Snapshot>& now);
 
     const Content& content_;
     const RecordingController& recordings_;
     Scene& scene_;
     QLabel *reason_, *brush_, *depth_, *recording_;
+    PerHand<QLabel*> numbers_;
     QElapsedTimer recorded_;
     QElapsedTimer waiting_;  // for data; invalid: the hand does not
 };

@@ -18,6 +18,7 @@
 #include <QSettings>
 #include <QStatusBar>
 
+#include <algorithm>
 #include <utility>
 
 #include "apps/viewer/model/hand_state.hpp"
@@ -155,6 +156,7 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::closed, this, refresh);
     connect(&content_, &Content::run_changed, this, refresh);
     connect(&content_, &Content::playback_started, this, refresh);
+    connect(&content_, &Content::hand_changed, this, refresh);
     connect(&run_, &RunController::device_changed, this, refresh);
     connect(&recordings_, &RecordingController::changed, this, refresh);
 }
@@ -268,11 +270,12 @@ void MainWindow::ask_preferences() {
 void MainWindow::tick() {
     ++rounds_;
     playing_.advance();
-    const auto now = display_.observe();
+    const HandSnapshots all = display_.observe();
+    const std::optional<Snapshot>& now = all[content_.hand()];
     details_.observe(now);
-    rest_or_wake(now);
+    rest_or_wake(all);
     probe_.observe();
-    hints_.observe(now, content_.editor() && panel_->brush_controls().choice().on);
+    hints_.observe(all, content_.editor() && panel_->brush_controls().choice().on);
     if (now) panel_->layers_controls().show_snapshot(*now);
     if (now && rounds_ % panel_rounds == 0) {
         content_.effect().observe(*now);
@@ -324,10 +327,12 @@ void MainWindow::show_streaming() {
     streaming_->setToolTip(streaming_tip(hand, seen));
 }
 
-/// Looks less often at a hand that rests.
-void MainWindow::rest_or_wake(const std::optional<Snapshot>& now) {
+/// Looks less often at hands that rest.
+void MainWindow::rest_or_wake(const HandSnapshots& now) {
     constexpr double unseen_mm = 1e-6;
-    const bool same = now ? seen_ && looks_same(*now, *seen_, unseen_mm) : !seen_;
+    const bool same = std::ranges::equal(now, seen_, [](const auto& a, const auto& b) {
+        return a && b ? looks_same(*a, *b, unseen_mm) : !a && !b;
+    });
     at_rest_ = same && !probe_.travelling() ? at_rest_ + 1 : 0;
     if (!same) seen_ = now;
     const int wanted = at_rest_ > rounds_at_rest ? resting_frame_ms : frame_ms;

@@ -99,7 +99,7 @@ class MainWindow : public QMainWindow {
     void use(const Preferences& preferences);
     void show_readout(const Snapshot& now);
     void show_streaming();
-    void rest_or_wake(const std::optional<Snapshot>& now);
+    void rest_or_wake(const HandSnapshots& now);
 
     Content content_;
     Views* views_;
@@ -125,7 +125,7 @@ class MainWindow : public QMainWindow {
     QTimer timer_;
     bool keeps_layout_ = true;
     int rounds_ = 0, at_rest_ = 0;
-    std::optional<Snapshot> seen_;  // the last one that differed from the one before
+    HandSnapshots seen_;  // the last ones that differed from those before
 };
 
 }  // namespace palpate::viewer

@@ -134,6 +134,10 @@ void make_session_menu(MainWindow& window, Actions& actions) {
         [&window](bool on) { window.probe().set_pointing(on); },
         [&window] { return window.probe().pointing(); },
         [&window] { return window.probe().possible(); });
+    actions.add(
+        menu, "next_hand", MainWindow::tr("Settings of the &next hand"), QKeySequence("N"),
+        [&window] { window.run().choose_next_hand(); },
+        [&window] { return window.content().hands() > 1; });
     menu->addSeparator();
     const auto raise = [&effect](double percent) {
         return [&effect, percent] {

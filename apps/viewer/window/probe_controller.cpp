@@ -50,11 +50,15 @@ ProbeController::ProbeController(Content& content, RunController& run, Views& vi
         pressed_seconds_ = 0;
     });
     connect(&views, &Views::probe_released, this, [this] { held_ = false; });
+    connect(&content, &Content::run_started, this, [this] {
+        for (bool& hand : approaching_) hand = true;
+    });
     connect(&run, &RunController::device_changed, this, [this] {
         set_pointing(possible());
         end_route();
-        approaching_ = possible();
+        approaching_[content_.hand()] = true;
     });
+    connect(&content, &Content::hand_changed, this, &ProbeController::take_over);
     connect(&content, &Content::playback_started, this, [this] { set_pointing(false); });
     connect(&content, &Content::closed, this, [this] {
         end_route();
@@ -63,8 +67,20 @@ ProbeController::ProbeController(Content& content, RunController& run, Views& vi
     add_keys();
 }
 
+/// If the mouse is the device of the chosen hand, it moves that from where it is.
+void ProbeController::take_over() {
+    pointing_ = possible();
+    views_.set_hand(pointing_);
+    forget_press();
+    drop_route();
+}
+
 bool ProbeController::possible() const {
     return content_.live() && content_.live()->mouse();
+}
+
+bool ProbeController::travelling() const {
+    return (approaching_[content_.hand()] && possible()) || pressed_ || !route_.empty();
 }
 
 void ProbeController::set_pointing(bool probe) {
@@ -92,7 +108,7 @@ void ProbeController::aim(const DeviceTransform& transform, const Vec3& physical
 void ProbeController::move_by(const Vec3& by) {
     const auto now = possible() ? content_.snapshot() : std::nullopt;
     if (!now) return;
-    approaching_ = false;
+    approaching_[content_.hand()] = false;
     for (Vec3& stop : route_) stop += by;
     const Vec3 from = aimed(now->session.transform);
     aim(now->session.transform, from + before_far_side(from, by));
@@ -111,7 +127,11 @@ void ProbeController::forget_press() {
 }
 
 void ProbeController::end_route() {
-    approaching_ = false;
+    approaching_[content_.hand()] = false;
+    drop_route();
+}
+
+void ProbeController::drop_route() {
     if (route_.empty()) return;
     route_.clear();
     Q_EMIT lifted(false);
@@ -152,7 +172,7 @@ Vec3 ProbeController::before_far_side(const Vec3& from, const Vec3& by) {
 void ProbeController::touch(const Vec3& at) {
     const auto now = possible() ? content_.snapshot() : std::nullopt;
     if (!now) return;
-    approaching_ = false;
+    approaching_[content_.hand()] = false;
     const DeviceTransform& transform = now->session.transform;
     const Vec3 towards = towards_viewer(), from = aimed(transform);
     const Vec3 aside = at - from - (at - from).dot(towards) * towards;
@@ -174,7 +194,7 @@ void ProbeController::observe() {
     const auto live = possible() ? content_.snapshot() : std::nullopt;
     if (!live || live->session.device.status != DeviceStatus::ready) return;
     const Snapshot& now = *live;
-    if (approaching_) approach(now);
+    if (approaching_[content_.hand()]) approach(now);
     // A press that is neither a drag nor the first of a double click is a touch.
     if (pressed_ && since_.elapsed() > QApplication::doubleClickInterval()) {
         touch(*std::exchange(pressed_, std::nullopt));
@@ -185,7 +205,7 @@ void ProbeController::observe() {
 
 /// The first thing after a start: the probe stands just off the first surface in view.
 void ProbeController::approach(const Snapshot& now) {
-    approaching_ = false;
+    approaching_[content_.hand()] = false;
     const pictures::Camera camera = views_.scene().camera();
     const Vec3 towards = axes_of(camera).towards_viewer;
     const Field& field = content_.live()->field();

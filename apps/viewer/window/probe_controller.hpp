@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "palpate/servo.hpp"
+#include "apps/viewer/model/hands.hpp"
 
 namespace palpate::viewer {
 
@@ -43,7 +43,7 @@ class ProbeController : public QObject {
     /// Sixty times a second: goes on with what takes time.
     void observe();
     /// The probe is on its way to where it was sent.
-    bool travelling() const { return approaching_ || pressed_ || !route_.empty(); }
+    bool travelling() const;
 
   Q_SIGNALS:
     /// The hand is off the volume, on its way to where it was sent; or has arrived.
@@ -57,7 +57,9 @@ class ProbeController : public QObject {
     std::vector<Vec3> tool_points(const DeviceTransform& transform) const;
     void send_to(const DeviceTransform& transform, const Vec3& to);
     void forget_press();
+    void take_over();
     void end_route();
+    void drop_route();
     void approach(const Snapshot& now);
     void travel(const Snapshot& now);
     void press_deeper(const Snapshot& now);
@@ -67,7 +69,8 @@ class ProbeController : public QObject {
     Views& views_;
     Messages& messages_;
     bool pointing_ = false;
-    bool approaching_ = false;     // a run has begun: to the first surface, once there is a tick
+    // A run has begun: to the first surface, once there is a tick and the hand is chosen.
+    PerHand<bool> approaching_;
     std::vector<Vec3> route_;      // stops to come, the next one last [mm, physical]
     std::optional<Vec3> pressed_;  // where the button went down, until it is a touch or a drag
     QElapsedTimer since_;          // then

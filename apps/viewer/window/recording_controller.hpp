@@ -1,8 +1,12 @@
-// Records the live run.
+// Records the live run, all hands into one file.
 #pragma once
 
 #include <QObject>
 #include <QString>
+
+namespace palpate::io {
+class RecordingWriter;
+}
 
 namespace palpate::viewer {
 
@@ -18,7 +22,7 @@ class RecordingController : public QObject {
     /// Errors are shown.
     void start(const QString& path);
     void stop();
-    bool recording() const;
+    bool recording() const { return writer() != nullptr; }
     /// Ends a recording that cannot be written any more, which shows why.
     void check();
     /// 0, or the status for a program in which a recording was lost.
@@ -28,6 +32,7 @@ class RecordingController : public QObject {
     void changed();
 
   private:
+    const io::RecordingWriter* writer() const;
     void tell_playback();
 
     Content& content_;

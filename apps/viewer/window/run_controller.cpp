@@ -1,9 +1,14 @@
 // Starts runs, restores their settings, finds and changes devices.
 #include "apps/viewer/window/run_controller.hpp"
 
+#include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
+#include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/loop_view.hpp"
 #include "apps/viewer/panel/panel.hpp"
@@ -12,11 +17,33 @@
 
 namespace palpate::viewer {
 
+std::vector<run::Setup> RunRequest::setups() const {
+    std::vector<run::Setup> hands(1 + others.size(), setup);
+    for (std::size_t i = 0; i < others.size(); ++i) hands[i + 1].device = others[i];
+    return hands;
+}
+
+void RunRequest::use_devices_of(const RunRequest& other) {
+    setup.device = other.setup.device;
+    others = other.others;
+}
+
 RunController::RunController(const RunRequest& request, Content& content, Panel& panel,
                              Messages& messages)
     : request_(request), content_(content), panel_(panel), messages_(messages), search_(messages) {
     connect(&content, &Content::run_changed, this, &RunController::show_terraces);
     connect(&panel.device_controls(), &DeviceControls::chosen, this, &RunController::use_device);
+    connect(&panel.device_controls(), &DeviceControls::added, this, &RunController::add_hand);
+    connect(&panel.device_controls(), &DeviceControls::removed, this, &RunController::remove_hand);
+    connect(&panel.hand_switch(), &HandSwitch::wanted, this, &RunController::choose_hand);
+    for (const auto changed : {&Content::run_changed, &Content::playback_started,
+                               &Content::hand_changed, &Content::closed}) {
+        connect(&content, changed, this, &RunController::show_hands);
+    }
+    connect(&content, &Content::hand_changed, this, [this] {
+        show_devices();
+        reported_ticks_ = std::numeric_limits<std::int64_t>::max();  // of another servo
+    });
     connect(&panel.device_controls(), &DeviceControls::refresh_wanted, this,
             &RunController::find_devices);
     connect(&panel.isovalue_controls(), &IsovalueControls::field_wanted, this,
@@ -49,10 +76,12 @@ QString RunController::device_words() const {
     return tr("Found: %1. Choose it under Device.").arg(names.join(", "));
 }
 
-void RunController::start(std::shared_ptr<Opened> volume, const run::Setup& setup) {
-    content_.start_run(std::move(volume), setup);
-    QString words =
-        tr("Felt through the device %1").arg(QString::fromStdString(run::text_of(setup.device)));
+void RunController::start(std::shared_ptr<Opened> volume, const std::vector<run::Setup>& hands) {
+    content_.start_run(std::move(volume), hands);
+    QStringList names;
+    for (const run::Setup& hand : hands) names << QString::fromStdString(run::text_of(hand.device));
+    QString words = names.size() == 1 ? tr("Felt through the device %1").arg(names.front())
+                                      : tr("Felt through the devices %1").arg(names.join(", "));
     for (const std::string& sentence : content_.live()->privileges()) {
         words += "; " + QString::fromStdString(sentence);
     }
@@ -109,7 +138,9 @@ void RunController::use_device(const QString& option) {
     messages_.guarded([&] {
         const devices::DeviceChoice device = devices::parse_device(option.toStdString());
         if (run::Run* live = content_.live()) {
-            const std::int64_t ticks = live->recording() ? live->recording()->ticks() : 0;
+            // The recording of two goes on with the other hand.
+            const bool ends = live->recording() && content_.hands() == 1;
+            const std::int64_t ticks = ends ? live->recording()->ticks() : 0;
             content_.use_device(device);
             if (ticks > 0) {
                 messages_.show_done(tr("%n ticks recorded, up to the other device", nullptr,
@@ -117,9 +148,57 @@ void RunController::use_device(const QString& option) {
             }
             Q_EMIT device_changed();
         }
-        request_.setup.device = device;
+        const auto other = static_cast<std::size_t>(content_.hand() - 2);
+        (content_.hand() == 1 ? request_.setup.device : request_.others.at(other)) = device;
     });
     show_devices();
+}
+
+void RunController::add_hand(const QString& option) {
+    messages_.guarded([&] {
+        const devices::DeviceChoice device = devices::parse_device(option.toStdString());
+        if (!content_.live() || content_.hands() == most_hands) return;
+        content_.add_hand(device);
+        request_.others.push_back(device);
+        Q_EMIT device_changed();
+    });
+}
+
+void RunController::remove_hand() {
+    if (!content_.live() || content_.hands() == 1) return;
+    auto& others = request_.others;
+    if (content_.hand() == 1) request_.setup.device = others.front();
+    others.clear();
+    content_.remove_hand();
+}
+
+/// The brush is that of all hands: it stays as it is.
+void RunController::choose_hand(int hand) {
+    BrushControls& brush = panel_.brush_controls();
+    const BrushChoice choice = brush.choice();
+    content_.choose_hand(hand);
+    if (!choice.on) return;
+    brush.set_choice(choice);
+    Q_EMIT brush.changed(choice);
+}
+
+void RunController::choose_next_hand() {
+    if (content_.hands() < 2) return;
+    choose_hand(content_.hand() % content_.hands() + 1);
+    messages_.show_done(tr("The panel shows the settings of hand %1").arg(content_.hand()));
+}
+
+void RunController::show_hands() {
+    std::vector<HandSwitch::Hand> hands;
+    for (int hand = 1; hand <= content_.hands(); ++hand) {
+        const run::Run* live = content_.live(hand);
+        std::string device = live ? live->device().name : content_.playback(hand)->head().device;
+        device.resize(std::min(device.size(), device.find(" (")));  // without the model
+        hands.push_back({QString::fromStdString(device),
+                         QString::fromStdString(live ? live->device_problem() : std::string())});
+    }
+    panel_.hand_switch().show_hands(hands, content_.hand());
+    panel_.device_controls().set_hands(content_.hands());
 }
 
 void RunController::use_field(Solid solid, Interpolation interpolation) {
@@ -132,6 +211,7 @@ void RunController::use_field(Solid solid, Interpolation interpolation) {
 void RunController::observe(const Snapshot& now) {
     const run::Run* live = content_.live();
     if (!live) return;
+    show_hands();
     const DeviceStatus status = now.session.device.status;
     const QString problem = QString::fromStdString(live->device_problem());
     if (status == status_ && problem == problem_) return;

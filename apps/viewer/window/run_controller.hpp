@@ -19,12 +19,19 @@ class Messages;
 class Panel;
 struct Opened;
 
-/// Settings from the command line for the runs to come.
+/// Settings from the command line for the runs to come, and the devices chosen since.
 struct RunRequest {
     run::Setup setup;
-    /// The device of the command line: used instead of the one in a session file.
+    /// The device of the command line: used instead of those in a session file, with `others`.
     std::optional<devices::DeviceChoice> device;
     std::string record;  ///< recording to write; empty: none
+    /// Of the hands beside the first.
+    std::vector<devices::DeviceChoice> others = {};
+
+    /// How each hand feels.
+    std::vector<run::Setup> setups() const;
+    /// With the devices of another one.
+    void use_devices_of(const RunRequest& other);
 };
 
 class RunController : public QObject {
@@ -41,21 +48,28 @@ class RunController : public QObject {
     void set_first_isovalue(double isovalue);
     /// What find_devices() found, in a sentence.
     QString device_words() const;
-    /// The device chosen last.
-    const devices::DeviceChoice& device() const { return request_.setup.device; }
-    void set_device(const devices::DeviceChoice& device) { request_.setup.device = device; }
+    /// With the devices chosen last.
+    const RunRequest& request() const { return request_; }
+    void set_devices(const RunRequest& request) { request_.use_devices_of(request); }
     /// Feels the volume. Throws as Content::start_run.
-    void start(std::shared_ptr<Opened> volume, const run::Setup& setup);
+    void start(std::shared_ptr<Opened> volume, const std::vector<run::Setup>& hands);
 
     /// Requests those of the settings for which there are commands. Not layers that
     /// lack_labels().
     void restore(const RendererSettings& settings);
 
     void find_devices();
+    /// Of the chosen hand.
     void use_device(const QString& option);
+    /// One more, with this device. It is chosen.
+    void add_hand(const QString& option);
+    void remove_hand();
+    void choose_hand(int hand);
+    void choose_next_hand();
     void use_field(Solid solid, Interpolation interpolation);
 
-    /// Shows the device in the panel where it has changed; a few times a second.
+    /// Shows the device in the panel where it has changed, and what is wrong with any hand's; a few
+    /// times a second.
     void observe(const Snapshot& now);
     /// Shows how the servo loop has done since the last time; twice a second.
     void show_report();
@@ -66,6 +80,7 @@ class RunController : public QObject {
 
   private:
     void show_devices();
+    void show_hands();
     void show_terraces();
 
     RunRequest request_;

@@ -14,10 +14,11 @@ TimelineController::TimelineController(Content& content, Timeline& timeline, Mes
     connect(&content, &Content::closed, &timeline, &QWidget::hide);
     connect(&content, &Content::run_changed, this, &TimelineController::show);
     connect(&content, &Content::playback_started, this, [this] {
-        const Playback& playback = *content_.playback();
-        clock_ = PlaybackClock(playback.begin(), playback.end());
-        overview_ = std::make_shared<Overview>(playback.overview());
-        show();
+        clock_ = {};
+        show_hand();
+    });
+    connect(&content, &Content::hand_changed, this, [this] {
+        if (content_.playback()) show_hand();
     });
     timeline.hide();
     since_.start();
@@ -53,6 +54,18 @@ TimelineView TimelineController::view() const {
         view.overview = overview_;
     }
     return view;
+}
+
+/// The times are those of the chosen hand; the clock goes on.
+void TimelineController::show_hand() {
+    const Playback& playback = *content_.playback();
+    PlaybackClock clock(playback.begin(), playback.end());
+    clock.set_loop(clock_.loop());
+    clock.play(clock_.speed());
+    clock.seek(content_.time());
+    clock_ = clock;
+    overview_ = std::make_shared<Overview>(playback.overview());
+    show();
 }
 
 void TimelineController::show() {

@@ -30,6 +30,7 @@ class TimelineController : public QObject {
 
   private:
     void connect_timeline();
+    void show_hand();
     void show();
     TimelineView view() const;
 

@@ -157,8 +157,8 @@ void Views::clear() {
     for (SlicePane* pane : slices_) pane->clear();
 }
 
-void Views::set_pressed(const std::optional<double>& level) {
-    scene_->set_pressed(level);
+void Views::set_pressed(const std::optional<double>& level, int hand) {
+    scene_->set_pressed(level, hand);
     for (SlicePane* pane : slices_) pane->set_isovalue(level.value_or(isovalue_));
 }
 
@@ -182,13 +182,16 @@ void Views::set_overlay(const std::shared_ptr<const Overlay>& overlay) {
     for (SlicePane* pane : slices_) pane->set_overlay(overlay);
 }
 
-void Views::show_snapshot(const std::optional<Snapshot>& snapshot) {
-    scene_->show_snapshot(snapshot);
+void Views::show_snapshots(const HandSnapshots& hands, int chosen) {
+    const std::optional<Snapshot>& snapshot = hands[chosen];
     const bool placed = snapshot && snapshot->session.device.status == DeviceStatus::ready &&
                         snapshot->session.tick.proxy.scp.allFinite();
     touched_ = touched_ || (placed && snapshot->session.tick.proxy.mode == Mode::constrained);
     if (placed && follow_ && touched_) set_crosshair(snapshot->session.tick.proxy.scp);
-    for (SlicePane* pane : slices_) pane->show_snapshot(snapshot);
+    for (int hand = 1; hand <= most_hands; ++hand) {
+        scene_->show_snapshot(hands[hand], hand);
+        for (SlicePane* pane : slices_) pane->show_snapshot(hands[hand], hand);
+    }
 }
 
 void Views::set_hand(bool probe) {

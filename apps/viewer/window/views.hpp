@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/model/measurement.hpp"
@@ -41,11 +42,11 @@ class Views : public QWidget {
     /// Null: none.
     void set_overlay(const std::shared_ptr<const Overlay>& overlay);
     /// As Scene::set_pressed; the slices show the contour of that level.
-    void set_pressed(const std::optional<double>& level);
+    void set_pressed(const std::optional<double>& level, int hand);
     /// With layers: the level of the surface that is next, whose contour the slices show.
     void set_next_level(double level);
-    /// Up to 60 times a second. Nothing: no hand is shown.
-    void show_snapshot(const std::optional<Snapshot>& snapshot);
+    /// Up to 60 times a second. The crosshair follows the chosen hand.
+    void show_snapshots(const HandSnapshots& hands, int chosen);
     /// True: the left button moves the probe, where the device is the mouse.
     void set_hand(bool probe);
     /// [mm] Radius of the brush that is outlined round the proxy; 0: none.

@@ -70,6 +70,52 @@ struct Recorded {
     }
 };
 
+/// Of different levels and lengths.
+TEST(Playback, of_two_hands_has_the_snapshots_of_each) {
+    const ScratchFolder folder;
+    const auto path = folder / "two.csv";
+    const run::LoadedVolume loaded = run::load(Recorded::volume());
+    std::vector<io::RecordingHead> heads;
+    std::vector<Session> sessions;
+    for (const double level : {76.5, 90.0}) {
+        RendererSettings settings;
+        settings.method = &update_exact;
+        sessions.push_back({make_renderer(Field(loaded.volume), level, settings), {}});
+        heads.push_back(run::recording_head(sessions.back(), {}, Recorded::volume(), {}));
+    }
+    io::RecordingWriter writer(path, heads, Pace::by_steps);
+    for (int i = 0; i < 200; ++i) {
+        DeviceReading reading;
+        reading.status = DeviceStatus::ready;
+        reading.position = {14 + 8 * std::cos(6.2832e-3 * i), 0.5, 0.3};
+        for (const int hand : {1, 2}) {
+            if (hand == 2 && i >= 100) continue;
+            auto& session = sessions[static_cast<std::size_t>(hand - 1)];
+            // Sessions have clocks of their own.
+            ASSERT_TRUE(writer.queue(hand).push(advance(session, 1e-3 * i + 7 * hand, reading)));
+        }
+        writer.step();
+    }
+    for (const int hand : {1, 2}) writer.finish(0, hand);
+    double last = 0;
+    const auto both = Playback::read_hands(path, loaded, [&](double part) {
+        EXPECT_GE(part, last);
+        last = part;
+    });
+    EXPECT_EQ(last, 1);
+    ASSERT_EQ(both.size(), 2U);
+    EXPECT_EQ(both[0].ticks(), 200U);
+    EXPECT_EQ(both[1].ticks(), 100U);
+    EXPECT_EQ(both[0].begin(), 7);
+    EXPECT_EQ(both[1].begin(), 14);
+    EXPECT_EQ(both[1].head().isovalue, 90);
+    for (const Playback& one : both) {
+        EXPECT_EQ(one.different(), 0U);
+        EXPECT_EQ(one.hands(), 2);
+        EXPECT_TRUE(one.complete());
+    }
+}
+
 void expect_same(const Snapshot& shown, const SessionTick& recorded) {
     EXPECT_EQ(shown.session.tick.time, recorded.tick.time);
     EXPECT_EQ(shown.session.tick.proxy.hip, recorded.tick.proxy.hip);

@@ -122,6 +122,27 @@ TEST(SessionFile, everything_comes_back_bit_for_bit) {
     EXPECT_EQ(bytes_of(folder / "again.json"), bytes_of(folder / "s.json"));
 }
 
+TEST(SessionFile, keeps_a_second_hand) {
+    const ScratchFolder folder;
+    SessionFile before = some_session();
+    before.others.push_back({{"falcon", {{"index", "1"}}}, 2.0 / 3, before.settings});
+    before.others[0].settings->force.stiffness = 0.123;
+    write_session(folder / "s.json", before);
+    const SessionFile after = read_session(folder / "s.json");
+    expect_same(before, after);
+    ASSERT_EQ(after.others.size(), 1U);
+    EXPECT_EQ(after.others[0].device, before.others[0].device);
+    EXPECT_EQ(after.others[0].isovalue, before.others[0].isovalue);
+    EXPECT_EQ(after.others[0].settings->force.stiffness, 0.123);
+    before.others.push_back(before.others[0]);
+    EXPECT_TRUE(contains(
+        message_of<std::invalid_argument>([&] { write_session(folder / "three.json", before); }),
+        "'hands'"));
+    put_bytes(folder / "no.json", R"({"format": "palpate-session", "version": 1, "isovalue": 300,
+        "volume": {"volume": "synthetic:torus"}, "hands": [{"device": "mouse"}]})");
+    EXPECT_THROW((void)read_session(folder / "no.json"), io::InputError);
+}
+
 TEST(SessionFile, a_volume_and_a_level_are_enough) {
     const ScratchFolder folder;
     put_bytes(folder / "s.json", R"({"format": "palpate-session", "version": 1, "isovalue": 300,

@@ -111,6 +111,34 @@ TEST(DrawnScene, hand_and_proxy_are_balls_of_their_colours_at_their_places) {
     EXPECT_EQ(blob(shown.settled(), is_vermilion).count, 0);
 }
 
+TEST(DrawnScene, a_second_hand_is_drawn_in_lighter_colours_with_its_force) {
+    ShownScene shown;
+    const Field field = ball();
+    shown.scene.set_look(bare());
+    shown.scene.set_field(field, 0.9);
+    shown.scene.set_camera(from_front(field));
+    const Vec3 middle = physical_centre(field.geometry());
+    const Vec3 hip = middle + Vec3(-22, -25, 20), scp = middle + Vec3(24, -25, 17);
+    const Vec3 other_hip = middle + Vec3(-22, -25, -20), other_scp = middle + Vec3(24, -25, -17);
+    shown.scene.show_snapshot(snapshot_at(hip, scp));
+    shown.scene.show_snapshot(snapshot_at(other_hip, other_scp, Vec3(0, 0, 0.5)), 2);
+    const QImage image = shown.settled("two-hands");
+    const auto is_sky_blue = [](QRgb p) { return is_blue(p) && 4 * qRed(p) > qBlue(p); };
+    const auto is_orange = [](QRgb p) { return is_vermilion(p) && 5 * qGreen(p) > 3 * qRed(p); };
+    const auto expect_at = [&](const Blob& blob, const Vec3& at) {
+        EXPECT_NEAR(blob.x, shown.at(at).x, 3);
+        EXPECT_NEAR(blob.y, shown.at(at).y, 3);
+    };
+    expect_at(blob(image, [&](QRgb p) { return is_blue(p) && !is_sky_blue(p); }), hip);
+    expect_at(blob(image, is_sky_blue), other_hip);
+    expect_at(blob(image, is_orange), other_scp);
+    EXPECT_GT(blob(image, is_green).count, 50);
+    shown.scene.show_snapshot({}, 2);
+    const QImage alone = shown.settled();
+    EXPECT_EQ(blob(alone, is_sky_blue).count + blob(alone, is_green).count, 0);
+    EXPECT_GT(blob(alone, is_blue).count, 50);
+}
+
 TEST(DrawnScene, force_points_where_it_points_in_the_body_and_is_longer_when_stronger) {
     ShownScene shown;
     const Field field = ball();

@@ -222,6 +222,30 @@ TEST(SlicePane, hand_and_proxy_are_where_they_are_and_pale_where_they_are_off_th
     EXPECT_LT(blueness(hip), 10);
 }
 
+TEST(SlicePane, a_second_hand_has_colours_of_its_own_and_both_have_their_numbers) {
+    ShownPane shown(2, ball_on(Mat3::Identity()), 7);
+    shown.pane.set_window(-1, 0);  // all white
+    const Vec3 hip(10, 10, 0), scp(12, 14, 0), other_hip(-10, 10, 0), other_scp(-12, 14, 0);
+    const auto colour_at = [&](const Vec3& at) {
+        return QColor(shown.picture().pixel(shown.pane.pixel_of(at).toPoint()));
+    };
+    shown.pane.show_snapshot(contact_at(hip, scp, Vec3::Zero()));
+    const QImage alone = shown.picture();
+    const QColor first = colour_at(hip), proxy = colour_at(scp);
+    shown.pane.show_snapshot(contact_at(other_hip, other_scp, Vec3::Zero()), 2);
+    EXPECT_EQ(colour_at(hip), first);
+    EXPECT_EQ(colour_at(scp), proxy);
+    EXPECT_GT(colour_at(other_hip).blue() - colour_at(other_hip).red(), 90);
+    EXPECT_GT(colour_at(other_hip).lightness(), first.lightness() + 40);
+    EXPECT_GT(colour_at(other_scp).red() - colour_at(other_scp).blue(), 120);
+    EXPECT_GT(colour_at(other_scp).green(), proxy.green() + 40);
+    const QPoint beside = shown.pane.pixel_of(hip).toPoint();
+    const QRect number(beside + QPoint(4, 0), QSize(16, 16));
+    EXPECT_NE(shown.picture().copy(number), alone.copy(number));
+    shown.pane.show_snapshot({}, 2);
+    EXPECT_EQ(shown.picture(), alone);
+}
+
 TEST(SlicePane, the_force_points_where_it_points_in_space) {
     ShownPane shown(2, ball_on(mirrored()), 7);
     shown.pane.set_window(1, 2);  // all black

@@ -79,7 +79,7 @@ class Controllers : public testing::Test {
         setup.real_time = false;
         setup.field.isovalue = 100.0;
         content.start_run(std::make_shared<Opened>(open(run::source_named(volume), [](double) {})),
-                          setup);
+                          {setup});
     }
 
     QWidget parent;
@@ -154,7 +154,7 @@ TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played
     feel("synthetic:torus:24x24x12");
     EXPECT_FALSE(recordings.recording());
     EXPECT_EQ(recordings.exit_status(), 0);
-    content.start_playback(volume, Playback::read(file, volume->loaded, [](double) {}));
+    content.start_playback(volume, Playback::read_hands(file, volume->loaded, [](double) {}));
     EXPECT_TRUE(done.contains("ticks"));
     EXPECT_FALSE(timeline.isHidden());
     EXPECT_EQ(content.time(), content.playback()->begin());

@@ -78,8 +78,9 @@ class InWindow : public testing::Test {
         return setup;
     }
     void open_window(const std::string& device) { open_window(setup_with(device)); }
-    void open_window(const run::Setup& setup) {
-        window_ = std::make_unique<MainWindow>(RunRequest{setup, {}, {}}, painter_of_test());
+    void open_window(const run::Setup& setup) { open_window(RunRequest{setup, {}, {}}); }
+    void open_window(const RunRequest& request) {
+        window_ = std::make_unique<MainWindow>(request, painter_of_test());
         window_->resize(1060, 720);  // small: frames are drawn in software
         window_->show();
         activate(*window_);
