@@ -72,6 +72,12 @@ test("a Zarr 3 array in shards is read, and missing chunks have the fill value",
   assert.deepEqual(geometry.size, [6, 5, 4]);
 });
 
+test("of levels, the finest one that is not too large is read, at its place", async () => {
+  const { samples, geometry } = await open("large.zarr");
+  assert.deepEqual(samples, Int16Array.from({ length: 8 }, (_, i) => i));
+  assert.deepEqual([geometry.size, geometry.spacing, geometry.origin], [[2, 2, 2], [12288, 8192, 2], [6142.5, 4095, 0.5]]);
+});
+
 test("Zarr that the page does not read is refused with the reason", async () => {
   await assert.rejects(open("blosclz.zarr"), /blosc with blosclz/);
   await assert.rejects(readFiles([{ path: "x/zarr.json", file: new Blob(["{}"]) }]), /no Zarr array and no OME-Zarr/);
@@ -114,6 +120,9 @@ test("what was chosen and assumed is told", async () => {
   assert.match(await notes("no_slope"), /RescaleSlope is 0/);
   assert.match(await notes("holes.nrrd"), /became the least/);
   assert.match(await notes("no_unit.zarr"), /mm were taken/);
+  assert.match(await notes("packed.zarr"), /scale_factor .* add_offset .* not applied/);
+  assert.match(await notes("coarse_first.zarr"), /were sorted/);
+  assert.match(await notes("large.zarr"), /of 2 levels, 1 was taken/);
   const oriented = await Promise.all(["implicit", "ras.nrrd", "sform.nii", "turned.zarr"].map(open));
   const turnedNowhere = await Promise.all(["unplaced", "plain.nrrd", "plain.nii", "image.zarr"].map(open));
   assert.deepEqual([oriented.map((v) => v.oriented), turnedNowhere.map((v) => v.oriented)], [[true, true, true, true], [false, false, false, false]]);
