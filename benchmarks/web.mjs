@@ -9,16 +9,20 @@ const seconds = Number(process.argv[2] ?? 60);
 const times = Number(process.argv[3] ?? 10);
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const within = 700; // [ms] what happens later belongs to the next event
+const patience = 30000; // [ms] for a steady force
 
 const service = new Service();
+const reportOf = (page) => page.$eval("#report", (list) => [...list.children].map(({ textContent }) => textContent).join("  "));
+
 /** The hand has felt a force for a while. */
-async function pressed() {
-  for (;;) {
+async function pressed(page) {
+  for (const until = Date.now() + patience; Date.now() < until; ) {
     const from = Date.now();
     await sleep(300);
     const sizes = service.forces.filter(({ at }) => at >= from).map(({ size }) => size);
     if (sizes.length > 0 && Math.min(...sizes) > felt) return;
   }
+  throw new Error(`no steady force within ${patience / 1000} s; the page says: ${await page.$eval("#state", ({ textContent }) => textContent)}  ${await reportOf(page)}`);
 }
 
 /** The forces of the session as the page hears them. */
@@ -85,20 +89,20 @@ try {
   for (let i = 0; i < times; ++i) {
     await opened(async (page) => {
       await connect(page, address);
-      await pressed();
+      await pressed(page);
       if (i === 0) {
         await announces(page, /In contact/);
         await sleep(1000 * seconds);
-        console.log(await page.$eval("#report", (list) => [...list.children].map(({ textContent }) => textContent).join("  ")));
+        console.log(await reportOf(page));
         for (const [name, happen] of Object.entries(events)) {
           const all = [];
           for (let n = 0; n < times; ++n) {
-            await pressed();
+            await pressed(page);
             all.push(await happen(page));
           }
           show(name, all);
         }
-        await pressed();
+        await pressed(page);
       }
       closings.push(await closed(page));
     }, { prepare: (page) => page.evaluateOnNewDocument(listen), expected: ["WebSocket connection"] });

@@ -20,6 +20,8 @@ const headLayers = {
 };
 const speed = 90; // [device mm/s] at which the hand approaches
 const slowly = 15; // [device mm/s] while surfaces give way
+const betweenReadings = 16; // [ms]
+const betweenSlowFrames = 30; // [ms]
 
 const scene = new Scene($("scene"));
 let volume = null; // of the worker's answer `ready`
@@ -39,12 +41,16 @@ let parts = []; // of the surface that is on its way
 let shown = 0; // level of the surface
 const hand = [0, 0, far];
 
+function write(id, text) {
+  if ($(id).textContent !== text) $(id).textContent = text;
+}
+
 let toldUntil = 0;
 /** Shows a state, which stays for `least` ms or until the next action. */
 function tell(text, least = 0) {
   if (performance.now() < toldUntil && least === 0) return;
   toldUntil = performance.now() + least;
-  if ($("state").textContent !== text) $("state").textContent = text;
+  write("state", text);
 }
 
 for (const name of ["pointerdown", "keydown", "change"]) document.addEventListener(name, () => (toldUntil = 0), true);
@@ -212,32 +218,37 @@ function open(read) {
 
 const openHead = () => open(async () => ({ ...(await readAddress(headAddress)), marks: headMarks, layers: headLayers }));
 
-// The hand.
+// The hand. It is moved and read by a timer: frames come late where pictures take long to draw.
 let then = performance.now();
-function frame(now) {
+function moveHand() {
+  const now = performance.now();
   const dt = Math.min(0.1, (now - then) / 1000);
   then = now;
   moveByKeys(dt);
-  const asked = Number($("press").value);
-  $("pressText").textContent = `${asked} mm`;
   if (device !== "mouse" && snapshot && scene.transform) hand.splice(0, 3, ...scene.device(snapshot.hip));
   else if (snapshot && scene.transform) {
-    const proxy = scene.device(snapshot.scp);
-    const pull = proxy[2] - hand[2];
+    const pull = scene.device(snapshot.scp)[2] - hand[2];
     if (!pressing) hand[2] = Math.min(far, hand[2] + speed * dt);
     else if (!snapshot.constrained) hand[2] = Math.max(-far, hand[2] - speed * dt);
     else {
       const most = ($("through").checked || $("layers").checked ? slowly : speed) * dt;
-      hand[2] += Math.max(-most, Math.min(most, pull - asked));
+      hand[2] += Math.max(-most, Math.min(most, pull - Number($("press").value)));
     }
   }
   if (volume && !document.hidden) to.read(hand);
+}
+
+let drawnAt = 0;
+function frame(now) {
+  requestAnimationFrame(frame);
+  if (scene.isSlow && now - drawnAt < betweenSlowFrames) return;
+  drawnAt = now;
+  write("pressText", `${$("press").value} mm`);
   scene.draw(snapshot, hand);
   if (volume) {
     drawHistogram($("histogram"), histogram, level, marks);
     if (snapshot) drawSlices($("slices"), volume, snapshot.scp);
   }
-  requestAnimationFrame(frame);
 }
 
 const canvas = $("scene");
@@ -335,6 +346,7 @@ function setRecording(on) {
 }
 $("record").onclick = () => setRecording(!recording);
 setInterval(() => volume && to.send("report"), 1000);
+setInterval(moveHand, betweenReadings);
 requestAnimationFrame(frame);
 const address = new URLSearchParams(location.search).get("volume");
 if (address) {

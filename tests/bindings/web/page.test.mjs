@@ -56,6 +56,52 @@ test("the head is touched, pressed through, drilled and recorded", { skip, timeo
   });
 });
 
+test("the hand presses while no frame is drawn", { skip, timeout: 1500000 }, async () => {
+  await opened(async (page) => {
+    await hover(page);
+    await page.mouse.down();
+    await says(page, /In contact/);
+  }, { prepare: (page) => page.evaluateOnNewDocument(() => {
+    const real = window.requestAnimationFrame;
+    window.requestAnimationFrame = (call) => (call.name === "frame" ? 0 : real(call));
+  }) });
+});
+
+test("the surface is drawn once, and hides what is behind it", { skip, timeout: 1500000 }, async () => {
+  await opened(async (page) => {
+    const seen = await page.evaluate(async () => {
+      const { Scene } = await import("./scene.js");
+      const canvas = Object.assign(document.createElement("canvas"), { style: "width: 450px; height: 450px" });
+      document.body.append(canvas);
+      const scene = new Scene(canvas);
+      const { gl } = scene;
+      let calls = 0;
+      let triangles = 0;
+      gl.drawElements = function (kind, count, ...rest) {
+        ++calls;
+        triangles += count === 3;
+        return WebGL2RenderingContext.prototype.drawElements.call(gl, kind, count, ...rest);
+      };
+      const show = (level) => scene.show([{ vertices: Float32Array.of(-90, -90, level, 90, -90, level, 0, 90, level), normals: new Float32Array(0), triangles: Uint32Array.of(0, 1, 2) }],
+        { rotation: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], translation: [0, 0, 0], scale: 1 });
+      const besideMiddle = (z) => {
+        scene.draw({ scp: [0, 0, z], force: [0, 0, 0], constrained: true }, [20, 20, z]);
+        const pixel = new Uint8Array(4);
+        gl.readPixels(canvas.width / 2 - 3, canvas.height / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+        return pixel[1] > pixel[0] / 2 ? "surface" : "proxy";
+      };
+      show(0);
+      const first = [besideMiddle(-20), besideMiddle(20), besideMiddle(-20), triangles, gl.getError()];
+      calls = 0;
+      scene.draw({ scp: [0, 0, -20], force: [0, 0, 0], constrained: true }, [20, 20, -20]);
+      const again = calls;
+      show(-40);
+      return [...first, again, besideMiddle(-20), triangles];
+    });
+    assert.deepEqual(seen, ["surface", "proxy", "surface", 1, 0, 0, "proxy", 2]);
+  });
+});
+
 test("DICOM that is chosen and OME-Zarr at an address are opened, and what cannot be read is told", { skip, timeout: 1500000 }, async () => {
   rmSync(volumes, { recursive: true, force: true });
   mkdirSync(volumes);
