@@ -209,12 +209,14 @@ def translation(*shift):
 SCALE = {"type": "scale", "scale": [1, 2, 3]}
 LPS = ["space: LPS", "space directions: (1,0,0) (0,2,0) (0,0,3)"]
 HOLES = np.array([1, 2, np.nan, 4, np.inf, 6, -7, 8], "<f4").tobytes()
+ZSTD = bytes.fromhex("28b52ffd 24 10 810000") + EIGHT + bytes.fromhex("88494901")  # not packed, with a checksum
 FINE, COARSE, HUGE = [4, 4, 4], [2, 2, 2], [4, 8192, 8192]
 HALF = [{"type": "scale", "scale": [2, 4, 6]}, translation(0.5, 1, 1.5)]
 PART = [{"type": "scale", "scale": [2, 8192, 12288]}, translation(0.5, 4095, 6142.5)]
 EXTRA = {"extra": {"name": "x"}}
 SAME_ZARR = {
     "coarse_first": pyramid(("half", COARSE, HALF), ("whole", FINE, [SCALE])), "understood": array3(extra={"must_understand": False}),
+    "zstd_sum": array3(codecs=[BYTES, {"name": "zstd"}]) | {"c/0/0/0": ZSTD},
     "bytes": array3(data_type="uint8", codecs=[{"name": "bytes"}]) | {"c/0/0/0": EIGHT[:8]},
     "shards": shards(), "image": image3(), "inches": image3(unit="inch"), "kilometers": image3(unit="kilometer"),
     "no_unit": image3(unit=None), "packed": array2({"add_offset": 5, "scale_factor": 2}), "turned": image3(palpate={"direction": [0, 1, 0, 1, 0, 0, 0, 0, -1]}),
@@ -242,6 +244,7 @@ REFUSED_ZARR = {
     "parsec": ("parsec", image3(unit="parsec")), "um": ("'um'", image3(unit="um")), "swapped": ("translation,scale", image3([translation(1, 1, 1), SCALE])),
     "short": ("3 numbers", image3([{"type": "scale", "scale": [2, 3]}])), "negative": ("spacing", image3([{"type": "scale", "scale": [1, 1, -1]}])),
     "sheared": ("right angles", image3(palpate={"direction": [1, 0, 0, 1, 1, 0, 0, 0, 1]})), "filter": ("delta", array2(filters=[{"id": "delta"}])), "no_json": ("JSON", {"zarr.json": b"{"}),
+    "zstd_damaged": ("checksum", array3(codecs=[BYTES, {"name": "zstd"}]) | {"c/0/0/0": ZSTD.replace(EIGHT[:3], b"\0\0\2")}),
     "member": ("'extra'", array3(**EXTRA)), "member_of_group": ("'extra'", image3() | {"zarr.json": {**image3()["zarr.json"], **EXTRA}}),
     "no_endian": ("endian", array3(codecs=[{"name": "bytes"}])), "index_no_endian": ("endian", shards([{"name": "bytes"}])),
     "other_names": ("no chunk", {"zarr.json": array3()["zarr.json"], "0.0.0": EIGHT}), "no_codecs": ("damaged", array3(codecs=None)),

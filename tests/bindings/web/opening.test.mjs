@@ -207,9 +207,10 @@ test("slices are drawn by directions: any order and direction of the grid's axes
 });
 
 const cases = JSON.parse(readFileSync(join(folder, "cases.json")));
+const isReadable = (name) => zstdIsThere || !name.startsWith("zstd");
 
 test("what the page would read otherwise than the native program is refused with the reason", async () => {
-  for (const [name, word] of Object.entries(cases.refused)) {
+  for (const [name, word] of Object.entries(cases.refused).filter(([one]) => isReadable(one))) {
     await assert.rejects(open(name), ({ message }) => {
       assert.ok(message.includes(word) && /: (convert|copy|save|correct|choose|give)/.test(message), `${name}: ${message}`);
       return true;
@@ -220,7 +221,7 @@ test("what the page would read otherwise than the native program is refused with
 test("the native program reads and writes the same", { skip: !process.env.PALPATE }, async () => {
   const convert = (from, to) => execFileSync(process.env.PALPATE, ["convert", join(folder, from), join(folder, to)], { stdio: "pipe" });
   const nrrd = async (name) => readVolume(new Uint8Array(readFileSync(join(folder, name))).buffer);
-  for (const from of ["implicit", "explicit", "frames.dcm", "blosc_lz4.zarr", ...cases.same]) {
+  for (const from of ["implicit", "explicit", "frames.dcm", "blosc_lz4.zarr", ...cases.same.filter(isReadable)]) {
     convert(from, "native.nrrd");
     sameVolume(await open(from), await nrrd("native.nrrd"), from);
   }
