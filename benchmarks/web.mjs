@@ -1,8 +1,8 @@
-// Measures the page with an Inverse3 in Chromium, against the stand-in for Haply's service: how late ticks begin, and how
-// soon the force is zero when the page or the connection fails. For an idle machine.
+// Measures the page in Chromium: how soon the head can be touched, and with an Inverse3, against the stand-in for Haply's
+// service, how late ticks begin, and how soon the force is zero when the page or the connection fails. For an idle machine.
 //
 //     PALPATE_WEB=build/web/bindings/web/package node benchmarks/web.mjs [SECONDS] [TIMES]
-import { announces, opened } from "../tests/bindings/web/browser.mjs";
+import { announces, hover, opened, says } from "../tests/bindings/web/browser.mjs";
 import { Service, connect, felt } from "../tests/bindings/web/service.mjs";
 
 const seconds = Number(process.argv[2] ?? 60);
@@ -78,12 +78,24 @@ async function closed(page) {
   return Math.max(service.lastForceSince(from), service.closedAt - from);
 }
 
+async function start() {
+  await opened(async (page, site) => {
+    const sinceBegin = () => page.evaluate(() => Math.round(performance.now()));
+    const seen = await sinceBegin();
+    await hover(page);
+    await page.mouse.down();
+    await says(page, /In contact/);
+    console.log(`the head is seen after ${seen} ms and touched after ${await sinceBegin()} ms; ${(site.bytes() / 1e6).toFixed(2)} MB without it`);
+  });
+}
+
 const show = (name, list) => {
   list.sort((a, b) => a - b);
   console.log(`${name.padEnd(16)} median ${list[Math.floor(list.length / 2)]} ms, at most ${list.at(-1)} ms (${list.length} times)`);
 };
 
 try {
+  await start();
   const address = await service.listens();
   const closings = [];
   for (let i = 0; i < times; ++i) {

@@ -2,7 +2,7 @@
 // as asked for. What it does goes through Hand, what it shows comes from there.
 import { Hand } from "../hand.js";
 import { drawHistogram, drawSlices, histogramOf, rangeOf } from "./charts.js";
-import { chooseSpaceMouse, far, idleText, isService, isSimulated, sessionWith, transformFor } from "./devices.js";
+import { chooseSpaceMouse, far, forceText, idleText, isService, isSimulated, sessionWith, transformFor } from "./devices.js";
 import { Sound, contactOf, shake } from "./feedback.js";
 import { chosenFiles, droppedFiles, lastAsked, readAddress, readFiles } from "./open.js";
 import { Scene } from "./scene.js";
@@ -59,8 +59,16 @@ for (const name of ["pointerdown", "keydown", "change"]) document.addEventListen
 const say = (text) => ($("said").textContent = text);
 let touching = false;
 
-/** An error, which stays until the next action. */
+/** In the list of volumes: one of its own, or another by its name. */
+function showName() {
+  $("own").hidden = opened.listed !== undefined;
+  $("own").textContent = opened.name;
+  $("volume").value = opened.listed ?? "own";
+}
+
+/** An error, which stays until the next action. The volume stays, too. */
 function complain(error) {
+  if (volume) showName();
   tell(`Error: ${error}`, Infinity);
   say(`Error: ${error}`);
 }
@@ -68,14 +76,17 @@ function complain(error) {
 const to = new Hand({
   ready({ about, ...made }) {
     if (connecting) toldUntil = 0;
-    if (about.device !== device) say(about.device === "mouse" ? "The mouse moves the hand" : "Connected");
+    if (about.device === device) say(`${about.name} is open`);
+    else say(about.device === "mouse" ? "The mouse moves the hand" : "Connected");
     opened = about;
+    showName();
     device = about.device;
     connecting = false;
     $("notes").textContent = (opened.notes ?? []).join("; ");
     $("layersLabel").hidden = !opened.layers;
     volume = { ...made, oriented: opened.oriented, number: (volume?.number ?? 0) + 1 };
     snapshot = null;
+    touching = false;
     showDevices();
     showAll(made.settings);
     scene.clear();
@@ -92,9 +103,8 @@ const to = new Hand({
     snapshot = now;
     if (Number.isFinite(now.isovalue) && $("through").checked) level = now.isovalue;
     if (volume && Math.abs(level - shown) > 0.03 * (volume.maximum - volume.minimum)) remesh(); // pressed through
-    const pull = Math.hypot(...now.force);
     if (now.constrained !== touching) say((touching = now.constrained) ? "In contact" : "No contact");
-    tell(now.constrained ? `In contact: ${pull.toFixed(1)} N at level ${now.isovalue.toFixed(0)}` : pressing ? "Approaching ..." : idleText(device));
+    tell(now.constrained ? `In contact: ${forceText(now)} at level ${now.isovalue.toFixed(0)}` : pressing ? "Approaching ..." : idleText(device));
   },
   surface(part) {
     parts.push(part);
@@ -216,7 +226,7 @@ function open(read) {
   beginLast(read);
 }
 
-const openHead = () => open(async () => ({ ...(await readAddress(headAddress)), marks: headMarks, layers: headLayers }));
+const openHead = () => open(async () => ({ ...(await readAddress(headAddress)), marks: headMarks, layers: headLayers, listed: "head" }));
 
 // The hand. It is moved and read by a timer: frames come late where pictures take long to draw.
 let then = performance.now();
@@ -228,7 +238,7 @@ function moveHand() {
   if (device !== "mouse" && snapshot && scene.transform) hand.splice(0, 3, ...scene.device(snapshot.hip));
   else if (snapshot && scene.transform) {
     const pull = scene.device(snapshot.scp)[2] - hand[2];
-    if (!pressing) hand[2] = Math.min(far, hand[2] + speed * dt);
+    if (!pressing) rest(dt);
     else if (!snapshot.constrained) hand[2] = Math.max(-far, hand[2] - speed * dt);
     else {
       const most = ($("through").checked || $("layers").checked ? slowly : speed) * dt;
@@ -236,6 +246,15 @@ function moveHand() {
     }
   }
   if (volume && !document.hidden) to.read(hand);
+}
+
+let lifted = false;
+/** Goes back in front of the volume, and leaves whatever still holds the proxy, such as a closed shell. */
+function rest(dt) {
+  hand[2] = Math.min(far, hand[2] + speed * dt);
+  const isHeld = hand[2] === far && snapshot.constrained;
+  if (isHeld && !lifted) to.command("lift");
+  lifted = isHeld;
 }
 
 let drawnAt = 0;
@@ -296,7 +315,7 @@ function moveByKeys(dt) {
 }
 
 // The panel.
-$("volume").onchange = ({ target: { value } }) => (value === "head" ? openHead() : open(async () => ({ scene: value, name: value })));
+$("volume").onchange = ({ target: { value } }) => (value === "head" ? openHead() : open(async () => ({ scene: value, name: value, listed: value })));
 for (const id of ["file", "folder"]) $(id).onchange = ({ target }) => target.files.length > 0 && open(() => readFiles(chosenFiles(target.files)));
 $("remote").onsubmit = (event) => {
   event.preventDefault();

@@ -289,7 +289,7 @@ async function read(get, path, notes) {
     return read(get, `${path}0/`, ["of the series in it, 0 was taken"]);
   }
   const image = root.array ? null : metadata.multiscales?.[0];
-  if (!root.array && !image) refuse("this is no Zarr array and no OME-Zarr", "choose the folder that has one");
+  if (!root.array && !image) refuse("this is no Zarr array and no OME-Zarr", "choose the folder that has one, or a file named .nrrd, .nii, .nii.gz or .dcm");
   if (image && metadata.multiscales.length > 1) notes.push(`of ${metadata.multiscales.length} images in it, the first was taken`);
   const names = image ? namesOfImage(image) : namesOfArray(root);
   const ours = (image && root.attributes.palpate) || {}; // written by `palpate convert`: columns
