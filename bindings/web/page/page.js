@@ -150,6 +150,7 @@ function respond(contact) {
 
 /** Which device holds the hand, on the buttons that connect and disconnect. */
 function showDevices() {
+  $("lift").hidden = device === "mouse"; // which lifts itself
   for (const [id, is, name] of [["connect", isService, "the Inverse3"], ["puck", (one) => one === "spacenav", "the SpaceMouse"], ["simulate", isSimulated, "the simulated hand"]]) {
     $(id).disabled = false;
     $(id).classList.toggle("on", is(device));
@@ -357,6 +358,7 @@ $("sound").onclick = ({ target }) => {
 addEventListener("gamepadconnected", () => ($("shakesLabel").hidden = false));
 $("undo").onclick = () => to.send("undo");
 $("redo").onclick = () => to.send("redo");
+$("lift").onclick = () => to.command("lift");
 function setRecording(on) {
   recording = on;
   $("record").setAttribute("aria-pressed", String(on));
