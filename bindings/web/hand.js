@@ -20,7 +20,7 @@ export class Hand {
       if (last) hear.snapshot?.(withoutForce(last));
       hear.error?.(endedBy(message ?? "its worker could not be loaded", "Load the page again"));
     };
-    // A page that is hidden draws no frames, so nothing would be read; the force need not wait until that is stale.
+    // A page that is hidden reads nothing; the force need not wait until that is stale.
     document.addEventListener("visibilitychange", () => document.hidden && this.send("lose", null));
   }
   send(name, argument = null, transfer = []) {

@@ -59,7 +59,7 @@ class PageDevice : public Device {
 
   private:
     static constexpr double clock_tolerance = 0.005;  // [s]
-    static constexpr double longest_silence = 0.08;   // [s] of a page that draws frames
+    static constexpr double longest_silence = 0.08;   // [s] of a page that is not blocked
 
     DeviceInfo info_;
     std::unique_ptr<Device> native_;

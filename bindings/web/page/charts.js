@@ -88,10 +88,13 @@ export function viewsOf({ direction, oriented }) {
 /** The samples of a view through a place of the grid, row by row from above. */
 export function sliceOf({ size, samples }, { u, v, fixed, flipU, flipV }, at) {
   const stride = [1, size[0], size[0] * size[1]];
-  return Float32Array.from({ length: size[u] * size[v] }, (_, i) => {
-    const [x, y] = [i % size[u], Math.floor(i / size[u])];
-    return samples[(flipU ? size[u] - 1 - x : x) * stride[u] + (flipV ? size[v] - 1 - y : y) * stride[v] + at[fixed] * stride[fixed]];
-  });
+  const [right, down] = [flipU ? -stride[u] : stride[u], flipV ? -stride[v] : stride[v]];
+  const slice = new Float32Array(size[u] * size[v]);
+  const begin = at[fixed] * stride[fixed] + (flipU ? size[u] - 1 : 0) * stride[u] + (flipV ? size[v] - 1 : 0) * stride[v];
+  for (let y = 0, to = 0; y < size[v]; ++y) {
+    for (let x = 0, from = begin + y * down; x < size[u]; ++x, from += right) slice[to++] = samples[from];
+  }
+  return slice;
 }
 
 export function drawSlices(canvas, volume, scp) {
@@ -111,7 +114,10 @@ export function drawSlices(canvas, volume, scp) {
   viewsOf(volume).forEach((view, slice) => {
     const { u, v, flipU, flipV, letters } = view;
     const image = context.createImageData(size[u], size[v]);
-    sliceOf(volume, view, at).forEach((value, i) => image.data.fill((255 * (value - minimum)) / (maximum - minimum), 4 * i, 4 * i + 3).fill(255, 4 * i + 3, 4 * i + 4));
+    sliceOf(volume, view, at).forEach((value, i) => {
+      image.data[4 * i] = image.data[4 * i + 1] = image.data[4 * i + 2] = (255 * (value - minimum)) / (maximum - minimum);
+      image.data[4 * i + 3] = 255;
+    });
     const tile = new OffscreenCanvas(size[u], size[v]);
     tile.getContext("2d").putImageData(image, 0, 0);
     const [wide, tall] = [u, v].map((a) => ((side - 2 * margin) * size[a] * spacing[a]) / longest);

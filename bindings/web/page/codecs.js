@@ -4,11 +4,45 @@ import { inflated, refuse } from "./files.js";
 const damaged = (what) => refuse(what, "copy or download it again");
 const bounded = (size, most) => (size <= most ? size : damaged(`a chunk unpacks to ${size} bytes, more than its array has in one`));
 
+const primes = [0x9e3779b185ebca87n, 0xc2b2ae3d27d4eb4fn, 0x165667b19e3779f9n, 0x85ebca77c2b2ae63n, 0x27d4eb2f165667c5n];
+const whole = (x) => BigInt.asUintN(64, x);
+const turned = (x, bits) => whole(x << bits) | (x >> (64n - bits));
+const mixed = (sum, lane) => whole(turned(whole(sum + lane * primes[1]), 31n) * primes[0]);
+
+/** The lower half of XXH64 with the seed 0 (https://github.com/Cyan4973/xxHash). */
+export function xxh64(bytes) {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  let at = 0;
+  let sum = primes[4];
+  if (bytes.length >= 32) {
+    let [a, b, c, d] = [whole(primes[0] + primes[1]), primes[1], 0n, whole(-primes[0])];
+    for (; at + 32 <= bytes.length; at += 32) {
+      a = mixed(a, view.getBigUint64(at, true));
+      b = mixed(b, view.getBigUint64(at + 8, true));
+      c = mixed(c, view.getBigUint64(at + 16, true));
+      d = mixed(d, view.getBigUint64(at + 24, true));
+    }
+    sum = whole(turned(a, 1n) + turned(b, 7n) + turned(c, 12n) + turned(d, 18n));
+    for (const lane of [a, b, c, d]) sum = whole((sum ^ mixed(0n, lane)) * primes[0] + primes[3]);
+  }
+  sum = whole(sum + BigInt(bytes.length));
+  for (; at + 8 <= bytes.length; at += 8) sum = whole(turned(sum ^ mixed(0n, view.getBigUint64(at, true)), 27n) * primes[0] + primes[3]);
+  for (; at + 4 <= bytes.length; at += 4) sum = whole(turned(sum ^ whole(BigInt(view.getUint32(at, true)) * primes[0]), 23n) * primes[1] + primes[2]);
+  for (; at < bytes.length; ++at) sum = whole(turned(sum ^ whole(BigInt(bytes[at]) * primes[4]), 11n) * primes[0]);
+  sum = whole((sum ^ (sum >> 33n)) * primes[1]);
+  sum = whole((sum ^ (sum >> 29n)) * primes[2]);
+  return Number((sum ^ (sum >> 32n)) & 0xffffffffn);
+}
+
+/** fzstd does not look at the checksum, which is there if the frame says so (RFC 8878). */
 async function zstd(bytes) {
   const { decompress } = await import("./fzstd.js").catch(() => {
     throw new Error("fzstd.js, which unpacks zstd, is not beside this page");
   });
-  return decompress(bytes);
+  const data = decompress(bytes);
+  const hasSum = bytes[4] & 4;
+  if (hasSum && new DataView(bytes.buffer, bytes.byteOffset).getUint32(bytes.length - 4, true) !== xxh64(data)) damaged("the checksum (zstd) of a chunk is not that of its bytes");
+  return data;
 }
 
 /** A block of lz4, which has `size` bytes unpacked. */

@@ -39,6 +39,10 @@ export function idleText(device) {
   return device === "mouse" ? "Move, and press to touch" : "Move the device to touch";
 }
 
+const waits = 64; // the bit of ForceFlag in palpate/force.hpp
+/** The size of a snapshot's force, and what it waits for. */
+export const forceText = ({ flags, force }) => `${Math.hypot(...force).toFixed(1)} N${flags & waits ? " until the hand is lifted," : ""}`;
+
 /** Lets the visitor choose a SpaceMouse. False if none was chosen. */
 export async function chooseSpaceMouse(report, unplugged) {
   const filters = [{ vendorId: 0x256f }, { vendorId: 0x046d, usagePage: 1, usage: 8 }]; // 3Dconnexion, Logitech

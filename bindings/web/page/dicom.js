@@ -308,7 +308,7 @@ export async function readDicom(files) {
       throw new Error(`${name}: ${error instanceof RangeError ? `it is cut off or damaged: ${again}` : error.message}`);
     }
   }
-  if (frames.length === 0) refuse("none of these files is DICOM with pixels", "choose others");
+  if (frames.length === 0) refuse("none of these files is NRRD, NIfTI-1, or DICOM with pixels");
   oneSeries(frames);
   const { slices, directions, gap } = stacked(frames, notes);
   const { rows, columns, spacing = [1, 1], orientation, position: place, modality, label } = slices[0];

@@ -2,7 +2,7 @@
 // as asked for. What it does goes through Hand, what it shows comes from there.
 import { Hand } from "../hand.js";
 import { drawHistogram, drawSlices, histogramOf, rangeOf } from "./charts.js";
-import { chooseSpaceMouse, far, idleText, isService, isSimulated, sessionWith, transformFor } from "./devices.js";
+import { chooseSpaceMouse, far, forceText, idleText, isService, isSimulated, sessionWith, transformFor } from "./devices.js";
 import { Sound, contactOf, shake } from "./feedback.js";
 import { chosenFiles, droppedFiles, lastAsked, readAddress, readFiles } from "./open.js";
 import { Scene } from "./scene.js";
@@ -20,6 +20,8 @@ const headLayers = {
 };
 const speed = 90; // [device mm/s] at which the hand approaches
 const slowly = 15; // [device mm/s] while surfaces give way
+const betweenReadings = 16; // [ms]
+const betweenSlowFrames = 30; // [ms]
 
 const scene = new Scene($("scene"));
 let volume = null; // of the worker's answer `ready`
@@ -39,12 +41,16 @@ let parts = []; // of the surface that is on its way
 let shown = 0; // level of the surface
 const hand = [0, 0, far];
 
+function write(id, text) {
+  if ($(id).textContent !== text) $(id).textContent = text;
+}
+
 let toldUntil = 0;
 /** Shows a state, which stays for `least` ms or until the next action. */
 function tell(text, least = 0) {
   if (performance.now() < toldUntil && least === 0) return;
   toldUntil = performance.now() + least;
-  if ($("state").textContent !== text) $("state").textContent = text;
+  write("state", text);
 }
 
 for (const name of ["pointerdown", "keydown", "change"]) document.addEventListener(name, () => (toldUntil = 0), true);
@@ -53,8 +59,16 @@ for (const name of ["pointerdown", "keydown", "change"]) document.addEventListen
 const say = (text) => ($("said").textContent = text);
 let touching = false;
 
-/** An error, which stays until the next action. */
+/** In the list of volumes: one of its own, or another by its name. */
+function showName() {
+  $("own").hidden = opened.listed !== undefined;
+  $("own").textContent = opened.name;
+  $("volume").value = opened.listed ?? "own";
+}
+
+/** An error, which stays until the next action. The volume stays, too. */
 function complain(error) {
+  if (volume) showName();
   tell(`Error: ${error}`, Infinity);
   say(`Error: ${error}`);
 }
@@ -62,14 +76,17 @@ function complain(error) {
 const to = new Hand({
   ready({ about, ...made }) {
     if (connecting) toldUntil = 0;
-    if (about.device !== device) say(about.device === "mouse" ? "The mouse moves the hand" : "Connected");
+    if (about.device === device) say(`${about.name} is open`);
+    else say(about.device === "mouse" ? "The mouse moves the hand" : "Connected");
     opened = about;
+    showName();
     device = about.device;
     connecting = false;
     $("notes").textContent = (opened.notes ?? []).join("; ");
     $("layersLabel").hidden = !opened.layers;
     volume = { ...made, oriented: opened.oriented, number: (volume?.number ?? 0) + 1 };
     snapshot = null;
+    touching = false;
     showDevices();
     showAll(made.settings);
     scene.clear();
@@ -86,9 +103,8 @@ const to = new Hand({
     snapshot = now;
     if (Number.isFinite(now.isovalue) && $("through").checked) level = now.isovalue;
     if (volume && Math.abs(level - shown) > 0.03 * (volume.maximum - volume.minimum)) remesh(); // pressed through
-    const pull = Math.hypot(...now.force);
     if (now.constrained !== touching) say((touching = now.constrained) ? "In contact" : "No contact");
-    tell(now.constrained ? `In contact: ${pull.toFixed(1)} N at level ${now.isovalue.toFixed(0)}` : pressing ? "Approaching ..." : idleText(device));
+    tell(now.constrained ? `In contact: ${forceText(now)} at level ${now.isovalue.toFixed(0)}` : pressing ? "Approaching ..." : idleText(device));
   },
   surface(part) {
     parts.push(part);
@@ -134,6 +150,7 @@ function respond(contact) {
 
 /** Which device holds the hand, on the buttons that connect and disconnect. */
 function showDevices() {
+  $("lift").hidden = device === "mouse"; // which lifts itself
   for (const [id, is, name] of [["connect", isService, "the Inverse3"], ["puck", (one) => one === "spacenav", "the SpaceMouse"], ["simulate", isSimulated, "the simulated hand"]]) {
     $(id).disabled = false;
     $(id).classList.toggle("on", is(device));
@@ -210,34 +227,48 @@ function open(read) {
   beginLast(read);
 }
 
-const openHead = () => open(async () => ({ ...(await readAddress(headAddress)), marks: headMarks, layers: headLayers }));
+const openHead = () => open(async () => ({ ...(await readAddress(headAddress)), marks: headMarks, layers: headLayers, listed: "head" }));
 
-// The hand.
+// The hand. It is moved and read by a timer: frames come late where pictures take long to draw.
 let then = performance.now();
-function frame(now) {
+function moveHand() {
+  const now = performance.now();
   const dt = Math.min(0.1, (now - then) / 1000);
   then = now;
   moveByKeys(dt);
-  const asked = Number($("press").value);
-  $("pressText").textContent = `${asked} mm`;
   if (device !== "mouse" && snapshot && scene.transform) hand.splice(0, 3, ...scene.device(snapshot.hip));
   else if (snapshot && scene.transform) {
-    const proxy = scene.device(snapshot.scp);
-    const pull = proxy[2] - hand[2];
-    if (!pressing) hand[2] = Math.min(far, hand[2] + speed * dt);
+    const pull = scene.device(snapshot.scp)[2] - hand[2];
+    if (!pressing) rest(dt);
     else if (!snapshot.constrained) hand[2] = Math.max(-far, hand[2] - speed * dt);
     else {
       const most = ($("through").checked || $("layers").checked ? slowly : speed) * dt;
-      hand[2] += Math.max(-most, Math.min(most, pull - asked));
+      hand[2] += Math.max(-most, Math.min(most, pull - Number($("press").value)));
     }
   }
   if (volume && !document.hidden) to.read(hand);
+}
+
+let lifted = false;
+/** Goes back in front of the volume, and leaves whatever still holds the proxy, such as a closed shell. */
+function rest(dt) {
+  hand[2] = Math.min(far, hand[2] + speed * dt);
+  const isHeld = hand[2] === far && snapshot.constrained;
+  if (isHeld && !lifted) to.command("lift");
+  lifted = isHeld;
+}
+
+let drawnAt = 0;
+function frame(now) {
+  requestAnimationFrame(frame);
+  if (scene.isSlow && now - drawnAt < betweenSlowFrames) return;
+  drawnAt = now;
+  write("pressText", `${$("press").value} mm`);
   scene.draw(snapshot, hand);
   if (volume) {
     drawHistogram($("histogram"), histogram, level, marks);
     if (snapshot) drawSlices($("slices"), volume, snapshot.scp);
   }
-  requestAnimationFrame(frame);
 }
 
 const canvas = $("scene");
@@ -285,7 +316,7 @@ function moveByKeys(dt) {
 }
 
 // The panel.
-$("volume").onchange = ({ target: { value } }) => (value === "head" ? openHead() : open(async () => ({ scene: value, name: value })));
+$("volume").onchange = ({ target: { value } }) => (value === "head" ? openHead() : open(async () => ({ scene: value, name: value, listed: value })));
 for (const id of ["file", "folder"]) $(id).onchange = ({ target }) => target.files.length > 0 && open(() => readFiles(chosenFiles(target.files)));
 $("remote").onsubmit = (event) => {
   event.preventDefault();
@@ -327,6 +358,7 @@ $("sound").onclick = ({ target }) => {
 addEventListener("gamepadconnected", () => ($("shakesLabel").hidden = false));
 $("undo").onclick = () => to.send("undo");
 $("redo").onclick = () => to.send("redo");
+$("lift").onclick = () => to.command("lift");
 function setRecording(on) {
   recording = on;
   $("record").setAttribute("aria-pressed", String(on));
@@ -335,6 +367,7 @@ function setRecording(on) {
 }
 $("record").onclick = () => setRecording(!recording);
 setInterval(() => volume && to.send("report"), 1000);
+setInterval(moveHand, betweenReadings);
 requestAnimationFrame(frame);
 const address = new URLSearchParams(location.search).get("volume");
 if (address) {

@@ -6,10 +6,7 @@ import { countOf, finite, geometryOf, refuse, samplesOf } from "./files.js";
 
 const mostSamples = 2 ** 25; // finer levels are left out
 const millimetres = { "": 1, angstrom: 1e-7, foot: 304.8, inch: 25.4, mile: 1609344, yard: 914.4 };
-const prefixes = {
-  yocto: -24, zepto: -21, atto: -18, femto: -15, pico: -12, nano: -9, micro: -6, milli: -3, centi: -2, deci: -1, "": 0,
-  hecto: 2, kilo: 3, mega: 6, giga: 9, tera: 12, peta: 15, exa: 18, zetta: 21, yotta: 24,
-};
+const prefixes = { atto: -18, femto: -15, pico: -12, nano: -9, micro: -6, milli: -3, centi: -2, deci: -1, "": 0, deca: 1, hecto: 2, kilo: 3 };
 for (const [prefix, power] of Object.entries(prefixes)) millimetres[`${prefix}meter`] = Number(`1e${power + 3}`);
 const typesOfZarr2 = { u1: "uint8", i1: "int8", u2: "uint16", i2: "int16", u4: "uint32", i4: "int32", f4: "float32", f8: "float64" };
 const widths = { uint8: 1, int8: 1, uint16: 2, int16: 2, uint32: 4, int32: 4, float32: 4, float64: 8 };
@@ -23,9 +20,20 @@ async function json(get, path) {
   }
 }
 
+const membersOfZarr3 = [
+  "zarr_format", "node_type", "shape", "data_type", "chunk_grid", "fill_value", "codecs", "attributes", "chunk_key_encoding",
+  "storage_transformers", "dimension_names", "consolidated_metadata",
+];
+/** Others have to be understood if they do not say otherwise. */
+function checkMembers(whole) {
+  const unknown = Object.keys(whole).find((name) => !membersOfZarr3.includes(name) && whole[name]?.must_understand !== false);
+  if (unknown !== undefined) refuse(`the member '${unknown}' of this Zarr is not known, and has to be understood`);
+}
+
 /** Metadata of a group or an array: Zarr 3, else Zarr 2. */
 async function node(get, path) {
   const whole = await json(get, `${path}zarr.json`);
+  if (whole) checkMembers(whole);
   if (whole) return { array: whole.node_type === "array" ? described3(whole) : null, attributes: whole.attributes ?? {} };
   const [array, attributes] = await Promise.all([json(get, `${path}.zarray`), json(get, `${path}.zattrs`)]);
   return { array: array && described2(array), attributes: attributes ?? {} };
@@ -76,9 +84,9 @@ function described3(whole) {
 
 const product = (list) => list.reduce((all, n) => all * n, 1);
 
-/** True for big-endian samples. */
-function isBig({ configuration }) {
-  const endian = configuration?.endian ?? "little";
+/** True for big-endian numbers of so many bytes. The order of one has no name. */
+function isBig({ configuration }, width) {
+  const endian = configuration?.endian ?? (width === 1 ? "little" : "(not given)");
   if (endian !== "little" && endian !== "big") refuse(`the endian '${endian}' of this Zarr is not read`);
   return endian === "big";
 }
@@ -98,7 +106,7 @@ async function unpacked(bytes, codecs, shape, type) {
   let data = bytes;
   for (const { name } of packers.reverse()) data = await codecNamed(name)(data, size + 64); // checksums
   if (data.length !== size) refuse(`a chunk of this Zarr has ${data.length} bytes in place of ${size}`, "copy or download it again");
-  const samples = samplesOf(data, type, isBig(serializer), product(shape));
+  const samples = samplesOf(data, type, isBig(serializer, widths[type]), product(shape));
   const strides = [];
   order.reduceRight((stride, axis) => {
     strides[axis] = stride;
@@ -120,7 +128,7 @@ function placeOf(number, counts) {
 /** Where the chunks of a shard lie in it. */
 function indexOf(bytes, { index_codecs: codecs, index_location: location = "end" }, entries) {
   const names = (codecs ?? []).map(({ name }) => name).join();
-  if ((names !== "bytes" && names !== "bytes,crc32c") || isBig(codecs[0])) refuse(`shards with an index in ${names} (big-endian or packed) are not read in the browser`);
+  if ((names !== "bytes" && names !== "bytes,crc32c") || isBig(codecs[0], 8)) refuse(`shards with an index in ${names} (big-endian or packed) are not read in the browser`);
   if (location !== "start" && location !== "end") refuse(`shards with an index at '${location}' are not read`);
   const size = 16 * entries + (names === "bytes" ? 0 : 4);
   if (bytes.length < size) refuse("a shard of this Zarr is shorter than its index", "copy or download it again");
@@ -168,15 +176,20 @@ async function readArray(get, path, array, space, notes) {
   };
   const counts = array.shape.map((n, axis) => (space.includes(axis) ? Math.ceil(n / array.chunks[axis]) : 1));
   let next = 0;
+  let found = 0;
   const work = async () => {
     while (next < product(counts)) {
       const at = placeOf(next++, counts);
       const bytes = await get(path + array.key(at), false);
-      if (bytes) await eachChunk(bytes, array, at, space, place);
+      if (!bytes) continue;
+      ++found;
+      await eachChunk(bytes, array, at, space, place);
     }
   };
   await Promise.all(Array.from({ length: 8 }, work));
-  return { size, samples: finite(out, notes) };
+  // They may have other names than the metadata say, which the native program finds out.
+  if (found === 0) refuse(`this Zarr has no chunk that is named ${path + array.key(array.shape.map(() => 0))}, or alike`);
+  return finite(out, notes);
 }
 
 /** Where x, y and z are among axes named t, c, z, y and x. */
@@ -195,7 +208,8 @@ function namesOfArray({ array, attributes }) {
 }
 
 /** A scale, and a translation after it. */
-function transformed(list, count) {
+function transformed({ coordinateTransformations: list = [] }, count) {
+  if (!Array.isArray(list)) refuse("the transformations of this OME-Zarr are no list");
   const steps = list.filter(({ type }) => type !== "identity");
   const kinds = steps.map(({ type }) => type).join();
   if (!["", "scale", "translation", "scale,translation"].includes(kinds)) refuse(`the transformations '${kinds}' of this OME-Zarr are not read`);
@@ -214,42 +228,90 @@ function unitOf({ unit = "" }, notes) {
   return Object.hasOwn(millimetres, unit) ? millimetres[unit] : refuse(`the unit of length '${unit}' is not read`);
 }
 
-/** Samples, geometry, whether it is that of a body, and notes on what was chosen and assumed. */
-export async function readZarr(get, path = "", notes = []) {
+/** Where a level lies. */
+function geometryOfLevel({ level, array, space }, image, columns, notes) {
+  const size = space.map((axis) => array.shape[axis] ?? 1);
+  const [inner, outer] = [level, image ?? {}].map((one) => transformed(one, array.shape.length));
+  const unit = space.map((axis) => (image && axis !== undefined ? unitOf(image.axes?.[axis] ?? {}, notes) : 1));
+  const spacing = space.map((axis, a) => (axis === undefined ? 1 : inner.scale[axis] * outer.scale[axis] * unit[a]));
+  const origin = space.map((axis, a) => (axis === undefined ? 0 : (outer.scale[axis] * inner.shift[axis] + outer.shift[axis]) * unit[a]));
+  if (!spacing.every((s) => s > 0)) refuse(`the scale of this OME-Zarr gives a spacing of ${spacing.join(" x ")} mm`);
+  const axes = spacing.map((s, a) => columns.slice(3 * a, 3 * a + 3).map((x) => x * s));
+  return { ...geometryOf(size, axes, origin), spacing };
+}
+
+/** True if a level is as large as the finest one, and lies there. Sizes are rounded either way, and scales to some digits. */
+function agree(level, finest) {
+  const extent = ({ size, spacing }) => size.map((n, a) => n * spacing[a]);
+  const [whole, given] = [finest, level].map(extent);
+  const apart = level.origin.map((x, row) => x - finest.origin[row]);
+  return [0, 1, 2].every((a) => {
+    const most = 1.001 * Math.max(level.spacing[a], finest.spacing[a], whole[a] / 100);
+    const along = [0, 1, 2].reduce((sum, row) => sum + finest.direction[3 * row + a] * apart[row], 0);
+    const corner = along - (level.spacing[a] - finest.spacing[a]) / 2;
+    return Math.abs(given[a] - whole[a]) <= most && Math.abs(corner) <= most;
+  });
+}
+
+/** The levels of an image, or the array alone, from fine to coarse. */
+async function levelsOf(get, path, { array: alone }, image, names, notes) {
+  const listed = await Promise.all((image?.datasets ?? [{ path: "" }]).map(async (level) => {
+    const below = path + (level.path ? `${level.path}/` : "");
+    const array = image ? (await node(get, below)).array : alone;
+    if (!array) refuse(`level ${level.path} of this OME-Zarr is missing`, "copy or download it again");
+    return { level, below, array, space: spaceOf(names, array.shape.length) };
+  }));
+  if (listed.some(({ array }) => array.type !== listed[0].array.type)) refuse("the levels of this OME-Zarr have different types");
+  const levels = [...listed].sort((one, other) => product(other.array.shape) - product(one.array.shape));
+  if (levels.some((one, i) => one !== listed[i])) notes.push("its levels were not listed from fine to coarse: they were sorted");
+  return levels;
+}
+
+/** The finest level of at most `mostSamples`, and its geometry. */
+function chosenOf(levels, image, columns, notes) {
+  const isSmall = ({ array, space }) => product(space.map((axis) => array.shape[axis] ?? 1)) <= mostSamples;
+  const [finest] = levels;
+  const isScaled = levels.some(({ level }) => level.coordinateTransformations?.some(({ type }) => type === "scale"));
+  if (!isSmall(finest) && levels.length > 1 && !isScaled) refuse("this OME-Zarr does not tell the scales of its levels, and the finest is too large");
+  const placed = levels.map((one) => ({ ...one, geometry: geometryOfLevel(one, image, columns, notes) }));
+  const agreeing = placed.filter(({ geometry }) => agree(geometry, placed[0].geometry));
+  const chosen = agreeing.find(isSmall) ?? agreeing.at(-1);
+  const number = placed.indexOf(chosen);
+  if (number > 0) notes.push(`of ${levels.length} levels, ${number} was taken: finer ones are too large`);
+  if (number > 0 && agreeing.length < levels.length) notes.push("levels were left out: by their scale or translation they are not where the finest is");
+  return chosen;
+}
+
+async function read(get, path, notes) {
   const root = await node(get, path);
   const metadata = root.attributes.ome ?? root.attributes;
   if (!root.array && metadata["bioformats2raw.layout"] !== undefined && !metadata.multiscales) {
-    return readZarr(get, `${path}0/`, ["of the series in it, 0 was taken"]);
+    return read(get, `${path}0/`, ["of the series in it, 0 was taken"]);
   }
   const image = root.array ? null : metadata.multiscales?.[0];
-  if (!root.array && !image) refuse("this is no Zarr array and no OME-Zarr", "choose the folder that has one");
-  const levels = image ? image.datasets : [{ path: "" }];
+  if (!root.array && !image) refuse("this is no Zarr array and no OME-Zarr", "choose the folder that has one, or a file named .nrrd, .nii, .nii.gz or .dcm");
+  if (image && metadata.multiscales.length > 1) notes.push(`of ${metadata.multiscales.length} images in it, the first was taken`);
   const names = image ? namesOfImage(image) : namesOfArray(root);
-  let chosen = null;
-  for (const level of levels) {
-    const below = path + (level.path ? `${level.path}/` : "");
-    const array = image ? (await node(get, below)).array : root.array;
-    if (!array) refuse(`level ${level.path} of this OME-Zarr is missing`, "copy or download it again");
-    chosen = { level, below, array, space: spaceOf(names, array.shape.length) };
-    if (product(chosen.space.map((axis) => array.shape[axis] ?? 1)) <= mostSamples) break;
-  }
-  const { level, below, array, space } = chosen;
-  if (level !== levels[0]) notes.push(`of ${levels.length} levels, ${levels.indexOf(level)} was taken: finer ones are too large`);
+  const ours = (image && root.attributes.palpate) || {}; // written by `palpate convert`: columns
+  const columns = ours.direction ?? [1, 0, 0, 0, 1, 0, 0, 0, 1];
+  if (columns.length !== 9 || !columns.every(Number.isFinite)) refuse("the direction of this OME-Zarr has not nine numbers");
+  const { below, array, space, geometry } = chosenOf(await levelsOf(get, path, root, image, names, notes), image, columns, notes);
   for (const [name, what] of [["c", "channels"], ["t", "times"]]) {
     const count = array.shape[names.indexOf(name)] ?? 1;
     if (count > 1) notes.push(`of ${count} ${what}, 0 was taken`);
   }
   if (!image) notes.push("it is an array without a place in space: 1 mm was taken");
-  const { size, samples } = await readArray(get, below, array, space, notes);
-  const [inner, outer] = [level, image].map((one) => transformed(one?.coordinateTransformations ?? [], array.shape.length));
-  const unit = space.map((axis) => (image && axis !== undefined ? unitOf(image.axes?.[axis] ?? {}, notes) : 1));
-  const spacing = space.map((axis, a) => (axis === undefined ? 1 : inner.scale[axis] * outer.scale[axis] * unit[a]));
-  const origin = space.map((axis, a) => (axis === undefined ? 0 : (outer.scale[axis] * inner.shift[axis] + outer.shift[axis]) * unit[a]));
-  if (!spacing.every((s) => s > 0)) refuse(`the scale of this OME-Zarr gives a spacing of ${spacing.join(" x ")} mm`);
-  const ours = (image && root.attributes.palpate) || {}; // written by `palpate convert`: columns
-  const columns = ours.direction ?? [1, 0, 0, 0, 1, 0, 0, 0, 1];
-  if (columns.length !== 9 || !columns.every(Number.isFinite)) refuse("the direction of this OME-Zarr has not nine numbers");
-  const axes = spacing.map((s, a) => columns.slice(3 * a, 3 * a + 3).map((x) => x * s));
-  const geometry = { ...geometryOf(size, axes, origin), spacing };
+  const unused = ["scale_factor", "add_offset"].filter((name) => !image && root.attributes[name] !== undefined);
+  if (unused.length > 0) notes.push(`its ${unused.join(" and ")} were not applied: the samples are as they are stored`);
+  const samples = await readArray(get, below, array, space, notes);
   return { samples, geometry, oriented: ours.direction !== undefined && ours.oriented !== false, notes };
+}
+
+/** Samples, geometry, whether it is that of a body, and notes on what was chosen and assumed. */
+export async function readZarr(get) {
+  return read(get, "", []).catch((error) => {
+    // What it lacks was looked for in vain, or its bytes are no packed ones.
+    if (error instanceof TypeError || error instanceof RangeError) refuse(`this Zarr is damaged, or lacks what it needs (${error.message})`, "copy or download it again");
+    throw error;
+  });
 }

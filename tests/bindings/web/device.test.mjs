@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { announces, installed, opened, picture, says, skip } from "./browser.mjs";
-import { Service, connect, felt } from "./service.mjs";
+import { Service, connect, felt, inFront } from "./service.mjs";
 
 const without = skip || (!installed("ws") && "ws is not installed (scripts/deep/web)");
 const expected = ["ERR_CONNECTION_REFUSED", "WebSocket connection"];
@@ -17,8 +17,12 @@ test("an Inverse3 presses until the page is blocked, hidden or closed, or the co
   const service = new Service();
   try {
     await opened(async (page) => {
+      [service.y, service.way] = [-0.058, 0]; // rests deep in the head
       await connect(page, await service.listens());
       await announces(page, /In contact/);
+      await says(page, /until the hand is lifted/);
+      [service.y, service.way] = [inFront, 0.0003];
+      await page.click("#lift");
       await presses(service);
       await page.waitForFunction(() => document.getElementById("report").textContent.includes("Inverse3 049D"));
       await picture(page, "inverse3");

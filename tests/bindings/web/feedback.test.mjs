@@ -5,6 +5,7 @@ import test from "node:test";
 
 const page = join(process.env.PALPATE_WEB, "page");
 const { contactOf, shake } = await import(join(page, "feedback.js"));
+const { forceText } = await import(join(page, "devices.js"));
 const { labelOf } = await import(join(page, "settings.js"));
 
 const none = { strike: 0, push: 0, scrape: 0 };
@@ -31,4 +32,9 @@ test("a gamepad is shaken as hard as the surface pushes", () => {
 
 test("settings have names that one can read", () => {
   assert.deepEqual(["force.stiffness", "friction.static_coefficient", "force.magnet.peak"].map(labelOf), ["Stiffness", "Static friction", "Magnet peak"]);
+});
+
+test("a force that waits for the hand to leave is told", () => {
+  assert.equal(forceText({ flags: 0, force: [0, 3, 4] }), "5.0 N");
+  assert.equal(forceText({ flags: 64 | 4, force: [0, 0, 0] }), "0.0 N until the hand is lifted,");
 });

@@ -162,6 +162,17 @@ def image3(steps=({"type": "scale", "scale": [1, 2, 3]},), unit="millimeter", na
     return {"zarr.json": group, **{f"0/{path}": content for path, content in array3().items()}}
 
 
+def pyramid(*levels, **changes):
+    """Levels of a path, a shape and transformations, in the order of their list."""
+    image = {"axes": [{"name": name, "type": "space", "unit": "millimeter"} for name in "zyx"],
+             "datasets": [{"path": path, **({"coordinateTransformations": steps} if steps else {})} for path, _, steps in levels]}
+    objects = {"zarr.json": {"zarr_format": 3, "node_type": "group", "attributes": {"ome": {"version": "0.5", "multiscales": [image]}}}}
+    for path, shape, _ in levels:
+        array = array3(**{"shape": shape, "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [2, 2, 2]}}, **changes.get(path, {})})
+        objects |= {f"{path}/{name}": content for name, content in array.items()}
+    return objects
+
+
 def array2(attributes=None, **changes):
     array = {"zarr_format": 2, "shape": [2, 2, 2], "chunks": [2, 2, 2], "dtype": "<i2", "compressor": None, "filters": None, "fill_value": 0, "order": "C"}
     return {".zarray": {**array, **changes}, ".zattrs": attributes or {}, "0.0.0": EIGHT}
@@ -198,9 +209,17 @@ def translation(*shift):
 SCALE = {"type": "scale", "scale": [1, 2, 3]}
 LPS = ["space: LPS", "space directions: (1,0,0) (0,2,0) (0,0,3)"]
 HOLES = np.array([1, 2, np.nan, 4, np.inf, 6, -7, 8], "<f4").tobytes()
+ZSTD = bytes.fromhex("28b52ffd 24 10 810000") + EIGHT + bytes.fromhex("88494901")  # not packed, with a checksum
+FINE, COARSE, HUGE = [4, 4, 4], [2, 2, 2], [4, 8192, 8192]
+HALF = [{"type": "scale", "scale": [2, 4, 6]}, translation(0.5, 1, 1.5)]
+PART = [{"type": "scale", "scale": [2, 8192, 12288]}, translation(0.5, 4095, 6142.5)]
+EXTRA = {"extra": {"name": "x"}}
 SAME_ZARR = {
+    "coarse_first": pyramid(("half", COARSE, HALF), ("whole", FINE, [SCALE])), "understood": array3(extra={"must_understand": False}),
+    "zstd_sum": array3(codecs=[BYTES, {"name": "zstd"}]) | {"c/0/0/0": ZSTD},
+    "bytes": array3(data_type="uint8", codecs=[{"name": "bytes"}]) | {"c/0/0/0": EIGHT[:8]},
     "shards": shards(), "image": image3(), "inches": image3(unit="inch"), "kilometers": image3(unit="kilometer"),
-    "no_unit": image3(unit=None), "turned": image3(palpate={"direction": [0, 1, 0, 1, 0, 0, 0, 0, -1]}),
+    "no_unit": image3(unit=None), "packed": array2({"add_offset": 5, "scale_factor": 2}), "turned": image3(palpate={"direction": [0, 1, 0, 1, 0, 0, 0, 0, -1]}),
     "outer": image3([SCALE, translation(1, 2, 3)], outer=[{"type": "scale", "scale": [2, 2, 2]}, translation(5, 6, 7)]),
     "named": array2({"_ARRAY_DIMENSIONS": ["x", "y", "z"]}), "capitals": array3(dimension_names=["X", "Y", "Z"]),
     "holes": array3(data_type="float32", fill_value="NaN", shape=[2, 2, 2]) | {"c/0/0/0": HOLES},
@@ -225,6 +244,17 @@ REFUSED_ZARR = {
     "parsec": ("parsec", image3(unit="parsec")), "um": ("'um'", image3(unit="um")), "swapped": ("translation,scale", image3([translation(1, 1, 1), SCALE])),
     "short": ("3 numbers", image3([{"type": "scale", "scale": [2, 3]}])), "negative": ("spacing", image3([{"type": "scale", "scale": [1, 1, -1]}])),
     "sheared": ("right angles", image3(palpate={"direction": [1, 0, 0, 1, 1, 0, 0, 0, 1]})), "filter": ("delta", array2(filters=[{"id": "delta"}])), "no_json": ("JSON", {"zarr.json": b"{"}),
+    "zstd_damaged": ("checksum", array3(codecs=[BYTES, {"name": "zstd"}]) | {"c/0/0/0": ZSTD.replace(EIGHT[:3], b"\0\0\2")}),
+    "member": ("'extra'", array3(**EXTRA)), "member_of_group": ("'extra'", image3() | {"zarr.json": {**image3()["zarr.json"], **EXTRA}}),
+    "no_endian": ("endian", array3(codecs=[{"name": "bytes"}])), "index_no_endian": ("endian", shards([{"name": "bytes"}])),
+    "other_names": ("no chunk", {"zarr.json": array3()["zarr.json"], "0.0.0": EIGHT}), "no_codecs": ("damaged", array3(codecs=None)),
+    "megameters": ("megameter", image3(unit="megameter")), "no_transformations": ("transformations", pyramid(("0", COARSE, [SCALE])) | {"zarr.json": {
+        "zarr_format": 3, "node_type": "group", "attributes": {"ome": {"multiscales": [{"axes": ["z", "y", "x"], "datasets": [{"path": "0", "coordinateTransformations": None}]}]}}}}),
+    "contradiction": ("million samples", pyramid(("whole", HUGE, [SCALE]), ("part", COARSE, [SCALE]))),
+    "elsewhere": ("million samples", pyramid(("whole", HUGE, [SCALE]), ("part", COARSE, [PART[0], translation(0, 0, 3e4)]))),
+    "no_scales": ("scales of its levels", pyramid(("whole", HUGE, None), ("part", COARSE, None))),
+    "types": ("different types", pyramid(("whole", FINE, [SCALE]), ("half", COARSE, HALF), half={"data_type": "uint16"})),
+    "no_level": ("is missing", {path: content for path, content in pyramid(("whole", FINE, [SCALE]), ("half", COARSE, HALF)).items() if not path.startswith("half")}),
 }
 REFUSED_FILES = {
     "rpi.nrrd": ("RPI", nrrd("space: RPI", LPS[1])), "scanner.nrrd": ("scanner-xyz", nrrd("space: scanner-xyz", LPS[1])), "spaceless.nrrd": ("no space", nrrd(LPS[1])),
@@ -344,6 +374,8 @@ def cases(out):
         write(out / name, content)
     for name, make in [*SAME_DICOM.items(), *((name, make) for name, (_, make) in REFUSED_DICOM.items())]:
         make(out / name)
+    for path, content in pyramid(("whole", HUGE, [SCALE]), ("part", COARSE, PART)).items():
+        write(out / "large.zarr" / path, content)
     write(out / "left" / "volume.nii", nifti())
     write(out / "left" / ".DS_Store", b"\0")
     words = {name: word for name, (word, _) in REFUSED_DICOM.items()} | {f"{name}.zarr": word for name, (word, _) in refused.items()} | {name: word for name, (word, _) in REFUSED_FILES.items()}

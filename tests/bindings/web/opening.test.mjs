@@ -49,7 +49,7 @@ test("DICOM series in every order of bytes and frames of one file are one volume
 test("DICOM with a missing slice, compressed pixels or none is refused with the reason", async () => {
   await assert.rejects(open("incomplete"), /not evenly spaced/);
   await assert.rejects(open("compressed.dcm"), /1\.2\.840\.10008\.1\.2\.4\.70 is not read in the browser: convert/);
-  await assert.rejects(readFiles([...dropped("implicit/notes.txt"), ...dropped("none.zarr").slice(-1)]), /none of these files is DICOM/);
+  await assert.rejects(readFiles([...dropped("implicit/notes.txt"), ...dropped("none.zarr").slice(-1)]), /none of these files is NRRD, NIfTI-1, or DICOM with pixels: convert/);
   const [{ path, file }] = dropped("implicit");
   const bytes = await file.arrayBuffer();
   for (let end = 132; end < bytes.byteLength; end += 1) {
@@ -70,6 +70,12 @@ test("a Zarr 3 array in shards is read, and missing chunks have the fill value",
   const { samples, geometry } = await open("sharded.zarr");
   assert.deepEqual(Float32Array.from(samples), raw("sharded"));
   assert.deepEqual(geometry.size, [6, 5, 4]);
+});
+
+test("of levels, the finest one that is not too large is read, at its place", async () => {
+  const { samples, geometry } = await open("large.zarr");
+  assert.deepEqual(samples, Int16Array.from({ length: 8 }, (_, i) => i));
+  assert.deepEqual([geometry.size, geometry.spacing, geometry.origin], [[2, 2, 2], [12288, 8192, 2], [6142.5, 4095, 0.5]]);
 });
 
 test("Zarr that the page does not read is refused with the reason", async () => {
@@ -95,7 +101,7 @@ test("a Zarr and files are opened by their address", async (t) => {
   for (const end of ["", "/", "/.zattrs"]) sameVolume(await readAddress(`${at}/gzip.zarr${end}`), await open("gzip.zarr"));
   sameVolume(await readAddress(`${at}/frames.dcm`), await open("frames.dcm"));
   await assert.rejects(readAddress(`${at}/nothing.nrrd`), /there is no such file/);
-  await assert.rejects(readAddress(`${at}/nothing.zarr`), /no Zarr array/);
+  await assert.rejects(readAddress(`${at}/nothing.mhd`), /no Zarr array.* or a file named \.nrrd/);
 });
 
 test("a forbidden chunk is no empty one, forbidden metadata are no metadata, and errors show no secrets", async (t) => {
@@ -114,6 +120,9 @@ test("what was chosen and assumed is told", async () => {
   assert.match(await notes("no_slope"), /RescaleSlope is 0/);
   assert.match(await notes("holes.nrrd"), /became the least/);
   assert.match(await notes("no_unit.zarr"), /mm were taken/);
+  assert.match(await notes("packed.zarr"), /scale_factor .* add_offset .* not applied/);
+  assert.match(await notes("coarse_first.zarr"), /were sorted/);
+  assert.match(await notes("large.zarr"), /of 2 levels, 1 was taken/);
   const oriented = await Promise.all(["implicit", "ras.nrrd", "sform.nii", "turned.zarr"].map(open));
   const turnedNowhere = await Promise.all(["unplaced", "plain.nrrd", "plain.nii", "image.zarr"].map(open));
   assert.deepEqual([oriented.map((v) => v.oriented), turnedNowhere.map((v) => v.oriented)], [[true, true, true, true], [false, false, false, false]]);
@@ -198,9 +207,10 @@ test("slices are drawn by directions: any order and direction of the grid's axes
 });
 
 const cases = JSON.parse(readFileSync(join(folder, "cases.json")));
+const isReadable = (name) => zstdIsThere || !name.startsWith("zstd");
 
 test("what the page would read otherwise than the native program is refused with the reason", async () => {
-  for (const [name, word] of Object.entries(cases.refused)) {
+  for (const [name, word] of Object.entries(cases.refused).filter(([one]) => isReadable(one))) {
     await assert.rejects(open(name), ({ message }) => {
       assert.ok(message.includes(word) && /: (convert|copy|save|correct|choose|give)/.test(message), `${name}: ${message}`);
       return true;
@@ -211,7 +221,7 @@ test("what the page would read otherwise than the native program is refused with
 test("the native program reads and writes the same", { skip: !process.env.PALPATE }, async () => {
   const convert = (from, to) => execFileSync(process.env.PALPATE, ["convert", join(folder, from), join(folder, to)], { stdio: "pipe" });
   const nrrd = async (name) => readVolume(new Uint8Array(readFileSync(join(folder, name))).buffer);
-  for (const from of ["implicit", "explicit", "frames.dcm", "blosc_lz4.zarr", ...cases.same]) {
+  for (const from of ["implicit", "explicit", "frames.dcm", "blosc_lz4.zarr", ...cases.same.filter(isReadable)]) {
     convert(from, "native.nrrd");
     sameVolume(await open(from), await nrrd("native.nrrd"), from);
   }

@@ -56,6 +56,52 @@ test("the head is touched, pressed through, drilled and recorded", { skip, timeo
   });
 });
 
+test("the hand presses while no frame is drawn", { skip, timeout: 1500000 }, async () => {
+  await opened(async (page) => {
+    await hover(page);
+    await page.mouse.down();
+    await says(page, /In contact/);
+  }, { prepare: (page) => page.evaluateOnNewDocument(() => {
+    const real = window.requestAnimationFrame;
+    window.requestAnimationFrame = (call) => (call.name === "frame" ? 0 : real(call));
+  }) });
+});
+
+test("the surface is drawn once, and hides what is behind it", { skip, timeout: 1500000 }, async () => {
+  await opened(async (page) => {
+    const seen = await page.evaluate(async () => {
+      const { Scene } = await import("./scene.js");
+      const canvas = Object.assign(document.createElement("canvas"), { style: "width: 450px; height: 450px" });
+      document.body.append(canvas);
+      const scene = new Scene(canvas);
+      const { gl } = scene;
+      let calls = 0;
+      let triangles = 0;
+      gl.drawElements = function (kind, count, ...rest) {
+        ++calls;
+        triangles += count === 3;
+        return WebGL2RenderingContext.prototype.drawElements.call(gl, kind, count, ...rest);
+      };
+      const show = (level) => scene.show([{ vertices: Float32Array.of(-90, -90, level, 90, -90, level, 0, 90, level), normals: new Float32Array(0), triangles: Uint32Array.of(0, 1, 2) }],
+        { rotation: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], translation: [0, 0, 0], scale: 1 });
+      const besideMiddle = (z) => {
+        scene.draw({ scp: [0, 0, z], force: [0, 0, 0], constrained: true }, [20, 20, z]);
+        const pixel = new Uint8Array(4);
+        gl.readPixels(canvas.width / 2 - 3, canvas.height / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+        return pixel[1] > pixel[0] / 2 ? "surface" : "proxy";
+      };
+      show(0);
+      const first = [besideMiddle(-20), besideMiddle(20), besideMiddle(-20), triangles, gl.getError()];
+      calls = 0;
+      scene.draw({ scp: [0, 0, -20], force: [0, 0, 0], constrained: true }, [20, 20, -20]);
+      const again = calls;
+      show(-40);
+      return [...first, again, besideMiddle(-20), triangles];
+    });
+    assert.deepEqual(seen, ["surface", "proxy", "surface", 1, 0, 0, "proxy", 2]);
+  });
+});
+
 test("DICOM that is chosen and OME-Zarr at an address are opened, and what cannot be read is told", { skip, timeout: 1500000 }, async () => {
   rmSync(volumes, { recursive: true, force: true });
   mkdirSync(volumes);
@@ -71,14 +117,18 @@ test("DICOM that is chosen and OME-Zarr at an address are opened, and what canno
     await surface(async () => (await page.$("#file")).uploadFile(...slices));
     assert.deepEqual(await page.$$eval("#marks button", (buttons) => buttons.map(({ textContent }) => textContent)), ["Skin", "Bone"]);
     assert.equal(await page.$eval("#isovalue", ({ max }) => Number(max)), 147);
+    const name = () => page.$eval("#volume", ({ selectedOptions: [one] }) => one.textContent);
+    assert.equal(await name(), "0.dcm");
     await picture(page, "dicom");
     await page.type("#address", "/volumes/blosc_lz4.zarr");
     await surface(() => page.click("#remote button"));
     assert.equal(await page.$eval("#isovalue", ({ max }) => Number(max)), 499);
     assert.match(await page.$eval("#notes", ({ textContent }) => textContent), /of 2 channels, 0 was taken/);
+    assert.equal(await page.$eval("#said", ({ textContent }) => textContent), "blosc_lz4.zarr is open");
     await (await page.$("#file")).uploadFile(join(volumes, "compressed.dcm"));
     await says(page, /Error: .*convert it first/);
     assert.match(await page.$eval("#said", ({ textContent }) => textContent), /Error: .*convert it first/);
+    assert.equal(await name(), "blosc_lz4.zarr");
     await page.keyboard.press("Shift"); // an error stays until the next action
     await says(page, /Move, and press/);
   }, { expected: ["404 (Not Found)"] }); // where a Zarr has no zarr.json
@@ -168,6 +218,41 @@ test("settings are changed by keyboard, and one that is refused is told", { skip
     await says(page, /Error: stiffness .* must be/);
     assert.equal(await value(), "0.1");
   }, { slowness: 20 });
+});
+
+test("a hand that rests leaves a shell that it was pressed into", { skip, timeout: 1500000 }, async () => {
+  await opened(async (page) => {
+    await page.evaluate(() => (document.body.dataset.surface = "0"));
+    await page.select("#volume", "synthetic:shepp-logan:64x64x64");
+    await page.waitForFunction(() => Number(document.body.dataset.surface) > 0);
+    const enter = (id, text) => page.$eval(id, (input, value) => {
+      input.value = value;
+      input.dispatchEvent(new Event("input"));
+    }, text);
+    await enter("#isovalue", "600"); // the skull, which is hollow
+    await enter("#press", "12");
+    await page.click("#through");
+    await hover(page);
+    await page.mouse.down();
+    await says(page, /In contact/);
+    await says(page, /Approaching/); // inside
+    await page.$eval("#through", (box) => box.click());
+    await page.mouse.up();
+    assert.equal(await page.evaluate(async () => {
+      const rests = ({ hip }) => hip[1] < -34.2; // [mm, physical]
+      for (let count = 0, last = null; count < 20; await new Promise((resolve) => setTimeout(resolve, 5))) {
+        if (window.heard !== last) count = rests((last = window.heard)) ? count + 1 : 0;
+      }
+      return window.heard.constrained;
+    }), false);
+  }, { slowness: 20, prepare: (page) => page.evaluateOnNewDocument(() => {
+    window.Worker = class extends window.Worker {
+      constructor(...all) {
+        super(...all);
+        this.addEventListener("message", ({ data }) => (window.heard = data.snapshot ?? window.heard));
+      }
+    };
+  }) });
 });
 
 test("a contact is heard, and silence is silent", { skip, timeout: 1500000 }, async () => {

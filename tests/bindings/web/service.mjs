@@ -5,6 +5,7 @@ const id = "049D";
 const status = { calibrated: true, in_use: false, power_supply: true, ready: true, started: true };
 
 export const felt = 0.2; // [N]
+export const inFront = -0.29; // [m, service axes] of the face, as the page fits the head
 
 /** Connects the page to the service there. */
 export const connect = (page, address) => page.evaluate((at) => {
@@ -12,11 +13,11 @@ export const connect = (page, address) => page.evaluate((at) => {
   document.getElementById("connect").click();
 }, address);
 
-/** Its hand goes away from the person until it feels a force, and stays there. Without one it goes back and tries again:
- * no force begins while a hand presses. */
+/** Its hand goes from in front of the head towards it until it feels a force, and stays there. Without one it goes back and
+ * tries again: no force begins while a hand presses. */
 export class Service {
   forces = []; // { at [ms], size [N] }
-  y = -0.15; // [m, service axes]
+  y = inFront; // [m, service axes]
   way = 0.0003; // [m] to the next place
   connections = 0;
   answers = true;
@@ -40,8 +41,8 @@ export class Service {
   }
   move() {
     this.y += this.way;
-    if (this.y > -0.03) this.way = -Math.abs(this.way);
-    if (this.y < -0.15) this.way = Math.abs(this.way);
+    if (this.y > inFront + 0.04) this.way = -Math.abs(this.way);
+    if (this.y < inFront) this.way = Math.abs(this.way);
   }
   place() {
     return { x: -0.007, y: this.y, z: 0.13 };
