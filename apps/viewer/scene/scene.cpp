@@ -192,7 +192,9 @@ void Scene::look_from(const pictures::View& view) {
     pictures::Camera camera = camera_;
     camera.towards_viewer = view.towards_viewer;
     camera.up = view.up;
+    const bool fitted = fitted_;
     set_camera(camera);
+    if (fitted) show_whole();
 }
 
 void Scene::reset_camera() {

@@ -45,6 +45,9 @@ Volume ct_ball() {
 }
 
 class LayersInWindow : public InWindow {
+/// Of the wheel: a whole notch of a narrow scene may go through the skin at once.
+constexpr int finely = 40;
+
   protected:
     void feel_ct() {
         io::write_volume(ct_ball(), scratch_.path() / "ct.nrrd");
@@ -81,11 +84,13 @@ TEST_F(LayersInWindow, a_ct_is_opened_a_set_is_picked_and_both_layers_are_felt_i
     EXPECT_TRUE(part<QLabel>("layers_note").text().contains("HU"))
         << "the file does not say its units";
     std::set<std::string> touched;
-    EXPECT_TRUE(press_until([&] {
-        const LayersFelt felt = now().session.tick.layers;
-        if (felt.touched >= 0) touched.insert(layers()->layers[std::size_t(felt.touched)].name);
-        return felt.touched == 1 && force() > 0.3;
-    }));
+    EXPECT_TRUE(press_until(
+        [&] {
+            const LayersFelt felt = now().session.tick.layers;
+            if (felt.touched >= 0) touched.insert(layers()->layers[std::size_t(felt.touched)].name);
+            return felt.touched == 1 && force() > 0.3;
+        },
+        finely));
     EXPECT_EQ(touched, (std::set<std::string>{"skin", "bone"}));
     wait_until([&] {
         return part<QLabel>("touched_layers").text() == "on bone, in skin" &&
@@ -183,7 +188,7 @@ TEST_F(LayersInWindow, a_recording_names_the_layers_that_were_felt) {
     pick(ct_set);
     wait_until_settled();
     window_->recordings().start(scratch("a.csv"));
-    ASSERT_TRUE(press_until([&] { return now().session.tick.layers.touched == 0; }));
+    ASSERT_TRUE(press_until([&] { return now().session.tick.layers.touched == 0; }, finely));
     window_->recordings().stop();
     window_->files().open_path(scratch("a.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
