@@ -238,10 +238,6 @@ double Scene::frame_seconds() const {
     return parts_->background.frame_seconds();
 }
 
-bool Scene::on_hardware() const {
-    return parts_->background.shown() && parts_->background.shown()->hardware;
-}
-
 QImage Scene::picture() {
     return grabFramebuffer();
 }

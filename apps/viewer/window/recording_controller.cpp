@@ -1,6 +1,7 @@
 // Starts and ends recordings, and tells what is special about one that is played.
 #include "apps/viewer/window/recording_controller.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "apps/viewer/window/content.hpp"
@@ -18,6 +19,7 @@ void RecordingController::start(const QString& path) {
     if (!content_.live()) return;
     messages_.guarded([&] {
         content_.live()->record(path.toStdString());
+        began_ = seconds();
         messages_.show_done(tr("Recording to %1").arg(path));
     });
     Q_EMIT changed();
@@ -27,11 +29,18 @@ void RecordingController::stop() {
     if (!recording()) return;
     messages_.guarded([&] {
         const int before = std::exchange(exit_status_, app::bad_output);  // unless it is whole
-        messages_.show_done(
-            tr("%n ticks recorded", nullptr, static_cast<int>(content_.live()->stop_recording())));
+        const double recorded = std::max(0.0, seconds() - began_);
+        content_.live()->stop_recording();
+        messages_.show_done(tr("Recorded %1 s").arg(recorded, 0, 'f', 1));
         exit_status_ = before;
     });
     Q_EMIT changed();
+}
+
+/// Since the run began.
+double RecordingController::seconds() const {
+    const auto now = content_.live()->snapshot();
+    return now ? now->session.tick.time : 0;
 }
 
 bool RecordingController::recording() const {
@@ -44,10 +53,10 @@ void RecordingController::check() {
 
 void RecordingController::tell_playback() {
     const Playback& playback = *content_.playback();
-    QStringList words{tr("%n ticks", nullptr, static_cast<int>(playback.ticks()))};
+    QStringList words{tr("A recording of %1 s").arg(playback.end() - playback.begin(), 0, 'f', 1)};
     if (!playback.complete()) words << tr("the recording was cut off before its end");
     if (playback.different() > 0) {
-        words << tr("%n of them come out otherwise than they were recorded", nullptr,
+        words << tr("%n ticks come out otherwise than they were recorded", nullptr,
                     static_cast<int>(playback.different()));
     }
     messages_.show_done(words.join("; "));

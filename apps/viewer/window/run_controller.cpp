@@ -109,12 +109,9 @@ void RunController::use_device(const QString& option) {
     messages_.guarded([&] {
         const devices::DeviceChoice device = devices::parse_device(option.toStdString());
         if (run::Run* live = content_.live()) {
-            const std::int64_t ticks = live->recording() ? live->recording()->ticks() : 0;
+            const bool recorded = live->recording() && live->recording()->ticks() > 0;
             content_.use_device(device);
-            if (ticks > 0) {
-                messages_.show_done(tr("%n ticks recorded, up to the other device", nullptr,
-                                       static_cast<int>(ticks)));
-            }
+            if (recorded) messages_.show_done(tr("Recorded up to the other device"));
             Q_EMIT device_changed();
         }
         request_.setup.device = device;

@@ -269,6 +269,23 @@ TEST_F(Files, the_first_view_shows_the_whole_volume_in_a_window_of_any_shape) {
     EXPECT_NEAR(scene.camera().half_height, fitting(), 1e-9) << "from another side";
 }
 
+TEST_F(Files, several_at_once_and_addresses_are_dropped_knowingly) {
+    const auto drop = [&](const QList<QUrl>& urls) {
+        QMimeData data;
+        data.setUrls(urls);
+        QDragEnterEvent enter({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(window_.get(), &enter);
+        QDropEvent event(QPointF(10, 10), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(window_.get(), &event);
+    };
+    const QUrl file = QUrl::fromLocalFile(file_of(24, "one.mha"));
+    drop({file, file});
+    EXPECT_TRUE(window_->messages().problem().startsWith("2 files"));
+    EXPECT_FALSE(window_->files().loading()) << "not one slice of many";
+    drop({QUrl("http://127.0.0.1:1/nothing.png")});
+    viewer::wait_until([&] { return window_->messages().problem().contains("127.0.0.1"); });
+}
+
 using DrawnFiles = Files;
 
 TEST_F(DrawnFiles, pictures_of_scene_and_window_are_what_is_seen) {

@@ -9,6 +9,7 @@
 
 #include <set>
 
+#include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/number_box.hpp"
@@ -44,10 +45,10 @@ Volume ct_ball() {
     return Volume(geometry, samples);
 }
 
-class LayersInWindow : public InWindow {
 /// Of the wheel: a whole notch of a narrow scene may go through the skin at once.
 constexpr int finely = 40;
 
+class LayersInWindow : public InWindow {
   protected:
     void feel_ct() {
         io::write_volume(ct_ball(), scratch_.path() / "ct.nrrd");
@@ -181,6 +182,21 @@ TEST_F(LayersInWindow, a_changed_set_goes_to_a_file_and_into_the_session_and_com
            [&] { QTest::mouseClick(&part<QPushButton>("open_layers"), Qt::LeftButton); });
     wait_until([&] { return layers() != nullptr; });
     EXPECT_EQ(layers()->layers[0].name, "hide");
+}
+
+TEST_F(LayersInWindow, that_were_changed_are_not_lost_without_a_question) {
+    feel_ct();
+    pick(ct_set);
+    wait_until_settled();
+    EXPECT_FALSE(controls().unsaved()) << "the set is in a file";
+    QTest::mouseClick(&part<QPushButton>("add_layer"), Qt::LeftButton);
+    wait_until_settled();
+    answer(QMessageBox::Cancel);
+    EXPECT_FALSE(window_->close());
+    answer(QMessageBox::Save);
+    typing(scratch("case.json"), [&] { EXPECT_FALSE(window_->close()) << "it is saved first"; });
+    wait_until([&] { return !window_->isVisible(); });
+    EXPECT_EQ(read_session(scratch("case.json").toStdString()).settings->layers->layers.size(), 3U);
 }
 
 TEST_F(LayersInWindow, a_recording_names_the_layers_that_were_felt) {
