@@ -1,6 +1,7 @@
 // Turns changes by the user into commands, and shows the settings in effect.
 #include "apps/viewer/panel/panel.hpp"
 
+#include <QEvent>
 #include <QScrollArea>
 #include <QScrollBar>
 #include <QTabWidget>
