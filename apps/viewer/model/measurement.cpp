@@ -29,8 +29,21 @@ std::string length_text(double mm, LengthUnit unit) {
             return number_with(0.1 * mm, " cm");
         case LengthUnit::inches:
             return number_with(mm / 25.4, " in");
+        case LengthUnit::voxels:
+            return number_with(mm, " voxel");
     }
     return number_with(mm, " mm");
+}
+
+LengthUnit unit_in(const Geometry& geometry, LengthUnit preferred) {
+    const double every = geometry.spacing[0];  // of the finest level's, 1 unless it is coarser
+    const bool counted = !geometry.measured && geometry.spacing == Vec3::Constant(every) &&
+                         every == std::round(every);
+    return counted ? LengthUnit::voxels : preferred;
+}
+
+const char* unit_word(const Geometry& geometry) {
+    return unit_in(geometry) == LengthUnit::voxels ? "voxel" : "mm";
 }
 
 std::size_t points_of(Measure kind) {

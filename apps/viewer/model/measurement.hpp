@@ -11,7 +11,18 @@ namespace palpate::viewer {
 enum class Measure : std::uint8_t { length, angle };
 
 /// Automatic: micrometres below a tenth of a millimetre, else millimetres.
-enum class LengthUnit : std::uint8_t { automatic, micrometres, millimetres, centimetres, inches };
+enum class LengthUnit : std::uint8_t {
+    automatic,
+    micrometres,
+    millimetres,
+    centimetres,
+    inches,
+    voxels
+};
+/// What is preferred, but voxels where nothing gives the spacing.
+LengthUnit unit_in(const Geometry& geometry, LengthUnit preferred = LengthUnit::millimetres);
+/// "mm", or "voxel" where nothing gives the spacing.
+const char* unit_word(const Geometry& geometry);
 /// "12.3 mm".
 std::string length_text(double mm, LengthUnit unit);
 

@@ -195,6 +195,12 @@ void LayersControls::set_choices(std::vector<LayersChoice> choices) {
     show_choice();
 }
 
+bool LayersControls::unsaved() const {
+    if (!layers_ || !history_.can_undo() || same(layers_, saved_)) return false;
+    const auto is_it = [this](const LayersChoice& one) { return same(one.layers, layers_); };
+    return std::ranges::none_of(choices_, is_it);
+}
+
 void LayersControls::request(const SharedLayers& layers) {
     if (!effect_.there()) return;
     const SharedLayers& before = effect_.settings().layers;

@@ -42,6 +42,9 @@ class LayersControls : public QWidget {
     void set_choices(std::vector<LayersChoice> choices);
     /// As they are shown: those in effect, or asked for in a moment.
     const SharedLayers& layers() const { return layers_; }
+    /// They were changed, and are in no file.
+    bool unsaved() const;
+    void set_saved() { saved_ = layers_; }
     /// Of the layer that is chosen; nothing: there is none, or layers are by label.
     std::optional<double> chosen_level() const;
     /// What a file that was opened says; shown until another set is chosen.
@@ -95,7 +98,7 @@ class LayersControls : public QWidget {
     int chosen() const;
 
     Effect& effect_;
-    SharedLayers layers_;
+    SharedLayers layers_, saved_;
     double low_ = 0, high_ = 1;
     std::vector<LayersChoice> choices_;
     LayersHistory history_;

@@ -11,7 +11,7 @@ namespace palpate::viewer {
 namespace {
 
 QString time_text(std::int64_t ns) {
-    return QString::fromStdString(app::duration_text(ns));
+    return QString::fromStdString(app::duration_text(ns)).replace(" us", " µs");
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ void LoopView::put(const Row& row, const LatencySummary& summary) {
 
 void LoopView::show_report(const ServoReport& report, double rate) {
     rate_->setText(tr("%1 Hz").arg(rate, 0, 'f', 0));
-    QStringList missed{tr("%1 of %2 ticks").arg(report.missed).arg(report.ticks)};
+    QStringList missed{tr("%1 of %2 ticks").arg(report.missed).arg(report.missed + report.ticks)};
     if (report.overruns > 0) {
         missed << tr("%n forces taken back", nullptr, static_cast<int>(report.overruns));
     }

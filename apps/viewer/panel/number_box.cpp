@@ -34,6 +34,12 @@ QString number_text(double value, int digits) {
     return QString::number(value == 0 ? 0.0 : value, 'g', digits);
 }
 
+QString count_text(double whole) {
+    QString text = QString::number(whole, 'f', 0);
+    for (int at = text.size() - 3; at > 0; at -= 3) text.insert(at, QChar(0x202F));
+    return text;
+}
+
 std::optional<double> number_from(const QString& text) {
     if (text == "inf" || text == "+inf") return std::numeric_limits<double>::infinity();
     if (text == "-inf") return -std::numeric_limits<double>::infinity();

@@ -9,6 +9,8 @@ namespace palpate::viewer {
 
 /// A number with as few digits as it needs, at most `digits`; "inf" and "-inf" are numbers.
 QString number_text(double value, int digits = 6);
+/// A whole number in groups of three, with narrow spaces: every language reads it alike.
+QString count_text(double whole);
 /// Nothing for a text that is no number.
 std::optional<double> number_from(const QString& text);
 

@@ -1,6 +1,7 @@
 // Turns changes by the user into commands, and shows the settings in effect.
 #include "apps/viewer/panel/panel.hpp"
 
+#include <QEvent>
 #include <QScrollArea>
 #include <QScrollBar>
 #include <QTabWidget>
@@ -26,19 +27,31 @@
 namespace palpate::viewer {
 namespace {
 
-/// Sections in a column that scrolls.
-QScrollArea* page_of(std::initializer_list<QWidget*> sections) {
-    auto* column = column_of(sections);
-    static_cast<QVBoxLayout*>(column->layout())->addStretch(1);
-    auto* page = new QScrollArea;
-    page->setWidget(column);
-    page->setWidgetResizable(true);
-    page->setFrameShape(QFrame::NoFrame);
-    page->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-    page->setMinimumWidth(column->minimumSizeHint().width() +
-                          page->verticalScrollBar()->sizeHint().width());
-    return page;
-}
+/// Sections in a column that scrolls up and down: as wide as what is unfolded needs.
+class Page : public QScrollArea {
+  public:
+    explicit Page(std::initializer_list<QWidget*> sections) {
+        auto* column = column_of(sections);
+        static_cast<QVBoxLayout*>(column->layout())->addStretch(1);
+        setWidget(column);
+        setWidgetResizable(true);
+        setFrameShape(QFrame::NoFrame);
+        setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+        fit();
+    }
+
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override {
+        if (watched == widget() && event->type() == QEvent::LayoutRequest) fit();
+        return QScrollArea::eventFilter(watched, event);
+    }
+
+  private:
+    void fit() {
+        setMinimumWidth(widget()->minimumSizeHint().width() +
+                        verticalScrollBar()->sizeHint().width());
+    }
+};
 
 }  // namespace
 
@@ -87,7 +100,7 @@ void Panel::build() {
                  overlay_part_, device_part_,   loop_part_};
     tabs_->setDocumentMode(true);
     const auto add = [this](const QString& title, std::initializer_list<QWidget*> sections) {
-        QScrollArea* page = page_of(sections);
+        auto* page = new Page(sections);
         tabs_->addTab(page, title);
         page->setAccessibleName(QString(title).remove('&'));
     };

@@ -9,6 +9,7 @@
 
 #include "apps/options/words.hpp"
 #include "apps/viewer/model/hand_state.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
@@ -40,8 +41,8 @@ SessionBar::SessionBar(Effect& effect)
                     tr("The volume hangs on the hand, to put it elsewhere; forces are let go"))),
       gauge_(new ForceGauge),
       contact_(named(new QLabel, "contact",
-                     tr("Whether the proxy is on a surface, and how far it is from the hand [mm of "
-                        "the hand; mm in the volume]"))) {
+                     tr("Whether the proxy is on a surface, and how far it is from the hand (of "
+                        "the hand, and in the volume)"))) {
     setObjectName("session_bar");
     QFont big = forces_->font();
     big.setBold(true);
@@ -134,10 +135,11 @@ void SessionBar::show_snapshot(const Snapshot& now) {
     gauge_->set_force(tick.force.norm(), limit(), QString::fromStdString(words));
     const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
     const bool touching = tick.proxy.mode == palpate::Mode::constrained;
-    QString text = (touching ? tr("In contact, pull %1 mm (%2 mm in the volume)")
-                             : tr("Free, pull %1 mm (%2 mm in the volume)"))
+    QString text = (touching ? tr("In contact, pull %1 mm (%2 %3 in the volume)")
+                             : tr("Free, pull %1 mm (%2 %3 in the volume)"))
                        .arg(apart / now.session.transform.scale, 0, 'f', 2)
-                       .arg(apart, 0, 'f', 2);
+                       .arg(apart, 0, 'f', 2)
+                       .arg(unit_word(effect_.field().geometry()));
     if (tick.tool.contacts > 0) {
         text += '\n' + tr("%n points of the tool hold, torque %1 N mm", nullptr, tick.tool.contacts)
                            .arg(tick.torque.norm(), 0, 'f', 1);

@@ -196,7 +196,9 @@ void Scene::look_from(const pictures::View& view) {
     pictures::Camera camera = camera_;
     camera.towards_viewer = view.towards_viewer;
     camera.up = view.up;
+    const bool fitted = fitted_;
     set_camera(camera);
+    if (fitted) show_whole();
 }
 
 void Scene::reset_camera() {
@@ -238,10 +240,6 @@ bool Scene::settled() const {
 
 double Scene::frame_seconds() const {
     return parts_->background.frame_seconds();
-}
-
-bool Scene::on_hardware() const {
-    return parts_->background.shown() && parts_->background.shown()->hardware;
 }
 
 QImage Scene::picture() {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/viewer/model/measurement.hpp"
+
 namespace palpate::viewer {
 namespace {
 
@@ -110,8 +112,8 @@ std::string position_text(const SlicePlane& plane, const Geometry& geometry, con
     double at = (axis[plane.anatomical] > 0 ? 1 : -1) * axis.dot(physical);
     if (std::abs(at) < 0.005) at = 0;  // as it will be shown
     char text[32];
-    std::snprintf(text, sizeof text, "%s %.2f mm", end_of(geometry, plane.anatomical, at >= 0),
-                  std::abs(at));
+    std::snprintf(text, sizeof text, "%s %.2f %s", end_of(geometry, plane.anatomical, at >= 0),
+                  std::abs(at), unit_word(geometry));
     return text;
 }
 

@@ -363,11 +363,13 @@ void SlicePane::paint_words(QPainter& painter) const {
     const bool in_data = layer >= -0.5 && layer <= layers - 0.5;
     const Vec3 middle = point_at(QPointF(rect().center()));
     painter.setFont(font());
-    paint_corner(painter, size(), Qt::AlignLeft | Qt::AlignTop,
-                 {title(),
-                  in_data ? QString("%1 / %2").arg(std::lround(layer) + 1).arg(layers)
-                          : tr("outside the data"),
-                  QString::fromStdString(position_text(content_->plane, geometry(), middle))});
+    QStringList corner{title(),
+                       in_data ? QString("%1 / %2").arg(std::lround(layer) + 1).arg(layers)
+                               : tr("outside the data"),
+                       QString::fromStdString(position_text(content_->plane, geometry(), middle))};
+    const int beside = width() / 2 - fontMetrics().height();  // the letter of the upper edge
+    if (fontMetrics().horizontalAdvance(title()) > beside) corner.push_front("");
+    paint_corner(painter, size(), Qt::AlignLeft | Qt::AlignTop, corner);
     // Short where the letter of the lower edge is, so that narrow panes have room for both.
     paint_corner(painter, size(), Qt::AlignRight | Qt::AlignBottom,
                  {tr("W %1", "window, in the corner").arg(high_ - low_, 0, 'g', 5),
@@ -377,7 +379,8 @@ void SlicePane::paint_words(QPainter& painter) const {
     const Vec3 index = index_from_physical(geometry(), at);
     if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return;
     const auto mm = [](double x) { return QString::number(x, 'f', 1); };
-    QStringList words{QString("(%1, %2, %3) mm").arg(mm(at[0]), mm(at[1]), mm(at[2])),
+    QStringList words{QString("(%1, %2, %3) %4")
+                          .arg(mm(at[0]), mm(at[1]), mm(at[2]), QString(unit_word(geometry()))),
                       QString::number(value_there(at), 'g', 6)};
     if (style_.overlay && style_.overlay_look.shown) {
         const QString there = overlay_words(*style_.overlay, at);

@@ -36,8 +36,16 @@
         <translation>Ordner mit Schichten oder Zarr-Bild öffnen</translation>
     </message>
     <message>
-        <source>All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff *.vti *.ims *.h5 *.hdf5 *.raw *.raw.gz *.json *.csv);;All files (*)</source>
-        <translation>Alles, was sich öffnen lässt (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff *.vti *.ims *.h5 *.hdf5 *.raw *.raw.gz *.json *.csv);;Alle Dateien (*)</translation>
+        <source>All that can be opened (%1 *.raw *.raw.gz *.json *.csv);;All files (*)</source>
+        <translation>Alles, was sich öffnen lässt (%1 *.raw *.raw.gz *.json *.csv);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Open an overlay: labels or another image</source>
+        <translation>Überlagerung öffnen: Labels oder ein anderes Bild</translation>
+    </message>
+    <message>
+        <source>Volumes (%1);;All files (*)</source>
+        <translation>Volumen (%1);;Alle Dateien (*)</translation>
     </message>
 </context>
 <context>
@@ -432,14 +440,6 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
 </context>
 <context>
     <name>Streaming</name>
-    <message>
-        <source>%1 MB</source>
-        <translation>%1 MB</translation>
-    </message>
-    <message>
-        <source>%1 GB</source>
-        <translation>%1 GB</translation>
-    </message>
     <message>
         <source>single samples</source>
         <translation>einzelne Abtastwerte</translation>
@@ -928,13 +928,6 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
         <source>Meshes (*.ply *.stl *.obj *.vtp)</source>
         <translation>Netze (*.ply *.stl *.obj *.vtp)</translation>
     </message>
-    <message numerus="yes">
-        <source>Saved %1, %Ln triangles</source>
-        <translation>
-            <numerusform>%1 gespeichert, %Ln Dreieck</numerusform>
-            <numerusform>%1 gespeichert, %Ln Dreiecke</numerusform>
-        </translation>
-    </message>
     <message>
         <source>The volume was edited, and not saved since. Save it?</source>
         <translation>Das Volumen wurde geändert und seitdem nicht gespeichert. Speichern?</translation>
@@ -959,13 +952,6 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
         <source>Making the surface</source>
         <translation>Die Oberfläche wird erzeugt</translation>
     </message>
-    <message numerus="yes">
-        <source>The surface has %Ln triangles, more than many programs can work with. Simplify it to about %L1? It stays closed, and what is left of its points stays on the surface.</source>
-        <translation>
-            <numerusform>Die Oberfläche hat %Ln Dreieck, mehr als viele Programme verarbeiten können. Auf etwa %L1 vereinfachen? Sie bleibt geschlossen, und die Punkte, die übrig bleiben, bleiben auf der Oberfläche.</numerusform>
-            <numerusform>Die Oberfläche hat %Ln Dreiecke, mehr als viele Programme verarbeiten können. Auf etwa %L1 vereinfachen? Sie bleibt geschlossen, und die Punkte, die übrig bleiben, bleiben auf der Oberfläche.</numerusform>
-        </translation>
-    </message>
     <message>
         <source>Simplify</source>
         <translation>Vereinfachen</translation>
@@ -973,6 +959,17 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
     <message>
         <source>All triangles</source>
         <translation>Alle Dreiecke</translation>
+    </message>
+    <message>
+        <source>The surface has %1 triangles, more than many programs can work with. Simplify it to about %2? It stays closed, and what is left of its points stays on the surface.</source>
+        <translation>Die Oberfläche hat %1 Dreiecke, mehr als viele Programme verarbeiten können. Auf etwa %2 vereinfachen? Sie bleibt geschlossen, und die Punkte, die übrig bleiben, bleiben auf der Oberfläche.</translation>
+    </message>
+    <message numerus="yes">
+        <source>Saved %1, %2 triangles</source>
+        <translation>
+            <numerusform>%1 gespeichert, %2 Dreieck</numerusform>
+            <numerusform>%1 gespeichert, %2 Dreiecke</numerusform>
+        </translation>
     </message>
 </context>
 <context>
@@ -1200,10 +1197,6 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
         <translation>Etwas zurückziehen, um wieder Kräfte zu fühlen</translation>
     </message>
     <message>
-        <source>%1 mm deep, %2 N</source>
-        <translation>%1 mm tief, %2 N</translation>
-    </message>
-    <message>
         <source>The brush is on: it changes what it touches (B: off)</source>
         <translation>Der Pinsel ist an: Er verändert, was er berührt (B: aus)</translation>
     </message>
@@ -1214,6 +1207,10 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
     <message>
         <source>Hand %1: %2</source>
         <translation>Hand %1: %2</translation>
+    </message>
+    <message>
+        <source>%1 %2 deep, %3 N</source>
+        <translation>%1 %2 tief, %3 N</translation>
     </message>
 </context>
 <context>
@@ -2216,14 +2213,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Werkzeuge</translation>
     </message>
     <message>
-        <source>%1, %2, %3 mm</source>
-        <translation>%1, %2, %3 mm</translation>
-    </message>
-    <message>
-        <source>%1 %2   slope %3 /mm</source>
-        <translation>%1 %2   Steigung %3 /mm</translation>
-    </message>
-    <message>
         <source>Open a &amp;folder (DICOM, TIFF, Zarr)…</source>
         <translation>&amp;Ordner öffnen (DICOM, TIFF, Zarr) …</translation>
     </message>
@@ -2234,10 +2223,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>&amp;Level, channel and time…</source>
         <translation>Detailst&amp;ufe, Kanal und Zeit …</translation>
-    </message>
-    <message>
-        <source>The proxy: where it is [mm], the sample there and its slope</source>
-        <translation>Der Proxy: wo er ist [mm], der Wert dort und dessen Steigung</translation>
     </message>
     <message>
         <source>No spacing in the file</source>
@@ -2270,6 +2255,25 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Settings of the &amp;next hand</source>
         <translation>Einstellungen der &amp;nächsten Hand</translation>
+    </message>
+    <message>
+        <source>The proxy: where it is, the sample there and its slope</source>
+        <translation>Der Proxy: wo er ist, der Wert dort und dessen Steigung</translation>
+    </message>
+    <message>
+        <source>The changed layers are in no file yet. Save them in the session?</source>
+        <translation>Die geänderten Schichten sind noch in keiner Datei. In der Sitzung speichern?</translation>
+    </message>
+    <message>
+        <source>%1 %2   slope %3 /%4</source>
+        <translation>%1 %2   Steigung %3 /%4</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n files were dropped: drop one, or the folder of slices</source>
+        <translation>
+            <numerusform>%n Datei wurde abgelegt: Legen Sie eine ab, oder den Ordner der Schichtbilder</numerusform>
+            <numerusform>%n Dateien wurden abgelegt: Legen Sie eine ab, oder den Ordner der Schichtbilder</numerusform>
+        </translation>
     </message>
 </context>
 <context>
@@ -2609,14 +2613,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Farben des Fensters</translation>
     </message>
     <message>
-        <source>Language</source>
-        <translation>Sprache</translation>
-    </message>
-    <message>
-        <source>Of the window&apos;s words; from the next start</source>
-        <translation>Der Texte im Fenster; ab dem nächsten Start</translation>
-    </message>
-    <message>
         <source>A notch of the wheel</source>
         <translation>Eine Raste des Rads</translation>
     </message>
@@ -2639,6 +2635,14 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>At most; a finer surface is thinned. A million takes about 80 MB</source>
         <translation>Höchstens; eine feinere Fläche wird ausgedünnt. Eine Million braucht etwa 80 MB</translation>
+    </message>
+    <message>
+        <source>Language, from the next start</source>
+        <translation>Sprache, ab dem nächsten Start</translation>
+    </message>
+    <message>
+        <source>Of the window&apos;s words</source>
+        <translation>Der Texte im Fenster</translation>
     </message>
 </context>
 <context>
@@ -2806,24 +2810,24 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Schnitt der Vorschau</translation>
     </message>
     <message>
-        <source>These samples take %L1 bytes once unpacked.</source>
-        <translation>Diese Abtastwerte brauchen ausgepackt %L1 Bytes.</translation>
-    </message>
-    <message>
         <source>These samples are just what the file holds.</source>
         <translation>Diese Abtastwerte sind genau das, was die Datei enthält.</translation>
     </message>
     <message>
-        <source>The file holds %L1 bytes, %L2 more than these samples take.</source>
-        <translation>Die Datei enthält %L1 Bytes, %L2 mehr, als diese Abtastwerte brauchen.</translation>
-    </message>
-    <message>
-        <source>The file holds %L1 bytes, %L2 fewer than these samples take.</source>
-        <translation>Die Datei enthält %L1 Bytes, %L2 weniger, als diese Abtastwerte brauchen.</translation>
-    </message>
-    <message>
         <source>No preview</source>
         <translation>Keine Vorschau</translation>
+    </message>
+    <message>
+        <source>These samples take %1 bytes once unpacked.</source>
+        <translation>Diese Abtastwerte brauchen ausgepackt %1 Bytes.</translation>
+    </message>
+    <message>
+        <source>The file holds %1 bytes, %2 more than these samples take.</source>
+        <translation>Die Datei enthält %1 Bytes, %2 mehr, als diese Abtastwerte brauchen.</translation>
+    </message>
+    <message>
+        <source>The file holds %1 bytes, %2 fewer than these samples take.</source>
+        <translation>Die Datei enthält %1 Bytes, %2 weniger, als diese Abtastwerte brauchen.</translation>
     </message>
 </context>
 <context>
@@ -2832,29 +2836,23 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>Recording to %1</source>
         <translation>Aufzeichnung nach %1</translation>
     </message>
-    <message numerus="yes">
-        <source>%n ticks recorded</source>
-        <translation>
-            <numerusform>%n Takt aufgezeichnet</numerusform>
-            <numerusform>%n Takte aufgezeichnet</numerusform>
-        </translation>
-    </message>
-    <message numerus="yes">
-        <source>%n ticks</source>
-        <translation>
-            <numerusform>%n Takt</numerusform>
-            <numerusform>%n Takte</numerusform>
-        </translation>
-    </message>
     <message>
         <source>the recording was cut off before its end</source>
         <translation>die Aufzeichnung wurde vor ihrem Ende abgeschnitten</translation>
     </message>
+    <message>
+        <source>Recorded %1 s</source>
+        <translation>%1 s aufgezeichnet</translation>
+    </message>
+    <message>
+        <source>A recording of %1 s</source>
+        <translation>Eine Aufzeichnung von %1 s</translation>
+    </message>
     <message numerus="yes">
-        <source>%n of them come out otherwise than they were recorded</source>
+        <source>%n ticks come out otherwise than they were recorded</source>
         <translation>
-            <numerusform>%n davon kommt anders heraus als aufgezeichnet</numerusform>
-            <numerusform>%n davon kommen anders heraus als aufgezeichnet</numerusform>
+            <numerusform>%n Takt fällt anders aus, als er aufgezeichnet wurde</numerusform>
+            <numerusform>%n Takte fallen anders aus, als sie aufgezeichnet wurden</numerusform>
         </translation>
     </message>
     <message>
@@ -2880,12 +2878,9 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>Looking for devices</source>
         <translation>Geräte werden gesucht</translation>
     </message>
-    <message numerus="yes">
-        <source>%n ticks recorded, up to the other device</source>
-        <translation>
-            <numerusform>%n Takt aufgezeichnet, bis zum anderen Gerät</numerusform>
-            <numerusform>%n Takte aufgezeichnet, bis zum anderen Gerät</numerusform>
-        </translation>
+    <message>
+        <source>Recorded up to the other device</source>
+        <translation>Bis zum anderen Gerät aufgezeichnet</translation>
     </message>
     <message>
         <source>Felt through the devices %1</source>
@@ -2988,20 +2983,8 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Das Volumen hängt an der Hand, um es zu versetzen; Kräfte werden losgelassen</translation>
     </message>
     <message>
-        <source>Whether the proxy is on a surface, and how far it is from the hand [mm of the hand; mm in the volume]</source>
-        <translation>Ob der Proxy auf einer Oberfläche ist, und wie weit er von der Hand entfernt ist [mm der Hand; mm im Volumen]</translation>
-    </message>
-    <message>
         <source>no tick yet</source>
         <translation>noch kein Takt</translation>
-    </message>
-    <message>
-        <source>In contact, pull %1 mm (%2 mm in the volume)</source>
-        <translation>Kontakt, Zug %1 mm (%2 mm im Volumen)</translation>
-    </message>
-    <message>
-        <source>Free, pull %1 mm (%2 mm in the volume)</source>
-        <translation>Frei, Zug %1 mm (%2 mm im Volumen)</translation>
     </message>
     <message numerus="yes">
         <source>%n points of the tool hold, torque %1 N mm</source>
@@ -3021,6 +3004,18 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>withdraw a little</source>
         <translation>etwas zurückziehen</translation>
+    </message>
+    <message>
+        <source>Whether the proxy is on a surface, and how far it is from the hand (of the hand, and in the volume)</source>
+        <translation>Ob der Proxy auf einer Oberfläche ist, und wie weit er von der Hand entfernt ist (der Hand, und im Volumen)</translation>
+    </message>
+    <message>
+        <source>In contact, pull %1 mm (%2 %3 in the volume)</source>
+        <translation>In Kontakt, Zug %1 mm (%2 %3 im Volumen)</translation>
+    </message>
+    <message>
+        <source>Free, pull %1 mm (%2 %3 in the volume)</source>
+        <translation>Frei, Zug %1 mm (%2 %3 im Volumen)</translation>
     </message>
 </context>
 <context>
@@ -3070,22 +3065,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
 </context>
 <context>
     <name>palpate::viewer::StoreDialog</name>
-    <message>
-        <source>%1 MB</source>
-        <translation>%1 MB</translation>
-    </message>
-    <message>
-        <source>%1 GB</source>
-        <translation>%1 GB</translation>
-    </message>
-    <message>
-        <source>%1 TB</source>
-        <translation>%1 TB</translation>
-    </message>
-    <message>
-        <source>%1: %2 samples, every %3 mm, %4</source>
-        <translation>%1: %2 Abtastwerte, alle %3 mm, %4</translation>
-    </message>
     <message>
         <source>Look it up</source>
         <translation>Nachsehen</translation>
@@ -3161,6 +3140,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>What a server answers for pieces that hold only the fill value</source>
         <translation>Was ein Server für Stücke antwortet, die nur den Füllwert enthalten</translation>
+    </message>
+    <message>
+        <source>%1: %2 samples, every %3 %4, %5</source>
+        <translation>%1: %2 Abtastwerte, alle %3 %4, %5</translation>
     </message>
 </context>
 <context>

@@ -24,17 +24,10 @@
 <context>
     <name>palpate::viewer::EditController</name>
     <message numerus="yes">
-        <source>Saved %1, %Ln triangles</source>
+        <source>Saved %1, %2 triangles</source>
         <translation>
-            <numerusform>Saved %1, %Ln triangle</numerusform>
-            <numerusform>Saved %1, %Ln triangles</numerusform>
-        </translation>
-    </message>
-    <message numerus="yes">
-        <source>The surface has %Ln triangles, more than many programs can work with. Simplify it to about %L1? It stays closed, and what is left of its points stays on the surface.</source>
-        <translation>
-            <numerusform>The surface has %Ln triangle, more than many programs can work with. Simplify it to about %L1? It stays closed, and what is left of its points stays on the surface.</numerusform>
-            <numerusform>The surface has %Ln triangles, more than many programs can work with. Simplify it to about %L1? It stays closed, and what is left of its points stays on the surface.</numerusform>
+            <numerusform>Saved %1, %2 triangle</numerusform>
+            <numerusform>Saved %1, %2 triangles</numerusform>
         </translation>
     </message>
 </context>
@@ -56,36 +49,22 @@
     </message>
 </context>
 <context>
-    <name>palpate::viewer::RecordingController</name>
+    <name>palpate::viewer::MainWindow</name>
     <message numerus="yes">
-        <source>%n ticks recorded</source>
+        <source>%n files were dropped: drop one, or the folder of slices</source>
         <translation>
-            <numerusform>%n tick recorded</numerusform>
-            <numerusform>%n ticks recorded</numerusform>
-        </translation>
-    </message>
-    <message numerus="yes">
-        <source>%n ticks</source>
-        <translation>
-            <numerusform>%n tick</numerusform>
-            <numerusform>%n ticks</numerusform>
-        </translation>
-    </message>
-    <message numerus="yes">
-        <source>%n of them come out otherwise than they were recorded</source>
-        <translation>
-            <numerusform>%n of them comes out otherwise than it was recorded</numerusform>
-            <numerusform>%n of them come out otherwise than they were recorded</numerusform>
+            <numerusform>%n file was dropped: drop one, or the folder of slices</numerusform>
+            <numerusform>%n files were dropped: drop one, or the folder of slices</numerusform>
         </translation>
     </message>
 </context>
 <context>
-    <name>palpate::viewer::RunController</name>
+    <name>palpate::viewer::RecordingController</name>
     <message numerus="yes">
-        <source>%n ticks recorded, up to the other device</source>
+        <source>%n ticks come out otherwise than they were recorded</source>
         <translation>
-            <numerusform>%n tick recorded, up to the other device</numerusform>
-            <numerusform>%n ticks recorded, up to the other device</numerusform>
+            <numerusform>%n tick comes out otherwise than it was recorded</numerusform>
+            <numerusform>%n ticks come out otherwise than they were recorded</numerusform>
         </translation>
     </message>
 </context>

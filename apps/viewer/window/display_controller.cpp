@@ -83,8 +83,8 @@ void DisplayController::show_volume(const Field& field, double isovalue,
     look_from_hand(transform);
     // With another device the view is that of the hand, or it would go aslant.
     const bool mouse = content_.live() && content_.live()->mouse();
-    if (const auto view = face_on(field.geometry(), mouse ? 0.2 : 0)) {
-        views_.scene().set_camera(whole(field.geometry(), *view, views_.scene().view_size()));
+    if (const auto view = face_on(field.geometry(), mouse ? 0.3 : 0)) {
+        views_.scene().look_from(*view);
     }
     views_.set_window(content_.volume()->dark(), content_.volume()->bright());
 }

@@ -11,6 +11,7 @@
 
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
+#include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/scene/decimated.hpp"
 #include "apps/viewer/window/content.hpp"
@@ -181,11 +182,10 @@ void EditController::write_surface(const QString& path, const std::shared_ptr<Su
     std::size_t most = mesh->triangles.size();
     if (most > many_triangles_) {
         QMessageBox box(QMessageBox::Question, "Palpate",
-                        tr("The surface has %Ln triangles, more than many programs can work with. "
-                           "Simplify it to about %L1? It stays closed, and what is left of its "
-                           "points stays on the surface.",
-                           nullptr, static_cast<int>(most))
-                            .arg(many_triangles_),
+                        tr("The surface has %1 triangles, more than many programs can work with. "
+                           "Simplify it to about %2? It stays closed, and what is left of its "
+                           "points stays on the surface.")
+                            .arg(count_text(double(most)), count_text(double(many_triangles_))),
                         QMessageBox::Yes | QMessageBox::No | QMessageBox::Cancel, window_);
         box.setObjectName("simplify");
         box.button(QMessageBox::Yes)->setText(tr("Simplify"));
@@ -200,7 +200,8 @@ void EditController::write_surface(const QString& path, const std::shared_ptr<Su
     };
     saving_.start(tr("Saving %1").arg(path), write, [this, path, mesh] {
         const auto triangles = static_cast<int>(mesh->triangles.size());
-        messages_.show_done(tr("Saved %1, %Ln triangles", nullptr, triangles).arg(path));
+        messages_.show_done(
+            tr("Saved %1, %2 triangles", nullptr, triangles).arg(path, count_text(triangles)));
     });
 }
 

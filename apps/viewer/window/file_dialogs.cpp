@@ -25,6 +25,13 @@ QString last_folder() {
     return QSettings().value("folder", QDir::currentPath()).toString();
 }
 
+constexpr const char* volumes =
+    "*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff *.vti *.ims *.h5 *.hdf5";
+
+QString ask_file(QWidget* window, const QString& title, const QString& filter) {
+    return QFileDialog::getOpenFileName(window, title, last_folder(), filter);
+}
+
 /// A synthetic volume or a web address.
 bool is_no_file(const QString& path) {
     return path.startsWith("synthetic:") || io::is_web_address(path.toStdString());
@@ -33,12 +40,15 @@ bool is_no_file(const QString& path) {
 }  // namespace
 
 QString ask_open_name(QWidget* window) {
-    return QFileDialog::getOpenFileName(
-        window, FileDialogs::tr("Open a volume, a session, layers or a recording"), last_folder(),
+    return ask_file(
+        window, FileDialogs::tr("Open a volume, a session, layers or a recording"),
+        FileDialogs::tr("All that can be opened (%1 *.raw *.raw.gz *.json *.csv);;All files (*)")
+            .arg(volumes));
+}
 
-        FileDialogs::tr(
-            "All that can be opened (*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.tif *.tiff "
-            "*.vti *.ims *.h5 *.hdf5 *.raw *.raw.gz *.json *.csv);;All files (*)"));
+QString ask_open_overlay_name(QWidget* window) {
+    return ask_file(window, FileDialogs::tr("Open an overlay: labels or another image"),
+                    FileDialogs::tr("Volumes (%1);;All files (*)").arg(volumes));
 }
 
 QString ask_open_folder(QWidget* window) {
@@ -60,19 +70,17 @@ QString ask_save_name(QWidget* window, const QString& title, const QString& name
 }
 
 QString ask_open_raw_name(QWidget* window) {
-    return QFileDialog::getOpenFileName(window, FileDialogs::tr("Open raw data"), last_folder(),
-                                        FileDialogs::tr("All files (*)"));
+    return ask_file(window, FileDialogs::tr("Open raw data"), FileDialogs::tr("All files (*)"));
 }
 
 QString ask_open_layers_name(QWidget* window) {
-    return QFileDialog::getOpenFileName(window, FileDialogs::tr("Open layers"), last_folder(),
-                                        FileDialogs::tr("Layers (*.json);;All files (*)"));
+    return ask_file(window, FileDialogs::tr("Open layers"),
+                    FileDialogs::tr("Layers (*.json);;All files (*)"));
 }
 
 QString ask_open_tool_name(QWidget* window) {
-    return QFileDialog::getOpenFileName(
-        window, FileDialogs::tr("Open a tool"), last_folder(),
-        FileDialogs::tr("Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)"));
+    return ask_file(window, FileDialogs::tr("Open a tool"),
+                    FileDialogs::tr("Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)"));
 }
 
 void remember_folder(const QString& path) {

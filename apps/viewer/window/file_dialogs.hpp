@@ -11,6 +11,7 @@ namespace palpate::viewer {
 
 /// These return an empty name if the user cancels.
 QString ask_open_name(QWidget* window);
+QString ask_open_overlay_name(QWidget* window);
 QString ask_open_folder(QWidget* window);
 QString ask_open_raw_name(QWidget* window);
 QString ask_open_layers_name(QWidget* window);

@@ -8,6 +8,7 @@
 #include <QDialogButtonBox>
 #include <QTextBrowser>
 #include <QVBoxLayout>
+#include <algorithm>
 
 namespace palpate::viewer {
 namespace {
@@ -102,7 +103,12 @@ QDialog* make_first_steps_dialog(QWidget* window) {
 
 QDialog* make_shortcuts_dialog(QWidget* window) {
     QString text = heading(Help::tr("Keys"));
-    for (const QAction* action : window->findChildren<QAction*>()) {
+    // Those of the menus before those that need the focus in the scene.
+    auto actions = window->findChildren<QAction*>();
+    std::stable_partition(actions.begin(), actions.end(), [](const QAction* action) {
+        return action->shortcutContext() == Qt::WindowShortcut;
+    });
+    for (const QAction* action : actions) {
         if (action->shortcut().isEmpty()) continue;
         text += row(action->shortcut().toString(QKeySequence::NativeText),
                     action->text().remove('&').remove(QString::fromUtf8("\u2026")));

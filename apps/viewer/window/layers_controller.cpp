@@ -232,6 +232,7 @@ void LayersController::save(const QString& path) {
             files_, [&](const io::LayersFile& one) { return one.layers.name == layers->name; });
         if (from != files_.end()) file.about = from->about;
         io::write_layers(path.toStdString(), file);
+        panel_.layers_controls().set_saved();
         messages_.show_done(tr("Saved %1").arg(path));
     });
 }

@@ -17,11 +17,13 @@
 #include <QScreen>
 #include <QSettings>
 #include <QStatusBar>
+#include <QUrl>
 
 #include <algorithm>
 #include <utility>
 
 #include "apps/viewer/model/hand_state.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
@@ -114,7 +116,8 @@ void MainWindow::build() {
     streaming_->setObjectName("streaming");
     statusBar()->addPermanentWidget(streaming_);
     readout_->setObjectName("readout");
-    readout_->setToolTip(tr("The proxy: where it is [mm], the sample there and its slope"));
+    readout_->setIndent(fontMetrics().height());  // apart from a message that is cut off
+    readout_->setToolTip(tr("The proxy: where it is, the sample there and its slope"));
     statusBar()->addPermanentWidget(readout_);
     frame_time_->setObjectName("frames");
     statusBar()->addPermanentWidget(frame_time_);
@@ -192,6 +195,7 @@ void MainWindow::show_title() {
 void MainWindow::show_grid() {
     const Geometry& grid = content_.volume()->loaded.volume.geometry();
     name_views(actions_, grid.oriented);
+    use(saved_preferences());
     const bool missing = content_.from_file() && !(grid.oriented && grid.measured);
     views_->set_missing(!missing        ? QString()
                         : grid.oriented ? tr("No spacing in the file")
@@ -216,11 +220,14 @@ void MainWindow::settle_work(const std::function<void()>& action) {
 /// True if there is none, or it is given up. `once_saved` runs after it was saved.
 bool MainWindow::may_lose_work(const std::function<void()>& once_saved) {
     if (!editing_.may_lose_edits(once_saved)) return false;
-    if (!measuring_.unsaved()) return true;
+    const bool measured = measuring_.unsaved();
+    if (!measured && !panel_->layers_controls().unsaved()) return true;
     QMessageBox box(QMessageBox::Question, "Palpate",
-                    tr("The measurements are in no session file yet. Save the session?"),
+                    measured
+                        ? tr("The measurements are in no session file yet. Save the session?")
+                        : tr("The changed layers are in no file yet. Save them in the session?"),
                     QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
-    box.setObjectName("lose_measurements");
+    box.setObjectName("lose_work");
     box.setDefaultButton(QMessageBox::Save);
     const int answer = messages_.answer_to(box);
     if (answer == QMessageBox::Save) {
@@ -236,6 +243,7 @@ void MainWindow::save_session(const QString& name, const std::function<void()>& 
                             : ask_save_name(this, tr("Save the session"), "session.json", "json");
         if (path.isEmpty()) return;
         files_.save_session(path);
+        panel_->layers_controls().set_saved();
         if (then) then();
     });
 }
@@ -250,8 +258,11 @@ void MainWindow::restore_layout() {
 
 /// But for the appearance, which is the application's.
 void MainWindow::use(const Preferences& preferences) {
-    views_->set_unit(preferences.unit);
-    measuring_.set_unit(preferences.unit);
+    const auto& volume = content_.volume();
+    const LengthUnit unit =
+        volume ? unit_in(volume->loaded.volume.geometry(), preferences.unit) : preferences.unit;
+    views_->set_unit(unit);
+    measuring_.set_unit(unit);
     views_->scene().set_wheel_step(preferences.wheel_px);
     views_->scene().set_most_triangles(
         static_cast<std::size_t>(1e6 * preferences.surface_millions));
@@ -307,11 +318,12 @@ void MainWindow::show_readout(const Snapshot& now) {
     const auto number = [](double value) { return QString::number(value, 'f', 1); };
     QString words = felt_text(now.session.tick.layers, content_.layers());
     if (!words.isEmpty()) words += "   ";
-    words += tr("%1, %2, %3 mm").arg(number(at[0]), number(at[1]), number(at[2]));
+    const QString unit = unit_word(content_.volume()->loaded.volume.geometry());
+    words += QString("%1, %2, %3 %4").arg(number(at[0]), number(at[1]), number(at[2]), unit);
     if (const auto field = content_.felt_round(now, at)) {
-        words += "   " + tr("%1 %2   slope %3 /mm")
+        words += "   " + tr("%1 %2   slope %3 /%4")
                              .arg(QString::number(value_at(*field, at), 'g', 4), units,
-                                  QString::number(gradient_at(*field, at).norm(), 'g', 3));
+                                  QString::number(gradient_at(*field, at).norm(), 'g', 3), unit);
     }
     readout_->setText(words);
 }
@@ -391,7 +403,12 @@ void MainWindow::dropEvent(QDropEvent* event) {
     const auto urls = event->mimeData()->urls();
     if (urls.isEmpty()) return;
     event->acceptProposedAction();
-    const QString path = urls.front().toLocalFile();
+    if (urls.size() > 1) {
+        return messages_.show_problem(
+            tr("%n files were dropped: drop one, or the folder of slices", nullptr, urls.size()));
+    }
+    const QUrl& url = urls.front();
+    const QString path = url.isLocalFile() ? url.toLocalFile() : url.toString();
     // The volume stays, with its edits.
     if (LayersController::is_layers_file(path)) return layers_.open(path);
     if (ToolController::is_tool_file(path)) return tools_.open(path);

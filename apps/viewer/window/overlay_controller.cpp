@@ -49,8 +49,10 @@ OverlayController::OverlayController(Content& content, Views& views, Panel& pane
 
 void OverlayController::ask_open() {
     if (!content_.volume()) return;
-    const QString path = ask_open_name(messages_.window());
-    if (!path.isEmpty()) open(run::source_named(path.toStdString()));
+    const QString path = ask_open_overlay_name(messages_.window());
+    if (path.isEmpty()) return;
+    remember_folder(path);
+    open(run::source_named(path.toStdString()));
 }
 
 void OverlayController::open(const run::Source& source) {

@@ -87,7 +87,7 @@ PreferencesDialog::PreferencesDialog(const Preferences& preferences, QWidget* wi
                                 most_millions, 1, tr(" million"));
     auto* form = new QFormLayout(this);
     add_row(*form, tr("Theme"), theme, tr("Colours of the window"));
-    add_row(*form, tr("Language"), language, tr("Of the window's words; from the next start"));
+    add_row(*form, tr("Language, from the next start"), language, tr("Of the window's words"));
     add_row(*form, tr("A notch of the wheel"), wheel,
             tr("Moves the probe into the depth as far as a drag of so many pixels"));
     add_row(*form, tr("Units of lengths"), unit, tr("Of measurements"));

@@ -14,6 +14,7 @@
 
 #include "apps/viewer/model/raw_preview.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/number_box.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -123,13 +124,12 @@ void RawDialog::judge() {
     accept_->setEnabled(packed || bytes == have);
     skip_rest_->setEnabled(!packed && bytes < have && have - bytes < skip_->maximum());
     verdict_->setText(
-        packed ? tr("These samples take %L1 bytes once unpacked.").arg(bytes, 0, 'f', 0)
+        packed ? tr("These samples take %1 bytes once unpacked.").arg(count_text(bytes))
         : bytes == have
             ? tr("These samples are just what the file holds.")
-            : (have > bytes ? tr("The file holds %L1 bytes, %L2 more than these samples take.")
-                            : tr("The file holds %L1 bytes, %L2 fewer than these samples take."))
-                  .arg(have, 0, 'f', 0)
-                  .arg(std::abs(have - bytes), 0, 'f', 0));
+            : (have > bytes ? tr("The file holds %1 bytes, %2 more than these samples take.")
+                            : tr("The file holds %1 bytes, %2 fewer than these samples take."))
+                  .arg(count_text(have), count_text(std::abs(have - bytes))));
     if (slice_->maximum() != layout.size[2] - 1) {
         slice_->setMaximum(layout.size[2] - 1);
         slice_->setValue(layout.size[2] / 2);

@@ -1,6 +1,7 @@
 // Starts and ends recordings, and tells what is special about one that is played.
 #include "apps/viewer/window/recording_controller.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@ void RecordingController::start(const QString& path) {
         std::vector<run::Run*> hands;
         for (int hand = 1; hand <= content_.hands(); ++hand) hands.push_back(content_.live(hand));
         run::Run::record_together(hands, path.toStdString());
+        began_ = seconds();
         messages_.show_done(tr("Recording to %1").arg(path));
     });
     Q_EMIT changed();
@@ -31,20 +33,26 @@ void RecordingController::stop() {
     if (!recording()) return;
     messages_.guarded([&] {
         const int before = std::exchange(exit_status_, app::bad_output);  // unless it is whole
-        std::int64_t ticks = 0;
+        const double recorded = std::max(0.0, seconds() - began_);
         std::exception_ptr lost;
         for (int hand = 1; hand <= content_.hands(); ++hand) {
             try {
-                ticks += content_.live(hand)->stop_recording();
+                content_.live(hand)->stop_recording();
             } catch (const io::OutputError&) {
                 lost = std::current_exception();
             }
         }
         if (lost) std::rethrow_exception(lost);
-        messages_.show_done(tr("%n ticks recorded", nullptr, static_cast<int>(ticks)));
+        messages_.show_done(tr("Recorded %1 s").arg(recorded, 0, 'f', 1));
         exit_status_ = before;
     });
     Q_EMIT changed();
+}
+
+/// Of the first hand, since its run began.
+double RecordingController::seconds() const {
+    const auto now = content_.live(1)->snapshot();
+    return now ? now->session.tick.time : 0;
 }
 
 /// Of the hands that are recorded, all have the same. Null: nothing is recorded.
@@ -61,20 +69,19 @@ void RecordingController::check() {
 }
 
 void RecordingController::tell_playback() {
-    std::size_t ticks = 0, different = 0;
+    const Playback& playback = *content_.playback();
+    std::size_t different = 0;
     for (int hand = 1; hand <= content_.hands(); ++hand) {
-        ticks += content_.playback(hand)->ticks();
         different += content_.playback(hand)->different();
     }
-    QStringList words{tr("%n ticks", nullptr, static_cast<int>(ticks))};
-    if (content_.hands() < content_.playback()->hands()) {
-        words << tr("the first %1 of %2 hands are shown")
-                     .arg(content_.hands())
-                     .arg(content_.playback()->hands());
+    QStringList words{tr("A recording of %1 s").arg(playback.end() - playback.begin(), 0, 'f', 1)};
+    if (content_.hands() < playback.hands()) {
+        words
+            << tr("the first %1 of %2 hands are shown").arg(content_.hands()).arg(playback.hands());
     }
-    if (!content_.playback()->complete()) words << tr("the recording was cut off before its end");
+    if (!playback.complete()) words << tr("the recording was cut off before its end");
     if (different > 0) {
-        words << tr("%n of them come out otherwise than they were recorded", nullptr,
+        words << tr("%n ticks come out otherwise than they were recorded", nullptr,
                     static_cast<int>(different));
     }
     messages_.show_done(words.join("; "));

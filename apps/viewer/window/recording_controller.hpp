@@ -34,10 +34,12 @@ class RecordingController : public QObject {
   private:
     const io::RecordingWriter* writer() const;
     void tell_playback();
+    double seconds() const;
 
     Content& content_;
     Messages& messages_;
     int exit_status_ = 0;
+    double began_ = 0;  // [s] of the run
 };
 
 }  // namespace palpate::viewer

@@ -139,13 +139,10 @@ void RunController::use_device(const QString& option) {
         const devices::DeviceChoice device = devices::parse_device(option.toStdString());
         if (run::Run* live = content_.live()) {
             // The recording of two goes on with the other hand.
-            const bool ends = live->recording() && content_.hands() == 1;
-            const std::int64_t ticks = ends ? live->recording()->ticks() : 0;
+            const bool recorded =
+                content_.hands() == 1 && live->recording() && live->recording()->ticks() > 0;
             content_.use_device(device);
-            if (ticks > 0) {
-                messages_.show_done(tr("%n ticks recorded, up to the other device", nullptr,
-                                       static_cast<int>(ticks)));
-            }
+            if (recorded) messages_.show_done(tr("Recorded up to the other device"));
             Q_EMIT device_changed();
         }
         const auto other = static_cast<std::size_t>(content_.hand() - 2);

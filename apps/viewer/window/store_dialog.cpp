@@ -11,8 +11,10 @@
 #include <QSpinBox>
 
 #include "apps/options/exit_status.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/scene/hand_over.hpp"
+#include "apps/viewer/window/streaming_words.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -24,13 +26,6 @@ QString product(const Index3& size) {
 QString product(const Vec3& spacing) {
     const auto number = [](double mm) { return QString::number(mm, 'g', 4); };
     return number(spacing[0]) + " x " + number(spacing[1]) + " x " + number(spacing[2]);
-}
-
-QString size_text(double bytes) {
-    const double mega = bytes / 1e6;
-    if (mega < 1000) return StoreDialog::tr("%1 MB").arg(mega, 0, 'f', mega < 10 ? 1 : 0);
-    return mega < 1e6 ? StoreDialog::tr("%1 GB").arg(mega / 1e3, 0, 'f', 1)
-                      : StoreDialog::tr("%1 TB").arg(mega / 1e6, 0, 'f', 1);
 }
 
 /// Of a request, while somebody waits before a dialog.
@@ -49,8 +44,9 @@ struct StoreDialog::Found {
 QString level_words(const stream::StoreInfo& info, int level) {
     const Geometry& grid = info.levels[static_cast<std::size_t>(level)].geometry;
     const double bytes = double(sample_count(grid)) * double(size_of(info.type));
-    return StoreDialog::tr("%1: %2 samples, every %3 mm, %4")
-        .arg(QString::number(level), product(grid.size), product(grid.spacing), size_text(bytes));
+    return StoreDialog::tr("%1: %2 samples, every %3 %4, %5")
+        .arg(QString::number(level), product(grid.size), product(grid.spacing),
+             QString(unit_word(grid)), bytes_text(bytes));
 }
 
 StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time, QWidget* parent)

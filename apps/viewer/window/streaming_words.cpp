@@ -12,17 +12,18 @@ struct Streaming {
     Q_DECLARE_TR_FUNCTIONS(Streaming)
 };
 
-QString bytes_text(std::uint64_t bytes) {
-    const auto mega = double(bytes) / 1e6;
-    return mega < 1000 ? Streaming::tr("%1 MB").arg(mega, 0, 'f', mega < 10 ? 1 : 0)
-                       : Streaming::tr("%1 GB").arg(mega / 1000, 0, 'f', 1);
-}
-
 QString level_text(const std::optional<int>& level) {
     return level ? QString::number(*level) : Streaming::tr("single samples");
 }
 
 }  // namespace
+
+QString bytes_text(double bytes) {
+    const double mega = bytes / 1e6;
+    if (mega < 1000) return QString("%1 MB").arg(mega, 0, 'f', mega < 10 ? 1 : 0);
+    return mega < 1e6 ? QString("%1 GB").arg(mega / 1e3, 0, 'f', 1)
+                      : QString("%1 TB").arg(mega / 1e6, 0, 'f', 1);
+}
 
 QString streaming_words(const stream::BrickLoaderStatus& hand,
                         const DetailController::State& seen) {
@@ -38,7 +39,7 @@ QString streaming_words(const stream::BrickLoaderStatus& hand,
     if (!hand.problem.empty() || !reading.problem.empty()) {
         words += Streaming::tr("cannot be read now, tried again");
     }
-    words += bytes_text(hand.traffic.bytes);
+    words += bytes_text(double(hand.traffic.bytes));
     return words.join(" · ");
 }
 
@@ -47,7 +48,7 @@ QString streaming_tip(const stream::BrickLoaderStatus& hand, const DetailControl
     QStringList lines{
         Streaming::tr("The hand: %1 bricks in memory (%2), %3 wanted, %4 missing, %5 at once")
             .arg(hand.resident)
-            .arg(bytes_text(hand.bytes))
+            .arg(bytes_text(double(hand.bytes)))
             .arg(hand.wanted)
             .arg(hand.missing)
             .arg(hand.urgent),
@@ -56,9 +57,9 @@ QString streaming_tip(const stream::BrickLoaderStatus& hand, const DetailControl
             .arg(reading.missing)
             .arg(reading.coming)
             .arg(reading.failed)
-            .arg(bytes_text(reading.bytes)),
+            .arg(bytes_text(double(reading.bytes))),
         Streaming::tr("Read: %1 by %2 requests, %3 tried again, %4 found in the disk cache")
-            .arg(bytes_text(hand.traffic.bytes))
+            .arg(bytes_text(double(hand.traffic.bytes)))
             .arg(hand.traffic.requests)
             .arg(hand.traffic.retries)
             .arg(hand.traffic.cached),

@@ -8,6 +8,8 @@
 
 namespace palpate::viewer {
 
+/// "12 MB".
+QString bytes_text(double bytes);
 /// A line for the status bar: levels, what is missing, what was read.
 QString streaming_words(const stream::BrickLoaderStatus& hand, const DetailController::State& seen);
 /// The same at length, for a tip.

@@ -10,6 +10,7 @@
 #include <QPushButton>
 #include <QRegularExpression>
 #include <QSlider>
+#include <QStatusBar>
 #include <QTextBrowser>
 #include <QToolButton>
 
@@ -308,6 +309,9 @@ TEST_F(Window, a_session_is_recorded_and_played_back_with_the_timeline) {
     save("recording");
     press(Qt::Key_R, Qt::ControlModifier);
     EXPECT_EQ(window_->live()->recording(), nullptr);
+    EXPECT_TRUE(window_->statusBar()->currentMessage().contains(
+        QRegularExpression("^Recorded [1-9][0-9]*\\.[0-9] s$")))
+        << window_->statusBar()->currentMessage().toStdString();
     wait_until([&] { return !part<QLabel>("recording_clock").isVisible(); });
     ASSERT_TRUE(QFile::exists(file));
     type_in_dialog(Qt::Key_O, file);

@@ -240,6 +240,52 @@ TEST_F(Files, a_single_slice_is_seen_face_on) {
     save("slice");
 }
 
+TEST_F(Files, a_thin_stack_is_seen_face_on) {
+    Geometry geometry{Index3(40, 36, 11)};
+    std::vector<std::uint8_t> ball(40 * 36 * 11);
+    for (int i = 0; i < int(ball.size()); ++i)
+        ball[std::size_t(i)] = std::hypot(i % 40 - 20, i / 40 % 36 - 18) < 12 ? 200 : 0;
+    io::write_volume(Volume(geometry, std::move(ball)), scratch_.path() / "stack.nrrd");
+    feel(scratch("stack.nrrd").toStdString());
+    const ViewAxes axes = axes_of(window_->views().scene().camera());
+    EXPECT_LT((axes.right - Vec3::UnitX()).norm(), 1e-9);
+    EXPECT_LT((axes.up + Vec3::UnitY()).norm(), 1e-9) << "rows from above";
+}
+
+TEST_F(Files, the_first_view_shows_the_whole_volume_in_a_window_of_any_shape) {
+    window_->resize(1060, 1000);
+    feel("synthetic:cylinder:64x24x24");
+    const Scene& scene = window_->views().scene();
+    const auto fitting = [&] {
+        const pictures::Camera camera = scene.camera();
+        const Geometry& grid = window_->live()->field().geometry();
+        return whole(grid, {camera.towards_viewer, camera.up}, scene.view_size()).half_height;
+    };
+    EXPECT_NEAR(scene.camera().half_height, fitting(), 1e-9);
+    press(Qt::Key_F6);  // another shape
+    wait_until_settled();
+    EXPECT_NEAR(scene.camera().half_height, fitting(), 1e-9);
+    press(Qt::Key_3);
+    EXPECT_NEAR(scene.camera().half_height, fitting(), 1e-9) << "from another side";
+}
+
+TEST_F(Files, several_at_once_and_addresses_are_dropped_knowingly) {
+    const auto drop = [&](const QList<QUrl>& urls) {
+        QMimeData data;
+        data.setUrls(urls);
+        QDragEnterEvent enter({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(window_.get(), &enter);
+        QDropEvent event(QPointF(10, 10), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(window_.get(), &event);
+    };
+    const QUrl file = QUrl::fromLocalFile(file_of(24, "one.mha"));
+    drop({file, file});
+    EXPECT_TRUE(window_->messages().problem().startsWith("2 files"));
+    EXPECT_FALSE(window_->files().loading()) << "not one slice of many";
+    drop({QUrl("http://127.0.0.1:1/nothing.png")});
+    viewer::wait_until([&] { return window_->messages().problem().contains("127.0.0.1"); });
+}
+
 using DrawnFiles = Files;
 
 TEST_F(DrawnFiles, pictures_of_scene_and_window_are_what_is_seen) {

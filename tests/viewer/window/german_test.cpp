@@ -9,10 +9,14 @@
 #include <QMenu>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <QPushButton>
+#include <QScrollArea>
 #include <QSet>
 #include <QTabWidget>
 #include <QTableWidget>
+#include <QToolButton>
 
+#include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/window/help.hpp"
 #include "apps/viewer/window/language.hpp"
 #include "apps/viewer/window/preferences.hpp"
@@ -188,6 +192,31 @@ TEST_F(German, no_label_of_the_panel_is_cut_off_at_the_usual_width) {
     }
 }
 
+TEST_F(German, no_page_of_the_panel_is_cut_off_whatever_is_unfolded) {
+    open_german();
+    feel_sample();
+    for (auto* heading : window_->findChildren<QToolButton*>()) {
+        if (heading->objectName().endsWith("_heading")) heading->setChecked(true);
+    }
+    QTest::mouseClick(&part<QPushButton>("add_layer"), Qt::LeftButton);
+    auto& tabs = part<QTabWidget>("tabs");
+    for (int i = 0; i < tabs.count(); ++i) {
+        tabs.setCurrentIndex(i);
+        wait_until_settled();
+        const auto& page = dynamic_cast<const QScrollArea&>(*tabs.widget(i));
+        EXPECT_LE(page.widget()->minimumSizeHint().width(), page.viewport()->width()) << i;
+    }
+}
+
+TEST_F(German, large_numbers_read_alike_in_every_language) {
+    EXPECT_EQ(count_text(999), "999");
+    EXPECT_EQ(count_text(1234567), QString::fromUtf8("1\u202f234\u202f567"));
+    open_german();
+    RawDialog dialog("/dev/null", window_.get());
+    EXPECT_FALSE(dialog.findChild<QLabel*>("raw_verdict")->text().contains("6,"));
+    EXPECT_FALSE(dialog.findChild<QLabel*>("raw_verdict")->text().contains("6."));
+}
+
 TEST_F(German, qt_s_own_buttons_are_german) {
     if (!QFile::exists(QLibraryInfo::location(QLibraryInfo::TranslationsPath) + "/qtbase_de.qm")) {
         GTEST_SKIP() << "Qt's translations are not installed";
@@ -226,16 +255,17 @@ TEST_F(German, the_choice_of_a_language_is_kept) {
 TEST_F(German, plurals_are_right_in_both_languages) {
     const auto ticks = [](int n) {
         return QCoreApplication::translate("palpate::viewer::RecordingController",
-                                           "%n ticks recorded", nullptr, n);
+                                           "%n ticks come out otherwise than they were recorded",
+                                           nullptr, n);
     };
     {
         const Translation english(Language::english);
-        EXPECT_EQ(ticks(1), "1 tick recorded");
-        EXPECT_EQ(ticks(2), "2 ticks recorded");
+        EXPECT_EQ(ticks(1), "1 tick comes out otherwise than it was recorded");
+        EXPECT_EQ(ticks(2), "2 ticks come out otherwise than they were recorded");
     }
     const Translation german(Language::german);
-    EXPECT_EQ(ticks(1), "1 Takt aufgezeichnet");
-    EXPECT_EQ(ticks(2), "2 Takte aufgezeichnet");
+    EXPECT_EQ(ticks(1), "1 Takt fällt anders aus, als er aufgezeichnet wurde");
+    EXPECT_EQ(ticks(2), "2 Takte fallen anders aus, als sie aufgezeichnet wurden");
 }
 
 }  // namespace

@@ -3,10 +3,13 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QLabel>
 #include <QPointer>
 #include <QPushButton>
+#include <QStatusBar>
 
 #include "apps/viewer/model/session_file.hpp"
+#include "apps/viewer/slices/plane.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "viewer/window/window_fixture.hpp"
@@ -78,11 +81,32 @@ TEST_F(Grid, without_a_spacing_says_so_and_takes_one) {
     write("c.nrrd", "");
     feel(scratch("c.nrrd").toStdString());
     EXPECT_EQ(badge().text(), "No orientation and no spacing in the file");
+    SlicePane& pane = window_->views().slice(2);
+    const auto measure = [&] {
+        press(Qt::Key_M);
+        for (const int x : {0, 20}) {
+            QTest::mouseClick(&pane, Qt::LeftButton, {}, pane.rect().center() + QPoint(x, 5));
+        }
+        return window_->statusBar()->currentMessage();
+    };
+    const auto ends_in = [&](const char* unit) {
+        EXPECT_TRUE(measure().endsWith(QString(" ") + unit));
+        wait_until([&] {
+            return part<QLabel>("contact").text().contains(QString(" %1 in the vol").arg(unit)) &&
+                   part<QLabel>("readout").text().endsWith(QString("/%1").arg(unit));
+        });
+        EXPECT_TRUE(
+            QString::fromStdString(position_text(slice_plane(grid(), 2), grid(), Vec3::Constant(3)))
+                .endsWith(unit));
+    };
+    ends_in("voxel");
+    answer(QMessageBox::Discard);
     QTest::mouseClick(&badge(), Qt::LeftButton);
     part<QDoubleSpinBox>("grid_spacing_Z").setValue(2.5);
     QTest::keyClick(&part<QDialog>("grid"), Qt::Key_Return);
     wait_until([&] { return window_->live() && grid().measured && window_->settled(); });
     EXPECT_EQ(grid().spacing, Vec3(1, 1, 2.5));
+    ends_in("mm");
     EXPECT_EQ(badge().text(), "No orientation in the file");
     EXPECT_TRUE(badge().isVisible());
 }

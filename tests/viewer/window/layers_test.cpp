@@ -9,6 +9,7 @@
 
 #include <set>
 
+#include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/number_box.hpp"
@@ -43,6 +44,9 @@ Volume ct_ball() {
     }
     return Volume(geometry, samples);
 }
+
+/// Of the wheel: a whole notch of a narrow scene may go through the skin at once.
+constexpr int finely = 40;
 
 class LayersInWindow : public InWindow {
   protected:
@@ -81,11 +85,13 @@ TEST_F(LayersInWindow, a_ct_is_opened_a_set_is_picked_and_both_layers_are_felt_i
     EXPECT_TRUE(part<QLabel>("layers_note").text().contains("HU"))
         << "the file does not say its units";
     std::set<std::string> touched;
-    EXPECT_TRUE(press_until([&] {
-        const LayersFelt felt = now().session.tick.layers;
-        if (felt.touched >= 0) touched.insert(layers()->layers[std::size_t(felt.touched)].name);
-        return felt.touched == 1 && force() > 0.3;
-    }));
+    EXPECT_TRUE(press_until(
+        [&] {
+            const LayersFelt felt = now().session.tick.layers;
+            if (felt.touched >= 0) touched.insert(layers()->layers[std::size_t(felt.touched)].name);
+            return felt.touched == 1 && force() > 0.3;
+        },
+        finely));
     EXPECT_EQ(touched, (std::set<std::string>{"skin", "bone"}));
     wait_until([&] {
         return part<QLabel>("touched_layers").text() == "on bone, in skin" &&
@@ -178,12 +184,27 @@ TEST_F(LayersInWindow, a_changed_set_goes_to_a_file_and_into_the_session_and_com
     EXPECT_EQ(layers()->layers[0].name, "hide");
 }
 
+TEST_F(LayersInWindow, that_were_changed_are_not_lost_without_a_question) {
+    feel_ct();
+    pick(ct_set);
+    wait_until_settled();
+    EXPECT_FALSE(controls().unsaved()) << "the set is in a file";
+    QTest::mouseClick(&part<QPushButton>("add_layer"), Qt::LeftButton);
+    wait_until_settled();
+    answer(QMessageBox::Cancel);
+    EXPECT_FALSE(window_->close());
+    answer(QMessageBox::Save);
+    typing(scratch("case.json"), [&] { EXPECT_FALSE(window_->close()) << "it is saved first"; });
+    wait_until([&] { return !window_->isVisible(); });
+    EXPECT_EQ(read_session(scratch("case.json").toStdString()).settings->layers->layers.size(), 3U);
+}
+
 TEST_F(LayersInWindow, a_recording_names_the_layers_that_were_felt) {
     feel_ct();
     pick(ct_set);
     wait_until_settled();
     window_->recordings().start(scratch("a.csv"));
-    ASSERT_TRUE(press_until([&] { return now().session.tick.layers.touched == 0; }));
+    ASSERT_TRUE(press_until([&] { return now().session.tick.layers.touched == 0; }, finely));
     window_->recordings().stop();
     window_->files().open_path(scratch("a.csv"));
     wait_until([&] { return window_->playback() != nullptr; });
