@@ -66,6 +66,12 @@ TEST(nrrd, text_gzip_detached_and_skipped_data_are_read) {
                                std::string(plain_nrrd) +
                                    "encoding: raw\nline skip: 1\nbyte skip: 2\n"
                                    "data file: data.bin\n"));
+    put_bytes(folder / "50%done.bin", counting(24));
+    const std::string percent = "encoding: raw\ndata file: 50%done.bin\n";
+    expect_counting(read_bytes(folder, "d.nhdr", plain_nrrd + percent));
+    EXPECT_TRUE(contains(
+        refusal_of(folder, "d.nhdr", plain_nrrd + replaced(percent, "done.bin", "d.bin 1 4 1")),
+        "several files"));
     expect_counting(read_bytes(
         folder, "c.nhdr",
         std::string(plain_nrrd) + "encoding: raw\nbyte skip: -1\ndata file: data.bin\n"));
@@ -355,9 +361,24 @@ TEST(nifti, headers_that_make_no_sense_are_refused) {
     EXPECT_TRUE(contains(refused(70, little<std::int16_t>(32)), "complex"));
     EXPECT_TRUE(contains(refused(72, little<std::int16_t>(8)), "bits"));
     EXPECT_TRUE(contains(refused(108, little(-5.0F)), "samples at byte"));
+    EXPECT_TRUE(contains(refused(108, little(347.0F)), "samples at byte"));
     EXPECT_TRUE(contains(refused(0, little<std::int32_t>(540)), "NIfTI-2"));
     EXPECT_TRUE(contains(refused(344, "ni1"), ".hdr/.img"));
     EXPECT_TRUE(contains(refused(344, "xyz"), "magic"));
+}
+
+TEST(nifti, samples_that_would_lie_within_the_header_are_taken_from_behind_it) {
+    const ScratchFolder folder;
+    for (const float place : {0.0F, 348.0F, 350.0F}) {
+        const std::string whole = nifti([&](std::string& h) { put_at(h, 108, little(place)); });
+        std::string without_extensions = whole;
+        without_extensions.erase(348, 4);
+        for (const std::string& bytes : {whole, without_extensions}) {
+            const VolumeFile file = read_bytes(folder, "a.nii", bytes);
+            expect_counting(file);
+            EXPECT_TRUE(contains(all_notes(file), "within itself")) << all_notes(file);
+        }
+    }
 }
 
 std::string vti(const std::string& extent, const std::string& where, const std::string& components,
