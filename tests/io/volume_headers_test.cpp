@@ -407,6 +407,45 @@ TEST(vti, samples_of_cells_lie_at_the_centres) {
     EXPECT_TRUE(contains(all_notes(file), "centres"));
 }
 
+/// The same with other numbers and another type.
+std::string vti_of(const std::string& type, const std::string& numbers) {
+    std::string text = vti("0 2 0 0 0 0", "PointData", "", 0);
+    text.replace(text.find("Int16"), 5, type);
+    return text.insert(text.find("</DataArray>"), numbers);
+}
+
+TEST(vti, numbers_that_the_type_of_the_text_cannot_hold_are_refused) {
+    const ScratchFolder folder;
+    for (const auto& [type, least, greatest, below, above] :
+         std::initializer_list<std::array<const char*, 5>>{
+             {"Int8", "-128", "127", "-129", "128"},
+             {"UInt8", "0", "255", "-1", "256"},
+             {"Int16", "-32768", "32767", "-32769", "32768"},
+             {"UInt16", "0", "65535", "-1", "65536"},
+             {"UInt32", "0", "4294967295", "-1", "4294967296"}}) {
+        const std::string fits = std::string(" 1\n+") + greatest + " " + least + "\n";
+        const VolumeFile file = read_bytes(folder, "a.vti", vti_of(type, fits));
+        EXPECT_EQ(file.volume.sample({0, 0, 0}), 1) << type;
+        EXPECT_EQ(file.volume.sample({1, 0, 0}), static_cast<float>(std::stod(greatest))) << type;
+        EXPECT_EQ(file.volume.sample({2, 0, 0}), std::stod(least)) << type;
+        for (const char* number : {below, above}) {
+            const std::string message =
+                refusal_of(folder, "a.vti", vti_of(type, std::string("1 ") + number + " 3"));
+            EXPECT_TRUE(contains(message, ", which its sample type cannot hold"))
+                << type << ": " << message;
+        }
+    }
+}
+
+TEST(vti, what_stands_beside_the_numbers_of_an_array_is_not_taken_for_them) {
+    const ScratchFolder folder;
+    const std::string key =
+        "<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">1000</InformationKey>\n";
+    const VolumeFile file = read_bytes(folder, "a.vti", vti_of("UInt8", "1 2 3" + key));
+    EXPECT_EQ(file.volume.sample({2, 0, 0}), 3);
+    EXPECT_TRUE(contains(refusal_of(folder, "a.vti", vti_of("UInt8", "1 2 300" + key)), "300"));
+}
+
 TEST(vti, vectors_empty_grids_and_wrong_counts_are_refused) {
     const ScratchFolder folder;
     EXPECT_TRUE(
