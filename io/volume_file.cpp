@@ -151,18 +151,18 @@ class Workshop {
     fs::path folder_;
 };
 
-/// A pipe or a device.
-bool is_stream(const fs::path& path) {
+/// A pipe, a device or a link, which stay where a file would be replaced.
+bool stays(const fs::path& path) {
     std::error_code error;
-    const fs::file_status status = fs::status(path, error);
+    const fs::file_status status = fs::symlink_status(path, error);
     return fs::exists(status) && !fs::is_regular_file(status);
 }
 
 /// By way of a file, because the formats' libraries write files only.
-void write_to_stream(const Volume& volume, const fs::path& path, const WriteOptions& options) {
+void write_through_file(const Volume& volume, const fs::path& path, const WriteOptions& options) {
     const std::string extension(written_extension_of(path));
     if (extension == ".nhdr" || extension == ".mhd") {
-        throw OutputError(path.string() + ": is no file, and " + extension +
+        throw OutputError(path.string() + ": is a link or no file, and " + extension +
                           " takes two of them: name it .nrrd or .mha");
     }
     PendingFile stream(path);
@@ -190,7 +190,7 @@ void write_volume(const Volume& volume, const fs::path& path, const WriteOptions
     const std::string problem = why_not_written(path, volume.geometry());
     if (!problem.empty()) throw OutputError(problem);
     if (written_extension_of(path) == ".raw") return write_raw(volume, path, options.progress);
-    if (is_stream(path)) return write_to_stream(volume, path, options);
+    if (stays(path)) return write_through_file(volume, path, options);
     const Workshop workshop(path);
     const nlohmann::json request = {{"caller", getpid()},
                                     {"geometry", json_from(volume.geometry())},

@@ -24,6 +24,14 @@ constexpr DicomTag position_tag{0x0020, 0x0032}, orientation_tag{0x0020, 0x0037}
     pixel_tag{0x0028, 0x0030}, thickness_tag{0x0018, 0x0050}, between_tag{0x0018, 0x0088},
     intercept_tag{0x0028, 0x1052}, slope_tag{0x0028, 0x1053};
 
+/// The number of a tag that has one; nothing if it is not there.
+std::vector<double> one_number(const DicomGroup& group, DicomTag tag, const std::string& name) {
+    const auto numbers = group.numbers(tag);
+    if (numbers.size() <= 1) return numbers;
+    throw Failure("its DICOM tag " + name + " has " + std::to_string(numbers.size()) +
+                  " numbers instead of 1; correct it");
+}
+
 void set_place(DicomSlice& s, const std::vector<double>& p, const std::vector<double>& axes) {
     if (p.size() == 3) {
         for (const double c : p) check_coordinate(c, "DICOM tag ImagePositionPatient");
@@ -66,14 +74,19 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
         if (tag != pixel_tag) add_note(s.notes, std::string("its pixel spacing is that ") + where);
         break;
     }
+    if (const auto shape = measures.numbers({0x0028, 0x0034}); shape.size() == 2) {
+        s.aspect = shape[0] / shape[1];
+        check_spacing(s.aspect, "DICOM tag PixelAspectRatio");
+    }
     const double between = measures.number(between_tag, 0);
     if (between > 0) s.thickness = between;
     if (!(s.thickness > 0)) s.thickness = measures.number(thickness_tag, 0);
 }
 
 void set_rescale(DicomSlice& s, const DicomGroup& transformation) {
-    const auto slope = transformation.numbers(slope_tag),
-               intercept = transformation.numbers(intercept_tag);
+    const auto slope = one_number(transformation, slope_tag, "RescaleSlope"),
+               intercept = one_number(transformation, intercept_tag, "RescaleIntercept");
+    s.has_rescale = s.has_rescale || !slope.empty() || !intercept.empty();
     if (!slope.empty()) s.slope = slope[0];
     if (!intercept.empty()) s.intercept = intercept[0];
     const auto replace = [&](double& number, bool is_good, const char* name, double with) {
@@ -110,6 +123,7 @@ void set_table(DicomSlice& s, const DicomGroup& data) {
         is_signed ? static_cast<std::int16_t>(told[1]) : static_cast<std::int32_t>(told[1]);
     table.values.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
     s.table = std::make_shared<const ValueTable>(std::move(table));
+    s.has_rescale = true;
     const std::string units = items.front().text({0x0028, 0x3004});
     s.values.units = units == "US" ? "" : units;
     s.notes.emplace_back("the table of values in its header (Modality LUT) was applied");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <tuple>
 
 #include "io/helper/dicom_moments.hpp"
 
@@ -269,25 +270,27 @@ void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
 }
 
 /// Slices without position or orientation, stacked in the order of their numbers, or moments of
-/// one.
+/// one. Frames of one file with the same number are moments, too.
 void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
+    const bool is_moment = series.slices.front().is_moment;
     std::vector<PlacedSlice> slices;
     for (std::size_t i = 0; i < series.slices.size(); ++i) slices.push_back({i, 0, 0, 0});
-    std::stable_sort(slices.begin(), slices.end(), [&](const auto& a, const auto& b) {
-        const auto& x = series.slices[a.slice];
-        const auto& y = series.slices[b.slice];
-        return std::pair(x.instance, x.order) < std::pair(y.instance, y.order);
-    });
-    if (series.slices.front().is_moment) {
-        choose_time_step(series, {slices}, request, stack);
-        stack.grid.push_back({0, 0, 0});
-        set_single_spacing(series.slices.front(), stack);
-        return;
+    const auto number = [&](const PlacedSlice& p) {
+        const DicomSlice& s = series.slices[p.slice];
+        return std::tuple(s.instance, s.frames > 1 ? s.file : std::filesystem::path(), s.order);
+    };
+    std::ranges::stable_sort(slices, {}, number);
+    SliceGroups groups;
+    for (const PlacedSlice& p : slices) {
+        const bool is_frame = series.slices[p.slice].frames > 1;
+        const bool alike = !groups.empty() && is_frame && number(groups.back()[0]) == number(p);
+        if (groups.empty() || !(is_moment || alike)) groups.emplace_back();
+        groups.back().push_back(p);
     }
-    stack.slices = std::move(slices);
+    choose_time_step(series, std::move(groups), request, stack);
     for (std::size_t i = 0; i < stack.slices.size(); ++i) stack.grid.push_back({i, i, 0});
-    checked_time_step(request, 1);
     set_single_spacing(series.slices.front(), stack);
+    if (is_moment) return;
     stack.notes.push_back("its slices do not say where they lie: piled up by their numbers, " +
                           text_of(stack.geometry.spacing[2]) + " mm apart");
 }
@@ -395,9 +398,12 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
     stack.geometry.size = {any.columns, any.rows, 1};
     DicomSeries scaled = series;  // with a pixel size in any case
     if (!any.pixel) {
-        stack.notes.emplace_back("it gives no pixel spacing: 1 mm was taken");
+        stack.notes.push_back(any.aspect == 1 ? "it gives no pixel spacing: 1 mm was taken"
+                                              : "it gives only the shape of its pixels: they were "
+                                                "taken as 1 mm wide and " +
+                                                    text_of(any.aspect) + " mm high");
         stack.geometry.measured = false;
-        for (auto& s : scaled.slices) s.pixel = Vec3(1, 1, 0);
+        for (auto& s : scaled.slices) s.pixel = Vec3(1, any.aspect, 0);
     }
     stack.geometry.spacing.head<2>() = scaled.slices.front().pixel->head<2>();
     if (scaled.slices.size() > 1) place_by_location(scaled, stack.notes);

@@ -39,15 +39,17 @@ struct DicomSlice {
     int rows = 0, columns = 0;
     int frames = 1, frame = 0;        ///< how many its file has, and which of them it is
     int instance = 0;                 ///< InstanceNumber of its file
-    int order = 0;                    ///< of the frames of a file
+    int order = 0;                    ///< of the places of the frames of a file
     std::vector<double> keys;         ///< by DicomKey; NaN or missing where the header does not say
     std::optional<Vec3> position;     ///< [mm, LPS] centre of the first pixel
     bool in_patient = true;           ///< or in the space of a transducer
     std::optional<double> location;   ///< [mm] SliceLocation
     std::optional<Vec3> row, column;  ///< unit vectors along a row and along a column
     std::optional<Vec3> pixel;        ///< [mm] between columns, between rows, 0
+    double aspect = 1;                ///< of a pixel, height : width, if its size is not given
     double thickness = 0;             ///< [mm] between slices or of one; 0 if not given
     double slope = 1, intercept = 0;  ///< of the values [units]
+    bool has_rescale = false;         ///< it gives one of these, or a table
     bool has_colours = false;
     bool is_moment = false;  ///< the frames of its file are one place at several times
     double seconds = 0;      ///< from one of them to the next; 0 if not given

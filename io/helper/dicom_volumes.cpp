@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* packed = "is packed; unpack it with gunzip";
+
 /// The type for all slices together: Hounsfield units and the like come as 32-bit integers.
 SampleType common_type(const std::vector<Decoded>& slices, std::vector<std::string>& notes) {
     const Stored first = slices.front().stored;
@@ -127,6 +129,18 @@ void note_files(const std::vector<DicomSlice>& slices, std::vector<std::string>&
     }
 }
 
+/// Slices without slope and intercept among others that have them: a program may have lost these.
+void note_missing_rescale(const std::vector<DicomSlice>& slices, std::vector<std::string>& notes) {
+    const auto changes = [](const DicomSlice& s) { return s.table || s.slope != 1 || s.intercept; };
+    const auto lacks = [](const DicomSlice& s) { return !s.has_rescale; };
+    const auto first = std::ranges::find_if(slices, lacks);
+    if (first == slices.end() || std::ranges::none_of(slices, changes)) return;
+    notes.push_back(std::to_string(std::ranges::count_if(slices, lacks)) + " of its " +
+                    std::to_string(slices.size()) + " slices (the first in " + quoted(first->file) +
+                    ") give no slope and intercept, and others do: their samples were taken as "
+                    "they are stored, do not trust what is felt there");
+}
+
 std::string bytes_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -177,6 +191,7 @@ Result read_series(const DicomSeries& given, const Request& request) {
     result.notes.insert(result.notes.end(), stack.notes.begin(), stack.notes.end());
     take_step(request, stack.time_steps, {stack.seconds, 0}, result);
     note_files(taken, result.notes);
+    note_missing_rescale(taken, result.notes);
     warnings.note(result.notes);
     result.type = common_type(decoded, result.notes);
     const auto pixels = static_cast<std::size_t>(one.columns) * static_cast<std::size_t>(one.rows);
@@ -245,6 +260,7 @@ Result read_chosen(const std::vector<DicomSeries>& all, const Request& request) 
 
 Result read_file(const Request& request) {
     say_doing(request.path.filename().string());
+    if (is_gzip(request.path)) throw Failure(packed);
     const auto all = series_of(slices_from(request.path));
     if (all.empty()) {
         throw Failure("is a DICOM file without an image; give the folder with the slices");
@@ -275,16 +291,15 @@ void check_others(const std::vector<fs::path>& slices, const std::vector<fs::pat
     }
     for (const fs::path& file : others) {
         const bool empty = fs::file_size(file) == 0;
-        const bool is_bare = !file.has_extension() && bare.contains(file.parent_path());
-        if (!has_dicom_name(file) && !names.contains(numberless(file)) && !(empty && is_bare)) {
-            continue;
-        }
-        const bool packed = lower(file.extension().string()) == ".gz";
-        throw Failure(quoted(file) +
-                      (empty ? " is empty (0 bytes), though slices have such names; copy it again"
-                       : packed
-                           ? " is packed; unpack it with gunzip"
-                           : " is no DICOM file, though slices have such names; copy it again") +
+        const std::string like = numberless(file);  // a LOCKFILE has no number
+        const bool is_bare = !file.has_extension() && bare.contains(file.parent_path()) &&
+                             fs::path(like).filename().string().find('#') != std::string::npos;
+        if (!has_dicom_name(file) && !names.contains(like) && !(empty && is_bare)) continue;
+        throw Failure(quoted(file) + " " +
+                      (empty ? "is empty (0 bytes), though slices have such names; copy it again"
+                       : is_gzip(file)
+                           ? packed
+                           : "is no DICOM file, though slices have such names; copy it again") +
                       ", or take it away");
     }
 }

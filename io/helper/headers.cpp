@@ -83,7 +83,11 @@ bool names_several_files(const std::string& name) {
     }
     for (std::size_t at = 0; (at = name.find('%', at)) != name.npos; ++at) {
         const std::size_t letter = name.find_first_not_of("0123456789", at + 1);
-        if (letter != name.npos && name[letter] == 'd') return true;
+        if (letter == name.npos || name[letter] != 'd') continue;
+        const std::size_t last = name.find_last_not_of("-0123456789");
+        if (last != name.npos && last > letter && last + 1 < name.size() && name[last] == ' ') {
+            return true;
+        }
     }
     return false;
 }

@@ -180,8 +180,13 @@ class Workshop {
         made.push_back(inside_);
         const fs::path parent = target_.has_parent_path() ? target_.parent_path() : ".";
         for (const fs::path& file : made) {
+            const fs::path to = parent / file.filename();
+            std::error_code ignored;  // a new file has the usual mode
+            if (const auto old = fs::status(to, ignored); fs::exists(old)) {
+                fs::permissions(file, old.permissions());
+            }
             const int whole = open_to_read(file);
-            const bool moved = synchronise(whole) && replace(file, parent / file.filename());
+            const bool moved = synchronise(whole) && replace(file, to);
             const int error = errno;
             if (whole >= 0) ::close(whole);
             if (!moved) throw Failure("cannot be put in its place (" + reason(error) + ")");

@@ -328,9 +328,13 @@ std::vector<std::int64_t> sizes_of(const Header& header) {
     return sizes;
 }
 
-DataPlace place_of(const Header& header, const std::filesystem::path& path) {
+/// `bytes`: of the samples.
+DataPlace place_of(const Header& header, const std::filesystem::path& path, std::uint64_t bytes,
+                   std::vector<std::string>& notes) {
+    constexpr std::uint64_t whole_header = 352;  // with four bytes that tell of extensions
     const double offset = header.number<float>(108);
-    if (!(offset >= 348 && offset < 1e9) || offset != std::floor(offset)) {
+    const bool within = offset == 0 || (offset >= header_bytes && offset < whole_header);
+    if (!(within || (offset >= header_bytes && offset < 1e9)) || offset != std::floor(offset)) {
         throw Failure("its header puts the samples at byte " + text_of(offset) +
                       "; the header is damaged");
     }
@@ -339,6 +343,13 @@ DataPlace place_of(const Header& header, const std::filesystem::path& path) {
     place.skip = static_cast<std::uint64_t>(offset);
     place.swapped = header.swapped;
     if (is_gzip(path)) place.encoding = DataPlace::Encoding::compressed;
+    if (within) {
+        const bool is_short = std::filesystem::file_size(path) == header_bytes + bytes &&
+                              place.encoding == DataPlace::Encoding::raw;
+        place.skip = is_short ? header_bytes : whole_header;
+        notes.push_back("its header puts the samples at byte " + text_of(offset) +
+                        ", within itself: those behind it were taken");
+    }
     return place;
 }
 
@@ -355,13 +366,13 @@ VolumeHeader nifti_header(const Request& request) {
         throw Failure("its header's bits a sample do not fit its type; the header is damaged");
     }
     header.sizes = sizes_of(bytes);
-    (void)checked_bytes(header.sizes, size_of(header.stored),
-                        std::filesystem::file_size(request.path), request);
+    const std::uint64_t sample_bytes = checked_bytes(
+        header.sizes, size_of(header.stored), std::filesystem::file_size(request.path), request);
     if (header.sizes.size() > 4) {
         throw Failure("it has " + text_of(header.sizes) +
                       " samples in more than 4 axes (vectors?); save one volume of it");
     }
-    header.place = place_of(bytes, request.path);
+    header.place = place_of(bytes, request.path, sample_bytes, header.notes);
     header.geometry = geometry_of(bytes, header.notes);
     header.value_map = values_of(bytes, header.notes);
     if (header.sizes.size() == 4) {

@@ -3,6 +3,7 @@
 // writes SCIFIO=VERSION, and lists of axes with their lengths, scales and units.
 #include "io/helper/tiff_calibration.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -26,15 +27,22 @@ std::vector<std::string> listed(const Description& description, const char* name
 }
 
 /// Says the axes of SCIFIO (ImageJ2) in ImageJ's words: channels, frames, slices, units, distances.
-/// Axes that ImageJ does not have count as channels.
+/// Axes that ImageJ does not have count as channels. An axis of no known kind holds the slices, if
+/// no other does.
 void take_scifio_axes(Description& description) {
-    const auto axes = listed(description, "axes");
+    auto axes = listed(description, "axes");
+    for (std::string& axis : axes) axis = lower(axis);
+    const auto unknown = std::ranges::find(axes, "unknown");
+    if (unknown != axes.end() && std::ranges::find(axes, "z") == axes.end()) {
+        *unknown = "z";
+        description["unknown"] = "z";
+    }
     auto lengths = listed(description, "lengths"), scales = listed(description, "scales"),
          units = listed(description, "units");
     for (auto* list : {&lengths, &scales, &units}) list->resize(axes.size());
     double channels = 1, frames = 1;
     for (std::size_t i = 0; i < axes.size(); ++i) {
-        const std::string axis = lower(axes[i]);
+        const std::string& axis = axes[i];
         const double length = number_from<double>(lengths[i]).value_or(1);
         if (axis == "x" || axis == "y" || axis == "z") {
             description[axis + "scale"] = scales[i];
@@ -111,6 +119,10 @@ Moments image_j_moments(const std::string& text, std::size_t pages,
     if (const double channels = count_in(description, "channels"); channels > 1) {
         throw Failure("holds " + text_of(channels) +
                       " channels slice by slice; save one of them (ImageJ: Image > Duplicate)");
+    }
+    if (description.contains("unknown") && count_in(description, "slices") > 1) {
+        notes.emplace_back(
+            "its description gives an axis of no known kind: it was taken as slices");
     }
     const double images = count_in(description, "images");
     if (images > static_cast<double>(pages)) {

@@ -13,9 +13,12 @@
 #include <vtkXMLImageDataWriter.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "io/helper/headers.hpp"
 #include "io/helper/library_words.hpp"
@@ -38,8 +41,8 @@ std::string image_tag(const std::string& head) {
     return at == std::string::npos ? "" : head.substr(at, head.find('>', at) - at);
 }
 
-/// The numbers of an attribute, as many as belong there; none if there is no such attribute.
-std::vector<double> attribute(const std::string& tag, const std::string& name, std::size_t count) {
+/// Empty if there is no such attribute.
+std::string attribute(const std::string& tag, const std::string& name) {
     constexpr const char* blanks = " \t\r\n";
     for (std::size_t at = 0; (at = tag.find(name, at)) != std::string::npos; at += name.size()) {
         const auto equals = tag.find_first_not_of(blanks, at + name.size());
@@ -49,23 +52,28 @@ std::vector<double> attribute(const std::string& tag, const std::string& name, s
         if (quote == std::string::npos) break;
         const auto end = tag.find(tag[quote], quote + 1);
         if (end == std::string::npos) break;
-        const auto numbers = numbers_in(tag.substr(quote + 1, end - quote - 1), name);
-        if (numbers.size() == count) return numbers;
-        throw Failure("its " + name + " has " + std::to_string(numbers.size()) + " numbers where " +
-                      std::to_string(count) + " belong; correct it");
+        return tag.substr(quote + 1, end - quote - 1);
     }
-    return {};
+    return "";
+}
+
+/// The numbers of an attribute, as many as belong there; none if there is no such attribute.
+std::vector<double> numbers_of(const std::string& tag, const std::string& name, std::size_t count) {
+    const auto numbers = numbers_in(attribute(tag, name), name);
+    if (numbers.empty() || numbers.size() == count) return numbers;
+    throw Failure("its " + name + " has " + std::to_string(numbers.size()) + " numbers where " +
+                  std::to_string(count) + " belong; correct it");
 }
 
 /// VTK inverts the matrix that these make. Whether there is a spacing.
 bool check_placement(const std::string& tag) {
-    const auto spacings = attribute(tag, "Spacing", 3);
+    const auto spacings = numbers_of(tag, "Spacing", 3);
     for (const double spacing : spacings) {
         if (spacing != 0) check_spacing(spacing, "Spacing");  // 0: of one sample, replaced later
     }
-    for (const double coordinate : attribute(tag, "Origin", 3))
+    for (const double coordinate : numbers_of(tag, "Origin", 3))
         check_coordinate(coordinate, "Origin");
-    for (const double cosine : attribute(tag, "Direction", 9)) {
+    for (const double cosine : numbers_of(tag, "Direction", 9)) {
         if (std::abs(cosine) <= 1.01) continue;
         throw Failure("its Direction has the number " + text_of(cosine) +
                       ", which is no direction cosine; correct it");
@@ -95,6 +103,43 @@ bool check_ends(const Request& request) {
         throw Failure("it is cut off (no </VTKFile> at its end); copy or download it again");
     }
     return has_spacing;
+}
+
+/// Refuses a number that its type cannot hold. What is no number stops VTK.
+void check_numbers(const std::string& text, Stored stored) {
+    const auto [low, high] = with_stored(stored, [](auto zero) {
+        using Limits = std::numeric_limits<decltype(zero)>;
+        return std::pair(static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max()));
+    });
+    const char *at = text.data(), *const end = at + text.size();
+    for (double number = 0;; number = 0) {
+        at = std::find_if(at, end, [](char c) { return std::strchr(" \t\r\n+", c) == nullptr; });
+        const auto [next, error] = std::from_chars(at, end, number);
+        if (error != std::errc{}) return;
+        if (number < low || number > high) {
+            throw Failure("its data have the number " + text_of(number) +
+                          ", which its sample type cannot hold; correct the type of its DataArray");
+        }
+        at = next;
+    }
+}
+
+/// Numbers written as text, of which VTK wraps those that do not fit an integer type.
+void check_text(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    constexpr Stored none = Stored::float64;  // VTK notices floats that it cannot read
+    Stored type = none;
+    std::string text, tag;
+    while (!tag.starts_with("AppendedData") && std::getline(in, text, '<')) {
+        if (tag.starts_with("DataArray") && type != none) check_numbers(text, type);
+        if (!std::getline(in, tag, '>')) return;
+        if (tag == "/DataArray") type = none;
+        if (!tag.starts_with("DataArray") || tag.ends_with('/')) continue;
+        const bool is_text =
+            attribute(tag, "format") != "binary" && attribute(tag, "offset").empty();
+        type = is_text ? stored_named(lower(attribute(tag, "type"))).value_or(none) : none;
+        if (type == Stored::float32) type = none;
+    }
 }
 
 /// VTK's reader, which leaves open what its pieces hold.
@@ -204,6 +249,7 @@ void check_size(vtkXMLImageDataReader& reader, const Request& request) {
 
 Result read_vti(const Request& request) {
     const bool has_spacing = check_ends(request);
+    check_text(request.path);
     const vtkNew<ErrorKeeper> errors;
     vtkOutputWindow::SetInstance(errors);
     const vtkNew<PieceReader> reader;

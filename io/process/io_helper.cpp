@@ -1,6 +1,8 @@
 // Shared by all jobs of palpate-io-helper. See the header.
 #include "io/process/io_helper.hpp"
 
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include "io/system/system.hpp"
@@ -10,6 +12,16 @@
 namespace palpate::io {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+bool begins_with(const fs::path& path, const std::string& text) {
+    std::string start(text.size(), '\0');
+    std::ifstream(path, std::ios::binary).read(start.data(), std::ssize(start));
+    return start == text;
+}
+
+}  // namespace
 
 double bytes_in(const fs::path& path) {
     std::error_code error;
@@ -51,6 +63,9 @@ void check_readable(const fs::path& path) {
     }
     if (!folder && fs::file_size(path, error) == 0) {
         throw InputError(name + ": is empty (0 bytes); copy or download it again");
+    }
+    if (!folder && begins_with(path, "version https://git-lfs.github.com/spec/")) {
+        throw InputError(name + ": has only the address of its data (Git LFS); run git lfs pull");
     }
 }
 

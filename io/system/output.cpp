@@ -44,12 +44,14 @@ bool is_standard_output(int descriptor) {
            its.st_dev == own.st_dev && its.st_ino == own.st_ino;
 }
 
-/// The file at the end of a chain of links; the path itself if it is no link.
-std::filesystem::path followed(const std::filesystem::path& path) {
+/// The file at the end of a chain of links, there or not; the path itself if it is no link.
+std::filesystem::path followed(std::filesystem::path path) {
+    constexpr int longest_chain = 40;  // as of Linux
     std::error_code error;
-    if (!std::filesystem::is_symlink(path, error)) return path;
-    const auto end = std::filesystem::canonical(path, error);
-    return error ? path : end;
+    for (int i = 0; i < longest_chain && std::filesystem::is_symlink(path, error); ++i) {
+        path = path.parent_path() / std::filesystem::read_symlink(path, error);
+    }
+    return path;
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
@@ -71,8 +73,8 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
         return fs::is_regular_file(a, error) && fs::equivalent(a, b, error);
     }
     // Made absolute first: a relative name that does not exist would stay relative.
-    const fs::path whole = fs::weakly_canonical(fs::absolute(a), error);
-    return !whole.empty() && whole == fs::weakly_canonical(fs::absolute(b), error);
+    const fs::path whole = fs::weakly_canonical(fs::absolute(followed(a)), error);
+    return !whole.empty() && whole == fs::weakly_canonical(fs::absolute(followed(b)), error);
 }
 
 void check_output(const std::filesystem::path& path) {

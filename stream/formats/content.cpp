@@ -12,6 +12,7 @@
 #include <map>
 
 #include "palpate/io/address.hpp"
+#include "palpate/io/error.hpp"
 #include "stream/box_bytes.hpp"
 #include "stream/objects/objects.hpp"
 #include "stream/objects/remote_objects.hpp"
@@ -123,6 +124,11 @@ std::string content_of(const Store& store, int level, const std::stop_token& sto
     std::snprintf(text.data(), text.size(), "%016llx",
                   static_cast<unsigned long long>(hash.value()));
     return text.data();
+}
+
+void fail_changed(const Store& store) {
+    throw io::InputError(store.info().address +
+                         ": changed while it was converted; run it again when it stays as it is");
 }
 
 std::uint64_t files_at(const std::string& address) {

@@ -17,6 +17,9 @@ namespace palpate::stream {
 /// throws, and Cancelled as soon as `stop` is requested.
 std::string content_of(const Store& store, int level, const std::stop_token& stop = {});
 
+/// Throws InputError: the source was written while it was converted.
+[[noreturn]] void fail_changed(const Store& store);
+
 /// Names, sizes and times of change of a file, or of all files of a folder and below, as one
 /// number: which files they are, without reading them. 0 if there is no such file.
 std::uint64_t files_at(const std::string& address);

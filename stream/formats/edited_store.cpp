@@ -48,7 +48,8 @@ Json json_of(const EditsNote& note, const fs::path& out) {
     Json json = {
         {"of", io::json_of_path(kept)}, {"content", note.content},
         {"level", note.level},          {"channel", options.channel},
-        {"time", options.time},         {"bounds", {note.bounds.minimum, note.bounds.maximum}}};
+        {"time", options.time},         {"bounds", {note.bounds.minimum, note.bounds.maximum}},
+        {"chunk", note.chunk}};
     if (note.lacks_secrets || kept != note.of.address) json["secrets"] = "left out";
     if (!io::is_web_address(note.of.address)) {
         json["of"] = io::json_of_path(fs::absolute(note.of.address));
@@ -81,6 +82,8 @@ EditsNote note_from(const Json& json, const fs::path& folder, const StoreOptions
     EditsNote note;
     note.of = {io::path_from_json(json.at("of")).string(), options};
     note.content = json.value("content", std::string());
+    note.chunk = json.value("chunk", note.chunk);
+    if (note.chunk < 1) throw std::invalid_argument("chunks without samples");
     note.lacks_secrets = json.contains("secrets") && io::is_web_address(note.of.address) &&
                          io::address_to_keep(note.of.address) == note.of.address;
     const fs::path relative = io::path_from_json(json.value("beside", Json("")));
@@ -135,12 +138,13 @@ EditsNote read_note(const fs::path& folder, const StoreOptions& options) {
 void check_chunks(const EditsNote& note, const StoreInfo& original) {
     const std::size_t levels = original.levels.size();
     const auto level = static_cast<std::size_t>(note.level);
-    if (note.level < 0 || level >= levels || note.chunks.size() != levels - level) {
+    if (note.level < 0 || level >= levels || note.chunks.empty() ||
+        note.chunks.size() > levels - level) {
         throw std::invalid_argument("has other levels now");
     }
     for (std::size_t i = 0; i < note.chunks.size(); ++i) {
         const Index3& size = original.levels[level + i].geometry.size;
-        const Index3 last = (size.array() - 1) / EditsNote::chunk;
+        const Index3 last = (size.array() - 1) / note.chunk;
         for (const Index3& chunk : note.chunks[i]) {
             if (chunk.minCoeff() < 0 || (chunk.array() > last.array()).any()) {
                 throw std::invalid_argument("has another size now");
@@ -165,13 +169,14 @@ EditedStore::EditedStore(std::shared_ptr<const Store> original, std::shared_ptr<
     info_ = original_->info();
     check_chunks(note_, info_);
     info_.levels.erase(info_.levels.begin(), info_.levels.begin() + note_.level);
+    info_.levels.resize(note_.chunks.size());
     // Else one of ours would be unpacked for each of several smaller ones.
     for (Level& level : info_.levels) {
-        const Index3 times = (EditsNote::chunk - 1 + level.chunk.array()) / level.chunk.array();
+        const Index3 times = (note_.chunk - 1 + level.chunk.array()) / level.chunk.array();
         level.chunk = level.chunk.cwiseProduct(times);
     }
     const StoreInfo& ours = chunks_->info();
-    bool fits = ours.type == info_.type && ours.levels.size() == info_.levels.size();
+    bool fits = ours.type == info_.type && ours.levels.size() >= info_.levels.size();
     for (std::size_t i = 0; fits && i < info_.levels.size(); ++i) {
         fits = ours.levels[i].geometry.size == info_.levels[i].geometry.size;
     }
@@ -183,7 +188,8 @@ EditedStore::EditedStore(std::shared_ptr<const Store> original, std::shared_ptr<
     }
     if (note_.content.empty()) {
         info_.notes.push_back(
-            "the edits are of an earlier version, which did not note what the original held");
+            "the edits do not tell what the original held: they were rescued without it, or "
+            "are of an earlier version");
     }
     info_.address = ours.address;
     info_.channels.clear();
@@ -200,13 +206,14 @@ void EditedStore::read(int level, const SampleBox& box, std::span<std::byte> out
     const Geometry& grid = info_.levels.at(at).geometry;
     check_request(grid, box, info_.type, out.size());
     const ChunkSet& edited = note_.chunks[at];
-    bool whole = false;
-    for_each_chunk(box, [&](const auto& chunk, const SampleBox& part) {
-        whole = whole || (part == box && edited.contains(chunk));
+    const Index3 piece = Index3::Constant(note_.chunk);
+    bool whole = true;
+    for_each_piece(piece, box, [&](const auto& chunk, const SampleBox&) {
+        whole = whole && edited.contains(chunk);
     });
     if (!whole) original_->read(note_.level + level, box, out, stop);
     Bytes samples;
-    for_each_chunk(box, [&](const auto& chunk, const SampleBox& part) {
+    for_each_piece(piece, box, [&](const auto& chunk, const SampleBox& part) {
         if (!edited.contains(chunk)) return;
         samples.resize(bytes_of(part, info_.type));
         chunks_->read(level, part, samples, stop);

@@ -8,27 +8,20 @@
 
 namespace palpate::stream {
 
-/// Chunks of one level, cubes of EditsNote::chunk samples.
+/// Chunks of one level, cubes of as many samples as their note says.
 using ChunkSet = std::set<Index3, ByPlace>;
 
 /// What a folder of edits says beside its chunks.
 struct EditsNote {
-    static constexpr int chunk = 64;  ///< samples along each axis
-
-    Opened of;                     ///< the original
-    int level = 0;                 ///< of the original that was edited
-    Range bounds;                  ///< of the edited samples
-    std::vector<ChunkSet> chunks;  ///< for that level and the coarser ones
-    std::string content = {};      ///< of the original from that level on: content_of()
-    std::string beside = {};       ///< where the original is if it was moved with the edits
-    bool lacks_secrets = false;    ///< its address was saved without password and query
+    int chunk = 64;                     ///< samples along each axis
+    Opened of;                          ///< the original
+    int level = 0;                      ///< of the original that was edited
+    Range bounds;                       ///< of the edited samples
+    std::vector<ChunkSet> chunks = {};  ///< for that level and coarser ones, perhaps not all
+    std::string content = {};           ///< of the original: content_of(); empty: not known
+    std::string beside = {};            ///< where the original is if it was moved with the edits
+    bool lacks_secrets = false;         ///< its address was saved without password and query
 };
-
-/// Calls visit(chunk, box) for each chunk that holds samples of `box`, with those that it holds.
-template <class Visit>
-void for_each_chunk(const SampleBox& box, Visit&& visit) {
-    for_each_piece(Index3::Constant(EditsNote::chunk), box, visit);
-}
 
 /// The levels of the original from the edited one on.
 class EditedStore : public Store {

@@ -151,12 +151,22 @@ void transpose(const Json& codec, ChunkedArray& array) {
     array.stored_axes = stored;
 }
 
+/// What needs no configuration may be given by its name alone (Zarr 3.1).
+Json extension(const Json& json) {
+    return json.is_string() ? Json{{"name", json}} : json;
+}
+
+std::string name_of(const Json& json) {
+    return extension(json).at("name").get<std::string>();
+}
+
 /// Takes the codecs of an array, or those within its shards.
 void take_codecs(const Json& codecs, ChunkedArray& array);
 
 void take_index_codecs(const Json& codecs, Shards& shards) {
-    for (const Json& codec : codecs) {
-        const std::string name = codec.at("name").get<std::string>();
+    for (const Json& given : codecs) {
+        const Json codec = extension(given);
+        const std::string name = name_of(codec);
         if (name == "crc32c") {
             shards.index_codecs.insert(shards.index_codecs.begin(), Codec::crc32c);
         } else if (name != "bytes" || !is_little(codec, sizeof(std::uint64_t))) {
@@ -192,8 +202,9 @@ void take_codecs(const Json& codecs, ChunkedArray& array) {
     bool as_bytes = false;
     if (!codecs.is_array() || codecs.size() > 16)
         throw BadMetadata("its list of codecs is not sensible");
-    for (const Json& codec : codecs) {
-        const std::string name = codec.at("name").get<std::string>();
+    for (const Json& given : codecs) {
+        const Json codec = extension(given);
+        const std::string name = name_of(codec);
         if (name == "transpose" && !as_bytes) {
             transpose(codec, array);
         } else if (name == "bytes" && !as_bytes) {
@@ -217,8 +228,9 @@ void take_codecs(const Json& codecs, ChunkedArray& array) {
     if (!as_bytes) throw BadMetadata("its codecs have no 'bytes'; its metadata are damaged");
 }
 
-void take_key_encoding(const Json& encoding, ChunkedArray& array) {
-    const std::string name = encoding.at("name").get<std::string>();
+void take_key_encoding(const Json& given, ChunkedArray& array) {
+    const Json encoding = extension(given);
+    const std::string name = name_of(encoding);
     const Json configuration = encoding.value("configuration", Json::object());
     if (name == "default") {
         array.separator = separator_of(configuration.value("separator", std::string("/")));
@@ -264,12 +276,11 @@ ChunkedArray zarr3_array(const Json& zarr, const std::string& folder) {
     array.folder = folder;
     array.shape = sizes_of(zarr.at("shape"), "shape");
     const Json& grid = zarr.at("chunk_grid");
-    if (grid.at("name") != "regular") {
+    if (name_of(grid) != "regular") {
         throw BadMetadata("its chunks have different sizes, which is not read; store it with one");
     }
     array.chunk = sizes_of(grid.at("configuration").at("chunk_shape"), "chunk_shape");
-    const Json& type = zarr.at("data_type");
-    const std::string name = type.is_string() ? type.get<std::string>() : "(an extension)";
+    const std::string name = name_of(zarr.at("data_type"));
     const auto stored = io::stored_named(name == "bool" ? "uint8" : name);
     if (!stored) refuse_type(name);
     array.bytes.stored = *stored;
@@ -277,7 +288,7 @@ ChunkedArray zarr3_array(const Json& zarr, const std::string& folder) {
     array.stored_axes = axes_in_order(array);
     take_key_encoding(zarr.at("chunk_key_encoding"), array);
     for (const Json& transformer : zarr.value("storage_transformers", Json::array())) {
-        refuse_codec(transformer.value("name", std::string("storage transformer")));
+        refuse_codec(name_of(transformer));
     }
     take_codecs(zarr.at("codecs"), array);
     check_array(array);

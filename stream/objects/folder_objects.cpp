@@ -45,7 +45,10 @@ class FolderObjects : public Objects {
         if (stop.stop_requested()) throw Cancelled{};
         const io::Descriptor file(io::open_to_read(folder_ / wanted.key));
         if (file.number() < 0) {
-            if (errno == ENOENT || errno == ENOTDIR || errno == EISDIR) return std::nullopt;
+            if (errno == ENOENT || errno == ENOTDIR || errno == EISDIR) {
+                if (wanted.lasting) require_folder(wanted.key);
+                return std::nullopt;
+            }
             if (errno == ENXIO) fail(wanted.key, "is no file; make the folder again");
             fail(wanted.key, io::reason(errno) + "; check its permissions");
         }
@@ -68,6 +71,14 @@ class FolderObjects : public Objects {
   private:
     [[noreturn]] void fail(const std::string& key, const std::string& what) const {
         throw io::InputError(name_of(key) + ": " + what);
+    }
+
+    /// Where a disk has gone, no chunk is there; none of them is just not stored.
+    void require_folder(const std::string& key) const {
+        std::error_code error;
+        if (!std::filesystem::is_directory(folder_, error)) {
+            fail(key, "its folder is not there any more; put it back");
+        }
     }
 
     Bytes read(const std::string& key, int file, const ByteRange& range) const {

@@ -25,24 +25,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All that decides what is written: a run is continued by one of the same job only. The content
-/// covers the source and everything that says how it is read (raw layout, spacing, series,
-/// filters).
+/// The content covers the source and everything that says how it is read (raw layout, spacing,
+/// series, filters).
+nlohmann::json source_of(const Store& from, int level, const std::stop_token& stop) {
+    nlohmann::json source = {{"content", content_of(from, level, stop)}};
+    // Of what is not read whole, files that were written anew show what its samples may not.
+    if (from.info().format == "memory") return source;
+    source["files"] = files_at(from.info().address);
+    if (const auto* edits = dynamic_cast<const EditedStore*>(&from)) {
+        source["original"] = files_at(edits->note().of.address);
+    }
+    return source;
+}
+
+/// All that decides what is written: a run is continued by one of the same job only.
 nlohmann::json job_of(const Store& from, int level, const ConvertOptions& options,
-                      const std::stop_token& stop) {
+                      nlohmann::json source) {
     nlohmann::json job = {{"version", 1},  // of what is computed and how it is written
                           {"source", io::json_of_path(io::address_to_keep(from.info().address))},
-                          {"content", content_of(from, level, stop)},
                           {"level", level},
                           {"zarr", options.zarr_version},
                           {"chunk", options.chunk},
                           {"compression", static_cast<int>(options.compression)}};
-    // Of what is not read whole, files that were written anew show what its samples may not.
-    if (from.info().format == "memory") return job;
-    job["files"] = files_at(from.info().address);
-    if (const auto* edits = dynamic_cast<const EditedStore*>(&from)) {
-        job["original"] = files_at(edits->note().of.address);
-    }
+    job.update(source);
     return job;
 }
 
@@ -161,17 +166,26 @@ Converted convert_to_zarr(const Store& from, int level, const fs::path& out,
         throw std::invalid_argument("there are 1 to 256 threads");
     }
     check_zarr_place(out);
+    double made = 0;
     std::function<void()> tell;
-    if (options.progress) tell = [&] { options.progress(0); };
-    const auto job = [&](const std::stop_token& stop) {
-        return job_of(from, level, options, stop).dump(1);
-    };
-    io::GrowingFolder folder = options.resumable
-                                   ? io::GrowingFolder::resumable(out, while_telling(tell, job))
-                                   : io::GrowingFolder::alone(out);
+    if (options.progress) tell = [&] { options.progress(made); };
+    const auto source = [&](const std::stop_token& stop) { return source_of(from, level, stop); };
+    const nlohmann::json before = while_telling(tell, source);
+    io::GrowingFolder folder =
+        options.resumable
+            ? io::GrowingFolder::resumable(out, job_of(from, level, options, before).dump(1))
+            : io::GrowingFolder::alone(out);
     Converted converted = Conversion(from, level, options, folder).run();
+    made = 1;
+    const nlohmann::json after = while_telling(tell, source);
+    if (after["content"] != before["content"]) fail_changed(from);
     folder.put_in_place();
     converted.note = folder.note();
+    if (after != before) {
+        converted.note += (converted.note.empty() ? "" : "; ") + from.info().address +
+                          ": was touched while it was converted: if its samples were changed then, "
+                          "convert it again";
+    }
     return converted;
 }
 

@@ -50,17 +50,31 @@ SampleBox coarser_box(const SampleBox& box, const CoarserGrid& coarser) {
         box.high.cwiseQuotient(coarser.factor).cwiseMin(coarser.geometry.size - Index3::Ones())};
 }
 
+/// The chunks of another edge that hold the samples of these.
+ChunkSet in_chunks_of(int edge, const ChunkSet& chunks, int edge_before, const Index3& size) {
+    ChunkSet all;
+    for (const Index3& chunk : chunks) {
+        const Index3 low = chunk * edge_before;
+        const SampleBox box{low,
+                            (low + Index3::Constant(edge_before)).cwiseMin(size) - Index3::Ones()};
+        for_each_piece(Index3::Constant(edge), box,
+                       [&](const auto& other, const SampleBox&) { all.insert(other); });
+    }
+    return all;
+}
+
 class Saving {
   public:
-    Saving(const Store& from, int level, const Samples& edits, fs::path folder, EditsNote note,
-           std::atomic<double>& made, std::stop_token stop)
+    Saving(const Store& from, const Opened& opened, int level, const Samples& edits,
+           fs::path folder, EditsNote note, std::atomic<double>& made, std::stop_token stop)
         : from_(from),
+          is_rescue_(opened.is_rescue),
           level_(level),
           edits_(edits),
           folder_(std::move(folder)),
           note_(std::move(note)),
           writer_(folder_, from.info().type, levels_from(from.info(), level),
-                  {.chunk = EditsNote::chunk, .progress = {}}),
+                  {.chunk = note_.chunk, .progress = {}}),
           made_(made),
           stop_(std::move(stop)) {}
 
@@ -80,7 +94,13 @@ class Saving {
                 for (SampleBox& box : changed) box = coarser_box(box, grid);
                 std::erase_if(changed, [](const SampleBox& box) { return box.empty(); });
             }
-            write_level(l, changed);
+            try {
+                write_level(l, changed);
+            } catch (const io::InputError&) {
+                if (l == 0 || !is_rescue_) throw;
+                note_.chunks.resize(l);  // the original is not there: without coarser levels
+                break;
+            }
         }
         return std::move(note_);
     }
@@ -90,7 +110,7 @@ class Saving {
         std::map<Index3, std::vector<SampleBox>, ByPlace> parts;
         for (const auto& chunk : note_.chunks[level]) parts[chunk];
         for (const SampleBox& box : changed) {
-            for_each_chunk(box, [&](const auto& chunk, const SampleBox& part) {
+            for_each_piece(piece(), box, [&](const auto& chunk, const SampleBox& part) {
                 parts[chunk].push_back(part);
             });
         }
@@ -98,7 +118,8 @@ class Saving {
         for (const auto& [chunk, boxes] : parts) {
             const SampleBox box = writer_.box_of(static_cast<int>(level), chunk);
             Bytes samples(bytes_of(box, type()));
-            from_.read(level_ + static_cast<int>(level), box, samples, stop_);
+            const bool is_whole = boxes.size() == 1 && boxes[0] == box;
+            if (!is_whole) from_.read(level_ + static_cast<int>(level), box, samples, stop_);
             for (const SampleBox& part : boxes) {
                 const Bytes now = level == 0 ? edited(part) : means(level, part);
                 copy_box(part, now.data(), box, samples.data(), size_of(type()));
@@ -132,7 +153,7 @@ class Saving {
         Bytes below(bytes_of(wanted, type()));
         const int fine = static_cast<int>(level) - 1;
         from_.read(level_ + fine, wanted, below, stop_);
-        for_each_chunk(wanted, [&](const auto& chunk, const SampleBox& part) {
+        for_each_piece(piece(), wanted, [&](const auto& chunk, const SampleBox& part) {
             if (!note_.chunks[level - 1].contains(chunk)) return;
             Bytes now(bytes_of(part, type()));
             written_->read(fine, part, now, stop_);
@@ -144,8 +165,10 @@ class Saving {
     }
 
     SampleType type() const { return from_.info().type; }
+    Index3 piece() const { return Index3::Constant(note_.chunk); }
 
     const Store& from_;
+    const bool is_rescue_;
     int level_;
     const Samples& edits_;
     fs::path folder_;
@@ -159,7 +182,7 @@ class Saving {
 /// Of the original, which must be the one that was opened.
 std::string checked_content(const Store& from, const Opened& opened, int level,
                             const std::stop_token& stop) {
-    if (opened.is_rescue && !opened.content.empty()) return opened.content;
+    if (opened.is_rescue) return opened.content;
     std::string content = content_below_edits(from, level, stop);
     if (opened.content.empty() || content == opened.content) return content;
     throw io::OutputError(opened.address +
@@ -171,7 +194,8 @@ std::string checked_content(const Store& from, const Opened& opened, int level,
 EditsNote note_for(const Store& from, const Opened& opened, int level, const Samples& edits,
                    const std::stop_token& stop) {
     const auto* edited = dynamic_cast<const EditedStore*>(&from);
-    EditsNote note{opened, level, {edits.minimum(), edits.maximum()}, {}, {}};
+    EditsNote note{.of = opened, .level = level, .bounds = {edits.minimum(), edits.maximum()}};
+    if (opened.is_rescue) note.chunk = Bricks::edge;  // of which nothing is the original's
     note.chunks.resize(from.info().levels.size() - static_cast<std::size_t>(level));
     note.content = checked_content(from, opened, level, stop);
     if (!edited) return note;
@@ -181,7 +205,9 @@ EditsNote note_for(const Store& from, const Opened& opened, int level, const Sam
     note.bounds.minimum = std::min(note.bounds.minimum, before.bounds.minimum);
     note.bounds.maximum = std::max(note.bounds.maximum, before.bounds.maximum);
     for (std::size_t l = 0; l < note.chunks.size(); ++l) {
-        note.chunks[l] = before.chunks[l + static_cast<std::size_t>(level)];
+        const std::size_t at = l + static_cast<std::size_t>(level);
+        note.chunks[l] = in_chunks_of(note.chunk, before.chunks[at], before.chunk,
+                                      from.info().levels[at].geometry.size);
     }
     return note;
 }
@@ -235,7 +261,7 @@ void save_edits(const Store& from, const Opened& opened, int level, const Sample
     std::atomic<double> made{0};
     const auto tell = [&] { progress(made); };
     const auto save = [&](const std::stop_token& stop) {
-        Saving saving(from, level, edits, folder.result(),
+        Saving saving(from, opened, level, edits, folder.result(),
                       note_for(from, opened, level, edits, stop), made, stop);
         write_note(folder.result(), out, saving.run());
     };

@@ -7,6 +7,7 @@
 #include "palpate/io/written_formats.hpp"
 #include "palpate/stream/convert.hpp"
 #include "stream/box_bytes.hpp"
+#include "stream/formats/content.hpp"
 #include "stream/objects/objects.hpp"
 #include "stream/while_telling.hpp"
 
@@ -75,11 +76,13 @@ void write_plain(const Store& from, int level, const std::filesystem::path& out,
     std::function<void()> tell;
     if (options.progress) tell = [&] { options.progress(made); };
     if (raw || (extension == ".nrrd" && !options.compress)) {
+        const std::uint64_t files = files_at(from.info().address);
         io::PendingFile file(out);
         if (!raw) file.write(nrrd_head(grid, from.info().type));
         while_telling(
             tell, [&](const std::stop_token& stop) { write_slabs(from, level, file, made, stop); });
         if (tell) tell();
+        if (files_at(from.info().address) != files) fail_changed(from);
         file.commit();
         return;
     }

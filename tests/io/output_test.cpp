@@ -385,6 +385,20 @@ TEST(Output, follows_a_symbolic_link_to_the_file_it_names) {
     EXPECT_EQ(bytes_of(folder / "real.csv"), "new");
 }
 
+TEST(Output, follows_links_to_a_file_that_is_not_there_yet) {
+    const ScratchFolder folder;
+    std::filesystem::create_directory(folder / "in");
+    std::filesystem::create_symlink("in/next", folder / "link.csv");
+    std::filesystem::create_symlink("new.csv", folder / "in/next");
+    EXPECT_TRUE(is_same_file(folder / "link.csv", folder / "in/new.csv"));
+    PendingFile file(folder / "link.csv");
+    file.write("new");
+    file.commit();
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.csv"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "in/next"));
+    EXPECT_EQ(bytes_of(folder / "in/new.csv"), "new");
+}
+
 TEST(Output, goes_straight_into_a_pipe) {
     const ScratchFolder folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);

@@ -151,5 +151,13 @@ TEST(read_volume, extensions_may_be_in_capitals) {
     EXPECT_TRUE(same_samples(read_volume(folder / "A.NRRD").volume, volume));
 }
 
+TEST(volume_damage, the_address_that_git_lfs_leaves_in_place_of_a_file_is_named_as_such) {
+    const ScratchFolder folder;
+    for (const char* name : {"a.nii.gz", "a.nrrd", "a.dcm", "a.tif", "a.vti"}) {
+        put_bytes(folder / name, "version https://git-lfs.github.com/spec/v1\noid sha256:4d\n");
+        EXPECT_TRUE(contains(refusal(folder / name), "run git lfs pull")) << name;
+    }
+}
+
 }  // namespace
 }  // namespace palpate::io::test

@@ -72,6 +72,25 @@ TEST(dicom_folder, a_single_slice_among_volumes_is_not_the_volume) {
     EXPECT_EQ(read_volume(folder.path()).volume.geometry().size, Index3(4, 3, 4));
 }
 
+TEST(dicom_folder, an_empty_file_without_a_number_in_its_name_is_no_slice) {
+    const ScratchFolder folder;
+    for (const char* name : {"3FA9", "B120"}) {
+        put_slice(folder / name, slice_number(name[0]));
+    }
+    put_bytes(folder / "LOCKFILE", "");
+    EXPECT_EQ(read_volume(folder.path()).volume.geometry().size[2], 2);
+    put_bytes(folder / "C777", "");
+    EXPECT_TRUE(contains(refusal(folder.path()), "'C777' is empty"));
+}
+
+TEST(dicom_folder, a_packed_slice_is_named_as_such_in_a_folder_and_alone) {
+    const ScratchFolder folder;
+    put_slices(folder, 2);
+    put_gzip(folder / "2.dcm.gz", dicom_bytes(slice_number(2)));
+    EXPECT_TRUE(contains(refusal(folder.path()), "'2.dcm.gz' is packed"));
+    EXPECT_TRUE(contains(refusal(folder / "2.dcm.gz"), "is packed"));
+}
+
 TEST(dicom_folder, with_copies_of_its_slices_is_the_series_without_them_and_that_is_said) {
     const ScratchFolder folder;
     put_slices(folder, 6);

@@ -15,6 +15,7 @@ struct TestFrame {
     std::string position = "0\\0\\0", orientation = axial;
     std::string stack = "1", type = "ORIGINAL\\PRIMARY\\M";
     int moment = 1;
+    int in_stack = 0;  ///< InStackPositionNumber; 0: not given
     std::string slope = "1", intercept = "0";
     int value = 0;  ///< of its first pixel; each further one is one more
 };
@@ -36,8 +37,11 @@ std::string sequence(int group, int element, const std::vector<std::string>& ite
 std::string groups_of(const TestFrame& frame) {
     DicomBytes content, position, orientation, values, type;
     content.text(0x20, 0x9056, "SH", frame.stack);
+    if (frame.in_stack > 0) {
+        content.text(0x20, 0x9057, "UL", little(static_cast<std::uint32_t>(frame.in_stack)));
+    }
     content.text(0x20, 0x9128, "UL", little(static_cast<std::uint32_t>(frame.moment)));
-    position.text(0x20, 0x32, "DS", frame.position);
+    if (!frame.position.empty()) position.text(0x20, 0x32, "DS", frame.position);
     orientation.text(0x20, 0x37, "DS", frame.orientation);
     values.text(0x28, 0x1052, "DS", frame.intercept);
     values.text(0x28, 0x1053, "DS", frame.slope);
@@ -181,6 +185,24 @@ TEST_F(dicom_frames, of_one_place_are_moments_in_the_order_of_time) {
     }
     frames.pop_back();
     EXPECT_TRUE(contains(refused(frames), "at the same place")) << refused(frames);
+}
+
+TEST_F(dicom_frames, without_a_position_are_in_the_order_of_their_numbers_in_the_stack) {
+    const auto frame = [](int in_stack, int moment) {
+        TestFrame one;
+        one.position = "";
+        one.in_stack = in_stack;
+        one.moment = moment;
+        one.value = 100 * in_stack + 10 * moment;
+        return one;
+    };
+    expect_first_pixels(read({frame(3, 1), frame(1, 1), frame(2, 1)}), {110, 210, 310});
+    ReadOptions second;
+    second.time_step = 1;
+    const VolumeFile file = read({frame(2, 2), frame(1, 1), frame(1, 2), frame(2, 1)}, second);
+    expect_first_pixels(file, {120, 220});
+    EXPECT_EQ(file.time_steps, 2);
+    EXPECT_TRUE(contains(refused({frame(2, 2), frame(1, 1), frame(1, 2)}), "same place"));
 }
 
 TEST_F(dicom_frames, of_other_kinds_are_not_mixed) {

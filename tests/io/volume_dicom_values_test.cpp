@@ -127,6 +127,38 @@ TEST(dicom, lengths_of_another_type_and_one_length_for_both_are_read) {
     EXPECT_TRUE(contains(all_notes(one), "rows and columns"));
 }
 
+TEST(dicom, pixels_of_a_shape_without_a_size_have_this_shape) {
+    const ScratchFolder folder;
+    const VolumeFile file = read_changed(folder, [](const TestSlice& slice) {
+        const std::string data = without(dicom_data_set(slice), 0x28, 0x30);
+        return file_of(slice, with(data, 0x28, 0x100, element(0x28, 0x34, "IS", "3\\2")));
+    });
+    EXPECT_EQ(file.volume.geometry().spacing, Vec3(1, 1.5, 2));
+    EXPECT_TRUE(contains(all_notes(file), "1 mm wide and 1.5 mm high")) << all_notes(file);
+    // The size counts where there is one.
+    expect_usual(read_changed(folder, [](const TestSlice& slice) {
+        return file_of(slice,
+                       with(dicom_data_set(slice), 0x28, 0x100, element(0x28, 0x34, "IS", "3\\2")));
+    }));
+}
+
+TEST(dicom, a_slice_that_lacks_the_slope_and_intercept_of_the_others_is_named) {
+    const ScratchFolder folder;
+    const auto read = [&](const std::string& intercept) {
+        return read_changed(folder, [&](TestSlice slice) {
+            slice.intercept = intercept;
+            const std::string data = dicom_data_set(slice);
+            if (slice.number != 2) return file_of(slice, data);
+            return file_of(slice, without(without(data, 0x28, 0x1052), 0x28, 0x1053));
+        });
+    };
+    const VolumeFile file = read("-1024");
+    EXPECT_EQ(file.volume.sample({0, 0, 1}), -924);
+    EXPECT_EQ(file.volume.sample({0, 0, 2}), 200);
+    EXPECT_TRUE(contains(all_notes(file), "1 of its 4 slices (the first in '2.dcm')"));
+    EXPECT_FALSE(contains(all_notes(read("0")), "of its 4 slices"));
+}
+
 TEST(dicom, padding_after_the_last_element_is_passed_over) {
     for (const std::size_t bytes : {1U, 7U, 8U, 512U}) {
         const ScratchFolder folder;
@@ -189,7 +221,9 @@ TEST(dicom, a_number_with_a_comma_is_refused_with_its_slice_and_tag) {
              {[](TestSlice& s) { s.pixel_spacing = "0,5\\0,5"; }, "(0028,0030)"},
              {[](TestSlice& s) { s.pixel_spacing = "0.5,0.5"; }, "(0028,0030)"},
              {[](TestSlice& s) { s.slope = "0,5"; }, "(0028,1053)"},
-             {[](TestSlice& s) { s.intercept = "-1024,5"; }, "(0028,1052)"}}) {
+             {[](TestSlice& s) { s.intercept = "-1024,5"; }, "(0028,1052)"},
+             {[](TestSlice& s) { s.slope = "1\\2"; }, "RescaleSlope has 2 numbers"},
+             {[](TestSlice& s) { s.intercept = "0\\5"; }, "RescaleIntercept has 2 numbers"}}) {
         const ScratchFolder folder;
         for (int i = 0; i < 3; ++i) {
             TestSlice slice = slice_at(i);

@@ -66,6 +66,12 @@ TEST(nrrd, text_gzip_detached_and_skipped_data_are_read) {
                                std::string(plain_nrrd) +
                                    "encoding: raw\nline skip: 1\nbyte skip: 2\n"
                                    "data file: data.bin\n"));
+    put_bytes(folder / "50%done.bin", counting(24));
+    const std::string percent = "encoding: raw\ndata file: 50%done.bin\n";
+    expect_counting(read_bytes(folder, "d.nhdr", plain_nrrd + percent));
+    EXPECT_TRUE(contains(
+        refusal_of(folder, "d.nhdr", plain_nrrd + replaced(percent, "done.bin", "d.bin 1 4 1")),
+        "several files"));
     expect_counting(read_bytes(
         folder, "c.nhdr",
         std::string(plain_nrrd) + "encoding: raw\nbyte skip: -1\ndata file: data.bin\n"));
@@ -355,9 +361,24 @@ TEST(nifti, headers_that_make_no_sense_are_refused) {
     EXPECT_TRUE(contains(refused(70, little<std::int16_t>(32)), "complex"));
     EXPECT_TRUE(contains(refused(72, little<std::int16_t>(8)), "bits"));
     EXPECT_TRUE(contains(refused(108, little(-5.0F)), "samples at byte"));
+    EXPECT_TRUE(contains(refused(108, little(347.0F)), "samples at byte"));
     EXPECT_TRUE(contains(refused(0, little<std::int32_t>(540)), "NIfTI-2"));
     EXPECT_TRUE(contains(refused(344, "ni1"), ".hdr/.img"));
     EXPECT_TRUE(contains(refused(344, "xyz"), "magic"));
+}
+
+TEST(nifti, samples_that_would_lie_within_the_header_are_taken_from_behind_it) {
+    const ScratchFolder folder;
+    for (const float place : {0.0F, 348.0F, 350.0F}) {
+        const std::string whole = nifti([&](std::string& h) { put_at(h, 108, little(place)); });
+        std::string without_extensions = whole;
+        without_extensions.erase(348, 4);
+        for (const std::string& bytes : {whole, without_extensions}) {
+            const VolumeFile file = read_bytes(folder, "a.nii", bytes);
+            expect_counting(file);
+            EXPECT_TRUE(contains(all_notes(file), "within itself")) << all_notes(file);
+        }
+    }
 }
 
 std::string vti(const std::string& extent, const std::string& where, const std::string& components,
@@ -384,6 +405,45 @@ TEST(vti, samples_of_cells_lie_at_the_centres) {
     expect_counting(file);
     EXPECT_EQ(file.volume.geometry().origin, Vec3(2, 3, 4));
     EXPECT_TRUE(contains(all_notes(file), "centres"));
+}
+
+/// The same with other numbers and another type.
+std::string vti_of(const std::string& type, const std::string& numbers) {
+    std::string text = vti("0 2 0 0 0 0", "PointData", "", 0);
+    text.replace(text.find("Int16"), 5, type);
+    return text.insert(text.find("</DataArray>"), numbers);
+}
+
+TEST(vti, numbers_that_the_type_of_the_text_cannot_hold_are_refused) {
+    const ScratchFolder folder;
+    for (const auto& [type, least, greatest, below, above] :
+         std::initializer_list<std::array<const char*, 5>>{
+             {"Int8", "-128", "127", "-129", "128"},
+             {"UInt8", "0", "255", "-1", "256"},
+             {"Int16", "-32768", "32767", "-32769", "32768"},
+             {"UInt16", "0", "65535", "-1", "65536"},
+             {"UInt32", "0", "4294967295", "-1", "4294967296"}}) {
+        const std::string fits = std::string(" 1\n+") + greatest + " " + least + "\n";
+        const VolumeFile file = read_bytes(folder, "a.vti", vti_of(type, fits));
+        EXPECT_EQ(file.volume.sample({0, 0, 0}), 1) << type;
+        EXPECT_EQ(file.volume.sample({1, 0, 0}), static_cast<float>(std::stod(greatest))) << type;
+        EXPECT_EQ(file.volume.sample({2, 0, 0}), std::stod(least)) << type;
+        for (const char* number : {below, above}) {
+            const std::string message =
+                refusal_of(folder, "a.vti", vti_of(type, std::string("1 ") + number + " 3"));
+            EXPECT_TRUE(contains(message, ", which its sample type cannot hold"))
+                << type << ": " << message;
+        }
+    }
+}
+
+TEST(vti, what_stands_beside_the_numbers_of_an_array_is_not_taken_for_them) {
+    const ScratchFolder folder;
+    const std::string key =
+        "<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">1000</InformationKey>\n";
+    const VolumeFile file = read_bytes(folder, "a.vti", vti_of("UInt8", "1 2 3" + key));
+    EXPECT_EQ(file.volume.sample({2, 0, 0}), 3);
+    EXPECT_TRUE(contains(refusal_of(folder, "a.vti", vti_of("UInt8", "1 2 300" + key)), "300"));
 }
 
 TEST(vti, vectors_empty_grids_and_wrong_counts_are_refused) {

@@ -5,6 +5,7 @@
 
 #include <thread>
 
+#include "palpate/io/written_formats.hpp"
 #include "volume_support.hpp"
 
 namespace palpate::io::test {
@@ -226,6 +227,36 @@ TEST(write_volume, full_disk_is_an_error_and_leaves_nothing) {
             message_of<OutputError>([&] { write_volume(volume, path, options); });
         EXPECT_TRUE(one_line_about(message, path)) << message;
         EXPECT_EQ(folder.names(), std::vector<std::string>{"small-disk"}) << name;
+    }
+}
+
+TEST(write_volume, keeps_the_mode_of_a_file_that_it_replaces_and_the_links_to_it) {
+    namespace fs = std::filesystem;
+    std::mt19937 random(8);
+    Geometry geometry;
+    geometry.size = Index3(3, 4, 5);
+    const Volume volume = random_volume(random, SampleType::uint8, geometry);
+    constexpr auto only_owner = fs::perms::owner_read | fs::perms::owner_write;
+    for (const std::string_view extension : written_extensions()) {
+        const ScratchFolder folder;
+        const fs::path file = folder / ("a" + std::string(extension)),
+                       link = folder / ("l" + std::string(extension));
+        put_bytes(file, "old");
+        fs::permissions(file, only_owner);
+        write_volume(volume, file, {});
+        EXPECT_EQ(fs::status(file).permissions(), only_owner) << extension;
+        fs::create_symlink(file.filename(), link);
+        const Volume other = random_volume(random, SampleType::uint8, geometry);
+        if (extension == ".nhdr" || extension == ".mhd") {
+            EXPECT_TRUE(contains(message_of<OutputError>([&] { write_volume(other, link, {}); }),
+                                 "is a link"));
+            continue;
+        }
+        write_volume(other, link, {});
+        EXPECT_TRUE(fs::is_symlink(link)) << extension;
+        ReadOptions options;
+        if (extension == ".raw") options.raw = RawLayout{geometry.size, SampleType::uint8};
+        EXPECT_TRUE(same_samples(read_volume(file, options).volume, other)) << extension;
     }
 }
 

@@ -107,6 +107,24 @@ TEST(tiff, every_axis_may_have_a_unit_of_its_own_in_image_j) {
     EXPECT_TRUE(contains(all_notes(read_volume(folder / "a.tif")), "1 mm was taken"));
 }
 
+TEST(tiff, an_axis_that_image_j2_does_not_know_holds_the_slices_if_no_other_does) {
+    const ScratchFolder folder;
+    const auto put = [&](const std::string& axes, const std::string& sizes) {
+        put_pages(folder, 6,
+                  "SCIFIO=0.46.0\naxes=" + axes + "\nlengths=" + sizes +
+                      "\nscales=0.5,0.5,3.0,1.0\nunits=mm,mm,mm,null\nimages=6\n");
+    };
+    put("X,Y,Unknown", "4,3,6");
+    const VolumeFile file = read_volume(folder / "a.tif");
+    EXPECT_EQ(file.volume.geometry().size, Index3(4, 3, 6));
+    EXPECT_EQ(file.volume.geometry().spacing, Vec3(0.5, 0.5, 3));
+    EXPECT_TRUE(contains(all_notes(file), "taken as slices"));
+    put("X,Y,Z,Unknown", "4,3,3,2");
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "2 channels"));
+    put("X,Y,Unknown,Unknown", "4,3,3,2");
+    EXPECT_TRUE(contains(refusal(folder / "a.tif"), "2 channels"));
+}
+
 TEST(tiff, calibrations_of_image_j_give_the_values_that_it_shows) {
     const ScratchFolder folder;
     const auto read = [&](int bits, const std::string& samples, const std::string& calibration) {

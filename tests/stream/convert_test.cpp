@@ -1,6 +1,9 @@
 // Conversion to OME-Zarr and back: read again by us and by python3-zarr, continued where it was
 // left.
 #include "palpate/stream/convert.hpp"
+
+#include <utility>
+
 #include "io/volume_support.hpp"
 #include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
@@ -195,6 +198,38 @@ TEST(Convert, keeps_complete_chunks_of_the_same_work_only) {
     options.compression = Compression::gzip;
     EXPECT_EQ(convert_to_zarr(*store, 0, folder / "v.zarr", options).kept, 0U);
     expect_same_boxes(*open_store(folder / "v.zarr"), volume, 9);
+}
+
+TEST(Convert, a_source_that_changes_meanwhile_gives_no_result) {
+    const ScratchFolder folder;
+    const Volume old_volume = some_volume(SampleType::uint8, 8);
+    io::write_volume(some_volume(SampleType::uint8, 9), folder / "new.nrrd");
+    const auto convert = [&](const fs::path& out, const std::function<void(double)>& progress) {
+        io::write_volume(old_volume, folder / "v.nrrd");
+        const auto store = open_store(folder / "v.nrrd");
+        ConvertOptions options;
+        options.chunk = 8;
+        options.progress = progress;
+        if (out.extension() == ".zarr") return convert_to_zarr(*store, 0, out, options).note;
+        write_plain(*store, 0, out, {false, progress, {}, 0});
+        return std::string();
+    };
+    for (const char* name : {"a.zarr", "a.nrrd"}) {
+        const std::string message = message_of<io::InputError>([&] {
+            bool is_new = false;
+            (void)convert(folder / name, [&](double part) {
+                if (part < 1 || std::exchange(is_new, true)) return;
+                put_bytes(folder / "v.nrrd", bytes_of(folder / "new.nrrd"));
+            });
+        });
+        EXPECT_TRUE(contains(message, "v.nrrd: changed while it was converted")) << message;
+        EXPECT_FALSE(fs::exists(folder / name));
+    }
+    const std::string note = convert(folder / "b.zarr", [&](double part) {
+        if (part == 1) fs::last_write_time(folder / "v.nrrd", {});
+    });
+    EXPECT_TRUE(contains(note, "was touched")) << note;
+    expect_same_boxes(*open_store(folder / "b.zarr"), old_volume, 3);
 }
 
 TEST(Convert, what_is_there_already_and_what_cannot_be_written_is_refused) {

@@ -201,6 +201,30 @@ TEST(Edits, replace_older_ones_and_nothing_else) {
     EXPECT_TRUE(same_bits(volume_of(*open_store(c.out.string())), flattened(*plain)));
 }
 
+TEST(Edits, of_an_original_that_has_gone_are_rescued_and_open_when_it_is_back) {
+    Case c(SampleType::int16, 17);
+    const auto original = open_store(c.zarr.string());
+    auto plain = samples_of(c.volume);
+    const auto edits = c.some_edits(*original, 0, &plain);
+    const fs::path away = c.folder / "gone.zarr", more = c.folder / "more.zarr";
+    fs::rename(c.zarr, away);
+    EXPECT_THROW((void)volume_of(*original), io::InputError);  // it is not all fill value
+    Opened opened{c.zarr.string(), {}};
+    const auto save = [&] { save_edits(*original, opened, 0, *edits, c.out, {}); };
+    EXPECT_THROW(save(), io::InputError);
+    opened.is_rescue = true;
+    save();
+    EXPECT_THROW((void)open_store(c.out.string()), io::InputError);
+    fs::rename(away, c.zarr);
+    const auto rescued = open_store(c.out.string());
+    EXPECT_EQ(rescued->info().levels.size(), 1U);  // the coarser ones would be without edits
+    EXPECT_TRUE(same_bits(volume_of(*rescued), flattened(*plain)));
+    // Edits of them are saved as usual.
+    const auto further = c.some_edits(*rescued, 0, &plain);
+    save_edits(*rescued, {c.out.string(), {}}, 0, *further, more, {});
+    EXPECT_TRUE(same_bits(volume_of(*open_store(more.string())), flattened(*plain)));
+}
+
 TEST(Edits, damaged_notes_are_refused_in_one_line) {
     Case c(SampleType::uint8, 6);
     const auto original = open_store(c.zarr.string());

@@ -81,6 +81,23 @@ TEST(Zarr, a_chunk_that_is_not_stored_has_the_fill_value) {
     EXPECT_EQ(value, -7);
 }
 
+TEST(Zarr, what_needs_no_configuration_may_be_given_by_its_name_alone) {
+    const ScratchFolder folder;
+    const std::string shards =
+        R"([{"name":"sharding_indexed","configuration":{"chunk_shape":[4,4,4],)"
+        R"("codecs":["bytes","zstd"],"index_codecs":)"
+        R"([{"name":"bytes","configuration":{"endian":"little"}},"crc32c"]}}])";
+    for (const std::string& codecs : {std::string(R"(["bytes","crc32c"])"), shards}) {
+        fs::create_directories(folder / "a.zarr");
+        put_bytes(folder / "a.zarr/zarr.json",
+                  R"({"zarr_format":3,"node_type":"array","shape":[8,8,8],"fill_value":7,)"
+                  R"("chunk_grid":{"name":"regular","configuration":{"chunk_shape":[8,8,8]}},)"
+                  R"("chunk_key_encoding":"default","data_type":{"name":"uint8"},"codecs":)" +
+                      codecs + "}");
+        EXPECT_EQ(open_store(folder / "a.zarr")->info().fill, 7) << codecs;
+    }
+}
+
 TEST(OmeZarr, channel_time_scale_and_translation_of_each_level_are_those_of_its_metadata) {
     for (int time = 0; time < 2; ++time) {
         for (int channel = 0; channel < 3; ++channel) {

@@ -24,7 +24,7 @@ struct Converted {
     std::uint64_t kept = 0;    ///< of these, from an earlier run that was interrupted
     std::uint64_t empty = 0;   ///< of these, not stored because all their samples are 0
     Range range = {};          ///< of the finest level [data units]
-    std::string note = {};     ///< one sentence, if an interrupted run of other work was removed
+    std::string note = {};     ///< if an interrupted run was removed, or the source was touched
 };
 
 /// A volume as a store of one level.
