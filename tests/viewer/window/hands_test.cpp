@@ -10,7 +10,7 @@
 namespace palpate::viewer::test {
 namespace {
 
-constexpr const char* ball = "synthetic:sphere:48x48x48";
+constexpr const char* felt_by_two = "synthetic:sphere:48x48x48";
 const std::string holds = "simulated:hand=hold,depth=4,seconds=3600";
 const std::string circles = "simulated:omega6,hand=circle,depth=3,seconds=3600";
 
@@ -22,7 +22,7 @@ class TwoHands : public InWindow {
     /// Not feel(): hands that move do not settle.
     void feel_with_two(const run::Setup& setup, const std::string& second) {
         open_window(RunRequest{setup, {}, {}, {devices::parse_device(second)}});
-        window_->files().open_path(ball);
+        window_->files().open_path(felt_by_two);
         wait_until([&] { return content().snapshot(1) && content().snapshot(2); });
     }
     Content& content() { return window_->content(); }
@@ -143,7 +143,7 @@ TEST_F(TwoHands, one_recording_has_both_and_is_played_with_both) {
 }
 
 TEST_F(TwoHands, a_hand_is_added_and_removed_at_any_time) {
-    feel(ball);
+    feel(felt_by_two);
     EXPECT_FALSE(button_of(1).isVisible());
     EXPECT_TRUE(window_->probe().possible());
     window_->run().add_hand(QString::fromStdString(circles));
@@ -196,7 +196,7 @@ TEST_F(TwoHands, both_come_back_when_the_volume_is_read_again_and_from_a_session
 TEST_F(TwoHands, what_is_read_again_keeps_the_device_that_was_chosen_after_the_start) {
     RunRequest request{setup_with(holds), devices::parse_device(holds), {}};
     open_window(request);
-    window_->files().open_path(ball);
+    window_->files().open_path(felt_by_two);
     wait_until([&] { return window_->live() != nullptr; });
     window_->run().use_device("mouse");
     ASSERT_NE(window_->live()->mouse(), nullptr);
