@@ -44,10 +44,15 @@ bool is_standard_output(int descriptor) {
            its.st_dev == own.st_dev && its.st_ino == own.st_ino;
 }
 
-/// The file at the end of a chain of links, there or not; the path itself if it is no link.
+/// The file at the end of a chain of links, there or not; the path itself if it is no link, or if
+/// what it leads to has no path, as /dev/stdout in a pipeline.
 std::filesystem::path followed(std::filesystem::path path) {
     constexpr int longest_chain = 40;  // as of Linux
     std::error_code error;
+    if (!std::filesystem::is_symlink(path, error)) return path;
+    const auto end = std::filesystem::canonical(path, error);
+    if (!error) return end;
+    if (std::filesystem::exists(path, error)) return path;
     for (int i = 0; i < longest_chain && std::filesystem::is_symlink(path, error); ++i) {
         path = path.parent_path() / std::filesystem::read_symlink(path, error);
     }

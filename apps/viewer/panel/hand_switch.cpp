@@ -27,6 +27,7 @@ HandSwitch::HandSwitch() {
                                   .arg(colour.name(),
                                        colour.lightnessF() < 0.45 ? "white" : "black",
                                        colour.darker(150).name()));
+        button->setText(QString::number(hand));
         button->setCheckable(true);
         group->addButton(button, hand);
         row->addWidget(button, 1);
