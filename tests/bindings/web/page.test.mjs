@@ -208,7 +208,7 @@ test("settings are changed by keyboard, and one that is refused is told", { skip
       await page.mouse.down();
     };
     await press();
-    await says(page, /In contact: 2\.[45]/); // 5 mm at 0.5 N/mm
+    await says(page, /In contact: 2\.[5-9]/); // 5 mm of view depth at 0.5 N/mm, and more where the surface slopes
     await page.mouse.up();
     await enter("0.1");
     await press();
