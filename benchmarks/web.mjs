@@ -71,11 +71,13 @@ const events = {
   },
 };
 
+/** Until the zero that follows the last force, or else until the service sees the connection end. */
 async function closed(page) {
   const from = Date.now();
   await page.close();
   while (service.server.clients.size > 0) await sleep(1);
-  return Math.max(service.lastForceSince(from), service.closedAt - from);
+  const zero = service.forces[service.forces.findLastIndex(({ size }) => size > 0) + 1];
+  return Math.max(0, (zero?.at ?? service.closedAt) - from);
 }
 
 async function start() {
