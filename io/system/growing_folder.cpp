@@ -54,6 +54,11 @@ bool is_same(const struct stat& one, const struct stat& other) {
     return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
 }
 
+bool is_there_as(const fs::path& path, const struct stat& before) {
+    struct stat now {};
+    return ::lstat(path.c_str(), &now) == 0 && is_same(now, before);
+}
+
 /// Whether a name in an open folder is still that of what is open as `held`.
 bool is_still(int folder, const char* name, int held) {
     struct stat now {
@@ -272,6 +277,18 @@ void GrowingFolder::check() const {
     refuse(folder_, "was removed or renamed while it was written; run it again");
 }
 
+void check_in_place(const fs::path& path, const GrowingFolder::MayReplace& may_replace) {
+    for (;;) {
+        struct stat before {};
+        if (::lstat(path.c_str(), &before) != 0) return;
+        try {
+            return may_replace(path);
+        } catch (const OutputError&) {
+            if (is_there_as(path, before)) throw;
+        }
+    }
+}
+
 void GrowingFolder::put_in_place(const MayReplace& may_replace) {
     try {
         check();
@@ -304,7 +321,7 @@ bool GrowingFolder::exchange_with_out(const MayReplace& may_replace) {
     try {
         may_replace(out_);
     } catch (const OutputError&) {
-        if (!is_there(out_)) return false;
+        if (!is_there_as(out_, looked_at)) return false;
         throw;
     }
     if (exchange(result(), out_)) {
@@ -368,8 +385,13 @@ void GrowingFolder::rescue(const std::string& problem) const {
 }
 
 void check_new_folder(const fs::path& out) {
-    const fs::path name = without_slash(out), parent = parent_of(name);
+    const fs::path name = without_slash(out);
     if (is_there(name)) refuse(name, "is there already; remove it or give another name");
+    check_parent(name);
+}
+
+void check_parent(const fs::path& name) {
+    const fs::path parent = parent_of(name);
     std::error_code error;
     if (!fs::is_directory(parent, error)) {
         refuse(name, "its folder does not exist; create it first, or choose another folder");

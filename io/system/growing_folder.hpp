@@ -69,8 +69,15 @@ class GrowingFolder {
     std::string note_;
 };
 
+/// Looks at what is there, if anything, and again if another process puts something else there
+/// meanwhile. Throws what `may_replace` does.
+void check_in_place(const std::filesystem::path& path,
+                    const GrowingFolder::MayReplace& may_replace);
+
 /// Throws OutputError unless a folder `out` can be made: nothing has its name, and its parent is
 /// there and can be written.
 void check_new_folder(const std::filesystem::path& out);
+/// The same whether something has its name or not.
+void check_parent(const std::filesystem::path& name);
 
 }  // namespace palpate::io

@@ -247,7 +247,8 @@ void check_edits_place(const fs::path& out, const Opened& opened) {
     if (fs::equivalent(out, opened.address, error)) {
         throw io::OutputError(out.string() + ": is felt; save under another name");
     }
-    fs::exists(fs::symlink_status(out, error)) ? check_replaceable(out) : io::check_new_folder(out);
+    io::check_in_place(out, check_replaceable);
+    io::check_parent(out);
 }
 
 void save_edits(const Store& from, const Opened& opened, int level, const Samples& edits,

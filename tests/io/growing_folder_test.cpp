@@ -168,6 +168,29 @@ TEST(GrowingFolder, replaces_what_it_may_and_keeps_its_result_where_it_may_not) 
     EXPECT_EQ(folder.names(), (Names{"o", "o.rescued"}));
 }
 
+TEST(GrowingFolder, looks_again_where_another_process_replaced_what_it_looked_at) {
+    const ScratchFolder folder;
+    const fs::path out = folder / "o", other = folder / "other";
+    int looks = 0;
+    const auto replaced_once = [&](const fs::path&) {
+        if (++looks % 2 == 0) return;
+        fs::create_directory(other);
+        fs::rename(out, folder / ("before" + std::to_string(looks)));
+        fs::rename(other, out);
+        throw OutputError("half of it was there");
+    };
+    fs::create_directory(out);
+    check_in_place(out, replaced_once);
+    EXPECT_EQ(looks, 2);
+    GrowingFolder alone = GrowingFolder::alone(out);
+    put_bytes(alone.result() / ".zgroup", "new");
+    alone.put_in_place([&](const fs::path& at) {
+        if (at == out) replaced_once(at);
+    });
+    EXPECT_EQ(looks, 4);
+    EXPECT_EQ(bytes_of(out / ".zgroup"), "new");
+}
+
 TEST(GrowingFolder, knows_its_own_names_and_does_not_guess_what_it_cannot_read) {
     const ScratchFolder folder;
     const fs::path image = folder / "i.zarr";

@@ -242,6 +242,10 @@ double Scene::frame_seconds() const {
     return parts_->background.frame_seconds();
 }
 
+bool Scene::on_hardware() const {
+    return parts_->background.shown() && parts_->background.shown()->hardware;
+}
+
 QImage Scene::picture() {
     return grabFramebuffer();
 }

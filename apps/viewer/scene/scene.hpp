@@ -101,6 +101,8 @@ class Scene : public QVTKOpenGLNativeWidget {
     QImage picture();
     /// How long a picture took [s], smoothed over the last ones while things moved.
     double frame_seconds() const;
+    /// True if graphics hardware paints; known after the first picture.
+    bool on_hardware() const;
 
   Q_SIGNALS:
     /// Hand motion asked for with mouse or wheel under Hand::probe [mm, physical].

@@ -242,6 +242,7 @@ function pressed(t) {
   const device = "haply:host=127.0.0.1,port=10001";
   const force = { limit: 3, rate_limit: 2000, ramp: 0.05 };
   const session = palpate.session(volume, { isovalue, device, fit: true, settings: { force } }, service);
+  t.after(() => session.core.isDeleted() || session.delete()); // a device serves one session
   const run = (ticks, { alive = true, moves = 0 } = {}) => {
     for (let i = 0; i < ticks; ++i) {
       service.now += 1;
