@@ -40,17 +40,16 @@ screenshot lobster 2 '"volume": {"volume": "DATA/lobster.nrrd"}, "field": "cubic
 echo "== viewer-layers.png"
 scripts/with_display.sh "$program" data/visible_human_head.nrrd --layers sample-head \
     --device simulated:hand=press --after 3 --window 1400x880 --screenshot docs/images/viewer-layers.png
+echo "== viewer-two-hands.png"
+scripts/with_display.sh "$program" data/visible_human_head.nrrd -i 34.5 --device simulated:hand=hold,seconds=60 \
+    --device simulated:omega6,hand=press,seed=3,seconds=60 --after 3 --window 1400x880 \
+    --screenshot docs/images/viewer-two-hands.png
 # This head was stored upside down.
 screenshot surfaces 2 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "field": "cubic", "isovalue": 500,
     "device": "simulated:hand=press", "look": {"box": false, "surface_opacity": 0.35,
         "surfaces": [{"level": 1150, "colour": [0.84, 0.37, 0.25], "opacity": 1, "shown": true}],
         "cut": "plane", "cut_plane": {"point": [127.5, 127.5, 60], "normal": [0, 0, -1]}},
     "measurements": [{"kind": "length", "points": [[62, 127, 112], [190, 127, 112]]}],
-    "camera": {"focus": [127.5, 127.5, 112], "up": [0, 0, -1],
-        "towards_viewer": [-0.6, -0.6, -0.5], "half_height": 130}'
-screenshot two-hands 2 '"volume": {"volume": "DATA/cthead_unc.nrrd"}, "field": "cubic", "isovalue": 500,
-    "device": "simulated:hand=hold,seconds=60", "look": {"box": false},
-    "hands": [{"device": "simulated:omega6,hand=press,seed=3,seconds=60", "isovalue": 500}],
     "camera": {"focus": [127.5, 127.5, 112], "up": [0, 0, -1],
         "towards_viewer": [-0.6, -0.6, -0.5], "half_height": 130}'
 screenshot local 2 '"volume": {"volume": "synthetic:sphere:14x14x14"}, "isovalue": 100,
