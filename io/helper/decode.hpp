@@ -84,7 +84,7 @@ std::pair<double, double> range_of(Stored stored, std::span<const std::byte> sam
 /// May be called again with another size: only the last one counts.
 std::span<std::byte> shared_samples(std::uint64_t bytes);
 /// The same, null if there is not enough.
-void* shared_memory(std::uint64_t bytes);
+void* memory_of_caller(std::uint64_t bytes);
 
 /// Bytes of a grid, checked before anything is allocated: no size below 1 or above 2^20, the whole
 /// within the limit. `file_bytes` is what holds it; no compression packs better than 1100 : 1.

@@ -172,7 +172,7 @@ MeshSize read_mesh(const std::filesystem::path& path, const std::string& extensi
     if (size.vertices > std::numeric_limits<std::uint32_t>::max()) {
         throw Failure("has more vertices than can be read; simplify it");
     }
-    void* const memory = shared_memory(mesh_bytes(size.vertices, size.triangles));
+    void* const memory = memory_of_caller(mesh_bytes(size.vertices, size.triangles));
     if (!memory) throw std::bad_alloc();
     auto* const vertices = static_cast<double*>(memory);
     for (vtkIdType i = 0; i < size.vertices; ++i) {

@@ -12,14 +12,14 @@
 
 namespace palpate::io {
 
-void* shared_memory(std::uint64_t bytes) {
+void* memory_of_caller(std::uint64_t bytes) {
     if (ftruncate(samples_descriptor, static_cast<off_t>(bytes)) != 0) return nullptr;
     void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, samples_descriptor, 0);
     return at == MAP_FAILED ? nullptr : at;
 }
 
 std::span<std::byte> shared_samples(std::uint64_t bytes) {
-    void* at = shared_memory(bytes);
+    void* at = memory_of_caller(bytes);
     if (!at) {
         throw Failure("no memory for " + text_of(static_cast<double>(bytes) / 1e9) +
                       " GB of samples; use a smaller volume");
