@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -53,7 +54,7 @@ bool same_bytes(const Volume& a, const Volume& b) {
 struct Shown {
     std::mutex mutex;
     std::map<int, std::shared_ptr<const DetailField>> last;
-    int made = 0, untold = 0;
+    std::atomic<int> made = 0, untold = 0;
 
     void take(int viewer, const std::shared_ptr<const DetailField>& now) {
         const std::scoped_lock lock(mutex);
@@ -139,8 +140,8 @@ TEST(DetailMaker, shows_the_last_samples_with_the_last_edits_and_tells_what_chan
             EXPECT_EQ(made.field.interpolation(), Interpolation::cubic);
         }
     }
-    EXPECT_EQ(shown.untold, 0);
-    EXPECT_GT(shown.made, 15);
+    EXPECT_EQ(shown.untold.load(), 0);
+    EXPECT_GT(shown.made.load(), 15);
 }
 
 TEST(DetailMaker, makes_no_part_of_the_scene_that_is_not_wanted_any_more) {
