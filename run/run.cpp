@@ -182,6 +182,7 @@ void Run::launch(Session session) {
         if (pace == Pace::own_thread) servo->start();
         return servo;
     });
+    tell_begin();
     running_ = true;
     lost_before_ = 0;
 }
@@ -396,6 +397,14 @@ void Run::record_from_now() {
             throw QueueFull("too many commands at once: nothing is recorded");
         }
     });
+    tell_begin();
+}
+
+/// Servos that are stepped have no common clock.
+void Run::tell_begin() {
+    if (recording_ && data_->pace() == Pace::own_thread) {
+        recording_->set_begin(servo_->begun(), hand_);
+    }
 }
 
 /// Without its end.

@@ -274,7 +274,9 @@ TEST(PacedHands, feel_and_are_recorded_while_one_thread_edits_and_another_looks_
     const auto data = std::make_shared<Data>(test::loaded("synthetic:sphere:32x32x32"));
     run::Run a(data, test::with_device(holding)), b(data, test::with_device(circling));
     run::Run::record_together(std::array{&a, &b}, folder / "both.csv");
+    constexpr auto pause = std::chrono::milliseconds(20);
     a.start();
+    std::this_thread::sleep_for(pause);
     b.start();
     std::jthread edits([&](const std::stop_token& stop) {
         data->editor().set_brush(HandBrush{.radius = 3});
@@ -297,12 +299,15 @@ TEST(PacedHands, feel_and_are_recorded_while_one_thread_edits_and_another_looks_
     edits = {};
     b.use_device(devices::parse_device("mouse"));
     EXPECT_GT(a.stop_recording(), 100);
+    double begins[2] = {};
     for (const int hand : {1, 2}) {
         expect_replays(folder / "both.csv", *data, hand);
         io::RecordingReader reader(folder / "both.csv", hand);
         while (reader.next()) continue;
         EXPECT_TRUE(reader.complete());
+        begins[hand - 1] = reader.begin().value_or(-1);
     }
+    EXPECT_GE(begins[1] - begins[0], std::chrono::duration<double>(pause).count());
 }
 
 TEST(Hands, on_different_data_or_twice_are_not_recorded_together) {

@@ -138,6 +138,7 @@ class Run {
     void launch(Session session);
     void stop_servo();
     void record_from_now();
+    void tell_begin();
     void drop_recording();
     Session session_from(double isovalue, const DeviceTransform& transform,
                          std::int64_t last) const;
