@@ -10,44 +10,49 @@
 namespace palpate::devices {
 namespace {
 
-struct Holder {
-    const void* hand;
-    int times;
-};
 struct Held {
     std::mutex mutex;
-    std::map<std::string, Holder> devices;
+    std::map<std::string, const void*> hands;  // by their devices
+
+    bool is_by(const void* hand, const std::string& device) {
+        const std::lock_guard lock(mutex);
+        const auto at = hands.find(device);
+        return at != hands.end() && at->second == hand;
+    }
 };
 Held& held() {
     static Held all;
     return all;
 }
 
-thread_local const void* opening_hand = nullptr;
+thread_local const OpenedBy* opening = nullptr;
 
 }  // namespace
 
-OpenedBy::OpenedBy(const void* hand) {
-    opening_hand = hand;
+OpenedBy::OpenedBy(const void* hand, std::function<void()> let_go)
+    : hand_(hand), let_go_(std::move(let_go)) {
+    opening = this;
 }
 
 OpenedBy::~OpenedBy() {
-    opening_hand = nullptr;
+    opening = nullptr;
 }
 
-Claim::Claim(std::string device) : device_(std::move(device)) {
+const void* opening_hand() {
+    return opening ? opening->hand_ : nullptr;
+}
+
+Claim::Claim(std::string device, const void* hand) : device_(std::move(device)) {
+    if (opening && opening->hand_ == hand && held().is_by(hand, device_)) opening->let_go_();
     const std::lock_guard lock(held().mutex);
-    const auto [at, is_new] = held().devices.try_emplace(device_, Holder{opening_hand, 0});
-    if (!is_new && (opening_hand == nullptr || at->second.hand != opening_hand)) {
+    if (!held().hands.try_emplace(device_, hand).second) {
         throw DeviceError(device_ + " serves another hand: give each hand a device of its own");
     }
-    ++at->second.times;
 }
 
 Claim::~Claim() {
     const std::lock_guard lock(held().mutex);
-    const auto at = held().devices.find(device_);
-    if (--at->second.times == 0) held().devices.erase(at);
+    held().hands.erase(device_);
 }
 
 }  // namespace palpate::devices

@@ -1,26 +1,37 @@
-// A physical device serves one hand of a process.
+// A physical device serves one hand of a process, and is open once.
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace palpate::devices {
 
-/// While it exists, the devices that this thread opens are those of `hand`. A hand may open its
-/// device again before it closes the first one, as when its options change.
+/// While it exists, the devices that this thread opens are those of `hand`.
 class OpenedBy {
   public:
-    explicit OpenedBy(const void* hand);
+    /// `let_go` closes the device that the hand has. It is called before that device is opened
+    /// again, as when its options change: drivers have one handle per device.
+    OpenedBy(const void* hand, std::function<void()> let_go);
     ~OpenedBy();
     OpenedBy(const OpenedBy&) = delete;
     OpenedBy& operator=(const OpenedBy&) = delete;
+
+  private:
+    friend class Claim;
+    friend const void* opening_hand();
+    const void* hand_;
+    std::function<void()> let_go_;
 };
+
+/// That which this thread opens devices for; null: none that is known.
+const void* opening_hand();
 
 /// Keeps a device from other hands until its end. Any thread may make one.
 class Claim {
   public:
     /// `device` tells it from all others of the backend, as in "Inverse3 049D at 127.0.0.1".
     /// Throws DeviceError if another hand has it.
-    explicit Claim(std::string device);
+    explicit Claim(std::string device, const void* hand = opening_hand());
     ~Claim();
     Claim(const Claim&) = delete;
     Claim& operator=(const Claim&) = delete;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <functional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -39,21 +40,39 @@ Field seen(const Field& field) {
                  field.interpolation());
 }
 
-/// For the run `hand`.
+/// For the run `hand`. If the device is the one that it has, it is closed first.
 std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup,
-                                 const Run* hand) {
+                                 const Run* hand, const std::function<void()>& let_go = {}) {
     const double rate = setup.render.rate.value_or(usual_rate);
     if (!(rate >= 250 && rate <= 8000)) {
         std::string text;
         io::append_number(text, rate);
         throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
     }
-    const devices::OpenedBy opened_by(hand);
+    const devices::OpenedBy opened_by(hand, let_go);
     return setup.open_device(setup.device,
                              {seen(field), isovalue, rate, [&](const DeviceInfo& info) {
                                   return transform_for(field.geometry(), info, setup);
                               }});
 }
+
+/// In place of a device that was closed and could not be opened again.
+class Gone final : public Device {
+  public:
+    Gone(DeviceInfo info, const std::string& why)
+        : info_(std::move(info)),
+          problem_("it could not be opened again (" + why + "): choose it once more") {}
+
+    DeviceInfo info() const override { return info_; }
+    std::string problem() const override { return problem_; }
+    DeviceReading read(double) override { return {.status = DeviceStatus::lost}; }
+    void write(const Wrench&, double) override {}
+    void stop() noexcept override {}
+
+  private:
+    const DeviceInfo info_;
+    const std::string problem_;
+};
 
 /// Of data and recording, with Pace::by_steps [s].
 constexpr double between_steps = 0.004;
@@ -163,6 +182,7 @@ void Run::launch(Session session) {
         if (pace == Pace::own_thread) servo->start();
         return servo;
     });
+    tell_begin();
     running_ = true;
     lost_before_ = 0;
 }
@@ -261,35 +281,57 @@ void Run::send(const Command& command) {
     }
 }
 
+void Run::close_device() {
+    stop_recording();
+    stop();
+    last_resort_.reset();
+    device_.reset();
+}
+
 void Run::use_device(const devices::DeviceChoice& device) {
     started_servo();  // throws before anything has changed
     Setup setup = setup_;
     setup.device = device;
+    const DeviceInfo old = device_->info();
     // A simulated hand goes for the surface that is felt now.
     const double isovalue =
         std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_);
-    auto opened = open_for(field_, isovalue, setup, this);
-    const Session fitted = make_session(field_, isovalue, opened->info(), setup);
-    const RendererSettings& fit = fitted.renderer.settings;
-    RendererSettings settings = settings_;
-    settings.device = fit.device;
-    settings.transform = fit.transform;
-    // A limit that was asked for stays; one that was the old device's becomes the new one's.
-    if (settings.force.limit >= device_->info().limits.maximum_force) {
-        settings.force.limit = fit.force.limit;
-    }
-    settings.force.stiffness = std::min(settings.force.stiffness, fit.force.stiffness);
-    Session session{make_renderer(field_, isovalue_, settings), fitted.settings};
+    try {
+        auto opened = open_for(field_, isovalue, setup, this, [this] { close_device(); });
+        const bool is_the_same = !device_ || device == setup_.device;
+        const Session fitted = make_session(field_, isovalue, opened->info(), setup);
+        const RendererSettings& fit = fitted.renderer.settings;
+        RendererSettings settings = settings_;
+        settings.device = fit.device;
+        settings.transform = fit.transform;
+        // A limit that was asked for stays; one that was the old device's becomes the new one's.
+        if (settings.force.limit >= old.limits.maximum_force) {
+            settings.force.limit = fit.force.limit;
+        }
+        settings.force.stiffness = std::min(settings.force.stiffness, fit.force.stiffness);
+        Session session{make_renderer(field_, isovalue_, settings), fitted.settings};
 
-    stop_recording();
-    stop_servo();
-    device_->stop();
-    if (device == setup_.device) {  // its motors are as warm as they were
-        session.renderer.force.motors.warmth = servo_->session().renderer.force.motors.warmth;
+        if (device_) close_device();
+        if (is_the_same) {  // its motors are as warm as they were
+            session.renderer.force.motors.warmth = servo_->session().renderer.force.motors.warmth;
+        }
+        setup_ = std::move(setup);
+        hold(std::move(opened));
+        launch(std::move(session));
+    } catch (...) {
+        if (!device_) reopen(isovalue, old);
+        throw;
     }
-    setup_ = std::move(setup);
-    hold(std::move(opened));
-    launch(std::move(session));
+}
+
+/// The device that was closed for a choice which could not be opened.
+void Run::reopen(double isovalue, const DeviceInfo& old) {
+    try {
+        hold(open_for(field_, isovalue, setup_, this));
+    } catch (const std::exception& error) {
+        hold(std::make_unique<Gone>(old, error.what()));
+    }
+    launch(session_stopped());
 }
 
 void Run::use_field(Solid solid, Interpolation interpolation, std::optional<double> background) {
@@ -355,6 +397,14 @@ void Run::record_from_now() {
             throw QueueFull("too many commands at once: nothing is recorded");
         }
     });
+    tell_begin();
+}
+
+/// Servos that are stepped have no common clock.
+void Run::tell_begin() {
+    if (recording_ && data_->pace() == Pace::own_thread) {
+        recording_->set_begin(servo_->begun(), hand_);
+    }
 }
 
 /// Without its end.

@@ -78,6 +78,7 @@ FalconDevice::FalconDevice(const std::string& library, Settings settings, const 
     : LinkedDevice(timing),
       ftdi_(library),
       settings_(std::move(settings)),
+      claim_("the Falcon with index=" + std::to_string(settings_.index)),
       info_(info_of(settings_)) {
     const int count = ftdi_.count();
     if (count <= static_cast<int>(settings_.index)) {

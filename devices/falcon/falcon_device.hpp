@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "devices/claim.hpp"
 #include "devices/falcon/port.hpp"
 #include "devices/latest_trouble.hpp"
 #include "devices/linked_device.hpp"
@@ -70,6 +71,7 @@ class FalconDevice final : public LinkedDevice {
 
     const Ftdi ftdi_;
     const Settings settings_;
+    const Claim claim_;
     const DeviceInfo info_;
     LatestTrouble<Trouble> trouble_;
     std::atomic<bool> quit_{false};

@@ -106,7 +106,7 @@ Inverse3::Inverse3(Settings settings, Address address, Talk talk, const Timing& 
       talk_(std::move(talk)),
       wait_(first_wait) {
     const std::string& id = talk_.state.device_id;
-    if (!id.empty()) claim_.emplace(id + " at " + place_of(address_));
+    if (!id.empty()) claim_.emplace(id + " at " + place_of(address_), hand_);
     tell_identity(talk_.state);
     // The release whose documentation says "vector" tells preset and mount, too.
     const bool is_new = !talk_.state.mapping.preset.empty();
@@ -247,10 +247,11 @@ bool Inverse3::claims(const std::string& id) {
     if (claim_ && claim_->device() == device) return true;
     claim_.reset();
     try {
-        claim_.emplace(device);
+        claim_.emplace(device, hand_);
+        taken_.clear();
     } catch (const DeviceError& taken) {
         gate_.note(false, timing_.now());
-        tell(taken.what());
+        taken_ = taken.what();
     }
     return claim_.has_value();
 }
@@ -382,6 +383,7 @@ void Inverse3::try_other_key(Clock::time_point now) {
 
 std::string Inverse3::what_is_wrong(Clock::time_point now) const {
     const ServiceState& state = talk_.state;
+    if (!taken_.empty()) return taken_;
     if (!changed_.empty()) {
         return "another program has changed the " + std::string(changed_) + " of " + state.model +
                ", which maps the force, too: end that program, then start again";
@@ -411,7 +413,7 @@ void Inverse3::report_state(Clock::time_point asked, Clock::time_point now) {
     const auto age = now - asked;
     reading.age = std::chrono::duration<double>(age).count();
     check_echo(now);
-    reading.status = status_of_mapping(now);
+    reading.status = taken_.empty() ? status_of_mapping(now) : DeviceStatus::fault;
     if (reading.status == DeviceStatus::ready) reading.status = status_of(state);
     const bool breaks = reading.status == DeviceStatus::ready && now < ready_again_;
     if (breaks) reading.status = DeviceStatus::starting;

@@ -116,6 +116,7 @@ class Inverse3 final : public LinkedDevice {
     const Address address_;
     const std::string service_;  // in words
     const bool is_minverse_;
+    const void* const hand_ = opening_hand();  // its own
     Newest<Problem> problem_;
     Newest<Identity> identity_;
     std::atomic<bool> quit_{false};
@@ -123,6 +124,7 @@ class Inverse3 final : public LinkedDevice {
     // Used by the thread only.
     Talk talk_;
     std::optional<Claim> claim_;  // of the device that it talks of
+    std::string taken_;           // why there is none
     bool connected_ = true;
     Questions questions_;
     std::string told_;

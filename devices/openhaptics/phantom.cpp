@@ -15,8 +15,6 @@
 namespace palpate::devices::openhaptics {
 namespace {
 
-std::atomic<bool> attached{false};  // the driver has one loop per process, so there is one of these
-
 constexpr double weakest_torque = 48;  // [N mm] where the driver tells none
 // [ns] For the last frame; between looks for it.
 constexpr std::int64_t longest_wait = 500'000'000, between_looks = 1'000'000;
@@ -107,10 +105,8 @@ const char* advice(unsigned int code) {
 }  // namespace
 
 Attachment::Attachment(const std::string& library, const std::string& name)
-    : hd_(std::make_shared<const Hd>(library)) {
-    if (attached.exchange(true)) {
-        throw DeviceError("there is one open already, and the driver has no second one a process");
-    }
+    : claim_("the only device that the driver opens per process"),
+      hd_(std::make_shared<const Hd>(library)) {
     std::vector<const char*> names{name.c_str()};
     if (name.empty()) names = {nullptr, "Default Device", "Default PHANToM"};
     std::string tried;
@@ -125,7 +121,6 @@ Attachment::Attachment(const std::string& library, const std::string& name)
                  (code ? hd_->error_words(code) : "no error told");
         if (code == error::invalid_license) tried += std::string(": ") + advice(code);
     }
-    attached.store(false);
     throw DeviceError("the driver gives no device (" + tried + "): " + how_to_attach);
 }
 
@@ -134,7 +129,6 @@ Attachment::~Attachment() {
     hd_->disable(force_output);
     hd_->disable_device(device_);
     hd_->take_error();
-    attached.store(false);
 }
 
 Phantom::Phantom(std::unique_ptr<Attachment> attachment, const Settings& settings,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "devices/claim.hpp"
 #include "devices/openhaptics/frames.hpp"
 
 namespace palpate::devices::openhaptics {
@@ -29,6 +30,7 @@ class Attachment {
     Handle device() const { return device_; }
 
   private:
+    const Claim claim_;
     std::shared_ptr<const Hd> hd_;
     Handle device_ = no_handle;
 };

@@ -130,6 +130,8 @@ class Servo {
     bool step(std::int64_t now) noexcept;
     /// When the next tick is due [ns, of the settings' clock]. The thread of step().
     std::int64_t due() const noexcept { return schedule_.due; }
+    /// [ns] of its clock when the session's time was 0. From the end of start() on, any thread.
+    std::int64_t begun() const noexcept { return schedule_.zero; }
     /// One look of the watchdog, every 5 ms, by any one thread: gives up a call to the device that
     /// the third look in a row sees under way. `cpu`: all CPU time of the thread of step() [ns];
     /// `could_run`: it waits for nothing but a processor. Then only its CPU time counts.

@@ -1,4 +1,6 @@
 // Reads recordings: the head, then commands and ticks in the order in which they took effect.
+#include <algorithm>
+#include <cmath>
 #include <deque>
 #include <fstream>
 #include <limits>
@@ -56,6 +58,7 @@ struct RecordingReader::Rows {
     std::deque<SessionEvent> waiting;
     bool complete = false;
     std::int64_t lost = 0;
+    std::optional<double> begin;      // [s] after that of the first hand
     std::vector<std::int64_t> ticks;  // of each hand so far
     Bodies bodies;
     std::uint32_t checksum = 0;  // of the events so far
@@ -167,7 +170,19 @@ struct RecordingReader::Rows {
             csv.fail(std::string("the checksum of all events does not fit") + changed);
         }
         lost = count("lost");
+        if (end.contains("begins")) begin = begin_in(end["begins"]);
         complete = true;
+    }
+
+    double begin_in(const Json& begins) const {
+        const bool is_list = begins.is_array() && begins.size() == ticks.size();
+        const auto is_number = [](const Json& one) {
+            return one.is_number() && std::isfinite(one.get<double>());
+        };
+        if (!is_list || !std::ranges::all_of(begins, is_number)) {
+            csv.fail("'begins' in the last line is no list of a number for each hand");
+        }
+        return begins[static_cast<std::size_t>(hand - 1)].get<double>();
     }
 
     static constexpr const char* changed =
@@ -346,6 +361,10 @@ double RecordingReader::progress() const {
 
 bool RecordingReader::complete() const {
     return rows_->complete;
+}
+
+std::optional<double> RecordingReader::begin() const {
+    return rows_->begin;
 }
 
 bool RecordingReader::has_checksums() const {

@@ -83,12 +83,14 @@ void RecordingText::append(const Command& command, int hand) {
     lines += '\n';
 }
 
-void RecordingText::end(std::int64_t lost) {
+void RecordingText::end(std::int64_t lost, std::span<const double> begins) {
     std::int64_t ticks = 0;
     for (const Hand& hand : hands_) ticks += hand.ticks.load(std::memory_order_relaxed);
     lines += "#";
     lines += end_mark;
-    lines += Json{{"ticks", ticks}, {"lost", lost}, {"crc32", checksum_}}.dump() + "\n";
+    Json end{{"ticks", ticks}, {"lost", lost}, {"crc32", checksum_}};
+    if (has_several() && !begins.empty()) end["begins"] = begins;
+    lines += end.dump() + "\n";
 }
 
 }  // namespace palpate::io

@@ -22,7 +22,8 @@ class RecordingText {
     void append(const SessionTick& tick, int hand = 1);
     void append(const Command& command, int hand = 1);
     /// The last line, see RecordingWriter::finish().
-    void end(std::int64_t lost);
+    /// `begins` of the hands after the first one's [s], if they are known.
+    void end(std::int64_t lost, std::span<const double> begins = {});
 
     /// Any thread.
     std::int64_t ticks(int hand = 1) const {

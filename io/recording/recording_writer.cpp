@@ -92,7 +92,7 @@ void RecordingWriter::finish(std::int64_t lost, int hand) {
     }
     if (is_last) {
         end_threads();  // they may wait for the lock
-        text_->end(lost_);
+        text_->end(lost_, begins());
         flush();
         (void)synchronise(descriptor_);
         close();
@@ -116,6 +116,22 @@ void RecordingWriter::step() {
 void RecordingWriter::begin_with(std::vector<Command> commands, int hand) {
     const std::scoped_lock lock(mutex_);
     of(hand).first = std::move(commands);
+}
+
+void RecordingWriter::set_begin(std::int64_t ns, int hand) {
+    const std::scoped_lock lock(mutex_);
+    of(hand).begin = ns;
+}
+
+/// After the first hand's [s]; empty where a hand has not told its own.
+std::vector<double> RecordingWriter::begins() {
+    const std::scoped_lock lock(mutex_);
+    std::vector<double> begins;
+    for (const auto& hand : hands_) {
+        if (!hand->begin || !hands_.front()->begin) return {};
+        begins.push_back(1e-9 * static_cast<double>(*hand->begin - *hands_.front()->begin));
+    }
+    return begins;
 }
 
 void RecordingWriter::drain() {

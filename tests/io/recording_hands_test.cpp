@@ -104,8 +104,34 @@ TEST(RecordingOfHands, each_comes_back_bit_for_bit_as_if_it_was_recorded_alone) 
         EXPECT_TRUE(again.starts_with("# palpate recording 6\n"));
         EXPECT_TRUE(reader.complete());
         EXPECT_EQ(reader.lost(), 7);
+        EXPECT_EQ(reader.begin(), std::nullopt);
     }
     EXPECT_EQ(io::read_recording_head(folder / "both.csv").device, "device 1");
+}
+
+TEST(RecordingOfHands, says_how_far_apart_they_began_where_each_tells_it) {
+    const ScratchFolder folder;
+    const auto record = [&](const std::string& name, std::initializer_list<int> told) {
+        const std::array heads{head_of_hand(1), head_of_hand(2)};
+        io::RecordingWriter writer(folder / name, heads, Pace::by_steps);
+        for (const int hand : told) writer.set_begin(7'000'000'000 - 500'000'000 * hand, hand);
+        for (const int hand : {2, 1}) writer.finish(0, hand);
+        return bytes_of(folder / name);
+    };
+    const auto begin_in = [](const std::string& text, int hand) {
+        io::RecordingReader reader(text, "r.csv", hand);
+        EXPECT_TRUE(events_of(reader).empty());
+        return reader.begin();
+    };
+    const std::string both = record("both.csv", {1, 2});
+    EXPECT_EQ(begin_in(both, 1), 0);
+    EXPECT_EQ(begin_in(both, 2), -0.5);
+    EXPECT_EQ(begin_in(record("one.csv", {2}), 2), std::nullopt);
+    for (const char* wrong : {"[0.0]", "[0.0,null]", "3", "[0.0,\"a\"]"}) {
+        std::string changed = both;
+        changed.replace(changed.find("[0.0,-0.5]"), 10, wrong);
+        EXPECT_THROW(begin_in(changed, 1), io::InputError) << wrong;
+    }
 }
 
 TEST(RecordingOfHands, that_is_not_there_or_was_changed_is_refused) {

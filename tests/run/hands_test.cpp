@@ -1,5 +1,7 @@
 // Several hands in one session: runs on the same data, and one recording of all of them.
 #include <array>
+#include <chrono>
+#include <thread>
 
 #include "palpate/io/volume_file.hpp"
 #include "palpate/run/replay.hpp"
@@ -264,6 +266,48 @@ TEST(Hands, are_recorded_from_now_on_without_a_change_of_their_forces) {
     expect_the_same(ticks, {undisturbed.begin() + 300, undisturbed.end()});
     for (int hand = 1; hand <= 2; ++hand) expect_replays(folder / "both.csv", *data, hand);
     expect_replays(folder / "one.csv", *data, 1);
+}
+
+/// The servos of both, the editor and the recorder have threads of their own.
+TEST(PacedHands, feel_and_are_recorded_while_one_thread_edits_and_another_looks_on) {
+    const ScratchFolder folder;
+    const auto data = std::make_shared<Data>(test::loaded("synthetic:sphere:32x32x32"));
+    run::Run a(data, test::with_device(holding)), b(data, test::with_device(circling));
+    run::Run::record_together(std::array{&a, &b}, folder / "both.csv");
+    constexpr auto pause = std::chrono::milliseconds(20);
+    a.start();
+    std::this_thread::sleep_for(pause);
+    b.start();
+    std::jthread edits([&](const std::stop_token& stop) {
+        data->editor().set_brush(HandBrush{.radius = 3});
+        for (int i = 0; !stop.stop_requested(); ++i) {
+            data->editor().apply(edit::Fill{{{5, 5, 5}, {6, 6, 6}}, double(i % 2)});
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    });
+    std::array<bool, 2> presses{}, edited{};
+    EXPECT_TRUE(test::comes_true([&] {
+        for (const std::size_t hand : {0, 1}) {
+            run::Run& run = hand == 0 ? a : b;
+            if (run.waiting() == 0) run.send(command::Isovalue{run.isovalue() + 0.001});
+            const auto now = run.snapshot();
+            presses[hand] |= now && now->session.tick.force.norm() > 0.05;
+            edited[hand] |= now && now->session.version > 20;
+        }
+        return presses[0] && presses[1] && edited[0] && edited[1];
+    }));
+    edits = {};
+    b.use_device(devices::parse_device("mouse"));
+    EXPECT_GT(a.stop_recording(), 100);
+    double begins[2] = {};
+    for (const int hand : {1, 2}) {
+        expect_replays(folder / "both.csv", *data, hand);
+        io::RecordingReader reader(folder / "both.csv", hand);
+        while (reader.next()) continue;
+        EXPECT_TRUE(reader.complete());
+        begins[hand - 1] = reader.begin().value_or(-1);
+    }
+    EXPECT_GE(begins[1] - begins[0], std::chrono::duration<double>(pause).count());
 }
 
 TEST(Hands, on_different_data_or_twice_are_not_recorded_together) {

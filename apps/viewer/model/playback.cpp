@@ -101,6 +101,7 @@ Playback Playback::read(io::RecordingReader& reader, const std::string& recordin
     playback.samples_ = std::move(replay.samples());
     playback.complete_ = reader.complete();
     playback.hands_ = reader.hands();
+    playback.clock_ = reader.begin().value_or(-playback.begin());
     playback.finish();
     if (progress) progress(1);
     return playback;

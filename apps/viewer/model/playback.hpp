@@ -59,6 +59,9 @@ class Playback {
 
     /// [s] of the first and the last tick, by the session's clock.
     double begin() const { return overview_.begin; }
+    /// Time 0 of its clock, by one that all hands of the recording share. Where it does not say
+    /// how far apart they began, the first ticks count as simultaneous.
+    double clock() const { return clock_; }
     double end() const { return overview_.end; }
     /// The last snapshot at or before `time`; the first for a time before it or NaN.
     const Snapshot& at(double time) const;
@@ -119,6 +122,7 @@ class Playback {
     double interval_ = least_interval;  // [s] between snapshots
     std::size_t ticks_ = 0, different_ = 0;
     bool complete_ = false;
+    double clock_ = 0;  // [s]
     int hands_ = 1;
     Overview overview_;
 };

@@ -148,7 +148,7 @@ std::optional<Snapshot> Content::snapshot(int hand) const {
 
 /// That which is shown, by the clock of this hand.
 double Content::time_of(int hand) const {
-    return time_ - playback()->begin() + playback(hand)->begin();
+    return time_ + playback()->clock() - playback(hand)->clock();
 }
 
 HandSnapshots Content::snapshots() const {

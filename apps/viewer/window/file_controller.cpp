@@ -329,9 +329,7 @@ void FileController::open_session(const QString& path) {
             content_.set_session(path);
             measuring_.set_saved();
             remember_file(path);
-            if (session.settings && lack_labels(session.settings->layers)) {
-                layers_.restore(session.settings->layers, path);
-            }
+            layers_.restore(session, path);
         });
     });
 }

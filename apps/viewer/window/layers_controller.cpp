@@ -5,9 +5,11 @@
 #include <QRegularExpression>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "apps/viewer/model/label_layers.hpp"
+#include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/overlay_controls.hpp"
@@ -160,17 +162,31 @@ void LayersController::place(const SharedLayers& layers) {
         [this, found] { panel_.layers_controls().use(*found); });
 }
 
-void LayersController::restore(const SharedLayers& layers, const QString& file) {
-    const auto read = std::make_shared<SharedLayers>();
+void LayersController::restore(const SessionFile& session, const QString& file) {
+    const auto read = std::make_shared<std::map<int, SharedLayers>>();  // by hand
+    const auto note = [&](const SessionHand& one, int hand) {
+        if (one.settings && lack_labels(one.settings->layers)) {
+            read->emplace(hand, one.settings->layers);
+        }
+    };
+    note(session, 1);
+    int hand = 1;
+    for (const SessionHand& other : session.others) note(other, ++hand);
+    if (read->empty()) return;
     reader_.start(
         tr("Reading the labels"),
-        [layers, read, from = std::filesystem::path(file.toStdString())](const io::Progress&) {
-            *read = run::with_labels(layers, from);
+        [read, from = std::filesystem::path(file.toStdString())](const io::Progress&) {
+            for (auto& [hand, layers] : *read) layers = run::with_labels(layers, from);
         },
         [this, read] {
-            if (!content_.live()) return;
-            content_.effect().request(command::UseLayers{*read});
-            Q_EMIT content_.run_changed();
+            const int chosen = content_.hand();
+            for (const auto& [hand, layers] : *read) {
+                if (!content_.live(hand)) continue;
+                content_.choose_hand(hand);
+                content_.effect().request(command::UseLayers{layers});
+            }
+            content_.choose_hand(chosen);
+            if (content_.live()) Q_EMIT content_.run_changed();
         });
 }
 

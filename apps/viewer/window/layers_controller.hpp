@@ -17,6 +17,7 @@ class OverlayController;
 struct Overlay;
 class Panel;
 struct LayersChoice;
+struct SessionFile;
 
 class LayersController : public QObject {
     Q_OBJECT
@@ -36,9 +37,9 @@ class LayersController : public QObject {
     void save(const QString& path);
     /// Feels the labels of the overlay that are shown.
     void feel_labels();
-    /// Feels layers that lack_labels() once their label volume has been read; a name that is
-    /// relative counts from the working folder, then from that of `file`.
-    void restore(const SharedLayers& layers, const QString& file);
+    /// Each hand of the session feels its layers that lack_labels() once their label volume has
+    /// been read; a name that is relative counts from the working folder, then from that of `file`.
+    void restore(const SessionFile& session, const QString& file);
     bool settled() const { return !reader_.busy(); }
     BackgroundTask& reader() { return reader_; }
 

@@ -76,6 +76,9 @@ class RecordingWriter {
     void step();
     /// Commands before all that is in the hand's queue, and before its servo uses it.
     void begin_with(std::vector<Command> commands, int hand = 1);
+    /// When the hand's time 0 was [ns, of a clock that all hands have]. A recording in which every
+    /// hand has told it says how far apart they began.
+    void set_begin(std::int64_t ns, int hand = 1);
     /// The queue into which the hand's servo puts its ticks. It has room for eight seconds.
     Queue<SessionEvent>& queue(int hand = 1) { return of(hand).queue; }
     /// Why nothing is written any more (a full disk). Empty while all is well. What was written
@@ -93,10 +96,12 @@ class RecordingWriter {
         explicit Hand(std::size_t room) : queue(room) {}
         Queue<SessionEvent> queue;
         std::vector<Command> first;
+        std::optional<std::int64_t> begin;  // [ns]
     };
 
     Hand& of(int hand) { return *hands_[static_cast<std::size_t>(hand - 1)]; }
     void end_threads();
+    std::vector<double> begins();
     void drain();
     void drain(int hand);
     void flush();
@@ -111,7 +116,8 @@ class RecordingWriter {
     bool seekable_ = false;
     std::size_t ended_ = 0;  // hands
     std::int64_t lost_ = 0;
-    mutable std::mutex mutex_;  // of problem_ and Hand::first. The servo never comes near
+    mutable std::mutex
+        mutex_;  // of problem_, Hand::first and Hand::begin. The servo never comes near
     std::string problem_;
     std::jthread thread_, syncer_;
 };
@@ -142,6 +148,9 @@ class RecordingReader {
     double progress() const;
     /// After the last event: the recording was finished, not cut off.
     bool complete() const;
+    /// After the last event: how long after time 0 of the first hand that of this one was [s].
+    /// Nothing: the recording does not say it.
+    std::optional<double> begin() const;
     /// Ticks are numbered and carry a checksum of all events up to them. Without (format 1), only
     /// ticks missing from a complete recording are noticed.
     bool has_checksums() const;

@@ -100,8 +100,10 @@ class Run {
     bool frozen() const { return frozen_; }
 
     /// Goes on with another device, fitted to it, with everything that was asked for so far. Throws
-    /// as the constructor does; the old device then goes on. A recording is finished before. Throws
-    /// WrongState before start(), as does use_field().
+    /// as the constructor does; the old device then goes on. A recording is finished before. The
+    /// same physical device is closed first and then opened with the new options; if that fails, it
+    /// is opened as it was, and if that fails, too, it counts as lost. Throws WrongState before
+    /// start(), as does use_field().
     void use_device(const devices::DeviceChoice& device);
     /// Goes on with this side solid, this interpolation, this background outside the grid. The
     /// session starts anew with everything that was asked for except penetrability, which is
@@ -130,10 +132,13 @@ class Run {
   private:
     Servo& started_servo() const;
     void hold(std::unique_ptr<Device> device);
+    void close_device();
+    void reopen(double isovalue, const DeviceInfo& old);
     void take(const Session& session);
     void launch(Session session);
     void stop_servo();
     void record_from_now();
+    void tell_begin();
     void drop_recording();
     Session session_from(double isovalue, const DeviceTransform& transform,
                          std::int64_t last) const;

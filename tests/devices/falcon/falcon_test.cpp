@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "devices/claim.hpp"
 #include "devices/falcon/kinematics.hpp"
 #include "devices/falcon/mock_ftdi.hpp"
 #include "devices/stepped_device.hpp"
@@ -289,6 +290,20 @@ TEST_F(Falcon, angles_that_fit_no_position_are_a_fault_without_force) {
     with([](auto& falcon) { EXPECT_EQ(falcon.motors, (std::array<int, 3>{})); });
     hold(Vec3::Zero());
     EXPECT_TRUE(becomes(DeviceStatus::ready));
+}
+
+TEST_F(Falcon, serves_one_hand_which_lets_go_of_it_before_it_is_opened_again) {
+    const int hands[2] = {};
+    std::unique_ptr<Device> held;
+    const auto open_by = [&](const int& hand) {
+        const OpenedBy opened_by(&hand, [&] { held.reset(); });
+        held = open();
+    };
+    open_by(hands[0]);
+    EXPECT_THROW(open_by(hands[1]), DeviceError);
+    ASSERT_TRUE(held);
+    open_by(hands[0]);
+    EXPECT_EQ(with([](auto& falcon) { return falcon.contexts; }), 1);
 }
 
 TEST_F(Falcon, that_is_not_there_or_taken_is_refused_with_a_remedy) {

@@ -80,20 +80,6 @@ TEST_F(ForceDimension, one_device_does_not_serve_two_hands_and_is_not_closed_for
     EXPECT_NO_THROW(open(",index=0"));
 }
 
-TEST_F(ForceDimension, a_hand_may_open_its_device_again_before_it_lets_go_of_it) {
-    const int hands[2] = {};
-    const auto open_by = [&](const int& hand) {
-        const OpenedBy opened_by(&hand);
-        return open();
-    };
-    auto first = open_by(hands[0]);
-    auto again = open_by(hands[0]);
-    first.reset();
-    EXPECT_THROW(open_by(hands[1]), DeviceError);
-    again.reset();
-    EXPECT_NO_THROW(open_by(hands[1]));
-}
-
 TEST_F(ForceDimension, each_model_has_its_own_limits) {
     const DeviceInfo omega = open()->info();
     EXPECT_EQ(omega.name, "forcedimension");

@@ -1,4 +1,7 @@
 // The device against a service that misbehaves: no force, no waiting servo, and back again.
+#include <optional>
+
+#include "devices/claim.hpp"
 #include "devices/haply/haply_fixture.hpp"
 #include "support/allocation_counter.hpp"
 
@@ -159,6 +162,26 @@ TEST_F(HaplyTest, an_unplugged_device_is_lost_until_it_is_back) {
     EXPECT_TRUE(says(*device, "plug it in"));
     service.answer(snapshot({whole_device(id)}));
     EXPECT_TRUE(is_pressed(*device));
+}
+
+TEST_F(HaplyTest, one_that_is_plugged_in_later_and_serves_another_hand_says_so_until_it_is_free) {
+    const auto device = open();
+    ASSERT_TRUE(is_pressed(*device));
+    const int other_hand = 0;
+    std::optional<Claim> other(std::in_place, "B at 127.0.0.1:4711", &other_hand);
+    service.greet(snapshot({whole_device("B")}));
+    service.answer(moved("B", Vec3(0.1, -0.2, 0.3)));
+    service.drop();
+    ASSERT_TRUE(becomes(*device, DeviceStatus::fault, 1s));
+    EXPECT_TRUE(says(*device, "B at 127.0.0.1:4711 serves another hand"));
+    const std::size_t forces = service.forces().size();
+    EXPECT_TRUE(throughout(
+        100ms, [&] { return device->read(0).status == DeviceStatus::fault; },
+        [&] { press(*device); }));
+    EXPECT_EQ(service.forces().size(), forces);
+    other.reset();
+    EXPECT_TRUE(is_pressed(*device, 100ms));
+    EXPECT_EQ(device->problem(), "");
 }
 
 TEST_F(HaplyTest, a_service_that_comes_back_before_its_device_is_asked_for_it) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "devices/claim.hpp"
 #include "devices/openhaptics/openhaptics_fixture.hpp"
 #include "support/eventually.hpp"
 
@@ -87,7 +88,16 @@ TEST_F(OpenHaptics, a_servo_loop_that_does_not_start_gives_the_device_back) {
 
 TEST_F(OpenHaptics, a_second_one_is_refused_while_the_first_is_open) {
     const auto device = open();
-    EXPECT_TRUE(contains(refusal(), "open already"));
+    EXPECT_TRUE(contains(refusal(), "serves another hand"));
+    EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
+}
+
+TEST_F(OpenHaptics, a_hand_lets_go_of_it_before_it_is_opened_again) {
+    const int hand = 0;
+    std::unique_ptr<Device> device;
+    const OpenedBy opened_by(&hand, [&] { device.reset(); });
+    device = open();
+    device = open();
     EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
 }
 

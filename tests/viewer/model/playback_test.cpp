@@ -96,6 +96,8 @@ TEST(Playback, of_two_hands_has_the_snapshots_of_each) {
         }
         writer.step();
     }
+    writer.set_begin(5'000'000'000, 1);
+    writer.set_begin(5'250'000'000, 2);
     for (const int hand : {1, 2}) writer.finish(0, hand);
     double last = 0;
     const auto both = Playback::read_hands(path, loaded, [&](double part) {
@@ -108,6 +110,7 @@ TEST(Playback, of_two_hands_has_the_snapshots_of_each) {
     EXPECT_EQ(both[1].ticks(), 100U);
     EXPECT_EQ(both[0].begin(), 7);
     EXPECT_EQ(both[1].begin(), 14);
+    EXPECT_EQ(both[1].clock() - both[0].clock(), 0.25);
     EXPECT_EQ(both[1].head().isovalue, 90);
     for (const Playback& one : both) {
         EXPECT_EQ(one.different(), 0U);

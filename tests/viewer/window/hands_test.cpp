@@ -123,20 +123,21 @@ TEST_F(TwoHands, one_recording_has_both_and_is_played_with_both) {
     EXPECT_TRUE(part<QLabel>("hand_number_2").isVisible());
     EXPECT_EQ(button_of(1).text(), "Hand 1: simulated") << "a model has no room";
     EXPECT_TRUE(button_of(1).isVisible());
-    // As long after the first tick of each.
-    window_->playing().show_time(content().playback(1)->begin() + 0.3);
+    // The same moment by the clock of each. The second hand began after the first.
+    const double later = content().playback(2)->clock() - content().playback(1)->clock();
+    EXPECT_GT(later, 0);
+    const double moment = content().playback(1)->begin() + 0.3;
+    window_->playing().show_time(moment);
     const auto shown = content().snapshots();
-    for (const int hand : {1, 2}) {
-        const Playback& its = *content().playback(hand);
-        EXPECT_EQ(shown[hand]->number, its.at(its.begin() + 0.3).number);
-    }
+    EXPECT_EQ(shown[1]->number, content().playback(1)->at(moment).number);
+    EXPECT_EQ(shown[2]->number, content().playback(2)->at(moment - later).number);
     EXPECT_NE(shown[1]->session.device.position, shown[2]->session.device.position);
     press(Qt::Key_N);
     EXPECT_EQ(content().hand(), 2);
     EXPECT_EQ(content().effect().device().name, content().playback(2)->head().device);
     EXPECT_EQ(content().snapshot(1)->number, shown[1]->number);
     EXPECT_EQ(content().snapshot(2)->number, shown[2]->number);
-    EXPECT_NEAR(content().time() - content().playback(2)->begin(), 0.3, 1e-9);
+    EXPECT_NEAR(content().time(), moment - later, 1e-9);
     press(Qt::Key_Escape);
     wait_until([&] { return window_->live() != nullptr; });
     EXPECT_EQ(content().hands(), 2);

@@ -46,6 +46,9 @@ class LabelsInWindow : public InWindow {
     }
     void feel_labels() {
         open_labels();
+        feel_open_labels();
+    }
+    void feel_open_labels() {
         auto* tabs = window_->findChild<QTabWidget*>("tabs");
         tabs->setCurrentIndex(2);
         QApplication::processEvents();
@@ -166,6 +169,27 @@ TEST_F(LabelsInWindow, a_session_keeps_them_also_when_it_is_moved_with_its_data)
     window_->files().open_path(QString::fromStdString((moved / "s.json").string()));
     wait_until([&] { return !window_->messages().problem().isEmpty(); });
     wait_until([&] { return window_->live() && !layers(); });  // felt without them
+}
+
+TEST_F(LabelsInWindow, of_the_second_hand_come_back_from_a_session) {
+    feel("synthetic:sphere:48x48x48");
+    open_labels();
+    window_->run().add_hand("mouse");
+    feel_open_labels();
+    const auto layers_of = [&](int hand) {
+        return window_->content().live(hand)->settings().layers;
+    };
+    ASSERT_TRUE(layers_of(2));
+    EXPECT_FALSE(layers_of(1));
+    window_->files().save_session(scratch("s.json"));
+    feel("synthetic:torus:40x40x40");
+    window_->files().open_path(scratch("s.json"));
+    wait_until([&] { return window_->content().hands() == 2 && layers_of(2); });
+    wait_until_settled();
+    EXPECT_EQ(window_->messages().problem(), "");
+    EXPECT_EQ(window_->content().hand(), 1);
+    EXPECT_TRUE(layers_of(2)->by_label && layers_of(2)->labels);
+    EXPECT_FALSE(layers_of(1));
 }
 
 TEST_F(LabelsInWindow, a_recording_is_played_with_them) {
