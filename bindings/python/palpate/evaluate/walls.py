@@ -16,30 +16,22 @@ THINNEST_WALL, THICKEST_WALL, END_IN_BODY, END_BEHIND_WALL, OFF_SURFACE = 1e-3, 
 FLATTEST = 0.2588190451025208  # cosine of 75 degrees
 
 
-def corners_of(cells):
-    """Samples at the corners of marked cells; both [x, y, z]."""
-    found = numpy.zeros(numpy.array(cells.shape) + 1, dtype=bool)
-    for corner in itertools.product((0, 1), repeat=3):
-        found[tuple(slice(o, o + n) for o, n in zip(corner, cells.shape))] |= cells
-    return found
+def corners_of(grid):
+    """Each of the eight corners of every cell, or the eight cells around every inner corner."""
+    return [grid[tuple(slice(o, n - 1 + o) for o, n in zip(corner, grid.shape))] for corner in itertools.product((0, 1), repeat=3)]
+
+
+def samples_around(cells):
+    return corners_of(numpy.pad(cells, 1))
 
 
 def full_samples(body, layers):
-    """The four samples of each face between a cell of the body and one that is not, then layer by layer the corners of every cell of the
-    body that has a full one."""
-    full = numpy.zeros([SAMPLES] * 3, dtype=bool)
-    for axis in range(3):
-        flat = numpy.moveaxis(body, axis, 0)
-        faces = numpy.pad(flat, ((1, 1), (0, 0), (0, 0)))
-        faces = faces[1:] != faces[:-1]
-        samples = numpy.moveaxis(full, axis, 0)  # a view
-        for u, v in itertools.product((0, 1), repeat=2):
-            samples[:, u:u + SAMPLES - 1, v:v + SAMPLES - 1] |= faces
+    """The corners of faces between a cell of the body and one that is not, then layer by layer those of every cell of the body that has a
+    full one."""
+    around = samples_around(body)
+    full = numpy.any(around, axis=0) & ~numpy.all(around, axis=0)
     for _ in range(1, layers):
-        touched = numpy.zeros_like(body)
-        for corner in itertools.product((0, 1), repeat=3):
-            touched |= full[tuple(slice(o, o + SAMPLES - 1) for o in corner)]
-        full |= corners_of(touched & body)
+        full |= numpy.any(samples_around(numpy.any(corners_of(full), axis=0) & body), axis=0)
     return full
 
 
