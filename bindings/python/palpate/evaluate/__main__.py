@@ -1,6 +1,7 @@
 """The command line: palpate evaluate NAME, or python3 -m palpate.evaluate NAME."""
 
 import argparse
+import contextlib
 import difflib
 import importlib.util
 import json
@@ -40,13 +41,6 @@ class Stop(Exception):
 
 def wrong(text):
     return Stop(WRONG_USE, f"{text} (see palpate evaluate --help)")
-
-
-class Once(argparse.Action):
-    def __call__(self, parser, chosen, value, name=None):
-        if hasattr(chosen, self.dest):
-            raise argparse.ArgumentError(self, "it is given more than once")
-        setattr(chosen, self.dest, value)
 
 
 def meant(word, names):
@@ -127,22 +121,22 @@ def experiment_of(words, options):
 
 
 def arguments(words):
+    values = {"-o,--output": text_of, "--volume": text_of, "--data": text_of, "--method": one_of(METHODS), "--range": interval,
+              "--seed": whole_number(0, 2**64 - 1), "--seeds": whole_number(1, MOST_SEEDS)}
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False, argument_default=argparse.SUPPRESS)
-    options = [parser.add_argument("-o", "--output", action=Once, type=text_of),
-               parser.add_argument("--volume", action="append", type=text_of),
-               parser.add_argument("--data", action=Once, type=text_of),
-               parser.add_argument("--method", action=Once, type=one_of(METHODS)),
-               parser.add_argument("--seed", action=Once, type=whole_number(0, 2**64 - 1)),
-               parser.add_argument("--seeds", action=Once, type=whole_number(1, MOST_SEEDS)),
-               parser.add_argument("--range", action="append", type=interval),
-               *(parser.add_argument(*names, action="store_true") for names in (["--quick"], ["--json"], ["-q", "--quiet"]))]
+    options = [parser.add_argument(*names.split(","), action="append", type=value) for names, value in values.items()]
+    options += [parser.add_argument(*names.split(","), action="store_true") for names in ("--quick", "--json", "-q,--quiet")]
     try:
         given, rest = parser.parse_known_args(words)
     except argparse.ArgumentError as error:
         raise wrong(complaint(error)) from error
     chosen = argparse.Namespace(output="palpate-evaluation", volume=[], data=None, method="exact", seed=1, seeds=3, range=[], quick=False,
-                                json=False, quiet=False)
-    vars(chosen).update(vars(given), given=[f"--{option}" for option in vars(given)])
+                                json=False, quiet=False, given=[f"--{name}" for name in vars(given)])
+    for name, found in vars(given).items():
+        once = isinstance(found, list) and not isinstance(getattr(chosen, name), list)
+        if once and found[1:]:
+            raise wrong(f"--{name}: it is given more than once")
+        setattr(chosen, name, found[0] if once else found)
     chosen.name = experiment_of(rest, ["--help", "--version", *(option.option_strings[-1] for option in options)])
     if chosen.data is not None and not Path(chosen.data).is_dir():
         raise Stop(WRONG_USE, f"--data {chosen.data}: there is no such folder")
@@ -184,31 +178,27 @@ def warn_of_no_effect(chosen, names):
             tell(f"warning: {option} does nothing: it is for {', '.join(users)}")
 
 
-class Folder:
-    """The folder of the results; what is not complete leaves nothing behind. Its names are known before it is made, so
-    that close() finds what an interrupt in make() leaves."""
-
-    def __init__(self, path):
-        self.path = Path(path)
-        self.is_new = not self.path.exists()
-        self.part = self.path / f".palpate-{uuid.uuid4().hex}"
-
-    def make(self):
+@contextlib.contextmanager
+def unfinished(path):
+    """A folder within that of the results, which nothing is left of at the end. Names are known before they are made, so that an interrupt
+    while they are made leaves nothing, either."""
+    is_new, part = not path.exists(), path / f".palpate-{uuid.uuid4().hex}"
+    try:
         try:
-            self.path.mkdir(parents=True, exist_ok=True)
-            self.part.mkdir(mode=0o700)
+            path.mkdir(parents=True, exist_ok=True)
+            part.mkdir(mode=0o700)
         except OSError as error:
-            raise Stop(BAD_OUTPUT, f"{self.path}: {error.strerror}: choose another folder with --output") from error
+            raise Stop(BAD_OUTPUT, f"{path}: {error.strerror}: choose another folder with --output") from error
+        yield part
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+        if is_new and path.exists() and not any(path.iterdir()):
+            path.rmdir()
 
-    def complete(self):
-        for file in sorted(self.part.iterdir()):
-            file.replace(self.path / file.name)
-        self.is_new = False
 
-    def close(self):
-        shutil.rmtree(self.part, ignore_errors=True)
-        if self.is_new and self.path.exists():
-            self.path.rmdir()
+def complete(part):
+    for file in sorted(part.iterdir()):
+        file.replace(part.parent / file.name)
 
 
 def options_of(chosen, name):
@@ -221,7 +211,7 @@ def options_of(chosen, name):
 
     def note(text):
         if not chosen.quiet:
-            tell(f"note: {name}: {text.removeprefix(name + ': ')}")
+            tell(f"note: {name}: {text}")
 
     return Options(quick=chosen.quick, seed=chosen.seed, seeds=chosen.seeds, method=chosen.method,
                    ranges=tuple(chosen.range), subjects=of_texts(chosen.volume), progress=progress, note=note,
@@ -267,26 +257,23 @@ def evaluate(chosen, words):
     names = EXPERIMENTS if chosen.name == "all" else (chosen.name,)
     options_of(chosen, chosen.name)  # refuses volumes before any work
     warn_of_no_effect(chosen, names)
-    folder, reports = Folder(chosen.output), []
-    try:
-        folder.make()
+    path, reports = Path(chosen.output), []
+    with unfinished(path) as part:
         for name in names:
             try:
-                reports.append(run(name, chosen, folder.part, words))
+                reports.append(run(name, chosen, part, words))
             except ValueError as error:
                 if len(names) == 1:
                     raise
                 tell(f"note: {name} is left out: {error}")
                 continue
-            folder.complete()
+            complete(part)
             if not (chosen.quiet or chosen.json):
                 say(shown(reports[-1]), last=len(names) == 1)
         if chosen.name == "all":
-            if not report.write_pages(reports, folder.path, folder.part):
+            if not report.write_pages(reports, path, part):
                 tell("note: without report.pdf: it needs WeasyPrint (apt install weasyprint)")
-            folder.complete()
-    finally:
-        folder.close()
+            complete(part)
     if chosen.json:
         say(as_json(reports), last=True)
     elif not chosen.quiet:
