@@ -13,7 +13,7 @@ import pytest
 
 from palpate.evaluate import bodies, heads, human, layers, needle, performance, recorded, scaling, stability, tissues, tools
 from palpate.evaluate.experiment import GRANTED, Options, Table
-from palpate.evaluate.subjects import of_text
+from palpate.evaluate.subjects import Subject, of_text
 
 
 def test_phantoms_have_their_depth_as_density():
@@ -244,7 +244,7 @@ def oblique_sphere(kind):
     depth = 10 - numpy.linalg.norm(numpy.stack([x - 14.5, 0.8 * (y - 16.5), 1.5 * (z - 12.5)]), axis=0)
     volume = palpate.Volume((100 + 10 * depth).clip(0, 255).astype(kind), spacing=[1, 0.8, 1.5], origin=[-7, 30, 12],
                             direction=[[0, -1, 0], [0.6, 0, 0.8], [-0.8, 0, 0.6]])
-    return scaling.Subject("sphere", palpate.Field(volume, interpolation="linear"), 100.5)
+    return Subject("sphere", palpate.Field(volume, interpolation="linear"), 100.5)
 
 
 @pytest.mark.parametrize("kind", ["uint8", "int16", "uint16", "float32"])

@@ -160,8 +160,9 @@ def figure_of(table):
     return PAGE.figure(drawn)
 
 
-def map_of(table, name="gradient"):
-    """How often a method does not feel walls of each thickness, or each volume of the user."""
+def map_of(table):
+    """How often a gradient method does not feel walls of each thickness, or each volume of the user."""
+    name = "gradient"
     rows, users = table.where(method=name), is_a_users(table)
     column = "wall" if users else "thickness_voxel"
     steps, walls = sorted(rows.distinct("step_mm")), rows.distinct(column)

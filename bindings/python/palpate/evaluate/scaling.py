@@ -1,6 +1,7 @@
 """scaling: what does the cost grow with, and what does the explicit approach cost?"""
 
 import dataclasses
+import itertools
 from pathlib import Path
 
 import numpy
@@ -10,7 +11,7 @@ from . import figures
 from .experiment import GRANTED, Page, Result, Table
 from .performance import Effort, moved_rows, numbers_of, timed
 from .sampling import quantile
-from .subjects import Subject, real
+from .subjects import cube, reals
 
 PAGE = Page(__name__)
 METHODS = ("exact", "smooth")
@@ -33,10 +34,8 @@ class Plan:
     real: tuple = ("lobster", "ct-head")
 
 
-def plan_of(quick):
-    if quick:
-        return Plan(1500, 3, (20, 100, 500), (0.5, 2), (64, 80, 128), (0, 0.1, 1), (32, 64), ())
-    return Plan(20000, 5)
+QUICK = Plan(1500, 3, (20, 100, 500), (0.5, 2), (64, 80, 128), (0, 0.1, 1), (32, 64), ())
+FULL = Plan(20000, 5)
 
 
 @dataclasses.dataclass
@@ -55,10 +54,6 @@ class Ball:
     def places(self):
         return numpy.arange(self.size) - 0.5 * (self.size - 1)
 
-    def subject(self, name, samples, isovalue):
-        volume = palpate.Volume(samples, origin=[-0.5 * (self.size - 1)] * 3)
-        return Subject(name, palpate.Field(volume, interpolation="linear"), isovalue)
-
     def sampled(self):
         """uint8, by slices, as some are large. With even sizes the same samples lie around the centre of any grid."""
         samples = numpy.zeros([self.size] * 3, dtype=numpy.uint8)
@@ -67,14 +62,14 @@ class Ball:
         for k in near:
             values = 255 * self.density(along, along[:, None], self.places[k])
             samples[k, part, part] = values + 0.5
-        return self.subject("ball", samples, 127.5)
+        return cube("ball", samples, 127.5)
 
     def noisy(self, amplitude, seed):
         """float32 of 0 to 1, and white noise of +-amplitude / 2."""
         noise = numpy.random.default_rng(seed).random([self.size] * 3) - 0.5
         x = self.places
         samples = self.density(x, x[:, None], x[:, None, None]) + amplitude * noise
-        return self.subject("noisy-ball", samples.astype(numpy.float32), 0.5)
+        return cube("noisy-ball", samples.astype(numpy.float32), 0.5)
 
     def hand(self, depth, step, ticks):
         """Great circles that turn slowly over the whole ball, `step` [mm] per tick, from 1 mm outside."""
@@ -94,22 +89,18 @@ def over(subject, speed, voxels, ticks, seed):
                            touching=0.95, trajectories=4, trajectory_s=ticks / RATE / 4, seed=seed)
 
 
-def cells_of(part, subject, **others):
+def cells_of(part, subject):
     size = subject.field.geometry.size
-    return {"part": part, "volume": subject.name, "size": "x".join(map(str, size)), "samples": numpy.prod(size, dtype=float), **others}
+    return {"part": part, "volume": subject.name, "size": "x".join(map(str, size)), "samples": numpy.prod(size, dtype=float)}
 
 
-def path_of(subject, hand):
-    """[voxel]"""
-    ways = numpy.linalg.norm(numpy.diff(hand["hips"], axis=0), axis=1)
-    return ways[moved_rows(hand)[1:]].sum() / subject.voxel
-
-
-def time_rows(cells, subject, hand, passes):
+def time_rows(part, subject, hand, passes, **cells):
     """A row for each method, timed in turns."""
+    way = numpy.linalg.norm(numpy.diff(hand["hips"], axis=0), axis=1)[moved_rows(hand)[1:]].sum()
     for name, taken in timed(subject, METHODS, hand, Effort(0, 0, passes, 0)).items():
         numbers = numbers_of(taken, hand)
-        yield {**cells, "method": name, "path_voxel": path_of(subject, hand), **{column: numbers[column] for column in MEASURED}}
+        yield {**cells_of(part, subject), **cells, "method": name, "path_voxel": way / subject.voxel,
+               **{column: numbers[column] for column in MEASURED}}
 
 
 def has_room(size, copies, what, options):
@@ -124,34 +115,28 @@ def has_room(size, copies, what, options):
 
 
 def by_hand(plan, options):
-    """Makers of rows: speed and voxels per millimetre of the hand, each alone."""
-    cases = [("speed", speed, VOXELS, Ball()) for speed in plan.speeds]
-    # The same ball of 20 mm in the hand, sampled ever more finely.
-    cases += [("voxels-per-mm", SPEED, voxels, Ball(2 * int(23 * voxels + 6), 20 * voxels, 6 * voxels)) for voxels in plan.voxels]
-
+    """Rows by speed and by voxels per millimetre of the hand, each alone."""
     def rows(part, speed, voxels, ball):
         for own in options.subjects or [ball.sampled()]:
             hand = (over(own, speed, voxels, plan.ticks, options.seed) if options.subjects
                     else ball.hand(DEPTH * voxels, speed / RATE * voxels, plan.ticks))
-            yield from time_rows(cells_of(part, own, speed_mm_s=speed, voxels_per_mm=voxels), own, hand, plan.passes)
+            yield from time_rows(part, own, hand, plan.passes, speed_mm_s=speed, voxels_per_mm=voxels)
 
-    return [(rows, *case) for case in cases]
+    yield from (rows("speed", speed, VOXELS, Ball()) for speed in plan.speeds)
+    # The same ball of 20 mm in the hand, sampled ever more finely.
+    yield from (rows("voxels-per-mm", SPEED, voxels, Ball(2 * int(23 * voxels + 6), 20 * voxels, 6 * voxels)) for voxels in plan.voxels)
 
 
 def by_body(plan, options):
-    """Makers of rows: the same motion in a larger volume, and in noise."""
+    """Rows of the same motion in a larger volume, and in noise."""
     hand = Ball().hand(DEPTH * VOXELS, SPEED / RATE * VOXELS, plan.ticks)
 
     def of_size(size):
         if has_room(size, 1.2, "the volume", options):
-            subject = Ball(size).sampled()
-            yield from time_rows(cells_of("size", subject), subject, hand, plan.passes)
+            yield from time_rows("size", Ball(size).sampled(), hand, plan.passes)
 
-    def of_noise(noise):
-        subject = Ball().noisy(noise, options.seed)
-        yield from time_rows(cells_of("noise", subject, noise_of_range=noise), subject, hand, plan.passes)
-
-    return [(of_size, size) for size in plan.sizes] + [(of_noise, noise) for noise in plan.noises]
+    yield from map(of_size, plan.sizes)
+    yield from (time_rows("noise", Ball().noisy(noise, options.seed), hand, plan.passes, noise_of_range=noise) for noise in plan.noises)
 
 
 def segments_of(subject, hand):
@@ -214,16 +199,11 @@ def explicit_numbers(subject, segments, options):
 
 
 def by_approach(plan, options):
-    """Makers of rows: both approaches on one volume."""
+    """Rows of both approaches, one for each volume."""
     def compared(subject, hand):
         segments = segments_of(subject, hand)
         yield {**cells_of("explicit", subject), **dynamic_numbers(subject, hand, segments, plan.passes),
                **explicit_numbers(subject, segments, options)}
-
-    def explored(subject):
-        subject = real(subject, options) if isinstance(subject, str) else subject
-        if subject:
-            yield from compared(subject, over(subject, SPEED, VOXELS, plan.ticks, options.seed))
 
     def ball(size):
         # The samples, the shared copy, and what extraction takes at its peak.
@@ -231,9 +211,9 @@ def by_approach(plan, options):
             shape = Ball(size, 0.35 * size)  # the blur of its edge stays the same in voxels, as a scanner has it
             yield from compared(shape.sampled(), shape.hand(3, SPEED / RATE * VOXELS, plan.ticks))
 
-    if options.subjects:
-        return [(explored, subject) for subject in options.subjects]
-    return [(ball, size) for size in plan.explicit_sizes] + [(explored, name) for name in plan.real]
+    yield from () if options.subjects else map(ball, plan.explicit_sizes)
+    for subject in options.subjects or reals(plan.real, options):
+        yield compared(subject, over(subject, SPEED, VOXELS, plan.ticks, options.seed))
 
 
 def time_text(seconds):
@@ -371,10 +351,10 @@ def text_of(table, own_volumes):
 
 
 def run(options):
-    plan, own_volumes = plan_of(options.quick), not options.subjects
+    plan, own_volumes = QUICK if options.quick else FULL, not options.subjects
     if not own_volumes:
         options.note("a given volume has one size and its own noise: those parts are left out")
-    makers = by_hand(plan, options) + (by_body(plan, options) if own_volumes else []) + by_approach(plan, options)
-    table = Table(row for rows, *case in options.each(makers) for row in rows(*case))
+    parts = by_hand(plan, options), by_body(plan, options) if own_volumes else (), by_approach(plan, options)
+    table = Table(row for rows in options.each(itertools.chain(*parts)) for row in rows)
     return Result(table, [growth_figure(table), explicit_figure(table)], claims_of(table, own_volumes), text_of(table, own_volumes),
                   summary_of(table))

@@ -39,11 +39,9 @@ class Plan:
     bound_parts: list  # of the theory's bound of rotational stiffness
 
 
-def plan_of(quick):
-    if quick:
-        return Plan([250, 1000], [0, 0.1], [0.5, LARGEST], [0.5, 0.8, 0.9, 1.25, 2])
-    return Plan([250, 500, 1000, 2000, 4000], [0, 0.01, 0.03, 0.1], [0.1 * i for i in range(1, 30)] + [LARGEST],
-                [0.05 * i for i in range(2, 51)])
+QUICK = Plan([250, 1000], [0, 0.1], [0.5, LARGEST], [0.5, 0.8, 0.9, 1.25, 2])
+FULL = Plan([250, 500, 1000, 2000, 4000], [0, 0.01, 0.03, 0.1], [0.1 * i for i in range(1, 30)] + [LARGEST],
+            [0.05 * i for i in range(2, 51)])
 
 
 def yes(held):
@@ -276,7 +274,7 @@ def text_of(table, plan, subject):
 
 
 def run(options):
-    plan = plan_of(options.quick)
+    plan = QUICK if options.quick else FULL
     subject = options.subjects[0] if options.subjects else synthetic("sphere")
     table = measured(cases_of(subject, plan), options)
     return Result(table, [map_figure(table, plan), profile_figure(table, plan), rotation_figure(table, plan)],

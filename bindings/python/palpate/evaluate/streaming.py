@@ -24,8 +24,8 @@ class Plan:
     rate: float  # [Hz]
 
 
-def plan_of(quick):
-    return Plan((0, 50), (300, 3000), 1.5, 1000) if quick else Plan((0, 20, 100, 200), (100, 300, 1000, 5000, 20000), 10, 2500)
+QUICK = Plan((0, 50), (300, 3000), 1.5, 1000)
+FULL = Plan((0, 20, 100, 200), (100, 300, 1000, 5000, 20000), 10, 2500)
 
 
 def row_of(plan, levels, latency, speed, seed):
@@ -97,7 +97,7 @@ def text_of(table, plan):
 
 def run(options):
     options.refuse_volumes("streaming has a volume")
-    plan = plan_of(options.quick)
+    plan = QUICK if options.quick else FULL
     cases = options.each(itertools.product(LEVELS, plan.latencies, plan.speeds))
     table = Table(row_of(plan, *case, options.seed) for case in cases)
     return Result(table, [waiting_figure(table, plan), traffic_figure(table, plan)], claims_of(table), text_of(table, plan),

@@ -80,6 +80,12 @@ def linear(name, volume, isovalue, exact=None):
     return Subject(name, palpate.Field(volume, interpolation="linear"), isovalue, exact)
 
 
+def cube(name, samples, isovalue, interpolation="linear", exact=None):
+    """Of a cube of samples 1 mm apart, whose middle is the origin."""
+    volume = palpate.Volume(samples, origin=[-0.5 * (len(samples) - 1)] * 3)
+    return Subject(name, palpate.Field(volume, interpolation=interpolation), isovalue, exact)
+
+
 def synthetic(specification, isovalue=None, type=None):
     scene = palpate.scene(specification, type)
     try:

@@ -12,21 +12,21 @@ from scipy.spatial.transform import Rotation
 from . import figures
 from .bodies import unit
 from .experiment import GRANTED, Page, Result, Table, in_parallel, largest
-from .subjects import Subject
+from .subjects import cube
 
 PAGE = Page(__name__)
 WALL = 14.0  # [mm] radius of the shell
 LEAST = 100  # ticks of a hand in the shell, so that it gets to the wall
-MOST_JUDGED = 60  # chords per pose
+MOST_JUDGED, CHUNK = 60, 400_000  # chords per pose, and at once
 PLACES, FINEST = 8, 1e-4  # on a chord: where it is looked at first, and the last step as a part of it
 STRAIGHT = Rotation.from_quat([0, 0, 0, 1])
 
 
 def sampled(name, size, density, isovalue):
-    """A Subject on the smooth field, of a function of physical space, whose middle is the origin. A voxel is a mm."""
+    """On the smooth field, of a function of physical space."""
     at = numpy.arange(size) - 0.5 * (size - 1)
     z, y, x = numpy.meshgrid(at, at, at, indexing="ij")
-    return Subject(name, palpate.Field(palpate.Volume(density(x, y, z).astype(numpy.float32), origin=[at[0]] * 3)), isovalue)
+    return cube(name, density(x, y, z).astype(numpy.float32), isovalue, "cubic")
 
 
 def hostile_scenes(seed):
@@ -182,11 +182,11 @@ def followed(scene, tool, hands, turns, method="exact"):
     return path, 1e6 * (time.perf_counter() - begun) / len(hands)
 
 
-def judged(scene, tool, hands, turns, chunk=400_000):
+def judged(scene, tool, hands, turns):
     """(path, verdict) of a tool that starts at the first hand, in free space."""
     path, update_us = followed(scene, tool, hands, turns)
     starts, ends = chords_of(tool, path)
-    parts = [slice(i, i + chunk) for i in range(0, len(starts), chunk)]
+    parts = [slice(i, i + CHUNK) for i in range(0, len(starts), CHUNK)]
     worst = in_parallel(lambda part: greatest_on_chords(scene, starts[part], ends[part]), parts)
     now, before = distances(tool, path, hands, turns)
     known = ~path["recovering"][:-1]
@@ -270,14 +270,18 @@ def points_at(tool, path, ticks):
         yield numpy.einsum("tij,pj->tpi", turn, tool.points) + path["position"][part][:, None]
 
 
+def farthest(tool, path, ticks):
+    """[mm] Of all points of a tool in some ticks, the farthest from the middle."""
+    return numpy.concatenate([numpy.linalg.norm(points, axis=2).max(axis=1) for points in points_at(tool, path, ticks)])
+
+
 def deepest(scene, tool, path, ticks):
-    """[voxel] How deep the deepest point is, by the field's slope, at most as deep as its excess could be; in the shell,
-    beyond its inner side."""
+    """[voxel] How deep the deepest point is, by the field's slope, at most as deep as its excess could be; in the shell, beyond its inner
+    side."""
+    if is_closed(scene):
+        return max(0.0, farthest(tool, path, ticks).max() - (WALL - 0.75))
     most = 0.0
     for points in points_at(tool, path, ticks):
-        if is_closed(scene):
-            most = max(most, numpy.linalg.norm(points, axis=2).max() - (WALL - 0.75))
-            continue
         flat = points.reshape(-1, 3)
         excess = scene.field.value(flat) - scene.isovalue
         flat, excess = flat[excess > 0], excess[excess > 0]
@@ -286,16 +290,11 @@ def deepest(scene, tool, path, ticks):
     return most
 
 
-def through(scene, tool, path):
-    """In how many ticks a point is beyond the wall."""
-    return sum(int((numpy.linalg.norm(points, axis=2).max(axis=1) > WALL).sum())
-               for points in points_at(tool, path, numpy.arange(1, len(path["position"])))) if is_closed(scene) else 0
-
-
 def verdict_of(scene, method, tool, hand, turn):
-    """On one hand."""
+    """On one hand. gone: in how many ticks a point is beyond the wall."""
     path, found = judged(scene, tool, hand, turn) if method == "exact" else followed(scene, tool, hand, turn, method)
-    return {"ticks": len(hand) - 1, "touching": numpy.count_nonzero(path["contacts"][1:]), "gone": through(scene, tool, path),
+    gone = (farthest(tool, path, numpy.arange(1, len(hand))) > WALL).sum() if is_closed(scene) else 0
+    return {"ticks": len(hand) - 1, "touching": numpy.count_nonzero(path["contacts"][1:]), "gone": int(gone),
             "deepest_voxel": deepest(scene, tool, path, numpy.arange(1, len(hand), 64 if method == "exact" else 1)),
             **(found if isinstance(found, dict) else {"update_mean_us": found})}
 
