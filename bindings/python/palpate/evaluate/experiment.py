@@ -67,11 +67,11 @@ class Page:
     def __init__(self, module):
         text = (Path(__file__).parent / "pages" / f"{module.rpartition('.')[2]}.md").read_text(encoding="utf-8")
         _, self.title, *parts = re.split(r"^#+ (.*)$", text, flags=re.MULTILINE)
-        self._module, self._sections = module, dict(zip(["", *parts[1::2]], map(str.strip, parts[::2])))
+        self._module, self.sections = module, dict(zip(["", *parts[1::2]], map(str.strip, parts[::2])))
 
     def text(self, *sections, **values):
         """Paragraphs of some sections, or of what is before the first one; each in one line."""
-        text = "\n\n".join(self._sections[name] for name in sections or [""]).format(**{**vars(sys.modules[self._module]), **values})
+        text = "\n\n".join(self.sections[name] for name in sections or [""]).format(**{**vars(sys.modules[self._module]), **values})
         return [" ".join(part.split()) for part in text.split("\n\n")]
 
     def figure(self, drawn, suffix="", **values):
