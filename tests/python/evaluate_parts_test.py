@@ -13,7 +13,7 @@ import pytest
 
 from palpate.evaluate import bodies, heads, human, layers, needle, performance, recorded, scaling, stability, tissues, tools
 from palpate.evaluate.experiment import GRANTED, Options, Table
-from palpate.evaluate.subjects import of_text
+from palpate.evaluate.subjects import Subject, of_text
 
 
 def test_phantoms_have_their_depth_as_density():
@@ -95,13 +95,13 @@ def test_rendering_many_ticks_is_rendering_each():
 
 
 def sphere():
-    return tools.Scene("ball", tools.sampled(40, lambda x, y, z: -(x * x + y * y + z * z)), -144)
+    return tools.sampled("ball", 40, lambda x, y, z: -(x * x + y * y + z * z), -144)
 
 
 def test_the_judge_of_tools_sees_the_greatest_excess_on_chords():
     ball = sphere()
     most = tools.greatest_on_chords(ball, numpy.array([[-15.0, 3, 0], [-15, 14, 0]]), numpy.array([[14.0, 3, 0], [14, 14, 0]]))
-    assert most == pytest.approx(ball.excess([[0, 3.0, 0]])[0], abs=1e-6)
+    assert most == pytest.approx(ball.excess_at([[0, 3.0, 0]])[0], abs=1e-6)
     assert tools.greatest_on_chords(ball, numpy.array([[-15.0, 14, 0]]), numpy.array([[14.0, 14, 0]])) < 0
 
 
@@ -118,7 +118,7 @@ def test_pruned_chords_are_judged_as_all_are(monkeypatch):
 
 
 def test_the_judge_of_tools_notices_one_in_the_solid():
-    scene, tool = tools.Scene("plane", tools.sampled(40, lambda x, y, z: -z), 0), palpate.Tool.named("box:2,2,2", 0.5)
+    scene, tool = tools.sampled("plane", 40, lambda x, y, z: -z, 0), palpate.Tool.named("box:2,2,2", 0.5)
     hands = numpy.outer([10, 5, 5.0], [0, 0, 1])
     turns = tools.Rotation.from_quat(numpy.tile([0, 0, 0, 1.0], (3, 1)))
     path, verdict = tools.judged(scene, tool, hands, turns)
@@ -152,7 +152,7 @@ def test_a_tool_that_gets_through_the_shell_or_never_touches_it_breaks_the_claim
             {"part": "fit", "lowest_mm": -4, "end_mm": 20, "worst_excess_of_range": 0}]
     rows += [{"part": "hostile", "method": "exact", "scene": "shell", "ticks": 300, "chords": 7, "worst_excess_of_range": 0,
               "worst_growth_voxel": 0, "through_share": 0, "touching_share": 0.1, **change} for change in ({}, broken)]
-    claims = tools.claims_of(Table(rows))
+    claims = list(tools.claims_of(Table(rows)))
     assert [claim.held for claim in claims] == [True, True, True, not broken, True]
     assert not any("confidence" in claim.measured for claim in claims) and "of 600 ticks" in claims[3].measured
 
@@ -195,8 +195,7 @@ def test_the_hand_is_the_same_for_a_seed_and_comes_near_to_what_is_wanted():
 
 
 def test_a_volume_of_the_user_has_our_target_and_no_row_of_the_paper():
-    case = performance.Case(of_text("synthetic:torus:40x40x20"))
-    rows = Table(performance.rows_of(case, "LR", performance.Effort(1, 0.5, 2, 0), 1))
+    rows = Table(performance.rows_of(of_text("synthetic:torus:40x40x20"), None, "LR", performance.Effort(1, 0.5, 2, 0), 1))
     assert rows.distinct("target_from") == ["ours"] and numpy.isnan(rows["paper_mean_us"]).all()
     assert not list(performance.summary_of(rows))
 
@@ -245,7 +244,7 @@ def oblique_sphere(kind):
     depth = 10 - numpy.linalg.norm(numpy.stack([x - 14.5, 0.8 * (y - 16.5), 1.5 * (z - 12.5)]), axis=0)
     volume = palpate.Volume((100 + 10 * depth).clip(0, 255).astype(kind), spacing=[1, 0.8, 1.5], origin=[-7, 30, 12],
                             direction=[[0, -1, 0], [0.6, 0, 0.8], [-0.8, 0, 0.6]])
-    return scaling.Subject("sphere", palpate.Field(volume, interpolation="linear"), 100.5)
+    return Subject("sphere", palpate.Field(volume, interpolation="linear"), 100.5)
 
 
 @pytest.mark.parametrize("kind", ["uint8", "int16", "uint16", "float32"])

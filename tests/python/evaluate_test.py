@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -18,7 +19,7 @@ import pytest
 
 from palpate.evaluate import __main__ as program
 from palpate.evaluate import bodies
-from palpate.evaluate import drift, fall_through, fidelity, notice, penetration, report, sampling, walk_through
+from palpate.evaluate import drift, fall_through, fidelity, notice, penetration, performance, report, sampling, walk_through
 from palpate.evaluate.experiment import Claim, Options, Result, Table
 from palpate.evaluate.meshes import nearest_points
 from palpate.evaluate.outside import Outside
@@ -321,6 +322,25 @@ def test_a_page_has_no_markup_of_somebody_else_and_a_claim_that_does_not_hold_st
     assert "<script>" not in page and "a &amp; b" in page and "1 of 2 claims hold" in page
     assert page.index("<h2>Method") < page.index('<h2 id="some"') < page.index("<h2>Threats to validity")
     assert "| it is not | **no** | 3 |" in text and "| it is | yes | 3 |" in text
+
+
+@pytest.mark.parametrize("name", [*program.EXPERIMENTS, "heads"])
+def test_every_section_of_a_page_is_used_by_its_module(name):
+    module = program.module_of(name)
+    code = pathlib.Path(module.__file__).read_text()
+    for section in module.PAGE.sections.keys() - {"", "figure"}:
+        assert f'"{re.sub("^(claim|figure) ", "", section)}"' in code, section
+
+
+def test_a_page_is_filled_with_constants_of_its_module_and_values_that_are_given():
+    page = performance.PAGE
+    assert page.text("cold", cold=1.26) == ["Caches are warm, since the updates follow one another. After something else has used all "
+                                            "caches, the median update of exact takes up to 1.3 µs."]
+    claim = page.at_most(2, [numpy.nan, 3.0], "finished", method="exact")
+    assert claim == Claim("every update of exact is finished within its tick", False, "3 were not")
+    assert len(fall_through.PAGE.text("own walls")) == 1 and "50 ticks behind the wall" in fall_through.PAGE.text("own walls")[0]
+    with pytest.raises(KeyError, match="cold"):
+        page.text("cold")
 
 
 def test_an_experiment_leaves_a_table_figures_and_a_page_that_says_where_it_was_made(tmp_path):

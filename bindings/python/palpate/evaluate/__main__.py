@@ -1,6 +1,7 @@
 """The command line: palpate evaluate NAME, or python3 -m palpate.evaluate NAME."""
 
 import argparse
+import contextlib
 import difflib
 import importlib.util
 import json
@@ -26,36 +27,8 @@ USERS = {"--range": ("penetration",), "--seeds": ("fall-through", "layers", "too
                     "needle")}  # of options that few use
 CLAIMS_BROKEN, WRONG_USE, BAD_INPUT, BAD_OUTPUT, READER_GONE = 1, 2, 3, 5, 141  # exit status, docs/command_line.md
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
-HELP = f"""Run experiments, each with a table, figures and checked claims
-
-Usage: palpate evaluate [OPTIONS] EXPERIMENT
-
-Positionals:
-  EXPERIMENT {{{','.join(EXPERIMENTS)},all}}
-                              Name of the experiment, or all to run every one and to write report.html and report.pdf, which need no other file
-
-Options:
-  -h,--help                   Print this help message and exit
-  --version                   Display program version information and exit
-  -o,--output FOLDER          Folder for the results [palpate-evaluation]
-  --volume VOLUME@ISOVALUE    Volume to use instead of the experiment's own. May be given again
-  --data FOLDER               Folder with the real volumes that some experiments use, such as lobster.nrrd, and with recordings, such as plane0/probe.traj (default: environment PALPATE_DATA)
-  --method {{{','.join(METHODS)}}}
-                              Proxy method, for walk-through [exact]
-  --seed UINT                 Seed of everything random [1]
-  --seeds UINT                How many seeds draw their own lines, from the first one on, for fall-through, layers, tools and recorded. At most {MOST_SEEDS} [3]
-  --range LOW:HIGH            Range of interest, in the data's units or in percent of its range, for penetration. May be given again
-  --quick                     Seconds instead of minutes, with every claim checked
-  --json                      Print paragraphs and claims as JSON
-  -q,--quiet                  Print nothing
-
-Exit status 1: a claim does not hold.
-
-Examples:
-  palpate evaluate drift --output results
-  palpate evaluate fall-through --volume head.nrrd@34.5 --volume synthetic:torus
-  palpate evaluate penetration --volume head.nrrd@12% --range 12%:20% --range 45%:100%
-  palpate evaluate all --quick"""
+HELP = (Path(__file__).parent / "pages" / "help.txt").read_text(encoding="utf-8").rstrip().format(
+    experiments=",".join(EXPERIMENTS), methods=",".join(METHODS), most_seeds=MOST_SEEDS)
 
 
 class Stop(Exception):
@@ -66,11 +39,8 @@ class Stop(Exception):
         self.status = status
 
 
-class Once(argparse.Action):
-    def __call__(self, parser, chosen, value, name=None):
-        if hasattr(chosen, self.dest):
-            raise argparse.ArgumentError(self, "it is given more than once")
-        setattr(chosen, self.dest, value)
+def wrong(text):
+    return Stop(WRONG_USE, f"{text} (see palpate evaluate --help)")
 
 
 def meant(word, names):
@@ -96,19 +66,14 @@ def one_of(names):
     return check
 
 
-def whole_number(text):
-    if text_of(text).isdecimal() and text.isascii() and int(text) < 2**64:
+def whole_number(least, most):
+    def check(text):
+        if not re.fullmatch(r"-?[0-9]+", text_of(text)):
+            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number")
+        if not least <= int(text) <= most:
+            raise argparse.ArgumentTypeError(f"{text} is not a whole number from {least} to {most}")
         return int(text)
-    if re.fullmatch(r"-?[0-9]+", text):
-        raise argparse.ArgumentTypeError(f"{text} is not a whole number from 0 to {2**64 - 1}")
-    raise argparse.ArgumentTypeError(f"'{text}' is not a whole number")
-
-
-def seed_count(text):
-    count = whole_number(text)
-    if not 1 <= count <= MOST_SEEDS:
-        raise argparse.ArgumentTypeError(f"{text} is not a whole number from 1 to {MOST_SEEDS}")
-    return count
+    return check
 
 
 def interval(text):
@@ -142,39 +107,37 @@ def experiment_of(words, options):
     for word in words[:end]:
         if word.startswith("-"):
             hint = "".join(f": did you mean {name}?" for name in meant(word.partition("=")[0], options))
-            raise Stop(WRONG_USE, f"there is no option {word}{hint} (see palpate evaluate --help)")
+            raise wrong(f"there is no option {word}{hint}")
     names = words[:end] + words[end + 1:]
+    if not names:
+        raise wrong("EXPERIMENT: it is needed, as in palpate evaluate drift")
     try:
-        if not names:
-            raise argparse.ArgumentTypeError("it is needed, as in palpate evaluate drift")
         name = one_of((*EXPERIMENTS, "all"))(names[0])
     except argparse.ArgumentTypeError as error:
-        raise Stop(WRONG_USE, f"EXPERIMENT: {error} (see palpate evaluate --help)") from error
+        raise wrong(f"EXPERIMENT: {error}") from error
     if names[1:]:
-        raise Stop(WRONG_USE, f"'{names[1]}' is one argument too many (see palpate evaluate --help)")
+        raise wrong(f"'{names[1]}' is one argument too many")
     return name
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False,
-                                     argument_default=argparse.SUPPRESS)
-    options = [parser.add_argument("-o", "--output", action=Once, type=text_of),
-               parser.add_argument("--volume", action="append", type=text_of),
-               parser.add_argument("--data", action=Once, type=text_of),
-               parser.add_argument("--method", action=Once, type=one_of(METHODS)),
-               parser.add_argument("--seed", action=Once, type=whole_number),
-               parser.add_argument("--seeds", action=Once, type=seed_count),
-               parser.add_argument("--range", action="append", type=interval),
-               *(parser.add_argument(*names, action="store_true", default=False)
-                 for names in (["--quick"], ["--json"], ["-q", "--quiet"]))]
+    values = {"-o,--output": text_of, "--volume": text_of, "--data": text_of, "--method": one_of(METHODS), "--range": interval,
+              "--seed": whole_number(0, 2**64 - 1), "--seeds": whole_number(1, MOST_SEEDS)}
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False, exit_on_error=False, argument_default=argparse.SUPPRESS)
+    options = [parser.add_argument(*names.split(","), action="append", type=value) for names, value in values.items()]
+    options += [parser.add_argument(*names.split(","), action="store_true") for names in ("--quick", "--json", "-q,--quiet")]
     try:
         given, rest = parser.parse_known_args(words)
     except argparse.ArgumentError as error:
-        raise Stop(WRONG_USE, f"{complaint(error)} (see palpate evaluate --help)") from error
-    name = experiment_of(rest, ["--help", "--version", *(option.option_strings[-1] for option in options)])
-    chosen = argparse.Namespace(**{"output": "palpate-evaluation", "volume": [], "data": None, "method": "exact",
-                                   "seed": 1, "seeds": 3, "range": [], **vars(given)})
-    chosen.name, chosen.given = name, [f"--{option}" for option in vars(given)]
+        raise wrong(complaint(error)) from error
+    chosen = argparse.Namespace(output="palpate-evaluation", volume=[], data=None, method="exact", seed=1, seeds=3, range=[], quick=False,
+                                json=False, quiet=False, given=[f"--{name}" for name in vars(given)])
+    for name, found in vars(given).items():
+        once = isinstance(found, list) and not isinstance(getattr(chosen, name), list)
+        if once and found[1:]:
+            raise wrong(f"--{name}: it is given more than once")
+        setattr(chosen, name, found[0] if once else found)
+    chosen.name = experiment_of(rest, ["--help", "--version", *(option.option_strings[-1] for option in options)])
     if chosen.data is not None and not Path(chosen.data).is_dir():
         raise Stop(WRONG_USE, f"--data {chosen.data}: there is no such folder")
     chosen.data = chosen.data or os.environ.get("PALPATE_DATA") or None
@@ -215,31 +178,27 @@ def warn_of_no_effect(chosen, names):
             tell(f"warning: {option} does nothing: it is for {', '.join(users)}")
 
 
-class Folder:
-    """The folder of the results; what is not complete leaves nothing behind. Its names are known before it is made, so
-    that close() finds what an interrupt in make() leaves."""
-
-    def __init__(self, path):
-        self.path = Path(path)
-        self.is_new = not self.path.exists()
-        self.part = self.path / f".palpate-{uuid.uuid4().hex}"
-
-    def make(self):
+@contextlib.contextmanager
+def unfinished(path):
+    """A folder within that of the results, which nothing is left of at the end. Names are known before they are made, so that an interrupt
+    while they are made leaves nothing, either."""
+    is_new, part = not path.exists(), path / f".palpate-{uuid.uuid4().hex}"
+    try:
         try:
-            self.path.mkdir(parents=True, exist_ok=True)
-            self.part.mkdir(mode=0o700)
+            path.mkdir(parents=True, exist_ok=True)
+            part.mkdir(mode=0o700)
         except OSError as error:
-            raise Stop(BAD_OUTPUT, f"{self.path}: {error.strerror}: choose another folder with --output") from error
+            raise Stop(BAD_OUTPUT, f"{path}: {error.strerror}: choose another folder with --output") from error
+        yield part
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+        if is_new and path.exists() and not any(path.iterdir()):
+            path.rmdir()
 
-    def complete(self):
-        for file in sorted(self.part.iterdir()):
-            file.replace(self.path / file.name)
-        self.is_new = False
 
-    def close(self):
-        shutil.rmtree(self.part, ignore_errors=True)
-        if self.is_new and self.path.exists():
-            self.path.rmdir()
+def complete(part):
+    for file in sorted(part.iterdir()):
+        file.replace(part.parent / file.name)
 
 
 def options_of(chosen, name):
@@ -252,7 +211,7 @@ def options_of(chosen, name):
 
     def note(text):
         if not chosen.quiet:
-            tell(f"note: {name}: {text.removeprefix(name + ': ')}")
+            tell(f"note: {name}: {text}")
 
     return Options(quick=chosen.quick, seed=chosen.seed, seeds=chosen.seeds, method=chosen.method,
                    ranges=tuple(chosen.range), subjects=of_texts(chosen.volume), progress=progress, note=note,
@@ -275,7 +234,7 @@ def run(name, chosen, folder, words):
     result = module.run(options)
     result.data = options.used
     options.progress(1)
-    made = report.Report(name, module.TITLE, result, f"{machine.described(command_of(words))} Seed {chosen.seed}, " + (
+    made = report.Report(name, module.PAGE.title, result, f"{machine.described(command_of(words))} Seed {chosen.seed}, " + (
         "quick mode (too short for the times to mean anything)." if chosen.quick else "full run."))
     report.write_files(made, folder)
     return made
@@ -289,7 +248,7 @@ def shown(made):
 
 def as_json(reports):
     return json.dumps([{"experiment": r.name, "paragraph": " ".join(r.result.paragraphs), "claims": [
-        {"statement": c.statement, "holds": bool(c.held), "measured": c.measured} for c in r.claims],
+        {"statement": c.statement, "holds": c.held, "measured": c.measured} for c in r.claims],
         "circumstances": r.circumstances} for r in reports], indent=2)
 
 
@@ -298,26 +257,23 @@ def evaluate(chosen, words):
     names = EXPERIMENTS if chosen.name == "all" else (chosen.name,)
     options_of(chosen, chosen.name)  # refuses volumes before any work
     warn_of_no_effect(chosen, names)
-    folder, reports = Folder(chosen.output), []
-    try:
-        folder.make()
+    path, reports = Path(chosen.output), []
+    with unfinished(path) as part:
         for name in names:
             try:
-                reports.append(run(name, chosen, folder.part, words))
+                reports.append(run(name, chosen, part, words))
             except ValueError as error:
                 if len(names) == 1:
                     raise
                 tell(f"note: {name} is left out: {error}")
                 continue
-            folder.complete()
+            complete(part)
             if not (chosen.quiet or chosen.json):
                 say(shown(reports[-1]), last=len(names) == 1)
         if chosen.name == "all":
-            if not report.write_pages(reports, folder.path, folder.part):
+            if not report.write_pages(reports, path, part):
                 tell("note: without report.pdf: it needs WeasyPrint (apt install weasyprint)")
-            folder.complete()
-    finally:
-        folder.close()
+            complete(part)
     if chosen.json:
         say(as_json(reports), last=True)
     elif not chosen.quiet:

@@ -7,7 +7,7 @@ import numpy
 import palpate
 
 from .hands import Ring
-from .subjects import Subject, synthetic
+from .subjects import Subject, cube, synthetic
 
 RADIUS, SLOPE = 0.35, 1.4  # of the ball, in a unit box
 DEPTH = 0.03  # of the hand, in the same unit
@@ -62,9 +62,7 @@ def ball(grid, samples):
     for k, z in enumerate(at):
         values = density(numpy.sqrt(flat + z * z))
         array[k] = values if full == 1 else numpy.floor(values + 0.5)
-    volume = palpate.Volume(array, origin=[at[0]] * 3)
-    return with_samples(Subject("ball", palpate.Field(volume, interpolation="linear"), 0.5 * full,
-                                lambda p: density(numpy.linalg.norm(p, axis=1))), samples)
+    return with_samples(cube("ball", array, 0.5 * full, exact=lambda p: density(numpy.linalg.norm(p, axis=1))), samples)
 
 
 def tilt():

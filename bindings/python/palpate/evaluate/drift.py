@@ -1,19 +1,15 @@
-"""drift: does the proxy stay on the isosurface? (Corenthy et al. 2012, Fig. 10)
-
-A hand goes around a body again and again, just below its surface. The density at the SCP says whether the proxy is still on the
-isosurface in contact, and outside when it is free.
-"""
+"""drift: does the proxy stay on the isosurface? (Corenthy et al. 2012, Fig. 10)"""
 
 import itertools
 
 import numpy
 
 from . import figures, sampling
-from .experiment import GRANTED, Claim, Figure, Result, Table, at_most, largest, paragraphs
+from .experiment import GRANTED, Page, Result, Table, largest
 from .hands import Ring
 from .subjects import CONTESTANTS, GUARDED, reals, synthetic
 
-TITLE = "Does the proxy stay on the isosurface?"
+PAGE = Page(__name__)
 SHOWN_SPEED, SHOWN_RATE = 200, 1000  # of the hand in the figure
 
 
@@ -82,20 +78,16 @@ def figure_of(table, last):
               ylabel="largest deviation [part of the range]", ylim=(1e-17, 10))
     figures.limit(right, GRANTED, "granted (G2)")
     figures.label_ends(left, right)
-    return Figure("", """Left: density at the SCP after each turn, at 200 mm/s and 1 kHz. The isovalue is dashed. Right: the largest
-        deviation from the isovalue in any update, over all volumes and speeds.""", drawn)
+    return PAGE.figure(drawn)
 
 
 def claims_of(last, own_volumes):
     for method in GUARDED:
         rows = last.where(method=method)
-        yield at_most(GRANTED, rows["worst_deviation_of_range"],
-                      f"{method} stays on the isosurface to {GRANTED:g} of the data's range, at every rate and speed",
-                      f"largest deviation {{:.2g}} in {sum(rows['updates']):,.0f} updates")
+        yield PAGE.at_most(GRANTED, rows["worst_deviation_of_range"], "stays", method=method, updates=sum(rows["updates"]))
     if own_volumes:
         worst = largest(last.where(method="gradient", volume="cylinder")["worst_deviation_of_range"])
-        yield Claim("gradient loses the cylinder's isosurface by more than a hundredth of the data's range", worst > 0.01,
-                    f"largest deviation {worst:.2g}")
+        yield PAGE.claim("loses", worst > 0.01, worst=worst)
 
 
 def run(options):
@@ -108,14 +100,5 @@ def run(options):
         rows = list(go_round(*body, contestant, speed, rate, turns))
         table.extend(row for row in rows if is_noted(row["turn"], turns, shown))
         last.append(rows[-1])
-    return Result(table, [figure_of(table, last)], list(claims_of(last, not options.subjects)), paragraphs(f"""
-        A hand goes around each body {turns} times, 2 voxels below its surface, with penetrability off. There are {len(bodies)}
-        volumes, {len(speeds)} speeds of the hand and {len(rates)} update rates. The deviation is the distance of the density at the
-        SCP from the isovalue, as a part of the data's range. A proxy that is free counts only if it is in the solid.
-
-        The exact method and the method of the paper move inside linear pieces, so only rounding errors are left, however far the
-        hand moves per tick. On the smooth field, the deviation is the accuracy of the computed roots. The gradient method follows a
-        plane and leaves the surface. Moving the SCP back along the gradient helps where the gradient leads back to the same surface.
-
-        Nothing in this experiment is random. The intervals of the medians come from resampling the runs, which differ in volume,
-        speed and rate."""), Table(summary_of(last)))
+    text = PAGE.text(turns=turns, bodies=len(bodies), speeds=len(speeds), rates=len(rates))
+    return Result(table, [figure_of(table, last)], claims_of(last, not options.subjects), text, summary_of(last))

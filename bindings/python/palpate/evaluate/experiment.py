@@ -1,8 +1,11 @@
 """The interface of an experiment: from options it makes a table, figures and checked claims."""
 
 import concurrent.futures
+import csv
 import dataclasses
 import os
+import re
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Optional
@@ -56,8 +59,34 @@ class Figure:
     caption: str
     drawn: Any
 
-    def __post_init__(self):
-        self.caption = joined(self.caption)
+
+class Page:
+    """The text of an experiment, pages/MODULE.md: its title, and sections of paragraphs and captions. Names in braces are those of
+    constants of the module, or of values that are given."""
+
+    def __init__(self, module):
+        text = (Path(__file__).parent / "pages" / f"{module.rpartition('.')[2]}.md").read_text(encoding="utf-8")
+        _, self.title, *parts = re.split(r"^#+ (.*)$", text, flags=re.MULTILINE)
+        self._module, self.sections = module, dict(zip(["", *parts[1::2]], map(str.strip, parts[::2])))
+
+    def text(self, *sections, **values):
+        """Paragraphs of some sections, or of what is before the first one; each in one line."""
+        text = "\n\n".join(self.sections[name] for name in sections or [""]).format(**{**vars(sys.modules[self._module]), **values})
+        return [" ".join(part.split()) for part in text.split("\n\n")]
+
+    def figure(self, drawn, suffix="", **values):
+        """The Figure whose caption is in the section `figure`, or `figure SUFFIX`."""
+        return Figure(suffix, *self.text(f"figure {suffix}".rstrip(), **values), drawn)
+
+    def claim(self, name, held, **values):
+        """The Claim whose statement and measure are in the section `claim NAME`."""
+        statement, measured = self.text(f"claim {name}", **values)
+        return Claim(statement, bool(held), measured)
+
+    def at_most(self, limit, found, name, **values):
+        """The Claim that nothing that was found is above the limit; {most} is the largest."""
+        most = largest(found)
+        return self.claim(name, most <= limit, **{"limit": limit, "most": most, **values})
 
 
 class Table(list):
@@ -87,6 +116,16 @@ class Table(list):
         return [[form(row.get(name, numpy.nan)) for name in self.columns] for row in self]
 
 
+def known(name):
+    """Of tables/NAME.csv, which begins with where its numbers come from: a Table."""
+    def cell(text):
+        return float(text) if text.replace(".", "", 1).isdecimal() else text
+
+    with (Path(__file__).parent / "tables" / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        next(file)
+        return Table({column: cell(text) for column, text in row.items()} for row in csv.DictReader(file))
+
+
 @dataclasses.dataclass
 class Result:
     table: Table
@@ -96,27 +135,14 @@ class Result:
     summary: Table = dataclasses.field(default_factory=Table)
     data: list = dataclasses.field(default_factory=list)  # (file, SHA-256, where to get it)
 
+    def __post_init__(self):
+        self.claims, self.summary = list(self.claims), Table(self.summary)
+
 
 def in_parallel(function, items):
     """The results in the order of the items. Calls into the module leave the GIL, so that all processors work."""
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
         return list(threads.map(function, items))
-
-
-def joined(text):
-    """Text that is broken into lines as the code is, in one line."""
-    return " ".join(text.split())
-
-
-def paragraphs(text):
-    """The same for paragraphs, which are apart by empty lines."""
-    return [joined(part) for part in text.strip().split("\n\n")]
-
-
-def at_most(limit, values, statement, measured="largest {:.2g}"):
-    """The Claim that no value is above the limit."""
-    most = largest(values)
-    return Claim(statement, most <= limit, measured.format(most))
 
 
 def largest(values):

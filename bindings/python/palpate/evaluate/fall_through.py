@@ -1,7 +1,4 @@
-"""fall-through: does a fast hand fall through a thin wall?
-
-A hand moves straight through closed walls at all speeds and rates. Is the proxy inside afterwards?
-"""
+"""fall-through: does a fast hand fall through a thin wall?"""
 
 import dataclasses
 import itertools
@@ -11,12 +8,12 @@ import palpate
 import scipy.stats
 
 from . import figures, sampling
-from .experiment import GRANTED, Claim, Figure, Result, Table, at_most, largest, paragraphs
+from .experiment import GRANTED, Page, Result, Table, largest
 from .outside import Outside
 from .subjects import CONTESTANTS, GUARDED, Subject
 from .walls import Lines, closed_shell, lines_through
 
-TITLE = "Does a fast hand fall through a thin wall?"
+PAGE = Page(__name__)
 COUNTS_AS_INSIDE = 0.01  # of the data's range
 STEPS_BEHIND = 50  # the hand stops so many ticks behind the wall, at the latest
 ROWS_AT_ONCE = 1_000_000
@@ -39,15 +36,11 @@ class Wall:
 
 @dataclasses.dataclass
 class Group:
-    """Walls of one row of the table; those on the smooth field have the same thickness there."""
+    """Walls of one row of the table, by interpolation: the same thickness on either field."""
 
     name: str
     thickness: float
-    linear: list
-    smooth: list
-
-    def walls(self, contestant):
-        return self.smooth if contestant.interpolation == "cubic" else self.linear
+    walls: dict
 
 
 def walls_of(subject, anywhere, count, options):
@@ -59,13 +52,14 @@ def walls_of(subject, anywhere, count, options):
 
 def groups_of(options, thicknesses, count):
     if options.subjects:
-        return [Group(subject.name, numpy.nan, walls_of(subject, True, count, options), []) for subject in options.subjects]
+        return [Group(subject.name, numpy.nan, {"linear": walls_of(subject, True, count, options)}) for subject in options.subjects]
 
     def shells(thickness, field):
         return [wall for shape in ("box", "ball")
                 for wall in walls_of(closed_shell(shape, thickness, field), False, count // 2, options)]
 
-    return [Group("box and ball", thickness, shells(thickness, "linear"), shells(thickness, "cubic")) for thickness in thicknesses]
+    return [Group("box and ball", thickness, {field: shells(thickness, field) for field in ("linear", "cubic")})
+            for thickness in thicknesses]
 
 
 def ways(lines, step, phase):
@@ -112,7 +106,7 @@ def crossings_of(wall, contestant, step, random):
 
 def row_of(group, contestant, speed, rate, seed):
     random = numpy.random.default_rng(seed)  # all contestants meet the same phases
-    walls = group.walls(contestant)
+    walls = group.walls[contestant.interpolation]
     found = [part for wall in walls for part in crossings_of(wall, contestant, speed / rate, random)]
     found = {name: numpy.concatenate([part[name] for part in found]) for name in found[0]}
     pressed = int(found["pressed"].sum())
@@ -163,13 +157,12 @@ def figure_of(table):
         axes.set(title=title, xscale="log", xlabel="hand per tick [mm]", ylim=(-3, 103))
     panels[0].set_ylabel("share of the crossings [%]")
     figures.label_ends(panels[2])
-    return Figure("", """Shares of the crossings against how far the hand moves per tick, which is its speed over the rate: the mean
-        over all walls, shaded from the best to the worst wall. In the middle, only crossings count in which the hand is in the solid
-        in at least one tick.""", drawn)
+    return PAGE.figure(drawn)
 
 
-def map_of(table, name="gradient"):
-    """How often a method does not feel walls of each thickness, or each volume of the user."""
+def map_of(table):
+    """How often a gradient method does not feel walls of each thickness, or each volume of the user."""
+    name = "gradient"
     rows, users = table.where(method=name), is_a_users(table)
     column = "wall" if users else "thickness_voxel"
     steps, walls = sorted(rows.distinct("step_mm")), rows.distinct(column)
@@ -180,8 +173,7 @@ def map_of(table, name="gradient"):
     title = f"{name}: how often a wall is not felt" if users else f"{name}: the faster the hand and the thinner the wall, the less is felt"
     axes.set(title=title, xlabel="hand per tick [mm]", ylabel="volume" if users else "wall [voxel]")
     axes.tick_params(axis="x", rotation=45, labelsize=6.5)
-    return Figure("unfelt", f"""Share of the crossings [%] in which the proxy of the method {name} is in contact in no tick, so that the
-        wall is not felt.""", drawn)
+    return PAGE.figure(drawn, "unfelt", method=name)
 
 
 def claims_of(table, groups, own_walls):
@@ -190,26 +182,16 @@ def claims_of(table, groups, own_walls):
         if not rows:
             continue
         most, count = largest(rows["inside_share"]), int(rows["crossings"].sum())
-        yield Claim(f"{method} never ends inside, in any of the crossings", most == 0,
-                    sampling.none_of(count, "crossings") if most == 0 else f"largest share {most:g} of {count:,}")
-        yield at_most(GRANTED, rows["worst_excess_of_range"],
-                      f"{method} is never in the solid by more than {GRANTED:g} of the data's range, in any tick")
+        measured = sampling.none_of(count, "crossings") if most == 0 else f"largest share {most:g} of {count:,}"
+        yield PAGE.claim("never", most == 0, method=method, measured=measured)
+        yield PAGE.at_most(GRANTED, rows["worst_excess_of_range"], "solid", method=method)
     if not own_walls:
         return
-    reached = [wall.outside.holds([wall.subject.field.geometry.centre])[0] for group in groups for wall in group.linear]
-    yield Claim("the walls are closed: no free path through the lattice leads in", not any(reached),
-                f"{len(groups)} thicknesses, two shapes")
+    reached = [wall.outside.holds([wall.subject.field.geometry.centre])[0] for group in groups for wall in group.walls["linear"]]
+    yield PAGE.claim("closed", not any(reached), thicknesses=len(groups))
     for method in ("gradient", "gradient-improved"):
-        least = float(table.where(method=method)["inside_share"].min())
-        yield Claim(f"{method} ends inside in every crossing", least == 1, f"smallest share {least:g}")
-
-
-OWN_WALLS = """A hand moves straight through closed shells around a box, which is flat, and around a ball of voxels, which is stepped. The
-    lines are random and end 3 voxels or 50 ticks behind the wall. The shells are layers of full samples, and the isovalue sets their
-    thickness on each flat face, because a ramp sampled thinner than a voxel would have real holes. The contestant smooth is the exact
-    method on the smooth field, on walls that have the same thickness there."""
-USERS_WALLS = """A hand moves straight into the user's volumes on random lines: to behind a wall where it cannot be reached otherwise, else
-    into the solid."""
+        least = table.where(method=method)["inside_share"].min()
+        yield PAGE.claim("always", least == 1, method=method, least=least)
 
 
 def run(options):
@@ -219,16 +201,7 @@ def run(options):
     groups, table = groups_of(options, thicknesses, count), Table()
     for cell, (group, speed, rate) in enumerate(options.each(itertools.product(groups, speeds, rates)), 1):
         table.extend(row_of(group, contestant, speed, rate, [options.seed, cell])
-                     for contestant in CONTESTANTS.values() if group.walls(contestant))
-    return Result(table, [figure_of(table), map_of(table)], list(claims_of(table, groups, not options.subjects)), paragraphs(f"""
-        {USERS_WALLS if options.subjects else OWN_WALLS}
-
-        The hand moves at {speeds[0]:g} to {speeds[-1]:g} mm/s and {rates[0]:g} to {rates[-1]:g} Hz, with {count} crossings per wall
-        thickness, speed and rate, from {options.seeds} seeds. It starts a random part of a step before the surface, and rests for a
-        tick at the end. The proxy is inside if it is in the solid by more than a hundredth of the data's range, or in free space to
-        which no free path from outside leads. This is decided exactly, on the connectivity of the lattice.
-
-        The exact method and the method of the paper look at the whole step of a tick. The gradient methods look at the density at the
-        position of the hand: if it is free there, they take the hand to be free, on whichever side. Intervals and bounds take the
-        crossings as independent. All speeds and rates share the same lines, so the evidence is somewhat weaker than they say."""),
-        Table(summary_of(table)))
+                     for contestant in CONTESTANTS.values() if contestant.interpolation in group.walls)
+    text = PAGE.text("walls of a user" if options.subjects else "own walls", "method", slowest=speeds[0], fastest=speeds[-1],
+                     least=rates[0], most=rates[-1], count=count, seeds=options.seeds)
+    return Result(table, [figure_of(table), map_of(table)], claims_of(table, groups, not options.subjects), text, summary_of(table))

@@ -1,8 +1,4 @@
-"""fidelity: does the force point in the direction of the true surface?
-
-A hand moves just below surfaces that are known exactly. How much of the force's error comes from the linear pieces, and how much from the
-8 bits?
-"""
+"""fidelity: does the force point in the direction of the true surface?"""
 
 import functools
 import itertools
@@ -12,23 +8,16 @@ import palpate
 
 from . import figures
 from .bodies import SAMPLES, ball_by, of_a_user, ripples_by_spiral, torus_by_helix, unit
-from .experiment import GRANTED, Claim, Figure, Result, Table, at_most, largest, paragraphs
+from .experiment import GRANTED, Figure, Page, Result, Table, known, largest
 from .meshes import nearest_points
 from .sampling import quantile
 from .subjects import CONTESTANTS, GUARDED
 
-TITLE = "How near is the force to the true surface's?"
+PAGE = Page(__name__)
 NEAREST = "nearest point (reference)"  # not a method: where the whole 8-bit isosurface is nearest to the hand
-# Measured beside Palpate 3688b00 on 27 November 2026 with this protocol at -O3: CHAI3D 3.3 (commit 7c76b1f2), its voxel object with the
-# settings of its isosurface demo and its shaded mesh, and a god object on VTK flying edges and Embree 3. Samples, grid: angle of the force,
-# mean and 99th percentile [degrees].
 RIVAL, SHADED, EMBREE = "CHAI3D voxel object (measured)", "CHAI3D shaded mesh (measured)", "Embree god object (measured)"
-PEERS = {RIVAL: {("uint8", 128): (15, 40), ("uint8", 256): (11, 24), ("uint8", 512): (7.1, 16),
-                 ("float32", 128): (15, 40), ("float32", 256): (11, 24)},
-         SHADED: {("uint8", 128): (3.1, 10.5), ("uint8", 256): (7.0, 23), ("uint8", 512): (8.9, 22),
-                  ("float32", 128): (0.14, 0.25), ("float32", 256): (0.14, 0.25), ("uint8 dequantized", 128): (0.15, 0.28)},
-         EMBREE: {("uint8", 128): (7.0, 19), ("uint8", 256): (16, 48), ("float32", 128): (0.48, 0.90),
-                  ("float32", 256): (0.24, 0.46), ("uint8 dequantized", 128): (0.49, 0.90)}}
+ANGLES = "angle", "off_ideal"  # to the true normal at the SCP, and to a perfect force
+PEERS = known("peers_of_fidelity")
 
 
 def mean(values):
@@ -112,12 +101,9 @@ def nearest_row(body, count):
 
 
 def peer_rows(body):
-    for name, known in PEERS.items():
-        if (body.samples, body.grid) in known:
-            middle, p99 = known[body.samples, body.grid]
-            yield {"body": "ball", "trajectory": "circle", "grid": body.grid, "samples": body.samples, "method": name, "steps": 20000,
-                   "depth_voxel": 0.03 * body.grid, "angle_mean_deg": middle, "angle_p99_deg": p99, "off_ideal_mean_deg": middle,
-                   "off_ideal_p99_deg": p99}
+    for peer in PEERS.where(samples=body.samples, grid=body.grid):
+        yield {"body": "ball", "trajectory": "circle", "grid": body.grid, "samples": body.samples, "method": peer["method"], "steps": 20000,
+               "depth_voxel": 0.03 * body.grid, **{f"{angle}_{what}_deg": peer[what] for angle in ANGLES for what in ("mean", "p99")}}
 
 
 def bodies_of(options):
@@ -165,9 +151,7 @@ def figure_of_ball(table):
     draw_lines(left, rows, BALL, "off_ideal_mean_deg", "no method is good on raw 8-bit samples")
     draw_lines(right, rows, SOURCES, "off_ideal_mean_deg", "the smooth field is, if dequantized")
     figures.label_ends(left, right)
-    return Figure("", """A ball, touched 0.03 of its box below the surface along a great circle: the mean angle between the force and that
-        of a perfect ball. Left: Palpate on raw 8-bit samples and the peers that were measured with this protocol. Right: where the error
-        comes from.""", drawn)
+    return PAGE.figure(drawn)
 
 
 def figure_of_turn(grid):
@@ -185,9 +169,7 @@ def figure_of_turn(grid):
              ylabel="turn per tick [degrees]")
     right.set(xlabel="turn per tick [degrees]", ylabel="ticks with no larger turn [%]", xscale="log")
     figures.label_ends(right)
-    return Figure("turn", f"""Turn of the force from tick to tick along {arc} degrees of the circle on the ball of {grid} samples, and its
-        distribution. The hand moves by {arc / steps:g} degrees per tick, and the force of a perfect ball turns by as much
-        (dashed).""", drawn)
+    return PAGE.figure(drawn, "turn", arc=arc, grid=grid, step=arc / steps)
 
 
 def figure_of_losses(table):
@@ -205,9 +187,7 @@ def figure_of_losses(table):
     draw_lines(right, table.where(body="ball", trajectory="circle"), SOURCES[2::2], "surface_error_mean_voxel",
                "curved surfaces move a little", "distance from the true surface [voxel]")
     figures.label_ends(right)
-    return Figure("losses", """Costs of the smooth field. Left: density across walls of one, two and three samples of 1 in 0; the linear
-        field (dashed) keeps their height. Right: mean distance of the SCP from the true surface of the ball; the smooth field lies inside a
-        convex body by an eighth of its Laplacian.""", drawn)
+    return PAGE.figure(drawn, "losses")
 
 
 def figure_of_shapes(table):
@@ -215,8 +195,7 @@ def figure_of_shapes(table):
     for axes, body in zip(panels, ("torus", "marschner-lobb")):
         draw_lines(axes, table.where(body=body), SOURCES, "angle_mean_deg", body)
     figures.label_ends(*panels)
-    return Figure("shapes", """Torus, with the hand in its tube on a helix, and Marschner-Lobb ripples, with the hand under them on a
-        spiral: mean angle between the force and the true normal at the SCP.""", drawn)
+    return PAGE.figure(drawn, "shapes")
 
 
 def figure_of_users(table):
@@ -227,50 +206,48 @@ def figure_of_users(table):
     axes.set(title="how much the force turns per tick", ylabel="99th percentile [degrees]")
     figures.ticks(axes.xaxis, range(len(rows)), rows.distinct("body"))
     figures.label_ends(axes)
-    return Figure("", "Turn of the force from one tick to the next, 99th percentile.", drawn)
+    return Figure("", *PAGE.text("turn of a user"), drawn)
+
+
+def rival(grid):
+    return PEERS.where(method=RIVAL, samples="uint8", grid=grid)[0]
 
 
 def is_below(table, samples, grid):
     """Whether exact is below the rival in mean and p99, by both angles, on every trajectory."""
-    theirs = dict(zip(("mean", "p99"), PEERS[RIVAL]["uint8", grid]))
     rows = [row for trajectory in ("circle", "spiral") for row in ball_rows(table, samples, trajectory=trajectory).where(grid=grid)]
-    return all(row[f"{angle}_{what}_deg"] < known for row in rows for angle in ("angle", "off_ideal") for what, known in theirs.items())
+    return all(row[f"{angle}_{what}_deg"] < rival(grid)[what] for row in rows for angle in ANGLES for what in ("mean", "p99"))
 
 
 def comparison(table, samples, grids):
     """'128 (4.3 against 15, p99 16 against 40), 256 (...)'."""
-    return ", ".join("{grid} ({off_ideal_mean_deg:.2g} against {0:g}, p99 {off_ideal_p99_deg:.2g} against {1:g})".format(
-        *PEERS[RIVAL]["uint8", grid], **ball_rows(table, samples).where(grid=grid)[0]) for grid in grids)
+    return ", ".join("{grid} ({off_ideal_mean_deg:.2g} against {mean:g}, p99 {off_ideal_p99_deg:.2g} against {p99:g})".format(
+        **{**ball_rows(table, samples).where(grid=grid)[0], **rival(grid), "grid": grid}) for grid in grids)
 
 
 def converges(table, body):
     """Twice the grid, half the angle: the facets of linear pieces, where nothing is rounded."""
     angles = table.where(body=body, samples="float32", method="exact").only(lambda row: row["trajectory"] != "spiral")["angle_mean_deg"]
     factors = angles[:-1] / angles[1:]
-    return Claim(f"{body}, not rounded: the exact method's mean angle falls by at least 1.7 with each doubling of the grid",
-                 bool((factors >= 1.7).all()), f"least factor {factors.min():.3g} over {len(factors)} doublings")
+    return PAGE.claim("converges", (factors >= 1.7).all(), body=body, least=factors.min(), doublings=len(factors))
 
 
 def claims_of(table, own_bodies, steps):
-    yield at_most(GRANTED, [largest(table.where(method=name)["worst_deviation_of_range"]) for name in GUARDED],
-                  f"exact, paper and smooth stay on the sampled isosurface to {GRANTED:g} of the data's range", "largest deviation {:.2g}")
+    yield PAGE.at_most(GRANTED, [largest(table.where(method=name)["worst_deviation_of_range"]) for name in GUARDED], "stays")
     if not own_bodies:
         return
     yield converges(table, "ball")
     yield converges(table, "torus")
     grids = [grid for grid in (128, 256, 512) if ball_rows(table, "uint8").where(grid=grid)]
-    rival = "CHAI3D's voxel object (demo settings, raw samples)"
-    yield Claim(f"8-bit ball, grid 128: exact is below {rival} in mean and p99 angle", is_below(table, "uint8", 128),
-                comparison(table, "uint8", [128]))
-    yield Claim(f"8-bit ball, smoothed once: exact is below {rival} in mean and p99 angle on every grid",
-                all(is_below(table, "uint8 smoothed", grid) for grid in grids), comparison(table, "uint8 smoothed", grids))
+    for name, samples, of in (("raw", "uint8", [128]), ("smoothed", "uint8 smoothed", grids)):
+        yield PAGE.claim(name, all(is_below(table, samples, grid) for grid in of), measured=comparison(table, samples, of))
     for what, samples, column, most in (
             ("the mean angle", "float32", "off_ideal_mean_deg", 0.005),
             ("the mean angle", "uint8 dequantized", "off_ideal_mean_deg", 0.03),
             ("the 99th percentile of the angle", "uint8 dequantized", "off_ideal_p99_deg", 0.1),
             ("the turn of the force in a tick, p99 (the ball's own and 10 %),", "float32", "turn_p99_deg", 1.1 * 360 / steps)):
         rows = ball_rows(table, samples, "smooth").only(lambda row: row["grid"] >= 128)
-        yield at_most(most, rows[column], f"ball, {samples}, smooth field: {what} is at most {most:.3g} degrees from grid 128 on")
+        yield PAGE.at_most(most, rows[column], "smooth", samples=samples, what=what)
 
 
 def run(options):
@@ -282,21 +259,8 @@ def run(options):
             if body.samples == "uint8":
                 table.append(nearest_row(body, 20 if options.quick else 100))
             table.extend(peer_rows(body))
-    claims = list(claims_of(table, not options.subjects, steps))
+    claims = claims_of(table, not options.subjects, steps)
     if options.subjects:
-        return Result(table, [figure_of_users(table)], claims, paragraphs("""
-            A hand moves around each of the user's volumes, 0.03 of the shortest axis below the surface. Angles are known for volumes with
-            an analytic density."""))
+        return Result(table, [figure_of_users(table)], claims, PAGE.text("volumes of a user"))
     shown = [figure_of_ball(table), figure_of_turn(64 if options.quick else 128), figure_of_losses(table), figure_of_shapes(table)]
-    return Result(table, shown, claims, paragraphs(f"""
-        A ball of radius 0.35 in a unit box has the density 1/2 + 1.4 (0.35 - r) in 8 bits and is touched at 1/2. A hand moves around it
-        0.03 below the surface on a tilted great circle in {steps} steps. The angle is between the force and the direction of a perfect
-        force.
-
-        On raw 8-bit samples of less than about 1.4 levels per voxel, the isosurface is a terrace, and a proxy that only moves nearer to the
-        hand rests in its dents. There, Palpate loses: at 128 samples to CHAI3D's shaded mesh, at 512 to this mesh and to CHAI3D's voxel
-        object. Dequantized samples remove this error.
-
-        The peers were measured on 27 November 2026 beside Palpate 3688b00 with this protocol, at -O3 on a shared virtual machine with two
-        processors: CHAI3D 3.3 (commit 7c76b1f2) with the settings of its isosurface demo and with its shaded mesh, and a god object on VTK
-        flying edges and Embree 3. Their voxels are 8 bit, and they are not run again here."""), Table(summary_of(table)))
+    return Result(table, shown, claims, PAGE.text(steps=steps), summary_of(table))

@@ -24,6 +24,21 @@ def way_in(subject, through, inward):
     return None if numpy.isnan(met[0]) or (met == outside).all() else Way(met, inward)
 
 
+# A place on a way into each head, and the way's direction, which is about the skin's normal: through the forehead beside the middle, and
+# on the CT head, which was stored upside down, over the left brow, where the skull has no sinus. Both scans of the sample's head have the
+# same axes.
+FOREHEAD = (278.5, 160.5, 170.5), (0, 1, -0.4)
+INTO_HEADS = {"sample head": FOREHEAD, "visible-human": FOREHEAD, "ct-head": ((103, 64, 44), (0, 1, 0.6))}
+
+
+def way_into_head(subject):
+    through, inward = map(numpy.array, INTO_HEADS[subject.name])
+    way = way_in(subject, through, inward / numpy.linalg.norm(inward))
+    if way is None:
+        raise ValueError(f"{subject.name} is not the head that the line was chosen for")
+    return way
+
+
 def way_from_a_side(subject):
     """(way, its length [mm]) to the middle of the volume, from the first side of its box where it meets the surface. Raises ValueError
     where none does."""

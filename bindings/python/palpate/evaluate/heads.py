@@ -6,11 +6,12 @@ import numpy
 import palpate
 
 from . import figures
-from .experiment import GRANTED, Claim, Figure, at_most, largest
-from .hands import Way, way_from_a_side, way_in
-from .subjects import Subject, reals
-from .tissues import RATE, renderer, thinned, times
+from .experiment import GRANTED, Page, largest
+from .hands import Way, way_from_a_side, way_into_head
+from .subjects import Subject, linear, reals
+from .tissues import RATE, layered, renderer, thinned, times
 
+PAGE = Page(__name__)
 SPEED = 20  # [mm/s]
 BEFORE = 3  # [mm] of free space
 MOST_FORCE = 5  # [N] at which the hand stops
@@ -27,17 +28,7 @@ class Head:
     depth: float = 28  # [mm] of the hand
 
     def layers(self, name):
-        return palpate.Layers(name=name, layers=[
-            palpate.Layer(name="skin", level=self.subject.isovalue, properties={"stiffness": 0.4, "puncture_force": 0.8}),
-            palpate.Layer(name="bone", level=self.bone, properties={"stiffness": 1.5, "puncture_force": SETS[name]})])
-
-
-def known(subject, skin, bone, through, inward):
-    subject = dataclasses.replace(subject, isovalue=skin)
-    way = way_in(subject, numpy.array(through), numpy.array(inward) / numpy.linalg.norm(inward))
-    if way is None:
-        raise ValueError(f"{subject.name} is not the head that the line was chosen for")
-    return Head(subject, bone, way)
+        return layered(name, [("skin", self.subject.isovalue, 0.4, 0.8), ("bone", self.bone, 1.5, SETS[name])])
 
 
 def of_a_user(subject):
@@ -46,15 +37,14 @@ def of_a_user(subject):
 
 
 def heads_of(options):
-    """Through the forehead beside the middle, along the skin's normal there; on the CT head over the left brow, where the skull has no
-    sinus. Both scans of the sample's head have the same axes."""
     if options.subjects:
         return [of_a_user(subject) for subject in options.subjects]
-    whole = (palpate.SAMPLE_SKIN, palpate.SAMPLE_BONE, (278.5, 160.5, 170.5), (0, 1, -0.4))
-    lines = {"sample head": whole, "ct-head": (500, 1200, (103, 64, 44), (0, 1, 0.6)), "visible-human": whole}
-    sample = palpate.Field(palpate.load(palpate.sample_volume()).volume, interpolation="linear")
-    found = [Subject("sample head", sample, palpate.SAMPLE_SKIN), *reals([] if options.quick else list(lines)[1:], options)]
-    return [known(subject, *lines[subject.name]) for subject in found]
+    sample = palpate.SAMPLE_SKIN, palpate.SAMPLE_BONE
+    levels = {"sample head": sample, "ct-head": (500, 1200), "visible-human": sample}
+    scans = [linear("sample head", palpate.load(palpate.sample_volume()).volume, palpate.SAMPLE_SKIN),
+             *reals([] if options.quick else list(levels)[1:], options)]
+    scans = [dataclasses.replace(scan, isovalue=levels[scan.name][0]) for scan in scans]
+    return [Head(scan, levels[scan.name][1], way_into_head(scan)) for scan in scans]
 
 
 def events_of(where, depth, trace, force):
@@ -126,20 +116,15 @@ def figure_of_heads(table, heads):
     panels[0, 0].set_ylabel("density at the hand\n[data units]")
     panels[1, 0].set_ylabel("force [N]")
     figures.names(panels[1, -1], (("bone holds", figures.VERMILION), ("drilling", figures.BLUE)), 0.98, 0.97, 0.09, ha="right")
-    return Figure("heads", """From the skin through the bone in one stroke. Above: the data at the hand and the levels of the two surfaces
-        (dashed). Below: the force. With bone that holds, the hand stops at 5 N. With bone that gives way, as for a drill, it breaks
-        through both sides of the skull.""", drawn)
+    return PAGE.figure(drawn, "heads")
 
 
 def claims_of_heads(table):
     rows = table.where(part="head")
-    wrong, ticks = int(rows["bone_outside_skin_ticks"].sum()), int(rows["ticks"].sum())
-    return [Claim("in heads the bone is never felt before the skin gave way", wrong == 0, f"{wrong} of {ticks} ticks"),
-            at_most(GRANTED, rows.where(surfaces="skin, bone")["deepest_in_bone_of_range"],
-                    f"bone that never gives way is never entered (to {GRANTED:g} of the data's range)", "largest excess {:.2g}")]
+    wrong = int(rows["bone_outside_skin_ticks"].sum())
+    yield PAGE.claim("order", wrong == 0, wrong=wrong, ticks=int(rows["ticks"].sum()))
+    yield PAGE.at_most(GRANTED, rows.where(surfaces="skin, bone")["deepest_in_bone_of_range"], "bone")
 
 
-def sentences_of_heads(table):
-    return (f"A hand presses into heads at {SPEED} mm/s. Skin gives way at 0.8 N, bone never (then the hand stops at {MOST_FORCE} N) or, "
-            "as in drilling, at 2.5 N. Drilling, it meets these surfaces, with the depth in mm. " +
-            " ".join(f"{row['body']}: {row['order']}." for row in table.where(part="head", surfaces="drilling")))
+def text_of_heads(table):
+    return PAGE.text(orders=" ".join(f"{row['body']}: {row['order']}." for row in table.where(part="head", surfaces="drilling")))

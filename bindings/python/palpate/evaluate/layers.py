@@ -1,7 +1,4 @@
-"""layers: what is felt of several surfaces in one stroke?
-
-Straight insertions and a needle against closed forms, the energy of closed loops, and the cost of a tick.
-"""
+"""layers: what is felt of several surfaces in one stroke?"""
 
 import itertools
 
@@ -9,14 +6,14 @@ import numpy
 import palpate
 
 from . import figures, sampling
-from .experiment import Claim, Figure, Result, Table, at_most, largest, paragraphs
+from .experiment import Page, Result, Table, largest
 from .hands import Way
-from .heads import SETS, claims_of_heads, figure_of_heads, heads_of, press_into, sentences_of_heads
+from .heads import SETS, claims_of_heads, figure_of_heads, heads_of, press_into, text_of_heads
 from .subjects import synthetic
-from .tissues import (BALL_RADIUS, DEEPEST, DRAG, LEVEL, PUNCTURE, RATE, STIFFNESS, TISSUES, balls, drag, flat, layers, lengths,
-                      renderer, spring, thinned, times)
+from .tissues import (BALL_RADIUS, DEEPEST, DRAG, LEVEL, PUNCTURE, RATE, STIFFNESS, TISSUES, balls, drag, flat, layered, layers, lengths,
+                      pushed, renderer, spring, thinned, times)
 
-TITLE = "What is felt of several surfaces in one stroke?"
+PAGE = Page(__name__)
 FIELDS = ("linear", "cubic")
 SPEEDS = (5, 50, 250, 1000)  # [mm/s] of insertions
 NEEDLE_SPEEDS = (10, 100)
@@ -65,9 +62,8 @@ def insert(fresh, way, start, speed):
     """(depths, forces, errors [N], punctures) of a hand that goes straight in, by copies of a renderer."""
     step = speed / RATE
     depth = start + step * numpy.arange(int(numpy.ceil((DEEPEST - start) / step)))
-    trace = fresh.copy().follow(times(len(depth)), way.at(depth))
+    trace, force = pushed(fresh, way, depth)
     off = numpy.linalg.norm(trace["force"] + spring(depth)[:, None] * way.inward, axis=1)
-    force = -trace["force"] @ way.inward
     return depth, force, off, list(punctures_of(fresh.copy(), way, depth, trace, force))
 
 
@@ -136,14 +132,14 @@ def needles(body, interpolation, options):
                                    NEEDLE_TURN - step * numpy.arange(1, count + 1)])
         phase = numpy.repeat([0, 1, 2], [count, REST_TICKS, count])
         wanted = needle_form(depth, phase, made.force.stiffness)
-        trace = made.copy().follow(times(len(depth)), way.at(depth), pointing=numpy.tile(way.inward, (len(depth), 1)))
+        trace, force = pushed(made, way, depth, needle=True)
         off = numpy.linalg.norm(trace["force"] + wanted[:, None] * way.inward, axis=1)
         where = {"body": body.name, "field": interpolation, "speed_mm_s": speed}
         if (body.name, interpolation, speed) == ("flat", "linear", NEEDLE_SPEEDS[0]):
             for number, name in enumerate(PHASES):
                 rows = numpy.flatnonzero(phase == number)
                 rows = rows[thinned(depth[rows], lambda one, last: abs(one - last) >= RESOLUTION)]
-                yield from curve_rows({"part": "needle curve", **where, "phase": name}, rows, depth, -trace["force"] @ way.inward, wanted)
+                yield from curve_rows({"part": "needle curve", **where, "phase": name}, rows, depth, force, wanted)
         for number, name in enumerate(PHASES):
             of = off[phase == number]
             yield {"part": "needle", **where, "phase": name, "ticks": len(of), "punctures": int(trace["punctured"].sum()),
@@ -161,10 +157,8 @@ def loop_bodies():
 
 
 def loop_layers(isovalue, spread, gives_way):
-    return palpate.Layers(layers=[
-        palpate.Layer(name=f"layer {i + 1}", level=isovalue + spread * (i / 3 - 0.5),
-                      properties={"stiffness": stiffness, "puncture_force": gives_way})
-        for i, stiffness in enumerate((0.4, 1.5, 0.3, 0.8))])
+    return layered("", [(f"layer {i + 1}", isovalue + spread * (i / 3 - 0.5), stiffness, gives_way)
+                        for i, stiffness in enumerate((0.4, 1.5, 0.3, 0.8))])
 
 
 def loops_of(field, reach, ticks, random, most):
@@ -289,8 +283,7 @@ def insertion_figure(table):
     panels[0].set_xlabel("")
     figures.names(panels[0], (("closed form", "#909090"), ("5 mm/s", figures.BLUE), ("1 m/s, a circle per tick", figures.VERMILION)),
                   0.593, 0.72, 0.135)
-    return Figure("", """Force on a hand that goes straight in, on the linear field: the closed form (grey, wide) and the force that is
-        rendered, at 5 mm/s (line) and at 1 m/s, where a tick is a millimetre (one circle per tick). Bands are the layers.""", drawn)
+    return PAGE.figure(drawn)
 
 
 def puncture_figure(table):
@@ -304,9 +297,7 @@ def puncture_figure(table):
              ylabel="part of the puncture force [%]")
     figures.ticks(axes.xaxis, SPEEDS)
     figures.label_ends(axes)
-    return Figure("puncture", """The last force rendered before a surface gave way (balls, linear field, mean of all insertions), as a part
-        of the surface's puncture force: the faster the hand, the farther apart its ticks. Dashed: the same forces extended along the
-        spring to where the surface gave way.""", drawn)
+    return PAGE.figure(drawn, "puncture")
 
 
 def needle_figure(table):
@@ -322,70 +313,40 @@ def needle_figure(table):
                                ("coming out", 45, -1.55, figures.VERMILION), ("closed form", 8, -1.55, "#909090")):
         axes.text(x, y, text, color=colour, fontsize=7.5)
     axes.set(ylim=(-1.8, 3.4), title="a needle feels drag on its shaft and the surface at its tip")
-    return Figure("needle", f"""Force along a needle that goes in at {NEEDLE_SPEEDS[0]:g} mm/s, rests on the bone and is withdrawn; positive
-        resists going in. Peaks: the tip on a surface until it gives way. Slopes between them: drag of the layers on the shaft. On the way
-        out, friction pulls the other way. Grey, wide: the closed form.""", drawn)
-
-
-# Claims.
-
-def claims_of_insertions(table):
-    runs, punctures = table.where(part="insertion"), table.where(part="puncture")
-    offs, count, wanted = punctures["extrapolated_off_percent"], int(punctures["punctures"].sum()), 4 * int(runs["runs"].sum())
-    yield at_most(MOST_ERROR, runs["rms_n"], f"straight in, the force is that of the closed form to {MOST_ERROR:g} N RMS, at every speed, "
-                  "on either body and field", "largest {:.2g} N")
-    yield Claim(f"every surface gives way at its puncture force to {MOST_OFF:g} %: forces extended along the spring to where it did",
-                count == wanted and bool((offs <= MOST_OFF).all()), f"{count} of {wanted} punctures, the worst {largest(offs):.2g} % off")
+    return PAGE.figure(drawn, "needle")
 
 
 def claims_of_energy(table):
     rows = table.where(part="energy")
     most, least = rows["most_gained_j"].max(), numpy.fmin.reduce(rows["least_lost_with_puncture_j"])
     loops, punctured = int(rows["runs"].sum()), int(rows["loops_with_punctures"].sum())
-    kept, lost = bool(rows["runs"].all() and most <= MOST_GAINED), bool(least > 0)
-    yield Claim(f"around a closed loop without friction no hand gains more than {MOST_GAINED:g} J", kept,
-                f"at most {most:.2g} J" + (f"; more in {sampling.none_of(loops, 'loops')}" if kept else f" in {loops:,} loops"))
-    yield Claim("every loop on which a surface gives way loses energy", lost, f"at least {least:.2g} J" + (
-        f"; less than nothing in {sampling.none_of(punctured, 'loops')}" if lost else f" in {punctured:,} loops"))
+    kept, lost = rows["runs"].all() and most <= MOST_GAINED, least > 0
+    yield PAGE.claim("gain", kept, most=most, loops=f"; more in {sampling.none_of(loops, 'loops')}" if kept else f" in {loops:,} loops")
+    yield PAGE.claim("loss", lost, least=least, loops=f"; less than nothing in {sampling.none_of(punctured, 'loops')}" if lost
+                     else f" in {punctured:,} loops")
 
 
 def claims_of(table):
-    yield from claims_of_insertions(table)
-    yield at_most(MOST_ERROR, table.where(part="needle", phase=PHASES[0])["rms_n"], "a needle going in feels drag times length in each "
-                  f"layer and the spring at its tip, to {MOST_ERROR:g} N RMS", "largest {:.2g} N")
+    runs, punctures = table.where(part="insertion"), table.where(part="puncture")
+    offs, count, wanted = punctures["extrapolated_off_percent"], int(punctures["punctures"].sum()), 4 * int(runs["runs"].sum())
+    yield PAGE.at_most(MOST_ERROR, runs["rms_n"], "straight")
+    yield PAGE.claim("punctures", count == wanted and (offs <= MOST_OFF).all(), count=count, wanted=wanted, worst=largest(offs))
+    yield PAGE.at_most(MOST_ERROR, table.where(part="needle", phase=PHASES[0])["rms_n"], "needle")
     yield from claims_of_energy(table)
     yield from claims_of_heads(table)
 
 
-def paragraphs_of(table):
-    needle, fast = table.where(part="needle"), table.where(part="puncture", speed_mm_s=SPEEDS[-1])
-    going_in, resting, coming_out = (f"{largest(needle.where(phase=phase)['rms_n']):.2g} N" for phase in PHASES)
+def text_of(table):
+    fast = table.where(part="puncture", speed_mm_s=SPEEDS[-1])
     share = 100 * fast["greatest_sampled_mean_n"] / fast["puncture_force_n"]
     costs = "; ".join("{tick_ns:.0f} ns, {of_one_surface:.2f} [{of_one_surface_low:.2f}, {of_one_surface_high:.2f}] times that with one "
                       "surface, where the hand {hand} ({field} field)".format(**row) for row in table.where(part="cost", surfaces=FEELS[2]))
-    return paragraphs(f"""
-        A hand goes straight through skin, fat, fascia and muscle onto bone, in bodies whose density is the depth: flat, and as concentric
-        balls sampled every 0.125 mm. The closed form is a spring at each surface until its puncture force. The greatest force that is
-        sampled is less: at 1 m/s and {RATE} Hz the hand moves a millimetre per tick, and the last force before a puncture is on average
-        only {share.min():.0f} % of the puncture force for {fast[int(share.argmin())]['layer']}.
-
-        A needle goes in at 10 and 100 mm/s, rests half a second on the bone and comes out again. It feels the drag of each layer times the
-        shaft's length in it, and at its tip the surface that holds it. It is off the closed form by at most {going_in} RMS on the way in,
-        {resting} at rest and {coming_out} on the way out, where friction first sticks, then rubs the other way.
-
-        The closed loops go through ripples and a head, without friction.
-
-        {sentences_of_heads(table)}
-
-        The cost of a tick with five surfaces, the same hand in alternating passes, with the ratio of the means and its 95 % interval:
-        {costs}.
-
-        This shows that the model is rendered as it is written down, on straight ways in and with frictionless loops. The stiffnesses,
-        drags and puncture forces are chosen, not measured on tissue, and a real surface does not hold like a spring until it breaks.""")
+    return PAGE.text(least=share.min(), least_of=fast[int(share.argmin())]["layer"], heads=" ".join(text_of_heads(table)), costs=costs,
+                     off=[largest(table.where(part="needle", phase=phase)["rms_n"]) for phase in PHASES])
 
 
 def run(options):
     heads = heads_of(options)
     table = Table(measured(options, heads))
     return Result(table, [insertion_figure(table), puncture_figure(table), needle_figure(table), figure_of_heads(table, heads)],
-                  list(claims_of(table)), paragraphs_of(table), Table(summary_of(table)))
+                  claims_of(table), text_of(table), summary_of(table))

@@ -1,8 +1,4 @@
-"""needle: how wrong is the force on a needle without a full segmentation? (Mastmeyer et al. 2017)
-
-A needle goes from the skin of a phantom into a vessel of its liver. Its force in a CT that is segmented in part, or not at all, is compared
-with that in the whole truth.
-"""
+"""needle: how wrong is the force on a needle without a full segmentation? (Mastmeyer et al. 2017)"""
 
 import dataclasses
 
@@ -12,11 +8,11 @@ import scipy.ndimage
 
 from . import figures, sampling
 from .bodies import unit
-from .experiment import Claim, Figure, Result, Table, in_parallel, paragraphs
+from .experiment import Page, Result, Table, in_parallel
 from .hands import Way
-from .tissues import RATE, renderer, times
+from .tissues import RATE, layered, pushed, renderer
 
-TITLE = "How wrong is the force on a needle without a full segmentation?"
+PAGE = Page(__name__)
 SPEED, BEFORE = 50, 3  # [mm/s] of the hand, [mm] of air before the skin
 AFFECTED = 0.01  # [N] of error from which on a force counts as affected
 NOISE, BLUR = 20, 0.6  # of the CT: standard deviation [HU], and of its point spread [mm]
@@ -75,9 +71,7 @@ def scans(made, random):
 
 
 def layers():
-    return palpate.Layers(name="abdomen", needle=palpate.Needle(), layers=[
-        palpate.Layer(name=name, level=level, properties={"stiffness": stiffness, "puncture_force": puncture, "drag": drag})
-        for name, *_, level, stiffness, puncture, drag in TISSUES])
+    return layered("abdomen", [(name, *of) for name, _, _, _, *of in TISSUES], needle=True)
 
 
 def path(random):
@@ -93,11 +87,11 @@ def path(random):
 def forces_on(fresh, way, length):
     """(depth [mm], force [N] along the needle, which a hand pushes straight in, and how often each surface gave way)."""
     depth = SPEED / RATE * numpy.arange(int(length * RATE / SPEED))
-    trace = fresh.copy().follow(times(len(depth)), way.at(depth), pointing=numpy.tile(way.inward, (len(depth), 1)))
+    trace, force = pushed(fresh, way, depth, needle=True)
     # The surface that was touched gives way; of several in one tick, the next deeper one each time.
     gone = [min(max(trace["layer"][tick - 1], 0) + more, len(TISSUES) - 1)
             for tick in numpy.flatnonzero(trace["punctured"]) for more in range(trace["punctured"][tick])]
-    return depth, -trace["force"] @ way.inward, numpy.bincount(gone, minlength=len(TISSUES))
+    return depth, force, numpy.bincount(gone, minlength=len(TISSUES))
 
 
 def rows_on(number, way, fresh):
@@ -146,42 +140,15 @@ def figure_of(table, paths, fields):
     right.axvline(MASTMEYER["mean_rms_n"], color=figures.GREY, ls="--", lw=0.8)
     right.text(MASTMEYER["mean_rms_n"], 3, " Mastmeyer\n (mean)", color=figures.GREY, fontsize=7)
     right.set(title="error of all paths", xlabel="root mean square [N]", ylabel="part of the paths [%]", xlim=(0, None), ylim=(0, 103))
-    return Figure("", """Left: force on a needle on its way from the skin into the vessel. Right: error of the force on every path, as the
-        part of the paths with at most so much. Dashed: the mean of Mastmeyer et al. 2017 in patients.""", drawn)
+    return PAGE.figure(drawn)
 
 
 def claims_of(table):
     partly, raw = (table.where(scan=name) for name in (PARTLY, RAW))
-    wanted = table.where(scan=TRUTH)["punctures"]
-    yield Claim("with all segmented, every path goes through each of the surfaces once", bool((wanted == len(TISSUES)).all()),
-                f"{int((wanted == len(TISSUES)).sum())} of {len(wanted)} paths")
-    same = int((partly["extra"] + partly["missed"] == 0).sum())
-    yield Claim("with liver and vessel segmented, 99 % of the paths or more miss no surface and have no extra puncture",
-                same >= 0.99 * len(wanted), f"{same:,} of {len(wanted):,} paths")
-    yield Claim("control: without segmentation the error is larger", bool(raw["rms_n"].mean() > partly["rms_n"].mean()),
-                f"{raw['rms_n'].mean():.3g} N")
-
-
-def paragraphs_of(count, seed):
-    (_, muscle, *_), (_, liver, *_), (_, vessel, *_) = TISSUES[1:]
-    return paragraphs(f"""
-        A needle goes in at {SPEED} mm/s on {count:,} random paths, from the front of a phantom through skin and fat, muscle and liver into
-        a vessel. All are ellipsoids. The truth is a volume without noise. The CT is the truth, blurred by {BLUR:g} mm, with {NOISE} HU of
-        noise (seed {seed}), rounded to whole HU, 1 mm per sample. Liver and vessel are segmented by binary labels: a sample whose centre
-        is inside gets the tissue's intensity ({liver} or {vessel} HU). Outside the labels, samples above {muscle} HU are set to that of
-        muscle, because the labels say that no liver is there. All surfaces are levels half way between two tissues. The same program, with
-        the same properties of tissues, renders both, so that the difference is that of the data.
-
-        A puncture is extra if its surface gives way more often than in the truth, and missed if it does so less often. They are counted
-        for each surface.
-
-        Mastmeyer et al. (2017, Scientific Reports 7, 671) compared forces in partly segmented CT of 10 patients with those in full
-        segmentations. On {MASTMEYER["paths"]:,} paths, the error was {MASTMEYER["mean_rms_n"]:g} N RMS on average and at most
-        {MASTMEYER["most_n"]:g} N. It affected {MASTMEYER["affected_percent"]} % of the forces (threshold not stated). The protocols
-        differ: theirs has anatomy, ribs and deformation, and errors of their segmentations. No claim is made about their numbers.
-
-        The properties of tissues are chosen, not measured. Most of the error is that a surface gives way a little earlier or later than in
-        the truth. The whole force of the surface is then missing, or too much, for some ticks.""")
+    through, same = table.where(scan=TRUTH)["punctures"] == len(TISSUES), partly["extra"] + partly["missed"] == 0
+    yield PAGE.claim("through", through.all(), through=through.sum(), paths=len(through))
+    yield PAGE.claim("same", same.sum() >= 0.99 * len(same), same=same.sum(), paths=len(same))
+    yield PAGE.claim("control", raw["rms_n"].mean() > partly["rms_n"].mean(), rms=raw["rms_n"].mean())
 
 
 def run(options):
@@ -192,5 +159,6 @@ def run(options):
     paths = [path(random) for _ in range(30 if options.quick else 1000)]
     parts = numpy.array_split(numpy.arange(len(paths)), 1 + len(paths) // 200)
     table = Table(row for part in options.each(parts) for row in rows_of([(number, paths[number]) for number in part], fields))
-    return Result(table, [figure_of(table, paths, fields)], list(claims_of(table)), paragraphs_of(len(paths), options.seed),
-                  Table(summary_of(table)))
+    muscle, liver, vessel = (tissue[1] for tissue in TISSUES[1:])
+    text = PAGE.text(count=len(paths), seed=options.seed, muscle=muscle, liver=liver, vessel=vessel)
+    return Result(table, [figure_of(table, paths, fields)], claims_of(table), text, summary_of(table))

@@ -1,8 +1,4 @@
-"""notice: what would a person notice?
-
-Slow strokes over smooth bodies. Whatever the force does beside turning with the body comes from samples, facets and terraces. It is
-compared with published thresholds of people.
-"""
+"""notice: what would a person notice? Forces of slow strokes over smooth bodies, beside published thresholds."""
 
 import dataclasses
 import functools
@@ -13,27 +9,24 @@ import scipy.signal
 
 from . import figures
 from .bodies import ball_by, of_a_user
-from .experiment import Claim, Figure, Result, Table, largest, paragraphs
+from .experiment import Page, Result, Table, known, largest
 from .fidelity import degrees_between, stroke
 from .subjects import CONTESTANTS, reals
 
-TITLE = "What would a person notice?"
+PAGE = Page(__name__)
 METHODS = ("exact", "smooth", "gradient-improved")
 SAMPLES = ("float32", "uint8 dequantized", "uint8 smoothed", "uint8")
 # Force: Pang, Tan and Durlach 1991 [%]. Direction: Barbagli et al. 2006, touch alone [degrees]. Vibration of a rod in the hand, most
 # sensitive people and frequencies: Brisben, Hsiao and Johnson 1999 [µm].
 FORCE, DIRECTION, VIBRATION = 7.0, 25.6, 0.01
-# Column, threshold, unit, what a person notices, and of a figure the label.
-NOTICED = (("change_p99_percent", FORCE, "%", "force", "change in a tick, p99 [%]"),
-           ("motion_um", VIBRATION, "µm", "vibration", "motion [µm]"),
-           ("off_ideal_p99_deg", DIRECTION, "degrees", "direction", "off, p99 [degrees]"))
+# Column, threshold, unit, what a person notices, the same in a claim, and of a figure the label.
+NOTICED = (("change_p99_percent", FORCE, "%", "force", "the change of the force in a tick (p99)", "change in a tick, p99 [%]"),
+           ("motion_um", VIBRATION, "µm", "vibration", "the vibration that the force drives", "motion [µm]"),
+           ("off_ideal_p99_deg", DIRECTION, "degrees", "direction", "the error of its direction (p99)", "off, p99 [degrees]"))
 PRESS, RATE, MASS = 2.0, 1000, 0.05  # [N, Hz, kg] mean force, ticks, and what moves with the handle
 SLOW, FAST = 20, 100  # [Hz]
 SPEED = 60  # [voxel/s] of the hand: 5 cm/s where a voxel is 0.8 mm
-# Measured beside Palpate 3688b00 on 27 November 2026 at -O3, a constant press of 2 N over the bone of a CT head. CHAI3D 3.3 is commit
-# 7c76b1f2. Root mean squares [% of the force]: change per tick, above 20 Hz, above 100 Hz.
-PEERS = {"Palpate, linear field": (5.30, 8.89, 3.67), "Palpate, smooth field": (0.78, 1.81, 0.41), "CHAI3D mesh": (3.47, 5.76, 2.26),
-         "CHAI3D shaded mesh": (2.90, 3.62, 2.03), "Embree god object": (3.33, 5.96, 2.32)}
+PEERS, PEER_CASE = known("peers_of_notice"), {"body": "ct-head, constant press", "grid": 256, "samples": "as scanned"}
 
 
 def steady(subject):
@@ -91,15 +84,9 @@ def row_of(body, name):
     return row
 
 
-def peer_rows():
-    for name, known in PEERS.items():
-        yield {"body": "ct-head, constant press", "grid": 256, "samples": "as scanned", "method": f"{name} (measured)",
-               **dict(zip(("change_rms_percent", "above_20_hz_percent", "above_100_hz_percent"), known))}
-
-
 def summary_of(table):
     for row in table:
-        noticed = ", ".join(what for column, limit, _, what, _ in NOTICED if row.get(column, 0) > limit)
+        noticed = ", ".join(what for column, limit, _, what, *_ in NOTICED if row.get(column, 0) > limit)
         yield {"body": f"{row['body']} {row['grid']}", "samples": row["samples"], "method": row["method"],
                "change per tick, rms [%]": row["change_rms_percent"], "above 20 Hz, rms [%]": row["above_20_hz_percent"],
                "motion [µm]": row.get("motion_um", numpy.nan), "direction off, p99 [degrees]": row.get("off_ideal_p99_deg", numpy.nan),
@@ -111,7 +98,7 @@ def figure_of(table):
     title = ("With unrounded or dequantized samples, the smooth field stays below what people notice" if table.where(body="ball")
              else "Strokes beside what people notice")
     drawn, panels = figures.panels(columns=3, height=0.6 + 0.27 * len(cases), title=title, sharey=True)
-    for axes, (column, limit, _, title, label) in zip(panels, NOTICED):
+    for axes, (column, limit, _, title, _, label) in zip(panels, NOTICED):
         for row in table:
             at = cases.index((row["body"], row["grid"], row["samples"]))
             figures.curve(axes, row["method"], [max(1e-5, row[column])], [at], ls="")
@@ -125,26 +112,18 @@ def figure_of(table):
         colour, marker = figures.LOOKS[name]
         panels[2].plot(1.1, 0.85 - 0.3 * number, marker, color=colour, transform=panels[2].transAxes, clip_on=False)
     figures.names(panels[2], [(name, figures.LOOKS[name][0]) for name in METHODS], 1.16, 0.85, 0.3, va="center")
-    return Figure("", """Strokes at 60 voxels per second and a mean force of 2 N. Left: how much the force changes in a tick, 99th
-        percentile. Middle: the motion of a mass of 50 g that the force above 100 Hz drives. Right: the angle to the force of a perfect
-        ball. Dashed: published thresholds, which are passed in the shaded area.""", drawn)
+    return PAGE.figure(drawn, grams=1000 * MASS)
 
 
 def claims_of(table):
     balls = table.where(body="ball")
     fine = balls.where(method="smooth").only(lambda row: row["samples"] in SAMPLES[:2])
-    raw = balls.where(method="exact", samples="uint8")
-    said = {"force": "the change of the force in a tick (p99)", "direction": "the error of its direction (p99)",
-            "vibration": "the vibration that the force drives"}
-    limits = {what: (column, limit, unit) for column, limit, unit, what, _ in NOTICED}
-    for what in said if fine else ():
-        column, limit, unit = limits[what]
-        yield Claim(f"smooth field, samples that are not rounded or dequantized: {said[what]} is below the threshold of {limit:g} {unit}",
-                    largest(fine[column]) < limit, f"at most {largest(fine[column]):.2g} {unit}")
-    if raw:
-        least = raw["motion_um"].min()
-        yield Claim(f"raw 8-bit ramps on the linear field drive a vibration that people notice, above {VIBRATION:g} µm",
-                    bool(least > VIBRATION), f"at least {least:.2g} µm")
+    raw = balls.where(method="exact", samples="uint8")["motion_um"]
+    for column, limit, unit, _, said, _ in NOTICED if fine else ():
+        most = largest(fine[column])
+        yield PAGE.claim("below", most < limit, said=said, limit=limit, unit=unit, most=most)
+    if len(raw):
+        yield PAGE.claim("raw", raw.min() > VIBRATION, least=raw.min())
 
 
 def in_short(table):
@@ -152,35 +131,18 @@ def in_short(table):
     balls, scans = table.where(body="ball"), table.where(samples="as scanned")
 
     def most(method, *samples):
-        return f"{largest(balls.where(method=method).only(lambda row: row['samples'] in samples)['motion_um']):.2g}"
+        return largest(balls.where(method=method).only(lambda row: row["samples"] in samples)["motion_um"])
 
     if balls:
-        yield f"""With unrounded and with dequantized samples, the force on the smooth field drives at most {most("smooth", *SAMPLES[:2])}
-            µm of vibration, below the threshold of {VIBRATION:g} µm. The facets of the linear field drive up to
-            {most("exact", *SAMPLES[:2])} µm. On raw 8-bit ramps it is up to {most("smooth", "uint8")} µm on the smooth field and
-            {most("exact", "uint8")} µm on the linear one, which people notice."""
+        yield from PAGE.text("balls", smooth_fine=most("smooth", *SAMPLES[:2]), exact_fine=most("exact", *SAMPLES[:2]),
+                             smooth_raw=most("smooth", "uint8"), exact_raw=most("exact", "uint8"))
     for name in scans.distinct("body"):
         exact, smooth = (scans.where(body=name, method=method)[0]["motion_um"] for method in METHODS[:2])
-        yield (f"On {name}, as it was scanned, {smooth:.2g} µm on the smooth field and {exact:.2g} µm on the linear one contain the shape "
-               "of the body itself.")
+        yield from PAGE.text("scan", name=name, exact=exact, smooth=smooth)
 
 
 def run(options):
     table = Table(row_of(body, name) for make in options.each(bodies_of(options)) for body in [make()] for name in METHODS)
-    whole = table if options.subjects else Table([*table, *peer_rows()])
-    return Result(whole, [figure_of(table)], list(claims_of(table)), paragraphs(f"""
-        {" ".join(in_short(table))}
-
-        A hand strokes a ball of which the true surface is known, and a scanned head, at a mean force of {PRESS:g} N, {SPEED} voxels per
-        second and 1 kHz. Its own motion has nothing above 5 Hz. The force is that of the spring alone, without damping and friction.
-
-        The thresholds are published ones. People notice a change of the force by about {FORCE:g} % (Pang, Tan and Durlach 1991) and of its
-        direction by {DIRECTION:g} degrees (Barbagli et al. 2006, touch alone). The most sensitive people feel a rod in the hand vibrate by
-        {VIBRATION:g} µm at 150 to 200 Hz (Brisben, Hsiao and Johnson 1999). The motion here is that of a free mass of {1000 * MASS:g} g
-        that the force above {FAST} Hz drives. A hand damps it, so it is an upper estimate.
-
-        A change in one tick is compared with a threshold for forces that last, which is strict. No person took part.
-
-        Rows with (measured) are from 27 November 2026, with Palpate 3688b00, CHAI3D 3.3 (commit 7c76b1f2) and a god object on VTK flying
-        edges and Embree 3. There the hand pressed the bone of a CT head with a constant 2 N. These rows are not run again."""),
-        Table(summary_of(whole)))
+    whole = table if options.subjects else Table([*table, *({**PEER_CASE, **row} for row in PEERS)])
+    text = PAGE.text(in_short=" ".join(in_short(table)), grams=1000 * MASS)
+    return Result(whole, [figure_of(table)], claims_of(table), text, summary_of(whole))

@@ -8,6 +8,12 @@ import scipy.ndimage
 import scipy.sparse.csgraph
 
 
+def corners_of(grid, axes=(0, 1, 2)):
+    """Each of the eight corners of every cell, or of the four of every face along two axes."""
+    for corner in itertools.product(*((0, 1) if axis in axes else (0,) for axis in range(3))):
+        yield grid[tuple(slice(o, n + o - (axis in axes)) for axis, (o, n) in enumerate(zip(corner, grid.shape)))]
+
+
 class Outside:
     """Decided exactly for the linear field. The free part of a tetrahedron is convex and contains its lowest corner, and two free corners
     are joined by a free edge, so connected corners are connected free space. A free centre of a face or cell has a free sample among
@@ -30,29 +36,17 @@ class Outside:
         self._excess = subject.sign * (numpy.pad(samples, 1, constant_values=field.background)
                                        - subject.isovalue)
         labels, count = scipy.ndimage.label(self._excess <= 0)
-        pairs = [self._joined(labels, corners) for corners in self._faces_and_cells()]
+        pairs = []
+        for axes in ((0, 1), (0, 2), (1, 2), (0, 1, 2)):  # faces across z, y and x, then cells
+            free = sum(corners_of(self._excess, axes)) <= 0
+            around = numpy.stack([part[free] for part in corners_of(labels, axes)], axis=1)
+            one = numpy.broadcast_to(around.max(axis=1, keepdims=True), around.shape)
+            joined = (around > 0) & (around != one)
+            pairs.append(numpy.stack([one[joined], around[joined]], axis=1))
         pairs = numpy.unique(numpy.concatenate(pairs), axis=0)
         graph = scipy.sparse.coo_matrix((numpy.ones(len(pairs)), pairs.T), shape=(count + 1, count + 1))
         _, component = scipy.sparse.csgraph.connected_components(graph, directed=False)
         self._reached = (component[labels] == component[labels[0, 0, 0]]) & (labels > 0)
-
-    @staticmethod
-    def _faces_and_cells():
-        """Offsets of the samples that a centre is the mean of: of faces across z, y and x, of cells."""
-        for axis in (2, 1, 0):
-            yield [c for c in itertools.product((0, 1), repeat=3) if c[axis] == 0]
-        yield list(itertools.product((0, 1), repeat=3))
-
-    def _joined(self, labels, corners):
-        """Pairs of labels of free samples that free centres join, (n, 2)."""
-        widest = numpy.max(corners, axis=0)
-        shape = numpy.array(labels.shape) - widest
-        parts = [tuple(slice(o, o + n) for o, n in zip(corner, shape)) for corner in corners]
-        free = sum(self._excess[part] for part in parts) <= 0
-        here = numpy.stack([labels[part][free] for part in parts], axis=1)
-        first = here.max(axis=1)
-        pairs = numpy.stack([numpy.repeat(first[:, None], here.shape[1], axis=1), here], axis=-1).reshape(-1, 2)
-        return numpy.unique(pairs[(pairs[:, 1] > 0) & (pairs[:, 0] != pairs[:, 1])], axis=0).reshape(-1, 2)
 
     def holds(self, points):
         """Whether free points [mm, physical], (n, 3), belong to it. Of a point in the solid: whether the lowest corner of its tetrahedron

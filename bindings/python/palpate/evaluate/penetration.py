@@ -1,7 +1,4 @@
-"""penetration: which surfaces does a press meet from the skin into the brain? (Corenthy et al. 2012, section 5, Fig. 8)
-
-A hand presses straight in and comes out again, with penetrability off, with a threshold, and with ranges of interest.
-"""
+"""penetration: which surfaces does a press meet from the skin into the brain? (Corenthy et al. 2012, section 5, Fig. 8)"""
 
 import dataclasses
 
@@ -9,11 +6,11 @@ import numpy
 import palpate
 
 from . import figures
-from .experiment import GRANTED, Claim, Figure, Result, Table, at_most, largest, paragraphs
-from .hands import Way, way_from_a_side, way_in
+from .experiment import GRANTED, Page, Result, Table, largest
+from .hands import Way, way_from_a_side, way_in, way_into_head
 from .subjects import Subject, reals, synthetic
 
-TITLE = "Which surfaces does a press meet from the skin into the brain?"
+PAGE = Page(__name__)
 STIFFNESS = 0.5  # k [N/mm]
 THRESHOLD = 1.0  # PT [device mm]
 SPEED, RATE = 20.0, 1000.0  # [device mm/s], [Hz]
@@ -35,13 +32,8 @@ class Line:
 
 
 def ct_head(subject):
-    """The CT head lies face up and was stored upside down: its crown is at z = 0. Over the left brow the skull has no sinus; the
-    direction is about the skin's normal."""
-    way = way_in(subject, numpy.array([103.0, 64, 44]), numpy.array([0, 1, 0.6]) / numpy.linalg.norm([1, 0.6]))
-    if way is None:
-        raise ValueError("the CT head is not the one that the line was chosen for")
     # Muscle and brain lie between the ranges.
-    return Line(subject, way, 30, [(500, 900), (1200, numpy.inf)], {500: "skin", 1200: "skull"})
+    return Line(subject, way_into_head(subject), 30, [(500, 900), (1200, numpy.inf)], {500: "skin", 1200: "skull"})
 
 
 def shepp_logan(quick):
@@ -159,27 +151,19 @@ def figure_of(lines, presses):
     for axes, name in zip(panels[:, 0], ("across the line [mm]", "level felt\n[data units]", "k |SCP - hand| [N]", "in contact")):
         axes.set_ylabel(name)
     figures.names(panels[2, 0], FUNCTIONS.items(), 0.98, 0.97, 0.11, ha="right")
-    return Figure("", """Each column is a body. The hand goes straight in (solid lines) and out again (dashed lines). First row: a slice of
-        the data that contains the line of the hand (dotted). It shows the surfaces, and the proxy while the hand presses with ranges
-        (red dots). Second row: the level felt in contact, and the density at the hand in grey. Third row: the force of the spring. It is
-        at most k PT where the surface gives way. With penetrability off, it leaves the panel. Last row: the depths at which the proxy is
-        in contact.""", drawn)
+    return PAGE.figure(drawn)
 
 
 def claims_of(presses):
     off, threshold, ranges = ([press for press in presses if press.function == function] for function in FUNCTIONS)
     most = STIFFNESS * THRESHOLD
     for name, own in (("threshold", threshold), ("ranges", ranges)):
-        yield at_most(most + ROUNDING, [press.force.max() for press in own],
-                      f"{name}: the force of the spring never exceeds k PT = {most:g} N", "largest {:.10g} N")
-    for statement, own, wrong in (
-            ("threshold: no level on the free side of the minimum is felt", threshold, Press.below_minimum),
-            ("ranges: only levels within the ranges are felt", ranges, Press.out_of_ranges)):
+        yield PAGE.at_most(most + ROUNDING, [press.force.max() for press in own], "force", function=name, strongest=most)
+    for name, own, wrong in (("minimum", threshold, Press.below_minimum), ("ranges", ranges, Press.out_of_ranges)):
         count = sum(map(wrong, own))
-        yield Claim(statement, count == 0, f"{count} of {sum(len(press.felt) for press in own)} ticks in contact")
-    yield at_most(0, [numpy.ptp(press.trace.isovalue) for press in off], "off: the isovalue never changes", "spread {:g}")
-    yield at_most(GRANTED, [largest(press.line.subject.excess(press.trace.density)) for press in off],
-                  f"off: the SCP never enters the solid (to {GRANTED:g} of the data's range)", "largest excess {:.2g}")
+        yield PAGE.claim(name, count == 0, wrong=count, ticks=sum(len(press.felt) for press in own))
+    yield PAGE.at_most(0, [numpy.ptp(press.trace.isovalue) for press in off], "off")
+    yield PAGE.at_most(GRANTED, [largest(press.line.subject.excess(press.trace.density)) for press in off], "outside")
 
 
 def ranges_of(line):
@@ -192,16 +176,5 @@ def run(options):
     for line, function in options.each((line, function) for line in lines for function in FUNCTIONS):
         presses.append(Press(line, function))
         table.extend(presses[-1].rows(20 if options.quick else 5))
-    return Result(table, [figure_of(lines, presses)], list(claims_of(presses)), paragraphs(f"""
-        With penetrability, a surface gives way when it is pressed hard enough, so the hand meets deeper surfaces in the same press. This
-        experiment shows which levels are felt on the way, and how large the force becomes. It follows section 5 and Fig. 8 of Corenthy et
-        al. 2012.
-
-        A hand presses straight into each body at {SPEED:g} mm/s and comes out again, with {RATE:g} ticks per second. The stiffness is
-        k = {STIFFNESS:g} N/mm. One millimetre of the hand is one voxel. Each body is pressed three times. With penetrability off, the
-        surface never gives way. With the threshold, it gives way when the hand is PT = {THRESHOLD:g} mm behind it, and every level from
-        the first one on may be felt. With ranges, it gives way in the same manner, but only levels within the ranges may be felt.
-        {" ".join(map(ranges_of, lines))}
-
-        Nothing in this experiment is random. There is one line per body. The method is exact, and the field is linear. The column "levels
-        felt" gives the lowest and the highest level."""), Table(summary_of(presses)))
+    text = PAGE.text(ranges=" ".join(map(ranges_of, lines)))
+    return Result(table, [figure_of(lines, presses)], claims_of(presses), text, summary_of(presses))

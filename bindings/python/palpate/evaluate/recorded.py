@@ -1,8 +1,4 @@
-"""recorded: does a hand feel what it felt on a real surface? (Ruffaldi, Morris et al. 2006)
-
-A hand with a force sensor strokes a rigid object. The recording determines where a haptic device would have been, and each method renders
-the force on it. A perfect method renders the recorded force.
-"""
+"""recorded: does a hand feel what it felt on a real surface? (Ruffaldi, Morris et al. 2006)"""
 
 import dataclasses
 import itertools
@@ -15,12 +11,12 @@ import scipy.spatial
 
 from . import figures, sampling
 from .bodies import tilt, unit
-from .experiment import Claim, Figure, Result, Table, largest, paragraphs
+from .experiment import Page, Result, Table, largest
 from .meshes import nearest_in_triangles
 from .human import RATE, Human, press
-from .subjects import CONTESTANTS, Subject
+from .subjects import CONTESTANTS, linear
 
-TITLE = "Does a hand feel what it felt on a real surface?"
+PAGE = Page(__name__)
 STIFFNESS = 0.5  # [N/mm] of the reference rendering, as in the published plane0
 CONTACT = 0.05  # [N] from which on a hand touches
 SAMPLE = Path(__file__).with_name("plane.traj")
@@ -155,8 +151,7 @@ def metrics(name, wanted, rendered):
 def rows_of(recording, surface, samples, voxel):
     out, hands, normal_force = device_of(recording, surface)
     volume, level = volume_of(surface, hands, voxel, SAMPLES[samples])
-    subject = Subject(recording.name, palpate.Field(volume, interpolation="linear"), level)
-
+    subject = linear(recording.name, volume, level)
     start, strength = hands[0] + (BAND + 1) * voxel * surface.nearest(hands[:1])[1][0], numpy.linalg.norm(normal_force, axis=1)
 
     def row(contestant):
@@ -204,9 +199,7 @@ def figure_of(recording, surface, forces, table):
     figures.names(right, [(name, figures.LOOKS[name][0]) for name in CONTESTANTS], 1.03, 0.9, 0.13, va="baseline")
     right.set(title="error of the force", xscale="log", xlabel="root mean square [N]", ylim=(1.5, -0.5))
     figures.ticks(right.yaxis, range(len(SAMPLES)), SAMPLES)
-    return Figure("", """Left: normal force on the probe, as recorded (grey, wide) and as rendered on the smooth field. Right: error of the
-        force of each method, a mark for each recording, on samples that are not rounded and on 8-bit ones. Values below 1e-9 N are drawn
-        there.""", drawn)
+    return PAGE.figure(drawn)
 
 
 def claims_of(table):
@@ -215,37 +208,11 @@ def claims_of(table):
     for name in ("exact", "smooth"):
         rows = plain.where(method=name)
         force, place = largest(rows["force_n_max"]), largest(rows["position_mm_max"] / rows["voxel_mm"])
-        yield Claim(f"{name}: on samples that are not rounded, every force is the recorded one to 1 mN and every SCP is on the recorded "
-                    "way to a hundredth of a voxel", force <= 1e-3 and place <= 0.01, f"at most {force:.1e} N and {place:.1e} voxel off")
-    rows = table.where(samples="uint8", method="smooth")
-    yield Claim(f"smooth: on samples of {SAMPLES['uint8']:g} levels per voxel, the root mean square error is below 2 % of the mean force",
-                bool((rows["force_n_rms"] < 0.02 * rows["mean_force_n"]).all()), f"at most {largest(rows['force_n_rms']):.2g} N")
-    rubbed = plain.where(method="smooth")
-    yield Claim("control: beside the whole recorded force, with its friction, which is not rendered here, the error is above 5 %",
-                bool((rubbed["with_friction_n_rms"] > 0.05 * rubbed["mean_force_n"]).all()),
-                f"at least {rubbed['with_friction_n_rms'].min():.2g} N")
-
-
-def paragraphs_of(names):
-    human = Human()
-    return paragraphs(f"""
-        Ruffaldi, Morris et al. (2006) scanned rigid objects with a probe that measures position and force, and published the recordings
-        (.traj) for the comparison of rendering algorithms. The steps are theirs. The recorded way is moved onto the surface (out). A
-        device that is felt with {STIFFNESS:g} N/mm would be where this spring gives the recorded normal force (in). Each method gets that
-        way, and its force and its SCP are compared with the recorded force and with the way on the surface. On a plane, a perfect proxy
-        has no error.
-
-        Recordings: {", ".join(names)}. Published ones are read from the data folder (NAME/probe.traj). They were not at hand, so the
-        recordings here are modelled. The one named plane comes with the program.
-
-        The modelled hand has {human.mass:g} kg, {human.damping:g} N s/m and {human.stiffness:g} N/m (fitted by van Beek et al. 2015 to one
-        trial of one person who held a handle). While it is free, it trembles by {1000 * human.tremor:g} µm RMS along each axis, at
-        {human.band[0]} to {human.band[1]} Hz. It moves on purpose below {human.willed:g} Hz (Riviere et al. 1997) and reacts after
-        {1000 * human.delay:g} ms (Robinson 1934). The plane has {WALL:g} N/mm and a friction of {FRICTION:g}, both assumed.
-
-        On a plane, the volume, the in-trajectory and the reference force are made from the same plane. The error is therefore that of the
-        renderer and of the samples. A modelled hand is no person, and a plane has no edges. The errors say how the methods render, not how
-        the surface feels.""")
+        yield PAGE.claim("exact", force <= 1e-3 and place <= 0.01, method=name, force=force, place=place)
+    rows, rubbed = table.where(samples="uint8", method="smooth"), plain.where(method="smooth")
+    off, with_friction = rows["force_n_rms"], rubbed["with_friction_n_rms"]
+    yield PAGE.claim("rounded", (off < 0.02 * rows["mean_force_n"]).all(), levels=SAMPLES["uint8"], most=largest(off))
+    yield PAGE.claim("friction", (with_friction > 0.05 * rubbed["mean_force_n"]).all(), least=with_friction.min())
 
 
 def run(options):
@@ -255,5 +222,5 @@ def run(options):
         voxel = numpy.ptp(recording.position, axis=0).max() / (40 if options.quick else 80)
         found += rows_of(recording, surface, samples, voxel)
     table, shown = Table(row for row, _ in found), {row["method"]: force for row, force in found[:len(CONTESTANTS)]}
-    return Result(table, [figure_of(*cases[0], shown, table)], list(claims_of(table)),
-                  paragraphs_of([recording.name for recording, _ in cases]), Table(summary_of(table)))
+    text = PAGE.text(names=", ".join(recording.name for recording, _ in cases), tremor=1000 * Human.tremor, delay=1000 * Human.delay)
+    return Result(table, [figure_of(*cases[0], shown, table)], claims_of(table), text, summary_of(table))

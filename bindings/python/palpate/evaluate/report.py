@@ -6,6 +6,8 @@ import dataclasses
 import html
 import importlib.util
 import math
+import string
+from pathlib import Path
 
 from . import figures
 from .experiment import Result, Table
@@ -96,36 +98,12 @@ def section(report, folder, whole):
     return "".join([*parts, html_table(claims_of(report.result)), numbers, f"<p class=c>{html.escape(report.circumstances)}</p>\n"])
 
 
-METHOD = ("Each experiment asks a question and answers it with a table, figures and claims. A claim is a statement that the run checks, "
-          "and it never depends on the speed of the machine. Everything random is seeded. Intervals are at 95 %: exact for shares, and "
-          "by bootstrap for medians and ratios. The same command repeats a section.",)
-THREATS = ("No person and no real device took part. Hands and devices are simulated, with constants that are partly assumed.",
-           "The authors of the program chose the questions, the bodies and the claims. Known surfaces are smooth and few. Real scans are "
-           "fewer still, and show heads and small objects.",
-           "Intervals take cases as independent. Ticks of one hand depend on each other, so their number gives no bound.",
-           "Other programs may share the machine. Times are medians of passes in which the methods take turns, so compare them within a "
-           "table, and not between machines.",
-           "Peers whose rows say (measured) were measured once, on one day and one machine, and are not run here.")
-
-
-STYLE = ("body{font-family:'DejaVu Sans',sans-serif;max-width:64em;margin:2em auto;padding:0 1em;line-height:1.5}"
-         "img{max-width:100%}figure{margin:1em 0;break-inside:avoid}figcaption,.c{color:#444;font-size:90%}"
-         "table{border-collapse:collapse;font-size:85%}td,th{border:1px solid #ccc;padding:.2em .5em;text-align:left}"
-         "h1,h2{break-after:avoid}tr{break-inside:avoid}details{overflow-x:auto}"
-         "@page{size:A4;margin:18mm;@bottom-center{content:counter(page)}}"
-         "@media print{body{max-width:none;margin:0;padding:0;font-size:9.5pt}table{font-size:7pt}img{max-height:190mm}}")
-
-
 def page_of(reports, folder, whole=True):
     """HTML of all reports; `folder` holds the figures, which are embedded. whole: with the tables of all numbers."""
-    entries = [f'<li><a href="#{r.name}">{r.name}</a>: {html.escape(r.title)} '
-               f"({sum(c.held for c in r.claims)} of {len(r.claims)} claims hold)</li>\n" for r in reports]
-    return ('<!DOCTYPE html>\n<html lang="en"><meta charset="utf-8">'
-            f"<title>Palpate: the evidence</title>\n<style>{STYLE}</style>\n"
-            f"<h1>Palpate: the evidence</h1>\n<ul>\n{''.join(entries)}</ul>\n<h2>Method</h2>\n"
-            f"{''.join(f'<p>{text}</p>{chr(10)}' for text in METHOD)}"
-            f"{''.join(section(report, folder, whole) for report in reports)}<h2>Threats to validity</h2>\n<ul>\n"
-            f"{''.join(f'<li>{text}</li>{chr(10)}' for text in THREATS)}</ul>\n</html>\n")
+    page = string.Template((Path(__file__).parent / "pages" / "report.html").read_text(encoding="utf-8"))
+    return page.substitute(sections="".join(section(report, folder, whole) for report in reports), entries="".join(
+        f'<li><a href="#{r.name}">{r.name}</a>: {html.escape(r.title)} '
+        f"({sum(c.held for c in r.claims)} of {len(r.claims)} claims hold)</li>\n" for r in reports))
 
 
 def write_pages(reports, folder, into):

@@ -19,14 +19,14 @@ def quantile(values, share):
     return float(numpy.quantile(values, share, method="inverted_cdf")) if len(values) else numpy.nan
 
 
-def bootstrap(values, statistic=numpy.median, seed=1):
+def bootstrap(values, statistic=numpy.median):
     """(statistic, low, high): percentiles of 2000 resamples with replacement."""
     values = numpy.asarray(values)[~numpy.isnan(values)]
     if len(values) < 2 or numpy.ptp(values) == 0:
         found = float(statistic(values)) if len(values) else numpy.nan
         return found, found, found
     interval = scipy.stats.bootstrap((values,), statistic, n_resamples=2000, method="percentile",
-                                     random_state=numpy.random.default_rng(seed),
+                                     random_state=numpy.random.default_rng(1),
                                      vectorized=False).confidence_interval
     return float(statistic(values)), float(interval.low), float(interval.high)
 

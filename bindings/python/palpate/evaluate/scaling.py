@@ -1,22 +1,19 @@
-"""scaling: what does the cost grow with, and what does the explicit approach cost?
-
-The time of an update while one thing grows and all others stay the same: the speed of the hand, the voxels per millimetre of hand, the size
-of the volume, noise. Then the explicit approach, which extracts the whole isosurface first.
-"""
+"""scaling: what does the cost grow with, and what does the explicit approach cost?"""
 
 import dataclasses
+import itertools
 from pathlib import Path
 
 import numpy
 import palpate
 
 from . import figures
-from .experiment import GRANTED, Claim, Figure, Result, Table, paragraphs
+from .experiment import GRANTED, Page, Result, Table
 from .performance import Effort, moved_rows, numbers_of, timed
 from .sampling import quantile
-from .subjects import Subject, real
+from .subjects import cube, reals
 
-TITLE = "What does the cost grow with, and what does the explicit approach cost?"
+PAGE = Page(__name__)
 METHODS = ("exact", "smooth")
 RATE, SPEED, VOXELS, DEPTH = 1000, 50, 3, 0.5  # [Hz, mm/s, voxels per mm of hand, mm of hand] while others grow
 MEASURED = ("updates", "constrained_share", "tetrahedra", "tetrahedra_per_update", "mean_ns", "p50_ns", "p99_ns", "p999_ns", "max_ns")
@@ -37,10 +34,8 @@ class Plan:
     real: tuple = ("lobster", "ct-head")
 
 
-def plan_of(quick):
-    if quick:
-        return Plan(1500, 3, (20, 100, 500), (0.5, 2), (64, 80, 128), (0, 0.1, 1), (32, 64), ())
-    return Plan(20000, 5)
+QUICK = Plan(1500, 3, (20, 100, 500), (0.5, 2), (64, 80, 128), (0, 0.1, 1), (32, 64), ())
+FULL = Plan(20000, 5)
 
 
 @dataclasses.dataclass
@@ -59,10 +54,6 @@ class Ball:
     def places(self):
         return numpy.arange(self.size) - 0.5 * (self.size - 1)
 
-    def subject(self, name, samples, isovalue):
-        volume = palpate.Volume(samples, origin=[-0.5 * (self.size - 1)] * 3)
-        return Subject(name, palpate.Field(volume, interpolation="linear"), isovalue)
-
     def sampled(self):
         """uint8, by slices, as some are large. With even sizes the same samples lie around the centre of any grid."""
         samples = numpy.zeros([self.size] * 3, dtype=numpy.uint8)
@@ -71,14 +62,14 @@ class Ball:
         for k in near:
             values = 255 * self.density(along, along[:, None], self.places[k])
             samples[k, part, part] = values + 0.5
-        return self.subject("ball", samples, 127.5)
+        return cube("ball", samples, 127.5)
 
     def noisy(self, amplitude, seed):
         """float32 of 0 to 1, and white noise of +-amplitude / 2."""
         noise = numpy.random.default_rng(seed).random([self.size] * 3) - 0.5
         x = self.places
         samples = self.density(x, x[:, None], x[:, None, None]) + amplitude * noise
-        return self.subject("noisy-ball", samples.astype(numpy.float32), 0.5)
+        return cube("noisy-ball", samples.astype(numpy.float32), 0.5)
 
     def hand(self, depth, step, ticks):
         """Great circles that turn slowly over the whole ball, `step` [mm] per tick, from 1 mm outside."""
@@ -98,22 +89,18 @@ def over(subject, speed, voxels, ticks, seed):
                            touching=0.95, trajectories=4, trajectory_s=ticks / RATE / 4, seed=seed)
 
 
-def cells_of(part, subject, **others):
+def cells_of(part, subject):
     size = subject.field.geometry.size
-    return {"part": part, "volume": subject.name, "size": "x".join(map(str, size)), "samples": numpy.prod(size, dtype=float), **others}
+    return {"part": part, "volume": subject.name, "size": "x".join(map(str, size)), "samples": numpy.prod(size, dtype=float)}
 
 
-def path_of(subject, hand):
-    """[voxel]"""
-    ways = numpy.linalg.norm(numpy.diff(hand["hips"], axis=0), axis=1)
-    return ways[moved_rows(hand)[1:]].sum() / subject.voxel
-
-
-def time_rows(cells, subject, hand, passes):
+def time_rows(part, subject, hand, passes, **cells):
     """A row for each method, timed in turns."""
+    way = numpy.linalg.norm(numpy.diff(hand["hips"], axis=0), axis=1)[moved_rows(hand)[1:]].sum()
     for name, taken in timed(subject, METHODS, hand, Effort(0, 0, passes, 0)).items():
         numbers = numbers_of(taken, hand)
-        yield {**cells, "method": name, "path_voxel": path_of(subject, hand), **{column: numbers[column] for column in MEASURED}}
+        yield {**cells_of(part, subject), **cells, "method": name, "path_voxel": way / subject.voxel,
+               **{column: numbers[column] for column in MEASURED}}
 
 
 def has_room(size, copies, what, options):
@@ -128,34 +115,28 @@ def has_room(size, copies, what, options):
 
 
 def by_hand(plan, options):
-    """Makers of rows: speed and voxels per millimetre of the hand, each alone."""
-    cases = [("speed", speed, VOXELS, Ball()) for speed in plan.speeds]
-    # The same ball of 20 mm in the hand, sampled ever more finely.
-    cases += [("voxels-per-mm", SPEED, voxels, Ball(2 * int(23 * voxels + 6), 20 * voxels, 6 * voxels)) for voxels in plan.voxels]
-
+    """Rows by speed and by voxels per millimetre of the hand, each alone."""
     def rows(part, speed, voxels, ball):
         for own in options.subjects or [ball.sampled()]:
             hand = (over(own, speed, voxels, plan.ticks, options.seed) if options.subjects
                     else ball.hand(DEPTH * voxels, speed / RATE * voxels, plan.ticks))
-            yield from time_rows(cells_of(part, own, speed_mm_s=speed, voxels_per_mm=voxels), own, hand, plan.passes)
+            yield from time_rows(part, own, hand, plan.passes, speed_mm_s=speed, voxels_per_mm=voxels)
 
-    return [(rows, *case) for case in cases]
+    yield from (rows("speed", speed, VOXELS, Ball()) for speed in plan.speeds)
+    # The same ball of 20 mm in the hand, sampled ever more finely.
+    yield from (rows("voxels-per-mm", SPEED, voxels, Ball(2 * int(23 * voxels + 6), 20 * voxels, 6 * voxels)) for voxels in plan.voxels)
 
 
 def by_body(plan, options):
-    """Makers of rows: the same motion in a larger volume, and in noise."""
+    """Rows of the same motion in a larger volume, and in noise."""
     hand = Ball().hand(DEPTH * VOXELS, SPEED / RATE * VOXELS, plan.ticks)
 
     def of_size(size):
         if has_room(size, 1.2, "the volume", options):
-            subject = Ball(size).sampled()
-            yield from time_rows(cells_of("size", subject), subject, hand, plan.passes)
+            yield from time_rows("size", Ball(size).sampled(), hand, plan.passes)
 
-    def of_noise(noise):
-        subject = Ball().noisy(noise, options.seed)
-        yield from time_rows(cells_of("noise", subject, noise_of_range=noise), subject, hand, plan.passes)
-
-    return [(of_size, size) for size in plan.sizes] + [(of_noise, noise) for noise in plan.noises]
+    yield from map(of_size, plan.sizes)
+    yield from (time_rows("noise", Ball().noisy(noise, options.seed), hand, plan.passes, noise_of_range=noise) for noise in plan.noises)
 
 
 def segments_of(subject, hand):
@@ -218,16 +199,11 @@ def explicit_numbers(subject, segments, options):
 
 
 def by_approach(plan, options):
-    """Makers of rows: both approaches on one volume."""
+    """Rows of both approaches, one for each volume."""
     def compared(subject, hand):
         segments = segments_of(subject, hand)
         yield {**cells_of("explicit", subject), **dynamic_numbers(subject, hand, segments, plan.passes),
                **explicit_numbers(subject, segments, options)}
-
-    def explored(subject):
-        subject = real(subject, options) if isinstance(subject, str) else subject
-        if subject:
-            yield from compared(subject, over(subject, SPEED, VOXELS, plan.ticks, options.seed))
 
     def ball(size):
         # The samples, the shared copy, and what extraction takes at its peak.
@@ -235,9 +211,9 @@ def by_approach(plan, options):
             shape = Ball(size, 0.35 * size)  # the blur of its edge stays the same in voxels, as a scanner has it
             yield from compared(shape.sampled(), shape.hand(3, SPEED / RATE * VOXELS, plan.ticks))
 
-    if options.subjects:
-        return [(explored, subject) for subject in options.subjects]
-    return [(ball, size) for size in plan.explicit_sizes] + [(explored, name) for name in plan.real]
+    yield from () if options.subjects else map(ball, plan.explicit_sizes)
+    for subject in options.subjects or reals(plan.real, options):
+        yield compared(subject, over(subject, SPEED, VOXELS, plan.ticks, options.seed))
 
 
 def time_text(seconds):
@@ -293,10 +269,7 @@ def growth_figure(table):
     panels[0, 0].set_ylabel("time of an update [µs]")
     panels[1, 0].set_ylabel("tetrahedra\nper update")
     figures.label_ends(panels[0, -1])
-    return Figure("", """Above: the time of an update on the linear field, and its mean on the smooth field. Below: tetrahedra that the
-        proxy moves through per update on the linear field. From left to right: speed of the hand, voxels per millimetre of hand (the same
-        ball sampled more finely), edge of the volume (the same motion in the same samples), and white noise on the ball, as a part of its
-        range.""", drawn)
+    return PAGE.figure(drawn)
 
 
 APPROACHES = (  # panel, column, unit, label, colour, marker, dash
@@ -329,9 +302,7 @@ def explicit_figure(table):
         if ticks:
             figures.ticks(axes.xaxis, ticks)
     figures.label_ends(*panels)
-    return Figure("explicit", """After a change of the isovalue by a tenth of the data's range. The explicit approach extracts the whole
-        isosurface and builds a hierarchy on it, and ours updates its proxy. Left: the time until the new surface is felt. Right: the memory
-        that this takes. Lines are a ball that grows with the volume, and open marks other volumes.""", drawn)
+    return PAGE.figure(drawn, "explicit")
 
 
 def crossings(table):
@@ -341,26 +312,19 @@ def crossings(table):
 
 
 def claims_of(table, own_volumes):
-    both, sizes, found = table.where(part="explicit"), table.where(part="size", method="exact"), crossings(table)
-    balls, first = both.where(volume="ball"), sizes[0]["tetrahedra"] if sizes else 0
-    within = [(both, "heap_growth_bytes", 0, 0, "updates and changes of the level take no memory", "heap grew by {:g} to {:g} bytes")]
+    both, sizes = table.where(part="explicit"), table.where(part="size", method="exact")
+    balls = both.where(volume="ball")
+    ranges = [("memory", both["heap_growth_bytes"], 0, 0)]
     if own_volumes:
-        within += [
-            (sizes, "tetrahedra", first, first, "the same motion enters the same tetrahedra in a volume of any size",
-             "{:.0f} to {:.0f} tetrahedra"),
-            (balls, "unfinished_changes", 0, 0, "on the ball one update after a change of the level is on the new surface",
-             "{:g} to {:g} changes unfinished"),
-            (balls, "worst_deviation_of_range", 0, GRANTED, "and is on it to 1e-9 of the range", "{:.2g} to {:.2g}"),
-            (balls, "one_sided_hits_share", 0, 0, "the whole mesh is the same ball: segments that meet one meet both",
-             "share of others {:g} to {:g}"),
-            (balls, "hit_difference_voxel", 0, 0.1, "and meet both in the same place to 0.1 voxel", "{:.2g} to {:.2g} voxel")]
-    for rows, column, low, high, statement, measured in within:
-        values = rows[column][~numpy.isnan(rows[column])]
+        first, path = sizes[0]["tetrahedra"] if sizes else 0, crossings(table)
+        ranges += [("motion", sizes["tetrahedra"], first, first), ("path", path, path.min(), 1.1 * path.min()),
+                   ("change", balls["unfinished_changes"], 0, 0), ("deviation", balls["worst_deviation_of_range"], 0, GRANTED),
+                   ("same", balls["one_sided_hits_share"], 0, 0), ("place", balls["hit_difference_voxel"], 0, 0.1)]
+    for name, values, low, high in ranges:
+        values = values[~numpy.isnan(values)]
         if len(values):  # where nothing was measured nothing is claimed
-            yield Claim(statement, bool(low <= values.min() and values.max() <= high), measured.format(values.min(), values.max()))
-        if column == "tetrahedra":
-            yield Claim("tetrahedra entered grow in proportion to the hand's path, to 10 %", bool(found.max() <= 1.1 * found.min()),
-                        f"{found.min():.3g} to {found.max():.3g} per voxel of path")
+            least, most = values.min(), values.max()
+            yield PAGE.claim(name, low <= least and most <= high, least=least, most=most)
 
 
 def span(values):
@@ -368,38 +332,29 @@ def span(values):
     return f"{values.min():.0f} to {values.max():.0f} ns" if len(values) else "not measured"
 
 
-def paragraphs_of(table, own_volumes):
+def text_of(table, own_volumes):
     def mean(part, method="exact"):
         return span(table.where(part=part, method=method)["mean_ns"])
 
-    rows, own, segments = table.where(part="explicit"), "", ""
+    rows, sections = table.where(part="explicit"), ["", *(["growth"] if own_volumes else []), "explicit"]
+    values = {"by_speed": mean("speed"), "by_speed_smooth": mean("speed", "smooth"), "by_voxels": mean("voxels-per-mm"),
+              "by_voxels_smooth": mean("voxels-per-mm", "smooth"), "state": rows[0]["state_bytes"]}
     if own_volumes:
         found, edges = crossings(table), table.where(part="size").distinct("size")
         moved = table.where(part="noise", method="exact")["tetrahedra_per_update"]
-        own = f"""
-        The cost is in the tetrahedra passed: {found.min():.2f} to {found.max():.2f} of them per voxel of path at every speed. With the
-        size of the volume, from {edges[0]} to {edges[-1]} samples: {mean("size")}. With noise added to the ball, up to all of its range:
-        {mean("noise")}, while the proxy moves through {moved.max():.2g} to {moved.min():.2g} tetrahedra per update."""
+        values.update(fewest=found.min(), most=found.max(), small=edges[0], large=edges[-1], by_size=mean("size"), by_noise=mean("noise"),
+                      calm=moved.max(), noisy=moved.min())
     if not numpy.isnan(rows["explicit_segment_ns"]).all():
-        segments = f"""
-        Once the hierarchy is built, an explicit proxy pays at least one segment query per tick, {span(rows["explicit_segment_ns"])} here,
-        beside {span(rows["mean_ns"])} for a whole update of ours."""
-    return paragraphs(f"""
-        How the time of an update grows, at {RATE} Hz, in contact {DEPTH:g} mm of hand below the surface. Otherwise the hand moves at
-        {SPEED} mm/s and {VOXELS} voxels per mm. The mean with the speed of the hand: {mean("speed")}, on the smooth field {mean("speed",
-        "smooth")}. With the voxels per millimetre of hand: {mean("voxels-per-mm")}, on the smooth field {mean("voxels-per-mm", "smooth")}.
-
-        {own}The explicit approach extracts the whole isosurface (VTK, flying edges) and builds a bounding volume hierarchy on it (Embree),
-        before the first touch and again when the level changes. Both use all processors, and the fastest of three runs counts. Our approach
-        does nothing before, and keeps {rows[0]["state_bytes"]:g} bytes. Here the level jumps by a tenth of the data's range, to and fro.
-        Both approaches need the samples in memory.{segments}""")
+        sections.append("segments")
+        values.update(segment=span(rows["explicit_segment_ns"]), update=span(rows["mean_ns"]))
+    return PAGE.text(*sections, **values)
 
 
 def run(options):
-    plan, own_volumes = plan_of(options.quick), not options.subjects
+    plan, own_volumes = QUICK if options.quick else FULL, not options.subjects
     if not own_volumes:
         options.note("a given volume has one size and its own noise: those parts are left out")
-    makers = by_hand(plan, options) + (by_body(plan, options) if own_volumes else []) + by_approach(plan, options)
-    table = Table(row for rows, *case in options.each(makers) for row in rows(*case))
-    return Result(table, [growth_figure(table), explicit_figure(table)], list(claims_of(table, own_volumes)),
-                  paragraphs_of(table, own_volumes), Table(summary_of(table)))
+    parts = by_hand(plan, options), by_body(plan, options) if own_volumes else (), by_approach(plan, options)
+    table = Table(row for rows in options.each(itertools.chain(*parts)) for row in rows)
+    return Result(table, [growth_figure(table), explicit_figure(table)], claims_of(table, own_volumes), text_of(table, own_volumes),
+                  summary_of(table))

@@ -1,8 +1,4 @@
-"""stability: how stiff may a surface be before it buzzes?
-
-A simulated device and hand in a closed loop with the renderer, pressed into a surface and held there, or with the handle held straight by a
-rotational spring. A loop that does not come to rest is in a limit cycle, felt as buzzing.
-"""
+"""stability: how stiff may a surface be before it buzzes? A loop that does not come to rest is in a limit cycle, felt as buzzing."""
 
 import copy
 import dataclasses
@@ -14,12 +10,12 @@ import palpate
 from scipy.spatial.transform import Rotation
 
 from . import figures
-from .experiment import Claim, Figure, Result, Table, in_parallel, largest, paragraphs
+from .experiment import Page, Result, Table, in_parallel, largest
 from .human import RATE, Human, trembling
 from .notice import FORCE, SLOW, above
 from .subjects import synthetic
 
-TITLE = "How stiff may a surface be before it buzzes?"
+PAGE = Page(__name__)
 SECONDS = 4  # held for; the last second counts
 LARGEST = 3.0  # [N/mm] that is tried
 LEAST_STEP, LEAST_ANGLE = 0.01, 0.02  # [mm], [degrees] the least that a step counts for
@@ -43,11 +39,9 @@ class Plan:
     bound_parts: list  # of the theory's bound of rotational stiffness
 
 
-def plan_of(quick):
-    if quick:
-        return Plan([250, 1000], [0, 0.1], [0.5, LARGEST], [0.5, 0.8, 0.9, 1.25, 2])
-    return Plan([250, 500, 1000, 2000, 4000], [0, 0.01, 0.03, 0.1], [0.1 * i for i in range(1, 30)] + [LARGEST],
-                [0.05 * i for i in range(2, 51)])
+QUICK = Plan([250, 1000], [0, 0.1], [0.5, LARGEST], [0.5, 0.8, 0.9, 1.25, 2])
+FULL = Plan([250, 500, 1000, 2000, 4000], [0, 0.01, 0.03, 0.1], [0.1 * i for i in range(1, 30)] + [LARGEST],
+            [0.05 * i for i in range(2, 51)])
 
 
 def yes(held):
@@ -206,9 +200,7 @@ def map_figure(table, plan):
         axes.grid(False)
     panels[0].set_ylabel("stiffness [N/mm]")
     drawn.colorbar(image, ax=panels, label="movement, peak to peak [mm]")
-    return Figure("", f"""How far the device goes on moving when a light hand presses and holds (simulated {MAP_PROFILE}, no friction in its
-        mechanics), for encoder steps of different size: white is rest, dark a limit cycle. Below the vermilion line it moves by two encoder
-        steps at most.""", drawn)
+    return PAGE.figure(drawn)
 
 
 def profile_figure(table, plan):
@@ -218,9 +210,7 @@ def profile_figure(table, plan):
         figures.number_map(axes, stable, PROFILES, [f"{rate / 1000:g}" for rate in plan.rates], 1.6 * LARGEST, "{:.1f}", 6)
         axes.set_title(title.replace(", ", ",\n"), fontsize=7.5)
         axes.set_xlabel("rate [kHz]")
-    return Figure("profiles", """The largest stiffness up to 3 N/mm at which a simulated device in a light hand comes to rest. It has its
-        own encoders and delay, with its friction and without it, on the linear and on the smooth field. Friction stills small limit
-        cycles.""", drawn)
+    return PAGE.figure(drawn, "profiles")
 
 
 def rotation_figure(table, plan):
@@ -238,93 +228,55 @@ def rotation_figure(table, plan):
         figures.ticks(axes.xaxis, kilohertz)
     panels[0].set_ylabel("stiffness [N mm/rad]")
     figures.label_ends(panels[2])
-    return Figure("rotation", """The largest rotational stiffness at which a simulated device with torque in a light hand comes to rest, of
-        those tried up to 2.5 times the bound of the theory. Left: without delay, friction and steps, where the bound is the dashed one.
-        Middle: with their delay alone. Right: as they are. Friction stills every case that was tried.""", drawn)
+    return PAGE.figure(drawn, "rotation")
 
 
 def claims_of_rest(table, plan):
     rated = table.where(part="rated")
-    yield Claim("every profile comes to rest at its rated stiffness at 1 kHz, to two encoder steps",
-                all(row["at_rest"] == row["in_contact"] == "yes" for row in rated),
-                f"at most {largest(rated['position_peak_to_peak_mm']):.2g} mm peak to peak, {len(rated)} profiles")
+    yield PAGE.claim("rated", all(row["at_rest"] == row["in_contact"] == "yes" for row in rated),
+                     most=largest(rated["position_peak_to_peak_mm"]), profiles=len(rated))
     yield from claims_of_trembling(table)
     found = compared(table, plan, *list(PARTS)[:2], 2)
     more, same, less = counted(found)
     losses = "".join(f"{name} at {rate:g} Hz: {smooth:.1f} against {linear:.1f} N/mm; "
                      for name, rate, linear, smooth in found if smooth < linear)
-    yield Claim("on the smooth field every profile comes to rest at least as stiff as on the linear one, at every rate", less == 0,
-                f"{losses}as stiff in {same} cases, stiffer in {more}")
+    yield PAGE.claim("smooth", less == 0, losses=losses, same=same, more=more)
     corner = table.where(part="map", rate_hz=250, stiffness_N_mm=LARGEST, encoder_step_mm=0)[0]  # the map can tell
-    yield Claim(f"a loop that must buzz does: {MAP_PROFILE}, 3 N/mm at 250 Hz, no friction", corner["at_rest"] == "no",
-                f"{corner['position_peak_to_peak_mm']:.3g} mm peak to peak")
+    yield PAGE.claim("buzz", corner["at_rest"] == "no", moved=corner["position_peak_to_peak_mm"])
 
 
 def claims_of_trembling(table):
     rows = table.where(part="trembling", rate_hz=1000)
     most = largest(rows["above_20_hz_percent"])
     if rows:
-        yield Claim("in the hand of a modelled person who trembles, at its rated stiffness and 1 kHz, no profile adds more than "
-                    f"the {FORCE:g} % of force above 20 Hz that people notice", most < FORCE and all(row["in_contact"] == "yes" for row in rows),
-                    f"at most {most:.2g} %, {len(rows)} profiles")
+        yield PAGE.claim("trembling", most < FORCE and all(row["in_contact"] == "yes" for row in rows), most=most, profiles=len(rows))
 
 
 def claims_of_rotation(table):
     """Whether all cases of a part so near the bound are, or are not, at rest."""
-    for part, low, high, rests, statement in (
-            ("rotation, ideal", 0, 0.9, "yes", "without delay, friction and steps a handle comes to rest at 0.9 of the rotational "
-             "stiffness that check() accepts, and below"),
-            ("rotation, ideal", 1.25, numpy.inf, "no", "and shakes at 1.25 of it, and above"),
-            ("rotation, delayed", 0, 0.8, "yes", "with its delay alone it comes to rest up to 0.8 of damping / (period / 2 + delay)"),
-            ("rotation, delayed", 1.25, numpy.inf, "no", "and shakes at 1.25 of that, and above"),
-            ("rotation", 0, 0.8, "yes", "as it is, with friction, it comes to rest up to 0.8 of that")):
+    for name, part, low, high in (
+            ("ideal, rest", "rotation, ideal", 0, 0.9), ("ideal, shakes", "rotation, ideal", 1.25, numpy.inf),
+            ("delayed, rest", "rotation, delayed", 0, 0.8), ("delayed, shakes", "rotation, delayed", 1.25, numpy.inf),
+            ("friction, rest", "rotation", 0, 0.8)):
         rows = table.where(part=part).only(lambda row: low - 1e-9 <= row["part_of_bound"] <= high + 1e-9)
-        moved = rows["turn_peak_to_peak_deg"]
-        said = f"at most {moved.max():.3g}" if rests == "yes" else f"at least {moved.min():.3g}"
-        yield Claim(statement, rows.distinct("at_rest") == [rests], f"{said} degrees peak to peak in {len(rows)} cases")
+        moved, rests = rows["turn_peak_to_peak_deg"], name.endswith("rest")
+        said = f"at most {moved.max():.3g}" if rests else f"at least {moved.min():.3g}"
+        yield PAGE.claim(name, rows.distinct("at_rest") == [yes(rests)], moved=said, cases=len(rows))
 
 
-def paragraphs_of(table, plan, subject):
+def text_of(table, plan, subject):
     slow, fast = (largest_stable(table.where(part=part, encoder_step_mm=plan.encoders[0]), rate)
                   for part, rate in (("map", plan.rates[0]), ("fastest", FASTEST)))
-    parts = list(PARTS)[2:]
-    rest, wide = counted(compared(table, plan, *parts, 2)), compared(table, plan, *parts, 10)
-    later, same, earlier = counted(wide)
-    most = max(max(linear - smooth for *_, linear, smooth in wide), 0)
-    return paragraphs(f"""
-        A simulated device in a light hand is pressed into the volume {subject.name} and held for {SECONDS} s, of which the last second
-        counts. It is at rest if its position moves by two encoder steps at most, as the encoders tell it. A step counts for {LEAST_STEP:g}
-        mm at least. Stiffnesses up to {LARGEST:g} N/mm were tried. The first rows of the table have {MAP_PROFILE} without friction in its
-        mechanics, for each encoder step, and the others each profile as it is.
-
-        At {FASTEST:g} Hz, without friction and encoder steps, {MAP_PROFILE} is at rest up to {fast:.1f} N/mm, beside {slow:.1f} N/mm at
-        {plan.rates[0]:g} Hz. In the study of Choi and Tan (2004), people held a real device. The largest stiffness of a virtual texture
-        that felt clean to them rose from 0.325 N/mm at 250 Hz to 0.904 N/mm at 40 kHz. Rest on a sphere is a weaker demand than a clean
-        texture.
-
-        Without friction nothing holds a hand sideways, and the smooth field has no facets to rest in. There are {sum(rest)} cases, each a
-        profile at a rate. On the smooth field it comes to rest up to a larger stiffness than on the linear field in {rest[0]}, and up to a
-        smaller one in {rest[2]}. Movement by more than 10 steps begins at the same stiffness in {same} of them, later in {later}, and
-        earlier in {earlier}, by {most:.1f} N/mm at most.
-
-        For rotation, the light hand turns the handle by 20 degrees against a rotational spring that holds it straight. Rest is as above,
-        and a step of angle counts for {LEAST_ANGLE:g} degrees at least. Without a delay, check() accepts 2 x rate x damping. A handle
-        begins to shake there, because its inertia is large against damping times period. A delay lowers that to damping / (period / 2 +
-        delay), and check() includes it. Without friction, a device with a delay of half a period takes half of the stiffness. Friction of
-        the wrist, which is assumed, stills such shaking.
-
-        A person does not hold still. In the part trembling, the hand has the mass, damping, stiffness and tremor of the experiment
-        recorded, and presses each profile at its rated stiffness with its target {PRESSED} mm below the surface. The force above {SLOW} Hz
-        is at most {largest(table.where(part="trembling")["above_20_hz_percent"]):.2g} % of the push at any rate.
-
-        Everything here is simulated, and nothing but the tremor is random, so there are no intervals. The profiles' masses, frictions and
-        delays are partly assumed (docs/devices/simulated.md), so the shape of the map is worth more than its numbers.""")
+    rests, moves = (compared(table, plan, *list(PARTS)[2:], steps) for steps in (2, 10))
+    return PAGE.text(volume=subject.name, slow=slow, fast=fast, slowest=plan.rates[0], cases=len(rests), rest=counted(rests),
+                     wide=counted(moves), most=max(0, *(linear - smooth for *_, linear, smooth in moves)),
+                     tremor=largest(table.where(part="trembling")["above_20_hz_percent"]))
 
 
 def run(options):
-    plan = plan_of(options.quick)
+    plan = QUICK if options.quick else FULL
     subject = options.subjects[0] if options.subjects else synthetic("sphere")
     table = measured(cases_of(subject, plan), options)
     return Result(table, [map_figure(table, plan), profile_figure(table, plan), rotation_figure(table, plan)],
-                  [*claims_of_rest(table, plan), *claims_of_rotation(table)], paragraphs_of(table, plan, subject),
-                  Table(summary_of(table, plan)))
+                  [*claims_of_rest(table, plan), *claims_of_rotation(table)], text_of(table, plan, subject),
+                  summary_of(table, plan))

@@ -8,6 +8,8 @@ from typing import Callable, Optional
 import numpy
 import palpate
 
+from .experiment import known
+
 
 @dataclasses.dataclass(frozen=True)
 class Subject:
@@ -45,6 +47,9 @@ class Subject:
         """How far densities are in the solid, as a part of the data's range."""
         return self.sign * (density - self.isovalue) / self.field.range
 
+    def excess_at(self, points):
+        return self.excess(self.field.value(points))
+
 
 @dataclasses.dataclass(frozen=True)
 class Contestant:
@@ -70,20 +75,15 @@ CONTESTANTS = {c.name: c for c in (*(Contestant(name, name) for name in palpate.
                                    Contestant("smooth", "exact", "cubic"))}
 GUARDED = ("exact", "paper", "smooth")  # those that must never be in the solid
 
-# Real volumes by name: file, level that is felt, SHA-256 of the file, where it comes from.
-UNC = "Stanford volume data archive (University of North Carolina), CThead"
-VOLVIS = "volume library of S. Roettger, from the VolVis distribution (SUNY Stony Brook)"
-VISIBLE_HUMAN = "slices 0 to 233 of github.com/GalMunGral/visible-human-volume, from the Visible Human Project"
-DAISY = "github.com/abelperezd/Volume-Rendering-with-Ray-Marching, Daisy.pvm (O. Ronneberger, Freiburg)"
-ORANGE = "github.com/abelperezd/Volume-Rendering-with-Ray-Marching, Orange.pvm (Lawrence Berkeley Laboratory)"
-NEURON = "github.com/RivuletStudio/rivuletpy, tests/data/test.tif.zip"
-REAL = {"lobster": ("lobster.nrrd", 35, "a23e66d340a0727aa5b7cc8cb92d903840186f5ec7128add667218fe3af681c2", VOLVIS),
-        "ct-head": ("cthead_unc.nrrd", 500, "555e214a972cf414c5f071a981a1c32e7414d143986045d70671d55ca6782035", UNC),
-        "visible-human": ("visible_human_head.nrrd", 60,
-                          "37a3db0bebd45e39f0851e1b398d1e9a83c7605a8aa0b1b68500c9632e3bc8de", VISIBLE_HUMAN),
-        "daisy-pollen": ("daisy_pollen.nrrd", 40, "ee597583263a659b06422dbc575e2b598fe5da79764e74f59bd99493f1e2e9d7", DAISY),
-        "neuron": ("neuron_confocal.nrrd", 30, "ac320986f5bf7d6797e2f1a45d3d7d9c94671c7fb760bcfb80eccd1431ac5519", NEURON),
-        "orange": ("orange.nrrd", 15, "b794c95c7359f6b9d0acb70fff720ff5d160d6a8d97872602fbfca4486a40aa0", ORANGE)}
+
+def linear(name, volume, isovalue, exact=None):
+    return Subject(name, palpate.Field(volume, interpolation="linear"), isovalue, exact)
+
+
+def cube(name, samples, isovalue, interpolation="linear", exact=None):
+    """Of a cube of samples 1 mm apart, whose middle is the origin."""
+    volume = palpate.Volume(samples, origin=[-0.5 * (len(samples) - 1)] * 3)
+    return Subject(name, palpate.Field(volume, interpolation=interpolation), isovalue, exact)
 
 
 def synthetic(specification, isovalue=None, type=None):
@@ -93,8 +93,7 @@ def synthetic(specification, isovalue=None, type=None):
         exact = scene.exact
     except ValueError:
         exact = None
-    return Subject(scene.name, palpate.Field(scene.volume, interpolation="linear"),
-                   scene.isovalue if isovalue is None else isovalue, exact)
+    return linear(scene.name, scene.volume, scene.isovalue if isovalue is None else isovalue, exact)
 
 
 def reals(names, options):
@@ -104,7 +103,7 @@ def reals(names, options):
 
 def real(name, options):
     """A real volume, or None with a note where the data folder lacks it."""
-    file, isovalue, sha256, origin = REAL[name]
+    file, isovalue, sha256, origin = (known("volumes").where(name=name)[0][column] for column in ("file", "level", "sha256", "origin"))
     path = Path(options.data or "") / file
     if not options.data or not path.exists():
         options.note(f"without the volume {name} (no data folder with {file})")
@@ -113,7 +112,7 @@ def real(name, options):
     if found != sha256:
         options.note(f"{file} is not the file that the results in docs/results were made with")
     options.used.append((file, found, origin))
-    return Subject(name, palpate.Field(palpate.load(path).volume, interpolation="linear"), isovalue)
+    return linear(name, palpate.load(path).volume, isovalue)
 
 
 def of_text(text):

@@ -49,14 +49,16 @@ def balls():
     return Body("balls", palpate.Volume((BALL_RADIUS - radius).astype(numpy.float32), [0.125] * 3, [x[0], x[0], z[0]]))
 
 
+def layered(name, rows, needle=False):
+    """rows: name, level, stiffness [N/mm], puncture force [N], and of a needle the drag [N/mm per mm]."""
+    keys = ("stiffness", "puncture_force", "drag")[:3 if needle else 2]
+    return palpate.Layers(name=name, needle=palpate.Needle() if needle else None, layers=[
+        palpate.Layer(name=layer, level=level, properties=dict(zip(keys, of))) for layer, level, *of in rows])
+
+
 def layers(needle=False, count=None):
     """The tissues, or the outermost ones; for a needle with their drag."""
-    def one(name, level, stiffness, puncture, drag):
-        return palpate.Layer(name=name, level=level, properties={
-            "stiffness": stiffness, "puncture_force": puncture, **({"drag": drag} if needle else {})})
-
-    return palpate.Layers(name="five tissues", layers=[one(name, *of) for name, of in list(TISSUES.items())[:count]],
-                          needle=palpate.Needle() if needle else None)
+    return layered("five tissues", [(name, *of) for name, of in list(TISSUES.items())[:count]], needle)
 
 
 def renderer(field, made):
@@ -70,6 +72,13 @@ def renderer(field, made):
 
 def times(count):
     return (1 + numpy.arange(count)) / RATE
+
+
+def pushed(fresh, way, depth, needle=False):
+    """(trace, force [N] against the hand) of a hand that goes straight in to these depths, by a copy of a renderer."""
+    pointing = {"pointing": numpy.tile(way.inward, (len(depth), 1))} if needle else {}
+    trace = fresh.copy().follow(times(len(depth)), way.at(depth), **pointing)
+    return trace, -trace["force"] @ way.inward
 
 
 def thinned(depth, is_apart, wanted=()):

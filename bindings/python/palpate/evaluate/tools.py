@@ -1,10 +1,5 @@
-"""tools: does any point of a tool go through?
+"""tools: does any point of a tool go through? Rigid tools in six degrees of freedom, with a penalty method beside the exact one."""
 
-Rigid tools in six degrees of freedom: at rest against closed forms, a peg in its hole, and wild hands, with a penalty method beside the
-exact one.
-"""
-
-import dataclasses
 import itertools
 import math
 import time
@@ -16,44 +11,36 @@ from scipy.spatial.transform import Rotation
 
 from . import figures
 from .bodies import unit
-from .experiment import GRANTED, Claim, Figure, Result, Table, at_most, in_parallel, largest, paragraphs
+from .experiment import GRANTED, Page, Result, Table, in_parallel, largest
+from .subjects import cube
 
-TITLE = "Does any point of a tool go through?"
+PAGE = Page(__name__)
 WALL = 14.0  # [mm] radius of the shell
 LEAST = 100  # ticks of a hand in the shell, so that it gets to the wall
-MOST_JUDGED = 60  # chords per pose
+MOST_JUDGED, CHUNK = 60, 400_000  # chords per pose, and at once
 PLACES, FINEST = 8, 1e-4  # on a chord: where it is looked at first, and the last step as a part of it
 STRAIGHT = Rotation.from_quat([0, 0, 0, 1])
 
 
-@dataclasses.dataclass
-class Scene:
-    """On the smooth field; a voxel is a mm. wall: radius [mm] of a closed shell, in which the tool starts and stays."""
-
-    name: str
-    field: palpate.Field
-    isovalue: float
-    wall: float = 0
-
-    def excess(self, points):
-        """[range] in the solid."""
-        return (self.field.value(points) - self.isovalue) / self.field.range
-
-
-def sampled(size, density):
-    """Samples of a function of physical space, whose middle is the origin."""
+def sampled(name, size, density, isovalue):
+    """On the smooth field, of a function of physical space."""
     at = numpy.arange(size) - 0.5 * (size - 1)
     z, y, x = numpy.meshgrid(at, at, at, indexing="ij")
-    return palpate.Field(palpate.Volume(density(x, y, z).astype(numpy.float32), origin=[at[0]] * 3))
+    return cube(name, density(x, y, z).astype(numpy.float32), isovalue, "cubic")
 
 
 def hostile_scenes(seed):
     """White noise, grains of salt, and a ball's shell, 1.5 voxels thick."""
     noise = numpy.random.default_rng([seed, 0]).uniform(0, 1, (32, 32, 32))
     salt = 255 * (numpy.random.default_rng([seed, 1]).uniform(0, 1, (32, 32, 32)) < 0.02)
-    yield Scene("noise", sampled(32, lambda x, y, z: noise), 0.55)
-    yield Scene("salt", sampled(32, lambda x, y, z: salt), 60)
-    yield Scene("shell", sampled(40, lambda x, y, z: 1.5 - abs(numpy.sqrt(x * x + y * y + z * z) - WALL)), 0.75, WALL)
+    yield sampled("noise", 32, lambda x, y, z: noise, 0.55)
+    yield sampled("salt", 32, lambda x, y, z: salt, 60)
+    yield sampled("shell", 40, lambda x, y, z: 1.5 - abs(numpy.sqrt(x * x + y * y + z * z) - WALL), 0.75)
+
+
+def is_closed(scene):
+    """Whether the tool starts inside a shell, and stays there."""
+    return scene.name == "shell"
 
 
 def tools_of():
@@ -70,7 +57,7 @@ def tools_of():
 # torque the rotation between them times the gyration squared.
 
 def plane():
-    return Scene("plane", sampled(40, lambda x, y, z: -z), 0)
+    return sampled("plane", 40, lambda x, y, z: -z, 0)
 
 
 def at_rest(name, parameter, scene, tool, position, turn, force, torque):
@@ -118,7 +105,7 @@ def levers():
 def spheres():
     """A ball pressed onto a ball, whose density falls with the square of the distance, so that the smooth field's surface is a ball, too:
     the force goes through both middles. Between points a ball sinks by at most the parameter."""
-    scene = Scene("ball", sampled(40, lambda x, y, z: -(x * x + y * y + z * z)), -144)
+    scene = sampled("ball", 40, lambda x, y, z: -(x * x + y * y + z * z), -144)
     bottom = palpate.cast_rays(scene.field, scene.isovalue, [[0, 0, 16.0]], [[0, 0, 8.0]])[0][0, 2]
     radius, spacing, depth = 3, 0.15, 2
     tool = palpate.Tool.named(f"sphere:{radius}", spacing)
@@ -142,7 +129,7 @@ def greatest_on_chords(scene, starts, ends):
     than is known already."""
     along = ends - starts
     parts = numpy.arange(PLACES + 1) / PLACES
-    excess = scene.excess((starts[:, None] + parts[:, None] * along[:, None]).reshape(-1, 3)).reshape(len(starts), -1)
+    excess = scene.excess_at((starts[:, None] + parts[:, None] * along[:, None]).reshape(-1, 3)).reshape(len(starts), -1)
     best, most = parts[excess.argmax(axis=1)], excess.max(axis=1)
     reach = steepest(scene.field) * numpy.linalg.norm(along, axis=1) / (2 * PLACES)
     open_ = most + reach > most.max()
@@ -152,7 +139,7 @@ def greatest_on_chords(scene, starts, ends):
         middle = best
         for side in (-step, step):
             part = middle + side
-            here = numpy.where((part >= 0) & (part <= 1), scene.excess(starts + part[:, None] * along), -numpy.inf)
+            here = numpy.where((part >= 0) & (part <= 1), scene.excess_at(starts + part[:, None] * along), -numpy.inf)
             best, most = numpy.where(here > most, part, best), numpy.maximum(most, here)
         step *= 0.5
     return max(known, float(most.max(initial=-numpy.inf)))
@@ -195,11 +182,11 @@ def followed(scene, tool, hands, turns, method="exact"):
     return path, 1e6 * (time.perf_counter() - begun) / len(hands)
 
 
-def judged(scene, tool, hands, turns, chunk=400_000):
+def judged(scene, tool, hands, turns):
     """(path, verdict) of a tool that starts at the first hand, in free space."""
     path, update_us = followed(scene, tool, hands, turns)
     starts, ends = chords_of(tool, path)
-    parts = [slice(i, i + chunk) for i in range(0, len(starts), chunk)]
+    parts = [slice(i, i + CHUNK) for i in range(0, len(starts), CHUNK)]
     worst = in_parallel(lambda part: greatest_on_chords(scene, starts[part], ends[part]), parts)
     now, before = distances(tool, path, hands, turns)
     known = ~path["recovering"][:-1]
@@ -221,7 +208,7 @@ def peg(radius, length):
 
 def fit(quick):
     """The hole is along z, of 5 mm radius, up to z = 8."""
-    scene = Scene("hole", sampled(48, lambda x, y, z: numpy.minimum(numpy.hypot(x, y) - 5, 8 - z)), 0)
+    scene = sampled("hole", 48, lambda x, y, z: numpy.minimum(numpy.hypot(x, y) - 5, 8 - z), 0)
     tool, ticks = peg(4.75, 10), 150 if quick else 3000
     i = numpy.arange(3 * ticks + 1)
     t, phase = i / ticks, 0.02 * i
@@ -283,14 +270,18 @@ def points_at(tool, path, ticks):
         yield numpy.einsum("tij,pj->tpi", turn, tool.points) + path["position"][part][:, None]
 
 
+def farthest(tool, path, ticks):
+    """[mm] Of all points of a tool in some ticks, the farthest from the middle."""
+    return numpy.concatenate([numpy.linalg.norm(points, axis=2).max(axis=1) for points in points_at(tool, path, ticks)])
+
+
 def deepest(scene, tool, path, ticks):
-    """[voxel] How deep the deepest point is, by the field's slope, at most as deep as its excess could be; in the shell,
-    beyond its inner side."""
+    """[voxel] How deep the deepest point is, by the field's slope, at most as deep as its excess could be; in the shell, beyond its inner
+    side."""
+    if is_closed(scene):
+        return max(0.0, farthest(tool, path, ticks).max() - (WALL - 0.75))
     most = 0.0
     for points in points_at(tool, path, ticks):
-        if scene.wall:
-            most = max(most, numpy.linalg.norm(points, axis=2).max() - (scene.wall - 0.75))
-            continue
         flat = points.reshape(-1, 3)
         excess = scene.field.value(flat) - scene.isovalue
         flat, excess = flat[excess > 0], excess[excess > 0]
@@ -299,16 +290,11 @@ def deepest(scene, tool, path, ticks):
     return most
 
 
-def through(scene, tool, path):
-    """In how many ticks a point is beyond the wall."""
-    return sum(int((numpy.linalg.norm(points, axis=2).max(axis=1) > scene.wall).sum())
-               for points in points_at(tool, path, numpy.arange(1, len(path["position"])))) if scene.wall else 0
-
-
 def verdict_of(scene, method, tool, hand, turn):
-    """On one hand."""
+    """On one hand. gone: in how many ticks a point is beyond the wall."""
     path, found = judged(scene, tool, hand, turn) if method == "exact" else followed(scene, tool, hand, turn, method)
-    return {"ticks": len(hand) - 1, "touching": numpy.count_nonzero(path["contacts"][1:]), "gone": through(scene, tool, path),
+    gone = (farthest(tool, path, numpy.arange(1, len(hand))) > WALL).sum() if is_closed(scene) else 0
+    return {"ticks": len(hand) - 1, "touching": numpy.count_nonzero(path["contacts"][1:]), "gone": int(gone),
             "deepest_voxel": deepest(scene, tool, path, numpy.arange(1, len(hand), 64 if method == "exact" else 1)),
             **(found if isinstance(found, dict) else {"update_mean_us": found})}
 
@@ -330,8 +316,8 @@ def hostile_row(scene, method, name, tool, hands, counts):
 
 def counts_of(scene, ticks, seeds):
     """Ticks of each hand. A hand without ticks is left out."""
-    return [max(LEAST if scene.wall else 0, len(range(part, ticks, seeds))) for part in range(seeds)
-            if scene.wall or part < ticks]
+    counts = [len(range(part, ticks, seeds)) for part in range(seeds)]
+    return [max(LEAST, count) for count in counts] if is_closed(scene) else [count for count in counts if count]
 
 
 def hostile(options):
@@ -339,8 +325,8 @@ def hostile(options):
     hands = {}
     for scene, (name, tool) in options.each(itertools.product(hostile_scenes(options.seed), tools_of()), 0.05):
         if scene.name not in hands:
-            start = (0.0, 0, 0) if scene.wall else (0.0, 0, 40)
-            hands[scene.name] = [wild_hand(numpy.random.default_rng([options.seed, 2 + part]), count, 2 * scene.wall or 24, start)
+            start, radius = ((0.0, 0, 0), 2 * WALL) if is_closed(scene) else ((0.0, 0, 40), 24)
+            hands[scene.name] = [wild_hand(numpy.random.default_rng([options.seed, 2 + part]), count, radius, start)
                                  for part, count in enumerate(counts_of(scene, ticks, options.seeds))]
         for method, wanted in (("exact", ticks), ("penalty", penalty_ticks)):
             yield hostile_row(scene, method, name, tool, hands[scene.name], counts_of(scene, wanted, options.seeds))
@@ -367,9 +353,7 @@ def hostile_figure(table):
         axes.set(title=name, xscale="log", xlabel="points of the tool")
     panels[0].set_ylabel("deepest point [voxel]")
     figures.label_ends(panels[2])
-    return Figure("", """Depth of the deepest point of a tool, for tools of more and more points (the scalpel has 528), in three scenes. In
-        noise and salt, depths are cut off at 10 voxels. In the shell, depth counts from the ideal inner radius, which the smooth field
-        moves by up to 0.06 voxel. With the exact method, no point is in the solid by more than 1e-9 of the range.""", drawn)
+    return PAGE.figure(drawn)
 
 
 def lever_figure(table):
@@ -380,8 +364,7 @@ def lever_figure(table):
     axes.text(0.55, rows["torque_nmm"][-1] * 0.45, "closed form (grey)\nrendered (circles)", fontsize=7.5)
     axes.set(title="the torque of a lever is that of the closed form", xlabel="turn of the hand [rad]", ylabel="torque [N mm]",
              xlim=(0, None), ylim=(0, None))
-    return Figure("lever", """A rod on its end, its middle held on the plane and turned: torque in closed form (grey, wide) and as rendered
-        (circles).""", drawn)
+    return PAGE.figure(drawn, "lever")
 
 
 def claims_of(table):
@@ -389,51 +372,24 @@ def claims_of(table):
     exact = table.where(part="hostile", method="exact")
     force, torque = largest(rest["force_off_share"]), largest(rest["torque_off_share"])
     excess, shell = exact["worst_excess_of_range"].max(), exact.where(scene="shell")
-    gone, ticks = int((shell["through_share"] @ shell["ticks"]).round()), int(shell["ticks"].sum())
-    return [
-        Claim("force and torque of a box on a plane, a rod on its end and a ball on a ball are within 1 % of the closed form",
-              force <= 0.01 and torque <= 0.01, f"at most {100 * force:.2g} % and {100 * torque:.2g} % off"),
-        Claim("a peg with a quarter of a voxel around it goes into its hole, can be wiggled, and comes out, never in the solid",
-              bool(fitted["lowest_mm"] < -3.5 and fitted["end_mm"] > 19 and fitted["worst_excess_of_range"] <= GRANTED),
-              "from 20 to {lowest_mm:.2f} and back to {end_mm:.2f} mm, at most {worst_excess_of_range:.1e} of the range".format(**fitted)),
-        Claim("no point of a tool is anywhere on its way more than 1e-9 of the range in the solid", bool(excess <= GRANTED),
-              f"at most {excess:.1e} on {int(exact['chords'].sum()):,} chords"),
-        Claim("no point of a tool ever gets through a closed shell of 1.5 voxels, which every tool touches",
-              gone == 0 and bool(shell["touching_share"].all()),
-              f"{gone:,} of {ticks:,} ticks; in contact in at least {100 * shell['touching_share'].min():.2g} % of a tool's ticks"),
-        at_most(1e-10, exact["worst_growth_voxel"], "the distance to the hand never grows in a tick", "at most by {:.1e} voxel")]
+    gone, touching = int((shell["through_share"] @ shell["ticks"]).round()), shell["touching_share"]
+    yield PAGE.claim("rest", force <= 0.01 and torque <= 0.01, force=100 * force, torque=100 * torque)
+    yield PAGE.claim("fit", fitted["lowest_mm"] < -3.5 and fitted["end_mm"] > 19 and fitted["worst_excess_of_range"] <= GRANTED, **fitted)
+    yield PAGE.claim("solid", excess <= GRANTED, excess=excess, chords=int(exact["chords"].sum()))
+    yield PAGE.claim("shell", gone == 0 and touching.all(), gone=gone, ticks=int(shell["ticks"].sum()), touching=100 * touching.min())
+    yield PAGE.at_most(1e-10, exact["worst_growth_voxel"], "growth")
 
 
-def paragraphs_of(table, seeds):
-    rest, fitted = table.where(part="equilibrium"), table.where(part="fit")[0]
+def text_of(table, seeds):
+    fitted = table.where(part="fit")[0]
     exact, penalty = (table.where(part="hostile", method=method) for method in ("exact", "penalty"))
-    return paragraphs(f"""
-        Tools at rest are compared with closed forms, at a stiffness of 1 N/mm: a box on a plane, a rod on its end and a ball on a ball.
-        The points of a ball lie up to {largest(rest.where(scene="ball on a ball")["parameter"]):.3f} mm deeper than a true ball's surface
-        would. A peg of {fitted["points"]} points with a quarter of a voxel around it goes in and out.
-        {100 * fitted["unfinished_share"]:.2g} % of its updates go on in the next tick, and none takes more than {fitted["rounds_most"]}
-        rounds.
-
-        Wild hands from {seeds} seeds, up to 3 m/s and 20 rad/s, carry tools of 1 to {largest(exact["points"]):.0f} points and a scalpel
-        through white noise, salt and a closed shell of 1.5 voxels, up to {largest(exact["ticks"]):.0f} ticks each. At most
-        {100 * largest(exact["unfinished_share"]):.1f} % of an exact tool's updates go on in the next tick.
-
-        The penalty method is that of McNeely, Puterbaugh and Troy (1999) with the quasi-static equilibrium of Wan and McNeely (2003), up
-        to {largest(penalty["ticks"]):.0f} ticks each. It has a point beyond the shell in up to
-        {100 * largest(penalty["through_share"]):.0f} % of the ticks, and points up to {largest(penalty["deepest_voxel"]):.1f} voxels deep.
-        What it lets through depends on its stiffness and on the shell's thickness. Nothing here says how real tools and tissues feel.
-        Ticks and chords of one hand depend on each other, so their numbers give no bound.
-
-        Published figures to stand beside, with other scenes and machines, from abstracts that give no other numbers. Ortega et al. 2007:
-        god-object on meshes of up to tens of thousands of triangles, never inside: the force in a few microseconds, the motion of the
-        god-object in a few milliseconds (3.2 GHz Xeon). Xu and Barbic 2017: points against a signed distance field with continuous
-        collision detection: correct at high velocities, where discrete detection is not. The penalty method here is our own, and evaluates
-        the field for each point, where a voxmap would be faster. Times are means of all ticks of the wild hands, and contain the copying
-        of the results.""")
+    return PAGE.text(deeper=largest(table.where(scene="ball on a ball")["parameter"]), fitted=fitted, seeds=seeds,
+                     fit_unfinished=100 * fitted["unfinished_share"], points=largest(exact["points"]), ticks=largest(exact["ticks"]),
+                     unfinished=100 * largest(exact["unfinished_share"]), penalty_ticks=largest(penalty["ticks"]),
+                     through=100 * largest(penalty["through_share"]), deepest=largest(penalty["deepest_voxel"]))
 
 
 def run(options):
     options.refuse_volumes("tools has scenes")
     table = Table([*boxes(), *levers(), *spheres(), fit(options.quick), *hostile(options)])
-    return Result(table, [hostile_figure(table), lever_figure(table)], claims_of(table), paragraphs_of(table, options.seeds),
-                  Table(summary_of(table)))
+    return Result(table, [hostile_figure(table), lever_figure(table)], claims_of(table), text_of(table, options.seeds), summary_of(table))

@@ -1,8 +1,4 @@
-"""walk-through: how does a proxy move in an update, step by step? (Corenthy et al. 2012, Fig. 5 and 6)
-
-One update in a volume that is the same in every slice. The motion stays in a plane of samples, so the cut through that plane shows all of
-it.
-"""
+"""walk-through: how does a proxy move in an update, step by step? (Corenthy et al. 2012, Fig. 5 and 6)"""
 
 import dataclasses
 import itertools
@@ -12,10 +8,10 @@ import numpy
 import palpate
 
 from . import figures
-from .experiment import GRANTED, Claim, Figure, Result, Table, at_most, paragraphs
-from .subjects import CONTESTANTS, GUARDED, Subject
+from .experiment import GRANTED, Figure, Page, Result, Table
+from .subjects import CONTESTANTS, GUARDED, Subject, linear
 
-TITLE = "How does a proxy move, step by step?"
+PAGE = Page(__name__)
 SLICES = 3  # the middle one is shown
 CROSS, GOAL = (palpate.STEP_KINDS.index(kind) for kind in ("cross", "goal"))  # the other kinds move the SCP
 
@@ -49,7 +45,7 @@ def wall_cut():
     rows = numpy.arange(7)[:, None]
     samples = numpy.floor(numpy.clip(50 + 22 * (ground - rows), 0, 100) + 0.5)
     samples[:, 8] = numpy.where(rows[:, 0] <= 5, 96, 20)
-    subject = Subject("wall", palpate.Field(extruded(samples, 1, 1), interpolation="linear"), 50)
+    subject = linear("wall", extruded(samples, 1, 1), 50)
     return Cut(subject, 1, (0, 0), (10, 6), *map(numpy.array, ([0.6, 5.8, 1], [0.7, 3.7, 1], [7.7, 0.3, 1])))
 
 
@@ -97,16 +93,13 @@ class Walk:
         self.path = numpy.concatenate([[self.before], self.steps["point"]])
         self.moved = self.steps["point"][~numpy.isin(self.steps["kind"], (CROSS, GOAL))]
 
-    def excess(self, points):
-        return self.felt.excess(self.felt.field.value(points))
-
     def worst(self):
         """The largest excess on the path: a hundred points of each piece."""
         share = numpy.linspace(0, 1, 101)[:, None, None]
-        return float(self.excess((self.path[:-1] + share * numpy.diff(self.path, axis=0)).reshape(-1, 3)).max())
+        return float(self.felt.excess_at((self.path[:-1] + share * numpy.diff(self.path, axis=0)).reshape(-1, 3)).max())
 
     def excess_at_end(self):
-        return float(self.excess([self.end])[0])
+        return float(self.felt.excess_at([self.end])[0])
 
 
 def rows_of(cut, walk):
@@ -143,7 +136,7 @@ def draw_field(axes, cut, felt):
     # Sixteen points per sample; the linear field's kinks are on them, the smooth field bends little between.
     x, y = (numpy.linspace(low - 0.5, high + 0.5, 16 * (high - low + 1) + 1) * step for low, high, step in zip(cut.low, cut.high, (dx, dy)))
     grid = numpy.stack([*numpy.meshgrid(x, y), numpy.full((len(y), len(x)), cut.z)], axis=-1)
-    excess = felt.excess(felt.field.value(grid.reshape(-1, 3))).reshape(len(y), len(x))
+    excess = felt.excess_at(grid.reshape(-1, 3)).reshape(len(y), len(x))
     axes.contourf(x, y, excess, [0, numpy.inf], colors=["#dbe9f6"])
     axes.contour(x, y, excess, [0], colors=[figures.BLUE], linewidths=1.8)
     at = numpy.array([(i * dx, j * dy, cut.z) for i, j in cut.samples])
@@ -184,26 +177,23 @@ def figure_of(cut, walks, suffix):
         axes.set(title=f"{walk.name} ends {place}", xlabel="x [mm]", ylabel="y [mm]" if walk is walks[0] else "", aspect="equal", xlim=x,
                  ylim=y)
         axes.grid(False)
-    return Figure(suffix, f"""{cut.subject.name}: one update of {" and ".join(walk.name for walk in walks)} in a plane cut of the lattice,
-        with the solid in blue and the density of each sample. 0 is the SCP before the update, the other numbers are its moves. Dots are
-        walls that were crossed, diamonds GOALs that are not the position of the hand.""", drawn)
+    methods = " and ".join(walk.name for walk in walks)
+    return Figure(suffix, *PAGE.text("update", volume=cut.subject.name, methods=methods), drawn)
 
 
 def claims_of(cut, walks, own_cut):
     name = cut.subject.name
     for walk in map(walks.get, GUARDED):
-        yield at_most(GRANTED, [walk.worst()], f"{name}: every SCP of {walk.name} and the path between them is outside to {GRANTED:g} of "
-                      "the data's range", f"largest excess {{:.2g}} over {len(walk.steps['kind'])} steps")
-    yield at_most(1e-9, [abs(walk.path[1:, 2] - cut.z).max() for walk in walks.values()],
-                  f"{name}: all motion stays in the plane that is shown", "farthest {:.2g} mm")
+        yield PAGE.at_most(GRANTED, [walk.worst()], "outside", volume=name, method=walk.name, steps=len(walk.steps["kind"]))
+    yield PAGE.at_most(1e-9, [abs(walk.path[1:, 2] - cut.z).max() for walk in walks.values()], "plane", volume=name)
     if own_cut:
         excess = walks["gradient"].excess_at_end()
-        yield Claim(f"{name}: gradient ends inside, by more than a tenth of the data's range", excess > 0.1, f"excess {excess:.3g}")
+        yield PAGE.claim("inside", excess > 0.1, volume=name, excess=excess)
 
 
 def run(options):
     cuts = [slice_of(subject) for subject in options.subjects] or [wall_cut()]
-    result, jumps = Result(Table(), [], [], []), ""
+    result = Result(Table(), [], [], [])
     shown = (options.method, "exact" if options.method == "gradient" else "gradient")
     for number, cut in enumerate(options.each(cuts), 1):
         walks = {name: Walk(cut, name) for name in CONTESTANTS}
@@ -213,10 +203,6 @@ def run(options):
         result.figures += [figure_of(cut, [walks[name] for name in shown], "" if number == 1 else str(number)),
                            figure_of(cut, [walks["smooth"]], "smooth" if number == 1 else f"smooth-{number}")]
         result.claims.extend(claims_of(cut, walks, not options.subjects))
-        jumps += f"""{cut.subject.name}: in one update, the hand jumps from ({cut.hip_before[0]:.2f}, {cut.hip_before[1]:.2f}) to
-            ({cut.hip[0]:.2f}, {cut.hip[1]:.2f}) mm.\n\n"""
-    result.paragraphs = paragraphs(f"""
-        {jumps}The volume is the same in every slice, so the motion stays in a plane of samples and the cut shows all of it. Each square
-        between four samples consists of four triangles with a linear density. For the smooth field, the squares lie around the samples,
-        and the density is a cubic in each triangle. Nothing here is random.""")
+        result.paragraphs += PAGE.text("jump", volume=cut.subject.name, begin=cut.hip_before, end=cut.hip)
+    result.paragraphs += PAGE.text()
     return result

@@ -1,12 +1,12 @@
 """Closed walls of any thickness, and straight lines of a hand through them."""
 
 import dataclasses
-import itertools
 
 import numpy
 import palpate
 
-from .subjects import Subject
+from .outside import corners_of
+from .subjects import cube
 
 SAMPLES = 28  # along an axis
 HALF_WIDTH = 10.5  # [voxel] of the body, the outer layer of samples included
@@ -16,30 +16,14 @@ THINNEST_WALL, THICKEST_WALL, END_IN_BODY, END_BEHIND_WALL, OFF_SURFACE = 1e-3, 
 FLATTEST = 0.2588190451025208  # cosine of 75 degrees
 
 
-def corners_of(cells):
-    """Samples at the corners of marked cells; both [x, y, z]."""
-    found = numpy.zeros(numpy.array(cells.shape) + 1, dtype=bool)
-    for corner in itertools.product((0, 1), repeat=3):
-        found[tuple(slice(o, o + n) for o, n in zip(corner, cells.shape))] |= cells
-    return found
-
-
 def full_samples(body, layers):
-    """The four samples of each face between a cell of the body and one that is not, then layer by layer the corners of every cell of the
-    body that has a full one."""
-    full = numpy.zeros([SAMPLES] * 3, dtype=bool)
-    for axis in range(3):
-        flat = numpy.moveaxis(body, axis, 0)
-        faces = numpy.pad(flat, ((1, 1), (0, 0), (0, 0)))
-        faces = faces[1:] != faces[:-1]
-        samples = numpy.moveaxis(full, axis, 0)  # a view
-        for u, v in itertools.product((0, 1), repeat=2):
-            samples[:, u:u + SAMPLES - 1, v:v + SAMPLES - 1] |= faces
+    """The corners of faces between a cell of the body and one that is not, then layer by layer those of every cell of the body that has a
+    full one."""
+    around = list(corners_of(numpy.pad(body, 1)))  # a sample is a corner of eight cells
+    full = numpy.any(around, axis=0) & ~numpy.all(around, axis=0)
     for _ in range(1, layers):
-        touched = numpy.zeros_like(body)
-        for corner in itertools.product((0, 1), repeat=3):
-            touched |= full[tuple(slice(o, o + SAMPLES - 1) for o in corner)]
-        full |= corners_of(touched & body)
+        touched = numpy.any(list(corners_of(full)), axis=0) & body
+        full |= numpy.any(list(corners_of(numpy.pad(touched, 1))), axis=0)
     return full
 
 
@@ -64,16 +48,8 @@ def closed_shell(shape, thickness, interpolation):
     centre = numpy.indices([SAMPLES - 1] * 3) + 0.5 - 0.5 * (SAMPLES - 1)
     size = abs(centre).max(axis=0) if shape == "box" else numpy.sqrt((centre**2).sum(axis=0))
     full = full_samples(size <= HALF_WIDTH, layers).transpose(2, 1, 0)
-    volume = palpate.Volume(numpy.ascontiguousarray(full * numpy.uint8(FULL)),
-                            origin=[-0.5 * (SAMPLES - 1)] * 3)
     level = across_layers(layers, 0.5 * thickness) if smooth else 1 - 0.5 * (thickness - layers + 1)
-    return Subject(shape, palpate.Field(volume, interpolation=interpolation), FULL * level)
-
-
-def candidates(random, count, size):
-    """Places in the grid [index] and directions of `count` lines, (n, 3) each."""
-    along = random.standard_normal((count, 3))
-    return random.random((count, 3)) * (size - 1), along / numpy.linalg.norm(along, axis=1, keepdims=True)
+    return cube(shape, numpy.ascontiguousarray(full * numpy.uint8(FULL)), FULL * level, interpolation)
 
 
 @dataclasses.dataclass
@@ -90,7 +66,7 @@ class Lines:
         return Lines(self.entry[rows], self.along[rows], self.wall[rows], self.end[rows])
 
 
-def lines_through(subject, outside, anywhere, count, random, draw=candidates):
+def lines_through(subject, outside, anywhere, count, random):
     """Lines at most 75 degrees off the normal where they meet the surface. A line goes through the first wall to 3 voxels behind it, or
     half the distance to the next wall, if no free path from outside leads there. With `anywhere`, lines into a body thicker than 16
     voxels, or one that a proxy may go around, end 4 voxels deep or half way through. Raises ValueError if hardly a line meets such a wall
@@ -99,8 +75,9 @@ def lines_through(subject, outside, anywhere, count, random, draw=candidates):
     while sum(len(part[0]) for part in kept) < count:
         if tried > 1000 + 100 * count:
             raise ValueError(f"{subject.name}: hardly a straight line through it meets anything solid; choose another level or volume")
-        places, along = draw(random, 2 * count + 100, numpy.asarray(subject.field.geometry.size))
-        kept.append(usable(subject, outside, anywhere, places, along))
+        along = random.standard_normal((2 * count + 100, 3))
+        places = random.random(along.shape) * (numpy.asarray(subject.field.geometry.size) - 1)
+        kept.append(usable(subject, outside, anywhere, places, along / numpy.linalg.norm(along, axis=1, keepdims=True)))
         tried += len(places)
     return Lines(*(numpy.concatenate(parts)[:count] for parts in zip(*kept)))
 
