@@ -1,0 +1,83 @@
+"""Files of kinds that other programs got wrong, by their public bug reports. Each was made by hand, or by the program that
+writes such files, and is compared with the numbers it was made of."""
+
+import struct
+
+import numpy
+import palpate
+import pytest
+
+from dicom_readers_test import frames_of
+from readers_test import SHAPE, noted, ramp, refused, save, slice_of
+
+DOSE = {"Modality": "RTDOSE", "SOPClassUID": "1.2.840.10008.5.1.4.1.1.481.2", "DoseGridScaling": 0.01, "DoseUnits": "GY",
+        "RescaleSlope": None, "RescaleIntercept": None}
+
+
+# dicompyler-core 284: offsets of a dose may be z of the patient, whichever way the patient lies.
+@pytest.mark.parametrize("first, axes, normal", ((0, (1, 1), 1), (3, (1, 1), 1), (0, (-1, 1), -1), (3, (-1, 1), 1),
+                                                 (3, (-1, -1), 1), (3, (1, -1), 1)))
+def test_planes_of_a_dose_lie_at_their_offsets_or_at_z_of_the_patient(tmp_path, first, axes, normal):
+    offsets = [first + 2.5 * i for i in range(SHAPE[0])]
+    data = frames_of(ramp("u2"), GridFrameOffsetVector=offsets, ImageOrientationPatient=[axes[0], 0, 0, 0, axes[1], 0], **DOSE)
+    loaded = palpate.load(save(tmp_path / "a", [data]))
+    assert not any("intercept, and others" in note for note in loaded.notes), loaded.notes  # a dose has its own scaling
+    for plane in range(SHAPE[0]):
+        place = (1, 2, 3 + normal * 2.5 * plane)
+        index = numpy.rint(loaded.volume.geometry.index(place)).astype(int)
+        assert numpy.allclose(loaded.volume.geometry.physical(index), place)
+        assert numpy.allclose(loaded.volume.array[index[2], index[1], index[0]], ramp("u2")[plane, 0, 0] * 0.01)
+
+
+CORONAL = {"ImageOrientationPatient": [1, 0, 0, 0, 0, -1]}
+
+
+# vtk-dicom 164: every slice has the position of the first one, or none.
+@pytest.mark.parametrize("position", ((1, 2, 3), None))
+def test_slices_without_a_place_of_their_own_are_a_stack_with_the_axes_of_their_planes(tmp_path, position):
+    slices = [slice_of(plane, i + 1, (1, 2, 3), **CORONAL) for i, plane in enumerate(ramp("i2"))]
+    for data in slices if position is None else ():
+        del data.ImagePositionPatient
+    volume = noted(save(tmp_path / "a", slices), "piled up by their numbers")
+    assert numpy.array_equal(volume.array, ramp("i2")) and volume.geometry.spacing[2] == 2
+    assert numpy.allclose(volume.geometry.direction, ((1, 0, 0), (0, 0, 1), (0, -1, 0))) and not volume.geometry.oriented
+    one = palpate.load(save(tmp_path / "b", slices[:1])).volume.geometry
+    assert numpy.allclose(one.direction, volume.geometry.direction) and one.oriented
+
+
+def test_moments_of_one_slice_stay_moments(tmp_path):
+    for name, more in (("a", "TriggerTime"), ("b", "TemporalPositionIdentifier"), ("c", "AcquisitionNumber")):
+        slices = [slice_of(plane, i + 1, (1, 2, 3), **{more: i + 1}) for i, plane in enumerate(ramp("i2"))]
+        assert palpate.load(save(tmp_path / name, slices)).time_steps == SHAPE[0]
+
+
+# fo-dicom 47, pydicom 1305: an explicit file whose elements have no type, here and there or all of them.
+@pytest.mark.parametrize("group, number", ((9, 0x1010), (0x29, 0x1010), (0x28, 0x30), (0x28, 0x1052), (0x28, 0x10), (0x7FE0, 0x10)))
+@pytest.mark.parametrize("length", (0, 2, 4, 6, 8, 70, 600))
+def test_elements_of_dicom_may_lack_their_type(tmp_path, group, number, length):
+    data = slice_of(ramp("i2")[0], 1, (1, 2, 3), RescaleIntercept=-5)
+    if group % 2:
+        data.add_new((group, 0x10), "LO", "NOBODY")
+        data.add_new((group, number), "LO", "x" * length)
+    path = save(tmp_path / "a", [data]) / "001.dcm"
+    raw = path.read_bytes()
+    at = raw.index(struct.pack("<HH", group, number) + (b"OW" if group == 0x7FE0 else b"")) + 4
+    wide = raw[at:at + 2] == b"OW"
+    size = struct.unpack("<I", raw[at + 4:at + 8])[0] if wide else struct.unpack("<H", raw[at + 2:at + 4])[0]
+    path.write_bytes(raw[:at] + struct.pack("<I", size) + raw[at + (8 if wide else 4):])
+    volume = palpate.load(path).volume
+    assert numpy.array_equal(volume.array[0], ramp("i2")[0] - 5)
+    assert numpy.array_equal(volume.geometry.spacing, (0.25, 0.5, 2)) and numpy.array_equal(volume.geometry.origin, (1, 2, 3))
+
+
+def test_a_data_set_without_types_may_be_called_explicit(tmp_path):
+    path = save(tmp_path / "a", [slice_of(ramp("i2")[0], 1, (1, 2, 3), RescaleIntercept=-5)], "implicit") / "001.dcm"
+    raw = path.read_bytes()
+    uid = b"UI\x12\x001.2.840.10008.1.2\0"
+    head = struct.unpack("<I", raw[140:144])[0]
+    raw = raw[:140] + struct.pack("<I", head + 2) + raw[144:].replace(uid, b"UI\x14\x001.2.840.10008.1.2.1\0", 1)
+    path.write_bytes(raw)
+    assert numpy.array_equal(palpate.load(path).volume.array[0], ramp("i2")[0] - 5)
+    at = raw.index(struct.pack("<HH", 0x28, 0x1052)) + 4
+    path.write_bytes(raw[:at] + b"QQ" + raw[at + 2:])
+    refused(path, "no known type")
