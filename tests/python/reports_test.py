@@ -6,6 +6,7 @@ import struct
 import numpy
 import palpate
 import pytest
+import tifffile
 
 from dicom_readers_test import frames_of
 from readers_test import SHAPE, noted, ramp, refused, save, slice_of
@@ -81,3 +82,46 @@ def test_a_data_set_without_types_may_be_called_explicit(tmp_path):
     at = raw.index(struct.pack("<HH", 0x28, 0x1052)) + 4
     path.write_bytes(raw[:at] + b"QQ" + raw[at + 2:])
     refused(path, "no known type")
+
+
+# piximi 302, bioformats 2577: ImageJ writes its colour table as a palette.
+def test_a_palette_leaves_the_numbers_of_a_tiff(tmp_path):
+    table = numpy.zeros((3, 256), "u2")
+    tifffile.imwrite(tmp_path / "a.tif", ramp("u1"), photometric="palette", colormap=table)
+    assert numpy.array_equal(noted(tmp_path / "a.tif", "palette").array, ramp("u1"))
+
+
+def behind_one_page(path, planes, description, order):
+    tifffile.imwrite(path, planes[0], byteorder=order, description=description, metadata=None, resolution=(10, 5))
+    with tifffile.TiffFile(path) as file:
+        end = file.pages[0].dataoffsets[0] + file.pages[0].databytecounts[0]
+    assert end == path.stat().st_size
+    with path.open("ab") as file:
+        file.write(planes[1:].astype(planes.dtype.newbyteorder(order)).tobytes())
+
+
+# suite2p 135, scifio 317, TIFFStack 7: ImageJ's stacks above 4 GB have one page.
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("dtype", ("u1", "u2", "f4"))
+def test_planes_of_image_j_behind_one_page_are_slices_and_times(tmp_path, dtype, order):
+    path = tmp_path / "a.tif"
+    behind_one_page(path, ramp(dtype), "ImageJ=1.53t\nimages=5\nslices=5\nunit=um\nspacing=0.3\n", order)
+    assert numpy.array_equal(tifffile.imread(path), ramp(dtype))
+    volume = palpate.load(path).volume
+    assert numpy.array_equal(volume.array, ramp(dtype))
+    assert numpy.allclose(volume.geometry.spacing, (1e-4, 2e-4, 3e-4))
+    data = path.read_bytes()
+    path.write_bytes(data[:-1])
+    refused(path, "tells of 5 slices, but has 1")
+    times = numpy.concatenate((ramp(dtype), ramp(dtype)[::-1]))
+    behind_one_page(path, times, "ImageJ=1.53t\nimages=10\nslices=5\nframes=2\nunit=um\nspacing=0.3\n", order)
+    assert numpy.array_equal(palpate.load(path, frame=1).volume.array, ramp(dtype)[::-1])
+    tifffile.imwrite(tmp_path / "b.tif", ramp(dtype)[0])
+    refused(tmp_path, "stack in a folder of slices")
+
+
+def test_planes_of_tifffile_behind_one_page_are_slices(tmp_path):
+    tifffile.imwrite(tmp_path / "a.tif", ramp("u2"), photometric="minisblack", truncate=True, metadata={"axes": "ZYX"})
+    with tifffile.TiffFile(tmp_path / "a.tif") as file:
+        pages = len(file.pages)
+    assert pages == 1 and numpy.array_equal(palpate.load(tmp_path / "a.tif").volume.array, ramp("u2"))
