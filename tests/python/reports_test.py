@@ -1,14 +1,17 @@
 """Files of kinds that other programs got wrong, by their public bug reports. Each was made by hand, or by the program that
 writes such files, and is compared with the numbers it was made of."""
 
+import json
 import struct
 
 import numpy
 import palpate
 import pytest
 import tifffile
+import zarr
 
 from dicom_readers_test import frames_of
+from formats_test import n5_array
 from readers_test import SHAPE, noted, ramp, refused, save, slice_of
 
 DOSE = {"Modality": "RTDOSE", "SOPClassUID": "1.2.840.10008.5.1.4.1.1.481.2", "DoseGridScaling": 0.01, "DoseUnits": "GY",
@@ -125,3 +128,56 @@ def test_planes_of_tifffile_behind_one_page_are_slices(tmp_path):
     with tifffile.TiffFile(tmp_path / "a.tif") as file:
         pages = len(file.pages)
     assert pages == 1 and numpy.array_equal(palpate.load(tmp_path / "a.tif").volume.array, ramp("u2"))
+
+
+# mobie-viewer-fiji 572: z5 wrote fill values as text.
+@pytest.mark.parametrize("dtype, fill", (("u2", "7"), ("i1", "-7"), ("u1", "0")))
+def test_fill_values_of_zarr_2_may_be_text(tmp_path, dtype, fill):
+    array = zarr.open(str(tmp_path), mode="w", shape=SHAPE, chunks=SHAPE, dtype=dtype, fill_value=0)
+    array[...] = ramp(dtype)
+    metadata = json.loads((tmp_path / ".zarray").read_text())
+    (tmp_path / ".zarray").write_text(json.dumps({**metadata, "fill_value": fill}))
+    (tmp_path / "0.0.0").unlink()
+    assert zarr.open(str(tmp_path))[0, 0, 0] == float(fill)
+    store = palpate.open_store(str(tmp_path))
+    assert numpy.all(store.read((0, 0, 0), store.levels[0].size).array == float(fill))
+
+
+# zarr-python 412, EOPF data-model 67: Python's json writes NaN and Infinity as they are.
+@pytest.mark.parametrize("word", ("NaN", "Infinity", "-Infinity"))
+def test_metadata_of_zarr_may_have_numbers_that_json_has_not(tmp_path, word):
+    array = zarr.open(str(tmp_path), mode="w", shape=SHAPE, chunks=SHAPE, dtype="f4", fill_value=0)
+    array[...] = ramp("f4")
+    text = (tmp_path / ".zarray").read_text()
+    (tmp_path / ".zarray").write_text(text.replace('"fill_value": 0.0', f'"fill_value": {word}'))
+    note = f'a \\"{word}\\\\'
+    (tmp_path / ".zattrs").write_text(f'{{"_FillValue": {word}, "{note}": [{word}, 1], "_ARRAY_DIMENSIONS": ["z", "y", "x"]}}')
+    assert f'"fill_value": {word}' in (tmp_path / ".zarray").read_text() and len(zarr.open(str(tmp_path)).attrs) == 3
+    store = palpate.open_store(str(tmp_path))
+    assert numpy.array_equal(store.read((0, 0, 0), store.levels[0].size).array, ramp("f4"))
+    (tmp_path / ".zattrs").write_text(f'{{"a": {word[:-1]}}}')
+    with pytest.raises(palpate.InputError, match="is not JSON"):
+        palpate.open_store(str(tmp_path))
+
+
+def test_members_of_ome_zarr_may_be_null_and_names_of_axes_in_capitals(tmp_path):
+    group = zarr.open_group(str(tmp_path), mode="w")
+    group.create_dataset("0", data=ramp("u2"))
+    scale = {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [3, 2, 1]}]}
+    axes = [{"name": name, "type": kind, "unit": "millimeter"} for name, kind in zip("ZyX", ("space", None, "space"))]
+    image = {"version": "0.4", "axes": axes, "datasets": [scale], "coordinateTransformations": None}
+    group.attrs["multiscales"] = [image]
+    assert numpy.array_equal(palpate.open_store(str(tmp_path)).levels[0].spacing, (1, 2, 3))
+
+
+# paintera 61, heinrich-2021a 1, CNNectome 17: where a crop lies, in the unit of its resolution.
+@pytest.mark.parametrize("where", ("", "s0"))
+def test_n5_lies_at_its_offset(tmp_path, where):
+    n5_array(tmp_path / "s0", ramp("u2"))
+    n5_array(tmp_path / "s1", ramp("u2")[:3, :2, :3])
+    path = tmp_path / where / "attributes.json"
+    given = json.loads(path.read_text()) if path.exists() else {}
+    path.write_text(json.dumps({**given, "resolution": [2, 2, 4], "units": ["nm"] * 3, "offset": [20, 30, 40]}))
+    levels = palpate.open_store(str(tmp_path)).levels
+    assert numpy.allclose(levels[0].origin, (2e-5, 3e-5, 4e-5), rtol=1e-9, atol=0)
+    assert numpy.allclose(levels[1].origin, (2.1e-5, 3.1e-5, 4.2e-5), rtol=1e-9, atol=0)
