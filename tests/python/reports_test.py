@@ -4,6 +4,7 @@ writes such files, and is compared with the numbers it was made of."""
 import json
 import struct
 
+import nibabel
 import numpy
 import palpate
 import pytest
@@ -181,3 +182,47 @@ def test_n5_lies_at_its_offset(tmp_path, where):
     levels = palpate.open_store(str(tmp_path)).levels
     assert numpy.allclose(levels[0].origin, (2e-5, 3e-5, 4e-5), rtol=1e-9, atol=0)
     assert numpy.allclose(levels[1].origin, (2.1e-5, 3.1e-5, 4.2e-5), rtol=1e-9, atol=0)
+
+
+# MIRTK 151
+@pytest.mark.parametrize("name", ("a.nii", "a.nii.gz"))
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("code", ("sform", "qform", "neither"))
+def test_nifti_2_is_read_as_nibabel_reads_it(tmp_path, name, order, code):
+    affine = numpy.array(((0, -2e-3, 0, 5), (3e-3, 0, 0, 6), (0, 0, 4e-3, 7), (0, 0, 0, 1)))
+    image = nibabel.Nifti2Image(numpy.stack((ramp("i2"), ramp("i2") * 3)).T, None, nibabel.Nifti2Header(endianness=order))
+    image.set_qform(affine, code=int(code == "qform"))
+    image.set_sform(affine, code=int(code == "sform"))
+    image.header.set_xyzt_units("micron", "msec")
+    image.header["pixdim"][4] = 40
+    nibabel.save(image, tmp_path / name)
+    loaded = palpate.load(tmp_path / name, frame=1)
+    assert numpy.array_equal(loaded.volume.array, ramp("i2") * 3) and loaded.time_steps == 2
+    geometry = loaded.volume.geometry
+    assert numpy.allclose(geometry.spacing, (3e-6, 2e-6, 4e-6), rtol=1e-6, atol=0) and geometry.oriented == (code != "neither")
+    if geometry.oriented:
+        corner = (affine @ (5, 3, 4, 1))[:3] * (-1, -1, 1) * 1e-3
+        assert numpy.allclose(geometry.physical((5, 3, 4)), corner)
+
+
+@pytest.mark.parametrize("slope, intercept", ((2, -5), (float("nan"), 0), (1, 0)))
+def test_nifti_2_has_a_slope_and_an_intercept(tmp_path, slope, intercept):
+    nibabel.save(nibabel.Nifti2Image(ramp("i2").T, numpy.eye(4)), path := tmp_path / "a.nii")
+    data = bytearray(path.read_bytes())
+    data[176:192] = struct.pack("<dd", slope, intercept)
+    path.write_bytes(data)
+    assert numpy.array_equal(palpate.load(path).volume.array, nibabel.load(path).get_fdata().T)
+    path.write_bytes(data[:539])
+    refused(path, "too short")
+    path.write_bytes(data[:4] + b"ni2" + data[7:])
+    refused(path, ".hdr/.img")
+
+
+def test_a_direction_of_nrrd_that_is_nan_is_none(tmp_path):
+    head = ("NRRD0004\ntype: short\ndimension: 4\nsizes: 6 4 5 2\nkinds: domain domain domain list\nendian: little\n"
+            "encoding: raw\nspace: LPS\nspace directions: (2,0,0) (0,3,0) (0,0,4) {}\nspace origin: (1,2,3)\n\n")
+    for none in ("none", "(nan,nan,nan)"):
+        (tmp_path / "a.nrrd").write_bytes(head.format(none).encode() + numpy.stack([ramp("<i2")] * 2).tobytes())
+        assert numpy.array_equal(palpate.load(tmp_path / "a.nrrd", frame=1).volume.geometry.spacing, (2, 3, 4))
+    (tmp_path / "a.nrrd").write_bytes(head.format("(nan,0,nan)").encode() + bytes(480))
+    refused(tmp_path / "a.nrrd", "spacing of nan")
