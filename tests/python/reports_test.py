@@ -226,3 +226,29 @@ def test_a_direction_of_nrrd_that_is_nan_is_none(tmp_path):
         assert numpy.array_equal(palpate.load(tmp_path / "a.nrrd", frame=1).volume.geometry.spacing, (2, 3, 4))
     (tmp_path / "a.nrrd").write_bytes(head.format("(nan,0,nan)").encode() + bytes(480))
     refused(tmp_path / "a.nrrd", "spacing of nan")
+
+
+# ome-zarr-py 298: a store in an archive.
+def test_archives_are_named_as_such_however_they_are_opened(tmp_path):
+    (tmp_path / "a.zarr.zip").write_bytes(struct.pack("<I", 0x04034B50) + bytes(100))
+    refused(tmp_path / "a.zarr.zip", "unpack it")
+    with pytest.raises(palpate.InputError, match="unpack it"):
+        palpate.open_store(str(tmp_path / "a.zarr.zip"))
+
+
+# Meshes -----------------------------------------------------------------------------------------------------
+
+
+# assimp 5890, tinyobjloader 389. A path of Windows at the end of a comment is no continued line.
+@pytest.mark.parametrize("end", ("\n", "\r\n"))
+def test_comments_end_lines_of_an_obj_file_and_are_never_continued(tmp_path, end):
+    lines = ("# from C:\\models\\", "v 0 0 0 # first", "v 1 0 0#second", "v 0 1 0", "f 1 2 \\", "3 # all")
+    (tmp_path / "a.obj").write_bytes("".join(line + end for line in lines).encode())
+    mesh = palpate.read_mesh(tmp_path / "a.obj")
+    assert numpy.array_equal(mesh.vertices, ((0, 0, 0), (1, 0, 0), (0, 1, 0))) and len(mesh.triangles) == 1
+
+
+def test_an_stl_text_may_begin_with_blanks(tmp_path):
+    (tmp_path / "a.stl").write_text("\n  solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                                    "endloop\nendfacet\nendsolid a\n")
+    assert len(palpate.read_mesh(tmp_path / "a.stl").triangles) == 1
