@@ -228,6 +228,13 @@ def test_a_direction_of_nrrd_that_is_nan_is_none(tmp_path):
     refused(tmp_path / "a.nrrd", "spacing of nan")
 
 
+# pynrrd 82: a space origin without a space says nothing.
+def test_a_space_origin_of_nrrd_without_a_space_is_noted(tmp_path):
+    (tmp_path / "a.nrrd").write_bytes(b"NRRD0005\ntype: int16\ndimension: 3\nsizes: 6 4 5\nendian: little\nencoding: raw\n"
+                                      b"spacings: 2 3 4\nspace origin: (1,2,3)\n\n" + ramp("<i2").tobytes())
+    assert numpy.array_equal(noted(tmp_path / "a.nrrd", "'space origin' but no space").geometry.spacing, (2, 3, 4))
+
+
 # ome-zarr-py 298: a store in an archive.
 def test_archives_are_named_as_such_however_they_are_opened(tmp_path):
     (tmp_path / "a.zarr.zip").write_bytes(struct.pack("<I", 0x04034B50) + bytes(100))
