@@ -141,7 +141,8 @@ class Walk {
             return e;
         }
         e.vr = {number<char>(at), number<char>(at + 1)};
-        if (std::ranges::any_of(e.vr, [](unsigned char c) { return std::isalpha(c) == 0; })) {
+        const auto is_no_letter = [](unsigned char c) { return std::isalpha(c) == 0; };
+        if (e.tag != 0 && std::ranges::any_of(e.vr, is_no_letter)) {
             e.vr.clear();  // some writers leave it out here and there, or everywhere
             lacks_types_ = true;
             e.length = number<std::uint32_t>(at);

@@ -83,14 +83,14 @@ void check_kind(Header& header) {
         return false;
     };
     header.is_second = either_way(540);
+    const std::string number = header.is_second ? "2" : "1";
     if (header.size < header.header_bytes()) {
-        throw Failure("is too short for a NIfTI header (" + std::to_string(header.size) +
-                      " bytes); copy or download it again");
+        throw Failure("is too short for a NIfTI-" + number + " header (" +
+                      std::to_string(header.size) + " bytes); copy or download it again");
     }
     if (!header.is_second && !either_way(348)) {
         throw Failure("is not a NIfTI file (its first number is not 348); check its name");
     }
-    const std::string number = header.is_second ? "2" : "1";
     if (header.magic() == "ni" + number) {
         throw Failure("is one half of a .hdr/.img pair; save it as one .nii file");
     }

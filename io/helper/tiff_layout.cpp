@@ -83,6 +83,7 @@ std::size_t planes_behind(TIFF* tiff, const fs::path& file, const TiffPage& page
     TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
     if (compression != COMPRESSION_NONE || TIFFIsTiled(tiff) != 0) return 1;
     std::uint64_t end = TIFFGetStrileOffset(tiff, 0);
+    if (end < TIFFCurrentDirOffset(tiff)) return 1;  // the directory would be taken for planes
     const double bytes =
         told * page.width * page.height * static_cast<double>(size_of(page.stored));
     const bool is_there =
