@@ -2,6 +2,7 @@
 #include "io/helper/dicom_check.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <map>
 #include <set>
@@ -140,6 +141,14 @@ class Walk {
             return e;
         }
         e.vr = {number<char>(at), number<char>(at + 1)};
+        const auto is_no_letter = [](unsigned char c) { return std::isalpha(c) == 0; };
+        if (e.tag != 0 && std::ranges::any_of(e.vr, is_no_letter)) {
+            e.vr.clear();  // some writers leave it out here and there, or everywhere
+            lacks_types_ = true;
+            e.length = number<std::uint32_t>(at);
+            at += 4;
+            return e;
+        }
         static const std::set<std::string> long_ones = {"OB", "OW", "OF", "OD", "OL", "OV", "SQ",
                                                         "UC", "UR", "UT", "UN", "SV", "UV"};
         static const std::set<std::string> short_ones = {"AE", "AS", "AT", "CS", "DA", "DS", "DT",
@@ -244,6 +253,13 @@ class Walk {
         if (!pixels_.found) return;
         const auto bytes = bytes_.view(0, pixels_.element);
         extent_.header.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        // GDCM looks a few bytes beyond an element without a type: an element that is not used
+        // follows.
+        constexpr std::size_t ahead = 64;
+        if (lacks_types_) {
+            extent_.header +=
+                std::string("\xe0\x7f\1\0UN\0\0\x40\0\0\0", 12) + std::string(ahead, '\0');
+        }
         // One UID is the beginning of the other; the rest is padding.
         if (syntax == deflated_syntax) extent_.header.replace(syntax_at_ + 19, 3, 3, '\0');
     }
@@ -300,6 +316,7 @@ class Walk {
     DicomBytes bytes_;
     DicomExtent extent_;
     DicomPixels pixels_;
+    bool lacks_types_ = false;
     std::set<std::uint32_t> taken_;
     std::uint32_t last_tag_ = 0;
     int repeated_ = 0;

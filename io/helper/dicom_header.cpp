@@ -230,6 +230,19 @@ void place_behind(std::vector<DicomSlice>& slices, const std::vector<double>& di
     }
 }
 
+/// Offsets of a dose grid count along the normal, or are z of the patient (PS3.3 C.8.8.3.2): then
+/// the first one is that of the position.
+std::vector<double> along_normal(std::vector<double> offsets, const DicomSlice& first) {
+    constexpr double rounding = 0.01;  // [mm]
+    if (!first.position || !first.row || !first.column || offsets[0] == 0) return offsets;
+    const bool is_z = std::abs(offsets[0] - first.position->z()) <= rounding;
+    const double z = first.row->cross(*first.column).normalized().z();
+    if (is_z && z < -0.99) {
+        for (double& offset : offsets) offset = -offset;
+    }
+    return offsets;
+}
+
 std::vector<double> even_distances(const std::vector<int>& order, double step) {
     std::vector<double> distances;
     for (const int place : order) distances.push_back(place * step);
@@ -273,7 +286,7 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
             check_coordinate(offset, is_grid ? "GridFrameOffsetVector" : "SliceLocationVector");
         }
         if (offsets.size() == slices.size()) {
-            place_behind(slices, offsets);
+            place_behind(slices, is_grid ? along_normal(offsets, file) : offsets);
             return slices;
         }
     }
@@ -349,6 +362,7 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     if (std::isfinite(location)) s.location = location;
     if (constexpr DicomTag dose{0x3004, 0x000e}; data.has(dose)) {
         s.slope = data.number(dose, 1);
+        s.has_rescale = true;
         s.values.units = data.text({0x3004, 0x0002});  // GY
     }
     return s;

@@ -204,6 +204,18 @@ bool is_placed(const DicomSlice& s) {
     return s.position && s.row && s.column;
 }
 
+/// Columns of the row, the column and the normal.
+Mat3 plane_axes(const DicomSlice& one) {
+    const Vec3 row = one.row->normalized();
+    const Vec3 column = (*one.column - row * row.dot(*one.column)).normalized();
+    if (!(std::abs(row.dot(one.column->normalized())) < 1e-3)) {
+        throw Failure("its row and column directions are not at right angles; export it again");
+    }
+    Mat3 axes;
+    axes << row, column, row.cross(column);
+    return axes;
+}
+
 /// [mm] along the normal of slices whose place or orientation is missing.
 struct Locations {
     const char* source = nullptr;
@@ -236,6 +248,17 @@ Locations locations_of(const std::vector<DicomSlice>& slices) {
     return found;
 }
 
+/// Whether nothing but their numbers tells slices of one file each apart, so that they are a stack
+/// whose positions are wrong, and no moments.
+bool are_only_numbered(const DicomSeries& series) {
+    const DicomSlice& first = series.slices.front();
+    const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+    return std::ranges::all_of(series.slices, [&](const DicomSlice& s) {
+        return s.frames == 1 &&
+               std::equal(s.keys.begin(), s.keys.begin() + frame_number, first.keys.begin(), same);
+    });
+}
+
 /// Places slices that lack a position or an orientation, or all have the same position, if each has
 /// a place of its own.
 void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
@@ -252,7 +275,11 @@ void place_by_location(DicomSeries& series, std::vector<std::string>& notes) {
     std::ranges::sort(sorted);
     const double least = same_place_mm(series);
     const auto is_near = [&](double a, double b) { return b - a <= least; };
-    if (std::ranges::adjacent_find(sorted, is_near) != sorted.end() || sorted.empty()) return;
+    if (std::ranges::adjacent_find(sorted, is_near) != sorted.end() || sorted.empty()) {
+        if (!placed || !are_only_numbered(series)) return;
+        for (DicomSlice& s : series.slices) s.position.reset();
+        return;
+    }
     for (std::size_t i = 0; i < sorted.size(); ++i) {
         DicomSlice& s = series.slices[i];
         if (!s.row || !s.column) {
@@ -407,20 +434,19 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
     }
     stack.geometry.spacing.head<2>() = scaled.slices.front().pixel->head<2>();
     if (scaled.slices.size() > 1) place_by_location(scaled, stack.notes);
-    stack.geometry.oriented = std::ranges::all_of(
+    const bool directed = std::ranges::all_of(
         series.slices, [](const DicomSlice& s) { return s.row && s.column && s.in_patient; });
+    stack.geometry.oriented = directed;
     if (!std::ranges::all_of(scaled.slices, is_placed)) {
         pile_up(scaled, request, stack);
         stack.geometry.size[2] = static_cast<int>(stack.slices.size());
+        if (directed) stack.geometry.direction = plane_axes(scaled.slices.front());
+        stack.geometry.oriented = directed && stack.slices.size() == 1;  // numbers go either way
         return stack;
     }
-    const DicomSlice& one = scaled.slices.front();
-    const Vec3 row = one.row->normalized();
-    const Vec3 column = (*one.column - row * row.dot(*one.column)).normalized();
-    if (!(std::abs(row.dot(one.column->normalized())) < 1e-3)) {
-        throw Failure("its row and column directions are not at right angles; export it again");
-    }
-    const Vec3 normal = row.cross(column);
+    stack.geometry.direction = plane_axes(scaled.slices.front());
+    const Vec3 row = stack.geometry.direction.col(0), column = stack.geometry.direction.col(1),
+               normal = stack.geometry.direction.col(2);
     choose_time_step(scaled, groups_of(scaled, normal), request, stack);
     const double start = stack.slices.front().along;
     for (PlacedSlice& p : stack.slices) p.along -= start;
@@ -434,7 +460,6 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
         set_single_spacing(any, stack);
     }
     stack.geometry.size[2] = static_cast<int>(stack.grid.size());
-    stack.geometry.direction << row, column, normal;
     const DicomSlice& first = scaled.slices[stack.slices.front().slice];
     stack.geometry.origin = *first.position + row * (stack.first_u * stack.geometry.spacing[0]) +
                             column * (stack.first_v * stack.geometry.spacing[1]);

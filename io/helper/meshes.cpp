@@ -7,6 +7,7 @@
 #include <vtkTriangleFilter.h>
 #include <vtkXMLPolyDataReader.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -34,9 +35,10 @@ void check_length_of_stl(const std::filesystem::path& path) {
     char head[head_bytes] = {};
     in.read(head, head_bytes);
     const std::string text(head, static_cast<std::size_t>(in.gcount()));
-    // A text begins with this word, and so does the free header of some binary files, which have
-    // bytes in it that no text has.
-    if (lower(text.substr(0, 5)) == "solid" && text.find('\0') == std::string::npos) return;
+    // A text begins with this word, perhaps behind blanks, and so does the free header of some
+    // binary files, which have bytes in it that no text has.
+    const std::size_t word = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+    if (lower(text.substr(word, 5)) == "solid" && text.find('\0') == std::string::npos) return;
     if (text.size() < head_bytes) throw Failure("is too short for an STL file; copy it again");
     std::uint32_t count = 0;
     std::memcpy(&count, head + 80, sizeof count);
@@ -71,14 +73,21 @@ vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::stri
                   "' names a vertex that is not there; export it again");
 }
 
+/// The next line of an OBJ file without its comment. False at the end.
+bool next_line(std::istream& in, std::string& line) {
+    if (!std::getline(in, line)) return false;
+    line.resize(std::min(line.find_first_of("#\r"), line.size()));
+    return true;
+}
+
 /// Vertices and faces. Not by VTK, whose reader loses faces that count their vertices backwards.
 vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
     std::ifstream in(path);
     const vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
     const vtkNew<vtkCellArray> faces;
-    for (std::string line; std::getline(in, line);) {
-        for (std::string more; line.ends_with('\\') && std::getline(in, more);) {
+    for (std::string line; next_line(in, line);) {
+        for (std::string more; line.ends_with('\\') && next_line(in, more);) {
             line.back() = ' ';
             line += more;
         }

@@ -1,6 +1,6 @@
-// Reads NIfTI-1 headers: 348 bytes in either byte order, packed or not, whatever the file's name.
-// Format: https://nifti.nimh.nih.gov/pub/dist/src/niftilib/nifti1.h. Where it leaves a choice,
-// nibabel's is taken (docs/io.md).
+// Reads headers of NIfTI-1 and NIfTI-2 in either byte order, packed or not, whatever the file's
+// name. Formats: https://nifti.nimh.nih.gov/pub/dist/src/niftilib/nifti1.h and nifti2.h. nibabel
+// decides what they leave open (docs/io.md).
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -16,19 +16,40 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::size_t header_bytes = 348;
+/// Where a field lies in NIfTI-1 and in NIfTI-2, whose numbers are wider.
+struct NiftiField {
+    std::size_t first, second;
+};
+constexpr NiftiField dim{40, 16}, datatype{70, 12}, bitpix{72, 14}, pixdim{76, 104},
+    vox_offset{108, 168}, slope_field{112, 176}, intercept_field{116, 184}, xyzt_units{123, 500},
+    toffset{136, 216}, qform_code{252, 344}, sform_code{254, 348}, quatern{256, 352},
+    qoffset{268, 376}, srow{280, 400}, magic_field{344, 4};
 
 /// The header's bytes, and numbers from them.
 struct Header {
-    std::array<std::byte, header_bytes> bytes{};
+    std::array<std::byte, 540> bytes{};
+    std::size_t size = 0;  ///< [bytes] that the file has of these
     bool swapped = false;
+    bool is_second = false;  ///< NIfTI-2
 
-    template <class T>
-    T number(std::size_t offset) const {
-        return number_in<T>(std::span(bytes).subspan(offset), swapped);
+    std::size_t header_bytes() const { return is_second ? 540 : 348; }
+    template <class First, class Second>
+    Second number(NiftiField field, std::size_t index = 0) const {
+        const std::span all(bytes);
+        return is_second
+                   ? number_in<Second>(all.subspan(field.second + index * sizeof(Second)), swapped)
+                   : static_cast<Second>(number_in<First>(
+                         all.subspan(field.first + index * sizeof(First)), swapped));
     }
+    double real(NiftiField field, std::size_t index = 0) const {
+        return number<float, double>(field, index);
+    }
+    int code(NiftiField field) const { return number<std::int16_t, std::int32_t>(field); }
+    int type(NiftiField field) const { return number<std::int16_t, std::int16_t>(field); }
+    int unit() const { return number<std::uint8_t, std::int32_t>(xyzt_units); }
     std::string magic() const {
-        const auto* text = reinterpret_cast<const char*>(bytes.data()) + 344;
+        const std::size_t at = is_second ? magic_field.second : magic_field.first;
+        const auto* text = reinterpret_cast<const char*>(bytes.data()) + at;
         return {text, strnlen(text, 4)};
     }
 };
@@ -38,20 +59,17 @@ Header read_header(const std::filesystem::path& path) {
     std::vector<std::byte> start;
     if (is_gzip(path)) {
         try {
-            start = inflate_start(path, header_bytes);
+            start = inflate_start(path, header.bytes.size());
         } catch (const DamagedStream& e) {
             throw Failure(std::string(e.what()) + "; copy or download it again");
         }
     } else {
-        start.resize(header_bytes);
+        start.resize(header.bytes.size());
         std::ifstream in(path, std::ios::binary);
-        in.read(reinterpret_cast<char*>(start.data()), header_bytes);
+        in.read(reinterpret_cast<char*>(start.data()), std::ssize(start));
         start.resize(static_cast<std::size_t>(in.gcount()));
     }
-    if (start.size() < header_bytes) {
-        throw Failure("is too short for a NIfTI header (" + std::to_string(start.size()) +
-                      " bytes); copy or download it again");
-    }
+    header.size = start.size();
     std::copy(start.begin(), start.end(), header.bytes.begin());
     return header;
 }
@@ -60,25 +78,29 @@ void check_kind(Header& header) {
     const auto either_way = [&](std::int32_t number) {
         for (const bool swapped : {false, true}) {
             header.swapped = swapped;
-            if (header.number<std::int32_t>(0) == number) return true;
+            if (number_in<std::int32_t>(header.bytes, swapped) == number) return true;
         }
         return false;
     };
-    if (either_way(540)) {
-        throw Failure("is a NIfTI-2 file, which is not read; save it as NIfTI-1 or NRRD");
+    header.is_second = either_way(540);
+    const std::string number = header.is_second ? "2" : "1";
+    if (header.size < header.header_bytes()) {
+        throw Failure("is too short for a NIfTI-" + number + " header (" +
+                      std::to_string(header.size) + " bytes); copy or download it again");
     }
-    if (!either_way(348)) {
+    if (!header.is_second && !either_way(348)) {
         throw Failure("is not a NIfTI file (its first number is not 348); check its name");
     }
-    if (header.magic() == "ni1") {
+    if (header.magic() == "ni" + number) {
         throw Failure("is one half of a .hdr/.img pair; save it as one .nii file");
     }
-    if (header.magic() != "n+1") {
-        throw Failure("has no NIfTI magic (perhaps an Analyze file); save it as .nii");
+    if (header.magic() != "n+" + number) {
+        throw Failure("has no magic of NIfTI-" + number +
+                      " (perhaps an Analyze file); save it as .nii");
     }
 }
 
-Stored stored_from(std::int16_t type) {
+Stored stored_from(int type) {
     static const std::map<int, Stored> types = {
         {2, Stored::uint8},    {4, Stored::int16},    {8, Stored::int32},    {16, Stored::float32},
         {64, Stored::float64}, {256, Stored::int8},   {512, Stored::uint16}, {768, Stored::uint32},
@@ -97,22 +119,23 @@ Stored stored_from(std::int16_t type) {
 /// pixdim[4], toffset and the time bits of xyzt_units.
 FrameTimes times_of(const Header& header, std::vector<std::string>& notes) {
     static const std::map<int, std::string> units = {{0, ""}, {8, "s"}, {16, "ms"}, {24, "us"}};
-    const auto unit = units.find(header.number<std::uint8_t>(123) & 0x38);
-    return frame_times(header.number<float>(92), header.number<float>(136),
+    const auto unit = units.find(header.unit() & 0x38);
+    return frame_times(header.real(pixdim, 4), header.real(toffset),
                        unit == units.end() ? "no time" : unit->second, notes);
 }
 
 /// The size of an axis, counted from 0; 1 for those that the file does not have.
 int size_of_axis(const Header& header, std::size_t axis) {
-    return static_cast<int>(axis) < header.number<std::int16_t>(40)
-               ? header.number<std::int16_t>(42 + 2 * axis)
-               : 1;
+    const auto number = [&](std::size_t i) {
+        return header.number<std::int16_t, std::int64_t>(dim, i);
+    };
+    return static_cast<std::int64_t>(axis) < number(0) ? static_cast<int>(number(axis + 1)) : 1;
 }
 
 /// How long the header's unit of length is [mm].
 double unit_of_length(const Header& header, std::vector<std::string>& notes) {
     static const std::array<std::string, 8> names = {"", "m", "mm", "um", "4", "5", "6", "7"};
-    const std::string& name = names[header.number<std::uint8_t>(123) & 7];
+    const std::string& name = names[static_cast<std::size_t>(header.unit() & 7)];
     if (name.empty()) add_note(notes, "its header names no unit of length: mm were taken");
     return length_unit(name, notes);
 }
@@ -130,7 +153,7 @@ Transform in_lps(Transform ras, double unit) {
 Vec3 spacings_of(const Header& header, double unit) {
     Vec3 spacings;
     for (std::size_t a = 0; a < 3; ++a) {
-        const double given = header.number<float>(80 + 4 * a);
+        const double given = header.real(pixdim, a + 1);
         const bool measures = size_of_axis(header, a) > 1;
         if (measures) check_spacing(given * unit, "header field 'pixdim'");
         if (!(std::abs(given) <= greatest_length)) {
@@ -145,19 +168,18 @@ Vec3 spacings_of(const Header& header, double unit) {
 
 /// Method 2 of the format: a quaternion, pixdim and an offset.
 Transform qform_of(const Header& header, double unit) {
-    const Vec3 vector(header.number<float>(256), header.number<float>(260),
-                      header.number<float>(264));
+    const Vec3 vector(header.real(quatern, 0), header.real(quatern, 1), header.real(quatern, 2));
     const double square = vector.squaredNorm();
     if (!(square <= 1.002)) {
         throw Failure("its header field 'quatern' is no rotation; correct the header");
     }
     const Eigen::Quaterniond rotation(std::sqrt(std::max(0.0, 1 - square)), vector[0], vector[1],
                                       vector[2]);
-    const double handed = header.number<float>(76) < 0 ? -1 : 1;
+    const double handed = header.real(pixdim) < 0 ? -1 : 1;
     Transform ras;
     ras.leftCols<3>() = rotation.normalized().toRotationMatrix() * Vec3(1, 1, handed).asDiagonal();
     for (const std::size_t a : {0U, 1U, 2U}) {
-        const double offset = header.number<float>(268 + 4 * a);
+        const double offset = header.real(qoffset, a);
         check_coordinate(offset * unit, "header field 'qoffset'");
         ras(static_cast<Eigen::Index>(a), 3) = offset;
     }
@@ -171,7 +193,7 @@ Transform sform_of(const Header& header, double unit) {
     Transform ras;
     for (std::size_t i = 0; i < 12; ++i) {
         ras(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) =
-            header.number<float>(280 + 4 * i);
+            header.real(srow, i);
     }
     Transform lps = in_lps(ras, unit);
     for (int row = 0; row < 3; ++row) check_coordinate(lps(row, 3), "header field 'srow'");
@@ -225,7 +247,7 @@ void note_spacings(const Transform& sform, const Header& header, double unit,
                    std::vector<std::string>& notes) {
     for (std::size_t a = 0; a < 3; ++a) {
         const double taken = sform.col(static_cast<Eigen::Index>(a)).norm();
-        const double given = unit * header.number<float>(80 + 4 * a);
+        const double given = unit * header.real(pixdim, a + 1);
         if (size_of_axis(header, a) <= 1 || std::abs(taken - given) <= 0.01 * taken) continue;
         notes.push_back("its header gives two spacings along axis " + std::to_string(a + 1) + ": " +
                         text_of(taken) + " mm (sform) was taken, not " + text_of(given) +
@@ -233,17 +255,14 @@ void note_spacings(const Transform& sform, const Header& header, double unit,
     }
 }
 
-constexpr std::size_t qform_code = 252, sform_code = 254;  // [bytes] where they lie
-
 /// False where the header says nothing of the grid's place in the body.
 bool is_placed(const Header& header) {
-    return header.number<std::int16_t>(qform_code) > 0 ||
-           header.number<std::int16_t>(sform_code) > 0;
+    return header.code(qform_code) > 0 || header.code(sform_code) > 0;
 }
 
 bool is_empty_sform(const Header& header) {
     for (std::size_t i = 0; i < 12; ++i) {
-        if (i % 4 != 3 && header.number<float>(280 + 4 * i) != 0) return false;
+        if (i % 4 != 3 && header.real(srow, i) != 0) return false;
     }
     return true;
 }
@@ -251,8 +270,8 @@ bool is_empty_sform(const Header& header) {
 /// The sform goes before the qform, unless it is sheared, which a grid cannot be.
 Transform transform_of(const Header& header, std::vector<std::string>& notes) {
     const double unit = unit_of_length(header, notes);
-    const bool has_qform = header.number<std::int16_t>(qform_code) > 0;
-    bool has_sform = header.number<std::int16_t>(sform_code) > 0;
+    const bool has_qform = header.code(qform_code) > 0;
+    bool has_sform = header.code(sform_code) > 0;
     if (has_sform && has_qform && is_empty_sform(header)) {
         notes.emplace_back("its sform has nothing but zeros: its qform was taken");
         has_sform = false;
@@ -298,7 +317,7 @@ Geometry geometry_of(const Header& header, std::vector<std::string>& notes) {
 
 /// A slope of 0, NaN or infinity means that the numbers are the values, whatever the intercept.
 ValueMap values_of(const Header& header, std::vector<std::string>& notes) {
-    const double slope = header.number<float>(112), intercept = header.number<float>(116);
+    const double slope = header.real(slope_field), intercept = header.real(intercept_field);
     if (slope != 0 && std::isfinite(slope)) {
         if (std::isfinite(intercept)) return {slope, intercept};
         throw Failure("its header has the slope " + text_of(slope) + " and the intercept " +
@@ -315,13 +334,13 @@ ValueMap values_of(const Header& header, std::vector<std::string>& notes) {
 }
 
 std::vector<std::int64_t> sizes_of(const Header& header) {
-    const int axes = header.number<std::int16_t>(40);
+    const auto axes = header.number<std::int16_t, std::int64_t>(dim);
     if (axes < 1 || axes > 7) {
         throw Failure("its header gives " + std::to_string(axes) + " axes; the header is damaged");
     }
     std::vector<std::int64_t> sizes;
     for (std::size_t a = 0; a < static_cast<std::size_t>(axes); ++a) {
-        const auto size = header.number<std::int16_t>(42 + 2 * a);
+        const auto size = header.number<std::int16_t, std::int64_t>(dim, a + 1);
         sizes.push_back(size == 0 && a > 2 ? 1 : size);  // as the reference library takes it
     }
     while (sizes.size() > 3 && sizes.back() == 1) sizes.pop_back();
@@ -331,8 +350,11 @@ std::vector<std::int64_t> sizes_of(const Header& header) {
 /// `bytes`: of the samples.
 DataPlace place_of(const Header& header, const std::filesystem::path& path, std::uint64_t bytes,
                    std::vector<std::string>& notes) {
-    constexpr std::uint64_t whole_header = 352;  // with four bytes that tell of extensions
-    const double offset = header.number<float>(108);
+    const std::uint64_t header_bytes = header.header_bytes();
+    const std::uint64_t whole_header = header_bytes + 4;  // with those that tell of extensions
+    const double offset = header.is_second
+                              ? static_cast<double>(header.number<float, std::int64_t>(vox_offset))
+                              : header.real(vox_offset);
     const bool within = offset == 0 || (offset >= header_bytes && offset < whole_header);
     if (!(within || (offset >= header_bytes && offset < 1e9)) || offset != std::floor(offset)) {
         throw Failure("its header puts the samples at byte " + text_of(offset) +
@@ -360,8 +382,8 @@ VolumeHeader nifti_header(const Request& request) {
     check_kind(bytes);
     VolumeHeader header;
     header.format = "NIfTI";
-    header.stored = stored_from(bytes.number<std::int16_t>(70));
-    const int bits = bytes.number<std::int16_t>(72);  // some programs leave it out
+    header.stored = stored_from(bytes.type(datatype));
+    const int bits = bytes.type(bitpix);  // some programs leave it out
     if (bits != 0 && bits != static_cast<int>(8 * size_of(header.stored))) {
         throw Failure("its header's bits a sample do not fit its type; the header is damaged");
     }

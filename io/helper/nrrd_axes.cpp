@@ -149,8 +149,9 @@ Space space_of(const HeaderFields& fields, std::vector<std::string>& notes) {
                         "', which is not the patient's: its axes were taken as those of LPS");
     }
     if (space.dimension == 0) {
-        if (!fields.value("space units").empty()) {
-            notes.emplace_back("its header has space units but no space: they were ignored");
+        for (const std::string field : {"space units", "space origin"}) {
+            if (fields.value(field).empty()) continue;
+            notes.push_back("its header has a field '" + field + "' but no space: it was ignored");
         }
         return space;
     }
@@ -201,7 +202,9 @@ void read_directions(const HeaderFields& fields, const Space& space, std::vector
             at += 4;
             continue;
         }
-        axis.direction = vector_in(next_vector(text, at, field), space, field);
+        const std::vector<double> numbers = next_vector(text, at, field);
+        if (std::ranges::all_of(numbers, [](double n) { return std::isnan(n); })) continue;  // none
+        axis.direction = vector_in(numbers, space, field);
         check_spacing(std::hypot(axis.direction->place.norm(), axis.direction->length_beyond()),
                       "header field '" + field + "'");
     }

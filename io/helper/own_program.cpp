@@ -81,6 +81,7 @@ const char* program_for_file(const fs::path& path) {
             "is one of a pair of files (.hdr and .img), which is not read; save the pair as one "
             ".nii file (3D Slicer does)");
     }
+    if (extension == ".zip") throw Failure("is packed; unpack it and give what is in it");
     throw Failure(
         "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, dcm, tif, vti); if "
         "it holds nothing but samples, give its dims and type");
@@ -100,6 +101,7 @@ const char* program_for(Job job, const fs::path& path) {
                    : extension == ".tif" || extension == ".tiff" ? images
                                                                  : itk;
         case Job::locate:
+            (void)program_for_file(path);
             throw Failure(
                 "is of a format that is read as a whole and not piece by piece; convert it to "
                 "OME-Zarr");

@@ -112,6 +112,10 @@ std::optional<double> unit_in(const Description& description, const char* own) {
 
 }  // namespace
 
+double image_j_planes(const std::string& text) {
+    return count_in(fields_of(text), "images");
+}
+
 Moments image_j_moments(const std::string& text, std::size_t pages,
                         std::vector<std::string>& notes) {
     const Description description = fields_of(text);
@@ -127,7 +131,7 @@ Moments image_j_moments(const std::string& text, std::size_t pages,
     const double images = count_in(description, "images");
     if (images > static_cast<double>(pages)) {
         throw Failure("tells of " + text_of(images) + " slices, but has " + std::to_string(pages) +
-                      " as TIFF counts them; save it as BigTIFF (Bio-Formats) or as NRRD");
+                      "; it is cut off: copy it again");
     }
     const double frames = count_in(description, "frames");
     if (!(frames > 1)) return {};

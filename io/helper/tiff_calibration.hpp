@@ -21,13 +21,15 @@ std::optional<Vec3> image_j_spacing(TIFF* tiff, const std::string& description);
 ValueMap image_j_values(const std::string& description, Stored stored,
                         std::vector<std::string>& notes);
 
+/// How many planes ImageJ's description tells of; 1 if it does not say.
+double image_j_planes(const std::string& description);
+
 /// Into how many moments, one after the other, ImageJ's description divides the pages.
 struct Moments {
     std::int64_t count = 1;
     FrameTimes times;
 };
-/// Throws Failure where it has channels, or other counts than there are pages (ImageJ's own files
-/// above 4 GB have one page).
+/// Throws Failure where it has channels, or other counts than there are pages.
 Moments image_j_moments(const std::string& description, std::size_t pages,
                         std::vector<std::string>& notes);
 

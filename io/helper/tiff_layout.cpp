@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "io/helper/tiff_calibration.hpp"
 #include "io/helper/tiff_page.hpp"
@@ -35,22 +36,32 @@ OmeImage told_by_ome(const std::string& description, const TiffPages& pages, con
     return image;
 }
 
-/// tifffile writes {"shape": [5, 7, 8]}; of a file of one page it may be the only word of the rest.
-void check_shape(const std::string& description, const TiffPage& page, std::size_t pages,
-                 std::vector<std::string>& notes) {
-    const nlohmann::json told = nlohmann::json::parse(description, nullptr, false);
-    if (!told.is_object() || !told.contains("shape") || !told["shape"].is_array()) return;
+/// tifffile's description, such as {"shape": [5, 7, 8], "axes": "ZYX"}; null if it is another one.
+nlohmann::json told_by_tifffile(const std::string& description) {
+    nlohmann::json told = nlohmann::json::parse(description, nullptr, false);
+    if (!told.is_object() || !told.contains("shape") || !told["shape"].is_array()) return nullptr;
+    const auto is_size = [](const nlohmann::json& size) { return size.is_number_unsigned(); };
+    return std::ranges::all_of(told["shape"], is_size) ? told : nullptr;
+}
+
+double samples_in(const nlohmann::json& told) {
+    if (told.is_null()) return 0;
     double samples = 1;
+    for (const nlohmann::json& size : told["shape"]) samples *= size.get<double>();
+    return samples;
+}
+
+/// Of a file of one page, tifffile's shape may be the only word of the rest.
+void check_shape(const nlohmann::json& told, const TiffPage& page, std::size_t pages,
+                 std::vector<std::string>& notes) {
+    if (told.is_null()) return;
     std::string text;
     int axes = 0;
     for (const nlohmann::json& size : told["shape"]) {
-        if (!size.is_number_unsigned()) return;
-        samples *= size.get<double>();
         text += (text.empty() ? "" : "x") + std::to_string(size.get<std::uint64_t>());
         axes += size.get<std::uint64_t>() > 1 ? 1 : 0;
     }
-    const double there = static_cast<double>(pages) * page.width * page.height;
-    if (samples > there) {
+    if (samples_in(told) > static_cast<double>(pages) * page.width * page.height) {
         throw Failure("its description gives it the shape " + text.substr(0, 60) + ", but it has " +
                       std::to_string(pages) +
                       " pages as TIFF counts them; save each slice as a page");
@@ -63,6 +74,26 @@ void check_shape(const std::string& description, const TiffPage& page, std::size
                         (has_others ? " of axes " + names.get<std::string>().substr(0, 20) : "") +
                         ": all its pages were taken as slices");
     }
+}
+
+/// ImageJ above 4 GB, and tifffile if asked to, write the planes one behind the other, of which a
+/// page tells only the first. Returns how many there are; 1 if the only page is of another kind.
+std::size_t planes_behind(TIFF* tiff, const fs::path& file, const TiffPage& page, double told) {
+    std::uint16_t compression = COMPRESSION_NONE;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
+    if (compression != COMPRESSION_NONE || TIFFIsTiled(tiff) != 0) return 1;
+    std::uint64_t end = TIFFGetStrileOffset(tiff, 0);
+    if (end < TIFFCurrentDirOffset(tiff)) return 1;  // the directory would be taken for planes
+    const double bytes =
+        told * page.width * page.height * static_cast<double>(size_of(page.stored));
+    const bool is_there =
+        static_cast<double>(end) + bytes <= static_cast<double>(fs::file_size(file));
+    if (!(told > 1 && told <= 1 << 20 && told == std::floor(told) && is_there)) return 1;
+    for (std::uint32_t strip = 0; strip < TIFFNumberOfStrips(tiff); ++strip) {
+        if (TIFFGetStrileOffset(tiff, strip) != end) return 1;
+        end += TIFFGetStrileByteCount(tiff, strip);
+    }
+    return static_cast<std::size_t>(told);
 }
 
 }  // namespace
@@ -111,12 +142,22 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
     }
     OmeImage& image = layout.image;
     image.format = "TIFF";
-    check_shape(description, first, pages.whole.size(), notes);
-    const Moments moments = image_j_moments(description, pages.whole.size(), notes);
-    layout.values = image_j_values(description, first.stored, notes);
-    image.sizes = {static_cast<std::int64_t>(pages.whole.size()) / moments.count, 1, moments.count};
-    image.frame_interval = moments.times.interval;
     image.pages = pages.whole;
+    const nlohmann::json by_tifffile = told_by_tifffile(description);
+    if (pages.whole.size() == 1) {
+        const double plane = static_cast<double>(first.width) * first.height;
+        const double told = std::max(image_j_planes(description), samples_in(by_tifffile) / plane);
+        image.pages.resize(planes_behind(tiff, file, first, told));
+        if (image.pages.size() > 1) {
+            std::iota(image.pages.begin(), image.pages.end(), 0U);
+            layout.plain_from = TIFFGetStrileOffset(tiff, 0);
+        }
+    }
+    check_shape(by_tifffile, first, image.pages.size(), notes);
+    const Moments moments = image_j_moments(description, image.pages.size(), notes);
+    layout.values = image_j_values(description, first.stored, notes);
+    image.sizes = {static_cast<std::int64_t>(image.pages.size()) / moments.count, 1, moments.count};
+    image.frame_interval = moments.times.interval;
     if (pages.whole.size() == 1 && coarser_levels(tiff).empty()) layout.reduced = pages.reduced;
     if (const auto spacing = image_j_spacing(tiff, description)) {
         const bool has_distance = std::isfinite((*spacing)[2]) && (*spacing)[2] > 0;

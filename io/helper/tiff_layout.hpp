@@ -20,6 +20,8 @@ struct TiffLayout {
     ValueMap values;
     /// Pages of coarser levels, of a file of one plane with such pages instead of SubIFDs.
     std::vector<std::uint32_t> reduced = {};
+    /// Where planes follow each other behind the only page, numbered by image.pages; 0: by pages.
+    std::uint64_t plain_from = 0;
 };
 
 /// Leaves the first page as the current one.

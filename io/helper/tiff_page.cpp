@@ -69,13 +69,18 @@ TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
         throw Failure(quoted(file) + " is a stack of MetaMorph with " + std::to_string(planes) +
                       " planes behind one page, which is not read; save a page for each slice");
     }
-    if (samples != 1 || (photometric > PHOTOMETRIC_MINISBLACK && photometric != PHOTOMETRIC_MASK)) {
+    const bool is_grey = photometric <= PHOTOMETRIC_MINISBLACK ||
+                         photometric == PHOTOMETRIC_PALETTE || photometric == PHOTOMETRIC_MASK;
+    if (samples != 1 || !is_grey) {
         throw Failure(quoted(file) + " has colours (" + std::to_string(samples) +
                       " values a sample, PhotometricInterpretation " + std::to_string(photometric) +
                       "); save it in grey");
     }
     if (photometric == PHOTOMETRIC_MINISWHITE) {
         add_note(notes, "its zero means white: values were taken as they are");
+    }
+    if (photometric == PHOTOMETRIC_PALETTE) {
+        add_note(notes, "its palette of colours was not used: values were taken as they are");
     }
     TIFFGetFieldDefaulted(tiff, TIFFTAG_ORIENTATION, &page.orientation);
     if (page.orientation != ORIENTATION_TOPLEFT) {

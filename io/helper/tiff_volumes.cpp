@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 
+#include "io/byte_order.hpp"
 #include "io/helper/numbered_names.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/tiff_layout.hpp"
@@ -75,7 +76,17 @@ void read_tiles(TIFF* tiff, const fs::path& file, const TiffPage& page, std::byt
     }
 }
 
-/// One page of one file.
+/// Planes without a page of their own (TiffLayout::plain_from).
+void read_plain(TIFF* tiff, const fs::path& file, std::uint64_t from, std::size_t each,
+                std::span<std::byte> to) {
+    std::ifstream in(file, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(from));
+    in.read(reinterpret_cast<char*>(to.data()), std::ssize(to));
+    if (!in) fail_damaged_tiff(file);
+    if (TIFFIsByteSwapped(tiff) != 0) swap_bytes(to, each);
+}
+
+/// One page of one file, or one plane.
 struct Slice {
     fs::path file;
     std::uint32_t page = 0;
@@ -102,7 +113,7 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
         const Slice& slice = slices[i];
         say_doing(slice.file.filename().string());
         if (i == 0 || slice.file != slices[i - 1].file) tiff = open_to_read(slice.file);
-        go_to_slice(tiff.get(), slice);
+        if (layout.plain_from == 0) go_to_slice(tiff.get(), slice);
         const TiffPage page = page_of(tiff.get(), slice.file, result.notes);
         if (i == 0) {
             first = page;
@@ -119,7 +130,10 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
             throw Failure("its slice " + std::to_string(i) + " is " + text_of(page) +
                           ", the first " + text_of(first) + "; put slices of one kind together");
         }
-        if (TIFFIsTiled(tiff.get()) != 0) {
+        if (layout.plain_from > 0) {
+            read_plain(tiff.get(), slice.file, layout.plain_from + slice.page * page_samples.size(),
+                       size_of(page.stored), page_samples);
+        } else if (TIFFIsTiled(tiff.get()) != 0) {
             read_tiles(tiff.get(), slice.file, page, page_samples.data(), request);
         } else {
             read_strips(tiff.get(), slice.file, page, page_samples.data());
@@ -156,7 +170,11 @@ void note_stick(Result& result) {
 /// What the first file of a folder says of spacing and values; the files' names say the order.
 TiffLayout layout_of_folder(const fs::path& first, std::vector<std::string>& notes) {
     const Tiff tiff = open_to_read(first);
-    if (!is_ome_xml(description_of(tiff.get()))) return layout_of(tiff.get(), first, notes);
+    if (!is_ome_xml(description_of(tiff.get()))) {
+        TiffLayout layout = layout_of(tiff.get(), first, notes);
+        if (layout.plain_from == 0) return layout;
+        throw Failure(quoted(first) + " is a stack in a folder of slices; give that file alone");
+    }
     notes.emplace_back(
         "the OME-XML of its files was not used: they were put together by the numbers in their "
         "names, 1 mm apart along every axis");

@@ -1,11 +1,36 @@
 // Files of metadata in JSON. See the header.
 #include "stream/formats/metadata_files.hpp"
 
+#include <algorithm>
+
 #include "io/json_text.hpp"
 
 namespace palpate::stream {
 
 using Json = nlohmann::json;
+
+namespace {
+
+/// Python's json writes NaN and Infinity, which JSON does not have: here they become texts, as Zarr
+/// has them for fill values.
+std::string with_quoted_numbers(std::string_view text) {
+    std::string quoted;
+    bool in_text = false;
+    for (std::size_t i = 0; i < text.size();) {
+        std::size_t length = 1;
+        for (const std::string_view word : {"NaN", "Infinity", "-Infinity"}) {
+            if (!in_text && text.substr(i).starts_with(word)) length = word.size();
+        }
+        if (text[i] == '\\' && in_text) length = std::min<std::size_t>(2, text.size() - i);
+        in_text ^= text[i] == '"';
+        const std::string_view mark = length > 2 ? "\"" : "";
+        quoted.append(mark).append(text.substr(i, length)).append(mark);
+        i += length;
+    }
+    return quoted;
+}
+
+}  // namespace
 
 Wanted metadata_file(const std::string& folder, const std::string& name) {
     constexpr std::uint64_t most_bytes = 8 << 20;
@@ -16,7 +41,8 @@ Json parsed(const std::optional<Bytes>& bytes, const std::string& name) {
     if (!bytes) return nullptr;
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     try {
-        return io::parsed_json(text);
+        const bool is_plain = text.find("NaN") == text.npos && text.find("Infinity") == text.npos;
+        return io::parsed_json(is_plain ? text : with_quoted_numbers(text));
     } catch (const Json::exception&) {
         // A server's page about a login or an error, although its status says that all is well.
         const std::size_t begin = text.find_first_not_of(" \t\r\n");

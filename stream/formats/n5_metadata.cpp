@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 
 #include "io/chunked_image.hpp"
 #include "palpate/io/error.hpp"
@@ -110,12 +109,6 @@ struct NamedPlace {
     Numbers scale, translation;
 };
 
-std::string axis_name(const Json& name) {
-    std::string text = name.is_string() ? name.get<std::string>() : "";
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return io::one_line(text.substr(0, 40));
-}
-
 /// Janelia's: {"axes": ["z", "y", "x"], "scale": [..], "translate": [..], "units": [..]}, in any
 /// order of the axes.
 std::optional<NamedPlace> transform_of(const Json& object) {
@@ -149,9 +142,7 @@ std::optional<NamedPlace> multiscale_of(std::span<const Json> groups, const std:
         if (auto place = transform_of(datasets[i])) return place;
         if (!all[0].contains("axes")) return std::nullopt;
         const auto image = ome_image(Json{{"multiscales", all}});
-        NamedPlace place{image->axes, image->levels[i].scale, image->levels[i].translation};
-        for (ImageAxis& axis : place.axes) axis.name = axis_name(axis.name);
-        return place;
+        return NamedPlace{image->axes, image->levels[i].scale, image->levels[i].translation};
     }
     return std::nullopt;
 }
@@ -221,6 +212,8 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
     image.axes = n5_axes(groups, levels[0], axes);
     auto resolution = resolution_of(groups, axes);
     if (!resolution) resolution = resolution_of(levels.first(1), axes);
+    auto offset = along_axes(attribute(groups, "offset"), axes, 0);  // Paintera's, in the same unit
+    if (!offset) offset = along_axes(attribute(levels.first(1), "offset"), axes, 0);
     if (!attribute(groups, "affineTransform").is_null()) {
         note_once(notes, "its affineTransform is not applied");
     }
@@ -246,7 +239,9 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
             const double spacing = placed       ? image.levels[0].scale[a]
                                    : resolution ? resolution->spacing[a]
                                                 : 1;
-            const double first = placed ? image.levels[0].translation[a] : 0;
+            const double first = placed                 ? image.levels[0].translation[a]
+                                 : resolution && offset ? (*offset)[a]
+                                                        : 0;
             level.scale[a] = spacing * (*factors)[a];
             level.translation[a] = first + spacing * ((*factors)[a] - 1) / 2;
             if (!placed) image.axes[a].unit = resolution ? resolution->units[a] : "millimeter";

@@ -1,4 +1,6 @@
 // Metadata of OME-Zarr images, versions 0.1 to 0.5: https://ngff.openmicroscopy.org.
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -35,7 +37,8 @@ std::vector<double> numbers_of(const Json& list, std::size_t axes, const char* w
 /// At most one scale, then at most one translation.
 Placement placement_of(const Json& object, std::size_t axes) {
     Placement place{std::vector<double>(axes, 1), std::vector<double>(axes, 0)};
-    const Json list = object.value("coordinateTransformations", Json::array());
+    const Json list = object.value("coordinateTransformations", Json());
+    if (list.is_null()) return place;
     if (!list.is_array() || list.size() > 8)
         throw BadMetadata("its transformations are not sensible");
     bool translated = false;
@@ -67,13 +70,13 @@ std::vector<ImageAxis> axes_of(const Json& image) {
     }
     for (const Json& axis : list) {
         if (axis.is_string()) {
-            axes.push_back({axis.get<std::string>(), ""});
+            axes.push_back({axis_name(axis), ""});
             continue;
         }
         const Json unit = axis.value("unit", Json(""));
-        std::string name = axis.at("name").get<std::string>();
-        if (axis.value("type", std::string()) == "time") name = "t";
-        if (axis.value("type", std::string()) == "channel") name = "c";
+        std::string name = axis_name(axis.at("name"));
+        if (axis.value("type", Json()) == "time") name = "t";
+        if (axis.value("type", Json()) == "channel") name = "c";
         axes.push_back({name, unit.is_string() ? unit.get<std::string>() : ""});
     }
     return axes;
@@ -134,6 +137,12 @@ void take_direction(const Json& attributes, Image& image) {
 }
 
 }  // namespace
+
+std::string axis_name(const Json& name) {
+    std::string text = name.is_string() ? name.get<std::string>() : "";
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return io::one_line(text.substr(0, 40));
+}
 
 std::optional<Image> ome_image(const Json& given) {
     if (!given.is_object()) return std::nullopt;

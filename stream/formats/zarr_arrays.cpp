@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "io/system/number.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/formats/metadata_files.hpp"
 #include "stream/formats/zarr_metadata.hpp"
@@ -56,9 +57,9 @@ std::optional<double> float_of(const std::string& text, io::Stored stored) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
 }
 
-/// Refuses what the type does not have. `wraps`: in Zarr 2, a negative number of an unsigned type
-/// is the signed one of as many bits, as zarr-python has it.
-double fill_of(const Json& json, const SampleBytes& bytes, bool wraps) {
+/// Refuses what the type does not have. In Zarr 2, a negative number of an unsigned type is the
+/// signed one of as many bits, and whole numbers may be text, as zarr-python has it.
+double fill_of(const Json& json, const SampleBytes& bytes, bool is_zarr2) {
     const io::Stored stored = bytes.stored;
     const bool is_float = stored == io::Stored::float32 || stored == io::Stored::float64;
     std::optional<double> fill;
@@ -66,9 +67,12 @@ double fill_of(const Json& json, const SampleBytes& bytes, bool wraps) {
     if (json.is_boolean()) fill = json.get<bool>() ? 1 : 0;
     if (json.is_number()) fill = json.get<double>();
     if (json.is_string() && is_float) fill = float_of(json.get<std::string>(), stored);
+    if (json.is_string() && is_zarr2 && !is_float) {
+        fill = io::number_from<double>(json.get<std::string>());
+    }
     if (fill && !is_float) {
         const auto [low, high] = whole_numbers_of(stored);
-        if (wraps && low == 0 && *fill < 0 && *fill >= -high / 2) *fill += high;
+        if (is_zarr2 && low == 0 && *fill < 0 && *fill >= -high / 2) *fill += high;
         if (*fill < low || *fill >= high || *fill != std::floor(*fill)) fill.reset();
     }
     if (!fill) {

@@ -2,7 +2,6 @@
 // first series of the output of bioformats2raw.
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <numeric>
 
 #include "palpate/io/error.hpp"
@@ -122,11 +121,8 @@ class Opening {
         std::vector<ImageAxis> named;
         std::string text;
         for (const Json& name : names) {
-            std::string one = name.is_string() ? name.get<std::string>() : "";
-            text += (text.empty() ? "" : ", ") + io::one_line(one.substr(0, 20));
-            std::ranges::transform(one, one.begin(),
-                                   [](unsigned char c) { return std::tolower(c); });
-            named.push_back({one, ""});
+            named.push_back({axis_name(name), ""});
+            text += (text.empty() ? "" : ", ") + named.back().name.substr(0, 20);
         }
         try {
             check_axes(named);
