@@ -99,9 +99,9 @@ class Run {
     double isovalue() const { return isovalue_; }
     bool frozen() const { return frozen_; }
 
-    /// Continues with another device, with all settings requested so far, lowered to those that it
-    /// can render them. Throws as the constructor does; the old device then continues. A recording
-    /// is finished first. Throws WrongState before start(), as does use_field().
+    /// Continues with another device, with all settings requested so far, lowered where it
+    /// cannot render them. Throws as the constructor does; the old device then continues. A
+    /// recording is finished first. Throws WrongState before start(), as does use_field().
     void use_device(const devices::DeviceChoice& device);
     /// Continues with this solid side, this interpolation, and this background outside the grid.
     /// The session starts anew with all settings requested so far, except penetrability and, if the
