@@ -12,12 +12,12 @@ namespace palpate {
 /// State of a device. There is force only while it is `ready`.
 enum class DeviceStatus : std::uint8_t {
     starting,      ///< not connected yet, or no position yet
-    ready,         ///< positions come in
+    ready,         ///< positions arrive
     uncalibrated,  ///< positions cannot be trusted before it is calibrated
     stale,         ///< the last position is too old
-    lost,          ///< the connection is gone. It may come back
+    lost,          ///< the connection is lost. It may return
     fault,         ///< the device or its driver reports an error
-    finished,      ///< a recorded or scripted hand has come to its end
+    finished,      ///< a recorded or scripted hand has reached its end
 };
 const char* name_of(DeviceStatus status);
 
@@ -45,13 +45,12 @@ struct DeviceReading {
     std::optional<double> opening = {};   ///< [rad] of a gripper, 0: closed. None: it has none
     double age = 0;                       ///< [s] since it was measured. Below 0, NaN, inf: stale
     DeviceStatus status = DeviceStatus::starting;
-    /// Limits of a device that learns them only when it connects, in every reading from then on;
-    /// none: those that info() gave when the servo was made still hold.
+    /// Limits of a device that learns them only when it connects, in every reading from then on.
+    /// None: those that info() gave when the servo was constructed still hold.
     std::optional<DeviceLimits> limits = std::nullopt;
 };
 
-/// Whether a gripper is so far closed that it grasps something. A hand without a gripper always
-/// does.
+/// Whether the gripper is closed so far that it grasps. Always true for a device without a gripper.
 constexpr bool grasps(const DeviceReading& reading) {
     return !reading.opening || *reading.opening < 0.1;
 }
@@ -78,7 +77,7 @@ class Device {
     /// Any thread but the servo thread. May change when a device connects. A running servo learns
     /// of changed limits by DeviceReading::limits.
     virtual DeviceInfo info() const = 0;
-    /// What is wrong and what to do about it. Empty if nothing is. Not for the servo thread.
+    /// What is wrong and what to do about it, or empty. Not for the servo thread.
     virtual std::string problem() const { return {}; }
 
     /// Servo thread: neither waits, allocates nor throws. `time` [s] is the session's. Simulated
@@ -92,14 +91,14 @@ class Device {
     virtual void write(const Wrench& wrench, double time) = 0;
     static constexpr double longest_force = 0.02;  ///< [s]
 
-    /// No force and torque from now on, for good, whatever write() is told later or at the same
-    /// time. Any thread, and signal handlers: a program that crashes calls it as a last resort.
-    /// Also while another thread is in read() or write() and does not come back, so it waits for
-    /// nothing that such a thread holds. A device whose force cannot be reached from a second
-    /// thread says so in problem() and its documentation.
+    /// Permanently sets force and torque to zero, whatever write() gets later or at the same time.
+    /// May be called by any thread and in signal handlers: a program that crashes calls it as a
+    /// last resort. It works while another thread hangs in read() or write(), so it must not wait
+    /// for anything that such a thread holds. If the force of a device cannot be stopped from a
+    /// second thread, problem() and the documentation of the device say so.
     virtual void stop() noexcept = 0;
-    /// After stop(): true while the zero is still on its way, where the device can tell. Any
-    /// thread, and signal handlers.
+    /// After stop(): true until the zero has been sent, if the device can tell. Any thread, and
+    /// signal handlers.
     virtual bool is_stopping() const noexcept { return false; }
 };
 

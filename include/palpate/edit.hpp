@@ -29,18 +29,18 @@ BrushKind brush_kind_from(std::string_view name);
 /// and is half at `radius`.
 struct Brush {
     BrushKind kind = BrushKind::carve;
-    /// [mm, physical] > 0. With a tool's shape: how far the brush reaches beyond the tool's skin.
+    /// [mm, physical] > 0. With a tool's shape: how far the brush works beyond the tool's surface.
     double radius = 3;
-    /// 1: the edge is two voxels wide, the narrowest that the grid shows without steps. 0: as wide
-    /// as the brush.
+    /// 1: the edge is two voxels wide, the narrowest edge without steps on the grid. 0: as wide as
+    /// the brush.
     double hardness = 1;
     /// The fraction of the difference to its target by which one touch changes a sample, above 0 to
     /// 1. A tool with a rate r [1/s] uses 1 - exp(-r dt) for a touch of dt. Except with smooth, an
     /// integer sample that should change by a sixteenth of a unit or more changes by at least one
     /// unit, so that weak touches have an effect.
     double strength = 1;
-    /// carve, add: the level whose surface the brush shapes [data units]. That surface is left at
-    /// `radius`, as smooth as the grid can show.
+    /// carve, add: the level whose surface the brush shapes [data units]. The new surface is at
+    /// `radius`, as smooth as the grid allows.
     double level = 0;
     Solid solid = Solid::above;  ///< carve, add: which side of `level` is solid
     /// The value that a full touch leaves [data units]. carve: on the free side of `level`, for
@@ -55,7 +55,8 @@ struct Stroke {
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [mm, physical]
 };
 /// A brush with a tool's own shape, swept between two poses without gaps: it moves straight and
-/// turns evenly the shorter way round. The body has to reach as far as the brush (reach_of()).
+/// turns evenly, by the smaller angle. The body has to know distances as far as the brush works
+/// (reach_of()).
 struct Sweep {
     Brush brush;
     std::shared_ptr<const ToolBody> body;  ///< not null
@@ -66,8 +67,9 @@ struct Fill {
     SampleBox box;
     double value = 0;  ///< [data units]
 };
-/// Puts samples of another volume, of any type, into the grid, the first one at `at`; of that
-/// volume's geometry only the size counts. Applications pass in what they simulate with this.
+/// Replaces a box of the grid by the samples of another volume, of any type, the first one at `at`.
+/// Only the size of that volume's geometry counts. Applications can insert simulated data with
+/// this.
 struct Replace {
     Index3 at = Index3::Zero();
     Volume samples;
@@ -76,7 +78,7 @@ struct Replace {
 /// All are clipped at the border of the grid.
 using Edit = std::variant<edit::Stroke, edit::Sweep, edit::Fill, edit::Replace>;
 
-/// How far from the skin of a body such a brush has an effect, outside or inside, on this grid
+/// How far from the surface of a body such a brush has an effect, outside or inside, on this grid
 /// [mm].
 double reach_of(const Brush& brush, const Geometry& geometry);
 /// The body of a tool, fine and wide enough for sweeps of this brush on this grid. Throws
@@ -89,8 +91,8 @@ struct Edited {
     SampleBox changed;
 };
 
-/// Reads a box of the grid, both corners in it, before all edits, where not all samples are in
-/// memory: samples of the volume's type, x fastest. May wait, and throw what it likes.
+/// Reads a box of a grid that is not wholly in memory, both corners included, as before all edits:
+/// samples of the volume's type, x fastest. May wait, and may throw anything.
 using ReadSamples = std::function<void(const SampleBox& box, std::span<std::byte> out)>;
 
 /// Throws std::invalid_argument, saying what is wrong, for an edit that cannot be made: numbers out
@@ -103,12 +105,12 @@ void check(const Edit& edit, const Samples& samples);
 Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit,
               const ReadSamples& read = {});
 
-/// A brush for the level that is felt: carving goes down to the field's background, adding and
-/// painting go as far above the level as the background lies below it.
+/// A brush with a value that fits the level: carving leaves the field's background, adding and
+/// painting leave a value as far above the level as the background lies below it.
 Brush brush_for(BrushKind kind, const Field& field, double isovalue, double radius);
 
-/// Whether an edit begins a new step of undo(), or belongs to the last one (one movement of a brush
-/// is many edits).
+/// Whether an edit is a new step for undo(), or part of the last one (a stroke of a brush is many
+/// edits).
 enum class EditStep : std::uint8_t { own, same };
 
 /// Applies edits to samples. Each step keeps its version of them, and versions share all bricks

@@ -1,6 +1,6 @@
-// Stage 11, exchange: two containers by which threads pass values to each other without waiting,
-// and histograms of durations that one thread counts and others read. Everything between the servo
-// thread and others (snapshots, commands, recordings, devices) goes through them.
+// Stage 11, exchange: two containers with which threads exchange values without waiting, and
+// histograms of durations that one thread counts and others read. All data between the servo thread
+// and others (snapshots, commands, recordings, devices) goes through them.
 #pragma once
 
 #include <algorithm>
@@ -43,8 +43,8 @@ class Newest {
         count_.store(number, std::memory_order_release);
     }
 
-    /// The newest value, or nothing if none was put yet. The number of attempts is bounded, so a
-    /// reader that is overtaken by a whole ring of values each time gets nothing, too.
+    /// The newest value, or nothing if none was put yet. The number of attempts is bounded: a
+    /// reader that is overtaken by a whole ring of values in each attempt also gets nothing.
     std::optional<T> get() const noexcept {
         for (int attempt = 0; attempt < attempts; ++attempt) {
             const std::uint64_t number = count_.load(std::memory_order_acquire);

@@ -1,7 +1,7 @@
-// Stage 3, field: samples continued over all of space, and which side of a level is solid.
-// All later stages read samples through Field::cell(), eight at a time, or Field::around(), 27 at a
-// time. They do not know how samples are stored, nor whether they were edited or interpolated
-// between two frames.
+// Stage 3, field: gives a density at every point of space, and tells which side of a level is
+// solid. All later stages read samples through Field::cell(), eight at a time, or Field::around(),
+// 27 at a time. They do not depend on how samples are stored, edited or interpolated between two
+// frames.
 #pragma once
 
 #include <algorithm>
@@ -13,12 +13,12 @@
 
 namespace palpate {
 
-/// Which side of the isovalue is solid: bright bodies on dark, or airways and vessels dark on
-/// bright.
+/// Which side of the isovalue is solid: above for bright bodies, below for dark ones such as
+/// airways.
 enum class Solid : std::uint8_t { above, below };
 
-/// How the field continues between its samples: `linear` in each tetrahedron of the lattice, exact
-/// and with facets (Corenthy et al. 2012), or `cubic`, whose gradient is continuous
+/// Interpolation between samples: `linear` in each tetrahedron of the lattice, which has the exact
+/// samples and facets (Corenthy et al. 2012), or `cubic`, whose gradient is continuous
 /// (docs/smooth.md).
 enum class Interpolation : std::uint8_t { linear, cubic };
 /// "linear" or "cubic".
@@ -33,7 +33,8 @@ using CellSamples = std::array<double, 8>;
 /// (x, y, z), each -1, 0 or 1, has place 13 + x + 3 y + 9 z.
 using Neighbours = std::array<double, 27>;
 
-/// What is felt: samples at one moment and their solid side. A small value; copies share samples.
+/// The samples at one moment and their solid side: what the hand touches. A small value; copies
+/// share the samples.
 class Field {
   public:
     /// `background` is the density outside the grid. Its default is the data's minimum, or the
@@ -47,13 +48,13 @@ class Field {
                    std::optional<double> background = std::nullopt,
                    Interpolation interpolation = Interpolation::linear);
 
-    /// Changes to another version of the samples, on the same grid, not null; background, side and
-    /// time stay. Neither allocates, locks nor throws; frees the previous version only if nobody
-    /// else holds it.
+    /// Changes to another version of the samples, on the same grid, not null. Background, solid
+    /// side and time stay. Neither allocates, locks nor throws. Frees the previous version only if
+    /// it is held nowhere else.
     void use(const std::shared_ptr<const Samples>& samples) noexcept;
     /// Goes to a time of a sequence [s], see Samples::moment_at().
     void set_time(double time) noexcept;
-    /// Feels the same samples in another way from now on.
+    /// Interpolates the same samples in another way from now on.
     void set_interpolation(Interpolation to) noexcept { interpolation_ = to; }
 
     const Samples& samples() const { return *samples_; }
@@ -68,25 +69,26 @@ class Field {
     double background() const { return background_; }
     /// +1 for above, -1 for below: sign * (density - isovalue) > 0 is solid.
     double sign() const { return sign_; }
-    /// max - min of samples and background [data units], never 0: what tolerances are relative to.
+    /// max - min of samples and background [data units], never 0. Tolerances are relative to it.
     double range() const { return range_; }
 
     /// How far sign * (f - isovalue) may exceed 0 by rounding before a point counts as solid [data
     /// units]: a thousandth of the tolerance of G1 and G2 (proxy.hpp).
     double tolerance() const { return tolerance_; }
-    /// What cell() takes from every sample [data units]: 0, unless the data lie so far from zero
-    /// that doubles have too few digits left for their range (docs/proxy.md, "Domain").
+    /// What cell() subtracts from every sample [data units]: 0, unless the data is so far from zero
+    /// that doubles have too few digits left for its range (docs/proxy.md, "Domain").
     double offset() const { return offset_; }
     /// A density computed from cell(), offset included.
     double with_offset(double density) const { return offset_ == 0 ? density : density + offset_; }
-    /// A level [data units], less offset(), as a proxy uses it: one far beyond the data separates
-    /// them as one just beyond them does, and leaves digits to the distance between two.
+    /// A level [data units], minus offset(), limited to a range around the data, as a proxy uses
+    /// it. A level far beyond the data has the same effect as one just beyond it, but differences
+    /// between such levels would lose digits.
     double within_reach(double level) const { return std::clamp(level, lowest_, highest_); }
     /// 1 / spacing [voxel/mm].
     const Vec3& voxels_per_mm() const { return voxels_per_mm_; }
 
-    /// The samples of the cell whose lowest corner is `cell` (index space), less offset(); any cell
-    /// in space. Samples that are not in memory are as solid as any; no proxy meets them
+    /// The samples of the cell whose lowest corner is `cell` (index space), minus offset(); any
+    /// cell in space. Samples that are not in memory count as solid; no proxy meets them
     /// (docs/streaming.md).
     CellSamples cell(const Index3& cell) const {
         return with_type(type_, [&](auto zero) { return cell_of<decltype(zero)>(cell); });
@@ -101,9 +103,9 @@ class Field {
         Gathered gathered;
         return visit_around(at, visit, gathered);
     }
-    /// The same for a caller that asks for one place several times: its samples are gathered once.
+    /// The same for a caller that reads one place several times: its samples are gathered once.
     struct Gathered {
-        bool done = false;  ///< the caller sets it back for another place
+        bool done = false;  ///< the caller resets it for another place
         Neighbours samples;
     };
     template <class Visit>
@@ -234,9 +236,8 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit, Gathered& kept)
                  std::ptrdiff_t{9});
 }
 
-/// Density at a physical point [mm], whichever way the field continues between its samples; the
-/// background outside the grid. The point must be finite. For what observes a field; the proxy has
-/// its own, quicker ways.
+/// Density at a physical point [mm], with the field's interpolation; the background outside the
+/// grid. The point must be finite. For observers: the proxy has faster ways.
 double value_at(const Field& field, const Vec3& physical);
 /// Gradient there, in physical axes [data units / mm].
 Vec3 gradient_at(const Field& field, const Vec3& physical);
@@ -246,7 +247,7 @@ Mat3 hessian_at(const Field& field, const Vec3& physical);
 /// True if all samples within `radius` [mm] of a point [mm, physical], and those that the field
 /// needs between them, are in memory.
 bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept;
-/// The coarsest level of detail of the samples round a point [mm, physical]: 0 is the grid's own.
+/// The coarsest level of detail of the samples around a point [mm, physical]: 0 is the grid's own.
 int level_at(const Field& field, const Vec3& physical) noexcept;
 
 }  // namespace palpate

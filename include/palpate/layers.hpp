@@ -1,7 +1,8 @@
-// Stage 9, layers: several surfaces in one stroke, each with its own character. A haptic transfer
-// function gives stiffness, friction and so on by density; surfaces are levels of it, from outside
-// in, and give way when they are pressed hard enough. (What Corenthy et al. 2012, section 7, leave
-// open: penetrability made for an application.) Model, energy and limits: docs/layers.md.
+// Stage 9, layers: several surfaces in one stroke, each with its own feel. A haptic transfer
+// function gives stiffness, friction and so on by density. Surfaces are levels of the density, from
+// outside in, and give way when they are pressed hard enough. (Corenthy et al. 2012, section 7,
+// propose such penetrability for an application as future work.) Model, energy and limits:
+// docs/layers.md.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@
 
 namespace palpate {
 
-/// What a haptic transfer function gives.
+/// The properties that a haptic transfer function gives.
 enum class HapticProperty : std::uint8_t {
     stiffness,         ///< [N/mm] of a surface
     static_friction,   ///< coefficient of a surface
@@ -24,12 +25,12 @@ enum class HapticProperty : std::uint8_t {
     damping,           ///< [N s/mm] of a surface
     viscosity,         ///< [N s/mm] inside, behind the surface
     puncture_force,    ///< [N] at which a surface gives way; infinity: never
-    drag,              ///< [N/mm] rubbing on a needle's shaft per mm (physical) of it inside
+    drag,  ///< [N/mm] friction on a needle's shaft per mm (physical) of its length inside
 };
 inline constexpr int haptic_property_count = 7;
 
 /// A piecewise linear function: knots in rising order, constant beyond both ends. Without knots it
-/// says nothing.
+/// has no value.
 struct Curve {
     struct Knot {
         double at, value;
@@ -40,20 +41,20 @@ struct Curve {
     double operator()(double at) const noexcept;
 };
 
-/// A property of a place: a value over its density [data units] and a factor over the gradient's
-/// magnitude there [data units / mm].
+/// A property at a point: a value over the density there [data units], and a factor over the
+/// magnitude of the gradient there [data units / mm].
 struct PropertyCurves {
     Curve density, gradient;
 };
 
-/// A surface and what lies behind it.
+/// A surface and the tissue behind it.
 struct Layer {
     std::string name;
     double level = 0;  ///< isovalue [data units]; by label, the label's number
-    /// For looking: red, green and blue, 0 to 1.
+    /// For pictures: red, green and blue, 0 to 1.
     std::array<double, 3> colour{0.8, 0.8, 0.8};
     double opacity = 1;
-    /// What is given here counts in place of the curve over density.
+    /// Values given here replace the curve over density.
     std::array<std::optional<double>, haptic_property_count> own{};
 
     std::optional<double>& operator[](HapticProperty p) { return own[static_cast<int>(p)]; }
@@ -64,14 +65,14 @@ struct Layer {
 
 /// A hand that holds a needle: after the first puncture it moves along a line.
 struct Needle {
-    double lateral_stiffness = 0.3;  ///< [N/mm] towards the line
+    double lateral_stiffness = 0.3;  ///< [N/mm] of the spring towards the line
     double static_ratio = 1.2;       ///< friction along the shaft at rest, of that in motion
     /// [mm/s] Slower than this along the line, the shaft sticks (Karnopp 1985).
     double stick_speed = 1;
 };
 
-/// A haptic transfer function. What neither a layer nor a curve gives is as the session's settings
-/// have it; without a puncture force surfaces never give way.
+/// A haptic transfer function. Properties that neither a layer nor a curve gives are those of the
+/// session's settings. Without a puncture force, surfaces never give way.
 struct Layers {
     static constexpr int most_layers = 16;
 
@@ -80,18 +81,19 @@ struct Layers {
     /// In the order in which a hand from outside meets them: levels rise, or fall where the solid
     /// is below. None: the session's isovalue, with the properties that the curves give there.
     std::vector<Layer> layers;
-    /// [mm, physical] A surface that gave way closes when the SCP is farther than this from where
-    /// it did. Then it is felt from its other side.
+    /// [mm, physical] A surface that gave way closes when the SCP is farther than this from the
+    /// place where it gave way. Then it can be touched from its other side.
     double closing = 1;
     std::optional<Needle> needle;
-    /// Tissue by place: a layer is where the label volume has its number, in place of densities. A
-    /// surface between two layers is that of the later one. Curves still take the densities there.
+    /// Tissue by position: a layer is where the label volume has its number, whatever the density.
+    /// A surface between two layers has the properties of the later one. Curves still use the
+    /// densities.
     bool by_label = false;
-    /// By label: so many of the layers, the first ones, are levels of the density all the same,
-    /// which count where the label volume has none of the labels.
+    /// By label: so many of the layers, the first ones, are levels of the density nevertheless.
+    /// They apply where the label volume has none of the labels.
     std::size_t levels_beside_labels = 0;
     std::shared_ptr<const Field> labels;  ///< from numbered_labels()
-    std::string label_volume;             ///< where they come from, for recordings
+    std::string label_volume;             ///< name of their source, for recordings
 
     const PropertyCurves& operator[](HapticProperty p) const { return curves[static_cast<int>(p)]; }
     PropertyCurves& operator[](HapticProperty p) { return curves[static_cast<int>(p)]; }
@@ -121,21 +123,21 @@ Field labelled_space(const Layers& layers);
 void check(const Layers& layers, Solid solid);
 
 /// A property in a layer (by number from 0; -1: outside of all), at a density [data units] and
-/// gradient magnitude [data units / mm]; `otherwise` if nothing says it.
+/// gradient magnitude [data units / mm]; `otherwise` if it is not given.
 double property_of(const Layers& layers, int layer, HapticProperty property, double density,
                    double gradient, double otherwise) noexcept;
 
-/// What a tick felt of layers.
+/// The layers in a tick.
 struct LayersFelt {
     std::int8_t touched = -1;  ///< layer whose surface is touched; -1: none
-    /// The SCP is inside this many layers, 0 .. inside - 1; where layer inside - 1 is a label, in
-    /// that one alone.
+    /// The SCP is inside this many layers, 0 .. inside - 1. If layer inside - 1 is a label, the SCP
+    /// is in that one only.
     std::int8_t inside = 0;
     std::int8_t punctured = 0;  ///< surfaces that gave way in this tick
 };
 
-/// The contact's spring. If its stiffness changes, along a surface or from one to the next, it
-/// takes on a rest length [device mm], so it never gains energy.
+/// The contact's spring. If its stiffness changes, along a surface or from one surface to the next,
+/// it gets a rest length [device mm], so it never gains energy.
 struct ContactSpring {
     bool touching = false;
     double stiffness = 0;
@@ -167,14 +169,14 @@ struct NeedleState {
 
 /// Everything that layers keep between two ticks.
 struct LayerState {
-    /// The set that this is about, which is only compared; null: of none yet.
+    /// The set to which this state belongs, only for comparison; null: none yet.
     const Layers* set = nullptr;
     int layer_count = -1, level_count = -1;  ///< of that set
     /// Which labels (bit k + 1 for layer k; bit 0: none of them) the SCP may be in.
     std::uint32_t open = 1;
-    /// By labels: the field that the proxy touches in place of the data's, which is the data's
-    /// covered by the labels or, without levels beside them, that of the labels alone, on their own
-    /// lattice: 1 where the SCP may not be, 0 elsewhere, felt at 0.5.
+    /// By labels: the field that the proxy touches instead of the data's. With levels, it is the
+    /// data's field with the labels in it. Without levels, it is that of the labels, on their own
+    /// lattice: 1 where the SCP may not be, 0 elsewhere, with its surface at 0.5.
     std::optional<Field> covered;
     Vec3 label_opening = Vec3::Zero();  ///< where a label gave way last [mm, physical]
     /// The SCP may be anywhere from inside `outer` layers to inside `inner` ones: the surfaces
@@ -189,10 +191,10 @@ struct LayerState {
     Vec3 hip = Vec3::Zero();  ///< of the last tick [mm, physical]
 };
 
-/// Keeps a state for another set where that has the same surfaces: as many layers, as many of them
-/// levels, and the same labels. Everything else may differ. False: it is none of the kind.
+/// Keeps a state for another set if that has the same surfaces: as many layers, as many of them
+/// levels, and the same labels. Everything else may differ. False: the surfaces are not the same.
 bool keep_for(LayerState& state, const Layers& before, const Layers& after) noexcept;
-/// Forgets what layers knew: the proxy stays where it is, on the lattice of the data.
+/// Resets the state: the proxy stays where it is, on the lattice of the data.
 void forget_layers(LayerState& state, Proxy& proxy, const Field& data) noexcept;
 
 /// Whether layers, if any, have surfaces of their own.
@@ -202,7 +204,7 @@ inline bool have_surfaces(const std::shared_ptr<const Layers>& layers) {
 
 /// Input to layers in one tick.
 struct LayerInput {
-    ProxyMethod method = &update_exact;  ///< that knows levels behind
+    ProxyMethod method = &update_exact;  ///< one that supports Proxy::behind
     Vec3 hip = Vec3::Zero();             ///< [mm, physical]
     ProxySettings proxy;
     ForceSettings force;
@@ -213,17 +215,17 @@ struct LayerInput {
 };
 struct LayersUpdate {
     ProxyUpdate proxy;
-    ForceSettings force;       ///< of what is touched and of what the SCP is in, stable
+    ForceSettings force;       ///< of the touched surface and of the tissue at the SCP, stable
     bool pulls = false;        ///< there is a spring's force on the hand
     Vec3 pull = Vec3::Zero();  ///< that force / force.stiffness [device mm], physical axes
     LayersFelt felt;
 };
 
-/// One tick: moves the proxy, in place of a ProxyMethod and of penetrability. Never through a
+/// One tick: moves the proxy, instead of a ProxyMethod and penetrability. The proxy never passes a
 /// surface that did not give way, from either side (G1, G2 for all of them; docs/layers.md). A
-/// surface gives way where on the hand's way its spring reached the puncture force; the SCP then
-/// goes on towards the hand in the same tick, at most through eight surfaces. A state of another
-/// set begins anew, where the proxy is.
+/// surface gives way at the point of the hand's way where its spring reaches the puncture force.
+/// The SCP then continues towards the hand in the same tick, through at most eight surfaces. A
+/// state of another set is reset at the proxy's position.
 LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,
                            const Field& field, const LayerInput& input, StepObserver observer = {});
 

@@ -16,9 +16,9 @@ namespace palpate {
 /// Whether the proxy follows the hand or rests on the surface.
 enum class Mode : std::uint8_t { free, constrained };
 
-/// How an update ended. Later updates finish what is neither `done` nor `refused`.
+/// How an update ended. After any other status than `done` and `refused`, later updates continue.
 enum class UpdateStatus : std::uint8_t {
-    done,           ///< the SCP is where the method puts it
+    done,           ///< the SCP has its final place for this HIP
     out_of_budget,  ///< step budget used up: the SCP is valid, the next update continues from it
     recovering,     ///< the SCP is still inside the solid: render no force
     refused,        ///< HIP not finite or farther than `farthest_hip`: nothing was changed
@@ -30,8 +30,8 @@ enum class UpdateStatus : std::uint8_t {
 /// with its target's distance: up to here G1 and G2 hold (docs/proxy.md, "Domain").
 inline constexpr double farthest_hip = 1e5;
 
-/// The piece that an update made last, for the next one, which mostly begins in its tetrahedron. It
-/// is used only where all that it was made from is the same. Nobody else looks into it.
+/// The last piece that an update computed, for the next update, which usually begins in the same
+/// tetrahedron. It is used only if all of its inputs are the same. Private to the proxy.
 class KeptPiece {
     friend struct CubicSite;
     friend struct Kept;
@@ -43,7 +43,7 @@ class KeptPiece {
     // once it was looked for, times cubic::scale.
     double most = std::numeric_limits<double>::infinity();
 };
-/// A sample and its neighbours, to the bit, with their type. Nobody else looks into it, either.
+/// A sample and its neighbours, bit for bit, with their type. Private to the proxy.
 class KeptSamples {
     friend struct Kept;
     int type = 0;  // none
@@ -55,25 +55,26 @@ struct Proxy {
     LatticePoint scp;                  ///< surface contact point, of the lattice of `interpolation`
     Vec3 scp_physical = Vec3::Zero();  ///< the same [mm]
     double isovalue = 0;               ///< [data units]
-    /// A second level, on the free side of the isovalue: the SCP stays between the two and feels
-    /// this one from its solid side. Nothing: all of the free side is open. For update_exact() and
-    /// update_straight().
+    /// A second level, on the free side of the isovalue: the SCP stays between the two, and touches
+    /// this one from its solid side. Nothing: the free side has no second level. For update_exact()
+    /// and update_straight().
     std::optional<double> behind;
-    bool turned = false;  ///< the last surface met was that of `behind`
+    bool turned = false;  ///< the last surface touched was that of `behind`
     Mode mode = Mode::free;
     Interpolation interpolation = Interpolation::linear;  ///< of the field of the last update
     bool placed = false;        ///< false: the next update starts at its HIP
     bool sliding = false;       ///< dynamic friction applies
     double recovery_reach = 0;  ///< [voxel] how far recovery has searched for free space so far
-    /// Unit normal of the surface felt before the field changed, physical axes. Zero: none
+    /// Unit normal of the surface that was touched before the field changed, physical axes. Zero:
+    /// none
     Vec3 ahead = Vec3::Zero();
     // These save time on a cubic field and change no result.
     KeptPiece kept;
-    KeptSamples kept_samples;  ///< that its piece was made from
+    KeptSamples kept_samples;  ///< from which its piece was computed
 };
 
 /// Coulomb friction as a cone on the proxy's motion: it stays until the tangential pull exceeds
-/// `static_coefficient` times the normal pull, then trails the hand at `dynamic_coefficient`.
+/// `static_coefficient` times the normal pull, then follows the hand with `dynamic_coefficient`.
 struct Friction {
     double static_coefficient = 0;
     double dynamic_coefficient = 0;  ///< at most the static one
@@ -82,9 +83,10 @@ struct Friction {
 struct ProxySettings {
     Friction friction = {};
     Friction behind = {};  ///< at the level behind
-    /// Most straight pieces (tetrahedra entered) an update may use. 4096 are 500 voxels of travel,
-    /// far more than a hand moves in a tick. At worst (all of it along a surface) they take some
-    /// 0.3 ms, a third of a tick at 1 kHz. Faster loops need a smaller budget.
+    /// Largest number of straight pieces (tetrahedra entered) per update. 4096 are 500 voxels of
+    /// travel, far more than a hand moves in a tick. In the worst case (all of them along a
+    /// surface) they take some 0.3 ms, a third of a tick at 1 kHz. Faster loops need a smaller
+    /// budget.
     int step_budget = 4096;
 };
 
@@ -104,7 +106,7 @@ struct Step {
     Vec3 goal;   ///< towards which it moved [mm, physical]
     Tetrahedron tetrahedron;
 };
-/// `on_step`, where it is set, is called for each step. Without it there is no cost.
+/// `on_step` is called for each step, unless it is null. Null costs nothing.
 struct StepObserver {
     void (*on_step)(const Step& step, void* context) = nullptr;
     void* context = nullptr;
@@ -116,12 +118,12 @@ struct ProxyUpdate {
     Vec3 hip = Vec3::Zero();  ///< [mm, physical]
     Vec3 scp = Vec3::Zero();  ///< [mm, physical]; equal to hip bit for bit when it was reached
     double density = 0;       ///< f(SCP) [data units]
-    double isovalue = 0;      ///< [data units] of the surface felt. Free: of the one ahead
-    bool behind = false;      ///< the surface felt is that of Proxy::behind
-    int tetrahedra = 0;       ///< number of them that the SCP moved through
-    int work = 0;             ///< straight pieces evaluated, of the step budget
-    double searched = 0;      ///< [mm] how far from the SCP recovery has looked for free space
-    int level = 0;            ///< of detail of the samples at the SCP (reach.hpp)
+    double isovalue = 0;  ///< [data units] of the touched surface. In free space: of the one ahead
+    bool behind = false;  ///< the touched surface is that of Proxy::behind
+    int tetrahedra = 0;   ///< number of them that the SCP moved through
+    int work = 0;         ///< straight pieces evaluated, of the step budget
+    double searched = 0;  ///< [mm] how far from the SCP recovery has looked for free space
+    int level = 0;        ///< of detail of the samples at the SCP (reach.hpp)
 };
 
 /// A proxy method moves the proxy for one HIP [mm, physical]. All methods have this form, so a
@@ -140,13 +142,13 @@ using ProxyMethod = ProxyUpdate (*)(Proxy& proxy, const Field& field, const Vec3
 ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings = {}, StepObserver observer = {});
 
-/// Straight to the HIP, as far as the surface lets the proxy: what does not slide, like the tip of
+/// Moves the proxy straight to the HIP until it meets the surface, without sliding, like the tip of
 /// a needle. Keeps G1, G2, G4 and G5. No friction.
 ProxyUpdate update_straight(Proxy& proxy, const Field& field, const Vec3& hip,
                             const ProxySettings& settings = {}, StepObserver observer = {});
 
-/// Puts the proxy at `hip` if that point is free, else at the free point that recovery finds. Takes
-/// as long as that needs, so it is not for the servo thread. False if all of space is solid.
+/// Puts the proxy at `hip` if that point is free, else at the free point that recovery finds. Its
+/// time is not bounded, so it is not for the servo thread. False if all of space is solid.
 bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
            StepObserver observer = {});
 
@@ -156,8 +158,8 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
 void field_will_change(Proxy& proxy, const Field& field);
 
 /// Unit normal of the level set at the SCP, out of the solid, physical axes. Zero where the field
-/// is constant. At the level behind it points into the layer that the SCP is in. On a wall it is
-/// that of one of the tetrahedra that meet there.
+/// is constant. At the level behind it points into the layer that contains the SCP. On a wall
+/// between tetrahedra it is the normal in one of them.
 Vec3 normal_at(const Proxy& proxy, const Field& field);
 
 /// The first point of a straight segment on the isosurface, from an exact walk in the lattice.
@@ -171,10 +173,10 @@ RayHit cast_ray(const Field& field, double isovalue, const Vec3& from, const Vec
                 int step_budget = std::numeric_limits<int>::max());
 
 // Penetrability presses a proxy through surfaces (Corenthy et al. 2012, section 5, Eq. 5 and Fig.
-// 7). Beyond a threshold the proxy gives way and the felt isovalue follows the hand inwards, and
+// 7). Beyond a threshold the surface gives way, and the isovalue follows the hand inwards, and
 // outwards again, so that one press explores all levels of a data set.
 
-/// Densities that may be felt, both ends included [data units].
+/// Levels that may be touched, both ends included [data units].
 struct DensityRange {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
@@ -187,18 +189,18 @@ struct Pressing {
     Vec3 scp, hip;    ///< [mm, physical]
 };
 /// A penetrability function returns the penetration threshold PT [device mm] at which the surface
-/// gives way now; at infinity it never does. Called on the servo thread: it must not allocate, lock
-/// or throw. A negative or NaN result counts as 0.
+/// gives way in this tick. Infinity: it does not give way. Called on the servo thread: it must not
+/// allocate, lock or throw. A negative or NaN result counts as 0.
 using PenetrabilityFunction = double (*)(const Pressing& pressing, const void* context);
 
-/// When surfaces give way, and which levels may be felt. A plain value, so it can be sent to a
-/// running servo thread. Switch it between any two ticks.
+/// When surfaces give way, and which levels may be touched. A plain value, so it can be sent to a
+/// running servo thread. It may change between any two ticks.
 struct Penetrability {
     static constexpr int most_ranges = 16;
 
     bool on = false;
-    /// PT [device mm] where there is no function. The spring force (Eq. 4) never exceeds k PT;
-    /// damping and viscosity are added to it.
+    /// PT [device mm] without a function. The spring force (Eq. 4) never exceeds k PT; damping and
+    /// viscosity are added to it.
     double threshold = 1;
     PenetrabilityFunction function = nullptr;
     const void* context = nullptr;  ///< given to `function`. Must outlive its use
@@ -207,27 +209,25 @@ struct Penetrability {
     int range_count = 1;
 };
 
-/// Off: the level felt stays as it is now. Past the last range the level is infinity and nothing is
-/// felt. Set `proxy.isovalue` in that case.
+/// Off: the level stays as it is now. If the hand is past the last range, the level is infinity,
+/// and no surface is touched. Set `proxy.isovalue` in that case.
 Penetrability no_penetrability();
-/// Threshold: gives way at PT [device mm]. Levels below `minimum` are not felt, or those above it
-/// where `solid` is below. Throws std::invalid_argument unless PT >= 0.
+/// Threshold: the surface gives way at PT [device mm]. Levels below `minimum` are not touched (with
+/// Solid::below, those above it). Throws std::invalid_argument unless PT >= 0.
 Penetrability penetrability_threshold(double threshold, double minimum, Solid solid = Solid::above);
-/// Ranges of interest: only these levels are felt. Between two of them the proxy is free. Ranges
+/// Ranges of interest: only these levels are touched. Between two of them the proxy is free. Ranges
 /// may overlap and come in any order. Throws std::invalid_argument for PT < 0, no range, NaN, low >
 /// high or more than 16.
 Penetrability penetrability_ranges(double threshold, std::span<const DensityRange> ranges,
                                    Solid solid = Solid::above);
 
-/// Throws std::invalid_argument, with the reason, for a value that is on and that the functions
-/// above would not make for this side. Reasons are PT NaN or below 0, ranges out of order, and no
-/// or too many ranges.
+/// Throws std::invalid_argument, with the reason, for a value that is on and not valid for this
+/// side: PT is NaN or below 0, ranges are out of order, or there are none or too many.
 void check(const Penetrability& penetrability, Solid solid);
 
-/// Applied after a proxy update (Fig. 7): moves the proxy where the surface gives way and sets the
-/// level felt there. Changes `proxy` (SCP, isovalue, mode) and `update` with it.
-/// `device_per_volume`: device mm per mm of physical space. Updates that are not `done` are left
-/// unchanged.
+/// Applied after a proxy update (Fig. 7): if the surface gives way, moves the proxy and sets the
+/// level there. Changes `proxy` (SCP, isovalue, mode) and `update`. `device_per_volume`: device mm
+/// per mm of physical space. Updates that are not `done` are left unchanged.
 ///
 /// With penetrability on, G1 and G2 hold for the level felt at the end of the tick. When the
 /// surface gives way, the SCP passes through the solid (StepKind::press). A press that

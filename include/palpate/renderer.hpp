@@ -38,11 +38,12 @@ struct RendererSettings {
     ProxyMethod method = &update_exact;
     ProxySettings proxy;
     Penetrability penetrability;
-    /// With layers, what they say of surfaces and forces counts in place of penetrability, friction
-    /// and force. Without any surface of their own, penetrability stays.
+    /// Layers replace penetrability, friction and force by their own values. Layers without
+    /// surfaces leave penetrability as it is.
     std::shared_ptr<const Layers> layers;
-    /// Felt with all its points, in six degrees of freedom, on the smooth field and by the method
-    /// exact. Null: a point. With a tool there are no layers, penetrability, magnet and texture.
+    /// A tool touches with all its points, in six degrees of freedom, on the smooth field and with
+    /// the method exact. Null: a point. With a tool there are no layers, penetrability, magnet and
+    /// texture.
     std::shared_ptr<const Tool> tool;
     ForceSettings force;
     DeviceLimits device;
@@ -50,30 +51,33 @@ struct RendererSettings {
     bool forces_on = true;
 };
 
-/// Everything between two ticks. Settings may be exchanged between ticks (through check() first);
-/// use_isovalue() for another level.
+/// The complete state between two ticks. Settings may be replaced between ticks, after check(). For
+/// another level, call use_isovalue().
 struct Renderer {
     Field field;  ///< of the samples
     RendererSettings settings;
     Proxy proxy;
     ForceState force;
     LayerState layers = {};
-    /// [data units] Felt again when there are no layers with surfaces. Set while there are.
+    /// [data units] The isovalue to return to when layers with surfaces are removed. Set while
+    /// there are such layers.
     std::optional<double> isovalue_without_layers = {};
-    /// The tool's proxy. Uses `proxy.isovalue`. Has a value if there is a tool, or may be one.
+    /// The tool's proxy, for the level `proxy.isovalue`. It has a value if there is a tool, or room
+    /// for one.
     std::optional<ToolProxy> tool_proxy = {};
 };
 
-/// The one field that the proxy touches: that of the samples or, with layers by label, the one that
-/// these cover. The proxy lies on its lattice.
+/// The field that the proxy touches: that of the samples or, with layers by label, the one that
+/// contains the labels. The proxy lies on its lattice.
 inline const Field& felt_field(const Renderer& renderer) {
     return renderer.layers.covered ? *renderer.layers.covered : renderer.field;
 }
 
-/// A monotonic clock of the caller's [ns]. The core reads none of its own.
+/// A monotonic clock [ns], given by the caller. The renderer has none of its own.
 using Clock = std::int64_t (*)() noexcept;
 
-/// What is felt with a tool, beside the places of its reference point (Tick::proxy).
+/// The result of a tick with a tool, in addition to the positions of its reference point
+/// (Tick::proxy).
 struct ToolFelt {
     Quaternion hand = Quaternion::Identity();   ///< tool axes to physical axes
     Quaternion proxy = Quaternion::Identity();  ///< the same of the proxy
@@ -99,41 +103,42 @@ void check(const RendererSettings& settings);
 /// Throws std::invalid_argument for an isovalue that is NaN, or infinite so that all of space is
 /// solid. The other infinity leaves all of space free.
 void check_isovalue(double isovalue, Solid solid);
-/// What of a field stays while its samples change.
+/// The properties of a field that stay while its samples change.
 struct FieldKind {
     Geometry geometry;
     Solid solid = Solid::above;
     Interpolation interpolation = Interpolation::linear;
 };
 FieldKind kind_of(const Field& field);
-/// Throws std::invalid_argument, saying what is wrong, for a tool that cannot be felt with this
-/// method on such a field. Null, a point, always can.
+/// Throws std::invalid_argument, saying what is wrong, for a tool that cannot be used with this
+/// method on such a field. Null, a point, is always valid.
 void check_tool(const Tool* tool, ProxyMethod method, const FieldKind& field);
 /// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue or settings
 /// that do not pass their check.
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings = {});
-/// Another level from the next tick on; beside layers with surfaces, as soon as they are gone. It
-/// has to pass check_isovalue().
+/// Another level from the next tick on or, while there are layers with surfaces, as soon as they
+/// are removed. It has to pass check_isovalue().
 void use_isovalue(Renderer& renderer, double isovalue) noexcept;
-/// Makes room for any tool, so that one can be taken up between two ticks (use_tool()). Throws
+/// Allocates memory for any tool, so that use_tool() can change the tool between two ticks. Throws
 /// std::bad_alloc.
 void make_room_for_tools(Renderer& renderer);
 /// Another tool, or with null a point, from the next tick on, at the proxy's place: the force
 /// starts again. `orientation`: of the hand, tool axes to device axes, for a proxy that had none.
-/// There has to be room, and nothing is allocated. The settings have to pass check() with it.
+/// Allocates nothing: call make_room_for_tools() before. The settings have to pass check() with the
+/// tool.
 void use_tool(Renderer& renderer, std::shared_ptr<const Tool> tool,
               const Mat3& orientation) noexcept;
-/// The proxy starts at the hand with the next tick, wherever it is now: the force starts again.
+/// The proxy starts at the hand with the next tick, wherever it is now. The force starts again.
 void lift(Renderer& renderer) noexcept;
-/// A warning if nothing can be felt at this level (it lies outside the data's range), or if the
-/// background is solid at it, and with that all of space outside the data; else empty.
+/// A warning if there is no surface at this level (it lies outside the data's range), or if the
+/// background, and so all of space outside the data, is solid. Else empty.
 std::string isovalue_warning(const Field& field, double isovalue);
 
-/// Renders one tick. A position that is not valid, not finite or absurdly far leaves the proxy as
-/// it is (UpdateStatus::refused) and gives no force. A time that is not finite or did not advance
+/// Renders one tick. A position that is not valid, not finite or extremely far does not move the
+/// proxy (UpdateStatus::refused) and gives no force. A time that is not finite or did not advance
 /// gives no force either, but the proxy follows. The same renderer and input give the same tick,
-/// bit for bit, but for `update_ns`, which is measured where a clock is given.
-/// The proxy only moves where all samples are in memory. If the hand pulls it farther, it is held
+/// bit for bit, but for `update_ns`, which is measured where a clock is given. The proxy only moves
+/// where all samples are in memory. If the hand pulls it farther, it is held
 /// (UpdateStatus::waiting): the force falls to zero within its rate limit, and returns with the
 /// ramp when they are. Layers and penetrability need the whole way of the hand in memory.
 /// `observer` is for a point, `pose_observer` for a tool.

@@ -37,7 +37,7 @@ struct Brick {
 /// A value. Versions share the nodes that did not change (copy on write).
 class SparseBricks {
   public:
-    /// A brick that comes or, if it is empty, goes.
+    /// A brick to put in; an empty one removes the brick there.
     struct Change {
         Index3 at;
         Brick to;
@@ -57,14 +57,14 @@ class SparseBricks {
         const Brick& found = static_cast<const Leaf*>(node)->at[place_in(brick, 0)];
         return found ? &found : nullptr;
     }
-    /// Calls visit(at, mine, theirs) for each brick that `other`, of as many bricks, does not
-    /// share.
+    /// Calls visit(at, mine, theirs) for each brick that `other`, a table of the same size, does
+    /// not share.
     void for_each_apart(const SparseBricks& other,
                         const std::function<void(const Index3& at, const Brick& mine,
                                                  const Brick& theirs)>& visit) const;
     /// Calls visit(at, brick) for each brick that is not empty.
     void for_each(const std::function<void(const Index3& at, const Brick& brick)>& visit) const;
-    /// Bytes that this takes, besides the bricks, for what `other` does not share.
+    /// Bytes of this table, without the bricks, that `other` does not share.
     std::size_t table_bytes_apart(const SparseBricks& other) const;
 
   protected:
@@ -99,8 +99,8 @@ class SparseBricks {
 };
 
 /// Bricks of 2^shift samples along each axis, with `before` samples on the side before them and one
-/// behind them. So the cell of a brick's sample lies in the brick whole. Samples of a brick outside
-/// the grid have any value.
+/// behind them. So the whole cell of a brick's sample lies in the brick. A brick's samples outside
+/// the grid may have any value.
 template <int shift, int before>
 class BrickTable : public SparseBricks {
   public:
@@ -113,7 +113,7 @@ class BrickTable : public SparseBricks {
     /// None of a grid of this size.
     explicit BrickTable(const Index3& size)
         : SparseBricks((size + Index3::Constant(edge - 1)) / edge) {}
-    /// The same but for these changes. A brick outside the grid throws std::out_of_range.
+    /// A table with these changes. A brick outside the grid throws std::out_of_range.
     BrickTable with(std::span<const Change> changes) const {
         BrickTable after = *this;
         after.change(changes);
@@ -122,7 +122,7 @@ class BrickTable : public SparseBricks {
     static Index3 brick_of(const Index3& sample) {
         return {sample[0] >> shift, sample[1] >> shift, sample[2] >> shift};
     }
-    /// The samples that a brick holds, clipped to a grid of this size.
+    /// The box of samples that a brick stores, clipped to a grid of this size.
     static SampleBox box_of(const Index3& brick, const Index3& size) {
         const Index3 low = brick * edge;
         return {(low - Index3::Constant(before)).cwiseMax(Index3::Zero()),
@@ -236,17 +236,18 @@ double Samples::sample_as(const Index3& at, const Moment& moment) const {
 }
 
 /// The samples at a moment as one volume of the same type (rounded to it between two frames), for
-/// files and for code that needs them in one piece. No copy is made where an existing volume is the
-/// same. For a large grid, the overview with the edits (ShownEdits).
+/// files and for code that needs one array. It shares an existing volume if that has the same
+/// samples. For a large grid, the overview with the edits (ShownEdits).
 Volume flattened(const Samples& samples, const Moment& moment = {});
-/// Edits of a large grid on a volume of the same part of space that has other samples (an overview,
-/// or a box of some level): each of those whose nearest sample lies in an edited brick takes its
-/// value. One thread at a time.
+/// Shows the edits of a large grid on a volume with other samples of the same part of space (an
+/// overview, or a box of some level). Each of its samples takes the value of the nearest sample of
+/// the grid if that lies in an edited brick. One thread at a time.
 class ShownEdits {
   public:
     explicit ShownEdits(Volume shown);
-    /// The volume with the edits of these samples, of the same type, all versions of one grid. What
-    /// did not change since the last call is shared; the same pointer where nothing did.
+    /// The volume with the edits of these samples, which have the same type and are a version of
+    /// the same grid in every call. Bricks that did not change since the last call are shared. The
+    /// same pointer if nothing changed.
     std::shared_ptr<const Samples> of(const Samples& edited);
 
   private:

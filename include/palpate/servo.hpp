@@ -15,9 +15,9 @@
 
 namespace palpate {
 
-/// Who drives what runs beside the caller: a thread of its own at its real pace; or the owner, who
-/// calls step() and says what time it is. The latter is for tests and for sessions that run as fast
-/// as they can: the same calls give the same results.
+/// How a component with a rate runs: in a thread of its own, in real time, or by calls of step()
+/// from its owner, who passes the time. The latter is for tests and for sessions that run as fast
+/// as possible: the same calls give the same results.
 enum class Pace : std::uint8_t { own_thread, by_steps };
 
 /// Content of a recording, in the order in which it took effect.
@@ -30,15 +30,15 @@ struct ServoSettings {
     int priority = 80;                ///< of SCHED_FIFO, 1 to 99
     std::size_t command_room = 1024;  ///< commands that may wait
     /// The queue that records ticks and commands. May be null. Must outlive the servo, or its
-    /// stop_recording(). A queue that is full loses events (ServoReport::unrecorded). Samples with
-    /// a recipe are recorded as that alone.
+    /// stop_recording(). When the queue is full, events are lost (ServoReport::unrecorded). For
+    /// samples with a recipe, only the recipe is recorded.
     Queue<SessionEvent>* recorder = nullptr;
-    /// Times the ticks [ns, never back]. Null: the machine's monotonic clock. With a clock of the
-    /// caller's, CPU time is counted by it as well.
+    /// Clock for the ticks [ns, never backwards]. Null: the machine's monotonic clock. A clock of
+    /// the caller also measures CPU time.
     Clock clock = nullptr;
 };
 
-/// What most of the worst tick's time was spent on.
+/// The part of the worst tick that took most of its time.
 enum class TickCause : std::uint8_t {
     none,
     machine,  ///< the system did not run the thread
@@ -48,7 +48,7 @@ enum class TickCause : std::uint8_t {
 };
 const char* name_of(TickCause cause);
 
-/// What a device has done that ended the session. Its force is zero from then on (Device::stop()).
+/// The failure of a device that ended the session. Its force is zero from then on (Device::stop()).
 enum class DeviceFailure : std::uint8_t {
     none,
     threw,  ///< read() or write() threw an exception
@@ -60,7 +60,7 @@ const char* name_of(DeviceFailure failure);
 /// The tick that took longest, lateness included.
 struct WorstTick {
     std::int64_t tick = -1;
-    std::int64_t lateness_ns = 0;  ///< woken after its time
+    std::int64_t lateness_ns = 0;  ///< wake-up after its due time
     std::int64_t work_ns = 0;      ///< from waking to the end, by the wall clock
     std::int64_t compute_ns = 0;   ///< the same by the thread's CPU clock
     TickCause cause = TickCause::none;
@@ -69,7 +69,7 @@ struct WorstTick {
 /// Counts and times of the loop. Lateness is caused by the system, compute time by this program.
 struct ServoReport {
     std::int64_t ticks = 0;
-    std::int64_t missed = 0;      ///< deadlines: ticks that did not happen when they were due
+    std::int64_t missed = 0;      ///< deadlines: ticks that did not run when they were due
     std::int64_t overruns = 0;    ///< ticks that took too long, so that their force was dropped
     std::int64_t unrecorded = 0;  ///< events that were lost because the recorder was full
     LatencySummary period, lateness, work, compute;  ///< [ns]. Compute is CPU time
@@ -100,72 +100,72 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
 class WatchedDevice;
 
 /// A session that runs on a thread of its own. Not copied or moved, because threads refer to it.
-/// The threads of start() do nothing but wait and call step() and watch(). Without start(), a
-/// caller with a loop of its own calls them: then time may be whatever that caller's clock says.
+/// The threads of start() only wait and call step() and watch(). Without start(), a caller with its
+/// own loop calls them, with times of its own clock.
 ///
-/// A device that throws or hangs ends the session (DeviceFailure): a second thread, the watchdog,
-/// calls Device::stop() within 20 ms of the beginning of a call that hangs. The tick in which that
-/// happens is not recorded, and the device is not called any more. The last snapshot then shows a
-/// fault and no force.
+/// If the device throws or hangs, the session ends (DeviceFailure): a second thread, the watchdog,
+/// calls Device::stop() within 20 ms after the beginning of a call that hangs. This tick is not
+/// recorded, and the device is not called any more. The last snapshot then shows a fault and no
+/// force.
 class Servo {
   public:
     /// Takes over the session. The device must outlive the servo. Nothing runs yet. The session
-    /// keeps the smaller of its settings and the limits that the device declares (keep_within());
-    /// where that changes it, a recording begins with the command that does. Throws
-    /// std::invalid_argument for settings that cannot be run.
+    /// uses the smaller of its settings and the limits that the device declares (keep_within()). If
+    /// that changes the settings, a recording begins with the command that makes the change. Throws
+    /// std::invalid_argument for settings that cannot run.
     Servo(Session session, Device& device, const ServoSettings& settings = {});
     /// stop(), also while other threads are in stop(). Waits for a device call that hangs.
     ~Servo();
     Servo(const Servo&) = delete;
     Servo& operator=(const Servo&) = delete;
 
-    /// Starts the thread, once, and not after step(). Throws std::system_error if the system gives
-    /// none.
+    /// Starts the thread. May be called once, and not after step(). Throws std::system_error if the
+    /// system cannot create a thread.
     void start();
     /// One tick, now, on one thread. The first one is at time 0 of the session. False once the
     /// session has ended: stop() was called or the device has failed, and zero force was written.
     bool step() noexcept;
-    /// The same at a time of the caller's [ns, never back], without a clock: nothing is
-    /// timed.
+    /// The same at a time of the caller [ns, never backwards], without a clock: no durations are
+    /// measured.
     bool step(std::int64_t now) noexcept;
     /// When the next tick is due [ns, of the settings' clock]. The thread of step().
     std::int64_t due() const noexcept { return schedule_.due; }
     /// [ns] of its clock when the session's time was 0. From the end of start() on, any thread.
     std::int64_t begun() const noexcept { return schedule_.zero; }
-    /// One look of the watchdog, every 5 ms, by any one thread: gives up a call to the device that
-    /// the third look in a row sees under way. `cpu`: all CPU time of the thread of step() [ns];
-    /// `could_run`: it waits for nothing but a processor. Then only its CPU time counts.
+    /// One check of the watchdog, to be called every 5 ms by one thread. A call to the device that
+    /// three successive checks find unfinished counts as hung. `cpu`: all CPU time of the thread of
+    /// step() [ns]. `could_run`: that thread only waits for a processor. Then only its CPU time
+    /// counts.
     void watch(std::int64_t cpu, bool could_run) noexcept;
-    /// Writes zero force and ends the thread. Returns when it has ended. With a device call that
-    /// hangs it returns when the force was taken away. The thread ends when that call returns, and
-    /// touches nothing but the servo then. Any thread, any number of times; from the servo thread
-    /// (a device's read() or write()) it only asks for the end. Without start(): on the thread of
-    /// step(), or on others while that thread goes on calling step().
+    /// Writes zero force and ends the thread. Returns when it has ended. If a device call hangs, it
+    /// returns when the force has been set to zero. The thread then ends when that call returns,
+    /// and accesses only the servo. Any thread, any number of times. From the servo thread (a
+    /// device's read() or write()) it only requests the end. Without start(): on the thread of
+    /// step(), or on others while that thread continues to call step().
     void stop() noexcept;
 
-    /// Begins to record while the session runs, after the commands sent so far. The force goes on.
-    /// The recording begins with the limits, force settings and transform in use and with
-    /// command::Resume, so that a session of the same settings and samples goes on from here. False
-    /// if the queue of commands is full. Nothing is recorded of a session that has ended, and
-    /// nothing may be recorded before. Any thread but that of step(). Throws std::bad_alloc.
+    /// Begins to record while the session runs, after the commands sent so far. The force
+    /// continues. The recording begins with the limits, force settings and transform in use and
+    /// with command::Resume, so that a session with the same settings and samples continues from
+    /// here. False if the queue of commands is full. After the end of the session nothing is
+    /// recorded. No recording may be running. Any thread but that of step(). Throws std::bad_alloc.
     bool record(Queue<SessionEvent>& recorder);
-    /// Nothing is recorded any more when this returns. The session goes on. Any thread but that of
-    /// step().
+    /// Nothing is recorded any more when this returns. The session continues. Any thread but that
+    /// of step().
     void stop_recording() noexcept;
 
     /// Checks a command and puts it in the queue. False if the queue is full. Throws
     /// std::invalid_argument as check(Command) does, and for limits that lower nothing. Any thread;
-    /// never waits for the servo thread.
-    /// A session that has ended takes every command and carries out none, so that it does not hold
-    /// up who sends to several. Keeps samples alive until the servo uses others, so that its thread
-    /// never frees them.
+    /// never waits for the servo thread. A session that has ended accepts every command and
+    /// executes none, so that a sender to several sessions need not wait. Keeps samples alive until
+    /// the servo uses others, so that its thread never frees them.
     bool send(const Command& command);
-    /// A command that was sent after tick n shows in tick n + sure_after at the latest.
+    /// A command that was sent after tick n has its effect in tick n + sure_after at the latest.
     static constexpr std::int64_t sure_after = 2;
     /// The newest tick. Nothing before the first. Any thread, never waits.
     std::optional<Snapshot> snapshot() const noexcept { return snapshot_.get(); }
     ServoReport report() const noexcept;
-    /// Commands that were sent and not carried out yet. Any thread, never waits.
+    /// Commands that were sent and not yet executed. Any thread, never waits.
     std::int64_t waiting() const noexcept;
     /// Other than none: the session has ended. Any thread, never waits.
     DeviceFailure device_failure() const noexcept;
@@ -177,7 +177,8 @@ class Servo {
 
     /// A sentence for each privilege: granted, or not granted and what to set. After start().
     const std::vector<std::string>& privileges() const { return privileges_; }
-    /// How late the thread was woken, every tick [ns]. Goes on counting while it runs.
+    /// How late the thread was woken in each tick [ns]. It continues to count while the thread
+    /// runs.
     const LatencyHistogram& lateness() const { return lateness_; }
     /// The settings of the session at the start, within the device's limits.
     const RendererSettings& settings() const { return start_; }

@@ -15,7 +15,7 @@ struct SessionSettings {
     /// Bits of the device's buttons. While any of them is held (the clutch), the volume moves with
     /// the hand and there is no force.
     std::uint32_t clutch_buttons = 0;
-    /// Without one of these held there is no force (a dead-man switch); 0: no such switch.
+    /// There is force only while one of these is held (a dead-man switch); 0: no such switch.
     std::uint32_t deadman_buttons = 0;
     /// [device mm/s] Fastest plausible motion of a hand. A position that it could not have reached
     /// since the last good one counts as broken input until it could have.
@@ -35,7 +35,7 @@ struct FramesOf {
     std::vector<double> times;  ///< [s] of each
     double period = 0;          ///< [s]
 };
-/// Bricks of a large grid that came into memory, or went.
+/// Bricks of a large grid that were loaded into memory or removed from it.
 struct BricksOf {
     std::uint64_t version = 0;  ///< of the samples before
     struct Brick {
@@ -66,9 +66,9 @@ struct Forces {
 /// next frames. The sequence's time stays, clamped to the frames.
 struct Samples {
     std::shared_ptr<const palpate::Samples> samples;  ///< not null
-    std::uint64_t version = 0;  ///< any number; observers see it while these samples are felt
-    /// For recordings. Null where this version was sent before, is that of the start (0), or
-    /// cannot be made again by a replay.
+    std::uint64_t version = 0;  ///< any number; observers see it while these samples are in use
+    /// For recordings. Null if this version was sent before, is that of the start (0), or cannot be
+    /// made again by a replay.
     std::shared_ptr<const Recipe> recipe = nullptr;
 };
 /// Goes to a time of a sequence [s]; the speed stays.
@@ -79,28 +79,28 @@ struct Moment {
 struct Speed {
     double speed;
 };
-/// Layers from the next tick on; null: none, and the isovalue is felt again. What gave way and is
-/// still open is forgotten: the SCP is in whatever is where it is.
+/// Layers from the next tick on; null: none, and the isovalue applies again. All surfaces that gave
+/// way close: the SCP is in the tissue at its position.
 struct UseLayers {
     std::shared_ptr<const Layers> layers;
-    /// They are the surfaces that are felt, with other levels or properties: what gave way stays
-    /// open. Counts where there are as many of them, and of labels the same.
+    /// These are the present surfaces with other levels or properties: surfaces that gave way stay
+    /// open. This has an effect only if there are as many surfaces, and the labels are the same.
     bool same_surfaces = false;
 };
-/// Another tool from the next tick on; null: a point. The force starts again. While a tool is felt,
-/// layers, penetrability, magnet and texture rest.
+/// Another tool from the next tick on; null: a point. The force starts again. While a tool is used,
+/// layers, penetrability, magnet and texture have no effect.
 struct UseTool {
     std::shared_ptr<const Tool> tool;
 };
-/// Lifts the hand off: the proxy leaves whatever holds it, such as a closed shell, and starts at
-/// the hand with the next tick. All punctures are forgotten. The force starts again.
+/// Frees the proxy, for example from a closed shell: it starts at the hand with the next tick. All
+/// punctured surfaces close. The force starts again.
 struct Lift {};
 /// Scales the volume about the SCP, which changes neither the proxy nor the force.
 struct Scale {
     double scale;  ///< physical mm per device mm, > 0
 };
-/// Goes on from a point of another session with the same settings and samples, for a recording that
-/// begins while a session runs. Servo::record() makes it.
+/// Continues from a point of another session with the same settings and samples, for a recording
+/// that begins while a session runs. Servo::record() makes it.
 struct Resume {
     std::shared_ptr<const SessionPoint> point;  ///< not null
 };
@@ -122,7 +122,7 @@ struct Overloaded : Each... {
 template <class... Each>
 Overloaded(Each...) -> Overloaded<Each...>;
 
-/// The hand as the ticks so far have left it.
+/// The state of the hand after the ticks so far.
 struct HandPast {
     bool begun = false;                   ///< there was a tick
     bool seen = false;                    ///< a position was accepted
@@ -170,8 +170,8 @@ struct SessionPoint {
     int contact_count = 0;
     double trust = 1, stride = 64;  ///< longest steps [voxel], in contact and with nothing near
 };
-/// Writes the state of a session. A tool first forgets results that only save time. Neither throws
-/// nor allocates.
+/// Writes the state of a session to `point`. A tool first drops results that only save time.
+/// Neither throws nor allocates.
 void halt(Session& session, SessionPoint& point) noexcept;
 
 /// The result of a live tick.
@@ -191,14 +191,14 @@ void check(const SessionSettings& settings);
 /// settings and such a field cannot carry out.
 void check(const Command& command, const RendererSettings& settings, const FieldKind& field);
 
-/// A command that passed check(). A session carries out no other, so nothing that is not finite or
-/// out of range can enter between two ticks.
+/// A command that passed check(). A session executes only such commands, so no number that is not
+/// finite or out of range can enter between two ticks.
 class CheckedCommand {
   public:
-    /// Throws as check(), but for what rests beside a tool: whether there is one when the command
-    /// is carried out is not known here.
+    /// Throws as check(), except for settings that have no effect with a tool: it is not known here
+    /// whether there is a tool when the command is executed.
     CheckedCommand(Command command, const RendererSettings& settings, const FieldKind& field);
-    /// Switches the forces off, which every session can.
+    /// Switches the forces off, which is valid in every session.
     CheckedCommand() = default;
 
     const Command& command() const { return command_; }
@@ -207,31 +207,30 @@ class CheckedCommand {
     Command command_ = command::Forces{false};
 };
 
-/// Carries out a command. Never throws or allocates; frees the samples that it replaces unless
-/// somebody else holds them (Servo::send() does). A tool needs make_room_for_tools() before.
+/// Executes a command. Never throws or allocates. Frees the samples that it replaces unless they
+/// are held elsewhere (Servo::send() holds them). A tool needs make_room_for_tools() before.
 void apply(Session& session,  // NOLINT(bugprone-exception-escape)
            const CheckedCommand& command) noexcept;
-/// The same for a command that is checked here, with room made where it needs some. Throws as
-/// check(); then nothing has changed.
+/// The same with the check, and with memory allocated if the command needs some. Throws as check();
+/// then nothing has changed.
 void apply(Session& session, const Command& command);
 
 /// Keeps the smaller of the session's device limits and these, and lowers the force settings as far
 /// as needed (stable()). True if that changed anything.
 bool keep_within(Session& session, const DeviceLimits& limits) noexcept;
 
-/// One tick at a time [s] after the last. Never throws or allocates. No force for input that is not
-/// ready, older than the force settings' `stale_after` (or of an age below 0 or not finite), not
-/// finite or not plausible.
-/// DeviceReading::limits are the caller's to apply, as a command. The proxy update is timed where a
-/// clock is given (Tick::update_ns).
+/// One tick at a time [s] after the last. Never throws or allocates. There is no force for input
+/// that is not ready, older than the force settings' `stale_after` (or with an age below 0 or not
+/// finite), not finite or not plausible. The caller has to apply DeviceReading::limits, as a
+/// command. If a clock is given, it measures the proxy update (Tick::update_ns).
 SessionTick advance(Session& session, double time, const DeviceReading& reading,
                     Clock clock = nullptr) noexcept;
 
 /// Sets the force of a tick that came too late to zero, and starts the force again.
 void let_go(Session& session, SessionTick& tick) noexcept;
 
-/// Renders a recorded tick again: advance() with its time and reading, and let_go() where its force
-/// was taken back. The result has the same bits if the session is in the same state.
+/// Renders a recorded tick again: advance() with its time and reading, and let_go() if its force
+/// was set to zero. The result has the same bits if the session is in the same state.
 SessionTick repeat(Session& session, const SessionTick& recorded) noexcept;
 
 }  // namespace palpate

@@ -13,14 +13,15 @@
 
 namespace palpate {
 
-/// The cut of an isosurface through a tetrahedron: nothing, a triangle or a plane quadrilateral.
-/// Its corners lie on edges from a solid to a free corner of the tetrahedron (0 to 3).
+/// The intersection of an isosurface with a tetrahedron: nothing, a triangle or a plane
+/// quadrilateral. Its corners lie on edges from a solid to a free corner of the tetrahedron (0 to
+/// 3).
 struct TetrahedronCut {
     struct Edge {
         std::uint8_t solid = 0, free = 0;
     };
     int count = 0;                ///< corners of the polygon: 0, 3 or 4
-    std::array<Edge, 4> edges{};  ///< on which they lie, in turn round the polygon
+    std::array<Edge, 4> edges{};  ///< on which they lie, in order around the polygon
 };
 /// The cut if corner i is solid where bit i of `solid` (0 to 15) is set. The polygon runs
 /// counter-clockwise seen from the free side if the corners c are right-handed:
@@ -54,7 +55,7 @@ struct SurfaceMesh {
     /// Indices into `vertices`, counter-clockwise seen from the free side: normals point out of the
     /// solid.
     std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<Vec3> normals;  ///< unit, one a vertex, out of the solid. Empty unless asked for
+    std::vector<Vec3> normals;  ///< unit, one per vertex, out of the solid. Empty unless requested
     bool complete = true;       ///< false if `progress` cancelled: then the mesh is empty
 };
 
@@ -69,11 +70,11 @@ struct SurfaceOptions {
     /// mesh is open where the surface leaves the box. It fits the meshes of neighbouring boxes: at
     /// the border both have the same vertices, bit for bit.
     std::optional<SampleBox> cells = std::nullopt;
-    /// [voxel, smallest spacing] On a cubic field, whose surface is curved: facets are split until
-    /// the middles of their edges are as near to it, or eight times. 0: not at all. A linear
-    /// field's surface is the mesh already.
+    /// [voxel, smallest spacing] On a cubic field, facets are split until the middles of their
+    /// edges are within this distance of the curved surface, at most eight times. 0: they are not
+    /// split. On a linear field the mesh is the exact surface.
     double tolerance = 0;
-    /// Makes normals, of a cubic field only: those that are felt, from the gradient.
+    /// Computes normals from the gradient, the same that the proxy uses. For cubic fields only.
     bool normals = false;
 };
 
@@ -92,8 +93,8 @@ inline constexpr double surface_margin = 1.0 / 1024;
 SurfaceMesh extract_surface(const Field& field, double isovalue,
                             const SurfaceOptions& options = {});
 
-/// All cells through which a surface of the field can go: for SurfaceOptions::cells. Those of a
-/// cubic field lie round a sample each, with its index.
+/// All cells that a surface of the field can intersect, for SurfaceOptions::cells. In a cubic
+/// field, each cell is centred at a sample and has its index.
 SampleBox surface_cells(const Field& field);
 
 /// Volume enclosed by a closed mesh [mm^3], by the divergence theorem. Negative where the mesh

@@ -1,6 +1,6 @@
-// Tool proxy: the pose of a rigid tool that stays on the free side of the isosurface while
-// the hand presses and turns it into the solid, on the smooth field (docs/tools.md). No point of
-// the tool ever goes through. Nothing here but the making of a proxy allocates, locks or throws.
+// Tool proxy: the pose of a rigid tool that stays on the free side of the isosurface while the hand
+// presses and turns it into the solid, on the smooth field (docs/tools.md). No point of the tool
+// ever goes through the surface. Only the construction of a proxy allocates, locks or throws.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@
 namespace palpate {
 
 struct ToolSettings {
-    /// At each contact: it does not slip until the tangential pull exceeds the static coefficient
-    /// times its pressure, and then trails the hand at the dynamic one.
+    /// A contact does not slip until the tangential pull exceeds the static coefficient times its
+    /// pressure. Then it follows the hand with the dynamic one.
     Friction friction = {};
-    /// Most rounds of an update: each finds a direction and goes along it. An update that finds no
-    /// way on before it is at rest ends as one that is out of budget.
+    /// Largest number of rounds per update. Each finds a direction and moves along it. If an update
+    /// makes no progress before it is at rest, it also ends as out of budget.
     int most_rounds = 60;
-    /// Most work of an update: cubes of the lattice looked at, 0.15 microseconds each, and all else
-    /// that takes as long. One for each point of the tool comes on top, two while it is brought out
-    /// of the solid. Later updates finish what is left. A thousand points take 0.8 ms at most;
-    /// faster loops need a smaller budget.
+    /// Largest work per update, in cubes of the lattice that are examined (0.15 microseconds each).
+    /// Other work of the same duration counts as well. In addition, an update may use one for each
+    /// point of the tool, two during recovery. Later updates continue. A thousand points take 0.8
+    /// ms at most. Faster loops need a smaller budget.
     int work_budget = 4096;
-    /// [mm] in place of the tool's own; 0: that.
+    /// [mm] Replaces the tool's own gyration. 0: the tool's own.
     double gyration = 0;
 };
 
@@ -41,18 +41,18 @@ struct ToolUpdate {
     UpdateStatus status = UpdateStatus::done;
     Mode mode = Mode::free;
     Pose hand;         ///< that of the device
-    Pose proxy;        ///< the same to the bit where it was reached
+    Pose proxy;        ///< the same bit for bit if it was reached
     int contacts = 0;  ///< how many points hold the proxy
     int rounds = 0;
     int work = 0;  ///< of the work budget
-    /// [mm] How far from its pose recovery has looked for free space for the reference point.
+    /// [mm] How far from its pose recovery has searched for free space for the reference point.
     double searched = 0;
 };
 
 namespace tool {
 
 struct Kept;
-/// What updates keep to save time: nobody else looks into it. Copies are independent.
+/// What updates store to save time. Private to the proxy. Copies are independent.
 class Keeper {
   public:
     Keeper();
@@ -77,9 +77,9 @@ class ToolProxy {
     const Tool& tool() const { return *tool_; }
     /// Allocates what use() needs for tools of this many points. Changes nothing else.
     void make_room(std::size_t points);
-    /// Another tool from the next update on, at the same pose; recovers where that is inside.
-    /// Allocates nothing; frees the tool before unless somebody else holds it. False, and nothing
-    /// changes: there is no room for its points.
+    /// Another tool from the next update on, at the same pose. If it is inside the solid there,
+    /// recovery follows. Allocates nothing. Frees the previous tool unless it is held elsewhere.
+    /// False, without any change, if there is no room for its points.
     bool use(std::shared_ptr<const Tool> tool) noexcept;
     Pose pose;
     double isovalue = 0;  ///< [data units]
@@ -96,8 +96,8 @@ class ToolProxy {
     tool::Keeper kept_;
 };
 
-/// Called with every pose that the proxy goes to: between two of them each point of the tool
-/// travels a straight line.
+/// Called with every pose of the proxy. Between two of them, each point of the tool travels along a
+/// straight line.
 struct PoseObserver {
     void (*on_pose)(const Pose& pose, void* context) = nullptr;
     void* context = nullptr;

@@ -87,7 +87,7 @@ struct Geometry {
     bool oriented = true;  ///< the physical axes are those of the body (LPS), not assumed
     bool measured = true;  ///< the spacing is in millimetres, not assumed
 
-    /// The same grid. Whether its place is known does not count.
+    /// Compares the grids. `oriented` and `measured` do not count.
     bool operator==(const Geometry& other) const {
         return size == other.size && spacing == other.spacing && origin == other.origin &&
                direction == other.direction;
@@ -111,9 +111,9 @@ Vec3 physical_centre(const Geometry& geometry);
 /// finite and > 0, the origin finite, and the direction orthonormal to 1e-4 (mirrored is allowed).
 void check(const Geometry& geometry);
 /// The same with the nearest direction that is orthonormal to all digits, as volumes and samples
-/// have it: with one from a file of few digits, ways there and back would differ, and a proxy gain
-/// energy. A direction that is orthonormal to 1e-14 stays as it is. The geometry has to pass
-/// check().
+/// store it. With a direction of few digits, as in some files, a transform and its inverse would
+/// not cancel, and a proxy could gain energy. A direction that is orthonormal to 1e-14 stays as it
+/// is. The geometry has to pass check().
 Geometry orthonormal(const Geometry& geometry);
 
 /// Immutable samples with their geometry and range. A cheap value: copies share the samples.
@@ -134,7 +134,7 @@ class Volume {
     /// Least and greatest sample, in the data's units.
     double minimum() const { return minimum_; }
     double maximum() const { return maximum_; }
-    /// maximum - minimum, or 1 for a constant volume: what tolerances are relative to.
+    /// maximum - minimum, or 1 for a constant volume. Tolerances are relative to it.
     double range() const { return maximum_ > minimum_ ? maximum_ - minimum_ : 1.0; }
     /// The samples; T must be the stored type (std::invalid_argument otherwise).
     template <class T>
@@ -153,16 +153,16 @@ class Volume {
 };
 
 /// The volume smoothed with the binomial kernel (1 2 1)/4 along each axis, `passes` times, as
-/// float32; samples beyond the border count as those on it. Slow ramps stored in few bits are
-/// stepped, and a proxy is caught in the steps; one pass removes most of them
-/// (docs/results/fidelity.md), but blurs structures thinner than about two voxels. 0 passes return
-/// the volume itself. Throws std::invalid_argument for fewer than 0 or more than 64.
+/// float32; samples beyond the border count as those on it. Gentle ramps stored in few bits have
+/// steps, and a proxy is caught in them. One pass removes most steps (docs/results/fidelity.md),
+/// but blurs structures thinner than about two voxels. 0 passes return the volume itself. Throws
+/// std::invalid_argument for fewer than 0 or more than 64.
 Volume smoothed(const Volume& volume, int passes = 1);
 
 /// s - (discrete Laplacian of s) / 8, as float32; samples beyond the border count as those on it.
-/// The smooth field of these samples is at each sample nearer to the data's own value: thin
-/// structures keep their height, and curved surfaces their place. Noise is sharpened, too, and
-/// samples may leave the data's range by up to 0.75 of it.
+/// The smooth field of these samples is nearer to the original value at each sample: thin
+/// structures keep their height, and curved surfaces their place. Noise is sharpened as well.
+/// Samples may leave the data's range by up to 0.75 of it.
 Volume sharpened(const Volume& volume);
 
 }  // namespace palpate

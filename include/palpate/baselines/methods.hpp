@@ -1,4 +1,4 @@
-// All proxy methods by the names that command line, tables and figures give them, and that of the
+// All proxy methods by their names in the command line, tables and figures, and the method of the
 // paper.
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace palpate::baselines {
 
-/// The paper's method as published (Fig. 4): constraint planes of all tetrahedra at the SCP, one
-/// goal that satisfies all of them, walked to tetrahedron by tetrahedron. Keeps G1, G2 and G5,
-/// but sticks on convex ridges, where it breaks G3. No friction. For comparison. Refuses cubic
-/// fields.
+/// The paper's method as published (Fig. 4): it takes the constraint planes of all tetrahedra at
+/// the SCP, finds one goal that satisfies all of them, and moves there tetrahedron by tetrahedron.
+/// It keeps G1, G2 and G5, but sticks on convex ridges, where it breaks G3. No friction. For
+/// comparison. Refuses cubic fields.
 ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings = {}, StepObserver observer = {});
 

@@ -1,6 +1,6 @@
-// A baseline for tools: points that are inside push out in proportion to their depth, as the point
-// shell of McNeely, Puterbaugh and Troy 1999, with a proxy in quasi-static equilibrium between them
-// and the hand (Wan and McNeely 2003). Through the public API only.
+// A baseline for tools: points inside the solid push out in proportion to their depth, like the
+// point shell of McNeely, Puterbaugh and Troy 1999. The proxy is in quasi-static equilibrium
+// between them and the hand (Wan and McNeely 2003). Uses the public API only.
 #pragma once
 
 #include <memory>
@@ -11,10 +11,11 @@
 namespace palpate::baselines {
 
 struct PenaltySettings {
-    /// Stiffness of a point beside that of the coupling to the hand.
+    /// Stiffness of a point, relative to that of the coupling to the hand.
     double point_stiffness = 4;
-    double deepest = 1;  ///< [voxel] deeper points push no harder, as in a shell of voxels
-    int steps = 1;       ///< towards the equilibrium, an update
+    double deepest =
+        1;          ///< [voxel] deeper points push with the same force, as in a shell of voxels
+    int steps = 1;  ///< towards the equilibrium, per update
 };
 
 /// The state between updates.
@@ -31,10 +32,10 @@ struct PenaltyUpdate {
     double deepest = 0;  ///< [mm] of them, by the field's slope
 };
 
-/// One tick: the coupling's energy k / 2 (|translation|^2 + |gyration * rotation|^2) and half of
-/// each point's stiffness times its squared depth, brought towards its least by a step of Gauss and
-/// Newton. Never throws or allocates. Nothing holds a point that has gone to where the field falls
-/// again.
+/// One tick: a Gauss-Newton step towards the minimum of the coupling's energy k / 2
+/// (|translation|^2 + |gyration * rotation|^2) plus half of each point's stiffness times its
+/// squared depth. Never throws or allocates. A point that is so deep that the field falls again is
+/// no longer pushed out.
 PenaltyUpdate update_penalty(PenaltyTool& state, const Field& field, const Pose& hand,
                              const PenaltySettings& settings = {}) noexcept;
 

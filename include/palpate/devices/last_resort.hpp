@@ -7,26 +7,25 @@
 
 namespace palpate::devices {
 
-/// While one exists, a signal that ends or suspends the program calls device.stop(), leaves the
-/// device's own thread 100 ms to send the zero, or up to 1 s where the device can tell that it has
-/// not (Device::is_stopping()), and then does what it would have done: the same exit status, the
-/// same core file. These are the crashes (SIGSEGV, SIGBUS, SIGILL, SIGFPE,
-/// SIGTRAP, SIGSYS, SIGABRT and with it an exception that nobody catches), whatever handled them
-/// before, and all others whose default action ends or suspends a program (SIGTERM, SIGALRM,
-/// SIGUSR1, SIGXCPU, SIGTSTP, real-time signals, ...), unless the application handles or ignores
-/// them: a handler of its own has to end the session. After a suspension the device stays without
-/// force.
+/// While one exists, a signal that ends or suspends the program first calls device.stop() and gives
+/// the device's own thread 100 ms to send the zero, or up to 1 s if the device can tell that it has
+/// not sent it (Device::is_stopping()). Then the signal has its usual effect: the same exit status,
+/// the same core file. These signals are the crashes (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGTRAP,
+/// SIGSYS, SIGABRT, also from an uncaught exception), whatever handled them before. They are also
+/// all others whose default action ends or suspends a program (SIGTERM, SIGALRM, SIGUSR1, SIGXCPU,
+/// SIGTSTP, real-time signals, ...), unless the application handles or ignores them. Its own
+/// handler then has to end the session. After a suspension the device stays without force.
 ///
-/// SIGKILL, SIGSTOP and loss of power are left to the device, and so is a crash of the very thread
-/// that talks to it, in a vendor's driver for example, because no other thread can send the zero:
-/// docs/devices says what each device does then. One for each device, up to `most` at once; more
-/// throw std::logic_error.
+/// It has no effect for SIGKILL, SIGSTOP, loss of power, and a crash of the thread that
+/// communicates with the device, for example in a vendor's driver, because no other thread can send
+/// the zero. docs/devices describes the behaviour of each device in these cases. One for each
+/// device, up to `most` at once; more throw std::logic_error.
 class LastResort {
   public:
     static constexpr std::size_t most = 8;
 
-    /// How a handler lets some milliseconds pass before it looks again whether the zero was sent;
-    /// neither allocates nor locks. Null: it sleeps. The newest one holds for all.
+    /// How a handler waits some milliseconds before it checks again whether the zero was sent;
+    /// neither allocates nor locks. Null: it sleeps. The newest one applies to all.
     using Pause = void (*)(int milliseconds) noexcept;
 
     explicit LastResort(Device& device, Pause pause = nullptr);

@@ -13,14 +13,13 @@ namespace palpate::devices {
 /// Always found. It needs a window to move it.
 DeviceFinding find_mouse();
 
-/// A Mouse. Throws std::invalid_argument for options it has not.
+/// Opens a Mouse. Throws std::invalid_argument for unknown options.
 std::unique_ptr<Device> open_mouse(const DeviceChoice& choice, const DeviceScene& scene);
 
-/// A hand that goes where a window's pointer aims. Pointers jump a hundred times a second. The hand
-/// follows smoothly, a thousand times, never faster than its speed, and turns no faster than two
-/// turns a second. Axes and workspace as of every
-/// device: x to the right, y up, z towards the person. Begins in front of the volume,
-/// before the person.
+/// A hand that follows the pointer of a window. A pointer jumps up to a hundred times a second. The
+/// hand follows smoothly, a thousand times a second, never faster than its speed and two turns a
+/// second. Axes and workspace are those of every device: x to the right, y up, z towards the
+/// person. The hand begins in front of the volume.
 class Mouse final : public Device {
   public:
     /// `speed` [mm/s]: the hand's greatest.
@@ -31,14 +30,14 @@ class Mouse final : public Device {
     void aim(const Vec3& position) noexcept;
     /// The target of the hand. Called by the thread that aims.
     const Vec3& aimed() const noexcept { return aim_.position; }
-    /// How the tool is to be turned (tool axes to device axes), by the shortest way. Not finite or
-    /// zero: nothing happens. By the thread that aims.
+    /// Sets the target orientation of the tool (tool axes to device axes), which it reaches by the
+    /// shortest way. Ignores one that is not finite or zero. Called by the thread that aims.
     void turn(const Quaternion& orientation) noexcept;
     const Quaternion& turned_to() const noexcept { return aim_.orientation; }
 
     DeviceInfo info() const override;
     DeviceReading read(double time) noexcept override;
-    /// Forces reach no motor.
+    /// Ignored: a mouse has no motor.
     void write(const Wrench&, double) noexcept override {}
     void stop() noexcept override {}
 

@@ -1,5 +1,5 @@
-// Dequantization: gives integer data and masks back what rounding took from them. Uses the core,
-// and oneTBB to work in parallel. See docs/dequantize.md.
+// Dequantization: removes the terraces that rounding makes in integer data and masks. Uses the
+// core, and oneTBB to work in parallel. See docs/dequantize.md.
 #pragma once
 
 #include <functional>
@@ -10,11 +10,10 @@
 
 namespace palpate::filters {
 
-/// The distance between the levels that the samples lie on [data units]: the smallest gap between
-/// two values that occur. 1 for most integer data, 255 for a mask of 0 and 255, 257 for 8 bits
-/// stretched to 16. Nothing for constant data, and for float samples that do not lie on levels:
-/// more than 65536 values, or gaps that are no multiples of the smallest to 1 % of it. One pass
-/// over the samples.
+/// The distance between the levels of the samples [data units]: the smallest gap between two values
+/// that occur. 1 for most integer data, 255 for a mask of 0 and 255, 257 for 8 bits stretched to
+/// 16. Nothing for constant data, and for float samples without levels: more than 65536 values, or
+/// gaps that are not multiples of the smallest one to 1 % of it. One pass over the samples.
 std::optional<double> level_of(const Volume& volume);
 
 /// The most that the coarsest step may be [samples].
@@ -26,35 +25,35 @@ inline constexpr int most_rounds = 1000;
 struct Terraces {
     double level = 1;   ///< distance between levels [data units]
     bool mask = false;  ///< two values only: every surface is made of stair steps
-    /// The part of the surfaces, of all isovalues together, that are terraces: gentle slopes on
-    /// which the samples stray from a smooth field by no more than rounding explains. 0 to 1.
+    /// The part of the surfaces of all isovalues that are terraces: gentle slopes on which the
+    /// samples differ from a smooth field by no more than rounding explains. 0 to 1.
     double share = 0;
-    /// How far the normals of that part turn from the smooth field's, as a mean [degrees]. A slope
-    /// of g levels a sample gives 12.6 / g (measured on balls, docs/dequantize.md).
+    /// Mean angle between the normals of that part and those of the smooth field [degrees]. A slope
+    /// of g levels per sample gives 12.6 / g (measured on balls, docs/dequantize.md).
     double tilt = 0;
 
     /// Worth dequantizing.
     bool wide() const { return mask || share >= 0.5; }
-    /// Rounds that suit them: stair steps are higher and take more.
+    /// Suitable number of rounds: stair steps are higher and need more.
     int rounds() const { return mask ? 160 : 40; }
 };
-/// From up to 200,000 samples. Nothing where data have no levels.
+/// From up to 200,000 samples. Nothing for data without levels.
 std::optional<Terraces> terraces_of(const Volume& volume);
-/// Why a volume with these terraces is worth dequantizing, in words. Empty where it is not.
+/// The reason to dequantize a volume with these terraces, in words. Empty if there is none.
 std::string reason_to_dequantize(const Terraces& terraces);
 
 struct DequantizeOptions {
-    /// Rounds of step 1, 1 to most_rounds. After coarser steps than 2, data that are no mask take a
-    /// tenth of them. Coarser steps have their own number. More rounds flatten the stair steps of
-    /// masks further.
+    /// Rounds of step 1, 1 to most_rounds. After coarser steps than 2, data other than masks takes
+    /// a tenth of them. Coarser steps have fixed numbers of rounds. More rounds flatten the stair
+    /// steps of masks further.
     int rounds = 40;
-    /// The coarsest step [samples], a power of two up to greatest_step. Without it, the largest up
-    /// to 16 over which half of the surfaces are straight to within the rounding; for masks 4.
+    /// The coarsest step [samples], a power of two up to greatest_step. Default: the largest up to
+    /// 16 over which half of the surfaces are straight to within the rounding; for masks 4.
     std::optional<int> coarsest = std::nullopt;
-    /// The distance between levels [data units], > 0. Without it level_of() the volume.
+    /// The distance between levels [data units], > 0. Default: level_of() the volume.
     std::optional<double> level = std::nullopt;
-    /// Threads at most, and no more than there are cores. 0: as many. The result is the same, bit
-    /// for bit.
+    /// Largest number of threads, at most the number of cores. 0: one per core. The result is
+    /// always the same, bit for bit.
     int threads = 0;
     /// Called from the calling thread with the part done, 0 to 1, many times a second. If it
     /// throws, the work stops and the exception reaches the caller: throw to cancel.

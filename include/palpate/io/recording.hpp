@@ -1,8 +1,7 @@
-// Recordings of live sessions, of one hand or several: a trace with a head that says everything
-// about the session, the device's own readings beside each tick, and the commands between them.
-// Rendered again, a
-// recording gives the same ticks bit for bit (`palpate replay --validate`), so a bug report is a
-// recording. Format: docs/recordings.md.
+// Recordings of live sessions, of one hand or several: a trace with a head that describes the
+// session, the device's readings in each tick, and the commands between ticks. Rendered again, a
+// recording gives the same ticks bit for bit (`palpate replay --validate`), so it is the best bug
+// report. Format: docs/recordings.md.
 #pragma once
 
 #include <atomic>
@@ -23,7 +22,7 @@
 
 namespace palpate::io {
 
-/// Which volume it was.
+/// The volume of a recording.
 struct VolumeIdentity {
     /// How to open it again: "volume" is its name as it was given, the rest are options of the
     /// command line without their dashes.
@@ -34,7 +33,7 @@ struct VolumeIdentity {
 };
 VolumeIdentity identify(const Volume& volume, std::map<std::string, std::string> options);
 
-/// What a session of one hand was at its start.
+/// A session of one hand at its start.
 struct RecordingHead {
     std::string version;  ///< of the program that recorded
     std::string begun;    ///< date and time, ISO 8601
@@ -52,10 +51,10 @@ struct RecordingHead {
 
 class RecordingText;
 
-/// Writes a recording while the session runs. The file has its own name from the start and is
-/// brought to the disk twice a second, so that whatever ends the program, all but the last second
-/// is there. An existing file is never touched. Hands are numbered from 1, and each may be a
-/// thread's own.
+/// Writes a recording while the session runs. The file has its final name from the start and is
+/// flushed to disk twice a second, so that at most the last second is lost, however the program
+/// ends. An existing file is never changed. Hands are numbered from 1, and each may have its own
+/// thread.
 class RecordingWriter {
   public:
     /// Creates the file and writes the head. Throws OutputError: the file exists, or cannot be
@@ -71,24 +70,25 @@ class RecordingWriter {
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-    /// Writes what is in the queues. Its thread calls this ten times a second, and a second one
-    /// brings the file to the disk; with Pace::by_steps there is neither.
+    /// Writes the content of the queues. The writer's thread calls this ten times a second, and
+    /// another thread flushes the file to disk. With Pace::by_steps there are no threads.
     void step();
-    /// Commands before all that is in the hand's queue, and before its servo uses it.
+    /// Adds commands before the content of the hand's queue. Call it before the servo uses the
+    /// queue.
     void begin_with(std::vector<Command> commands, int hand = 1);
     /// When the hand's time 0 was [ns, of a clock that all hands have]. A recording in which every
     /// hand has told it says how far apart they began.
     void set_begin(std::int64_t ns, int hand = 1);
     /// The queue into which the hand's servo puts its ticks. It has room for eight seconds.
     Queue<SessionEvent>& queue(int hand = 1) { return of(hand).queue; }
-    /// Why nothing is written any more (a full disk). Empty while all is well. What was written
-    /// stays. Any thread.
+    /// Why nothing is written any more (for example a full disk), or empty. Everything written
+    /// before remains. Any thread.
     std::string problem() const;
-    /// Ticks of the hand on the disk or on their way to it.
+    /// Ticks of the hand that were written or are being written.
     std::int64_t ticks(int hand = 1) const;
-    /// Once for each hand, after its servo has stopped: writes the rest of its events. `lost`:
-    /// those that were lost on their way here. The last hand brings the last line, which tells a
-    /// whole recording from one cut off. Throws OutputError for what problem() says.
+    /// Call it once for each hand, after its servo has stopped: it writes the rest of its events.
+    /// `lost`: number of events that were lost before they reached the writer. For the last hand it
+    /// writes the last line, which marks a complete recording. Throws OutputError with problem().
     void finish(std::int64_t lost, int hand = 1);
 
   private:
@@ -122,13 +122,13 @@ class RecordingWriter {
     std::jthread thread_, syncer_;
 };
 
-/// What a recording says of itself, of several hands of the first, without reading all of it.
-/// Throws as the constructor of RecordingReader does because of the head.
+/// The head of a recording (of its first hand), without reading the rest. Throws as the constructor
+/// of RecordingReader does for the head.
 RecordingHead read_recording_head(const std::filesystem::path& path);
 
-/// Reads one hand of a recording event by event: by itself it is the recording of a session. A last
-/// line that is not whole is left out. Ticks and commands, of any hand, that were removed, added,
-/// moved or changed since the recording was made are an InputError.
+/// Reads one hand of a recording event by event, like the recording of a single session. An
+/// incomplete last line is ignored. Throws InputError if ticks or commands of any hand were
+/// removed, added, moved or changed since the recording was made.
 class RecordingReader {
   public:
     /// Throws InputError: no recording, a later format, a head that is not valid, no such hand.
@@ -142,7 +142,7 @@ class RecordingReader {
     const RecordingHead& head() const { return head_; }
     /// The next event. Nothing at the end. Throws InputError for a line that is not valid.
     std::optional<SessionEvent> next();
-    /// The line of the file that next() gave last, from 1.
+    /// The line of the last event from next() in the file, from 1.
     std::size_t line() const;
     /// How much of the file was read, 0 to 1.
     double progress() const;

@@ -35,13 +35,13 @@ struct TraceRow {
 
 TraceRow trace_row(const Tick& tick);
 
-/// Columns that a trace has only where there is something to tell.
+/// Columns that a trace has only in some sessions.
 struct TraceExtras {
-    /// `layer` (the one touched) and `inside` (those that the SCP is in, outermost first, joined by
-    /// +; _ in place of what would break a table). Empty: neither.
+    /// `layer` (the touched one) and `inside` (those that contain the SCP, outermost first, joined
+    /// by +; _ replaces characters that would break a table). Empty: neither.
     std::vector<std::string> layer_names = {};
-    /// So many of the layers, the first ones, are levels, which nest; the others are labels, of
-    /// which the SCP is in one at a time.
+    /// So many of the layers, the first ones, are levels, which are nested. The others are labels,
+    /// and the SCP is in one of them at a time.
     std::size_t nested_layers = 0;
     /// `qw` to `qz` (hand), `proxy_qw` to `proxy_qz`, `torque_x` to `torque_z`, `contacts`.
     bool tool = false;

@@ -11,8 +11,8 @@
 
 namespace palpate::io {
 
-/// Poses of the hand over time; vectors have the same length, at least 1, but for orientations that
-/// are not given: none.
+/// Poses of the hand over time. All vectors have the same length, at least 1, but `orientation` may
+/// be empty.
 struct Trajectory {
     std::vector<double> time;             ///< [s], strictly increasing
     std::vector<Vec3> position;           ///< [mm, physical], finite
@@ -20,15 +20,15 @@ struct Trajectory {
 };
 
 /// A CSV text whose header names t and x, y, z; or t and hip_x, hip_y, hip_z, so that a trace can
-/// be replayed. Columns qw, qx, qy, qz, all or none, are the orientation; what is unit to a
-/// thousandth is made so to all digits. Further columns are ignored. Throws InputError, which calls
-/// the text `name`, for anything else: a missing column, no rows, a cell that is not a finite
-/// number, an orientation that is not unit, time that does not increase.
+/// be replayed. Columns qw, qx, qy, qz, all or none, are the orientation. A quaternion that is unit
+/// to a thousandth is normalised. Further columns are ignored. Throws InputError, which calls the
+/// text `name`, for anything else: a missing column, no rows, a cell that is not a finite number,
+/// an orientation that is not unit, time that does not increase.
 Trajectory parse_trajectory(std::string_view text, const std::string& name);
 
-/// From numbers in memory; without orientations if there are none. What is unit to a thousandth is
-/// made so to all digits. Throws std::invalid_argument, naming the row from 0, for vectors of other
-/// lengths, no rows and what parse_trajectory() refuses.
+/// From numbers in memory. Orientations may be missing. A quaternion that is unit to a thousandth
+/// is normalised. Throws std::invalid_argument, naming the row from 0, for vectors of different
+/// lengths, no rows, and values that parse_trajectory() refuses.
 Trajectory checked_trajectory(std::vector<double> time, std::vector<Vec3> position,
                               std::vector<Quaternion> orientation = {});
 

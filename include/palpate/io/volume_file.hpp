@@ -1,6 +1,6 @@
-// Reads and writes volume files: NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI and raw.
-// The formats' libraries run in a helper process, not in the caller's, so that a damaged file which
-// crashes or hangs a library is an InputError. Needs the core, nlohmann-json and zlib only.
+// Reads and writes volume files: NRRD, MetaImage, NIfTI, DICOM, TIFF, VTI and raw. The formats'
+// libraries run in a helper process, so that a damaged file that crashes or hangs a library only
+// causes an InputError. Needs the core, nlohmann-json and zlib only.
 #pragma once
 
 #include <cstdint>
@@ -44,13 +44,13 @@ struct ReadOptions {
     /// Which volume of a 4-D file, counted from 0.
     int time_step = 0;
     Progress progress;
-    /// The program palpate-io-helper. Empty: the environment's PALPATE_IO_HELPER, else it is looked
-    /// for as docs/package.md says.
+    /// The program palpate-io-helper. Empty: the environment variable PALPATE_IO_HELPER, or else
+    /// the places in docs/package.md.
     std::filesystem::path helper;
     /// Most memory the samples may take [bytes]. 0: what this machine has.
     std::uint64_t memory_limit_bytes = 0;
-    /// The helper is ended after this long [s], and after as much processor time. 0: by the size of
-    /// the file or folder, 600 s (120 s of processor time) and 2 s for each MB.
+    /// The helper is ended after this time [s], and after the same processor time. 0: it depends on
+    /// the size of the file or folder: 600 s (120 s of processor time) and 2 s for each MB.
     double time_limit_s = 0;
 };
 
@@ -84,10 +84,10 @@ struct WriteOptions {
 
 /// Writes one of written_extensions() (io/written_formats.hpp). The file appears under its name
 /// only when it is complete (.nhdr and .mhd: their .raw or .zraw before the header). MetaImage and
-/// VTI keep the geometry to the bit, NRRD to the last bit, NIfTI as 32-bit floats. TIFF, a page a
-/// slice, keeps the spacing as 32-bit floats, as ImageJ describes it. Raw keeps none. These two
-/// refuse a volume with an origin or directions. Throws OutputError. The file that was there before
-/// is then unchanged.
+/// VTI store the geometry bit for bit, NRRD up to rounding of the last bit, NIfTI as 32-bit floats.
+/// TIFF, with one page per slice, stores the spacing as 32-bit floats in ImageJ's description. Raw
+/// stores none. These two refuse a volume with an origin or directions. Throws OutputError. An
+/// existing file is then unchanged.
 void write_volume(const Volume& volume, const std::filesystem::path& path,
                   const WriteOptions& options = {});
 

@@ -1,5 +1,5 @@
-// The data of one or several runs, which may change while they are felt: a volume that is edited,
-// a sequence that plays, or a store that is read as it is felt.
+// The data of one or several runs, which may change while it is touched: a volume that is edited, a
+// sequence that plays, or a store that is read meanwhile.
 #pragma once
 
 #include <chrono>
@@ -16,37 +16,38 @@
 
 namespace palpate::run {
 
-/// Throws std::invalid_argument for a file name that no volume on this grid can be written under.
+/// Throws std::invalid_argument for a file name under which a volume on this grid cannot be
+/// written.
 void check_volume_name(const std::string& path, const Geometry& geometry);
 
-/// Shared by the runs that feel it: what one hand edits, all of them feel.
+/// Shared by several runs: all of them feel the edits of each hand.
 class Data {
   public:
-    /// A sequence plays from the start as `playback` says. Throws std::invalid_argument for a
-    /// sequence of which two frames do not fit into the memory granted.
+    /// A sequence plays from the start with the settings `playback`. Throws std::invalid_argument
+    /// for a sequence if two of its frames do not fit into the memory limit.
     explicit Data(LoadedVolume loaded, const PlaybackSetup& playback = {},
                   Pace pace = Pace::own_thread);
 
     Pace pace() const { return pace_; }
-    /// With Pace::by_steps: what is to be done at this time for edits, playback and streaming.
-    /// Every 4 ms suits all of them. Run::step() does so.
+    /// With Pace::by_steps: does the work that is due at this time for edits, playback and
+    /// streaming. Call it every 4 ms, as Run::step() does.
     void step(std::chrono::steady_clock::time_point now);
-    /// Whether all frames and samples that are wanted now are in memory, or cannot be read.
+    /// Whether all frames and samples that are needed now are in memory, or cannot be read.
     bool is_settled() const;
 
     /// As it was loaded.
     const LoadedVolume& loaded() const { return loaded_; }
     bool is_sequence() const { return player_ != nullptr; }
     bool is_streamed() const { return streamer_ != nullptr; }
-    /// What of a store is in memory; of other data nothing.
+    /// State of the samples of a store in memory; empty for other data.
     stream::BrickLoaderStatus streaming() const;
-    /// Throw std::invalid_argument, saying what to do, for data of the other kind.
+    /// They throw std::invalid_argument, saying what to do, for data of the other kind.
     VolumeEditor& editor() const;
     Player& player() const;
 
     /// The samples before edits, for a field to begin with.
     const std::shared_ptr<const Samples>& start() const { return start_; }
-    /// Brings a field of these data up to date: edits, or frames and moment.
+    /// Updates a field of this data: edits, or frames and moment.
     void update(Field& field) const;
     /// Throws io::OutputError where a recording that begins now could not be rendered again.
     void check_recording() const;
@@ -55,9 +56,9 @@ class Data {
     void detach(const Servo& servo);
     /// As VolumeEditor::record().
     void record(const Servo& servo, const BeginRecording& begin);
-    /// What an attached servo feels with from now on, for brushes.
+    /// The tool of an attached servo from now on, for brushes.
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
-    /// Why edits or frames do not come; usually empty.
+    /// Why edits or frames are missing; usually empty.
     std::string problem() const;
     /// A file that is in use from now on, such as a recording or an overlay: save() replaces no
     /// such file. An empty path is none.
@@ -78,9 +79,9 @@ class Data {
     /// as require_saving() and require_unused().
     std::string save(const std::filesystem::path& path, const io::Progress& progress);
 
-    /// Saves where there is no choice left: in a new folder that only this user can enter, in that
-    /// of temporary files or, if that fails, in the home folder or the current one. Returns the
-    /// name. Throws io::OutputError with what went wrong in each.
+    /// Saves when other ways have failed: in a new folder that only this user can enter, in the
+    /// folder of temporary files or, if that fails, in the home folder or the current one. Returns
+    /// the name. Throws io::OutputError with the reason for each folder.
     std::filesystem::path rescue();
 
   private:

@@ -1,4 +1,5 @@
-// Layers by place: which tissue is where, from a label volume (a segmentation) on its own grid.
+// Layers by position: the tissue at each place comes from a label volume (a segmentation) on its
+// own grid.
 #pragma once
 
 #include <filesystem>
@@ -10,20 +11,20 @@
 
 namespace palpate::run {
 
-/// A layer by label for each of these, with its name and colour, which gives way at 1.5 N. Their
-/// places are still to come: layers_by_label().
+/// A layer by label for each of these, with its name and colour, and a puncture force of 1.5 N.
+/// layers_by_label() adds the label volume.
 io::LayersFile layers_of(std::span<const io::LabelName> labels);
 
-/// Layers whose places are the labels of this volume. With `like`, its layers: by the numbers that
-/// they have as levels if it is by label, else by the names that the label volume gives. Without, a
-/// layer for each label, with its name and colour, which gives way at 1.5 N. Throws
-/// std::invalid_argument, naming the volume, for labels that it does not have, and for more
-/// than 16.
+/// Layers by the labels of this volume. With `like`, the layers are those of `like`. They are
+/// matched by the numbers that they have as levels if it is by label, else by the names in the
+/// label volume. Without `like`, there is a layer for each label, with its name and colour, and a
+/// puncture force of 1.5 N. Throws std::invalid_argument, naming the volume, for labels that it
+/// does not have, and for more than 16.
 io::LayersFile layers_by_label(const LoadedVolume& labels,
                                const std::optional<io::LayersFile>& like = std::nullopt);
 
-/// Layers as they were recorded, with the label volume read again if they have one: its name is
-/// looked for from the working folder, then beside the recording. Throws io::InputError.
+/// Recorded layers, with their label volume, if they have one, read again: from the working folder,
+/// or else from the folder of the recording. Throws io::InputError.
 std::shared_ptr<const Layers> with_labels(std::shared_ptr<const Layers> layers,
                                           const std::filesystem::path& recording);
 

@@ -16,9 +16,9 @@ namespace palpate::run {
 struct OfflineSummary {
     std::int64_t ticks = 0;
     std::int64_t constrained = 0;
-    std::int64_t out_of_budget = 0;  ///< updates that continued in the next tick
+    std::int64_t out_of_budget = 0;  ///< updates that the next tick had to continue
     std::int64_t recovering = 0;     ///< not yet out of the solid: no force
-    std::int64_t refused = 0;        ///< positions absurdly far: no force, nothing changed
+    std::int64_t refused = 0;        ///< positions extremely far away: no force, nothing changed
     double worst_surface_error =
         0;                      ///< largest |f - isovalue| / range at the SCP or points in contact
     double largest_force = 0;   ///< [N]
@@ -33,7 +33,7 @@ struct OfflineSummary {
 /// Receivers of the ticks; any may be empty. The last corner of a tick is its SCP, bit for bit, and
 /// the last pose that of the proxy.
 struct OfflineSinks {
-    /// Called before each tick; it may change what is felt.
+    /// Called before each tick; it may change the renderer.
     std::function<void(Renderer& renderer, std::int64_t tick)> change;
     std::function<void(const io::TraceRow&)> row;
     std::function<void(std::int64_t tick, const Vec3& corner)> corner;  ///< of the SCP's path [mm]
@@ -41,19 +41,19 @@ struct OfflineSinks {
     std::function<void(double fraction)> progress;
 };
 
-/// For OfflineSinks::change, with a volume that is read as it is felt: waits before each tick until
-/// all samples are in memory that it may need, so the ticks are those of the whole volume. Keeps
-/// references to both. Null for other volumes. What is called throws as
-/// stream::BrickLoader::wait_for(), and what `tell` throws, which is called all the time while it
-/// waits.
+/// For OfflineSinks::change, with a store: waits before each tick until all samples that it may
+/// need are in memory, so the ticks are those of the whole volume. Keeps references to both
+/// arguments. Null for other volumes. `tell` is called repeatedly during the wait, and may throw.
+/// The function throws as stream::BrickLoader::wait_for() does.
 std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume& loaded,
                                                              const io::Trajectory& trajectory,
                                                              std::function<void()> tell = {});
 
 /// Renders each position of the trajectory (physical space) in order. The proxy begins at the first
-/// position if that is free, else where recovery finds free space; with layers, inside whatever is
-/// there that can give way. A tool begins at the first pose and is brought out if it is inside.
-/// Throws std::invalid_argument if all of space is solid. What a sink throws is passed on.
+/// position if that is free, else where recovery finds free space. With layers, it begins in the
+/// tissue there if its surface can give way. A tool begins at the first pose, and recovers if it is
+/// inside the solid. Throws std::invalid_argument if all of space is solid. What a sink throws is
+/// passed on.
 OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajectory,
                               const OfflineSinks& sinks);
 

@@ -1,5 +1,5 @@
-// Plays a sequence for one or several runs: sends their servos the frames round the play position
-// as they come into memory, and seeks.
+// Plays a sequence for one or several runs: sends their servos the frames around the play position
+// as they are loaded, and seeks.
 #pragma once
 
 #include <chrono>
@@ -17,10 +17,10 @@
 
 namespace palpate::run {
 
-/// What a user interface shows of a sequence. Times in s, those of the sequence.
+/// The state of a sequence, for a user interface. Times in s, those of the sequence.
 struct PlayState {
     std::vector<double> frames;  ///< time of each
-    double begin = 0, end = 0;   ///< of a loop, `end` is when the first comes again
+    double begin = 0, end = 0;   ///< in a loop, `end` is the time when the first comes again
     double time = 0;             ///< within begin and end
     double speed = 0;            ///< 0: paused
     bool loop = true;
@@ -40,8 +40,8 @@ class Player {
     Player(const Player&) = delete;
     Player& operator=(const Player&) = delete;
 
-    /// Follows the first servo that has not ended and sends what has come; its thread calls this
-    /// every 5 ms.
+    /// Follows the first servo that has not ended, and sends frames that were loaded. Its thread
+    /// calls this every 5 ms.
     void step(std::chrono::steady_clock::time_point now);
     /// Starts a servo at the play position and keeps it up to date until detach(). What `start`
     /// throws is passed on.
@@ -56,16 +56,16 @@ class Player {
     /// Goes to a time of the sequence as soon as its frames are in memory. This, step() and
     /// set_loop() throw std::invalid_argument for a live source.
     void seek(double time);
-    /// Goes so many frames on, or back if negative, and pauses.
+    /// Moves by so many frames, backwards if negative, and pauses.
     void step(int frames);
     /// Whether the first frame follows the last. Reads the frames in memory again.
     void set_loop(bool on);
 
     PlayState state() const;
-    /// Whether the frames that are wanted now are in memory, or cannot be read; true for a live
+    /// Whether the frames that are needed now are in memory, or cannot be read; true for a live
     /// source.
     bool is_settled() const;
-    /// Brings a field to the frames in memory and the play position.
+    /// Sets a field to the frames in memory and the play position.
     void apply_position(Field& field) const;
 
   private:

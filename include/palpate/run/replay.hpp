@@ -11,31 +11,31 @@
 
 namespace palpate::run {
 
-/// The volume of a recording: its recorded name, looked for from the working folder, then beside
-/// the recording; or `instead`, unless that is empty. Throws io::InputError for a live source,
-/// whose frames are not in the recording.
+/// The volume of a recording: its recorded name, in the working folder or else in the folder of the
+/// recording, or `instead` unless that is empty. Throws io::InputError for a live source, whose
+/// frames are not in the recording.
 Source recorded_source(const io::RecordingHead& head, const std::filesystem::path& recording,
                        const std::string& instead = {});
 
 /// The session of a recording before its first tick. Throws io::InputError if the volume is not the
-/// one that was recorded (size, type or samples), or the head asks for what cannot be rendered.
+/// one that was recorded (size, type or samples), or if the settings in the head cannot be
+/// rendered.
 Session recorded_session(const io::RecordingHead& head, const LoadedVolume& loaded,
                          const std::string& recording);
 
-/// The first part of a tick that did not come out as it was recorded.
+/// The first part of a tick that differs from the recording.
 struct Difference {
     std::string part;  ///< "HIP", "force", ...
     std::string recorded, again;
 };
-/// Compares bit by bit, but two NaN are equal (text keeps no payload). Nothing: the ticks are the
+/// Compares bit by bit, but all NaN are equal (text keeps no payload). Nothing: the ticks are the
 /// same.
 std::optional<Difference> difference(const SessionTick& recorded, const SessionTick& again);
 
 class Replay {
   public:
-    /// `reader` stands before the first event and outlives this. `tell` is called all the time
-    /// while next() waits for samples of a store, and may throw to stop. Throws as
-    /// recorded_session().
+    /// `reader` is before the first event and outlives this. `tell` is called repeatedly while
+    /// next() waits for samples of a store, and may throw to stop. Throws as recorded_session().
     Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::string recording,
            std::function<void()> tell = {});
 
@@ -43,11 +43,11 @@ class Replay {
         SessionTick recorded, again;
         std::int64_t number;  ///< from 0
     };
-    /// Carries out the commands up to the next tick and renders that; nothing at the end. Throws
-    /// io::InputError for a damaged line and for a command that cannot be carried out.
+    /// Executes the commands up to the next tick and renders that; nothing at the end. Throws
+    /// io::InputError for a damaged line and for a command that cannot be executed.
     std::optional<Tick> next();
 
-    /// As the last tick left it.
+    /// The session after the last tick.
     const Session& session() const { return session_; }
     /// Versions of the samples up to the last tick.
     RecordedSamples& samples() { return samples_; }

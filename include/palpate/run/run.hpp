@@ -1,6 +1,6 @@
-// A live run: a servo with its device, the data it feels and a recording. Several runs may share
-// the same data, as the hands of one session: what one of them edits, all of them feel, and where
-// one device fails the others go on.
+// A live run: a servo with its device, its data and a recording. Several runs may share the same
+// data, as the hands of one session: all of them feel each edit, and if one device fails the others
+// continue.
 #pragma once
 
 #include <deque>
@@ -21,27 +21,27 @@
 
 namespace palpate::run {
 
-/// What a recording says about a session that is about to begin.
+/// The head of a recording for a session that is about to begin.
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
                                  const Source& source, const RenderSetup& setup);
 
-/// No room for a command: those before it are still to be carried out.
+/// The queue of commands is full: earlier commands have not been executed yet.
 class QueueFull : public std::invalid_argument {
   public:
     using std::invalid_argument::invalid_argument;
 };
 
-/// Not possible now: the run was not started, or was started before.
+/// The call is not possible now: the run was not started yet, or was started before.
 class WrongState : public std::logic_error {
   public:
     using std::logic_error::logic_error;
 };
 
-/// Snapshots come out, commands go in. One thread owns it; data() may be used by any.
+/// Gives snapshots and takes commands. Only one thread may use it; data() may be used by any.
 class Run {
   public:
-    /// Opens the device and fits it to the data. Nothing moves before start(). Throws
-    /// std::invalid_argument for a setup that cannot be, io::InputError for a file that the device
+    /// Opens the device and fits its workspace to the data. Nothing moves before start(). Throws
+    /// std::invalid_argument for an impossible setup, io::InputError for a file that the device
     /// cannot read, devices::DeviceError.
     Run(std::shared_ptr<Data> data, const Setup& setup);
     /// stop(), and finishes a recording silently.
@@ -59,14 +59,14 @@ class Run {
     /// start().
     void step();
     double period() const { return period_; }  ///< [s] of its ticks; from start() on
-    /// Forces go to zero and the servo ends, for good. Waits until the device has sent the zero,
-    /// but no longer than half a second for one that hangs. What was seen of it stays.
+    /// Forces go to zero and the servo ends permanently. Waits until the device has sent the zero,
+    /// but at most half a second if the device hangs. The last snapshot and report remain.
     void stop();
 
-    /// As the run began; field_now() has the edits, or the moment of a sequence.
+    /// The field at the start of the run; field_now() has the edits, or the moment of a sequence.
     const Field& field() const { return field_; }
     Field field_now() const;
-    /// Edits and playback. They go on when the session starts anew.
+    /// Edits and playback. They continue when the session starts anew.
     Data& data() const { return *data_; }
     /// For another run on the same data.
     const std::shared_ptr<Data>& shared_data() const { return data_; }
@@ -78,12 +78,12 @@ class Run {
     devices::Mouse* mouse() const { return mouse_; }
 
     // From start() on. Before, all but device_failure() throw WrongState:
-    /// What the system granted of real time, and what not.
+    /// Which real-time privileges the system granted, and which not.
     const std::vector<std::string>& privileges() const { return started_servo().privileges(); }
-    /// Throws std::invalid_argument, saying what is wrong, for a command that cannot be carried
-    /// out, and for DeviceLimits that lower nothing; QueueFull for one that comes too fast. While
-    /// layers have surfaces an isovalue waits; when they are taken away, the one asked for last is
-    /// felt.
+    /// Throws std::invalid_argument, saying what is wrong, for a command that cannot be executed,
+    /// and for DeviceLimits that lower nothing; QueueFull if commands come too fast. While there
+    /// are layers with surfaces, an isovalue has no effect. The last one applies when they are
+    /// removed.
     void send(const Command& command);
     /// Commands that were sent and not carried out yet.
     std::int64_t waiting() const { return started_servo().waiting(); }
@@ -92,39 +92,40 @@ class Run {
     std::optional<Snapshot> snapshot() const { return started_servo().snapshot(); }
     ServoReport report() const { return started_servo().report(); }
 
-    /// As the commands sent so far have left them.
+    /// The settings after the commands sent so far.
     const RendererSettings& settings() const { return settings_; }
-    /// The level that was asked for last, also while layers are felt; the level felt is in the
-    /// snapshot.
+    /// The level that was requested last, also with layers. The snapshot has the level that is
+    /// touched.
     double isovalue() const { return isovalue_; }
     bool frozen() const { return frozen_; }
 
-    /// Goes on with another device, fitted to it, with everything that was asked for so far. Throws
-    /// as the constructor does; the old device then goes on. A recording is finished before. The
-    /// same physical device is closed first and then opened with the new options; if that fails, it
-    /// is opened as it was, and if that fails, too, it counts as lost. Throws WrongState before
-    /// start(), as does use_field().
+    /// Continues with another device, with all settings requested so far, lowered where it
+    /// cannot render them. Throws as the constructor does; the old device then continues. A
+    /// recording is finished first. The same physical device is closed first and then opened with
+    /// the new options. If that fails, it is opened as it was, and if that fails, too, it counts as
+    /// lost. Throws WrongState before start(), as does use_field().
     void use_device(const devices::DeviceChoice& device);
-    /// Goes on with this side solid, this interpolation, this background outside the grid. The
-    /// session starts anew with everything that was asked for except penetrability, which is
-    /// switched off, and of layers where the other side becomes solid. A recording is finished
-    /// before; if that fails, io::OutputError says so and the field stays. Throws
-    /// std::invalid_argument for a background that is not finite; then nothing has changed.
+    /// Continues with this solid side, this interpolation, and this background outside the grid.
+    /// The session starts anew with all settings requested so far, except penetrability and, if the
+    /// solid side changes, layers. A recording is finished first; if that fails, io::OutputError
+    /// says so and the field stays. Throws std::invalid_argument for a background that is not
+    /// finite; then nothing has changed.
     void use_field(Solid solid, Interpolation interpolation, std::optional<double> background = {});
 
-    /// Records from start() on, or from now on: the session goes on, with its force. Throws
-    /// io::OutputError for a file
-    /// that cannot be created; and where more edits were made than a recording can begin with; then
-    /// nothing has changed. A recording that was running is finished; if that fails io::OutputError
-    /// says so, but the new one runs. std::runtime_error and QueueFull, with an empty recording
-    /// left, for a session that takes no commands.
+    /// Records from start() on, or from now on: the session and its force continue. Throws
+    /// io::OutputError for a file that cannot be created, and if there were more edits than a
+    /// recording can begin with; then nothing has changed. A recording that was running is
+    /// finished; if that fails, io::OutputError says so, but the new one runs. Throws
+    /// std::runtime_error or QueueFull, and leaves an empty recording, if the session takes no
+    /// commands.
     void record(const std::filesystem::path& path);
     /// The same for several runs on the same data, into one file: they are its hands, in this order
-    /// (docs/recordings.md). It is whole once the last of them has ended its recording. Throws
-    /// std::invalid_argument for runs on different data, none, and one that is there twice.
+    /// (docs/recordings.md). The file is complete when the last of them has ended its recording.
+    /// Throws std::invalid_argument for runs on different data, for no run, and for a run that is
+    /// given twice.
     static void record_together(std::span<Run* const> runs, const std::filesystem::path& path);
-    /// Ends the recording; the session goes on. Returns its ticks, 0 without a recording.
-    /// Throws io::OutputError for what could not be written.
+    /// Ends the recording; the session continues. Returns the number of its ticks, 0 without a
+    /// recording. Throws io::OutputError if something could not be written.
     std::int64_t stop_recording();
     /// Null while nothing is recorded.
     const io::RecordingWriter* recording() const { return recording_.get(); }

@@ -1,6 +1,5 @@
-// How to feel a volume: which level and side of it, how forces are rendered, through which device.
-// One plain value. What is not given depends on volume and device and is filled in when they are
-// known.
+// The settings of a run: level and solid side, rendering of forces, and the device. One plain
+// value. Missing values depend on volume and device, and are filled in when these are known.
 #pragma once
 
 #include <functional>
@@ -23,15 +22,15 @@ namespace palpate::run {
 
 struct FieldSetup {
     Solid solid = Solid::above;
-    std::optional<io::Level> background;  ///< outside the data. Nothing: as Field has it
+    std::optional<io::Level> background;  ///< outside the data. Nothing: the default of Field
     std::optional<io::Level> isovalue;    ///< nothing: the volume's own or a suggested one
-    /// Nothing: cubic, but linear for the methods that are made for it (paper and the gradients).
+    /// Nothing: cubic, or linear for the methods that were made for it (paper and the gradients).
     std::optional<Interpolation> interpolation;
 };
 
 struct ThresholdSetup {
     double threshold = 1;              ///< PT [device mm]
-    std::optional<io::Level> minimum;  ///< least level felt. Nothing: the isovalue
+    std::optional<io::Level> minimum;  ///< lowest level that is touched. Nothing: the isovalue
 };
 struct LevelRange {
     io::Level low, high;
@@ -58,10 +57,10 @@ struct RenderSetup {
     std::optional<double> rate;       ///< [Hz] nothing: rate_of()
 };
 
-/// Rate of a loop whose device does not ask for another one [Hz].
+/// Default rate of the loop [Hz].
 inline constexpr double usual_rate = 1000;
-/// Rate of the loop with this device [Hz]: the requested one, else the usual one. 250 with a device
-/// that renders no force, which shows the same with a quarter of the work (springs up to 1.2 N/mm).
+/// Rate of the loop with this device [Hz]: the requested one, else the default. The default is 250
+/// with a device that renders no force, which needs a quarter of the work (springs up to 1.2 N/mm).
 double rate_of(const RenderSetup& setup, const DeviceInfo& device);
 
 /// A button of the device, by its number from 1.
@@ -74,7 +73,7 @@ struct UsualButton {};
 using ButtonSetup = std::variant<std::monostate, UsualButton, Button>;
 
 struct PlaybackSetup {
-    double speed = 1;           ///< of a sequence, from the start. 0: it stands still
+    double speed = 1;           ///< of a sequence, from the start. 0: paused
     io::LoaderSettings loader;  ///< memory for frames, and whether the sequence loops
 };
 
@@ -86,7 +85,7 @@ struct Setup {
     FieldSetup field;
     RenderSetup render;
     devices::DeviceChoice device{"simulated", {}};
-    OpenDevice open_device = &devices::open_device;  ///< an application may have devices of its own
+    OpenDevice open_device = &devices::open_device;  ///< an application may have its own devices
     Facing facing = Facing::anterior;
     ButtonSetup clutch = UsualButton{};
     ButtonSetup deadman;
@@ -94,38 +93,39 @@ struct Setup {
     bool real_time = true;  ///< ask for real-time priority
 };
 
-/// The forces of a live run begin when the wanted one is below this [N]: a tenth of what the
-/// smallest devices give. Setups for live runs take it as `force.start_below`.
+/// The forces of a live run begin when the computed force is below this [N]: a tenth of the limit
+/// of the smallest devices. Setups for live runs use it as `force.start_below`.
 inline constexpr double live_start_below = 0.3;
 
-/// Field of these samples, for this method where the setup leaves the interpolation open. Throws
+/// Field of these samples. If the setup has no interpolation, the method decides. Throws
 /// std::invalid_argument as Field does.
 Field make_field(std::shared_ptr<const Samples> samples, const FieldSetup& setup,
                  ProxyMethod method = &update_exact);
 Field make_field(const Volume& volume, const FieldSetup& setup, ProxyMethod method = &update_exact);
 
-/// The level asked for, else the volume's own, else the first that the histogram suggests. Throws
+/// The requested level, else the volume's own, else the first that the histogram suggests. Throws
 /// std::invalid_argument for constant data without a level.
 double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup);
 /// The same, but with layers their outermost level. Throws std::invalid_argument if an isovalue is
-/// asked for, too.
+/// requested as well.
 double isovalue_of(const LoadedVolume& loaded, const Setup& setup);
 
-/// What a person should know who feels these layers in this volume: that the volume does not say it
-/// is in their units, or has no densities at some levels. Empty: nothing.
+/// A warning about these layers in this volume: the volume does not declare their units, or has no
+/// densities at some levels. Empty: no warning.
 std::string layers_warning(const io::LayersFile& layers, const LoadedVolume& loaded);
 
-/// The settings asked for. `isovalue` is the least level felt where no minimum is given, `limits`
-/// are the device's. Throws std::invalid_argument, through check(), for what cannot be rendered.
+/// The requested settings. `isovalue` is the lowest level that is touched if no minimum is given,
+/// `limits` are the device's. Throws std::invalid_argument, through check(), for what cannot be
+/// rendered.
 RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
                                  const DeviceLimits& limits = {});
-/// The same for rendering without a device: only the force limit asked for holds, and no pause
-/// between two positions is too long.
+/// The same for rendering without a device: only the requested force limit applies, and no time
+/// between two positions counts as a pause.
 RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue);
 
 /// The transform that places the device's workspace in the volume.
 DeviceTransform transform_for(const Geometry& geometry, const DeviceInfo& info, const Setup& setup);
-/// What a device is fitted to: `setup` with its limits, stiffness and buttons. Throws
+/// A session for this device: `setup` with the device's limits, stiffness and buttons. Throws
 /// std::invalid_argument for a button that the device does not have.
 Session make_session(const Field& field, double isovalue, const DeviceInfo& info,
                      const Setup& setup);

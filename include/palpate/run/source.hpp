@@ -1,5 +1,5 @@
-// What to feel: a file, a sequence, a synthetic volume or frames that another program pushes; and
-// loading it.
+// The source of the data (a file, a sequence, a synthetic volume, or frames that another program
+// sends), and its loading.
 #pragma once
 
 #include <filesystem>
@@ -35,7 +35,7 @@ struct LiveSource {
     std::string path;
 };
 
-/// A store that is read by the box, because it is too large for memory or far away
+/// A store that is read in parts, because it is too large for memory or on another machine
 /// (docs/streaming.md).
 struct StoreSource {
     std::string address;
@@ -56,7 +56,7 @@ struct Source {
     bool prefilter = false;  ///< after all that, see sharpened()
 };
 
-/// As people write it: "head.nrrd", "synthetic:torus", "live:frames.shm".
+/// As a user writes it: "head.nrrd", "synthetic:torus", "live:frames.shm".
 std::string name_of(const Source& source);
 /// The file, folder or numbered series of a source; empty if it is none.
 std::filesystem::path place_of(const Source& source);
@@ -70,12 +70,12 @@ Source source_named(const std::string& name);
 /// options are left out, and so is a cache, which is local. Web addresses are without password
 /// and query (io::address_to_keep()). If they had one, "secrets" says "left out".
 std::map<std::string, std::string> to_names(const Source& source);
-/// The inverse. Unknown names are ignored, numbers that cannot be read count as not given. Throws
-/// std::invalid_argument for a layout that cannot be, and for values that this kind of source does
-/// not have.
+/// The inverse. Unknown names are ignored, and numbers that cannot be read count as missing. Throws
+/// std::invalid_argument for an impossible layout, and for values that this kind of source does not
+/// have.
 Source source_from(const std::map<std::string, std::string>& names);
 
-/// A store and how it is felt.
+/// A store and the settings of its loader.
 struct StreamedVolume {
     std::shared_ptr<const stream::Store> store;
     stream::BrickLoaderSettings loader;
@@ -95,15 +95,15 @@ struct LoadedVolume {
     std::optional<double> isovalue = {};              ///< a good one, of a synthetic volume
     io::Sequence sequence = {};                       ///< empty unless there are several frames
     std::shared_ptr<const io::LiveFrames> live = {};  ///< null unless it is a live source
-    int time_steps = 1;                           ///< frames there are, whether asked for or not
+    int time_steps = 1;                           ///< number of frames, whether requested or not
     std::optional<StreamedVolume> streamed = {};  ///< of a store
 };
 
-/// The samples that a field of a loaded volume begins with: of a store none in memory yet.
+/// The samples with which a field of a loaded volume begins. For a store, none are in memory yet.
 std::shared_ptr<const Samples> start_samples(const LoadedVolume& loaded);
 
-/// Reads or makes the volume. `progress` may throw to stop. Throws std::invalid_argument for a
-/// source that cannot be, io::InputError for one that cannot be read.
+/// Reads or makes the volume. `progress` may throw to stop. Throws std::invalid_argument for an
+/// impossible source, io::InputError for one that cannot be read.
 LoadedVolume load(const Source& source, const io::Progress& progress = {});
 
 }  // namespace palpate::run

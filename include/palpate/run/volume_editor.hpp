@@ -1,5 +1,5 @@
-// Edits the samples that one or several runs feel: a brush that follows each proxy, single edits,
-// undo and redo. The servos feel an edit within two ticks.
+// Edits the samples of one or several runs: a brush that follows each proxy, single edits, undo and
+// redo. The servos use an edit within two ticks.
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ namespace palpate::run {
 /// The edited samples at one moment.
 struct EditState {
     std::shared_ptr<const Samples> samples;
-    std::uint64_t version = 0;  ///< as snapshots tell it
+    std::uint64_t version = 0;  ///< the same as in snapshots
     std::size_t undo_steps = 0, redo_steps = 0;
     bool changed = false;      ///< since the start, or since they were saved
-    std::string problem = {};  ///< why the brush does nothing although it touches. Usually empty
+    std::string problem = {};  ///< why the brush has no effect although it touches. Usually empty
 };
 
 /// Starts a servo with this session, which has the newest data. `history` is what a recording needs
@@ -35,21 +35,21 @@ struct EditState {
 using StartServo =
     std::function<std::unique_ptr<Servo>(Session session, const std::vector<Command>& history)>;
 inline constexpr const char* takes_no_commands = "the session takes no commands";
-/// Begins a recording of a servo that has got everything up to the end of this history, and gets
-/// nothing else meanwhile.
+/// Begins a recording of a servo that has received everything up to the end of this history, and
+/// receives nothing else meanwhile.
 using BeginRecording = std::function<void(const std::vector<Command>& history)>;
 
 class Streamer;
 
-/// Any thread may call any function; state() does not wait for an edit. No function but apply()
-/// waits for samples of a volume that is read as it is felt: an edit that lacks some begins again
-/// when they are there, and others may come before it meanwhile.
+/// Any thread may call any function. state() does not wait for an edit. Only apply() waits for
+/// samples of a store: an edit without all of its samples begins again when they have loaded, and
+/// other edits may come before it meanwhile.
 class VolumeEditor {
   public:
-    /// A brush at work for seven minutes, 30 MB.
+    /// Enough for a brush that works for seven minutes (30 MB).
     static constexpr std::size_t usual_versions = 100'000;
 
-    /// `most_versions`: of which it is known how they were made.
+    /// `most_versions`: number of versions whose recipes are kept.
     explicit VolumeEditor(std::shared_ptr<const Samples> samples, Pace pace = Pace::own_thread,
                           std::size_t most_versions = usual_versions);
     /// Edits a streamed volume: an edit waits for the samples that it changes. Edits take at most a
@@ -61,32 +61,34 @@ class VolumeEditor {
     VolumeEditor(const VolumeEditor&) = delete;
     VolumeEditor& operator=(const VolumeEditor&) = delete;
 
-    /// Works with the brush where it touches. Its thread calls this every 4 ms while there is one.
+    /// Applies the brush where the proxy touches. The editor's thread calls this every 4 ms while
+    /// there is a brush.
     void step(std::chrono::steady_clock::time_point now);
-    /// Starts a servo with the samples as they are and keeps it up to date until detach(): no edit
-    /// is lost in between. Edits wait for `start` to return. What it throws is passed on.
+    /// Starts a servo with the present samples and keeps it up to date until detach(), without
+    /// losing an edit. Edits wait until `start` returns. Its exceptions are passed on.
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
-    /// For a servo that is not attached: nothing.
+    /// No effect for a servo that is not attached.
     void detach(const Servo& servo);
     /// For an attached servo. Throws std::runtime_error, and does not begin, if it takes no
     /// commands.
     void record(const Servo& servo, const BeginRecording& begin);
-    /// What this servo feels with from now on. Null: a point. The brush rests until the tool has
-    /// been in the air. For a servo that is not attached: nothing.
+    /// The tool of this servo from now on. Null: a point. The brush pauses until the tool has left
+    /// the surface. No effect for a servo that is not attached.
     void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
-    /// The brush of every attached servo. Nothing: the hand only feels. Throws as check().
+    /// The brush of every attached servo. Nothing: no brush. Throws as check().
     void set_brush(const std::optional<HandBrush>& brush);
     /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does and for
     /// one that takes more memory than there is, std::runtime_error for a servo that takes no
     /// commands, and io::InputError for samples that cannot be read. Throws stream::Cancelled if it
     /// waits for samples when `stop` is requested.
     void apply(const Edit& edit, const std::stop_token& stop = {});
-    /// False if there is nothing to undo, or redo. A brush that touches then rests until it has
-    /// been in the air, or was taken up again: else it would undo the undo.
+    /// False if there is nothing to undo, or redo. A brush that touches then pauses until it has
+    /// left the surface or set_brush() is called. Otherwise it would undo the undo.
     bool undo();
     bool redo();
 
-    /// False after so many edits that not all are known any more: then StartServo gets some only.
+    /// False after so many edits that some are no longer known. StartServo then gets only the
+    /// others.
     bool knows_history() const;
     EditState state() const;
     /// These samples were written to a file.
