@@ -3,15 +3,14 @@
 
 #include <QBoxLayout>
 #include <QCheckBox>
-#include <QEvent>
 #include <QLabel>
-#include <QPainter>
 #include <QToolButton>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "apps/viewer/panel/icons.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/timeline_track.hpp"
@@ -76,7 +75,8 @@ Timeline::Timeline(QWidget* parent)
     let_return_press_buttons(*this);
     connect_inputs();
     show_playing(false);
-    show_icons();
+    back_->setIcon(icon_of(Shape::back));
+    forward_->setIcon(icon_of(Shape::forward));
     show_possible();
 }
 
@@ -193,53 +193,9 @@ void Timeline::show_possible() {
 void Timeline::show_playing(bool playing) {
     if (playing == playing_ && !play_->icon().isNull()) return;
     playing_ = playing;
-    play_->setIcon(icon(playing ? Shape::pause : Shape::play));
+    play_->setIcon(icon_of(playing ? Shape::pause : Shape::play));
     play_->setAccessibleName(playing ? tr("Pause") : tr("Play"));
     play_->setToolTip(play_->accessibleName());
-}
-
-void Timeline::show_icons() {
-    back_->setIcon(icon(Shape::back));
-    forward_->setIcon(icon(Shape::forward));
-    play_->setIcon(icon(playing_ ? Shape::pause : Shape::play));
-}
-
-/// In the colour of text, which a style's own icons are not.
-QIcon Timeline::icon(Shape shape) const {
-    const QSize size = play_->iconSize();
-    QIcon icon;
-    for (const auto mode : {QIcon::Normal, QIcon::Disabled}) {
-        QPixmap picture(size * devicePixelRatioF());
-        picture.setDevicePixelRatio(devicePixelRatioF());
-        picture.fill(Qt::transparent);
-        QPainter painter(&picture);
-        painter.setRenderHint(QPainter::Antialiasing);
-        painter.setPen(Qt::NoPen);
-        painter.setBrush(palette().brush(
-            mode == QIcon::Disabled ? QPalette::Disabled : QPalette::Active, QPalette::ButtonText));
-        painter.scale(size.width(), size.height());
-        if (shape == Shape::back) {
-            painter.translate(1, 0);
-            painter.scale(-1, 1);
-        }
-        if (shape == Shape::pause) {
-            painter.drawRect(QRectF(0.22, 0.15, 0.2, 0.7));
-            painter.drawRect(QRectF(0.58, 0.15, 0.2, 0.7));
-        } else if (shape == Shape::play) {
-            painter.drawPolygon(QPolygonF({{0.25, 0.12}, {0.25, 0.88}, {0.85, 0.5}}));
-        } else {
-            painter.drawRect(QRectF(0.2, 0.2, 0.13, 0.6));
-            painter.drawPolygon(QPolygonF({{0.42, 0.18}, {0.42, 0.82}, {0.85, 0.5}}));
-        }
-        painter.end();
-        icon.addPixmap(picture, mode);
-    }
-    return icon;
-}
-
-void Timeline::changeEvent(QEvent* event) {
-    if (event->type() == QEvent::PaletteChange) show_icons();
-    QWidget::changeEvent(event);
 }
 
 }  // namespace palpate::viewer

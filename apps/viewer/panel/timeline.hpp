@@ -44,22 +44,15 @@ class Timeline : public QWidget {
     void moment_asked(double time);
     void loop_asked(bool loop);
 
-  protected:
-    void changeEvent(QEvent* event) override;
-
   private:
-    enum class Shape { play, pause, back, forward };
-
     void connect_inputs();
     void show_speed(double speed);
     void show_time(double time);
     void show_text();
     void show_playing(bool playing);
-    void show_icons();
     void show_possible();
     void ask_speed(double speed);
     void ask_moment(double time);
-    QIcon icon(Shape shape) const;
 
     QToolButton *back_, *play_, *forward_;
     TimelineTrack* track_;

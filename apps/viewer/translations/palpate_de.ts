@@ -2213,6 +2213,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Werkzeuge</translation>
     </message>
     <message>
+        <source>Layout</source>
+        <translation>Anordnung</translation>
+    </message>
+    <message>
         <source>Open a &amp;folder (DICOM, TIFF, Zarr)…</source>
         <translation>&amp;Ordner öffnen (DICOM, TIFF, Zarr) …</translation>
     </message>

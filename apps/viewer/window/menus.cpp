@@ -7,9 +7,11 @@
 #include <QMenu>
 #include <QMenuBar>
 #include <QToolBar>
+#include <QToolButton>
 #include <map>
 
 #include "apps/viewer/panel/brush_controls.hpp"
+#include "apps/viewer/panel/icons.hpp"
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
@@ -258,6 +260,7 @@ void add_camera_actions(MainWindow& window, Actions& actions, QMenu* menu) {
 void add_measure_actions(MainWindow& window, Actions& actions, QMenu* view) {
     const auto opened = [&window] { return window.content().volume() != nullptr; };
     QMenu* measure = view->addMenu(MainWindow::tr("&Measure"));
+    measure->setObjectName("measure");
     MeasureController& measuring = window.measuring();
     actions.add(
         measure, "measure_length", MainWindow::tr("A &length"), QKeySequence("M"),
@@ -279,6 +282,7 @@ void add_measure_actions(MainWindow& window, Actions& actions, QMenu* view) {
 void add_cut_actions(MainWindow& window, Actions& actions, QMenu* view) {
     const auto opened = [&window] { return window.content().volume() != nullptr; };
     QMenu* cut = view->addMenu(MainWindow::tr("Cut awa&y"));
+    cut->setObjectName("cut");
     const auto add_cut = [&](const char* name, const QString& text, Cut kind,
                              const QKeySequence& key) {
         actions.add(
@@ -346,6 +350,50 @@ void make_help_menu(MainWindow& window, Actions& actions) {
                 [&window] { make_about_dialog(&window)->show(); });
 }
 
+/// Puts a menu behind a button of the bar.
+void add_menu(QToolBar& bar, QMenu& menu, Shape shape) {
+    QAction* action = menu.menuAction();
+    action->setIcon(icon_of(shape));
+    action->setIconVisibleInMenu(false);
+    bar.addAction(action);
+    qobject_cast<QToolButton*>(bar.widgetForAction(action))
+        ->setPopupMode(QToolButton::InstantPopup);
+}
+
+void make_tool_bar(MainWindow& window, Actions& actions) {
+    QToolBar& bar = *window.addToolBar(MainWindow::tr("Tools"));
+    bar.setObjectName("tools");
+    const auto add = [&](const char* name, Shape shape) {
+        QAction* action = actions.find(name);
+        action->setIcon(icon_of(shape));
+        action->setIconVisibleInMenu(false);
+        const QString key = action->shortcut().toString(QKeySequence::NativeText);
+        if (!key.isEmpty()) action->setToolTip(QString("%1 (%2)").arg(action->toolTip(), key));
+        bar.addAction(action);
+    };
+    add("open", Shape::open);
+    bar.addSeparator();
+    add("forces", Shape::forces);
+    add("freeze", Shape::freeze);
+    add("record", Shape::record);
+    bar.addSeparator();
+    add("pointer", Shape::touch);
+    add("brush_action", Shape::brush);
+    add("undo_action", Shape::undo);
+    add("redo_action", Shape::redo);
+    bar.addSeparator();
+    add_menu(bar, *window.findChild<QMenu*>("measure"), Shape::measure);
+    add_menu(bar, *window.findChild<QMenu*>("cut"), Shape::cut);
+    bar.addSeparator();
+    add("whole", Shape::whole);
+    add("from_hand", Shape::eye);
+    auto* layout = new QMenu(MainWindow::tr("Layout"), &window);
+    for (const char* name : {"beside", "four", "scene_alone", "slice_alone"}) {
+        layout->addAction(actions.find(name));
+    }
+    add_menu(bar, *layout, Shape::layout);
+}
+
 }  // namespace
 
 void name_views(Actions& actions, bool oriented) {
@@ -360,12 +408,7 @@ void make_menus(MainWindow& window, Actions& actions) {
     make_data_menu(window, actions);
     make_view_menu(window, actions);
     make_help_menu(window, actions);
-    QToolBar* bar = window.addToolBar(MainWindow::tr("Tools"));
-    bar->setObjectName("tools");
-    for (const char* name :
-         {"open", "forces", "freeze", "record", "pointer", "whole", "from_hand"}) {
-        bar->addAction(actions.find(name));
-    }
+    make_tool_bar(window, actions);
     for (const char* name :
          {"level_up", "level_down", "undo_action", "redo_action", "frame_back", "frame_on"}) {
         actions.find(name)->setAutoRepeat(true);

@@ -1,7 +1,10 @@
 // Failures: what is told, and what stays as it was.
 #include <QAction>
+#include <QMenu>
 #include <QMessageBox>
 #include <QPalette>
+#include <QToolBar>
+#include <QToolButton>
 #include <fstream>
 
 #include "apps/viewer/window/appearance.hpp"
@@ -109,6 +112,23 @@ TEST_F(Failures, a_key_that_is_held_switches_once) {
         EXPECT_FALSE(window_->findChild<QAction*>(name)->autoRepeat()) << name;
     }
     EXPECT_TRUE(window_->findChild<QAction*>("level_up")->autoRepeat());
+}
+
+TEST_F(Failures, each_button_of_the_tool_bar_has_an_icon_and_says_what_it_does) {
+    const auto* bar = window_->findChild<QToolBar*>("tools");
+    int buttons = 0;
+    for (const QAction* action : bar->actions()) {
+        if (action->isSeparator()) continue;
+        ++buttons;
+        const auto* button = qobject_cast<QToolButton*>(bar->widgetForAction(action));
+        EXPECT_FALSE(button->icon().isNull()) << action->text();
+        EXPECT_EQ(button->toolButtonStyle(), Qt::ToolButtonIconOnly) << action->text();
+        EXPECT_FALSE(button->toolTip().isEmpty());
+        EXPECT_TRUE(button->toolTip().contains(action->shortcut().toString()));
+        EXPECT_TRUE(!action->menu() || !action->menu()->isEmpty());
+    }
+    EXPECT_EQ(buttons, 13);
+    EXPECT_EQ(window_->findChild<QAction*>("freeze")->toolTip(), "Freeze (F)");
 }
 
 TEST_F(Failures, text_is_readable_in_light_and_dark) {
