@@ -45,7 +45,7 @@ QColor colour_of(const QIcon& icon, QIcon::Mode mode) {
 TEST(Icons, have_the_colour_of_text_at_the_time_when_they_are_painted) {
     const QPalette before = QApplication::palette();
     const QIcon icon = icon_of(Shape::pause);
-    for (const QColor ink : {QColor(250, 250, 250), QColor(10, 20, 30)}) {
+    for (const QColor& ink : {QColor(250, 250, 250), QColor(10, 20, 30)}) {
         QPalette palette = before;
         palette.setColor(QPalette::Active, QPalette::ButtonText, ink);
         palette.setColor(QPalette::Disabled, QPalette::ButtonText, Qt::red);
