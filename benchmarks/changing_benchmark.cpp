@@ -38,7 +38,7 @@ void carve(benchmark::State& state) {
     const auto block = std::make_shared<const Samples>(
         Volume(scenes::centred(Index3::Constant(size)),
                std::vector<std::uint8_t>(std::size_t{size} * size * size, 200)));
-    const Field field(block, Solid::above, 0);
+    const Field field = linear_field(block, Solid::above, 0);
     const Brush brush = brush_for(BrushKind::carve, field, 100, radius);
     const edit::Stroke stroke{brush, Vec3(0.3, 0.2, 0.4), Vec3(0.3, 0.2, 0.4)};
     std::size_t bytes = 0;

@@ -24,7 +24,8 @@ std::vector<Vec3> scattered_points() {
 
 template <class Evaluate>
 void evaluate(benchmark::State& state, Evaluate&& at) {
-    const Field field(scenes::make_volume("cylinder:100x100x30", SampleType::uint8).volume);
+    const Field field =
+        linear_field(scenes::make_volume("cylinder:100x100x30", SampleType::uint8).volume);
     const std::vector<Vec3> points = scattered_points();
     std::size_t i = 0;
     for (auto _ : state) {
@@ -42,7 +43,7 @@ void gradient(benchmark::State& state) {
 
 void surface(benchmark::State& state, const std::string& spec) {
     const scenes::Scene scene = scenes::make_volume(spec);
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     std::size_t triangles = 0;
     for (auto _ : state) triangles = extract_surface(field, scene.isovalue).triangles.size();
     // Cells of the padded grid: one more than samples along each axis.

@@ -40,13 +40,13 @@ Touch cylinder_touch(SampleType type, double voxels_per_mm, double depth) {
     // Density falls from 1 at the axis to 0 at 50 mm: 0.53 of it lies at 23.5 mm.
     const double radius = 50 * (1 - 0.53);
     const double isovalue = scene.volume.minimum() + 0.53 * range;
-    return {Field(std::move(scene.volume)), isovalue,
+    return {linear_field(std::move(scene.volume)), isovalue,
             helix(radius - depth, step_per_tick(voxels_per_mm))};
 }
 
 Touch noise_touch(SampleType type, double voxels_per_mm) {
     const double amplitude = type == SampleType::float32 ? 1 : 255;
-    Field field(scenes::noise(scenes::centred({48, 48, 48}), type, 7, amplitude));
+    Field field = linear_field(scenes::noise(scenes::centred({48, 48, 48}), type, 7, amplitude));
     // A Lissajous curve within +-20 voxels; its speed varies, so it is walked by arc length.
     const auto curve = [](double t) {
         return Vec3(20 * std::sin(t), 20 * std::sin(1.618 * t + 1), 20 * std::sin(2.414 * t + 2));
@@ -92,7 +92,7 @@ Touch ball_touch(int size, double voxels_per_mm) {
         path.push_back(p);
     }
     const Geometry geometry = scenes::centred(Index3::Constant(size));
-    return {Field(Volume(geometry, std::move(samples))), 0.5 * 255, std::move(path)};
+    return {linear_field(Volume(geometry, std::move(samples))), 0.5 * 255, std::move(path)};
 }
 
 Touch ramp_touch(int size) {
@@ -108,7 +108,7 @@ Touch ramp_touch(int size) {
             }
         }
     }
-    return {Field(Volume(geometry, std::move(samples))), 0, {}};
+    return {linear_field(Volume(geometry, std::move(samples))), 0, {}};
 }
 
 Touch smooth(Touch touch) {
@@ -124,7 +124,7 @@ Touch all_in_bricks(Touch touch) {
     const auto blank = edited(edited(samples, edit::Fill{all, samples->maximum()}).samples,
                               edit::Fill{all, samples->minimum()});
     const Edited back = edited(blank.samples, edit::Replace{Index3::Zero(), samples->volume()});
-    touch.field = Field(back.samples, touch.field.solid(), background);
+    touch.field = linear_field(back.samples, touch.field.solid(), background);
     return touch;
 }
 
@@ -171,7 +171,7 @@ Touch all_resident(Touch touch) {
 Touch between_frames(Touch touch) {
     const Volume& volume = touch.field.volume();
     const double background = touch.field.background();
-    Field between(
+    Field between = linear_field(
         std::make_shared<const Samples>(std::vector<Frame>{{0, volume, 0}, {1, volume, 1}}),
         touch.field.solid(), background);
     between.set_time(0.5);

@@ -43,7 +43,7 @@ Growth growth_here(Load&& load) {
     const double before = memory("VmRSS");
     try {
         const Volume volume = load();
-        const Field field(volume);
+        const Field field = linear_field(volume);
         double sum = 0;  // every page of the samples
         for (std::size_t i = 0; i < volume.bytes(); i += 512) {
             sum += static_cast<const std::uint8_t*>(volume.data())[i];

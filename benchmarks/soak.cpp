@@ -65,7 +65,7 @@ Scene make_scene(const Options& options) {
     if (!std::isnan(options.isovalue)) isovalue = options.isovalue;
     const auto with = [&](Volume volume) {
         if (!isovalue) throw std::invalid_argument("--isovalue is needed for a file");
-        Field field(volume);
+        Field field = linear_field(volume);
         return Scene{std::move(volume), *isovalue, std::move(field)};
     };
     if (options.volume.starts_with("synthetic:")) {

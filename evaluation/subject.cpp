@@ -16,7 +16,7 @@ constexpr std::string_view synthetic_prefix = "synthetic:";
 
 Subject synthetic(const std::string& specification) {
     scenes::Scene scene = scenes::make_volume(specification);
-    return {scene.name, Field(std::move(scene.volume)), scene.isovalue};
+    return {scene.name, linear_field(std::move(scene.volume)), scene.isovalue};
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ Subject subject_from(const std::string& text) {
     }
     Subject subject = is_synthetic ? synthetic(where)
                                    : Subject{std::filesystem::path(where).stem().string(),
-                                             Field(io::read_volume(where).volume)};
+                                             linear_field(io::read_volume(where).volume)};
     if (!level.empty()) subject.isovalue = io::level_from_text(level, subject.field.volume());
     return subject;
 }

@@ -180,7 +180,7 @@ std::string Data::save(const std::filesystem::path& path, const io::Progress& pr
     require_saving();
     require_unused(path);
     if (streamer_) return save_edits(path, progress);
-    Field now(start_);
+    Field now = linear_field(start_);
     update(now);
     const Volume volume = flattened(now.samples(), now.moment());
     if (is_zarr(path)) {

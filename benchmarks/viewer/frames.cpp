@@ -143,7 +143,7 @@ struct Meter {
 
 void measure(const std::string& name, std::optional<double> level) {
     const run::LoadedVolume loaded = run::load(run::source_named(name));
-    const Field field(loaded.volume);
+    const Field field = linear_field(loaded.volume);
     const double isovalue = level ? *level : loaded.isovalue.value_or(loaded.volume.minimum());
     Scene scene;
     scene.resize(1280, 800);

@@ -87,7 +87,7 @@ void open(Scene& scene, const Field& field) {
 
 void edits(int edge) {
     const std::string name = std::to_string(edge) + "^3";
-    Field field(ball(edge));
+    Field field = linear_field(ball(edge));
     Scene scene;
     open(scene, field);
     std::vector<double> shown, fine;
@@ -132,7 +132,7 @@ Field beating(int edge) {
         const double radius = 0.3 + 0.08 * std::sin(0.785398 * f);
         frames.push_back({0.1 * f, scenes::ball(Index3::Constant(edge), radius, 1.4), f});
     }
-    return Field(std::make_shared<const Samples>(std::move(frames), 0.8));
+    return linear_field(std::make_shared<const Samples>(std::move(frames), 0.8));
 }
 
 void plays(int edge) {

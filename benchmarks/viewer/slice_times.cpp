@@ -93,8 +93,8 @@ void measure(const Field& field, int axis, int edge) {
 
 int main(int argc, char** argv) {
     const QApplication application(argc, argv);
-    const Field field(argc > 1 ? run::load(run::source_named(argv[1])).volume
-                               : blobs({512, 512, 640}));
+    const Field field = linear_field(argc > 1 ? run::load(run::source_named(argv[1])).volume
+                                              : blobs({512, 512, 640}));
     for (const int edge : {300, 512, 1000}) {
         for (int axis = 0; axis < 3; ++axis) measure(field, axis, edge);
     }

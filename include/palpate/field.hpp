@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "palpate/samples.hpp"
 
@@ -19,7 +20,7 @@ enum class Solid : std::uint8_t { above, below };
 
 /// Interpolation between samples: `linear` in each tetrahedron of the lattice, which has the exact
 /// samples and facets (Corenthy et al. 2012), or `cubic`, whose gradient is continuous
-/// (docs/smooth.md).
+/// (docs/smooth.md). `cubic` is the default wherever there is a choice.
 enum class Interpolation : std::uint8_t { linear, cubic };
 /// "linear" or "cubic".
 std::string_view name_of(Interpolation interpolation);
@@ -42,11 +43,11 @@ class Field {
     /// Throws std::invalid_argument for a background that is not finite or beyond float32's range.
     explicit Field(Volume volume, Solid solid = Solid::above,
                    std::optional<double> background = std::nullopt,
-                   Interpolation interpolation = Interpolation::linear);
+                   Interpolation interpolation = Interpolation::cubic);
     /// The same for changing data; a sequence begins at its first moment. Not null.
     explicit Field(std::shared_ptr<const Samples> samples, Solid solid = Solid::above,
                    std::optional<double> background = std::nullopt,
-                   Interpolation interpolation = Interpolation::linear);
+                   Interpolation interpolation = Interpolation::cubic);
 
     /// Changes to another version of the samples, on the same grid, not null. Background, solid
     /// side and time stay. Neither allocates, locks nor throws. Frees the previous version only if
@@ -185,7 +186,7 @@ class Field {
     Index3 plain_;  // cells along each axis that lie at data_ as they are felt; none if they change
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
-    Interpolation interpolation_ = Interpolation::linear;
+    Interpolation interpolation_ = Interpolation::cubic;
 
     /// Labels over the samples.
     struct Cover {
@@ -234,6 +235,14 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit, Gathered& kept)
     kept.done = true;
     return visit(static_cast<const double*>(kept.samples.data()) + 13, std::ptrdiff_t{3},
                  std::ptrdiff_t{9});
+}
+
+/// A field of a volume or of shared samples as in the paper, Interpolation::linear. The other
+/// arguments are those of Field.
+template <class Data>
+Field linear_field(Data&& data, Solid solid = Solid::above,
+                   std::optional<double> background = std::nullopt) {
+    return Field(std::forward<Data>(data), solid, background, Interpolation::linear);
 }
 
 /// Density at a physical point [mm], with the field's interpolation; the background outside the

@@ -21,7 +21,7 @@ struct Drift {
 /// The paper's Fig. 10: round the cylinder again and again, 1 mm below its surface.
 Drift round_the_cylinder(ProxyMethod method, int turns) {
     const scenes::Scene scene = scenes::make_volume("cylinder");
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     Proxy proxy;
     proxy.isovalue = scene.volume.minimum() + 0.53 * scene.volume.range();
     const Vec3 centre = physical_centre(field.geometry());
@@ -58,7 +58,7 @@ TEST(Gradient, misses_a_thin_wall_that_exact_holds) {
     geometry.size = {21, 9, 9};
     std::vector<std::uint8_t> samples(21 * 9 * 9, 0);
     for (int i = 0; i < 81; ++i) samples[i * 21 + 10] = 255;  // one sample thick, across x
-    const Field field(Volume(geometry, samples));
+    const Field field = linear_field(Volume(geometry, samples));
     const auto end_of_crossing = [&](ProxyMethod method) {
         Proxy proxy;
         proxy.isovalue = 200;
@@ -73,7 +73,7 @@ TEST(Gradient, misses_a_thin_wall_that_exact_holds) {
 
 TEST(Gradient, is_free_where_the_hand_is_free_and_refuses_what_is_not_a_position) {
     const scenes::Scene scene = scenes::make_volume("sphere");
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     for (const ProxyMethod method :
          {&baselines::update_gradient, &baselines::update_gradient_improved}) {
         Proxy proxy;

@@ -11,8 +11,8 @@ namespace {
 
 /// Falls along z to 0 at 12: solid below.
 Field plane_field() {
-    return support::smooth(Field(support::volume_of<float>(
-        support::grid(support::cube(24)), [](const Index3& i) { return 12.0 - i[2]; })));
+    return Field(support::volume_of<float>(support::grid(support::cube(24)),
+                                           [](const Index3& i) { return 12.0 - i[2]; }));
 }
 
 TEST(PenaltyTool, is_the_hand_where_nothing_touches) {
@@ -42,10 +42,9 @@ TEST(PenaltyTool, rests_where_hand_and_points_are_in_equilibrium) {
 }
 
 TEST(PenaltyTool, goes_through_a_thin_wall_that_it_is_pressed_into) {
-    const Field field = support::smooth(
-        Field(support::volume_of<float>(support::grid(support::cube(24)), [](const Index3& i) {
-            return 1.5 - std::abs(i[2] - 12);
-        })));
+    const Field field =
+        Field(support::volume_of<float>(support::grid(support::cube(24)),
+                                        [](const Index3& i) { return 1.5 - std::abs(i[2] - 12); }));
     PenaltyTool state{std::make_shared<const Tool>(rod_tool(4, 0.5)), 0.75};
     for (int i = 0; i <= 100; ++i) update_penalty(state, field, {Vec3(12, 12, 16 - 0.1 * i)});
     EXPECT_LT(state.pose.position[2], 11);

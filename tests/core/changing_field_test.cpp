@@ -100,7 +100,7 @@ TEST(ChangingField, between_two_frames_each_sample_of_a_cell_lies_between_theirs
          {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
         const auto samples = noise_sequence(type, {0, 1, 3}, 3.5);
         constexpr double background = 3.5;
-        Field field(samples, Solid::above, background);
+        Field field = linear_field(samples, Solid::above, background);
         std::vector<Field> at_frames;
         for (const Frame& frame : samples->frames()) {
             at_frames.emplace_back(frame.volume, Solid::above, background);
@@ -140,7 +140,7 @@ TEST(ChangingField, between_two_frames_each_sample_of_a_cell_lies_between_theirs
 TEST(ChangingField, takes_another_version_and_keeps_background_side_and_time) {
     const auto first = noise_sequence(SampleType::int16, {0, 1, 2});
     const auto second = noise_sequence(SampleType::int16, {0.5, 1.5});
-    Field field(first, Solid::below);
+    Field field = linear_field(first, Solid::below);
     const double background = field.background();
     field.set_time(1.25);
     const Field copy = field;
@@ -157,7 +157,7 @@ TEST(ChangingField, takes_another_version_and_keeps_background_side_and_time) {
 TEST(ChangingField, range_and_tolerance_cover_edits_and_frames) {
     const auto plain =
         samples_of(volume_of<float>(grid(cube(5)), [](const Index3& i) { return i[0]; }));
-    Field field(plain, Solid::above, 0);
+    Field field = linear_field(plain, Solid::above, 0);
     EXPECT_EQ(field.range(), 4);
     const double before = field.tolerance();
     field.use(edited(plain, edit::Fill{{{1, 1, 1}, {1, 1, 1}}, 1000}).samples);

@@ -32,7 +32,7 @@ struct ChangingSession {
     DeviceReading reading = ready_at({4.2, 3.9, 40});
 
     explicit ChangingSession(std::shared_ptr<const Samples> samples)
-        : session{make_renderer(Field(std::move(samples)), 30), {}} {}
+        : session{make_renderer(linear_field(std::move(samples)), 30), {}} {}
     SessionTick next(double dt = 1e-3) { return advance(session, time += dt, reading); }
     double moment() const { return session.renderer.field.time(); }
 };
@@ -160,8 +160,8 @@ struct ChangingHand {
         for (int i = 0; i < 20; ++i) {
             versions.push_back(edits);
             const Vec3 at(4, 4, random.uniform(25, 35));
-            const Brush brush = brush_for(i % 2 ? BrushKind::add : BrushKind::carve, Field(edits),
-                                          30, random.uniform(1, 3));
+            const Brush brush = brush_for(i % 2 ? BrushKind::add : BrushKind::carve,
+                                          linear_field(edits), 30, random.uniform(1, 3));
             edits = edited(edits, edit::Stroke{brush, at, at}).samples;
         }
         versions.push_back(swinging());

@@ -79,11 +79,11 @@ struct Block {
 
     Vec3 centre() const { return physical_centre(geometry); }
     Brush brush(double radius) const {
-        return brush_for(BrushKind::carve, Field(samples, Solid::above, 0), level, radius);
+        return brush_for(BrushKind::carve, linear_field(samples, Solid::above, 0), level, radius);
     }
     /// Where a ray from a point of the carved room leaves it [mm].
     double way_to_surface(const Samples& after, const Vec3& from, const Vec3& direction) const {
-        const Field field(std::make_shared<const Samples>(after), Solid::above, 0);
+        const Field field = linear_field(std::make_shared<const Samples>(after), Solid::above, 0);
         const RayHit hit = cast_ray(field, level, from, from + 100 * direction);
         EXPECT_TRUE(hit.hit);
         return (hit.point - from).norm();
@@ -146,12 +146,12 @@ TEST(Edit, adding_leaves_the_surface_at_the_radius) {
         const double s = solid == Solid::above ? 1 : -1;
         const auto air = samples_of(
             volume_of<std::int16_t>(grid(cube(24)), [&](const Index3&) { return -100 * s; }));
-        const Field field(air, solid);
+        const Field field = linear_field(air, solid);
         const Brush brush = brush_for(BrushKind::add, field, 0, 7);
         EXPECT_EQ(brush.value, 100 * s);
         const Vec3 centre(11.3, 12.1, 11.8);
-        const Field added(edited(air, edit::Stroke{brush, centre, centre}).samples, solid,
-                          -100 * s);
+        const Field added =
+            linear_field(edited(air, edit::Stroke{brush, centre, centre}).samples, solid, -100 * s);
         Random random(4);
         for (int i = 0; i < 300; ++i) {
             const Vec3 way = random.direction();
@@ -190,7 +190,7 @@ TEST(Edit, a_fast_stroke_leaves_no_gap) {
     for_each_sample(block.geometry, [&](const Index3& at) {
         ASSERT_NEAR(stroke->sample(at), dabs->sample(at), 1) << at.transpose();
     });
-    const Field field(stroke, Solid::above, 0);
+    const Field field = linear_field(stroke, Solid::above, 0);
     EXPECT_FALSE(cast_ray(field, block.level, from, to).hit);
 }
 
@@ -198,7 +198,7 @@ TEST(Edit, faint_touches_of_whole_numbers_do_not_stand_still) {
     const auto solid =
         samples_of(volume_of<std::uint8_t>(grid(cube(9)), [](const Index3&) { return 200; }));
     for (const BrushKind kind : {BrushKind::carve, BrushKind::paint}) {
-        Brush brush = brush_for(kind, Field(solid, Solid::above, 0), 100, 3);
+        Brush brush = brush_for(kind, linear_field(solid, Solid::above, 0), 100, 3);
         brush.value = 0;
         brush.strength = 0.001;  // of 200: a fifth of a unit
         const Index3 middle(4, 4, 4);

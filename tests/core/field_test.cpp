@@ -23,7 +23,7 @@ TYPED_TEST_SUITE(FieldOf, SampleTypes);
 
 TYPED_TEST(FieldOf, gives_the_eight_samples_of_every_cell_and_background_outside) {
     const Volume volume = noise_volume<TypeParam>(grid({5, 4, 3}), 81, 10, 200);
-    const Field field(volume, Solid::above, 7.0);
+    const Field field = linear_field(volume, Solid::above, 7.0);
     for (int z = -4; z < 7; ++z) {
         for (int y = -4; y < 8; ++y) {
             for (int x = -4; x < 9; ++x) {
@@ -50,7 +50,7 @@ TYPED_TEST(FieldOf, gives_the_eight_samples_of_every_cell_and_background_outside
 
 TYPED_TEST(FieldOf, gives_every_sample_with_its_neighbours_and_background_outside) {
     const Volume volume = noise_volume<TypeParam>(grid({5, 4, 3}), 81, 10, 200);
-    const Field field(volume, Solid::above, 7.0);
+    const Field field = linear_field(volume, Solid::above, 7.0);
     for (int n = 0; n < 13 * 12 * 11; ++n) {
         const Index3 at(n % 13 - 4, n / 13 % 12 - 4, n / (13 * 12) - 4);
         const Neighbours samples = field.around(at);
@@ -69,23 +69,23 @@ TYPED_TEST(FieldOf, gives_every_sample_with_its_neighbours_and_background_outsid
 
 TEST(Field, background_is_the_minimum_or_for_solid_below_the_maximum_or_what_is_given) {
     const Volume volume = noise_volume<std::int16_t>(grid({5, 4, 3}), 82, -1000, 1000);
-    EXPECT_EQ(Field(volume).background(), volume.minimum());
-    EXPECT_EQ(Field(volume, Solid::below).background(), volume.maximum());
-    EXPECT_EQ(Field(volume, Solid::above, 12.5).background(), 12.5);
-    EXPECT_EQ(Field(volume, Solid::below, -3000.0).background(), -3000);
-    EXPECT_EQ(Field(volume).sign(), 1);
-    EXPECT_EQ(Field(volume, Solid::below).sign(), -1);
-    EXPECT_EQ(Field(volume, Solid::below).solid(), Solid::below);
+    EXPECT_EQ(linear_field(volume).background(), volume.minimum());
+    EXPECT_EQ(linear_field(volume, Solid::below).background(), volume.maximum());
+    EXPECT_EQ(linear_field(volume, Solid::above, 12.5).background(), 12.5);
+    EXPECT_EQ(linear_field(volume, Solid::below, -3000.0).background(), -3000);
+    EXPECT_EQ(linear_field(volume).sign(), 1);
+    EXPECT_EQ(linear_field(volume, Solid::below).sign(), -1);
+    EXPECT_EQ(linear_field(volume, Solid::below).solid(), Solid::below);
 }
 
 TEST(Field, range_covers_samples_and_background_and_is_never_zero) {
     const Volume volume = noise_volume<std::int16_t>(grid({5, 4, 3}), 83, -1000, 1000);
-    EXPECT_EQ(Field(volume).range(), volume.range());
-    EXPECT_EQ(Field(volume, Solid::above, -5000.0).range(), volume.maximum() + 5000);
-    EXPECT_EQ(Field(volume, Solid::above, 5000.0).range(), 5000 - volume.minimum());
+    EXPECT_EQ(linear_field(volume).range(), volume.range());
+    EXPECT_EQ(linear_field(volume, Solid::above, -5000.0).range(), volume.maximum() + 5000);
+    EXPECT_EQ(linear_field(volume, Solid::above, 5000.0).range(), 5000 - volume.minimum());
     const Volume constant(grid({2, 2, 2}), std::vector<float>(8, 3.5F));
-    EXPECT_EQ(Field(constant).range(), 1);
-    EXPECT_GT(Field(constant).tolerance(), 0);
+    EXPECT_EQ(linear_field(constant).range(), 1);
+    EXPECT_GT(linear_field(constant).tolerance(), 0);
 }
 
 TEST(Field, tolerance_is_a_small_part_of_the_range_and_covers_rounding_far_from_zero) {
@@ -100,7 +100,7 @@ TEST(Field, refuses_a_background_that_is_not_finite) {
     for (const double bad :
          {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
           std::numeric_limits<double>::quiet_NaN()}) {
-        EXPECT_THROW(Field(volume, Solid::above, bad), std::invalid_argument);
+        EXPECT_THROW(linear_field(volume, Solid::above, bad), std::invalid_argument);
     }
 }
 
@@ -109,7 +109,7 @@ TEST(Field, closes_a_body_that_the_border_cuts) {
         std::vector<std::uint8_t> samples(64, solid == Solid::above ? 255 : 0);
         samples[21] = 128;  // so that the range is not empty
         samples[42] = solid == Solid::above ? 0 : 255;
-        const Field field(Volume(grid({4, 4, 4}), std::move(samples)), solid);
+        const Field field = linear_field(Volume(grid({4, 4, 4}), std::move(samples)), solid);
         const double inside = value_at(field, Vec3(0, 0, 3));
         const double outside = value_at(field, Vec3(0, 0, 4));
         EXPECT_GT(field.sign() * (inside - 128), 0);
@@ -121,8 +121,9 @@ TEST(Field, of_a_volume_one_voxel_thin_is_a_sheet) {
     for (int axis = 0; axis < 3; ++axis) {
         Index3 size = Index3::Constant(6);
         size[axis] = 1;
-        const Field field(volume_of<std::uint8_t>(grid(size), [](const Index3&) { return 200; }),
-                          Solid::above, 0.0);
+        const Field field =
+            linear_field(volume_of<std::uint8_t>(grid(size), [](const Index3&) { return 200; }),
+                         Solid::above, 0.0);
         Random random(85);
         for (int i = 0; i < 500; ++i) {
             Vec3 p = random.point(0.5, 4.5);
@@ -137,7 +138,8 @@ TEST(Field, of_a_volume_one_voxel_thin_is_a_sheet) {
             ASSERT_NEAR(value_at(field, p), 200, 1e-12);
         }
     }
-    const Field point(Volume(grid({1, 1, 1}), std::vector<float>{5}), Solid::above, 1.0);
+    const Field point =
+        linear_field(Volume(grid({1, 1, 1}), std::vector<float>{5}), Solid::above, 1.0);
     EXPECT_EQ(value_at(point, Vec3::Zero()), 5);
     EXPECT_EQ(value_at(point, Vec3(1, 0, 0)), 1);
     EXPECT_GT(value_at(point, Vec3(0.3, 0.2, 0.1)), 1);

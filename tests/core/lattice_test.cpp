@@ -70,10 +70,11 @@ LatticePoint random_point(Random& random) {
 }
 
 std::vector<TestField> every_sample_type() {
-    return {noise_field(),
-            anisotropic_field(),
-            oblique_field(),
-            {"float", Field(noise_volume<float>(grid({7, 9, 8}), 6, -3, 9), Solid::below), 2}};
+    return {
+        noise_field(),
+        anisotropic_field(),
+        oblique_field(),
+        {"float", linear_field(noise_volume<float>(grid({7, 9, 8}), 6, -3, 9), Solid::below), 2}};
 }
 
 }  // namespace
@@ -340,10 +341,10 @@ TEST(Lattice, snap_is_exact_and_idempotent_and_pulls_back_inside) {
 
 TEST(Lattice, translation_by_whole_voxels_is_bit_exact) {
     Random random(121);
-    const Field field(noise_volume<std::uint8_t>(grid({8, 8, 8}), 6, 0, 256));
+    const Field field = linear_field(noise_volume<std::uint8_t>(grid({8, 8, 8}), 6, 0, 256));
     const Index3 shift(16, 32, 8);
     // The same samples, moved by whole voxels inside a larger grid.
-    const Field moved(
+    const Field moved = linear_field(
         volume_of<std::uint8_t>(grid({32, 48, 24}),
                                 [&](const Index3& i) { return paper_sample(field, i - shift); }),
         Solid::above, field.background());

@@ -95,12 +95,13 @@ TEST(ProxyInLayer, keeps_its_guarantees_on_an_oblique_smooth_grid) {
 }
 TEST(ProxyInLayer, keeps_its_guarantees_on_anisotropic_smooth_noise_below) {
     const TestField test = anisotropic_field();
-    keeps_on_smooth({test.name, Field(test.field.volume(), Solid::below), 1000}, 0.05, 38);
+    keeps_on_smooth({test.name, linear_field(test.field.volume(), Solid::below), 1000}, 0.05, 38);
 }
 
 TEST(ProxyInLayer, stays_between_two_planes) {
     for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
-        Field field(volume_of<float>(grid({9, 9, 40}), [](const Index3& i) { return i[2]; }));
+        Field field =
+            linear_field(volume_of<float>(grid({9, 9, 40}), [](const Index3& i) { return i[2]; }));
         field.set_interpolation(interpolation);
         Proxy proxy;
         proxy.isovalue = 20;
@@ -125,7 +126,8 @@ TEST(ProxyInLayer, stays_between_two_planes) {
 }
 
 TEST(ProxyInLayer, has_the_friction_of_the_surface_that_it_touches) {
-    Field field(volume_of<float>(grid({9, 9, 40}), [](const Index3& i) { return i[2]; }));
+    Field field =
+        linear_field(volume_of<float>(grid({9, 9, 40}), [](const Index3& i) { return i[2]; }));
     for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
         field.set_interpolation(interpolation);
         ProxySettings settings;
@@ -145,7 +147,8 @@ TEST(ProxyInLayer, has_the_friction_of_the_surface_that_it_touches) {
 
 TEST(ProxyInLayer, comes_back_into_its_layer_when_its_levels_change) {
     for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
-        Field field(volume_of<float>(grid({9, 9, 40}), [](const Index3& i) { return i[2]; }));
+        Field field =
+            linear_field(volume_of<float>(grid({9, 9, 40}), [](const Index3& i) { return i[2]; }));
         field.set_interpolation(interpolation);
         Proxy proxy;
         proxy.isovalue = 20;
@@ -161,7 +164,7 @@ TEST(ProxyInLayer, comes_back_into_its_layer_when_its_levels_change) {
 
 TEST(StraightProxy, stops_at_a_surface_without_sliding) {
     for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
-        Field field(
+        Field field = linear_field(
             volume_of<float>(grid({20, 9, 40}), [](const Index3& i) { return i[2] + i[0]; }));
         field.set_interpolation(interpolation);
         Proxy proxy;

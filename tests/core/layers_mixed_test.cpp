@@ -228,7 +228,8 @@ TEST(MixedLayers, follow_edits_and_leave_labels_where_they_are) {
     for (double depth = 20; depth < 36; depth += 0.1) hand.to(at_depth(depth));
     ASSERT_EQ(hand.to(at_depth(36)).layers.inside, 1);
     // Denser by 25 everywhere: bone begins at 45, behind the label's first sample.
-    Field denser(volume_of<float>(grid({9, 9, 101}), [](const Index3& i) { return i[2] + 30.0; }));
+    Field denser = linear_field(
+        volume_of<float>(grid({9, 9, 101}), [](const Index3& i) { return i[2] + 30.0; }));
     hand.renderer.field.use(denser.shared_samples());
     Tick tick;
     for (double depth = 36; depth < 41; depth += 0.1) tick = hand.to(at_depth(depth));
@@ -268,9 +269,10 @@ TEST(FieldCover, is_that_of_a_volume_with_these_samples) {
         for (const bool all : {false, true}) {
             // Label 2, and where `all` samples without one.
             const std::uint32_t solid = 4U | (all ? 1U : 0U);
-            Field covered(data, Solid::above, -5.0);
+            Field covered = linear_field(data, Solid::above, -5.0);
             LabelCover::put(covered, labels, solid, 40, 160);
-            const Field made(volume_of<float>(geometry,
+            const Field made =
+                linear_field(volume_of<float>(geometry,
                                               [&](const Index3& i) {
                                                   const int label = label_at(i);
                                                   if (solid >> label & 1U) return 160.0;

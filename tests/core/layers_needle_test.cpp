@@ -53,8 +53,8 @@ Field bodies_apart(double gap) {
         const double z = 0.2 * i[2];
         return std::min(z - 20, std::abs(z - 40 - 0.5 * gap) - 0.5 * gap);
     };
-    return Field(volume_of<float>(grid({7, 7, 400}, Vec3::Constant(0.2)), density), Solid::above,
-                 -20);
+    return linear_field(volume_of<float>(grid({7, 7, 400}, Vec3::Constant(0.2)), density),
+                        Solid::above, -20);
 }
 
 struct NeedleHand {

@@ -248,7 +248,7 @@ TEST(Layers, give_way_at_their_force_in_grooves_and_corners_too) {
     for (const bool is_corner : {false, true}) {
         const Volume volume = is_corner ? volume_of<float>(grid({9, 9, 101}), corner)
                                         : volume_of<float>(grid({9, 9, 101}), groove);
-        LayeredHand hand{renderer_of(Field(volume), layers)};
+        LayeredHand hand{renderer_of(linear_field(volume), layers)};
         const double gives_way = 30 + 1 / 0.5;
         for (double z = 20; z < gives_way - 0.01; z += 0.05) {
             ASSERT_EQ(hand.to({4, 4, z}).layers.punctured, 0) << z;

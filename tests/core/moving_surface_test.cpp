@@ -316,7 +316,8 @@ TEST(MovingSurface, random_edits_at_100_hz_round_the_probe_for_a_million_ticks) 
                 edited(samples, edit::Stroke{brush, at, random.chance(0.2) ? contact.hand : at});
             ++edits;
             changed += !after.changed.empty();
-            pushed += value_at(Field(after.samples), contact.session.renderer.proxy.scp) > level;
+            pushed +=
+                value_at(linear_field(after.samples), contact.session.renderer.proxy.scp) > level;
             samples = after.samples;
             apply(contact.session, command::Samples{samples, std::uint64_t(edits)});
         }

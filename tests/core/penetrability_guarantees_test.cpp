@@ -96,13 +96,13 @@ void expect_not_valid(const char* part, auto&& make) {
 
 TEST(Penetrability, keeps_g1_g2_and_the_threshold_in_a_head) {
     const scenes::Scene head = scenes::make_volume("shepp-logan:48x48x48");
-    run(Field(head.volume), penetrability_threshold(1, -300), 21);
+    run(linear_field(head.volume), penetrability_threshold(1, -300), 21);
 }
 
 TEST(Penetrability, keeps_g1_g2_and_the_threshold_in_a_head_felt_by_ranges) {
     const scenes::Scene head = scenes::make_volume("shepp-logan:48x48x48");
     const std::array<DensityRange, 3> ranges{{{-200, 30}, {45, 70}, {500, 800}}};
-    const Met met = run(Field(head.volume), penetrability_ranges(0.7, ranges), 22, 1.7);
+    const Met met = run(linear_field(head.volume), penetrability_ranges(0.7, ranges), 22, 1.7);
     EXPECT_GT(met.gaps, ticks / 1000);
 }
 
@@ -122,9 +122,9 @@ TEST(Penetrability, dark_bodies_on_bright_feel_as_bright_ones_on_dark) {
     Random first(31);
     Random second(31);
     const Geometry geometry = grid(cube(20));
-    const Field bright(
+    const Field bright = linear_field(
         volume_of<std::int16_t>(geometry, [&](const Index3&) { return sample(first); }));
-    const Field dark(
+    const Field dark = linear_field(
         volume_of<std::int16_t>(geometry, [&](const Index3&) { return -sample(second); }),
         Solid::below);
     const std::array<DensityRange, 2> ranges{{{1000, 1500}, {1800, 2500}}};

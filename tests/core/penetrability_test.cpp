@@ -295,7 +295,8 @@ TEST(Penetrability, follows_the_hand_through_round_bodies_and_out_again) {
         const scenes::Scene scene = scenes::make_volume(name);
         const double minimum = scene.volume.minimum() + 0.2 * scene.volume.range();
         const double pt = 1.5;
-        Press press(Field(scene.volume), scene.isovalue, penetrability_threshold(pt, minimum));
+        Press press(linear_field(scene.volume), scene.isovalue,
+                    penetrability_threshold(pt, minimum));
         const Geometry& geometry = scene.volume.geometry();
         const double outside = geometry.spacing[0] * geometry.size[0] * 0.6;
         const Vec3 along = Vec3(1, 0.3, 0.1).normalized();

@@ -76,7 +76,8 @@ TEST(CubicProxy, keeps_its_guarantees_on_walls_of_one_sample) {
 }
 TEST(CubicProxy, keeps_its_guarantees_on_two_slices) {
     const Geometry geometry = grid({40, 30, 2}, {1, 1, 3});
-    const TestField test{"two slices", Field(noise_volume<std::uint8_t>(geometry, 9, 0, 256)), 80};
+    const TestField test{"two slices",
+                         linear_field(noise_volume<std::uint8_t>(geometry, 9, 0, 256)), 80};
     expect_much_contact(run_smooth(test, 22), 0.1);
 }
 TEST(CubicProxy, keeps_its_guarantees_on_a_plateau_with_ripples_of_a_millionth) {
@@ -85,7 +86,7 @@ TEST(CubicProxy, keeps_its_guarantees_on_a_plateau_with_ripples_of_a_millionth) 
         if (i == Index3(0, 0, 0)) return 2.0;
         return i[0] < 14 ? 1 + random.uniform(-1e-6, 1e-6) : 0.0;
     });
-    const CubicTally t = run_smooth({"ripples", Field(volume), 1}, 23);
+    const CubicTally t = run_smooth({"ripples", linear_field(volume), 1}, 23);
     EXPECT_GT(double(t.constrained) / t.updates, 0.1);
 }
 TEST(CubicProxy, keeps_its_guarantees_on_plateaus_at_the_isovalue) {

@@ -106,16 +106,16 @@ Volume steps(double base, double step, int levels) {
 }
 
 Pair noise_at(const std::string& name, double base, double step, double isovalue) {
-    return {{name, Field(steps(base, step, 3)), base + isovalue},
-            Field(steps(0, step, 3)),
+    return {{name, linear_field(steps(base, step, 3)), base + isovalue},
+            linear_field(steps(0, step, 3)),
             (base + isovalue) - base};
 }
 
 /// A constant block in a background that is `depth` away.
 Pair block_at(const std::string& name, double base, Solid solid, double depth, double isovalue) {
     const double background = base + depth;
-    return {{name, Field(steps(base, 0, 1), solid, background), base + isovalue},
-            Field(steps(0, 0, 1), solid, background - base),
+    return {{name, linear_field(steps(base, 0, 1), solid, background), base + isovalue},
+            linear_field(steps(0, 0, 1), solid, background - base),
             (base + isovalue) - base};
 }
 
@@ -166,7 +166,7 @@ TEST(ProxyDomain, guarantees_hold_for_data_however_far_from_zero) {
 
 TEST(ProxyDomain, constant_data_however_large_are_solid_or_free_throughout) {
     const double huge = 1e37F;
-    const Field field(steps(huge, 0, 1));
+    const Field field = linear_field(steps(huge, 0, 1));
     EXPECT_EQ(value_at(field, Vec3::Constant(3.3)), huge);
     for (const double isovalue : {huge, std::nextafter(huge, infinity), 2 * huge}) {
         Hand hand(field.geometry(), 3);

@@ -19,12 +19,13 @@ constexpr Promises only_on_the_free_side{.locally_optimal = false, .never_farthe
 /// Density z over the whole grid, so that the surface at the isovalue is the plane z = isovalue,
 /// solid below it.
 Field plane_field(const Geometry& geometry = grid(cube(32))) {
-    return Field(volume_of<float>(geometry, [](const Index3& i) { return i[2]; }), Solid::below);
+    return linear_field(volume_of<float>(geometry, [](const Index3& i) { return i[2]; }),
+                        Solid::below);
 }
 
 /// A roof: density 40 - slope |x - 16| - z / 2, ridge along y at x = 16, solid under it.
 Field roof_field(double slope) {
-    return Field(volume_of<float>(grid(cube(32)), [&](const Index3& i) {
+    return linear_field(volume_of<float>(grid(cube(32)), [&](const Index3& i) {
         return 40 - slope * std::abs(i[0] - 16) - 0.5 * i[2];
     }));
 }

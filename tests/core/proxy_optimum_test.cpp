@@ -88,7 +88,7 @@ TEST(Proxy, ends_at_the_nearest_point_of_a_convex_body) {
     Vec3 normal(1, 2, 0.5);
     normal /= std::sqrt(5.25);
     const Vec3 centre = physical_centre(geometry);
-    const Field field(volume_of<float>(geometry, [&](const Index3& i) {
+    const Field field = linear_field(volume_of<float>(geometry, [&](const Index3& i) {
         return -normal.dot(physical_from_index(geometry, i.cast<double>()) - centre);
     }));
     Random random(134);

@@ -31,8 +31,8 @@ double greatest_excess(const TestField& test, const Vec3& a, const Vec3& b) {
 
 TEST(Ray, meets_a_plane_exactly) {
     const Geometry geometry = grid(cube(20), {0.5, 0.7, 2}, {5, 6, -7}, oblique_direction());
-    const Field field(volume_of<float>(geometry, [](const Index3& i) { return i[2]; }),
-                      Solid::below);
+    const Field field = linear_field(
+        volume_of<float>(geometry, [](const Index3& i) { return i[2]; }), Solid::below);
     Random random(61);
     for (int i = 0; i < 1000; ++i) {
         const Vec3 above = random.point(2, 17).cwiseMax(Vec3(0, 0, 9));
@@ -135,7 +135,7 @@ TEST(Ray, from_any_distance_meets_what_lies_on_its_line) {
         }
     }
     // Where the background is solid, a ray is in it from its start.
-    const Field solid(test.field.volume(), Solid::above, 1e9);
+    const Field solid = linear_field(test.field.volume(), Solid::above, 1e9);
     for (const Vec3& from : {Vec3(1e12, 0, 0), Vec3(1e12, 1e12, 0)}) {
         const RayHit ray = cast_ray(solid, test.isovalue, from, Vec3(0, 1e12, 0));
         EXPECT_TRUE(ray.hit);
@@ -147,8 +147,9 @@ TEST(Ray, from_any_distance_meets_what_lies_on_its_line) {
 
 TEST(Ray, out_of_a_body_that_fills_the_grid_leaves_by_its_border) {
     // Solid below: the body is where the density is under the isovalue, the background above it.
-    const Field field(volume_of<std::uint8_t>(grid(cube(8)), [](const Index3&) { return 10; }),
-                      Solid::below, 90.0);
+    const Field field =
+        linear_field(volume_of<std::uint8_t>(grid(cube(8)), [](const Index3&) { return 10; }),
+                     Solid::below, 90.0);
     const RayHit ray = cast_ray(field, 50, Vec3(3.5, 3.5, 12), Vec3(3.5, 3.5, 3));
     ASSERT_TRUE(ray.hit);
     EXPECT_LE((ray.point - Vec3(3.5, 3.5, 7.5)).norm(), 1e-12);

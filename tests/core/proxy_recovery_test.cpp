@@ -20,7 +20,7 @@ double excess_at(const Field& field, const Vec3& p, double isovalue) {
 
 /// A block of 255 at lo..hi along each axis of a grid of `edge`, 0 around.
 Field block_field(int edge, int lo, int hi) {
-    return Field(volume_of<std::uint8_t>(grid(cube(edge)), [&](const Index3& i) {
+    return linear_field(volume_of<std::uint8_t>(grid(cube(edge)), [&](const Index3& i) {
         return (i.array() >= lo).all() && (i.array() <= hi).all() ? 255 : 0;
     }));
 }
@@ -214,7 +214,7 @@ TEST(Recovery, looks_no_farther_than_the_nearest_way_out_and_moves_on_with_the_r
 
 TEST(Recovery, leaves_a_local_minimum) {
     // A pit in a hill that is still solid: descent ends in it, the path out leads over its rim.
-    const Field field(volume_of<float>(grid(cube(24)), [](const Index3& i) {
+    const Field field = linear_field(volume_of<float>(grid(cube(24)), [](const Index3& i) {
         const double r = (i.cast<double>() - Vec3::Constant(11.5)).norm();
         return r < 4 ? 50 + 10 * r : 130 - 10 * r;
     }));
@@ -229,8 +229,9 @@ TEST(Recovery, leaves_a_local_minimum) {
 }
 
 TEST(Recovery, in_space_that_is_all_solid_says_so_and_ends_every_update) {
-    const Field field(volume_of<std::uint8_t>(grid(cube(8)), [](const Index3&) { return 200; }),
-                      Solid::above, 180.0);
+    const Field field =
+        linear_field(volume_of<std::uint8_t>(grid(cube(8)), [](const Index3&) { return 200; }),
+                     Solid::above, 180.0);
     Hand hand(field.geometry(), 57);
     Proxy proxy;
     proxy.isovalue = 100;
@@ -249,9 +250,10 @@ TEST(Recovery, in_space_that_is_all_solid_says_so_and_ends_every_update) {
 
 TEST(Recovery, takes_the_free_hip_where_the_way_out_is_longer) {
     // Solid on x < 12 and all around, saturated: out of it leads a search along the axes.
-    const Field field(volume_of<std::uint8_t>(grid(cube(24)),
-                                              [](const Index3& i) { return i[0] < 12 ? 255 : 0; }),
-                      Solid::above, 255.0);
+    const Field field =
+        linear_field(volume_of<std::uint8_t>(grid(cube(24)),
+                                             [](const Index3& i) { return i[0] < 12 ? 255 : 0; }),
+                     Solid::above, 255.0);
     Proxy proxy;
     ASSERT_TRUE(place(proxy, field, Vec3(15, 11, 11), 127.5));
     proxy.scp = locate(Vec3(5, 11, 11));

@@ -194,9 +194,9 @@ TEST(Renderer, the_magnet_draws_a_hand_onto_a_sphere_and_joins_the_contact_smoot
     RendererSettings settings = at_once();
     settings.force.magnet = {3, 0.6};
     settings.transform = {oblique_direction(), Vec3(5, -6, 7), 2};
-    Renderer renderer = make_renderer(Field(scene.volume), scene.isovalue, settings);
+    Renderer renderer = make_renderer(linear_field(scene.volume), scene.isovalue, settings);
     const Vec3 along = Vec3(1, 0.4, -0.3).normalized();
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     const RayHit surface = cast_ray(field, scene.isovalue, 31 * along, Vec3::Zero());
     ASSERT_TRUE(surface.hit);
     int i = 0;

@@ -290,7 +290,7 @@ TEST(Renderer, refuses_settings_that_cannot_be_rendered) {
 
 TEST(Renderer, warns_of_isovalues_with_nothing_to_feel_or_everything_solid) {
     const auto about = [](Solid solid, double isovalue, std::optional<double> background = {}) {
-        const Field field(ramp_field(solid).volume(), solid, background);
+        const Field field = linear_field(ramp_field(solid).volume(), solid, background);
         const std::string text = isovalue_warning(field, isovalue);
         return text.empty()                                   ? "fine"
                : text.find("nothing") != std::string::npos    ? "nothing"
@@ -315,5 +315,5 @@ TEST(Renderer, warns_of_isovalues_with_nothing_to_feel_or_everything_solid) {
     const Volume later =
         volume_of<float>(first.geometry(), [](const Index3& i) { return 2 * i[2]; });
     const std::vector<Frame> frames{{0, first}, {1, later}};
-    EXPECT_EQ(isovalue_warning(Field(std::make_shared<const Samples>(frames)), 150), "");
+    EXPECT_EQ(isovalue_warning(linear_field(std::make_shared<const Samples>(frames)), 150), "");
 }

@@ -34,8 +34,8 @@ TEST(Resident, a_field_of_all_bricks_is_the_field_of_the_same_samples_in_one_pie
             const Volume volume = noise_of(type, geometry, 7);
             PartOf part(volume);
             part.add_all();
-            const Field bricks(part.samples(), Solid::above, -7.25);
-            const Field plain(volume, Solid::above, -7.25);
+            const Field bricks = linear_field(part.samples(), Solid::above, -7.25);
+            const Field plain = linear_field(volume, Solid::above, -7.25);
             for (int i = 0; i < scaled(3000) + 10; ++i) {
                 const Index3 at(random.below(geometry.size[0] + 4) - 2,
                                 random.below(geometry.size[1] + 4) - 2,
@@ -54,7 +54,7 @@ TEST(Resident, data_far_from_zero_are_read_with_their_offset) {
     const Volume volume = noise_volume<float>(geometry, 5, 1e9, 1e9 + 100);
     PartOf part(volume);
     part.add_all();
-    const Field bricks(part.samples()), plain(volume);
+    const Field bricks = linear_field(part.samples()), plain(volume);
     ASSERT_NE(plain.offset(), 0);
     for_each_sample(geometry, [&](const Index3& at) {
         ASSERT_EQ(bricks.cell(at), plain.cell(at));
@@ -68,10 +68,10 @@ TEST(Resident, samples_that_are_missing_are_solid_on_either_side) {
     PartOf part(volume);
     part.add({0, 0, 0});
     for (const Solid solid : {Solid::above, Solid::below}) {
-        const Field field(part.samples(), solid);
+        const Field field = linear_field(part.samples(), solid);
         const double most = solid == Solid::above ? volume.maximum() : volume.minimum();
         for (const double sample : field.cell({64, 5, 5})) EXPECT_EQ(sample, most);
-        const Field plain(volume, solid);
+        const Field plain = linear_field(volume, solid);
         const Neighbours here = field.around({64, 5, 5}), whole = plain.around({64, 5, 5});
         for (std::size_t i = 0; i < 27; ++i) EXPECT_EQ(here[i], i % 3 == 0 ? whole[i] : most);
         EXPECT_EQ(field.cell({63, 5, 5}), plain.cell({63, 5, 5}));
@@ -105,7 +105,7 @@ TEST(Resident, where_bricks_of_different_levels_meet_each_sample_has_one_value) 
         const auto level = static_cast<std::uint8_t>(random.below(3));
         levels.add(brick, level_of[{brick[0], brick[1], brick[2]}] = level);
     });
-    const Field field(levels.samples());
+    const Field field = linear_field(levels.samples());
     std::vector<Field> plain;
     for (const Volume& volume : levels.volumes) plain.emplace_back(volume);
     const auto sample = [&](const Index3& at) {
@@ -247,9 +247,9 @@ TEST(Resident, edits_made_without_bricks_are_those_of_the_same_samples_in_one_pi
             }
             EXPECT_EQ(large->resident()->size(), 0U);
             part.add_all();
-            const Field field(std::make_shared<const Samples>(large->with(part.bricks())),
-                              Solid::above, -7.25);
-            const Field same(plain, Solid::above, -7.25);
+            const Field field = linear_field(
+                std::make_shared<const Samples>(large->with(part.bricks())), Solid::above, -7.25);
+            const Field same = linear_field(plain, Solid::above, -7.25);
             for (int i = 0; i < scaled(3000) + 10; ++i) {
                 const Index3 at(random.below(geometry.size[0] + 4) - 2,
                                 random.below(geometry.size[1] + 4) - 2,
@@ -263,7 +263,8 @@ TEST(Resident, edits_made_without_bricks_are_those_of_the_same_samples_in_one_pi
                     });
                 };
                 ASSERT_EQ(visited(field), visited(same)) << at.transpose();
-                neighbours += field.around(at) != Field(volume, Solid::above, -7.25).around(at);
+                neighbours +=
+                    field.around(at) != linear_field(volume, Solid::above, -7.25).around(at);
             }
         }
     }
@@ -298,11 +299,11 @@ TEST(Resident, an_edited_brick_that_went_is_missing_and_comes_back_edited) {
     const edit::Fill fill{{{60, 60, 60}, {70, 70, 70}}, 99};
     const Samples after = *edited(part.samples(), fill, std::ref(reader)).samples;
     part.drop({0, 0, 0});
-    const Field without(std::make_shared<const Samples>(after.with(part.bricks())));
+    const Field without = linear_field(std::make_shared<const Samples>(after.with(part.bricks())));
     for (const double sample : without.cell({61, 61, 61})) EXPECT_EQ(sample, after.maximum());
     for (const double sample : without.cell({65, 65, 65})) EXPECT_EQ(sample, 99);
     part.add({0, 0, 0});
-    const Field again(std::make_shared<const Samples>(after.with(part.bricks())));
+    const Field again = linear_field(std::make_shared<const Samples>(after.with(part.bricks())));
     for (const double sample : again.cell({61, 61, 61})) EXPECT_EQ(sample, 99);
     EXPECT_THROW(after.with(ResidentBricks(cube(64))), std::invalid_argument);
 }
@@ -377,7 +378,8 @@ TEST(Resident, shown_edits_follow_all_versions_and_share_what_did_not_change) {
                 edits += expected != grids[g].sample(at);
             });
             // A cell is read from one brick, which has copies of the next one's samples.
-            const Field field(after, Solid::above, 0.0), flat(flattened(*after), Solid::above, 0.0);
+            const Field field = linear_field(after, Solid::above, 0.0),
+                        flat(flattened(*after), Solid::above, 0.0);
             for_each_sample(grids[g].geometry(), [&](const Index3& at) {
                 ASSERT_EQ(field.cell(at), flat.cell(at)) << g << ": " << at.transpose();
             });

@@ -40,8 +40,8 @@ TEST(Samples, a_field_of_edited_bricks_is_the_field_of_the_same_samples_in_one_p
     std::int64_t cells = 0, edited_cells = 0;
     over_random_edits(scaled(20) + 1, [&](const Samples&, const Edit&, const Edited& after) {
         constexpr double background = -7.25;
-        const Field bricks(after.samples, Solid::above, background);
-        const Field plain(flattened(*after.samples), Solid::above, background);
+        const Field bricks = linear_field(after.samples, Solid::above, background);
+        const Field plain = linear_field(flattened(*after.samples), Solid::above, background);
         Geometry padded = bricks.geometry();
         padded.size += Index3::Constant(4);
         for_each_sample(padded, [&](const Index3& at) {

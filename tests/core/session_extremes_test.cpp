@@ -43,7 +43,7 @@ constexpr double extremes[] = {infinity,
 /// of float32.
 Field ramp_of(double unit, Solid solid) {
     const double sign = solid == Solid::above ? 1 : -1;
-    return Field(
+    return linear_field(
         volume_of<float>(grid({9, 9, 101}), [&](const Index3& i) { return sign * unit * i[2]; }),
         solid);
 }
@@ -383,10 +383,10 @@ TEST(SessionExtremes, updates_stay_finite_at_any_isovalue_on_any_data) {
             const Volume volume = ramp_of(unit, solid).volume();
             for (const double background : extremes) {
                 if (!(std::abs(background) <= std::numeric_limits<float>::max())) {
-                    EXPECT_THROW(Field(volume, solid, background), std::invalid_argument);
+                    EXPECT_THROW(linear_field(volume, solid, background), std::invalid_argument);
                     continue;
                 }
-                const Field field(volume, solid, background);
+                const Field field = linear_field(volume, solid, background);
                 for (const double isovalue : extremes) {
                     for (const ProxyMethod method : {&update_exact, &baselines::update_paper}) {
                         Random random(2);

@@ -104,18 +104,19 @@ void expect_closed(const Field& field, double isovalue) {
 TEST(Surface, is_closed_and_oriented_on_noise_at_every_kind_of_isovalue) {
     const Volume volume = noise(grid(24, 24, 24), 1);
     for (const double isovalue : {0.0, 1.0, 64.0, 128.0, 128.5, 200.0, 254.0}) {
-        expect_closed(Field(volume), isovalue);
+        expect_closed(linear_field(volume), isovalue);
     }
     for (const double isovalue : {1.0, 128.0, 254.5, 255.0}) {
-        expect_closed(Field(volume, Solid::below), isovalue);
+        expect_closed(linear_field(volume, Solid::below), isovalue);
     }
 }
 
 TEST(Surface, is_closed_on_salt_even_at_the_values_of_the_samples) {
     const Volume volume = salt(grid(24, 24, 24), 2);
-    for (const double isovalue : {0.0, 63.75, 127.5, 254.0}) expect_closed(Field(volume), isovalue);
-    expect_closed(Field(volume, Solid::below), 255);
-    expect_closed(Field(volume, Solid::below), 127.5);
+    for (const double isovalue : {0.0, 63.75, 127.5, 254.0})
+        expect_closed(linear_field(volume), isovalue);
+    expect_closed(linear_field(volume, Solid::below), 255);
+    expect_closed(linear_field(volume, Solid::below), 127.5);
 }
 
 TEST(Surface, is_closed_on_volumes_one_voxel_thin) {
@@ -123,7 +124,7 @@ TEST(Surface, is_closed_on_volumes_one_voxel_thin) {
                                      grid(1, 1, 9), grid(9, 1, 1), grid(2, 1, 2)}) {
         std::vector<std::uint8_t> samples(static_cast<std::size_t>(sample_count(geometry)), 200);
         samples[samples.size() / 2] = 90;
-        const Field field(Volume(geometry, std::move(samples)), Solid::above, 0);
+        const Field field = linear_field(Volume(geometry, std::move(samples)), Solid::above, 0);
         expect_closed(field, 50);
         expect_closed(field, 0);
     }
@@ -136,8 +137,8 @@ TEST(Surface, is_closed_and_faces_outward_on_anisotropic_oblique_and_mirrored_gr
     for (const Geometry& geometry :
          {anisotropic, oblique(grid(12, 15, 9)), mirrored(grid(12, 15, 9))}) {
         const auto volume = random_volume<std::int16_t>(geometry, 3, sample);
-        expect_closed(Field(volume), 300);
-        expect_closed(Field(volume, Solid::below), -500);
+        expect_closed(linear_field(volume), 300);
+        expect_closed(linear_field(volume, Solid::below), -500);
     }
 }
 
@@ -170,7 +171,7 @@ TEST(Surface, cuts_a_tetrahedron_between_solid_and_free_corners_and_faces_the_fr
 TEST(Surface, of_a_constant_volume_is_empty) {
     const Volume volume(grid(5, 6, 7), std::vector<std::uint8_t>(210, 9));
     for (const double isovalue : {8.0, 9.0, 10.0}) {
-        const SurfaceMesh mesh = extract_surface(Field(volume), isovalue);
+        const SurfaceMesh mesh = extract_surface(linear_field(volume), isovalue);
         EXPECT_TRUE(mesh.vertices.empty());
         EXPECT_TRUE(mesh.triangles.empty());
         EXPECT_EQ(enclosed_volume(mesh), 0);
@@ -180,7 +181,7 @@ TEST(Surface, of_a_constant_volume_is_empty) {
 TEST(Surface, stays_a_manifold_without_indices_in_32_bit_floats) {
     for (const Geometry& geometry : {grid(24, 24, 24), oblique(grid(24, 24, 24))}) {
         for (const double isovalue : {0.0, 128.0}) {
-            const SurfaceMesh mesh = extract_surface(Field(noise(geometry, 4)), isovalue);
+            const SurfaceMesh mesh = extract_surface(linear_field(noise(geometry, 4)), isovalue);
             const SurfaceMesh welded = support::welded_as_float(mesh);
             EXPECT_EQ(welded.vertices.size(), mesh.vertices.size());
             EXPECT_EQ(support::flaw_in_closed_mesh(welded), "");
@@ -190,7 +191,7 @@ TEST(Surface, stays_a_manifold_without_indices_in_32_bit_floats) {
 
 TEST(Surface, has_every_vertex_on_the_isosurface_within_the_margin) {
     for (const Geometry& geometry : {grid(16, 16, 16), mirrored(grid(16, 16, 16))}) {
-        const Field field(noise(geometry, 5));
+        const Field field = linear_field(noise(geometry, 5));
         for (const double isovalue : {128.0, 99.3}) {
             const SurfaceMesh mesh = extract_surface(field, isovalue);
             std::size_t exact = 0;
@@ -209,7 +210,7 @@ TEST(Surface, winds_once_around_the_solid_and_not_around_the_free_space) {
     for (const Geometry& geometry :
          {grid(9, 8, 10), oblique(grid(9, 8, 10)), mirrored(grid(9, 8, 10))}) {
         for (const Solid side : {Solid::above, Solid::below}) {
-            const Field field(noise(geometry, 6), side);
+            const Field field = linear_field(noise(geometry, 6), side);
             const SurfaceMesh mesh = extract_surface(field, 120);
             std::mt19937_64 random(7);
             int checked = 0;
@@ -232,7 +233,7 @@ TEST(Surface, encloses_the_volume_that_sampling_counts) {
     const Geometry geometry = mirrored(grid(10, 10, 10));
     const double box = 11 * 11 * 11 * geometry.spacing.prod();
     for (const Volume& volume : {noise(geometry, 8), salt(geometry, 9)}) {
-        const Field field(volume);
+        const Field field = linear_field(volume);
         const SurfaceMesh mesh = extract_surface(field, 100);
         std::mt19937_64 random(10);
         constexpr int count = 400000;
@@ -254,7 +255,7 @@ TEST(Surface, of_a_ball_encloses_its_volume_within_one_percent) {
     const double exact = 4.0 / 3 * std::numbers::pi * 8 * 8 * 8;
     for (const Mat3& direction : {Mat3(Mat3::Identity()), mirrored(geometry).direction}) {
         geometry.direction = direction;
-        const SurfaceMesh mesh = extract_surface(Field(ball(geometry, 8)), 0);
+        const SurfaceMesh mesh = extract_surface(linear_field(ball(geometry, 8)), 0);
         EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "");
         EXPECT_NEAR(enclosed_volume(mesh), exact, 0.01 * exact);
         // One sphere: V - E + F = 2.
@@ -264,7 +265,7 @@ TEST(Surface, of_a_ball_encloses_its_volume_within_one_percent) {
 
 TEST(Surface, closes_a_body_that_the_border_cuts) {
     Geometry geometry = grid(21, 21, 11);
-    const Field field(ball(geometry, 9));  // a ball of 18 in a slab of 10
+    const Field field = linear_field(ball(geometry, 9));  // a ball of 18 in a slab of 10
     const SurfaceMesh mesh = extract_surface(field, 0);
     EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "");
     for (const Vec3& v : mesh.vertices) {
@@ -277,8 +278,8 @@ TEST(Surface, closes_a_body_that_the_border_cuts) {
 }
 
 TEST(Surface, bounds_the_free_space_where_the_background_is_solid) {
-    const Field field(ball(grid(21, 21, 21), 8), Solid::below);
-    const Field solid_outside(ball(grid(21, 21, 21), 8), Solid::below, -100);
+    const Field field = linear_field(ball(grid(21, 21, 21), 8), Solid::below);
+    const Field solid_outside = linear_field(ball(grid(21, 21, 21), 8), Solid::below, -100);
     const SurfaceMesh mesh = extract_surface(solid_outside, 0);
     EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "");
     EXPECT_LT(enclosed_volume(mesh), 0);
@@ -286,7 +287,7 @@ TEST(Surface, bounds_the_free_space_where_the_background_is_solid) {
 }
 
 TEST(Surface, is_the_same_bit_for_bit_when_extracted_again) {
-    const Field field(noise(oblique(grid(16, 12, 14)), 11));
+    const Field field = linear_field(noise(oblique(grid(16, 12, 14)), 11));
     const SurfaceMesh a = extract_surface(field, 77);
     const SurfaceMesh b = extract_surface(field, 77);
     EXPECT_EQ(a.vertices, b.vertices);
@@ -308,7 +309,7 @@ TEST(Surface, in_boxes_of_cells_is_the_whole_one_in_parts_bit_for_bit) {
     };
     for (const Geometry& geometry : {grid(20, 17, 9), mirrored(grid(9, 12, 14)), grid(1, 7, 3)}) {
         for (const Volume& volume : {noise(geometry, 21), salt(geometry, 22)}) {
-            const Field field(volume, Solid::above, 100);
+            const Field field = linear_field(volume, Solid::above, 100);
             std::vector<Corners> whole, parts;
             add_triangles(extract_surface(field, 99.5), whole);
             const int step = 5;
@@ -330,11 +331,12 @@ TEST(Surface, in_boxes_of_cells_is_the_whole_one_in_parts_bit_for_bit) {
     }
     SurfaceOptions outside;
     outside.cells = SampleBox{Index3(30, 0, 0), Index3(40, 9, 9)};
-    EXPECT_TRUE(extract_surface(Field(noise(grid(8, 8, 8), 3)), 100, outside).triangles.empty());
+    EXPECT_TRUE(
+        extract_surface(linear_field(noise(grid(8, 8, 8), 3)), 100, outside).triangles.empty());
 }
 
 TEST(Surface, extraction_reports_progress_and_can_be_cancelled) {
-    const Field field(noise(grid(8, 8, 8), 12));
+    const Field field = linear_field(noise(grid(8, 8, 8), 12));
     std::vector<double> seen;
     SurfaceOptions options;
     options.progress = [&](double fraction) {
@@ -353,7 +355,7 @@ TEST(Surface, extraction_reports_progress_and_can_be_cancelled) {
 }
 
 TEST(Surface, extraction_refuses_what_it_cannot_do) {
-    const Field field(noise(grid(8, 8, 8), 13));
+    const Field field = linear_field(noise(grid(8, 8, 8), 13));
     EXPECT_THROW(extract_surface(field, std::nan("")), std::invalid_argument);
     SurfaceOptions options;
     options.max_vertices = 100;

@@ -170,7 +170,7 @@ struct Carved {
         support::grid(Index3::Constant(48), {1, 1, 1}, {-20, 5, 9}, oblique_direction());
     std::shared_ptr<const Samples> block =
         samples_of(volume_of<std::int16_t>(geometry, [](const Index3&) { return 200; }));
-    Brush brush = brush_for(BrushKind::carve, Field(block, Solid::above, 0), 100, 0.5);
+    Brush brush = brush_for(BrushKind::carve, linear_field(block, Solid::above, 0), 100, 0.5);
 
     edit::Sweep sweep(const Tool& tool, const Pose& from, const Pose& to) const {
         const auto body = std::make_shared<const ToolBody>(

@@ -91,8 +91,8 @@ TEST(ToolProxy, keeps_its_guarantees_on_marschner_and_lobbs_function) {
 
 /// Falls along z to 0 at `height`: solid below.
 Field plane_field(double height = 12) {
-    return support::smooth(Field(support::volume_of<float>(
-        support::grid(support::cube(24)), [&](const Index3& i) { return height - i[2]; })));
+    return Field(support::volume_of<float>(support::grid(support::cube(24)),
+                                           [&](const Index3& i) { return height - i[2]; }));
 }
 
 ToolProxy proxy_of(const Tool& tool, double isovalue = 0) {
@@ -213,11 +213,11 @@ TEST(ToolProxy, follows_a_level_that_moves_over_it_and_a_start_inside) {
 
 TEST(ToolProxy, never_passes_a_thin_wall_at_three_metres_a_second) {
     // A closed shell of 1.5 voxels; the tool is as long as a third of it and starts inside.
-    const Field field = support::smooth(
+    const Field field =
         Field(support::volume_of<float>(support::grid(support::cube(40)), [](const Index3& i) {
             const double r = (i.cast<double>() - Vec3::Constant(19.5)).norm();
             return 1.5 - std::abs(r - 14);
-        })));
+        }));
     ToolProxy proxy = proxy_of(rod_tool(9, 0.25), 0.75);
     ToolGuarantees guarantees(field);
     guarantees.share_checked = 0.2;

@@ -15,8 +15,8 @@ namespace palpate::support {
 
 /// A session that a device may be opened for; nothing is made of its volume.
 inline devices::DeviceScene any_scene(double rate = 1000) {
-    static const Field field(
-        volume_of<float>(grid(cube(2)), [](const Index3& index) { return index[0]; }));
+    static const Field field =
+        linear_field(volume_of<float>(grid(cube(2)), [](const Index3& index) { return index[0]; }));
     return {field, 0.5, rate, [](const DeviceInfo&) { return DeviceTransform{}; }};
 }
 

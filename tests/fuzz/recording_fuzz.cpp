@@ -27,10 +27,10 @@ void play(palpate::io::RecordingReader& reader) {
         RendererSettings settings = head.settings;
         settings.proxy.step_budget = std::min(settings.proxy.step_budget, 64);
         check(head.session);
-        Session session{
-            make_renderer(Field(Volume(geometry, std::move(samples)), head.solid, head.background),
-                          head.isovalue, settings),
-            head.session};
+        Session session{make_renderer(linear_field(Volume(geometry, std::move(samples)), head.solid,
+                                                   head.background),
+                                      head.isovalue, settings),
+                        head.session};
         while (const auto event = reader.next()) {
             if (const auto* command = std::get_if<Command>(&*event)) {
                 apply(session, *command);

@@ -36,7 +36,7 @@ PictureScene scene_of_ball(std::vector<double> levels = {}) {
     picture.width = 200;
     picture.height = 160;
     picture.legend = picture.orientation = picture.scale_bar = false;
-    add_levels(picture, Field(scene.volume), levels);
+    add_levels(picture, linear_field(scene.volume), levels);
     frame(picture, view_named("front"));
     return picture;
 }

@@ -16,7 +16,7 @@ namespace {
 
 TEST(PictureSurface, is_the_mesh_that_the_proxy_meets) {
     const scenes::Scene scene = scenes::make_volume("noise:9x8x7");
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     const ShadedSurface made = shaded_surface(field, scene.isovalue);
     const SurfaceMesh mesh = extract_surface(field, scene.isovalue);
     EXPECT_EQ(made.every, 1);
@@ -39,11 +39,12 @@ TEST(PictureSurface, of_every_third_sample_is_the_surface_of_those) {
             }
         }
     }
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     SurfaceWork work;
     work.every = 3;
     const ShadedSurface made = shaded_surface(field, scene.isovalue, work);
-    const Field thinned(Volume(geometry, samples), field.solid(), field.background());
+    const Field thinned =
+        linear_field(Volume(geometry, samples), field.solid(), field.background());
     EXPECT_EQ(made.every, 3);
     EXPECT_FALSE(made.surface.mesh.vertices.empty());
     EXPECT_EQ(made.surface.mesh.vertices, extract_surface(thinned, scene.isovalue).vertices);
@@ -55,7 +56,7 @@ TEST(PictureSurface, normals_of_a_ball_point_out_of_the_solid) {
     for (const Solid solid : {Solid::above, Solid::below}) {
         Geometry geometry = scenes::centred(Index3(24, 20, 16), Vec3(1, 1.2, 1.5));
         const scenes::Scene scene = scenes::make_volume("sphere", geometry, SampleType::float32);
-        const Field field(scene.volume, solid, scene.volume.minimum());
+        const Field field = linear_field(scene.volume, solid, scene.volume.minimum());
         const ShadedSurface made = shaded_surface(field, scene.isovalue);
         const double sign = solid == Solid::above ? 1 : -1;
         ASSERT_GT(made.surface.normals.size(), 500U);
@@ -73,7 +74,7 @@ TEST(PictureSurface, normals_of_a_ball_point_out_of_the_solid) {
 TEST(PictureSurface, is_never_shaded_from_behind) {
     // Noise: the differences over a voxel often say nothing about a facet.
     const scenes::Scene scene = scenes::make_volume("noise:12x12x12");
-    const ShadedSurface made = shaded_surface(Field(scene.volume), scene.isovalue);
+    const ShadedSurface made = shaded_surface(linear_field(scene.volume), scene.isovalue);
     const auto facets = mesh_normals(made.surface.mesh);
     int replaced = 0;
     for (std::size_t i = 0; i < facets.size(); ++i) {
@@ -87,7 +88,7 @@ TEST(PictureSurface, is_never_shaded_from_behind) {
 
 TEST(PictureSurface, one_that_is_too_large_is_made_from_fewer_samples) {
     const scenes::Scene scene = scenes::make_volume("sphere:41x41x41");
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     SurfaceWork work;
     work.most_triangles = extract_surface(field, scene.isovalue).triangles.size() / 2;
     const ShadedSurface made = shaded_surface(field, scene.isovalue, work);
@@ -105,18 +106,18 @@ TEST(PictureSurface, progress_rises_and_may_throw) {
         EXPECT_GE(fraction, last);
         last = fraction;
     };
-    (void)shaded_surface(Field(scene.volume), scene.isovalue, work);
+    (void)shaded_surface(linear_field(scene.volume), scene.isovalue, work);
     EXPECT_EQ(last, 1);
     struct Stop {};
     work.progress = [](double) { throw Stop(); };
-    EXPECT_THROW((void)shaded_surface(Field(scene.volume), scene.isovalue, work), Stop);
+    EXPECT_THROW((void)shaded_surface(linear_field(scene.volume), scene.isovalue, work), Stop);
 }
 
 TEST(PictureLevels, are_ordered_from_the_outside_in) {
     const scenes::Scene scene = scenes::make_volume("sphere:16x16x16");
     for (const Solid solid : {Solid::above, Solid::below}) {
         PictureScene picture;
-        add_levels(picture, Field(scene.volume, solid), std::array{120.0, 40.0, 200.0});
+        add_levels(picture, linear_field(scene.volume, solid), std::array{120.0, 40.0, 200.0});
         ASSERT_EQ(picture.surfaces.size(), 3U);
         const bool above = solid == Solid::above;
         EXPECT_EQ(picture.surfaces[0].label, above ? "isovalue 40" : "isovalue 200");
@@ -125,7 +126,7 @@ TEST(PictureLevels, are_ordered_from_the_outside_in) {
         EXPECT_EQ(picture.surfaces[2].opacity, 1);
     }
     PictureScene picture;
-    EXPECT_THROW(add_levels(picture, Field(scene.volume), std::vector<double>(6, 1.0)),
+    EXPECT_THROW(add_levels(picture, linear_field(scene.volume), std::vector<double>(6, 1.0)),
                  std::invalid_argument);
 }
 
@@ -188,7 +189,7 @@ TEST(View, a_slab_is_seen_on_its_broad_side_and_a_contact_from_its_own) {
 TEST(View, framing_shows_all_of_a_body_and_zooms_about_a_point) {
     const scenes::Scene ball = scenes::make_volume("sphere:20x20x20");
     PictureScene scene;
-    add_levels(scene, Field(ball.volume), std::array{ball.isovalue});
+    add_levels(scene, linear_field(ball.volume), std::array{ball.isovalue});
     frame(scene, view_from(30, 20));
     const Camera whole = scene.camera;
     const Vec3 right = whole.up.cross(whole.towards_viewer);

@@ -18,7 +18,7 @@ io::Sequence steps() {
 
 struct Playing {
     io::Sequence sequence = steps();
-    Field field{io::read_frame(sequence, 0)};
+    Field field = linear_field(io::read_frame(sequence, 0));
     support::ScriptedDevice device{[](double) { return support::ready_at({3, 3, 3}); }};
     Player player;
     std::unique_ptr<Servo> servo, second;
@@ -215,7 +215,7 @@ TEST(Player, goes_on_with_the_other_servo_when_the_device_of_the_first_fails) {
 
 TEST(PacedPlayer, follows_a_servo_at_its_real_pace_by_itself) {
     const io::Sequence sequence = steps();
-    const Field field(io::read_frame(sequence, 0));
+    const Field field = linear_field(io::read_frame(sequence, 0));
     support::ScriptedDevice device([](double) { return support::ready_at({3, 3, 3}); });
     Player player(sequence, {});
     player.play(5);

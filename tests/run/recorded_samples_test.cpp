@@ -26,7 +26,7 @@ Command through_json(const Command& command) {
 }
 
 TEST(RecordedSamples, versions_come_out_as_they_were_felt) {
-    const Field field(test::loaded("synthetic:noise:24x24x24").volume);
+    const Field field = linear_field(test::loaded("synthetic:noise:24x24x24").volume);
     Brush brush = brush_for(BrushKind::add, field, 100.123456789, 3.3);
     brush.hardness = 0.3;
     brush.strength = 1.0 / 3;
@@ -69,7 +69,7 @@ TEST(RecordedSamples, versions_come_out_as_they_were_felt) {
 }
 
 TEST(RecordedSamples, of_many_versions_few_are_in_memory_and_all_can_be_had) {
-    const Field field(test::loaded("synthetic:noise:24x24x24").volume);
+    const Field field = linear_field(test::loaded("synthetic:noise:24x24x24").volume);
     RecordedSamples again(field.shared_samples());
     std::vector<std::shared_ptr<const Samples>> felt{field.shared_samples()};
     support::Random random(12);
@@ -94,7 +94,7 @@ TEST(RecordedSamples, of_many_versions_few_are_in_memory_and_all_can_be_had) {
 }
 
 TEST(RecordedSamples, a_version_that_comes_about_twice_is_refused) {
-    const Field field(test::loaded("synthetic:sphere:16x16x16").volume);
+    const Field field = linear_field(test::loaded("synthetic:sphere:16x16x16").volume);
     RecordedSamples again(field.shared_samples());
     const auto made = [](std::uint64_t version, std::uint64_t of) {
         return Command(command::Samples{
@@ -109,7 +109,7 @@ TEST(RecordedSamples, a_version_that_comes_about_twice_is_refused) {
 }
 
 TEST(RecordedSamples, what_came_from_outside_is_refused_with_its_reason) {
-    const Field field(test::loaded("synthetic:sphere:16x16x16").volume);
+    const Field field = linear_field(test::loaded("synthetic:sphere:16x16x16").volume);
     RecordedSamples again(field.shared_samples());
     const Edit put = edit::Replace{{1, 1, 1}, field.volume()};
     const Command replaced =

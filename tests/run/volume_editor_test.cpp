@@ -13,7 +13,7 @@ namespace {
 /// A ball (its middle at 0), and a hand some millimetres deep in it.
 struct Pressing {
     LoadedVolume ball = test::loaded("synthetic:sphere");
-    Field field{ball.volume};
+    Field field = linear_field(ball.volume);
     double isovalue = *ball.isovalue;
     std::optional<double> opening = std::nullopt;  // [rad] of a gripper
     support::ScriptedDevice device{[this](double) {
@@ -120,9 +120,9 @@ TEST(VolumeEditor, one_with_the_tools_shape_lets_the_tool_through_and_cuts_nothi
     servo->stop();
     editor.detach(*servo);
     const Volume after = flattened(*editor.state().samples);
-    EXPECT_LT(value_at(Field(after), Vec3(-12, 0, 0)), *ball.isovalue);
+    EXPECT_LT(value_at(linear_field(after), Vec3(-12, 0, 0)), *ball.isovalue);
     for (const Vec3& beside : {Vec3(-12, 8, 0), Vec3(-12, 0, 6), Vec3(-4, 0, 0)}) {
-        EXPECT_GT(value_at(Field(after), beside), *ball.isovalue) << beside.transpose();
+        EXPECT_GT(value_at(linear_field(after), beside), *ball.isovalue) << beside.transpose();
     }
 }
 
@@ -280,7 +280,7 @@ std::vector<Command> history_of(VolumeEditor& editor, const Field& field) {
 }
 
 TEST(VolumeEditor, versions_that_nothing_leads_to_any_more_are_forgotten) {
-    const Field field(test::loaded("synthetic:sphere:32x32x32").volume);
+    const Field field = linear_field(test::loaded("synthetic:sphere:32x32x32").volume);
     VolumeEditor editor(field.shared_samples(), Pace::by_steps);
     editor.apply(edit::Fill{{{1, 1, 1}, {2, 2, 2}}, 7});
     for (int i = 0; i < 5000; ++i) {
@@ -297,7 +297,7 @@ TEST(VolumeEditor, versions_that_nothing_leads_to_any_more_are_forgotten) {
 }
 
 TEST(VolumeEditor, of_too_many_edits_it_keeps_those_of_undo_and_says_that_it_forgot_the_others) {
-    const Field field(test::loaded("synthetic:sphere:32x32x32").volume);
+    const Field field = linear_field(test::loaded("synthetic:sphere:32x32x32").volume);
     VolumeEditor editor(field.shared_samples(), Pace::by_steps, 100);
     for (int i = 0; i < 3000; ++i) {
         EXPECT_EQ(editor.knows_history(), i < 100);

@@ -28,7 +28,7 @@ TEST_P(ProxyOnRealVolumes, keeps_its_guarantees) {
     const Scan scan = GetParam();
     const auto path = io::test::real_volume(scan.file);
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-    const Field field(io::read_volume(path).volume, scan.solid);
+    const Field field = linear_field(io::read_volume(path).volume, scan.solid);
     // Little outside, much sliding, and strokes and jumps through everything.
     Hand hand(field.geometry(), 5, {.slide = 8, .sweep = 3, .jump = 1, .margin = -1});
     Guarantees checked(field, &update_exact);
@@ -71,7 +71,7 @@ TEST_P(ProxyOnRealVolumes, keeps_the_order_of_layers) {
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
     const Volume volume = io::read_volume(path).volume;
     for (const bool cubic : {false, true}) {
-        TestField test{scan.file, Field(volume, scan.solid), scan.isovalue};
+        TestField test{scan.file, linear_field(volume, scan.solid), scan.isovalue};
         if (cubic) test = {test.name + " smooth", smooth(test.field), test.isovalue};
         // The isovalue is among five levels; the innermost holds.
         const Layers layers = planned_layers(test, {.parts = {-0.03, 0, 0.05, 0.1, 0.3},
@@ -94,7 +94,7 @@ TEST_P(ProxyOnRealVolumes, keeps_the_order_of_layers) {
 TEST(LayersOnTheHead, keep_their_order_from_skin_to_bone) {
     const auto path = io::test::real_volume("head");
     for (const bool cubic : {false, true}) {
-        TestField test{"skin and bone", Field(io::read_volume(path).volume), 0};
+        TestField test{"skin and bone", linear_field(io::read_volume(path).volume), 0};
         if (cubic) test = {test.name + " smooth", smooth(test.field), 0};
         Layers layers = planned_layers(
             test, {.parts = {0, 0, 0}, .forces = {0.4, 0.3, 1.5}, .stiffnesses = {0.3, 0.5, 1.2}});

@@ -50,7 +50,7 @@ Count counted_volume(const Field& field, double isovalue) {
 TEST_P(SurfaceOnRealVolumes, is_closed_and_encloses_the_solid) {
     const auto path = io::test::real_volume(GetParam().file);
     if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
-    const Field field(io::read_volume(path).volume, GetParam().solid);
+    const Field field = linear_field(io::read_volume(path).volume, GetParam().solid);
     const SurfaceMesh mesh = extract_surface(field, GetParam().isovalue);
     EXPECT_GT(mesh.triangles.size(), 1000U);
     EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "");

@@ -22,7 +22,7 @@ Vec3 anywhere(Random& random) {
 /// [mm^3] of muscle: the enclosed volume of the closed isosurface.
 double muscle(double phase) {
     const Scene scene = beating_frame({48, 48, 48}, phase);
-    const SurfaceMesh mesh = extract_surface(Field(scene.volume), scene.isovalue);
+    const SurfaceMesh mesh = extract_surface(linear_field(scene.volume), scene.isovalue);
     EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "") << phase;
     return enclosed_volume(mesh);
 }

@@ -94,7 +94,7 @@ TEST(Builders, a_thin_shell_misses_most_samples_near_it) {
 TEST(Builders, the_half_level_of_a_ball_is_its_surface) {
     const Volume volume = ball({50, 50, 50});
     EXPECT_EQ(volume.type(), SampleType::uint8);
-    const Field field(volume);
+    const Field field = linear_field(volume);
     EXPECT_NEAR(value_at(field, Vec3(0.35 * 50, 0, 0)), 127.5, 1.5);
     EXPECT_NEAR(value_at(field, Vec3(0, 0, -0.25 * 50)), 255 * (0.5 + 0.14), 1.5);
     EXPECT_EQ(volume.sample({0, 0, 0}), 0);

@@ -21,9 +21,9 @@ namespace {
 
 struct Touched {
     Scene scene = make_volume("sphere");
-    Field field{scene.volume};
+    Field field = linear_field(scene.volume);
     explicit Touched(std::string_view spec, std::optional<SampleType> type = {})
-        : scene(make_volume(spec, type)), field(scene.volume) {}
+        : scene(make_volume(spec, type)), field(linear_field(scene.volume)) {}
     std::vector<HandSample> motion(std::string_view name, const MotionSettings& s = {}) const {
         return make_motion(name, field, scene.isovalue, s);
     }
@@ -262,7 +262,7 @@ TEST(Motions, reach_into_the_solid_in_every_scene) {
 
 TEST(Motions, reach_the_dark_side_where_that_is_solid) {
     const Scene scene = make_volume("shell");
-    const Field field(scene.volume, Solid::below);
+    const Field field = linear_field(scene.volume, Solid::below);
     for (const std::string& name : motion_names()) {
         int inside = 0;
         for (const HandSample& s : make_motion(name, field, scene.isovalue, {})) {
@@ -276,9 +276,9 @@ TEST(Motions, find_a_single_solid_voxel_in_a_corner) {
     const Volume volume = box({40, 40, 40}, {38, 1, 37}, {38, 1, 37});
     for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
         Random random(seed);
-        EXPECT_TRUE(any_contact(Field(volume), 250, random).found);
+        EXPECT_TRUE(any_contact(linear_field(volume), 250, random).found);
     }
-    const auto samples = make_motion("approach", Field(volume), 250, {.depth_mm = 0.005});
+    const auto samples = make_motion("approach", linear_field(volume), 250, {.depth_mm = 0.005});
     const Vec3 speck = physical_from_index(volume.geometry(), Vec3(38, 1, 37));
     EXPECT_LT((samples.back().position - speck).norm(), 0.1);
 }
@@ -313,7 +313,7 @@ TEST(Motions, work_on_thin_noisy_anisotropic_and_oblique_volumes) {
     for (const Volume& volume : volumes) {
         for (const std::string& name : motion_names()) {
             for (const std::uint64_t seed : {1u, 2u}) {
-                const auto samples = make_motion(name, Field(volume), 127, {.seed = seed});
+                const auto samples = make_motion(name, linear_field(volume), 127, {.seed = seed});
                 ASSERT_EQ(samples.size(), 10001u);
                 for (const HandSample& s : samples) ASSERT_TRUE(s.position.allFinite()) << name;
                 if (is_smooth(name)) {

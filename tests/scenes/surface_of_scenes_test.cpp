@@ -19,7 +19,7 @@ class SurfaceOfScenes : public testing::TestWithParam<std::string> {};
 
 TEST_P(SurfaceOfScenes, is_closed_and_encloses_what_is_solid) {
     const scenes::Scene scene = scenes::make_volume(GetParam() + ":40x40x40");
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     const SurfaceMesh mesh = extract_surface(field, scene.isovalue);
     EXPECT_GT(mesh.triangles.size(), 1000U);
     EXPECT_EQ(support::flaw_in_closed_mesh(mesh), "");

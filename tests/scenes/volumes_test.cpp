@@ -122,7 +122,7 @@ TEST(Volumes, a_sphere_stays_a_sphere_on_an_anisotropic_and_oblique_grid) {
     Geometry geometry = centred({60, 60, 15}, {0.5, 0.5, 2}, turned);
     geometry.origin += Vec3(10, -20, 30);
     const Scene scene = make_volume("sphere", geometry, SampleType::float32);
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0.6, 0, -0.8)}) {
         const Vec3 p = Vec3(10, -20, 30) + 9 * way;
         EXPECT_NEAR(scene.exact(p), 1 - 9.0 / 15, 1e-12);

@@ -197,7 +197,7 @@ TEST(BrickLoader, memory_is_bounded_and_what_the_hand_needs_arrives_wherever_it_
     const auto store = store_in_pieces(volume, {64, 64, 64});
     BrickLoader loader(store, overview_of(*store, 1000), {.memory = least_memory, .threads = 2});
     Random random(6);
-    Field field(loader.empty());
+    Field field = linear_field(loader.empty());
     for (int n = 0; n < (is_slow_build ? 8 : 20); ++n) {
         const Vec3 at(random.uniform(0, 639), random.uniform(0, 319), random.uniform(0, 319));
         const Interest hand{at, at + 20 * random.direction(), 50 * random.direction()};
@@ -334,7 +334,7 @@ TEST(BrickLoader, who_waits_gets_the_bricks_although_hands_look_elsewhere_and_ot
     may_read = true;
     one.join();
     other.join();
-    const Field field(loader.take()->samples);
+    const Field field = linear_field(loader.take()->samples);
     EXPECT_TRUE(is_resident(field, {30, 30, 30}, 5));
     EXPECT_TRUE(is_resident(field, {300, 30, 30}, 5));
 }
@@ -398,7 +398,7 @@ TEST(BrickLoader, waits_for_all_that_an_update_may_look_at_and_refuses_what_does
     const auto store = store_in_pieces(volume, {64, 64, 64});
     BrickLoader loader(store, overview_of(*store, 1000), {.memory = least_memory, .threads = 2});
     loader.wait_for({500, 200, 200}, 40);
-    const Field field(loader.take()->samples);
+    const Field field = linear_field(loader.take()->samples);
     EXPECT_TRUE(is_resident(field, {500, 200, 200}, 40));
     EXPECT_FALSE(is_resident(field, {100, 200, 200}, 1));
     EXPECT_THROW(loader.wait_for({500, 200, 200}, 250), std::invalid_argument);

@@ -72,13 +72,13 @@ inline Field smooth(Field field) {
 
 inline TestField noise_field(std::uint64_t seed = 1, Solid solid = Solid::above) {
     return {solid == Solid::above ? "noise" : "noise_below",
-            Field(noise_volume<std::uint8_t>(grid(cube(24)), seed, 0, 256), solid), 128};
+            linear_field(noise_volume<std::uint8_t>(grid(cube(24)), seed, 0, 256), solid), 128};
 }
 
 inline TestField salt_field(std::uint64_t seed = 2) {
     Random random(seed);
     return {"salt",
-            Field(volume_of<std::uint8_t>(
+            linear_field(volume_of<std::uint8_t>(
                 grid(cube(24)), [&](const Index3&) { return random.chance(0.25) ? 255 : 0; })),
             100};
 }
@@ -88,14 +88,13 @@ inline TestField salt_field(std::uint64_t seed = 2) {
 inline TestField shell_field() {
     const Geometry geometry = grid(cube(24));
     return {"shell",
-            Field(volume_of<std::uint8_t>(geometry,
-                                          [&](const Index3& i) {
-                                              const Vec3 from =
-                                                  i.cast<double>() - Vec3::Constant(11.5);
-                                              const double d =
-                                                  std::abs(std::sqrt(from.squaredNorm()) - 8);
-                                              return d < 1.2 ? 255 - 200 * d : 0;
-                                          })),
+            linear_field(volume_of<std::uint8_t>(
+                geometry,
+                [&](const Index3& i) {
+                    const Vec3 from = i.cast<double>() - Vec3::Constant(11.5);
+                    const double d = std::abs(std::sqrt(from.squaredNorm()) - 8);
+                    return d < 1.2 ? 255 - 200 * d : 0;
+                })),
             180};
 }
 
@@ -103,18 +102,18 @@ inline TestField shell_field() {
 /// isovalue. Its walls are at 5 and 17 along each axis.
 inline TestField sheet_field() {
     return {"sheet",
-            Field(volume_of<std::uint8_t>(grid(cube(24)),
-                                          [](const Index3& i) {
-                                              const auto from = (i.array() - 11).abs();
-                                              return from.maxCoeff() == 6 ? 255 : 0;
-                                          })),
+            linear_field(volume_of<std::uint8_t>(grid(cube(24)),
+                                                 [](const Index3& i) {
+                                                     const auto from = (i.array() - 11).abs();
+                                                     return from.maxCoeff() == 6 ? 255 : 0;
+                                                 })),
             240};
 }
 
 /// Samples 255 in 6..17 along each axis: planes of the isosurface along the grid.
 inline TestField box_field() {
     return {"box",
-            Field(volume_of<std::uint8_t>(
+            linear_field(volume_of<std::uint8_t>(
                 grid(cube(24)),
                 [](const Index3& i) {
                     return (i.array() >= 6).all() && (i.array() <= 17).all() ? 255 : 0;
@@ -124,33 +123,35 @@ inline TestField box_field() {
 
 inline TestField anisotropic_field(std::uint64_t seed = 3) {
     const Geometry geometry = grid({24, 24, 16}, {0.5, 0.5, 2}, {-100, 50, 700});
-    return {"anisotropic", Field(noise_volume<std::int16_t>(geometry, seed, -1024, 3072)), 1500};
+    return {"anisotropic", linear_field(noise_volume<std::int16_t>(geometry, seed, -1024, 3072)),
+            1500};
 }
 
 inline TestField oblique_field(std::uint64_t seed = 4) {
     const Geometry geometry =
         grid({20, 24, 18}, {0.7, 1.1, 0.9}, {31, -44, 12}, oblique_direction());
-    return {"oblique", Field(noise_volume<std::uint16_t>(geometry, seed, 0, 65536)), 33000.3};
+    return {"oblique", linear_field(noise_volume<std::uint16_t>(geometry, seed, 0, 65536)),
+            33000.3};
 }
 
 inline TestField marschner_lobb_field() {
     const Geometry geometry = grid(cube(40), Vec3::Constant(0.8));
-    return {"marschner_lobb",
-            Field(volume_of<float>(geometry,
-                                   [](const Index3& i) {
-                                       return marschner_lobb((i.cast<double>() / 19.5).array() - 1);
-                                   })),
-            0.5};
+    return {
+        "marschner_lobb",
+        linear_field(volume_of<float>(
+            geometry,
+            [](const Index3& i) { return marschner_lobb((i.cast<double>() / 19.5).array() - 1); })),
+        0.5};
 }
 
 inline TestField offset_field(std::uint64_t seed = 5) {
-    return {"offset", Field(noise_volume<float>(grid(cube(24)), seed, 999999, 1000001)),
+    return {"offset", linear_field(noise_volume<float>(grid(cube(24)), seed, 999999, 1000001)),
             1000000.137};
 }
 
 /// A few values only: plateaus, saddles and surfaces through samples, at the isovalue itself.
 inline TestField terraces_field(std::uint64_t seed = 6) {
-    return {"terraces", Field(noise_volume<std::uint8_t>(grid(cube(24)), seed, 0, 4)), 1};
+    return {"terraces", linear_field(noise_volume<std::uint8_t>(grid(cube(24)), seed, 0, 4)), 1};
 }
 
 }  // namespace palpate::support

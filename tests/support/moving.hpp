@@ -26,7 +26,7 @@ struct MovingContact {
 
     MovingContact(std::shared_ptr<const Samples> samples, double isovalue, const Vec3& at,
                   double background = 0, Solid solid = Solid::above)
-        : session{make_renderer(Field(std::move(samples), solid, background), isovalue), {}},
+        : session{make_renderer(linear_field(std::move(samples), solid, background), isovalue), {}},
           hand(at) {
         session.renderer.settings.force.rate_limit = rate;
         session.renderer.settings.force.ramp = 0;

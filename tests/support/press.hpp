@@ -13,8 +13,8 @@ namespace palpate::support {
 /// Density = z [voxel, mm], so that where a level lies can be read off: z in 0..100, 9 x 9 wide.
 inline Field ramp_field(Solid solid = Solid::above) {
     const double sign = solid == Solid::above ? 1 : -1;
-    return Field(volume_of<float>(grid({9, 9, 101}), [&](const Index3& i) { return sign * i[2]; }),
-                 solid);
+    return linear_field(
+        volume_of<float>(grid({9, 9, 101}), [&](const Index3& i) { return sign * i[2]; }), solid);
 }
 
 /// A point on the ramp's axis.

@@ -86,7 +86,7 @@ void OverlayController::use(std::shared_ptr<const Overlay> overlay,
     if (overlay_->is_label_map()) {
         image_.clear();
     } else {
-        image_.set_field(Field(overlay_->volume), level.value_or(overlay_->level));
+        image_.set_field(linear_field(overlay_->volume), level.value_or(overlay_->level));
     }
     colour();
     Q_EMIT changed();

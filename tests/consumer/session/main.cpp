@@ -108,7 +108,7 @@ int main(int, char** argv) {
         const io::VolumeFile file = io::read_volume(folder / "ball.nrrd");
         std::printf("read ball.nrrd: %s, %d voxels a side\n", file.format.c_str(),
                     file.volume.geometry().size[0]);
-        const Field field(file.volume);
+        const Field field = linear_field(file.volume);
         const long long ticks = feel(field, recording);
         render_again(field, recording, ticks);
     } catch (const std::exception& e) {

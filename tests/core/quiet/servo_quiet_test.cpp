@@ -154,7 +154,7 @@ struct Company {
 /// What is watched: a servo with everything on that a tick can do, and everybody beside it.
 struct BusyServo {
     scenes::Scene scene = scenes::make_volume("sphere");
-    Field field{scene.volume};
+    Field field = linear_field(scene.volume);
     ExploringHand hand = exploring(field, scene.isovalue);
     ScriptedDevice device{[this](double) { return hand.read(); }};
     Queue<SessionEvent> recorder{1024};
@@ -259,7 +259,7 @@ struct DataCompany {
 TEST(Servo, thread_neither_allocates_nor_frees_nor_locks_while_samples_are_edited_and_pushed) {
     const auto scene = scenes::make_volume("sphere:32x32x32");
     // Of the type that smoothing gives, so that edits and frames take turns on one grid.
-    const Field field(smoothed(scene.volume));
+    const Field field = linear_field(smoothed(scene.volume));
     ExploringHand hand = exploring(field, scene.isovalue);
     ScriptedDevice device([&](double) { return hand.read(); });
     RendererSettings settings;

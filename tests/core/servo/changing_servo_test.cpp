@@ -37,7 +37,7 @@ DeviceReading slide(double time) {
 }
 
 Session session_on(const std::shared_ptr<const Samples>& samples) {
-    return {make_renderer(Field(samples, Solid::above, 0.0), 30), {}};
+    return {make_renderer(linear_field(samples, Solid::above, 0.0), 30), {}};
 }
 
 TEST(ChangingServo, an_edit_that_was_sent_is_felt_in_the_next_tick) {

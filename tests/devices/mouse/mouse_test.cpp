@@ -84,7 +84,8 @@ TEST(Mouse, reading_allocates_nothing) {
 }
 
 TEST(Mouse, options_out_of_range_are_refused_by_name) {
-    const Field field(Volume(Geometry{.size = {2, 2, 2}}, std::vector<std::uint8_t>(8)));
+    const Field field =
+        linear_field(Volume(Geometry{.size = {2, 2, 2}}, std::vector<std::uint8_t>(8)));
     const DeviceScene scene{field, 1, 1000, {}};
     EXPECT_THROW(open_mouse(parse_device("mouse:speed=0"), scene), std::invalid_argument);
     EXPECT_THROW(open_mouse(parse_device("mouse:sped=5"), scene), std::invalid_argument);

@@ -55,7 +55,7 @@ class Recorded : public testing::Test {
     }
 
     support::ScratchFolder folder_;
-    Field field_{sphere().volume};
+    Field field_ = linear_field(sphere().volume);
 };
 
 const std::string line = "t,x,y,z\n0,1,2,3\n1,11,2,3\n3,11,2,-17\n";

@@ -16,7 +16,7 @@ namespace palpate::devices {
 /// The sphere of scenes/, fitted into the device's workspace.
 struct Body {
     scenes::Scene scene = scenes::make_volume("sphere");
-    Field field{scene.volume};
+    Field field = linear_field(scene.volume);
 
     DeviceScene at_rate(double rate) const {
         return {field, scene.isovalue, rate,

@@ -13,7 +13,7 @@ namespace palpate::viewer {
 namespace {
 
 Field coarse_test_noise(const Geometry& geometry, Solid solid = Solid::above) {
-    return Field(support::noise_volume<std::int16_t>(geometry, 5, -300, 1000), solid, -77);
+    return linear_field(support::noise_volume<std::int16_t>(geometry, 5, -300, 1000), solid, -77);
 }
 
 TEST(CoarseSamples, are_between_mean_and_extreme_of_the_samples_round_them) {

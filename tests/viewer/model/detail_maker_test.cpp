@@ -147,7 +147,7 @@ TEST(DetailMaker, shows_the_last_samples_with_the_last_edits_and_tells_what_chan
 TEST(DetailMaker, makes_no_part_of_the_scene_that_is_not_wanted_any_more) {
     const Store store;
     std::atomic<int> made{0};
-    DetailMaker maker(Field(store.overview), {store.geometry.size},
+    DetailMaker maker(linear_field(store.overview), {store.geometry.size},
                       [&](int, const auto&) { ++made; }, {});
     maker.show(DetailMaker::scene, store.detail(store.patch.box, 1));
     ASSERT_TRUE(comes_true([&] { return maker.idle(); }));

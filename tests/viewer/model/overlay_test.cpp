@@ -72,7 +72,7 @@ TEST(Overlay, a_mask_lies_where_its_label_does_and_keeps_its_size) {
     });
     const Overlay overlay = make_overlay(loaded(ball), somewhere);
     ASSERT_EQ(overlay.labels.size(), 2U);
-    const Field mask(label_mask(overlay, overlay.labels[1]), Solid::above, 0);
+    const Field mask = linear_field(label_mask(overlay, overlay.labels[1]), Solid::above, 0);
     int wrong = 0;
     for (int n = 0; n < 40 * 40 * 40; ++n) {
         const Index3 at(n % 40, n / 40 % 40, n / 1600);
@@ -87,7 +87,7 @@ TEST(Overlay, a_mask_keeps_what_is_a_sample_wide) {
         support::grid(support::cube(20)),
         [](const Index3& i) { return i[0] == i[1] && i[2] == 10 ? 4 : 0; });
     const Overlay overlay = make_overlay(loaded(line), somewhere);
-    const Field mask(label_mask(overlay, overlay.labels[0]), Solid::above, 0);
+    const Field mask = linear_field(label_mask(overlay, overlay.labels[0]), Solid::above, 0);
     for (int i = 1; i < 19; ++i) {
         const Vec3 at = physical_from_index(line.geometry(), Vec3(i, i, 10));
         EXPECT_GT(value_at(mask, at), 0.5) << i;

@@ -30,7 +30,7 @@ struct Recorded {
     /// From tick `layers_from` on with layers.
     explicit Recorded(int count, const std::function<double(int)>& time = {}, int layers_from = -1)
         : loaded(run::load(volume())) {
-        const Field field(loaded.volume);
+        const Field field = linear_field(loaded.volume);
         RendererSettings settings;
         settings.method = &update_exact;
         Session session{make_renderer(field, 76.5, settings), {}};
@@ -80,7 +80,7 @@ TEST(Playback, of_two_hands_has_the_snapshots_of_each) {
     for (const double level : {76.5, 90.0}) {
         RendererSettings settings;
         settings.method = &update_exact;
-        sessions.push_back({make_renderer(Field(loaded.volume), level, settings), {}});
+        sessions.push_back({make_renderer(linear_field(loaded.volume), level, settings), {}});
         heads.push_back(run::recording_head(sessions.back(), {}, Recorded::volume(), {}));
     }
     io::RecordingWriter writer(path, heads, Pace::by_steps);

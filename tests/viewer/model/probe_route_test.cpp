@@ -12,7 +12,7 @@ const Vec3 towards = Vec3::UnitZ(), up = Vec3::UnitY();
 
 TEST(ProbeRoute, a_click_meets_the_surface_nearest_to_the_viewer) {
     const scenes::Scene scene = scenes::make_volume("sphere:48x48x48");
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     const Vec3 centre = physical_centre(field.geometry());
     const auto front = surface_under(field, scene.isovalue, centre, towards);
     const auto back = surface_under(field, scene.isovalue, centre, -towards);
@@ -27,7 +27,7 @@ TEST(ProbeRoute, a_click_meets_the_surface_nearest_to_the_viewer) {
 
 TEST(ProbeRoute, beside_the_middle_the_nearest_surface_in_view_is_taken) {
     const scenes::Scene scene = scenes::make_volume("torus:48x48x24");
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     const Vec3 centre = physical_centre(field.geometry());
     ASSERT_FALSE(surface_under(field, scene.isovalue, centre, towards)) << "the hole";
     const auto found = surface_in_view(field, scene.isovalue, towards, up);
@@ -38,7 +38,7 @@ TEST(ProbeRoute, beside_the_middle_the_nearest_surface_in_view_is_taken) {
 
 TEST(ProbeRoute, a_tool_that_comes_from_in_front_rests_with_the_point_that_touches_first) {
     const scenes::Scene scene = scenes::make_volume("sphere:48x48x48");
-    const Field field(scene.volume);
+    const Field field = linear_field(scene.volume);
     const Vec3 at = physical_centre(field.geometry()) + Vec3(6, 0, 0);
     const Vec3 bare = tool_on_surface(field, scene.isovalue, at, towards, {}).value();
     EXPECT_EQ(bare, surface_under(field, scene.isovalue, at, towards));
@@ -58,7 +58,8 @@ TEST(ProbeRoute, a_tool_that_comes_from_in_front_rests_with_the_point_that_touch
 
 TEST(ProbeRoute, a_single_slice_has_a_front) {
     const Geometry geometry{Index3(9, 9, 1)};
-    const Field field(Volume(geometry, std::vector<std::uint8_t>(81, 200)), Solid::above, 0.0);
+    const Field field =
+        linear_field(Volume(geometry, std::vector<std::uint8_t>(81, 200)), Solid::above, 0.0);
     const auto surface = surface_in_view(field, 100, towards, up);
     ASSERT_TRUE(surface);
     EXPECT_GT((*surface)[2], 0);

@@ -261,7 +261,7 @@ TEST_F(Brushes, another_volume_begins_with_the_brush_off_and_a_radius_that_fits)
     panel.brush_controls().set_history(2, 1, true);
     Geometry small;
     small.size = {12, 12, 12};
-    const Field other(Volume(small, std::vector<std::uint8_t>(12 * 12 * 12, 9)));
+    const Field other = linear_field(Volume(small, std::vector<std::uint8_t>(12 * 12 * 12, 9)));
     begin(other, 4);
     EXPECT_FALSE(brush().on);
     EXPECT_FALSE(brush().value);

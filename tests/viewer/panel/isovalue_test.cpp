@@ -296,7 +296,7 @@ TEST_F(Isovalue, any_data_can_be_shown_and_stepped_through) {
         }
         Geometry geometry;
         geometry.size = {static_cast<int>(samples.size()), 1, 1};
-        const Field data(Volume(geometry, samples));
+        const Field data = linear_field(Volume(geometry, samples));
         begin(data, data.volume().minimum());
         commands.clear();
         chart()->setFocus();

@@ -313,7 +313,7 @@ TEST_F(Presets, those_of_ct_are_offered_for_hounsfield_units_only) {
     cells.resize(1728, 190);
     Geometry geometry;
     geometry.size = {12, 12, 12};
-    begin(Field(Volume(geometry, cells)), 90);
+    begin(linear_field(Volume(geometry, cells)), 90);
     EXPECT_EQ(offered(), (QStringList{"Dense parts", "Outer surface", "Soft parts", "MR",
                                       "Microscopy", "Grey"}));
     set();

@@ -18,7 +18,7 @@ struct DrawnBall {
     ExtractedSurface label;
 
     DrawnBall() {
-        const Field field(scenes::ball(support::cube(16)));
+        const Field field = linear_field(scenes::ball(support::cube(16)));
         RenderMesh triangle;
         triangle.positions = {-5, -9, -5, 5, -9, -5, 0, -9, 5};
         triangle.normals = {0, -1, 0, 0, -1, 0, 0, -1, 0};

@@ -12,7 +12,8 @@ namespace palpate::viewer {
 namespace {
 
 Field flat(const Field& field) {
-    return Field(flattened(field.samples(), field.moment()), field.solid(), field.background());
+    return linear_field(flattened(field.samples(), field.moment()), field.solid(),
+                        field.background());
 }
 
 /// A ball with a hole from a brush of `radius`, at a place on its upper half.
@@ -66,13 +67,13 @@ Field beating(int edge) {
         return std::clamp(128 + 20 * (0.25 * edge - p.norm()), 0.0, 255.0);
     });
     std::vector<Frame> frames{{0, first}, {1, second}};
-    return Field(std::make_shared<const Samples>(std::move(frames), 2));
+    return linear_field(std::make_shared<const Samples>(std::move(frames), 2));
 }
 
 TEST(DrawnChangingScene, after_edits_surface_volume_and_slices_are_those_of_the_flattened_volume) {
     int number = 0;
     for (const Look& look : {surface_alone(), volume_alone(), slices_alone()}) {
-        Field field(scenes::ball(support::cube(80)));
+        Field field = linear_field(scenes::ball(support::cube(80)));
         ShownScene shown;
         open(shown, field, look);
         const QImage before = shown.settled();
@@ -94,7 +95,7 @@ TEST(DrawnChangingScene, after_edits_surface_volume_and_slices_are_those_of_the_
 }
 
 TEST(DrawnChangingScene, an_edit_while_the_first_surface_is_under_way_is_there_in_the_end) {
-    Field field(scenes::ball(support::cube(150)));
+    Field field = linear_field(scenes::ball(support::cube(150)));
     ShownScene shown;
     open(shown, field, surface_alone());
     for (int i = 0; i < 12; ++i) {
@@ -107,7 +108,7 @@ TEST(DrawnChangingScene, an_edit_while_the_first_surface_is_under_way_is_there_i
 }
 
 TEST(DrawnChangingScene, edits_and_levels_in_turns_end_with_the_last_of_both) {
-    Field field(scenes::ball(support::cube(90)));
+    Field field = linear_field(scenes::ball(support::cube(90)));
     ShownScene shown;
     open(shown, field, surface_alone());
     for (int i = 0; i < 8; ++i) {
@@ -124,7 +125,7 @@ TEST(DrawnChangingScene, edits_and_levels_in_turns_end_with_the_last_of_both) {
 }
 
 TEST(DrawnChangingScene, undoing_an_edit_shows_the_volume_as_before) {
-    const Field field(scenes::ball(support::cube(64)));
+    const Field field = linear_field(scenes::ball(support::cube(64)));
     ShownScene shown;
     open(shown, field, surface_alone());
     const QImage before = shown.settled();
@@ -155,20 +156,20 @@ TEST(DrawnChangingScene, a_sequence_that_has_played_stands_at_its_last_moment) {
 }
 
 TEST(DrawnChangingScene, a_new_volume_takes_the_place_of_one_that_is_edited) {
-    Field field(scenes::ball(support::cube(120)));
+    Field field = linear_field(scenes::ball(support::cube(120)));
     ShownScene shown;
     open(shown, field, surface_alone());
     for (int i = 0; i < 3; ++i) {
         field.use(dab(field, 128, i, 20).samples);
         shown.scene.update_field(field);
     }
-    const Field other(scenes::ball(support::cube(50)));
+    const Field other = linear_field(scenes::ball(support::cube(50)));
     open(shown, other, surface_alone());
     EXPECT_LT(difference(picture_of(other, surface_alone()), shown.settled()), 0.01);
 }
 
 TEST(DrawnChangingScene, pictures_come_while_a_stroke_goes_on) {
-    Field field(scenes::ball(support::cube(100)));
+    Field field = linear_field(scenes::ball(support::cube(100)));
     ShownScene shown;
     open(shown, field, surface_alone());
     const QImage before = shown.settled();
@@ -185,10 +186,10 @@ TEST(DrawnChangingScene, pictures_come_while_a_stroke_goes_on) {
 
 TEST(ChangingScene, another_grid_is_no_version) {
     ShownScene shown;
-    const Field field(scenes::ball(support::cube(20)));
+    const Field field = linear_field(scenes::ball(support::cube(20)));
     EXPECT_THROW(shown.scene.update_field(field), std::invalid_argument);
     shown.scene.set_field(field, 128);
-    EXPECT_THROW(shown.scene.update_field(Field(scenes::ball(support::cube(21)))),
+    EXPECT_THROW(shown.scene.update_field(linear_field(scenes::ball(support::cube(21)))),
                  std::invalid_argument);
 }
 

@@ -102,7 +102,7 @@ TEST(LocalTetrahedra, patches_of_a_smooth_field_are_curved) {
 TEST(LocalTetrahedra, planes_are_those_of_the_field_at_a_point_on_the_surface) {
     for (const Solid solid : {Solid::above, Solid::below}) {
         const Field field = support::oblique_field(9).field;
-        const Field sided(field.volume(), solid);
+        const Field sided = linear_field(field.volume(), solid);
         Random random(3);
         for (int i = 0; i < 100; ++i) {
             const LatticePoint point = locate(random.point(1, 15));
@@ -120,8 +120,8 @@ TEST(LocalTetrahedra, planes_are_those_of_the_field_at_a_point_on_the_surface) {
 }
 
 TEST(LocalTetrahedra, of_a_constant_field_have_neither_patch_nor_plane) {
-    const Field field(support::volume_of<std::uint8_t>(support::grid(support::cube(8)),
-                                                       [](const Index3&) { return 5; }));
+    const Field field = linear_field(support::volume_of<std::uint8_t>(
+        support::grid(support::cube(8)), [](const Index3&) { return 5; }));
     for (const LocalTetrahedron& t : local_tetrahedra(field, locate(Vec3(4, 4, 4)), 5)) {
         EXPECT_TRUE(t.patch.empty());
         EXPECT_FALSE(t.plane);

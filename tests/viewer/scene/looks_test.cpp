@@ -19,7 +19,7 @@ run::LoadedVolume loaded_from(const Overlay& overlay) {
 
 struct Torus : ShownScene {
     scenes::Scene torus = scenes::make_volume("torus:48x48x32");
-    Field field{torus.volume};
+    Field field = linear_field(torus.volume);
 
     explicit Torus(const Look& look) {
         scene.set_look(look);

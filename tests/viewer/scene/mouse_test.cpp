@@ -17,7 +17,7 @@ struct Hands : ShownScene {
     Vec3 dragged = Vec3::Zero();
 
     Hands() {
-        scene.set_field(Field(scenes::ball(support::cube(32))), 128);
+        scene.set_field(linear_field(scenes::ball(support::cube(32))), 128);
         // The middle of the grid is the origin; 0.2 mm a pixel.
         scene.set_camera({Vec3::Zero(), Vec3(0, -1, 0), Vec3(0, 0, 1), 32});
         QObject::connect(&scene, &Scene::camera_moved, [this] { ++moves; });

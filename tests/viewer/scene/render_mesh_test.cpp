@@ -43,7 +43,8 @@ Vec3 normal(const RenderMesh& mesh, std::int32_t i) {
 
 /// A ball of radius 0.35 * 40 mm, seen from `origin`.
 RenderMesh ball_mesh(const Vec3& origin = Vec3::Zero()) {
-    const Field field(scenes::ball(support::cube(40), 0.35, 1.4, SampleType::float32));
+    const Field field =
+        linear_field(scenes::ball(support::cube(40), 0.35, 1.4, SampleType::float32));
     return render_mesh(pictures::shaded_surface(field, 0.5).surface, origin);
 }
 

@@ -22,7 +22,7 @@ Field ball(const Vec3& origin = Vec3::Zero()) {
     Geometry geometry = volume.geometry();
     geometry.origin = origin;
     const auto samples = volume.samples<float>();
-    return Field(Volume(geometry, std::vector<float>(samples.begin(), samples.end())));
+    return linear_field(Volume(geometry, std::vector<float>(samples.begin(), samples.end())));
 }
 
 /// From the front, so that a millimetre is 4 pixels in a picture of 400 x 320.
@@ -62,7 +62,7 @@ TEST(DrawnScene, mirrored_and_oblique_grids_are_seen_where_their_samples_lie) {
     for (const bool volume : {false, true}) {
         for (const Mat3& direction : {mirrored, oblique}) {
             // A bright corner at low indices, nothing else.
-            const Field field(support::volume_of<std::uint8_t>(
+            const Field field = linear_field(support::volume_of<std::uint8_t>(
                 support::grid(Index3(32, 24, 20), Vec3(1, 1.5, 2), Vec3(40, -70, 12), direction),
                 [](const Index3& i) { return (i - Index3(6, 5, 4)).norm() < 4 ? 200 : 0; }));
             ShownScene shown;
@@ -262,8 +262,8 @@ TEST(DrawnScene,
 
 TEST(DrawnScene, slices_cut_at_the_crosshair) {
     // Bright where x is high: the plane across x is bright or dark with the crosshair.
-    const Field field(support::volume_of<std::uint8_t>(support::grid(support::cube(32)),
-                                                       [](const Index3& i) { return i[0] * 8; }));
+    const Field field = linear_field(support::volume_of<std::uint8_t>(
+        support::grid(support::cube(32)), [](const Index3& i) { return i[0] * 8; }));
     ShownScene shown;
     Look look = bare();
     look.surface = false;
@@ -281,7 +281,7 @@ TEST(DrawnScene, slices_cut_at_the_crosshair) {
 
 TEST(DrawnScene, a_maximum_intensity_projection_shows_the_brightest_sample_of_each_line_of_sight) {
     // A dim block, and behind it, hidden in every other way, a bright rod.
-    const Field field(
+    const Field field = linear_field(
         support::volume_of<std::uint8_t>(support::grid(support::cube(32)), [](const Index3& i) {
             if (i[1] > 24 && std::abs(i[0] - 10) < 3) return 240;
             return (i.array() > 3).all() && (i.array() < 28).all() ? 80 : 0;
@@ -317,7 +317,7 @@ TEST(DrawnScene, a_maximum_intensity_projection_shows_the_brightest_sample_of_ea
 }
 
 TEST(DrawnScene, can_be_destroyed_while_it_renders) {
-    const Field noise(
+    const Field noise = linear_field(
         support::noise_volume<std::uint8_t>(support::grid(support::cube(128)), 3, 0, 256));
     for (const int frames : {0, 1, 2}) {
         auto shown = std::make_unique<ShownScene>();

@@ -99,7 +99,7 @@ void expect_same(const SurfaceBlocks& a, const SurfaceBlocks& b) {
 }
 
 Field noise(const Geometry& geometry, Solid solid = Solid::above) {
-    return Field(support::noise_volume<std::int16_t>(geometry, 5, -300, 1000), solid, -77);
+    return linear_field(support::noise_volume<std::int16_t>(geometry, 5, -300, 1000), solid, -77);
 }
 
 TEST(SurfaceBlocks, are_the_surface_with_its_normals_on_every_grid) {
@@ -150,8 +150,8 @@ TEST(SurfaceBlocks, meet_without_cracks) {
 }
 
 TEST(SurfaceBlocks, meet_without_cracks_when_they_are_simplified) {
-    const Field ball(scenes::ball(support::cube(100)));
-    const Field waves(support::volume_of<float>(
+    const Field ball = linear_field(scenes::ball(support::cube(100)));
+    const Field waves = linear_field(support::volume_of<float>(
         support::grid({90, 80, 70}, {1, 1.1, 0.9}, {0, 0, 0}, support::oblique_direction()),
         [](const Index3& i) {
             return std::sin(0.11 * i[0]) + std::cos(0.13 * i[1]) * std::sin(0.09 * i[2]);
@@ -172,7 +172,7 @@ TEST(SurfaceBlocks, meet_without_cracks_when_they_are_simplified) {
 TEST(SurfaceBlocks, after_edits_are_those_of_the_flattened_volume) {
     const Geometry g = support::grid({75, 66, 40}, {1, 1.25, 0.8}, {10, 0, -5});
     Field field = noise(g);
-    Field smooth(scenes::ball(support::cube(70)));
+    Field smooth = linear_field(scenes::ball(support::cube(70)));
     support::Random random(11);
     for (const int every : {1, 2, 3}) {
         for (Field* one : {&field, &smooth}) {
@@ -197,14 +197,15 @@ TEST(SurfaceBlocks, after_edits_are_those_of_the_flattened_volume) {
                 ASSERT_EQ(blocks.renew(version(now, samples, every), level, always, all),
                           SurfaceBlocks::Outcome::done);
             }
-            const Field flat(flattened(now.samples()), now.solid(), now.background());
+            const Field flat =
+                linear_field(flattened(now.samples()), now.solid(), now.background());
             expect_same(blocks, blocks_of(flat, level, every));
         }
     }
 }
 
 TEST(SurfaceBlocks, a_small_edit_costs_few_blocks_and_the_others_stay_as_they_are) {
-    Field field(scenes::ball(support::cube(128)));
+    Field field = linear_field(scenes::ball(support::cube(128)));
     SurfaceBlocks blocks = blocks_of(field, 128);
     const auto simple = blocks.simplified(5'000);
     const MeshBlocks before = blocks.meshes();
@@ -227,10 +228,11 @@ TEST(SurfaceBlocks, between_two_frames_are_those_of_the_samples_between_them) {
     for (int i = 0; i < 2; ++i) {
         frames.push_back({0.5 * i, support::noise_volume<float>(g, 3 + std::uint64_t(i), 0, 1)});
     }
-    Field field(std::make_shared<const Samples>(frames), Solid::above, 0);
+    Field field = linear_field(std::make_shared<const Samples>(frames), Solid::above, 0);
     for (const double time : {0.0, 0.2, 0.5}) {
         field.set_time(time);
-        const Field flat(flattened(field.samples(), field.moment()), Solid::above, 0);
+        const Field flat =
+            linear_field(flattened(field.samples(), field.moment()), Solid::above, 0);
         expect_same(blocks_of(field, 0.6), blocks_of(flat, 0.6));
     }
 }
@@ -285,7 +287,7 @@ TEST(SampleBlock, changes_between_versions_are_found_by_their_bricks) {
     // The same edit elsewhere, another volume, another side: everything.
     EXPECT_EQ(changed_between(first, noise(support::grid(support::cube(50)))),
               whole_box(first.geometry()));
-    EXPECT_EQ(changed_between(first, Field(first.shared_samples(), Solid::below, -77)),
+    EXPECT_EQ(changed_between(first, linear_field(first.shared_samples(), Solid::below, -77)),
               whole_box(first.geometry()));
 }
 

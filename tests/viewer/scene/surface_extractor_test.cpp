@@ -49,7 +49,7 @@ auto finished(std::uint64_t request) {
 }
 
 Field ball(int edge) {
-    return Field(scenes::ball(support::cube(edge)));
+    return linear_field(scenes::ball(support::cube(edge)));
 }
 
 TEST(SurfaceExtractor, is_coarse_first_and_then_as_the_proxy_meets_it) {
@@ -125,8 +125,8 @@ TEST(SurfaceExtractor, can_be_destroyed_while_it_extracts) {
     {
         SurfaceExtractor work(results.into());
         work.ask(1,
-                 Field(support::noise_volume<std::uint8_t>(support::grid(support::cube(160)), 3, 0,
-                                                           256)),
+                 linear_field(support::noise_volume<std::uint8_t>(support::grid(support::cube(160)),
+                                                                  3, 0, 256)),
                  128);
         ASSERT_TRUE(results.wait_for([](const Results& r) { return !r.made.empty(); }));
     }
@@ -136,9 +136,10 @@ TEST(SurfaceExtractor, can_be_destroyed_while_it_extracts) {
 TEST(SurfaceExtractor, a_dropped_request_gives_no_surface) {
     Results results;
     SurfaceExtractor work(results.into());
-    work.ask(
-        1, Field(support::noise_volume<std::uint8_t>(support::grid(support::cube(160)), 3, 0, 256)),
-        128);
+    work.ask(1,
+             linear_field(
+                 support::noise_volume<std::uint8_t>(support::grid(support::cube(160)), 3, 0, 256)),
+             128);
     work.forget();
     work.ask(2, ball(16), 128);
     ASSERT_TRUE(results.wait_for(finished(2)));

@@ -20,7 +20,7 @@ bool is_red(QRgb p) {
 
 /// A ball of 32 voxels, seen from the front; 0.2 mm a pixel.
 struct Ball : ShownScene {
-    Field field{scenes::ball(support::cube(32))};
+    Field field = linear_field(scenes::ball(support::cube(32)));
 
     explicit Ball(const Look& look) {
         scene.set_look(look);
@@ -81,7 +81,7 @@ TEST(DrawnSurfaces, of_another_volume_are_its_own_and_all_follow_edits) {
     const Blob half = blob(shown.settled("surfaces_edited"), is_red);
     EXPECT_NEAR(half.right, 200, 4);
     EXPECT_LT(half.left, 160);
-    shown.scene.set_field(Field(scenes::ball(support::cube(16))), 128);
+    shown.scene.set_field(linear_field(scenes::ball(support::cube(16))), 128);
     shown.scene.set_camera({Vec3::Zero(), Vec3(0, -1, 0), Vec3(0, 0, 1), 32});
     const Blob small = blob(shown.settled(), is_red);
     EXPECT_LT(small.right - small.left, half.bottom - half.top);
@@ -273,7 +273,7 @@ TEST(DrawnPatch, of_the_level_felt_is_seen_through_the_surface_that_was_pressed_
 }
 
 TEST(ScenePatch, lies_on_the_isosurface_near_the_point) {
-    const Field field(scenes::ball(support::cube(48)));
+    const Field field = linear_field(scenes::ball(support::cube(48)));
     const Vec3 at = cast_ray(field, 128, Vec3(-40, 1, 2), Vec3(0, 1, 2)).point;
     const auto patch = local_patch(field, at, 128);
     ASSERT_TRUE(patch);

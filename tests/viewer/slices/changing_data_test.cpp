@@ -10,7 +10,8 @@ namespace palpate::viewer {
 namespace {
 
 Field flat(const Field& field) {
-    return Field(flattened(field.samples(), field.moment()), field.solid(), field.background());
+    return linear_field(flattened(field.samples(), field.moment()), field.solid(),
+                        field.background());
 }
 
 Field carved(const Field& field, const Vec3& at, double radius) {
@@ -30,8 +31,8 @@ Field moving_ball(const Mat3& direction) {
         return 0.5 + 0.1 * (12 - p.norm());
     });
     std::vector<Frame> frames{{0, first.volume()}, {2, later}};
-    return Field(std::make_shared<const Samples>(std::move(frames)), first.solid(),
-                 first.background());
+    return linear_field(std::make_shared<const Samples>(std::move(frames)), first.solid(),
+                        first.background());
 }
 
 void expect_same(const SliceSamples& a, const SliceSamples& b, double within) {

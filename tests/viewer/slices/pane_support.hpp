@@ -22,7 +22,7 @@ namespace palpate::viewer {
 /// A ball of 20 mm round the origin (0.5 is its surface) on a grid of 48 x 40 x 33 samples.
 inline Field ball_on(const Mat3& direction, const Vec3& spacing = {1, 1.25, 1.5}) {
     const Geometry geometry = scenes::centred({48, 40, 33}, spacing, direction);
-    return Field(scenes::make_volume("sphere", geometry, SampleType::float32).volume);
+    return linear_field(scenes::make_volume("sphere", geometry, SampleType::float32).volume);
 }
 
 /// A pane that is shown, and what it has told.

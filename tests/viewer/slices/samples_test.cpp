@@ -15,7 +15,7 @@ Field ramp(SampleType type) {
     const Geometry geometry = support::grid({7, 6, 5}, {1, 2, 3}, {10, 20, 30}, direction);
     const auto value = [](const Index3& i) { return i[0] + 10 * i[1] + 40 * i[2]; };
     return with_type(type, [&](auto zero) {
-        return Field(support::volume_of<decltype(zero)>(geometry, value));
+        return linear_field(support::volume_of<decltype(zero)>(geometry, value));
     });
 }
 
@@ -43,7 +43,7 @@ TEST(SliceSamples, are_those_of_the_volume_whatever_its_type_axis_and_direction)
 }
 
 TEST(SliceSamples, have_a_ring_of_background_and_are_background_outside) {
-    const Field field(ramp(SampleType::int16).volume(), Solid::above, -77);
+    const Field field = linear_field(ramp(SampleType::int16).volume(), Solid::above, -77);
     const SlicePlane plane = slice_plane(field.geometry(), 1);
     SliceSamples samples(field, plane);
     samples.go_to(2.5);

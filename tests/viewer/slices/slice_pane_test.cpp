@@ -269,7 +269,7 @@ TEST(SlicePane, the_same_samples_again_keep_the_view_and_others_do_not) {
     shown.pane.set_window(0.2, 0.4);
     shown.pane.set_crosshair({1, 2, 3});
     const Vec3 corner = shown.pane.point_at(QPointF(0, 0));
-    shown.pane.set_field(Field(field.volume(), Solid::below), 0.5);
+    shown.pane.set_field(linear_field(field.volume(), Solid::below), 0.5);
     EXPECT_EQ(shown.pane.point_at(QPointF(0, 0)), corner);
     EXPECT_EQ(shown.pane.window_low(), 0.2);
     EXPECT_EQ(shown.pane.crosshair(), Vec3(1, 2, 3));
@@ -337,8 +337,8 @@ TEST(SlicePane, odd_sizes_and_places_do_no_harm) {
     shown.picture();
     for (int i = 0; i < 80; ++i) shown.wheel({1, 30}, -120, Qt::ControlModifier);
     shown.picture();
-    ShownPane single(0, Field(support::volume_of<float>(support::grid({1, 1, 1}),
-                                                        [](const Index3&) { return 5; })));
+    ShownPane single(0, linear_field(support::volume_of<float>(support::grid({1, 1, 1}),
+                                                               [](const Index3&) { return 5; })));
     single.picture();
 }
 

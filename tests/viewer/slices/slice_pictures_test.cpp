@@ -48,7 +48,7 @@ struct ThreePanes {
 
 TEST(SlicePictures, show_the_ct_of_a_head) {
     if (!there_is("cthead_unc.nrrd")) GTEST_SKIP() << "needs cthead_unc.nrrd";
-    const Field field(real("cthead_unc.nrrd"));
+    const Field field = linear_field(real("cthead_unc.nrrd"));
     ThreePanes shown(field, 500, physical_centre(field.geometry()) + Vec3(30, -140, 20));
     keep_picture(shown.window, "slices_ct_head");
     const QPoint middle = shown.panes[2]->rect().center();
@@ -66,7 +66,7 @@ TEST(SlicePictures, show_a_small_pane_under_the_pointer) {
     if (!there_is("cthead_unc.nrrd")) GTEST_SKIP() << "needs cthead_unc.nrrd";
     SlicePane pane(2);
     pane.resize(240, 260);
-    pane.set_field(Field(real("cthead_unc.nrrd")), 500);
+    pane.set_field(linear_field(real("cthead_unc.nrrd")), 500);
     pane.show();
     wait_until_exposed(pane);
     QMouseEvent move(QEvent::MouseMove, QPointF(140, 120), Qt::NoButton, Qt::NoButton,
@@ -77,7 +77,7 @@ TEST(SlicePictures, show_a_small_pane_under_the_pointer) {
 
 TEST(SlicePictures, show_a_lobster) {
     if (!there_is("lobster.nrrd")) GTEST_SKIP() << "needs lobster.nrrd";
-    const Field field(real("lobster.nrrd"));
+    const Field field = linear_field(real("lobster.nrrd"));
     ThreePanes shown(field, 40, physical_centre(field.geometry()) + Vec3(0, 0, 120));
     keep_picture(shown.window, "slices_lobster");
 }
@@ -93,7 +93,7 @@ TEST(SlicePictures, mirrored_and_aslant_grids_show_the_same_head_in_the_same_ori
     for (const auto& [name, geometry] :
          {std::pair{"slices_mirrored", mirrored}, {"slices_aslant", aslant}}) {
         const auto samples = head.samples<std::uint16_t>();
-        const Field field(
+        const Field field = linear_field(
             Volume(geometry, std::vector<std::uint16_t>(samples.begin(), samples.end())));
         ThreePanes shown(field, 500, physical_centre(geometry) + Vec3(20, -150, 10));
         keep_picture(shown.window, name);

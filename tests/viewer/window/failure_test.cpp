@@ -117,12 +117,13 @@ TEST_F(Failures, a_key_that_is_held_switches_once) {
 TEST_F(Failures, each_button_of_the_tool_bar_has_an_icon_and_says_what_it_does) {
     const auto* bar = window_->findChild<QToolBar*>("tools");
     int buttons = 0;
-    for (const QAction* action : bar->actions()) {
+    for (QAction* action : bar->actions()) {
         if (action->isSeparator()) continue;
         ++buttons;
+        const std::string name = action->text().toStdString();
         const auto* button = qobject_cast<QToolButton*>(bar->widgetForAction(action));
-        EXPECT_FALSE(button->icon().isNull()) << action->text();
-        EXPECT_EQ(button->toolButtonStyle(), Qt::ToolButtonIconOnly) << action->text();
+        EXPECT_FALSE(button->icon().isNull()) << name;
+        EXPECT_EQ(button->toolButtonStyle(), Qt::ToolButtonIconOnly) << name;
         EXPECT_FALSE(button->toolTip().isEmpty());
         EXPECT_TRUE(button->toolTip().contains(action->shortcut().toString()));
         EXPECT_TRUE(!action->menu() || !action->menu()->isEmpty());

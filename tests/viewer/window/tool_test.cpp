@@ -124,9 +124,10 @@ TEST_F(ToolInWindow, drills_with_its_own_shape) {
     press(Qt::Key_B);
     wait_until_settled();
     const Tick tick = now().session.tick;
-    const Field field(edits().samples, Solid::above);
+    const Field field = linear_field(edits().samples, Solid::above);
     EXPECT_LT(value_at(field, tick.proxy.scp), tick.proxy.isovalue);
-    EXPECT_GT(value_at(Field(edits().samples->volume()), tick.proxy.scp), tick.proxy.isovalue);
+    EXPECT_GT(value_at(linear_field(edits().samples->volume()), tick.proxy.scp),
+              tick.proxy.isovalue);
     save("tool-drilled");
     choose("Point");
     EXPECT_FALSE(window_->panel().brush_controls().choice().as_tool);
