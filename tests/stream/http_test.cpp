@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
 using support::contains;
 using support::message_of;
 using support::put_bytes;
@@ -171,6 +172,38 @@ TEST(Http, shards_are_read_in_parts_and_a_server_without_parts_is_refused) {
     const auto store = open_store(plain.address("s.zarr"), quick());
     const std::string message = message_of<io::InputError>([&] { (void)volume_of(*store); });
     EXPECT_TRUE(contains(message, "whole files only")) << message;
+}
+
+TEST(Http, shards_that_are_written_anew_after_their_index_was_read_are_noticed) {
+    const ScratchFolder folder;
+    const fs::path zarr = folder / "s.zarr";
+    const VolumeServer server({"--folder", folder.path().string()});
+    StoreOptions with_cache = quick();
+    with_cache.cache_folder = folder / "cache";
+    with_cache.cache_bytes = 1 << 20;
+    const std::tuple<std::string, StoreOptions> ways[] = {{zarr.string(), {}},
+                                                          {server.address("s.zarr"), quick()},
+                                                          {server.address("s.zarr"), with_cache}};
+    for (const auto& [address, options] : ways) {
+        SCOPED_TRACE(address);
+        put_shards(zarr);
+        auto store = open_store(address, options);
+        const auto sample = [&](int z) {
+            return std::to_integer<char>(read_box(*store, 0, {{0, 0, z}, {0, 0, z}}).front());
+        };
+        EXPECT_EQ(sample(0), 'v');
+        put_shards(zarr, false);
+        fs::last_write_time(zarr / "c/0/0/0", fs::file_time_type::clock::now() + 1h);
+        EXPECT_EQ(sample(2), 'u');
+        EXPECT_EQ(sample(0), 'v');
+        store = open_store(address, options);
+        EXPECT_EQ(sample(2), 'u');
+        if (!options.cache_folder.empty()) continue;  // holds all of one time
+        // No chunk is stored any more.
+        put_bytes(zarr / "c/0/0/0", io::test::little(~0ULL) + io::test::little(~0ULL) +
+                                        io::test::little(~0ULL) + io::test::little(~0ULL));
+        EXPECT_EQ(sample(2), 0);
+    }
 }
 
 TEST(Http, endless_redirections_other_protocols_and_silent_hosts_are_errors_in_one_line) {
