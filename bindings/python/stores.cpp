@@ -129,7 +129,13 @@ void bind_open_store(py::module_& module) {
             });
         },
         Unlocked());
-    module.def("_files_at", &stream::files_at, Unlocked());
+    module.def(
+        "_files_at",
+        [](const std::string& address) {
+            return until_ctrl_c(
+                [&](const std::stop_token& stop) { return stream::files_at(address, stop); });
+        },
+        Unlocked());
 }
 
 /// A store as what a Run feels, which brings its samples into memory as they are needed.

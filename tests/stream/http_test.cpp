@@ -290,6 +290,25 @@ TEST(DiskCache, stays_within_its_bound_with_two_users_and_drops_what_was_not_use
     EXPECT_EQ(one->traffic().cached, 1U);  // the last one is still there
 }
 
+TEST(DiskCache, drops_first_what_a_clock_that_was_set_back_has_left_in_the_future) {
+    const ScratchFolder folder;
+    const VolumeServer server({"--raw"});
+    const auto store =
+        open_store(server.address("virtual.zarr"), cached(folder / "cache", 8 << 20));
+    const auto read = [&](int i) {
+        const Index3 at(64 * (i % 12), 64 * (i / 12), 384);
+        (void)read_box(*store, 0, {at, at});
+    };
+    for (int i = 0; i < 24; ++i) read(i);
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "cache")) {
+        if (entry.is_regular_file()) fs::last_write_time(entry, entry.last_write_time() + 24h);
+    }
+    for (int i = 24; i < 44; ++i) read(i);
+    const std::uint64_t before = store->traffic().cached;
+    for (int i = 36; i < 44; ++i) read(i);
+    EXPECT_EQ(store->traffic().cached - before, 8U);
+}
+
 TEST(DiskCache, survives_processes_that_are_killed_while_they_use_it) {
     const ScratchFolder folder;
     const VolumeServer server;
