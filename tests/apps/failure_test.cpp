@@ -245,6 +245,22 @@ TEST(BadOutput, on_a_disk_that_is_full_for_the_path_leaves_no_trace) {
     EXPECT_EQ(support::bytes_of(folder / "a.csv"), "old");
 }
 
+TEST(BadOutput, of_a_recording_on_a_full_disk_is_told_once) {
+    const ScratchFolder folder;
+    const Outcome outcome =
+        Running({"-c",
+                 "ulimit -f 32; exec \"$0\" touch synthetic:sphere:24x24x24 --unpaced -q --device "
+                 "simulated:hand=hold --seconds 2 --record r.csv",
+                 PALPATE_PROGRAM},
+                folder.path(), Stdout::captured, "/bin/bash")
+            .finish();
+    EXPECT_EQ(outcome.status, 5);
+    const auto told = outcome.err.find("recording stopped");
+    EXPECT_NE(told, std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("recording stopped", told + 1), std::string::npos) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "r.csv: is not complete")) << outcome.err;
+}
+
 TEST(BadOutput, names_places_that_cannot_be_written) {
     const ScratchFolder folder;
     put_trajectory(folder);
