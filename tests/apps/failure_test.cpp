@@ -318,6 +318,18 @@ TEST_P(Signal, leaves_no_file_of_an_extraction) {
     expect_interrupted(extract, folder, {});
 }
 
+TEST_P(Signal, ends_what_is_done_to_large_volumes_in_memory) {
+    const ScratchFolder folder;
+    const std::string small = "info synthetic:marschner-lobb:256x256x256 ";
+    for (const std::string& command :
+         {std::string("info synthetic:marschner-lobb:1024x1024x1024"), small + "--smooth 64",
+          small + "--dequantize=1000 --smooth 64 --prefilter"}) {
+        Running info(words_of(command), folder.path());
+        ASSERT_TRUE(comes_true([&] { return info.catches(GetParam()); }));
+        expect_interrupted(info, folder, {});
+    }
+}
+
 TEST_P(Signal, leaves_no_folder_of_a_demo) {
     const ScratchFolder folder;
     Running demo(words_of("demo synthetic:sphere:24x24x24 --duration 100 -o out"), folder.path());

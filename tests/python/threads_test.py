@@ -137,6 +137,10 @@ palpate.motion("slide", palpate.Field(scene.volume), scene.isovalue, settings)
 """) < 10  # of minutes; usually 0.1
 
 
+def test_ctrl_c_ends_the_making_of_a_large_scene():
+    assert interrupted_after("palpate.scene('marschner-lobb:1024x1024x1024')") < 10  # of minutes
+
+
 class SilentAbout(http.server.SimpleHTTPRequestHandler):
     """Answers for all of a folder but the last chunk of the finest level."""
 

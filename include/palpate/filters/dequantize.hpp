@@ -2,7 +2,6 @@
 // and oneTBB to work in parallel. See docs/dequantize.md.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -15,7 +14,7 @@ namespace palpate::filters {
 /// stretched to 16. Nothing for constant data, and for float samples that do not lie on levels:
 /// more than 65536 values, or gaps that are no multiples of the smallest to 1 % of it. One pass
 /// over the samples.
-std::optional<double> level_of(const Volume& volume);
+std::optional<double> level_of(const Volume& volume, const OnProgress& progress = {});
 
 /// The most that the coarsest step may be [samples].
 inline constexpr int greatest_step = 32;
@@ -39,7 +38,7 @@ struct Terraces {
     int rounds() const { return mask ? 160 : 40; }
 };
 /// From up to 200,000 samples. Nothing where data have no levels.
-std::optional<Terraces> terraces_of(const Volume& volume);
+std::optional<Terraces> terraces_of(const Volume& volume, const OnProgress& progress = {});
 /// Why a volume with these terraces is worth dequantizing, in words. Empty where it is not.
 std::string reason_to_dequantize(const Terraces& terraces);
 
@@ -56,9 +55,7 @@ struct DequantizeOptions {
     /// Threads at most, and no more than there are cores. 0: as many. The result is the same, bit
     /// for bit.
     int threads = 0;
-    /// Called from the calling thread with the part done, 0 to 1, many times a second. If it
-    /// throws, the work stops and the exception reaches the caller: throw to cancel.
-    std::function<void(double fraction)> progress = {};
+    OnProgress progress = {};
 };
 
 /// The smoothest samples from which rounding makes the volume's own, as float32: no sample moves by
