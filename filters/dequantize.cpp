@@ -252,29 +252,43 @@ Volume moved_samples(const Volume& volume, std::span<const std::int16_t> moved,
 
 Volume dequantized(Volume volume, const DequantizeOptions& options) {
     check(options);
-    const std::optional<double> level = options.level ? options.level : level_of(volume);
+    const auto tell = [&](double part) {
+        if (options.progress) options.progress(part);
+    };
+    constexpr double first = 0.05;  // of the time
+    const auto at_level = [&](double part) { tell(first * part); };
+    const std::optional<double> level = options.level ? options.level : level_of(volume, at_level);
     if (!level) return as_float32(volume);
     const VolumePart all_of_it{volume, Index3::Zero(), volume.geometry().size};
     const DequantizePlan plan =
         plan_of(*level, volume.minimum(), volume.maximum(), options,
                 [&](int step) { return sites_of(all_of_it, whole_of(volume), step); });
-    double all = 0, done = 0;  // slices
+    const double slices = volume.geometry().size[2];
+    double all = volume.type() == SampleType::float32 ? 2 : 3, done = 0;  // sweeps of all samples
     for (const auto& rounds : plan.rounds) all += rounds.count;
-    all *= volume.geometry().size[2];
+    const auto swept = [&](double part) {
+        done += part;
+        tell(first + (1 - first) * done / all);
+    };
 
     const Parallel parallel = in_parallel(options.threads);
-    Workspace workspace(std::move(volume), parallel);
+    // A few pieces at a time, so that the work can be stopped between them.
+    const Parallel told = [&](int pieces, const std::function<void(int)>& work) {
+        constexpr int few = 64;
+        for (int from = 0; from < pieces; from += few) {
+            const int count = std::min(few, pieces - from);
+            parallel(count, [&](int i) { work(from + i); });
+            swept(double(count) / pieces);
+        }
+    };
+    Workspace workspace(std::move(volume), told);
     const MovedSamples samples = workspace.samples();
     const LevelScale scale = scale_of(plan);
-    const TerracedBricks bricks =
-        terraced_bricks(samples, scale, plan.mask, Index3::Zero(), parallel);
+    const TerracedBricks bricks = terraced_bricks(samples, scale, plan.mask, Index3::Zero(), told);
     for (const auto& rounds : plan.rounds) {
         for (int round = 0; round < rounds.count; ++round) {
             run_round(samples, scale, settings_of(plan, rounds.step), bricks, parallel,
-                      [&](int slices) {
-                          done += slices;
-                          if (options.progress) options.progress(done / all);
-                      });
+                      [&](int count) { swept(count / slices); });
         }
     }
     return std::move(workspace).result(plan);

@@ -19,12 +19,16 @@ constexpr std::size_t most_levels = 65536;
 
 /// The values that occur, ascending; empty if there are more than most_levels.
 template <class T>
-std::vector<double> values_in(std::span<const T> samples) {
+std::vector<double> values_in(std::span<const T> samples, const OnProgress& progress) {
     std::vector<double> values;
+    ReportedItems reported(progress, samples.size(), std::size_t{1} << 20);
     if constexpr (std::is_integral_v<T>) {
         constexpr int lowest = std::numeric_limits<T>::lowest();
         std::vector<std::uint8_t> occurs(std::size_t(std::numeric_limits<T>::max() - lowest) + 1);
-        for (const T s : samples) occurs[std::size_t(s - lowest)] = 1;
+        for (const T s : samples) {
+            occurs[std::size_t(s - lowest)] = 1;
+            reported.done();
+        }
         for (std::size_t i = 0; i < occurs.size(); ++i) {
             if (occurs[i] != 0) values.push_back(double(i) + lowest);
         }
@@ -33,6 +37,7 @@ std::vector<double> values_in(std::span<const T> samples) {
         T last = samples[0];
         found.insert(last);
         for (const T s : samples) {
+            reported.done();
             if (s == last) continue;
             last = s;
             found.insert(s);
@@ -61,9 +66,10 @@ constexpr double steepest = 6;
 
 }  // namespace
 
-std::vector<double> values_of(const Volume& volume) {
-    return with_type(volume.type(),
-                     [&](auto zero) { return values_in(volume.samples<decltype(zero)>()); });
+std::vector<double> values_of(const Volume& volume, const OnProgress& progress) {
+    return with_type(volume.type(), [&](auto zero) {
+        return values_in(volume.samples<decltype(zero)>(), progress);
+    });
 }
 
 std::optional<double> level_of(std::span<const double> values, bool whole_numbers) {
@@ -78,12 +84,12 @@ std::optional<double> level_of(std::span<const double> values, bool whole_number
     return has_levels ? std::optional(smallest) : std::nullopt;
 }
 
-std::optional<double> level_of(const Volume& volume) {
-    return level_of(values_of(volume), volume.type() != SampleType::float32);
+std::optional<double> level_of(const Volume& volume, const OnProgress& progress) {
+    return level_of(values_of(volume, progress), volume.type() != SampleType::float32);
 }
 
-std::optional<Terraces> terraces_of(const Volume& volume) {
-    const std::optional<double> level = level_of(volume);
+std::optional<Terraces> terraces_of(const Volume& volume, const OnProgress& progress) {
+    const std::optional<double> level = level_of(volume, progress);
     if (!level) return std::nullopt;
     Terraces terraces;
     terraces.level = *level;

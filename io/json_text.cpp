@@ -23,8 +23,9 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
     return std::min(at + 1, text.size());
 }
 
-bool is_too_deep(std::string_view text, bool with_comments) {
-    int depth = 0;
+/// Why a document is not parsed; empty: it is.
+std::string flaw_in(std::string_view text, bool with_comments) {
+    int depth = 0, lists = 0;
     for (std::size_t at = 0; at < text.size();) {
         const char c = text[at];
         const std::size_t after = with_comments ? end_of_comment(text, at) : at;
@@ -32,27 +33,32 @@ bool is_too_deep(std::string_view text, bool with_comments) {
             at = after;
             continue;
         }
-        if (c == '[' || c == '{') ++depth;
+        if (c == '[' || c == '{') {
+            ++depth;
+            ++lists;
+        }
         if (c == ']' || c == '}') --depth;
-        if (depth > deepest_json) return true;
+        if (depth > deepest_json) {
+            return "it is nested more than " + std::to_string(deepest_json) + " levels deep";
+        }
+        if (lists > most_json_lists) {
+            return "it has more than " + std::to_string(most_json_lists) + " lists and objects";
+        }
         at = c == '"' ? end_of_string(text, at) : at + 1;
     }
-    return false;
+    return "";
 }
 
 }  // namespace
 
 json parsed_json(std::string_view text, bool with_comments) {
-    if (is_too_deep(text, with_comments)) {
-        throw json::other_error::create(
-            501, "it is nested more than " + std::to_string(deepest_json) + " levels deep",
-            nullptr);
-    }
+    const std::string flaw = flaw_in(text, with_comments);
+    if (!flaw.empty()) throw json::other_error::create(501, flaw, nullptr);
     return json::parse(text, nullptr, true, with_comments);
 }
 
 json parsed_or_discarded(std::string_view text) {
-    if (is_too_deep(text, false)) return json(json::value_t::discarded);
+    if (!flaw_in(text, false).empty()) return json(json::value_t::discarded);
     return json::parse(text, nullptr, false);
 }
 

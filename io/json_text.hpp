@@ -10,9 +10,11 @@ namespace palpate::io {
 /// What a document may be nested at most. Walks through JSON are recursive: deeper ones overflow
 /// the stack.
 inline constexpr int deepest_json = 64;
+/// Lists and objects, each of which takes some 130 bytes, "[]" as well.
+inline constexpr int most_json_lists = 1 << 19;
 
-/// Throws nlohmann::json::exception for what is no JSON or nested deeper. `with_comments`: as in
-/// C++ they are left out.
+/// Throws nlohmann::json::exception for what is no JSON, nested deeper, or has more lists.
+/// `with_comments`: as in C++ they are left out.
 nlohmann::json parsed_json(std::string_view text, bool with_comments = false);
 
 /// The same; discarded (nlohmann::json::is_discarded) instead of an exception.

@@ -75,11 +75,17 @@ std::shared_ptr<const Samples> LiveFrames::newest() const {
     return newest_;
 }
 
-std::shared_ptr<const Samples> LiveFrames::wait(double seconds) const {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, std::chrono::duration<double>(seconds),
-                      [this] { return newest_ != nullptr; });
-    return newest_;
+std::shared_ptr<const Samples> LiveFrames::wait(double seconds, const OnProgress& progress) const {
+    constexpr double between = 0.02;  // [s] two reports of progress
+    for (double waited = 0;; waited += between) {
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait_for(lock, std::chrono::duration<double>(between),
+                              [this] { return newest_ != nullptr; });
+            if (newest_ || waited >= seconds) return newest_;
+        }
+        if (progress) progress(waited / seconds);
+    }
 }
 
 LiveStatus LiveFrames::status(SteadyTime now) const {

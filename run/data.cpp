@@ -198,7 +198,7 @@ std::string Data::save(const std::filesystem::path& path, const io::Progress& pr
 }
 
 std::filesystem::path Data::rescue() {
-    // Also if its original was replaced meanwhile: there is no choice left.
+    // Nothing of the original is read: a silent server would keep the edits waiting.
     if (loaded_.streamed) loaded_.streamed->opened.is_rescue = true;
     std::string problems;
     for (const std::filesystem::path& place : places_of_rescue()) {

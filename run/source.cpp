@@ -33,11 +33,13 @@ LoadedVolume loaded_from(const scenes::Scene& scene, const Source& source) {
     return loaded;
 }
 
-LoadedVolume make_beating(const Source& source, const scenes::Scene& first) {
+LoadedVolume make_beating(const Source& source, const scenes::Scene& first,
+                          const io::Progress& progress) {
     const Geometry grid = first.volume.geometry();
     const SampleType type = first.volume.type();
-    const auto frame = [grid, type](int number, const io::Progress&) {
-        return scenes::beating_frame(grid, double(number) / scenes::beating_frames, type).volume;
+    const auto frame = [grid, type](int number, const io::Progress& each) {
+        const double phase = double(number) / scenes::beating_frames;
+        return scenes::beating_frame(grid, phase, type, each).volume;
     };
     LoadedVolume loaded = loaded_from(first, source);
     loaded.time_steps = scenes::beating_frames;
@@ -46,7 +48,7 @@ LoadedVolume make_beating(const Source& source, const scenes::Scene& first) {
             throw std::invalid_argument(loaded.name + " has " + std::to_string(loaded.time_steps) +
                                         " frames, from 0");
         }
-        loaded.volume = frame(*source.frame, {});
+        loaded.volume = frame(*source.frame, progress);
         return loaded;
     }
     const double usual = scenes::beating_period / scenes::beating_frames;
@@ -56,21 +58,22 @@ LoadedVolume make_beating(const Source& source, const scenes::Scene& first) {
 }
 
 LoadedVolume loaded_of(const SyntheticSource& synthetic, const Source& source,
-                       const io::Progress&) {
+                       const io::Progress& progress) {
     if (source.frame && !is_beating(synthetic.scene)) {
         throw std::invalid_argument(name_of(source) + ": is no sequence, so it has no time steps");
     }
-    const scenes::Scene scene = scenes::make_volume(synthetic.scene, synthetic.type);
-    return is_beating(synthetic.scene) ? make_beating(source, scene) : loaded_from(scene, source);
+    const scenes::Scene scene = scenes::make_volume(synthetic.scene, synthetic.type, progress);
+    return is_beating(synthetic.scene) ? make_beating(source, scene, progress)
+                                       : loaded_from(scene, source);
 }
 
-LoadedVolume loaded_of(const LiveSource& live, const Source& source, const io::Progress&) {
+LoadedVolume loaded_of(const LiveSource& live, const Source& source, const io::Progress& progress) {
     if (source.smooth > 0 || source.dequantize > 0 || source.prefilter) {
         throw std::invalid_argument(live.path +
                                     ": a live source cannot be smoothed, dequantized or sharpened");
     }
     auto frames = std::make_shared<const io::LiveFrames>(live.path);
-    const std::shared_ptr<const Samples> samples = frames->wait(longest_wait);
+    const std::shared_ptr<const Samples> samples = frames->wait(longest_wait, progress);
     if (!samples) {
         throw io::InputError(live.path +
                              ": no frame has come yet; start the program that writes it");
@@ -238,6 +241,12 @@ LoadedVolume loaded_of(const StoreSource& from, const Source& source,
     return loaded;
 }
 
+/// The progress of a part of the work.
+io::Progress part(const io::Progress& progress, double from, double to) {
+    if (!progress) return {};
+    return [&progress, from, to](double done) { progress(from + (to - from) * done); };
+}
+
 /// What is done to every frame before anything else sees it.
 class Preparation {
   public:
@@ -251,28 +260,25 @@ class Preparation {
         if (dequantize_ != 0) {
             filters::DequantizeOptions options;
             options.rounds = dequantize_;
-            options.progress = progress;
+            options.progress = part(progress, 0, 0.8);
             prepared = filters::dequantized(std::move(prepared), options);
         }
-        prepared = smoothed(prepared, smooth_);
-        return prefilter_ ? sharpened(prepared) : prepared;
+        prepared = smoothed(prepared, smooth_, part(progress, 0.8, 0.9));
+        if (prefilter_) prepared = sharpened(prepared, part(progress, 0.9, 1));
+        if (progress) progress(1);
+        return prepared;
     }
 
     /// The progress of reading, if that is the first part of the work, and that of the rest.
     io::Progress reading(const io::Progress& progress) const { return part(progress, 0, reading_); }
     io::Progress preparing(const io::Progress& progress) const {
-        return part(progress, dequantize_ != 0 ? reading_ : 1, 1);
+        return part(progress, reading_, 1);
     }
 
   private:
-    static io::Progress part(const io::Progress& progress, double from, double to) {
-        if (!progress) return {};
-        return [&progress, from, to](double done) { progress(from + (to - from) * done); };
-    }
-
     int dequantize_, smooth_;
     bool prefilter_;
-    double reading_ = dequantize_ != 0 ? 0.2 : 1;  ///< of the time
+    double reading_ = any() ? 0.2 : 1;  ///< of the time
 };
 
 }  // namespace
@@ -293,11 +299,12 @@ LoadedVolume load(const Source& source, const io::Progress& progress) {
         [&](const auto& from) { return loaded_of(from, source, prepare.reading(progress)); },
         source.from);
     if (!prepare.any()) return loaded;
-    if (source.dequantize > 0 && !filters::level_of(loaded.volume)) {
+    const io::Progress preparing = prepare.preparing(progress);
+    if (source.dequantize > 0 && !filters::level_of(loaded.volume, part(preparing, 0, 0))) {
         loaded.notes.emplace_back(
             "its samples do not lie on levels, so there is no rounding to undo");
     }
-    loaded.volume = prepare(std::move(loaded.volume), prepare.preparing(progress));
+    loaded.volume = prepare(std::move(loaded.volume), preparing);
     if (loaded.sequence.count() == 0) return loaded;
     loaded.sequence.type = loaded.volume.type();
     loaded.sequence.reader = [read = std::move(loaded.sequence.reader), prepare](

@@ -11,13 +11,18 @@
 namespace palpate::run {
 namespace {
 
+/// Samples between two reports of progress: milliseconds.
+constexpr std::size_t reported_samples = std::size_t{1} << 20;
+
 /// How many samples have the least value, and the least of the others.
 template <class T>
-std::pair<std::int64_t, double> above_least(const Volume& volume) {
+std::pair<std::int64_t, double> above_least(const Volume& volume, const OnProgress& progress) {
+    ReportedItems reported(progress, volume.samples<T>().size(), reported_samples);
     const T least = static_cast<T>(volume.minimum());
     std::int64_t count = 0;
     T next = static_cast<T>(volume.maximum());
     for (const T s : volume.samples<T>()) {
+        reported.done();
         count += s == least;
         if (s > least && s < next) next = s;
     }
@@ -25,13 +30,16 @@ std::pair<std::int64_t, double> above_least(const Volume& volume) {
 }
 
 template <class T>
-void count(const Volume& volume, std::optional<double> padding, Histogram& h) {
+void count(const Volume& volume, std::optional<double> padding, Histogram& h,
+           const OnProgress& progress) {
+    ReportedItems reported(progress, volume.samples<T>().size(), reported_samples);
     const double scale = static_cast<double>(h.counts.size()) / (h.high - h.low);
     const auto last = static_cast<std::int64_t>(h.counts.size()) - 1;
     double sum = 0;
     double squares = 0;
     std::int64_t counted = 0;
     for (const T s : volume.samples<T>()) {
+        reported.done();
         if (padding && static_cast<double>(s) == *padding) continue;
         ++counted;
         const double value = static_cast<double>(s) - h.low;
@@ -61,12 +69,13 @@ bool is_filler(const Class& below, const Class& middle, const Class& above) {
 
 }  // namespace
 
-std::optional<double> padding_of(const Volume& volume, std::optional<double> header) {
+std::optional<double> padding_of(const Volume& volume, std::optional<double> header,
+                                 const OnProgress& progress) {
     constexpr double least_gap = 0.1, least_share = 0.001;
     const double least = volume.minimum(), greatest = volume.maximum();
     if (!(least < 0) || !(greatest > least)) return std::nullopt;
-    const auto [count, next] =
-        with_type(volume.type(), [&](auto zero) { return above_least<decltype(zero)>(volume); });
+    const auto [count, next] = with_type(
+        volume.type(), [&](auto zero) { return above_least<decltype(zero)>(volume, progress); });
     if (!(next < greatest)) return std::nullopt;  // a mask
     const auto all = static_cast<double>(sample_count(volume.geometry()));
     const bool stands_apart = next - least >= least_gap * (greatest - next) &&
@@ -74,11 +83,13 @@ std::optional<double> padding_of(const Volume& volume, std::optional<double> hea
     return stands_apart || header == least ? std::optional(least) : std::nullopt;
 }
 
-Histogram histogram_of(const Volume& volume, int bins, std::optional<double> padding) {
+Histogram histogram_of(const Volume& volume, int bins, std::optional<double> padding,
+                       const OnProgress& progress) {
     Histogram h{volume.minimum(), volume.maximum(), {}, volume.minimum(), 0};
     if (padding) {
-        h.low = with_type(volume.type(),
-                          [&](auto zero) { return above_least<decltype(zero)>(volume).second; });
+        h.low = with_type(volume.type(), [&](auto zero) {
+            return above_least<decltype(zero)>(volume, progress).second;
+        });
     }
     h.greatest = volume.maximum();
     if (h.high == h.low) {
@@ -94,7 +105,8 @@ Histogram histogram_of(const Volume& volume, int bins, std::optional<double> pad
         h.whole_numbers = true;
     }
     h.counts.assign(static_cast<std::size_t>(bins), 0);
-    with_type(volume.type(), [&](auto zero) { count<decltype(zero)>(volume, padding, h); });
+    with_type(volume.type(),
+              [&](auto zero) { count<decltype(zero)>(volume, padding, h, progress); });
     return h;
 }
 

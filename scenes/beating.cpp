@@ -67,11 +67,12 @@ Geometry beating_grid(const Index3& size) {
     return centred(size, Vec3::Constant(beating_length / size.maxCoeff()));
 }
 
-Scene beating_frame(const Geometry& geometry, double phase, SampleType type) {
+Scene beating_frame(const Geometry& geometry, double phase, SampleType type,
+                    const OnProgress& progress) {
     const Scale scale = unit_scale(type);
     const double length = shortest_length(geometry);
     const auto value = [=](const Vec3& p) { return scale(beating_density(p, phase, length)); };
-    return {"beating", filled(geometry, type, value), scale(0.5),
+    return {"beating", filled(geometry, type, value, progress), scale(0.5),
             "a heart-like shell of two chambers, 20 frames in a beat of 0.8 s",
             [=, centre = physical_centre(geometry)](const Vec3& physical) {
                 return value(grid_axes_from_physical(geometry, physical - centre));

@@ -45,9 +45,11 @@ Geometry centred(const Index3& size, const Vec3& spacing, const Mat3& direction)
     return geometry;
 }
 
-Volume noise(const Geometry& geometry, SampleType type, std::uint64_t seed, double amplitude) {
+Volume noise(const Geometry& geometry, SampleType type, std::uint64_t seed, double amplitude,
+             const OnProgress& progress) {
     Random random(seed);
-    return filled(geometry, type, [&](const Vec3&) { return random.uniform() * amplitude; });
+    return filled(
+        geometry, type, [&](const Vec3&) { return random.uniform() * amplitude; }, progress);
 }
 
 Volume salt(const Index3& size, double fraction, std::uint64_t seed) {

@@ -3,9 +3,8 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "palpate/volume.hpp"
 
@@ -38,9 +37,11 @@ T rounded_sample(double value) {
 }
 
 template <class T, class Value>
-Volume filled_as(const Geometry& geometry, Value&& value) {
-    std::vector<T> samples(static_cast<std::size_t>(sample_count(geometry)));
-    T* out = samples.data();
+Volume filled_as(const Geometry& geometry, Value&& value, const OnProgress& progress) {
+    const auto count = static_cast<std::size_t>(sample_count(geometry));
+    const std::shared_ptr<T[]> samples(new T[count]);
+    ReportedItems reported(progress, count, std::size_t{1} << 16);
+    T* out = samples.get();
     const Vec3 middle = 0.5 * (geometry.size.cast<double>() - Vec3::Ones());
     for (int k = 0; k < geometry.size[2]; ++k) {
         const double z = (k - middle[2]) * geometry.spacing[2];
@@ -49,18 +50,21 @@ Volume filled_as(const Geometry& geometry, Value&& value) {
             for (int i = 0; i < geometry.size[0]; ++i) {
                 const double x = (i - middle[0]) * geometry.spacing[0];
                 *out++ = rounded_sample<T>(value(Vec3(x, y, z)));
+                reported.done();
             }
         }
     }
-    return Volume(geometry, std::move(samples));
+    return {geometry, sample_type_of<T>(), samples, count * sizeof(T), progress};
 }
 
 /// `value` gives the data value at a point [mm, from the grid's centre, grid axes]; it is called
 /// once a sample, x fastest. check_size() first.
 template <class Value>
-Volume filled(const Geometry& geometry, SampleType type, Value&& value) {
+Volume filled(const Geometry& geometry, SampleType type, Value&& value,
+              const OnProgress& progress = {}) {
     check_size(geometry, type);
-    return with_type(type, [&](auto zero) { return filled_as<decltype(zero)>(geometry, value); });
+    return with_type(
+        type, [&](auto zero) { return filled_as<decltype(zero)>(geometry, value, progress); });
 }
 
 /// The shortest axis [mm], sample to sample distance counted once per sample. Axes of one sample do

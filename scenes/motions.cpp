@@ -341,10 +341,8 @@ class Course {
     Journey in_, on_;
 };
 
-using Progress = std::function<void(double)>;
-
 /// One of `count` samples is done.
-void tell(const Progress& progress, std::size_t done, std::size_t count) {
+void tell(const OnProgress& progress, std::size_t done, std::size_t count) {
     constexpr std::size_t between = 4096;
     if (progress && done % between == 0) {
         progress(static_cast<double>(done) / static_cast<double>(count));
@@ -354,7 +352,7 @@ void tell(const Progress& progress, std::size_t done, std::size_t count) {
 /// The trajectory, averaged over 31 ms. This cannot make it faster, and it bounds the change of the
 /// velocity in a tick for any corner of the surface (2/31 of the speed at 1 kHz).
 std::vector<HandSample> travelled(const Plan& plan, const MotionSettings& settings,
-                                  std::vector<HandSample> samples, const Progress& progress) {
+                                  std::vector<HandSample> samples, const OnProgress& progress) {
     constexpr double half_window_s = 0.015;
     const auto half = static_cast<std::size_t>(half_window_s * settings.rate_hz);
     const Course course(plan, settings.speed_mm_s);
@@ -376,7 +374,7 @@ std::vector<HandSample> travelled(const Plan& plan, const MotionSettings& settin
 /// Steps of every size from far below a voxel to the whole grid, rests, and jumps to any place in
 /// the grid with two voxels around it. No hand does this, but every update must cope with it.
 std::vector<HandSample> jumping(const Field& field, Random random, std::vector<HandSample> samples,
-                                const Progress& progress) {
+                                const OnProgress& progress) {
     const Geometry& geometry = field.geometry();
     const Vec3 low = Vec3::Constant(-2), high = geometry.size.cast<double>() + Vec3::Ones();
     const auto anywhere = [&] {
@@ -441,8 +439,7 @@ std::vector<std::string> motion_names() {
 }
 
 std::vector<HandSample> make_motion(std::string_view name, const Field& field, double isovalue,
-                                    const MotionSettings& settings,
-                                    const std::function<void(double)>& progress) {
+                                    const MotionSettings& settings, const OnProgress& progress) {
     for (const Motion& motion : motions) {
         if (name != motion.name) continue;
         std::vector<HandSample> samples = clock(settings);

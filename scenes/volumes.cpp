@@ -21,65 +21,72 @@ struct Recipe {
     Index3 size;
     SampleType type;
     double isovalue;  // as density: 0..1, or Hounsfield units for the head
-    Scene (*make)(const Recipe&, const Geometry&, SampleType);
+    Scene (*make)(const Recipe&, const Geometry&, SampleType, const OnProgress&);
 };
 
 /// Fills the volume, and keeps the density as the scene's exact function.
 template <class Density>
-Scene analytic(const Recipe& recipe, const Geometry& geometry, SampleType type, Density density) {
+Scene analytic(const Recipe& recipe, const Geometry& geometry, SampleType type,
+               const OnProgress& progress, Density density) {
     const Scale scale = unit_scale(type);
     const auto value = [=](const Vec3& centred_mm) { return scale(density(centred_mm)); };
-    return {recipe.name, filled(geometry, type, value), scale(recipe.isovalue), recipe.description,
-            [=, centre = physical_centre(geometry)](const Vec3& physical) {
+    return {recipe.name, filled(geometry, type, value, progress), scale(recipe.isovalue),
+            recipe.description, [=, centre = physical_centre(geometry)](const Vec3& physical) {
                 return value(grid_axes_from_physical(geometry, physical - centre));
             }};
 }
 
 /// The paper's test volume (Corenthy et al. 2012, section 6).
-Scene cylinder(const Recipe& recipe, const Geometry& geometry, SampleType type) {
+Scene cylinder(const Recipe& recipe, const Geometry& geometry, SampleType type,
+               const OnProgress& progress) {
     const double radius = 0.5 * shortest_length(geometry, 2);
-    return analytic(recipe, geometry, type, [=](const Vec3& p) {
+    return analytic(recipe, geometry, type, progress, [=](const Vec3& p) {
         return std::max(0.0, 1 - std::sqrt(p[0] * p[0] + p[1] * p[1]) / radius);
     });
 }
 
-Scene sphere(const Recipe& recipe, const Geometry& geometry, SampleType type) {
+Scene sphere(const Recipe& recipe, const Geometry& geometry, SampleType type,
+             const OnProgress& progress) {
     const double radius = 0.5 * shortest_length(geometry);
-    return analytic(recipe, geometry, type,
+    return analytic(recipe, geometry, type, progress,
                     [=](const Vec3& p) { return std::max(0.0, 1 - p.norm() / radius); });
 }
 
-Scene torus(const Recipe& recipe, const Geometry& geometry, SampleType type) {
+Scene torus(const Recipe& recipe, const Geometry& geometry, SampleType type,
+            const OnProgress& progress) {
     const double ring = 0.3 * shortest_length(geometry, 2);
     const double reach = 0.2 * shortest_length(geometry, 2);
-    return analytic(recipe, geometry, type, [=](const Vec3& p) {
+    return analytic(recipe, geometry, type, progress, [=](const Vec3& p) {
         const double across = std::sqrt(p[0] * p[0] + p[1] * p[1]) - ring;
         return std::max(0.0, 1 - std::sqrt(across * across + p[2] * p[2]) / reach);
     });
 }
 
-Scene plane(const Recipe& recipe, const Geometry& geometry, SampleType type) {
+Scene plane(const Recipe& recipe, const Geometry& geometry, SampleType type,
+            const OnProgress& progress) {
     const double height = std::max(1, geometry.size[2] - 1) * geometry.spacing[2];
-    return analytic(recipe, geometry, type,
+    return analytic(recipe, geometry, type, progress,
                     [=](const Vec3& p) { return std::clamp(0.5 - p[2] / height, 0.0, 1.0); });
 }
 
-Scene shell(const Recipe& recipe, const Geometry& geometry, SampleType type) {
+Scene shell(const Recipe& recipe, const Geometry& geometry, SampleType type,
+            const OnProgress& progress) {
     const double radius = 0.35 * shortest_length(geometry);
     const double reach = 0.12 * shortest_length(geometry);
-    return analytic(recipe, geometry, type, [=](const Vec3& p) {
+    return analytic(recipe, geometry, type, progress, [=](const Vec3& p) {
         return std::max(0.0, 1 - std::abs(p.norm() - radius) / reach);
     });
 }
 
 /// Marschner and Lobb 1994 with f_M = 6 and alpha = 0.25 on [-1, 1]^3.
-Scene marschner_lobb(const Recipe& recipe, const Geometry& geometry, SampleType type) {
+Scene marschner_lobb(const Recipe& recipe, const Geometry& geometry, SampleType type,
+                     const OnProgress& progress) {
     constexpr double pi = std::numbers::pi, f_m = 6, alpha = 0.25;
     Vec3 half;
     for (int a = 0; a < 3; ++a) {
         half[a] = 0.5 * std::max(1, geometry.size[a] - 1) * geometry.spacing[a];
     }
-    return analytic(recipe, geometry, type, [=](const Vec3& p) {
+    return analytic(recipe, geometry, type, progress, [=](const Vec3& p) {
         const Vec3 u = p.cwiseQuotient(half);
         const double r = std::sqrt(u[0] * u[0] + u[1] * u[1]);
         const double ripple = std::cos(2 * pi * f_m * std::cos(pi * r / 2));
@@ -87,30 +94,34 @@ Scene marschner_lobb(const Recipe& recipe, const Geometry& geometry, SampleType 
     });
 }
 
-Scene shepp_logan(const Recipe& recipe, const Geometry& geometry, SampleType type) {
+Scene shepp_logan(const Recipe& recipe, const Geometry& geometry, SampleType type,
+                  const OnProgress& progress) {
     Scale scale{0, 1};
     if (type == SampleType::uint16) scale = {1000, 1};
     if (type == SampleType::uint8) scale = {85, 255.0 / 3000};
     const HeadPhantom head(0.5 * shortest_length(geometry), 2 * geometry.spacing.maxCoeff());
     return {recipe.name,
-            filled(geometry, type, [&](const Vec3& p) { return scale(head.hounsfield(p)); }),
+            filled(
+                geometry, type, [&](const Vec3& p) { return scale(head.hounsfield(p)); }, progress),
             scale(recipe.isovalue),
             recipe.description,
             {}};
 }
 
-Scene white_noise(const Recipe& recipe, const Geometry& geometry, SampleType type) {
+Scene white_noise(const Recipe& recipe, const Geometry& geometry, SampleType type,
+                  const OnProgress& progress) {
     const Scale scale = unit_scale(type);
     constexpr std::uint64_t seed = 1;
     return {recipe.name,
-            noise(geometry, type, seed, scale.gain),
+            noise(geometry, type, seed, scale.gain, progress),
             scale(recipe.isovalue),
             recipe.description,
             {}};
 }
 
-Scene beating(const Recipe&, const Geometry& geometry, SampleType type) {
-    return beating_frame(geometry, 0, type);
+Scene beating(const Recipe&, const Geometry& geometry, SampleType type,
+              const OnProgress& progress) {
+    return beating_frame(geometry, 0, type, progress);
 }
 
 constexpr auto u8 = SampleType::uint8;
@@ -200,20 +211,22 @@ std::vector<std::string> volume_names() {
     return names;
 }
 
-Scene make_volume(std::string_view spec, std::optional<SampleType> type) {
+Scene make_volume(std::string_view spec, std::optional<SampleType> type,
+                  const OnProgress& progress) {
     constexpr std::string_view prefix = "synthetic:";
     if (spec.starts_with(prefix)) spec.remove_prefix(prefix.size());
     const std::size_t colon = spec.find(':');
     const Recipe& recipe = recipe_of(spec.substr(0, colon));
     const Index3 size = colon == spec.npos ? recipe.size : size_from_text(spec.substr(colon + 1));
     const Geometry grid = recipe.make == beating ? beating_grid(size) : centred(size);
-    return recipe.make(recipe, grid, type.value_or(recipe.type));
+    return recipe.make(recipe, grid, type.value_or(recipe.type), progress);
 }
 
-Scene make_volume(std::string_view name, const Geometry& geometry, std::optional<SampleType> type) {
+Scene make_volume(std::string_view name, const Geometry& geometry, std::optional<SampleType> type,
+                  const OnProgress& progress) {
     const Recipe& recipe = recipe_of(name);
     check(geometry);
-    return recipe.make(recipe, geometry, type.value_or(recipe.type));
+    return recipe.make(recipe, geometry, type.value_or(recipe.type), progress);
 }
 
 }  // namespace palpate::scenes

@@ -39,9 +39,15 @@ class Extraction {
     }
 
     bool run(const std::function<bool(double)>& progress) {
+        constexpr int between_reports = 1 << 16;  // cells
+        int seen = between_reports;
         for (int k = 0; k < cells_[2]; ++k) {
-            if (progress && !progress(static_cast<double>(k) / cells_[2])) return false;
-            for (int j = 0; j < cells_[1]; ++j) {
+            for (int j = 0; j < cells_[1]; ++j, seen += cells_[0]) {
+                if (seen >= between_reports) {
+                    seen = 0;
+                    const double slabs = k + static_cast<double>(j) / cells_[1];
+                    if (progress && !progress(slabs / cells_[2])) return false;
+                }
                 for (int i = 0; i < cells_[0]; ++i) visit({i, j, k});
             }
         }
@@ -167,18 +173,24 @@ SurfaceMesh extract_surface(const Field& field, double isovalue, const SurfaceOp
         return extract<LinearNodes>(field, isovalue, options);
     }
     SurfaceMesh mesh = extract<CubicNodes>(field, isovalue, options);
-    if (options.tolerance > 0 && mesh.complete &&
-        !refine(mesh, field, isovalue, options.tolerance * field.geometry().spacing.minCoeff(),
-                options)) {
-        mesh = {};
-        mesh.complete = false;
-    }
-    if (options.normals) {
+    const auto add_normals = [&] {
         mesh.normals.reserve(mesh.vertices.size());
         for (const Vec3& vertex : mesh.vertices) {
+            constexpr std::size_t between_reports = 4096;
+            const bool report = mesh.normals.size() % between_reports == 0 && options.progress;
+            if (report && !options.progress(1)) return false;
             mesh.normals.emplace_back(-field.sign() *
                                       gradient_at(field, vertex).stableNormalized());
         }
+        return true;
+    };
+    const double tolerance = options.tolerance * field.geometry().spacing.minCoeff();
+    const bool whole = mesh.complete &&
+                       (!(tolerance > 0) || refine(mesh, field, isovalue, tolerance, options)) &&
+                       (!options.normals || add_normals());
+    if (!whole) {
+        mesh = {};
+        mesh.complete = false;
     }
     return mesh;
 }

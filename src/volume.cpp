@@ -18,14 +18,18 @@ struct Range {
 };
 
 template <class T>
-Range range_of(std::span<const T> samples) {
+Range range_of(std::span<const T> samples, const OnProgress& progress) {
+    constexpr std::size_t between = std::size_t{1} << 20;
     T low = std::numeric_limits<T>::max();
     T high = std::numeric_limits<T>::lowest();
     bool finite = true;
-    for (const T s : samples) {
-        low = s < low ? s : low;
-        high = s > high ? s : high;
-        if constexpr (std::is_floating_point_v<T>) finite &= std::isfinite(s);
+    for (std::size_t at = 0; at < samples.size(); at += between) {
+        for (const T s : samples.subspan(at, std::min(between, samples.size() - at))) {
+            low = s < low ? s : low;
+            high = s > high ? s : high;
+            if constexpr (std::is_floating_point_v<T>) finite &= std::isfinite(s);
+        }
+        if (progress) progress(1);
     }
     if (!finite) {
         throw std::invalid_argument(
@@ -149,7 +153,7 @@ template Volume::Volume(const Geometry&, std::vector<std::uint16_t>);
 template Volume::Volume(const Geometry&, std::vector<float>);
 
 Volume::Volume(const Geometry& geometry, SampleType type, std::shared_ptr<const void> samples,
-               std::size_t bytes)
+               std::size_t bytes, const OnProgress& progress)
     : geometry_(geometry), type_(type), samples_(std::move(samples)) {
     check(geometry);
     geometry_ = orthonormal(geometry);
@@ -157,8 +161,9 @@ Volume::Volume(const Geometry& geometry, SampleType type, std::shared_ptr<const 
         throw std::invalid_argument("the geometry asks for " + std::to_string(this->bytes()) +
                                     " bytes of samples, there are " + std::to_string(bytes));
     }
-    const Range range = with_type(
-        type, [&](auto s) { return range_of(span_of<decltype(s)>(samples_.get(), geometry_)); });
+    const Range range = with_type(type, [&](auto s) {
+        return range_of(span_of<decltype(s)>(samples_.get(), geometry_), progress);
+    });
     minimum_ = range.minimum;
     maximum_ = range.maximum;
 }
@@ -188,52 +193,74 @@ double Volume::sample(const Index3& i) const {
 
 namespace {
 
-/// (1 2 1)/4 along one axis, in place. Whole runs of the axes below at a time: `run` neighbours in
+/// Samples between two reports of progress: milliseconds.
+constexpr std::size_t reported_samples = std::size_t{1} << 18;
+
+/// Room for the samples of a volume, of which none is written yet.
+std::shared_ptr<float[]> room_for(const Geometry& geometry) {
+    return std::shared_ptr<float[]>(new float[static_cast<std::size_t>(sample_count(geometry))]);
+}
+
+/// (1 2 1)/4 along one axis, in place. Many runs of the axes below at a time: `run` neighbours in
 /// memory are neighbours across the axis, and `count` such runs follow each other along it.
-void smooth_along(std::vector<float>& samples, std::size_t run, std::size_t count) {
-    std::vector<float> before(run), here(run);
-    for (std::size_t block = 0; block < samples.size(); block += run * count) {
-        float* at = samples.data() + block;
-        std::copy_n(at, run, before.begin());
+void smooth_along(std::span<float> samples, std::size_t run, std::size_t count,
+                  ReportedItems& reported) {
+    const std::size_t most = std::min(run, std::size_t{4096});  // they stay in the cache
+    std::vector<float> before(most), here(most);
+    for (std::size_t from = 0; from < samples.size();) {
+        const std::size_t width = std::min(most, run - from % run);
+        float* at = samples.data() + from;
+        std::copy_n(at, width, before.begin());
         for (std::size_t k = 0; k < count; ++k, at += run) {
             const float* after = k + 1 < count ? at + run : at;
-            std::copy_n(at, run, here.begin());
-            for (std::size_t i = 0; i < run; ++i) {
+            std::copy_n(at, width, here.begin());
+            for (std::size_t i = 0; i < width; ++i) {
                 at[i] = 0.25F * before[i] + 0.5F * here[i] + 0.25F * after[i];
             }
             std::swap(before, here);
+            reported.done(width);
         }
+        from += width;
+        if (from % run == 0) from += run * (count - 1);
     }
 }
 
 }  // namespace
 
-Volume smoothed(const Volume& volume, int passes) {
+Volume smoothed(const Volume& volume, int passes, const OnProgress& progress) {
     if (passes < 0 || passes > 64) {
         throw std::invalid_argument("a volume is smoothed 0 to 64 times, not " +
                                     std::to_string(passes) + " times");
     }
     if (passes == 0) return volume;
     const Geometry& geometry = volume.geometry();
-    std::vector<float> samples(static_cast<std::size_t>(sample_count(geometry)));
+    const auto made = room_for(geometry);
+    const std::span<float> samples(made.get(), static_cast<std::size_t>(sample_count(geometry)));
+    const auto times = 1 + 3 * static_cast<std::size_t>(passes);
+    ReportedItems reported(progress, times * samples.size(), reported_samples);
     with_type(volume.type(), [&](auto s) {
-        const auto from = volume.samples<decltype(s)>();
-        std::transform(from.begin(), from.end(), samples.begin(),
-                       [](auto value) { return static_cast<float>(value); });
+        const auto* const from = volume.samples<decltype(s)>().data();
+        const auto row = static_cast<std::size_t>(geometry.size[0]);
+        for (std::size_t at = 0; at < samples.size(); at += row) {
+            std::copy_n(from + at, row, samples.begin() + static_cast<std::ptrdiff_t>(at));
+            reported.done(row);
+        }
     });
     const auto size = geometry.size.cast<std::size_t>().eval();
     for (int pass = 0; pass < passes; ++pass) {
-        smooth_along(samples, 1, size[0]);
-        smooth_along(samples, size[0], size[1]);
-        smooth_along(samples, size[0] * size[1], size[2]);
+        smooth_along(samples, 1, size[0], reported);
+        smooth_along(samples, size[0], size[1], reported);
+        smooth_along(samples, size[0] * size[1], size[2], reported);
     }
-    return {geometry, std::move(samples)};
+    return {geometry, SampleType::float32, made, samples.size_bytes(), progress};
 }
 
-Volume sharpened(const Volume& volume) {
+Volume sharpened(const Volume& volume, const OnProgress& progress) {
     const Geometry& geometry = volume.geometry();
     const Index3 size = geometry.size;
-    std::vector<float> samples(static_cast<std::size_t>(sample_count(geometry)));
+    const auto made = room_for(geometry);
+    const std::span<float> samples(made.get(), static_cast<std::size_t>(sample_count(geometry)));
+    ReportedItems reported(progress, samples.size(), reported_samples);
     with_type(volume.type(), [&](auto s) {
         const auto* const from = volume.samples<decltype(s)>().data();
         const std::array<std::ptrdiff_t, 3> stride{1, size[0], std::ptrdiff_t{size[0]} * size[1]};
@@ -247,13 +274,13 @@ Volume sharpened(const Volume& volume) {
                         if (i[a] > 0) laplacian += from[at - stride[a]] - here;
                         if (i[a] + 1 < size[a]) laplacian += from[at + stride[a]] - here;
                     }
-                    samples[static_cast<std::size_t>(at)] =
-                        static_cast<float>(here - 0.125 * laplacian);
+                    made[at] = static_cast<float>(here - 0.125 * laplacian);
                 }
+                reported.done(static_cast<std::size_t>(size[0]));
             }
         }
     });
-    return {geometry, std::move(samples)};
+    return {geometry, SampleType::float32, made, samples.size_bytes(), progress};
 }
 
 }  // namespace palpate

@@ -25,8 +25,11 @@ void add_demo_beating(CLI::App& demo);
 /// Thrown where a signal such as that of Ctrl-C was seen: open files are dropped by unwinding (exit
 /// status 128 + the signal's number).
 struct Interrupted {};
-/// True once SIGINT, SIGTERM, SIGHUP or SIGQUIT has come.
-bool interrupted();
+/// How often SIGINT, SIGTERM, SIGHUP or SIGQUIT has come.
+int interruptions();
+inline bool interrupted() {
+    return interruptions() > 0;
+}
 /// Throws Interrupted if so.
 void stop_if_interrupted();
 

@@ -20,10 +20,11 @@ using namespace palpate::app;
 
 constexpr int broken_pipe = 13;  // SIGPIPE, which Windows lacks
 
-volatile std::sig_atomic_t stop_signal = 0;
+volatile std::sig_atomic_t stop_signal = 0, stop_signals = 0;
 
 void on_signal(int number) {
     stop_signal = number;
+    stop_signals = stop_signals + 1;
 }
 
 int finish_output() {
@@ -68,8 +69,8 @@ int read_and_run(int argc, char** argv, const std::function<void(CLI::App&)>& ad
 
 namespace palpate::app {
 
-bool interrupted() {
-    return stop_signal != 0;
+int interruptions() {
+    return stop_signals;
 }
 
 void stop_if_interrupted() {

@@ -43,7 +43,7 @@ bool RunTerminal::update() {
     for (std::size_t i = 0; i < hands_.size(); ++i) {
         if (now_[i]) watch_device(hands_[i], told_[i], now_[i]->session.device.status);
     }
-    watch_files();
+    if (rounds_ % 25 == 0) watch_files();
     show_line();
     if (options_.unpaced) queue_.finish();  // what was asked for takes no time of the session
     const bool over = std::ranges::any_of(now_, [this](const auto& now) {
@@ -56,6 +56,7 @@ std::string RunTerminal::finish() {
     queue_.finish();
     queue_.end();  // after Ctrl-C a volume may still be written, or fail to be
     print_messages();
+    watch_files();
     tell_what_was_left_out();
     return queue_.unsaved();
 }
@@ -193,7 +194,6 @@ void RunTerminal::print_messages() {
 
 /// Reports problems of data and recording when they are new.
 void RunTerminal::watch_files() {
-    if (rounds_ % 25 != 0) return;
     const auto tell = [&](std::string& told, const std::string& problem) {
         if (std::exchange(told, problem) != problem && !problem.empty()) {
             note("palpate: " + problem);

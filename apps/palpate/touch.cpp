@@ -77,20 +77,27 @@ void print_report(const std::vector<LiveHand>& hands, double seconds, const RunO
     }
 }
 
+/// Data::save() for --save, also after Ctrl-C. A further Ctrl-C ends it.
+std::string save(run::Data& data, const RunOptions& options) {
+    const int before = interruptions();
+    ProgressBar bar("saving", options.source.quiet || before > 0);
+    try {
+        return data.save(options.save, [&](double fraction) {
+            if (interruptions() > before) throw Interrupted{};
+            if (before == 0) bar.at(fraction);
+        });
+    } catch (const Interrupted&) {
+        throw io::OutputError("saving was interrupted");
+    }
+}
+
 /// Saves the volume for --save; without it, warns of edits that are lost.
 void save_as_asked(run::Data& data, const RunOptions& options) {
     const bool quiet = options.source.quiet;
     if (!options.save.empty() && data.is_streamed() && !data.editor().state().changed) {
         if (!quiet) say("nothing was edited, so nothing was saved\n");
     } else if (!options.save.empty()) {
-        // After Ctrl-C as well: then without a bar, which would cancel it.
-        std::string saved;
-        {
-            ProgressBar bar("saving", quiet || interrupted());
-            saved = data.save(options.save, [&](double fraction) {
-                if (!interrupted()) bar.at(fraction);
-            });
-        }
+        const std::string saved = save(data, options);
         if (!quiet) fmt::print(options.json ? stderr : stdout, "{}\n", saved);
     } else if (!data.is_sequence() && data.editor().state().changed && !quiet) {
         say("the edits were not saved (--save FILE, or the command save FILE)\n");
@@ -119,8 +126,6 @@ void add(std::string& problems, const std::string& problem) {
 std::string save_at_end(run::Data& data, const RunOptions& options, std::string unsaved) {
     try {
         save_as_asked(data, options);
-    } catch (const Interrupted&) {
-        throw;
     } catch (const std::exception& e) {
         add(unsaved, e.what());
     }
@@ -132,7 +137,7 @@ void save_after_failure(run::Data& data, const RunOptions& options) {
     if (data.is_sequence() || !data.editor().state().changed) return;
     std::string told = "the session failed";
     try {
-        if (!options.save.empty()) told = data.save(options.save, {});
+        if (!options.save.empty()) told = save(data, options);
     } catch (const std::exception& e) {
         told += "; " + std::string(e.what());
     }
@@ -149,7 +154,15 @@ void start_recording(std::vector<LiveHand>& hands, const RunOptions& options) {
 }
 
 void finish_recording(std::vector<LiveHand>& hands, const RunOptions& options) {
-    const std::vector<std::int64_t> ticks = stop_recording(hands);
+    const io::RecordingWriter* recording = hands.front().run->recording();
+    const bool was_told = recording && !recording->problem().empty();  // by the terminal
+    std::vector<std::int64_t> ticks;
+    try {
+        ticks = stop_recording(hands);
+    } catch (const io::OutputError&) {
+        if (!was_told) throw;
+        throw io::OutputError(options.record + ": is not complete");
+    }
     if (!ticks.empty() && !options.json && !options.source.quiet) {
         fmt::print("recorded {} ticks in {}\n", fmt::join(ticks, " and "), options.record);
     }

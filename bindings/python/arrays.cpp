@@ -1,6 +1,8 @@
 // Shares samples between NumPy arrays and volumes.
 #include "bindings/python/arrays.hpp"
 
+#include "bindings/python/progress.hpp"
+
 namespace palpate::python {
 namespace {
 
@@ -74,7 +76,7 @@ Volume volume_from(const py::array& given, const Geometry& geometry_but_size,
     const auto bytes = static_cast<std::size_t>(array.nbytes());
     auto samples = kept_by(std::move(array), data);
     const py::gil_scoped_release unlocked;  // every sample is looked at
-    return {geometry, *type, std::move(samples), bytes};
+    return {geometry, *type, std::move(samples), bytes, ctrl_c()};
 }
 
 py::array array_of(const Volume& volume) {

@@ -51,7 +51,7 @@ py::dict closed_loop(const SharedRenderer& renderer, const std::string& text, do
     Renderer own = renderer;
     ForceState state;
     std::vector<LoopTick> ticks(static_cast<std::size_t>(seconds * rate));
-    Slices slices(progress, ticks.size(), updates_in_slice);
+    ReportedItems slices(progress_of(progress), ticks.size(), updates_in_slice);
     {
         const py::gil_scoped_release unlocked;
         const auto device = simulated(text, own.field, own.proxy.isovalue, rate);
@@ -70,7 +70,7 @@ py::dict closed_loop(const SharedRenderer& renderer, const std::string& text, do
                 t.constrained = tick.proxy.mode == Mode::constrained;
             }
             device->write(t.wrench, time);
-            slices.done_one();
+            slices.done();
         }
     }
     const auto of = [&](const auto& value) { return column(ticks, value); };

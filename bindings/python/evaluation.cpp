@@ -26,9 +26,10 @@ py::dict explore(const Subject& subject, evaluation::ExploringHand hand, const W
                  const ProgressFunction& progress) {
     constexpr double attempts = 24;  // at most, to come near to what is wanted
     const double ticks = hand.trajectories * hand.trajectory_s * hand.rate_hz;
-    Slices slices(progress, static_cast<std::size_t>(ticks * (wanted ? attempts : 1)),
-                  updates_in_slice);
-    const auto alive = [&] { slices.done_one(); };
+    ReportedItems slices(progress_of(progress),
+                         static_cast<std::size_t>(ticks * (wanted ? attempts : 1)),
+                         updates_in_slice);
+    const auto alive = [&] { slices.done(); };
     evaluation::TunedHand tuned;
     {
         const py::gil_scoped_release unlocked;

@@ -3,6 +3,7 @@
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 #include "palpate/field.hpp"
 #include "palpate/proxy.hpp"
@@ -14,8 +15,9 @@ py::array_t<double> values_at(const Field& field, const Doubles& points) {
     const std::vector<Vec3> at = points_from(points, "points");
     std::vector<double> values(at.size());
     {
+        ReportedItems slices(ctrl_c(), at.size(), updates_in_slice);
         const py::gil_scoped_release unlocked;
-        for (std::size_t i = 0; i < at.size(); ++i) {
+        for (std::size_t i = 0; i < at.size(); ++i, slices.done()) {
             values[i] = at[i].hasNaN() ? std::nan("") : value_at(field, at[i]);
         }
     }
@@ -25,8 +27,10 @@ py::array_t<double> values_at(const Field& field, const Doubles& points) {
 py::array_t<double> gradients_at(const Field& field, const Doubles& points) {
     std::vector<Vec3> at = points_from(points, "points");
     {
+        ReportedItems slices(ctrl_c(), at.size(), updates_in_slice);
         const py::gil_scoped_release unlocked;
         for (Vec3& point : at) {
+            slices.done();
             point = point.hasNaN() ? Vec3::Constant(std::nan("")) : gradient_at(field, point);
         }
     }

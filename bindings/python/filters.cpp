@@ -16,18 +16,6 @@ Volume dequantized(const Volume& volume, int rounds, std::optional<int> coarsest
     return filters::dequantized(volume, options);
 }
 
-/// Pass by pass, so that Ctrl-C need not wait for all of them; the samples are the same.
-Volume smoothed_by_passes(const Volume& volume, int passes) {
-    const ProgressFunction none;
-    const auto progress = progress_of(none);
-    Volume made = smoothed(volume, passes > 1 && passes <= 64 ? 1 : passes);
-    for (int pass = 1; pass < passes; ++pass) {
-        progress(double(pass) / passes);
-        made = smoothed(made, 1);
-    }
-    return made;
-}
-
 void bind_terraces(py::module_& module) {
     py::class_<filters::Terraces>(module, "Terraces", "What rounding does to a volume's surfaces.")
         .def_readonly("level", &filters::Terraces::level, "Distance of levels [data units].")
@@ -48,20 +36,26 @@ void bind_terraces(py::module_& module) {
 
 void bind_filters(py::module_& module) {
     bind_terraces(module);
-    module.def("smoothed", &smoothed_by_passes, py::arg("volume"), py::arg("passes") = 1,
-               Unlocked(),
-               "The volume smoothed with the binomial kernel (1 2 1)/4 along each axis, `passes`\n"
-               "times (0 to 64), as float32.");
-    module.def("sharpened", &sharpened, py::arg("volume"), Unlocked(),
-               "Samples less an eighth of their discrete Laplacian, as float32: thin structures\n"
-               "keep their height in the smooth field.");
     module.def(
-        "level_of", [](const Volume& volume) { return filters::level_of(volume); },
+        "smoothed",
+        [](const Volume& volume, int passes) { return smoothed(volume, passes, ctrl_c()); },
+        py::arg("volume"), py::arg("passes") = 1, Unlocked(),
+        "The volume smoothed with the binomial kernel (1 2 1)/4 along each axis, `passes`\n"
+        "times (0 to 64), as float32.");
+    module.def(
+        "sharpened", [](const Volume& volume) { return sharpened(volume, ctrl_c()); },
+        py::arg("volume"), Unlocked(),
+        "Samples less an eighth of their discrete Laplacian, as float32: thin structures\n"
+        "keep their height in the smooth field.");
+    module.def(
+        "level_of", [](const Volume& volume) { return filters::level_of(volume, ctrl_c()); },
         py::arg("volume"), Unlocked(),
         "The distance between the levels that samples lie on [data units]; None where they\n"
         "lie on none.");
-    module.def("terraces_of", &filters::terraces_of, py::arg("volume"), Unlocked(),
-               "What rounding does to the surfaces of a volume; None where data have no levels.");
+    module.def(
+        "terraces_of", [](const Volume& volume) { return filters::terraces_of(volume, ctrl_c()); },
+        py::arg("volume"), Unlocked(),
+        "What rounding does to the surfaces of a volume; None where data have no levels.");
     module.def(
         "dequantized", &dequantized, py::arg("volume"), py::arg("rounds") = 40,
         py::arg("coarsest") = py::none(), py::arg("level") = py::none(), py::arg("threads") = 0,

@@ -153,7 +153,7 @@ ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
                     },
                     &context};
     }
-    Slices slices(progress, points.size(), updates_in_slice);
+    ReportedItems slices(progress_of(progress), points.size(), updates_in_slice);
     {
         const py::gil_scoped_release unlocked;
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -161,7 +161,7 @@ ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
             Clock::duration took{};
             const ProxyUpdate update = way.update(placed.proxy, points[i], observer, took);
             rows.put(i, update, took);
-            slices.done_one();
+            slices.done();
         }
     }
     if (with_steps) trace.steps = dict_of(steps);
@@ -215,12 +215,12 @@ ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles
     const unsigned usual = std::clamp(std::thread::hardware_concurrency(), 1U, 16U);
     const std::size_t wanted = std::min(
         {threads > 0 ? static_cast<std::size_t>(threads) : usual, begins.size() - 1, most_threads});
-    Slices slices(progress, points.size() / wanted, updates_in_slice);
+    ReportedItems slices(progress_of(progress), points.size() / wanted, updates_in_slice);
     const py::gil_scoped_release unlocked;
     std::vector<std::jthread> others;
     for (std::size_t t = 1; t < wanted; ++t) others.emplace_back([&] { follow_some([] {}); });
     try {
-        follow_some([&] { slices.done_one(); });
+        follow_some([&] { slices.done(); });
     } catch (...) {
         next = begins.size();  // the others end with the hands that they have
         throw;
@@ -238,7 +238,7 @@ struct Timed {
 /// [ns] per update, in the order of the hands.
 std::vector<double> times_of(const Way& way, const std::vector<Vec3>& hips,
                              const std::vector<std::size_t>& begins, const Timed& timed,
-                             Slices& slices) {
+                             ReportedItems& slices) {
     constexpr std::size_t more_than_caches = std::size_t{48} << 20, line = 64;  // bytes
     std::vector<std::uint8_t> memory(timed.cold > 0 ? more_than_caches : 0, 1);
     volatile std::uint8_t* const walked = memory.data();
@@ -260,7 +260,7 @@ std::vector<double> times_of(const Way& way, const std::vector<Vec3>& hips,
             const std::chrono::duration<double, std::nano> taken = Clock::now() - begin;
             if (counts) times.push_back(taken.count() / double(end - i));
             i = end;
-            slices.done_one();
+            slices.done();
         }
     }
     return times;
@@ -272,7 +272,8 @@ py::array_t<double> update_times(const Field& field, const io::Level& level, con
     const Way way = way_of(field, level, method);
     const std::vector<Vec3> points = hips_from(hips);
     const std::vector<std::size_t> begins = begins_of(firsts, points.size());
-    Slices slices(progress, points.size() / std::max<std::size_t>(1, batch), updates_in_slice);
+    ReportedItems slices(progress_of(progress), points.size() / std::max<std::size_t>(1, batch),
+                         updates_in_slice);
     std::vector<double> times;
     {
         const py::gil_scoped_release unlocked;
@@ -300,8 +301,7 @@ py::dict follow_levels(const Field& field, const Doubles& hips, const Firsts& fi
     }
     ProxyTrace trace(static_cast<py::ssize_t>(points.size()));
     const Rows rows(trace);
-    const ProgressFunction none;
-    Slices slices(none, points.size(), updates_in_slice);
+    ReportedItems slices(ctrl_c(), points.size(), updates_in_slice);
     double growth = 0;
     {
         const py::gil_scoped_release unlocked;
@@ -317,7 +317,7 @@ py::dict follow_levels(const Field& field, const Doubles& hips, const Firsts& fi
                 const ProxyUpdate update = way.update(proxy, points[i], {}, took);
                 rows.put(i, update, took);
                 if (level[i] != level[i - 1]) growth = std::max(growth, heap_in_use() - before);
-                slices.done_one();
+                slices.done();
             }
         }
     }

@@ -31,8 +31,10 @@ py::tuple read(const fs::path& path, int hand) {
     std::vector<io::TraceRow> rows;
     std::vector<std::int64_t> commands;
     {
+        ReportedItems slices(ctrl_c(), 0, updates_in_slice);
         const py::gil_scoped_release unlocked;
         while (const auto event = reader.next()) {
+            slices.done();
             if (const auto* tick = std::get_if<SessionTick>(&*event)) {
                 rows.push_back(io::trace_row(tick->tick));
             } else {

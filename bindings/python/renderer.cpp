@@ -83,20 +83,20 @@ py::dict follow_ticks(SharedRenderer& renderer, const Doubles& time, const Doubl
                       const ProgressFunction& progress) {
     const std::vector<DeviceState> states = states_from(time, position, pointing);
     std::vector<Tick> ticks(states.size());
-    Slices slices(progress, ticks.size(), updates_in_slice);
+    ReportedItems slices(progress_of(progress), ticks.size(), updates_in_slice);
     if (alternatives) {
         const Renderer own = renderer;  // other threads may use it
         const py::gil_scoped_release unlocked;
         for (std::size_t i = 0; i < states.size(); ++i) {
             Renderer copy = own;
             ticks[i] = render(copy, states[i]);
-            slices.done_one();
+            slices.done();
         }
     } else {
         moved_without_gil(renderer, [&](Renderer& own) {
             for (std::size_t i = 0; i < states.size(); ++i) {
                 ticks[i] = render(own, states[i]);
-                slices.done_one();
+                slices.done();
             }
         });
     }
@@ -119,14 +119,14 @@ py::array_t<double> batch_ns(SharedRenderer& renderer, const Doubles& time, cons
     if (batch == 0) throw std::invalid_argument("batch: at least one tick is needed");
     const std::vector<DeviceState> states = states_from(time, position, std::nullopt);
     std::vector<double> times(states.size() / batch);
-    Slices slices(progress, times.size(), batches_in_slice);
+    ReportedItems slices(progress_of(progress), times.size(), batches_in_slice);
     moved_without_gil(renderer, [&](Renderer& own) {
         for (std::size_t i = 0; i < times.size(); ++i) {
             const auto begin = SteadyClock::now();
             for (std::size_t k = i * batch; k < (i + 1) * batch; ++k) render(own, states[k]);
             const std::chrono::duration<double, std::nano> taken = SteadyClock::now() - begin;
             times[i] = taken.count() / double(batch);
-            slices.done_one();
+            slices.done();
         }
     });
     return array_from(std::move(times));

@@ -200,11 +200,7 @@ void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
             },
             py::arg("brush"), Unlocked(), "A HandBrush that follows the proxy; None: only feel.")
         .def(
-            "save",
-            [](R& r, const fs::path& path) {
-                const ProgressFunction none;
-                return r.data().save(path, progress_of(none));
-            },
+            "save", [](R& r, const fs::path& path) { return r.data().save(path, ctrl_c()); },
             py::arg("path"), Unlocked(), "Writes the samples as they are now. Raises OutputError.");
 }
 

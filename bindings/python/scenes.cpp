@@ -24,11 +24,9 @@ std::pair<py::array_t<double>, py::array_t<double>> motion(const std::string& na
                                                            const scenes::MotionSettings& settings) {
     const double isovalue = io::level_in(field.volume(), level);
     std::vector<scenes::HandSample> samples;
-    const ProgressFunction none;
-    const auto progress = progress_of(none);  // Ctrl-C
     {
         const py::gil_scoped_release unlocked;
-        samples = scenes::make_motion(name, field, isovalue, settings, progress);
+        samples = scenes::make_motion(name, field, isovalue, settings, ctrl_c());
     }
     return {column(samples, [](const scenes::HandSample& s) { return s.t; }),
             column(samples, [](const scenes::HandSample& s) { return s.position; })};
@@ -55,8 +53,8 @@ void bind_scenes(py::module_& module) {
         [](const std::string& name, std::optional<SampleType> type,
            const std::optional<Geometry>& geometry) {
             const py::gil_scoped_release unlocked;
-            return geometry ? scenes::make_volume(name, *geometry, type)
-                            : scenes::make_volume(name, type);
+            return geometry ? scenes::make_volume(name, *geometry, type, ctrl_c())
+                            : scenes::make_volume(name, type, ctrl_c());
         },
         py::arg("name"), py::arg("type") = py::none(), py::arg("geometry") = py::none(),
         "A synthetic volume: 'NAME' or 'NAME:WxHxD' of scene_names(), or NAME on a grid of yours.");

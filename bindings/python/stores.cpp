@@ -105,11 +105,9 @@ void bind_open_store(py::module_& module) {
             options.forbidden_is_missing = forbidden_is_missing;
             options.cache_folder = cache;
             if (!cache.empty()) options.cache_bytes = std::uint64_t{4} << 30;
-            const ProgressFunction none;
             const std::string address = place.string();
-            return OpenStore{
-                destroyed_here_only(stream::open_store(address, options, progress_of(none))),
-                address, options};
+            return OpenStore{destroyed_here_only(stream::open_store(address, options, ctrl_c())),
+                             address, options};
         },
         py::arg("address"), py::kw_only(), py::arg("raw") = py::none(),
         py::arg("spacing") = py::none(), py::arg("orientation") = "", py::arg("channel") = 0,
@@ -129,7 +127,13 @@ void bind_open_store(py::module_& module) {
             });
         },
         Unlocked());
-    module.def("_files_at", &stream::files_at, Unlocked());
+    module.def(
+        "_files_at",
+        [](const std::string& address) {
+            return until_ctrl_c(
+                [&](const std::stop_token& stop) { return stream::files_at(address, stop); });
+        },
+        Unlocked());
 }
 
 /// A store as what a Run feels, which brings its samples into memory as they are needed.
@@ -143,8 +147,7 @@ run::LoadedVolume loaded_from(const OpenStore& store, int level, std::uint64_t m
     run::Source source;
     source.from = from;
     source.frame = from.options.time;
-    const ProgressFunction none;
-    run::LoadedVolume loaded = run::load(source, progress_of(none));
+    run::LoadedVolume loaded = run::load(source, ctrl_c());
     if (loaded.streamed) loaded.streamed->store = destroyed_here_only(loaded.streamed->store);
     return loaded;
 }

@@ -22,7 +22,7 @@ struct ToolPath {
 };
 
 ToolPath exact_path(const Field& field, double isovalue, std::shared_ptr<const Tool> tool,
-                    const io::Trajectory& hands, Slices& slices) {
+                    const io::Trajectory& hands, ReportedItems& slices) {
     ToolPath path;
     ToolProxy proxy(std::move(tool));
     proxy.isovalue = isovalue;
@@ -34,19 +34,19 @@ ToolPath exact_path(const Field& field, double isovalue, std::shared_ptr<const T
     for (std::size_t i = 0; i < hands.time.size(); ++i) {
         const Pose hand{hands.position[i], hands.orientation[i]};
         path.updates.push_back(update_tool(proxy, field, hand, {}, observer));
-        slices.done_one();
+        slices.done();
     }
     return path;
 }
 
 ToolPath penalty_path(const Field& field, double isovalue, std::shared_ptr<const Tool> tool,
-                      const io::Trajectory& hands, Slices& slices) {
+                      const io::Trajectory& hands, ReportedItems& slices) {
     ToolPath path;
     baselines::PenaltyTool state{std::move(tool), isovalue};
     for (std::size_t i = 0; i < hands.time.size(); ++i) {
         const Pose hand{hands.position[i], hands.orientation[i]};
         path.updates.emplace_back().proxy = baselines::update_penalty(state, field, hand).proxy;
-        slices.done_one();
+        slices.done();
     }
     return path;
 }
@@ -63,7 +63,7 @@ py::dict follow_tool(const Field& field, const io::Level& level, std::shared_ptr
         throw std::invalid_argument("all of space is solid at this isovalue");
     }
     ToolPath path;
-    Slices slices(progress, hands.time.size(), batches_in_slice);
+    ReportedItems slices(progress_of(progress), hands.time.size(), batches_in_slice);
     {
         const py::gil_scoped_release unlocked;
         path =

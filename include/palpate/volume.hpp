@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "palpate/progress.hpp"
+
 namespace palpate {
 
 using Vec3 = Eigen::Vector3d;
@@ -125,9 +127,10 @@ class Volume {
     template <class T>
     Volume(const Geometry& geometry, std::vector<T> samples);
     /// Adopts samples allocated elsewhere (a mapped file, shared memory); the deleter of `samples`
-    /// releases them. `bytes` is checked against the geometry. Throws as above.
+    /// releases them. `bytes` is checked against the geometry. `progress` is called with 1 while
+    /// the range is found. Throws as above.
     Volume(const Geometry& geometry, SampleType type, std::shared_ptr<const void> samples,
-           std::size_t bytes);
+           std::size_t bytes, const OnProgress& progress = {});
 
     const Geometry& geometry() const { return geometry_; }
     SampleType type() const { return type_; }
@@ -157,12 +160,12 @@ class Volume {
 /// steps, and a proxy is caught in them. One pass removes most steps (docs/results/fidelity.md),
 /// but blurs structures thinner than about two voxels. 0 passes return the volume itself. Throws
 /// std::invalid_argument for fewer than 0 or more than 64.
-Volume smoothed(const Volume& volume, int passes = 1);
+Volume smoothed(const Volume& volume, int passes = 1, const OnProgress& progress = {});
 
 /// s - (discrete Laplacian of s) / 8, as float32; samples beyond the border count as those on it.
 /// The smooth field of these samples is nearer to the original value at each sample: thin
 /// structures keep their height, and curved surfaces their place. Noise is sharpened as well.
 /// Samples may leave the data's range by up to 0.75 of it.
-Volume sharpened(const Volume& volume);
+Volume sharpened(const Volume& volume, const OnProgress& progress = {});
 
 }  // namespace palpate

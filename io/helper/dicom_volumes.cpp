@@ -135,10 +135,12 @@ void note_missing_rescale(const std::vector<DicomSlice>& slices, std::vector<std
     const auto lacks = [](const DicomSlice& s) { return !s.has_rescale; };
     const auto first = std::ranges::find_if(slices, lacks);
     if (first == slices.end() || std::ranges::none_of(slices, changes)) return;
-    notes.push_back(std::to_string(std::ranges::count_if(slices, lacks)) + " of its " +
-                    std::to_string(slices.size()) + " slices (the first in " + quoted(first->file) +
-                    ") give no slope and intercept, and others do: their samples were taken as "
-                    "they are stored, do not trust what is felt there");
+    const auto count = std::ranges::count_if(slices, lacks);
+    notes.push_back(std::to_string(count) + " of its " + std::to_string(slices.size()) +
+                    " slices (the first in " + quoted(first->file) +
+                    (count == 1 ? ") gives" : ") give") +
+                    " no slope and intercept, and others do: such samples were taken as they are "
+                    "stored, do not trust what is felt there");
 }
 
 std::string bytes_of(const fs::path& file) {

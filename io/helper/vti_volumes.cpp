@@ -105,18 +105,25 @@ bool check_ends(const Request& request) {
     return has_spacing;
 }
 
-/// Refuses a number that its type cannot hold. What is no number stops VTK.
-void check_numbers(const std::string& text, Stored stored) {
+/// Refuses a number that its type cannot hold, and more than `most` numbers, of which VTK would
+/// drop the last. What is no number stops VTK.
+void check_numbers(const std::string& text, Stored stored, double most) {
     const auto [low, high] = with_stored(stored, [](auto zero) {
         using Limits = std::numeric_limits<decltype(zero)>;
         return std::pair(static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max()));
     });
     const char *at = text.data(), *const end = at + text.size();
-    for (double number = 0;; number = 0) {
+    double number = 0;
+    for (double count = 1;; ++count) {
         at = std::find_if(at, end, [](char c) { return std::strchr(" \t\r\n+", c) == nullptr; });
         const auto [next, error] = std::from_chars(at, end, number);
         if (error != std::errc{}) return;
-        if (number < low || number > high) {
+        if (count > most) {
+            throw Failure(
+                "an array has more numbers than its piece has samples; it is damaged: "
+                "export it again");
+        }
+        if (std::isfinite(number) && (number < low || number > high)) {
             throw Failure("its data have the number " + text_of(number) +
                           ", which its sample type cannot hold; correct the type of its DataArray");
         }
@@ -124,21 +131,38 @@ void check_numbers(const std::string& text, Stored stored) {
     }
 }
 
-/// Numbers written as text, of which VTK wraps those that do not fit an integer type.
+/// Samples at the points or in the cells of a piece.
+double samples_of(const std::vector<double>& extent, bool in_cells) {
+    double count = 1;
+    for (std::size_t a = 0; a + 1 < extent.size(); a += 2) {
+        const double steps = extent[a + 1] - extent[a];
+        count *= in_cells ? std::max(1.0, steps) : steps + 1;
+    }
+    return count;
+}
+
+/// Checks numbers that are written as text.
 void check_text(const std::filesystem::path& file) {
+    constexpr double any = std::numeric_limits<double>::infinity();
     std::ifstream in(file, std::ios::binary);
-    constexpr Stored none = Stored::float64;  // VTK notices floats that it cannot read
-    Stored type = none;
+    std::vector<double> extent;
+    double samples = any;  // that an array may have
     std::string text, tag;
     while (!tag.starts_with("AppendedData") && std::getline(in, text, '<')) {
-        if (tag.starts_with("DataArray") && type != none) check_numbers(text, type);
+        const bool is_text = tag.starts_with("DataArray") && !tag.ends_with('/') &&
+                             attribute(tag, "format") != "binary" &&
+                             attribute(tag, "offset").empty();
+        if (is_text) {
+            const auto type = stored_named(lower(attribute(tag, "type")));
+            const auto components = numbers_of(tag, "NumberOfComponents", 1);
+            check_numbers(text, type.value_or(Stored::float64),
+                          samples * (components.empty() ? 1 : components[0]));
+        }
         if (!std::getline(in, tag, '>')) return;
-        if (tag == "/DataArray") type = none;
-        if (!tag.starts_with("DataArray") || tag.ends_with('/')) continue;
-        const bool is_text =
-            attribute(tag, "format") != "binary" && attribute(tag, "offset").empty();
-        type = is_text ? stored_named(lower(attribute(tag, "type"))).value_or(none) : none;
-        if (type == Stored::float32) type = none;
+        if (tag.starts_with("Piece")) extent = numbers_of(tag, "Extent", 6);
+        const bool at_points = tag.starts_with("PointData"), in_cells = tag.starts_with("CellData");
+        if (at_points || in_cells) samples = extent.empty() ? any : samples_of(extent, in_cells);
+        if (tag.starts_with("/PointData") || tag.starts_with("/CellData")) samples = any;
     }
 }
 

@@ -1,6 +1,7 @@
 // An array in chunks: keys, shards, limits. See the header.
 #include "stream/formats/chunked_array.hpp"
 
+#include <exception>
 #include <stdexcept>
 
 #include "io/byte_order.hpp"
@@ -15,7 +16,7 @@ constexpr double most_chunk_bytes = 1 << 30;
 constexpr double most_chunks_in_shard = 1 << 20;
 constexpr std::size_t most_held = 1 << 22;  // numbers in all indices that are kept
 // What was damaged on its way may come whole the next time.
-constexpr int attempts_at_damage = 3;
+constexpr int attempts_at_damage = 3, attempts_at_change = 3;
 constexpr std::uint64_t not_stored = UINT64_MAX;
 
 std::size_t product(std::span<const std::int64_t> sizes) {
@@ -31,8 +32,9 @@ double rough_product(std::span<const std::int64_t> sizes) {
 }
 
 /// Also an index that is not there takes some memory.
-std::size_t numbers_in(const std::shared_ptr<const std::vector<std::uint64_t>>& index) {
-    return 64 + (index ? index->size() : 0);
+template <class Index>
+std::size_t numbers_in(const Index& index) {
+    return 64 + (index ? index->places.size() : 0);
 }
 
 }  // namespace
@@ -106,7 +108,7 @@ auto ChunkReader::unpacked(Wanted wanted, const std::string& part, const std::st
                            const std::stop_token& stop, const Unpack& unpack) const {
     using Unpacked = decltype(unpack(Bytes{}));
     for (int attempt = 1;; ++attempt) {
-        wanted.again = attempt > 1;
+        wanted.again = wanted.again || attempt > 1;
         const bool is_empty = wanted.range && wanted.range->length == 0;
         auto bytes = is_empty ? Bytes{} : objects_->get(wanted, stop);
         if (!bytes) return std::optional<Unpacked>();
@@ -122,18 +124,58 @@ auto ChunkReader::unpacked(Wanted wanted, const std::string& part, const std::st
 
 std::optional<Bytes> ChunkReader::chunk(std::span<const std::int64_t> index,
                                         std::stop_token stop) const {
-    const auto place = array_.shards ? place_in_shard(index, stop) : place_of(index, stop);
-    if (!place) return std::nullopt;
+    if (array_.shards) return chunk_in_shard(index, stop);
+    const auto place = place_of(index, stop);
+    return place ? chunk_at(*place, nullptr, false, stop) : std::nullopt;
+}
+
+/// Between its index and a chunk of it, a shard may be written anew.
+std::optional<Bytes> ChunkReader::chunk_in_shard(std::span<const std::int64_t> index,
+                                                 const std::stop_token& stop) const {
+    auto place = place_in_shard(index, false, stop);
+    for (int attempt = 1; place; ++attempt) {
+        std::optional<Bytes> bytes;
+        std::exception_ptr problem;
+        std::string identity = place->identity;
+        try {
+            bytes = chunk_at(*place, &identity, attempt > 1, stop);
+        } catch (const io::InputError&) {  // perhaps of the old index
+            problem = std::current_exception();
+        }
+        if (bytes && identity == place->identity) return bytes;
+        auto now = place_in_shard(index, true, stop);
+        const bool same = now && now->range->offset == place->range->offset &&
+                          now->range->length == place->range->length;
+        if (same && problem) std::rethrow_exception(problem);
+        if (same && (!bytes || identity == now->identity)) return bytes;
+        if (attempt == attempts_at_change) {
+            if (same) return bytes;  // several servers, which do not agree on the identity
+            throw io::InputError(objects_->name_of(place->key) +
+                                 ": changes while it is read; wait until it is complete");
+        }
+        place = std::move(now);
+    }
+    return std::nullopt;
+}
+
+std::optional<Bytes> ChunkReader::chunk_at(const Place& place, std::string* identity, bool again,
+                                           const std::stop_token& stop) const {
     const std::uint64_t most = packed_at_most(array_.bytes_in_chunk());
-    const auto& range = place->range;
+    const auto& range = place.range;
     if (range && (range->length > most || range->offset > UINT64_MAX / 2)) {
         throw io::InputError(
-            objects_->name_of(place->key) +
+            objects_->name_of(place.key) +
             ": a chunk of it lies where none can be; it is damaged: copy it again");
     }
-    return unpacked({place->key, range, most, true}, "", "chunk", stop, [&](Bytes packed) {
-        return unpacked_chunk(array_, std::move(packed), place->skipped);
-    });
+    return unpacked({.key = place.key,
+                     .range = range,
+                     .most = most,
+                     .lasting = true,
+                     .again = again,
+                     .identity = identity},
+                    "", "chunk", stop, [&](Bytes packed) {
+                        return unpacked_chunk(array_, std::move(packed), place.skipped);
+                    });
 }
 
 std::optional<ChunkReader::Place> ChunkReader::place_of(std::span<const std::int64_t> index,
@@ -145,6 +187,7 @@ std::optional<ChunkReader::Place> ChunkReader::place_of(std::span<const std::int
 }
 
 std::optional<ChunkReader::Place> ChunkReader::place_in_shard(std::span<const std::int64_t> index,
+                                                              bool again,
                                                               const std::stop_token& stop) const {
     std::vector<std::int64_t> shard(index.begin(), index.end());
     std::size_t inside = 0;
@@ -155,23 +198,28 @@ std::optional<ChunkReader::Place> ChunkReader::place_in_shard(std::span<const st
         shard[a] /= count;
     }
     const std::string key = key_of(array_, shard);
-    const Index places = index_of(key, stop);
-    if (!places) return std::nullopt;
-    const ByteRange range{(*places)[2 * inside], (*places)[2 * inside + 1]};
+    const Index found = index_of(key, again, stop);
+    if (!found) return std::nullopt;
+    const ByteRange range{found->places[2 * inside], found->places[2 * inside + 1]};
     if (range.offset == not_stored && range.length == not_stored) return std::nullopt;
-    return Place{key, range};
+    return Place{.key = key, .range = range, .identity = found->identity};
 }
 
-ChunkReader::Index ChunkReader::index_of(const std::string& shard,
+ChunkReader::Index ChunkReader::index_of(const std::string& shard, bool again,
                                          const std::stop_token& stop) const {
-    {
+    if (!again) {
         const std::lock_guard lock(mutex_);
         const auto found = indices_.find(shard);
         if (found != indices_.end()) return found->second;
     }
-    const Index index = fetched_index(shard, stop);
+    const Index index = fetched_index(shard, again, stop);
     const std::lock_guard lock(mutex_);
-    if (!indices_.emplace(shard, index).second) return index;
+    const auto [kept, is_new] = indices_.emplace(shard, index);
+    if (!is_new) {  // as long as the one before, unless that shard was not there
+        held_ += numbers_in(index) - numbers_in(kept->second);
+        kept->second = index;
+        return index;
+    }
     order_.push_back(shard);
     held_ += numbers_in(index);
     while (held_ > most_held && order_.size() > 1) {
@@ -183,7 +231,7 @@ ChunkReader::Index ChunkReader::index_of(const std::string& shard,
     return index;
 }
 
-ChunkReader::Index ChunkReader::fetched_index(const std::string& shard,
+ChunkReader::Index ChunkReader::fetched_index(const std::string& shard, bool again,
                                               const std::stop_token& stop) const {
     const std::size_t size = 16 * product(array_.shards->chunks);
     std::size_t stored = size;
@@ -191,17 +239,23 @@ ChunkReader::Index ChunkReader::fetched_index(const std::string& shard,
         if (codec == Codec::crc32c) stored += 4;
     }
     const ByteRange range{0, stored, !array_.shards->index_at_start};
-    return unpacked({shard, range, stored, true}, "its index ", "shard", stop,
-                    [&](Bytes packed) {
-                        const Bytes plain =
-                            decoded(array_.shards->index_codecs, std::move(packed), size);
-                        auto places = std::make_shared<std::vector<std::uint64_t>>(size / 8);
-                        for (std::size_t i = 0; i < places->size(); ++i) {
-                            (*places)[i] =
-                                io::little_endian<std::uint64_t>(std::span(plain).subspan(8 * i));
-                        }
-                        return Index(places);
-                    })
+    std::string identity;
+    const auto unpack = [&](Bytes packed) {
+        const Bytes plain = decoded(array_.shards->index_codecs, std::move(packed), size);
+        const auto index = std::make_shared<ShardIndex>();
+        index->identity = identity;
+        for (std::size_t at = 0; at < size; at += 8) {
+            index->places.push_back(io::little_endian<std::uint64_t>(std::span(plain).subspan(at)));
+        }
+        return Index(index);
+    };
+    return unpacked({.key = shard,
+                     .range = range,
+                     .most = stored,
+                     .lasting = true,
+                     .again = again,
+                     .identity = &identity},
+                    "its index ", "shard", stop, unpack)
         .value_or(nullptr);
 }
 

@@ -70,20 +70,29 @@ class ChunkReader {
     std::optional<Bytes> chunk(std::span<const std::int64_t> index, std::stop_token stop) const;
 
   private:
-    /// Offset and length of each chunk of a shard; null: there is no such shard.
-    using Index = std::shared_ptr<const std::vector<std::uint64_t>>;
-    Index index_of(const std::string& shard, const std::stop_token& stop) const;
-    Index fetched_index(const std::string& shard, const std::stop_token& stop) const;
+    struct ShardIndex {
+        std::vector<std::uint64_t> places;  ///< offset and length of each chunk
+        std::string identity;               ///< of the shard
+    };
+    using Index = std::shared_ptr<const ShardIndex>;  ///< null: there is no such shard
+    Index index_of(const std::string& shard, bool again, const std::stop_token& stop) const;
+    Index fetched_index(const std::string& shard, bool again, const std::stop_token& stop) const;
     /// Where a chunk is stored.
     struct Place {
         std::string key;  ///< of the object
         std::optional<ByteRange> range = std::nullopt;
         std::uint64_t skipped = 0;  ///< as in io::ChunkPlace
+        std::string identity = {};  ///< that the shard had with this index
     };
     std::optional<Place> place_of(std::span<const std::int64_t> index,
                                   const std::stop_token& stop) const;
-    std::optional<Place> place_in_shard(std::span<const std::int64_t> index,
+    /// `again`: reads the shard's index anew.
+    std::optional<Place> place_in_shard(std::span<const std::int64_t> index, bool again,
                                         const std::stop_token& stop) const;
+    std::optional<Bytes> chunk_in_shard(std::span<const std::int64_t> index,
+                                        const std::stop_token& stop) const;
+    std::optional<Bytes> chunk_at(const Place& place, std::string* identity, bool again,
+                                  const std::stop_token& stop) const;
     template <class Unpack>
     auto unpacked(Wanted wanted, const std::string& part, const std::string& what,
                   const std::stop_token& stop, const Unpack& unpack) const;

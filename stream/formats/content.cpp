@@ -131,7 +131,7 @@ void fail_changed(const Store& store) {
                          ": changed while it was converted; run it again when it stays as it is");
 }
 
-std::uint64_t files_at(const std::string& address) {
+std::uint64_t files_at(const std::string& address, const std::stop_token& stop) {
     std::map<fs::path, struct stat> files;  // in an order that does not depend on the disk
     const auto add = [&](const fs::path& path) {
         struct stat about {};
@@ -141,6 +141,7 @@ std::uint64_t files_at(const std::string& address) {
     std::error_code error;
     for (fs::recursive_directory_iterator entry(address, error), end; entry != end && !error;
          entry.increment(error)) {
+        if (stop.stop_requested()) throw Cancelled{};
         add(entry->path());
     }
     if (files.empty()) return 0;

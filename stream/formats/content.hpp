@@ -21,7 +21,8 @@ std::string content_of(const Store& store, int level, const std::stop_token& sto
 [[noreturn]] void fail_changed(const Store& store);
 
 /// Names, sizes and times of change of a file, or of all files of a folder and below, as one
-/// number: which files they are, without reading them. 0 if there is no such file.
-std::uint64_t files_at(const std::string& address);
+/// number: which files they are, without reading them. 0 if there is no such file. Throws
+/// Cancelled.
+std::uint64_t files_at(const std::string& address, const std::stop_token& stop = {});
 
 }  // namespace palpate::stream

@@ -1,5 +1,8 @@
 // Remote objects with a cache on the disk.
+#include <algorithm>
 #include <atomic>
+#include <span>
+#include <string_view>
 
 #include "stream/objects/disk_cache.hpp"
 #include "stream/objects/remote_objects.hpp"
@@ -30,14 +33,16 @@ class CachedObjects : public Objects {
         if (!wanted.lasting) return objects_->get(wanted, std::move(stop));
         const std::string name = entry_name(wanted);
         if (!wanted.again) {
-            if (auto bytes = cache_.find(name); bytes && bytes->size() <= wanted.most) {
+            auto bytes = cache_.find(name);
+            if (bytes && wanted.identity) bytes = without_identity(wanted, *std::move(bytes));
+            if (bytes && bytes->size() <= wanted.most) {
                 found_.fetch_add(1, std::memory_order_relaxed);
                 return bytes;
             }
         }
         auto bytes = objects_->get(wanted, std::move(stop));
         // That an object is not there is not kept: it may be written any time.
-        if (bytes) cache_.put(name, *bytes);
+        if (bytes) cache_.put(name, wanted.identity ? with_identity(wanted, *bytes) : *bytes);
         return bytes;
     }
 
@@ -50,9 +55,27 @@ class CachedObjects : public Objects {
     }
 
   private:
+    /// Identities lie before the bytes, with a zero between.
+    static Bytes with_identity(const Wanted& wanted, const Bytes& bytes) {
+        const auto identity =
+            std::as_bytes(std::span(wanted.identity->c_str(), wanted.identity->size() + 1));
+        Bytes all(identity.begin(), identity.end());
+        all.insert(all.end(), bytes.begin(), bytes.end());
+        return all;
+    }
+    static Bytes without_identity(const Wanted& wanted, Bytes all) {
+        const auto zero = std::ranges::find(all, std::byte{0});
+        const std::string_view text(reinterpret_cast<const char*>(all.data()),
+                                    static_cast<std::size_t>(zero - all.begin()));
+        *wanted.identity = text;
+        all.erase(all.begin(), zero == all.end() ? zero : zero + 1);
+        return all;
+    }
+
     /// A store that is written anew does not meet the entries of the old one.
     std::string entry_name(const Wanted& wanted) const {
         std::string name = objects_->name_of(wanted.key) + '\n' + objects_->version();
+        if (wanted.identity) name += "\nwith identity";
         if (wanted.range) {
             name += '\n' + std::to_string(wanted.range->offset) +
                     (wanted.range->from_end ? "e" : "+") + std::to_string(wanted.range->length);

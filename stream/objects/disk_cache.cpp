@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <vector>
 
@@ -98,6 +99,7 @@ bool is_hexadecimal(const std::string& name, std::size_t digits) {
 /// Files that lie and are called as entries are: other files in the folder are not ours.
 std::vector<Entry> entries_in(const fs::path& folder) {
     std::vector<Entry> entries;
+    const auto now = fs::file_time_type::clock::now();
     std::error_code error;
     for (fs::directory_iterator inner(folder, error), end; inner != end && !error;
          inner.increment(error)) {
@@ -115,7 +117,11 @@ std::vector<Entry> entries_in(const fs::path& folder) {
             }
             const auto used = file->last_write_time(of_entry);
             const auto bytes = file->file_size(of_entry);
-            if (!of_entry) entries.push_back({file->path(), used, bytes});
+            if (of_entry) continue;
+            // Of before the clock was set back: otherwise they would outlive all that is used now.
+            const bool of_the_future = used > now + std::chrono::seconds(2);
+            entries.push_back(
+                {file->path(), of_the_future ? fs::file_time_type::min() : used, bytes});
         }
     }
     return entries;

@@ -65,12 +65,26 @@ class FolderObjects : public Objects {
             fail(wanted.key, "has " + std::to_string(range.length) +
                                  " bytes, more than its metadata allow; copy it again");
         }
-        return read(wanted.key, file.number(), range);
+        Bytes bytes = read(wanted.key, file.number(), range);
+        if (wanted.identity) {
+            struct stat after {};
+            if (fstat(file.number(), &after) != 0) fail(wanted.key, io::reason(errno));
+            *wanted.identity = identity_of(status);
+            // Else what was read is of no known file.
+            if (identity_of(after) != *wanted.identity)
+                *wanted.identity += " to " + identity_of(after);
+        }
+        return bytes;
     }
 
   private:
     [[noreturn]] void fail(const std::string& key, const std::string& what) const {
         throw io::InputError(name_of(key) + ": " + what);
+    }
+
+    static std::string identity_of(const struct stat& status) {
+        return std::to_string(status.st_ino) + ' ' + std::to_string(status.st_size) + ' ' +
+               std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec);
     }
 
     /// Where a disk has gone, no chunk is there; none of them is just not stored.

@@ -98,6 +98,10 @@ class HttpObjects : public Objects {
         std::vector<std::optional<Bytes>> all;
         for (std::size_t i = 0; i < answers.size(); ++i) {
             const std::string version = std::move(answers[i].version);
+            if (wanted[i].identity) {
+                const auto size = answers[i].whole_size.value_or(answers[i].body.size());
+                *wanted[i].identity = version + std::to_string(size);
+            }
             all.push_back(body_of(wanted[i], std::move(answers[i])));
             if (!wanted[i].lasting && all.back()) remember(wanted[i].key, version, *all.back());
         }

@@ -33,6 +33,8 @@ struct Wanted {
     bool lasting = false;             ///< may come from a disk cache
     bool again = false;               ///< what came before was damaged: not from the cache
     bool probe = false;  ///< one that may not be there; what must not be read counts as such
+    /// Unless null, gets what changes when the object is written anew.
+    std::string* identity = nullptr;
 };
 
 /// Safe to use from several threads at a time.

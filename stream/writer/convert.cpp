@@ -31,9 +31,9 @@ nlohmann::json source_of(const Store& from, int level, const std::stop_token& st
     nlohmann::json source = {{"content", content_of(from, level, stop)}};
     // Of what is not read whole, files that were written anew show what its samples may not.
     if (from.info().format == "memory") return source;
-    source["files"] = files_at(from.info().address);
+    source["files"] = files_at(from.info().address, stop);
     if (const auto* edits = dynamic_cast<const EditedStore*>(&from)) {
-        source["original"] = files_at(edits->note().of.address);
+        source["original"] = files_at(edits->note().of.address, stop);
     }
     return source;
 }

@@ -65,10 +65,9 @@ ChunkSet in_chunks_of(int edge, const ChunkSet& chunks, int edge_before, const I
 
 class Saving {
   public:
-    Saving(const Store& from, const Opened& opened, int level, const Samples& edits,
-           fs::path folder, EditsNote note, std::atomic<double>& made, std::stop_token stop)
+    Saving(const Store& from, int level, const Samples& edits, fs::path folder, EditsNote note,
+           std::atomic<double>& made, std::stop_token stop)
         : from_(from),
-          is_rescue_(opened.is_rescue),
           level_(level),
           edits_(edits),
           folder_(std::move(folder)),
@@ -87,20 +86,14 @@ class Saving {
             changed.push_back({low, (low + Index3::Constant(Bricks::edge - 1))
                                         .cwiseMin(edits_.geometry().size - Index3::Ones())});
         });
-        for (std::size_t l = 0; l < writer_.levels().size(); ++l) {
+        for (std::size_t l = 0; l < note_.chunks.size(); ++l) {
             const CoarserGrid& grid = writer_.levels()[l];
             if (l > 0 && grid.factor.minCoeff() == 0) changed.clear();  // stays as it was
             if (l > 0) {
                 for (SampleBox& box : changed) box = coarser_box(box, grid);
                 std::erase_if(changed, [](const SampleBox& box) { return box.empty(); });
             }
-            try {
-                write_level(l, changed);
-            } catch (const io::InputError&) {
-                if (l == 0 || !is_rescue_) throw;
-                note_.chunks.resize(l);  // the original is not there: without coarser levels
-                break;
-            }
+            write_level(l, changed);
         }
         return std::move(note_);
     }
@@ -168,7 +161,6 @@ class Saving {
     Index3 piece() const { return Index3::Constant(note_.chunk); }
 
     const Store& from_;
-    const bool is_rescue_;
     int level_;
     const Samples& edits_;
     fs::path folder_;
@@ -195,8 +187,11 @@ EditsNote note_for(const Store& from, const Opened& opened, int level, const Sam
                    const std::stop_token& stop) {
     const auto* edited = dynamic_cast<const EditedStore*>(&from);
     EditsNote note{.of = opened, .level = level, .bounds = {edits.minimum(), edits.maximum()}};
-    if (opened.is_rescue) note.chunk = Bricks::edge;  // of which nothing is the original's
     note.chunks.resize(from.info().levels.size() - static_cast<std::size_t>(level));
+    if (opened.is_rescue) {  // nothing of the original, which may be gone, silent or replaced
+        note.chunk = Bricks::edge;
+        note.chunks.resize(1);
+    }
     note.content = checked_content(from, opened, level, stop);
     if (!edited) return note;
     const EditsNote& before = edited->note();
@@ -262,7 +257,7 @@ void save_edits(const Store& from, const Opened& opened, int level, const Sample
     std::atomic<double> made{0};
     const auto tell = [&] { progress(made); };
     const auto save = [&](const std::stop_token& stop) {
-        Saving saving(from, opened, level, edits, folder.result(),
+        Saving saving(from, level, edits, folder.result(),
                       note_for(from, opened, level, edits, stop), made, stop);
         write_note(folder.result(), out, saving.run());
     };

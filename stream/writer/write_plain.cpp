@@ -76,13 +76,16 @@ void write_plain(const Store& from, int level, const std::filesystem::path& out,
     std::function<void()> tell;
     if (options.progress) tell = [&] { options.progress(made); };
     if (raw || (extension == ".nrrd" && !options.compress)) {
-        const std::uint64_t files = files_at(from.info().address);
+        const auto files_now = [&](const std::stop_token& stop) {
+            return files_at(from.info().address, stop);
+        };
+        const std::uint64_t files = while_telling(tell, files_now);
         io::PendingFile file(out);
         if (!raw) file.write(nrrd_head(grid, from.info().type));
         while_telling(
             tell, [&](const std::stop_token& stop) { write_slabs(from, level, file, made, stop); });
         if (tell) tell();
-        if (files_at(from.info().address) != files) fail_changed(from);
+        if (while_telling(tell, files_now) != files) fail_changed(from);
         file.commit();
         return;
     }

@@ -245,6 +245,22 @@ TEST(BadOutput, on_a_disk_that_is_full_for_the_path_leaves_no_trace) {
     EXPECT_EQ(support::bytes_of(folder / "a.csv"), "old");
 }
 
+TEST(BadOutput, of_a_recording_on_a_full_disk_is_told_once) {
+    const ScratchFolder folder;
+    const Outcome outcome =
+        Running({"-c",
+                 "ulimit -f 32; exec \"$0\" touch synthetic:sphere:24x24x24 --unpaced -q --device "
+                 "simulated:hand=hold --seconds 2 --record r.csv",
+                 PALPATE_PROGRAM},
+                folder.path(), Stdout::captured, "/bin/bash")
+            .finish();
+    EXPECT_EQ(outcome.status, 5);
+    const auto told = outcome.err.find("recording stopped");
+    EXPECT_NE(told, std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("recording stopped", told + 1), std::string::npos) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "r.csv: is not complete")) << outcome.err;
+}
+
 TEST(BadOutput, names_places_that_cannot_be_written) {
     const ScratchFolder folder;
     put_trajectory(folder);
@@ -300,6 +316,18 @@ TEST_P(Signal, leaves_no_file_of_an_extraction) {
     Running extract(words_of("extract synthetic:noise:160x160x160 -o a.ply"), folder.path());
     ASSERT_TRUE(comes_true([&] { return extract.catches(GetParam()); }));
     expect_interrupted(extract, folder, {});
+}
+
+TEST_P(Signal, ends_what_is_done_to_large_volumes_in_memory) {
+    const ScratchFolder folder;
+    const std::string small = "info synthetic:marschner-lobb:256x256x256 ";
+    for (const std::string& command :
+         {std::string("info synthetic:marschner-lobb:1024x1024x1024"), small + "--smooth 64",
+          small + "--dequantize=1000 --smooth 64 --prefilter"}) {
+        Running info(words_of(command), folder.path());
+        ASSERT_TRUE(comes_true([&] { return info.catches(GetParam()); }));
+        expect_interrupted(info, folder, {});
+    }
 }
 
 TEST_P(Signal, leaves_no_folder_of_a_demo) {

@@ -170,6 +170,20 @@ TEST(SmoothSurface, can_be_cancelled_while_facets_are_split) {
     EXPECT_TRUE(mesh.triangles.empty());
 }
 
+TEST(SmoothSurface, normals_can_be_cancelled) {
+    const TestField test = oblique_field();
+    const Field field = smooth(test.field);
+    int calls = 0;
+    SurfaceOptions options;
+    options.progress = [&](double) { return ++calls > 0; };
+    (void)extract_surface(field, test.isovalue, options);
+    options.progress = [&](double) { return --calls >= 0; };  // the first one after those
+    options.normals = true;
+    const SurfaceMesh mesh = extract_surface(field, test.isovalue, options);
+    EXPECT_FALSE(mesh.complete);
+    EXPECT_TRUE(mesh.triangles.empty());
+}
+
 TEST(SmoothSurface, has_the_normals_that_are_felt) {
     const TestField test = oblique_field();
     SurfaceOptions options;

@@ -302,6 +302,37 @@ TEST(Volume, sharpened_quadratics_are_in_the_smooth_field_what_they_were) {
     }
 }
 
+/// How often work reports progress, which never falls or leaves 0..1.
+template <class Work>
+int reports_of(Work&& work) {
+    int reports = 0;
+    double last = 0;
+    work([&](double part) {
+        EXPECT_GE(part, last);
+        EXPECT_LE(part, 1);
+        last = part;
+        ++reports;
+    });
+    return reports;
+}
+
+TEST(Volume, smoothed_and_sharpened_report_progress_and_stop_when_that_throws) {
+    struct Cancelled {};
+    const OnProgress cancel = [](double) { throw Cancelled(); };
+    for (const Index3& size : {Index3(128, 64, 64), Index3(1024, 512, 1), Index3(1, 1, 1 << 19)}) {
+        Geometry geometry;
+        geometry.size = size;
+        const auto count = static_cast<std::size_t>(sample_count(geometry));
+        const Volume volume(geometry, std::vector<std::uint8_t>(count, 3));
+        EXPECT_GE(reports_of([&](const OnProgress& p) { (void)smoothed(volume, 2, p); }), 7);
+        EXPECT_GE(reports_of([&](const OnProgress& p) { (void)sharpened(volume, p); }), 2);
+        EXPECT_THROW((void)smoothed(volume, 1, cancel), Cancelled);
+        EXPECT_THROW((void)sharpened(volume, cancel), Cancelled);
+        const std::shared_ptr<const void> samples(volume.data(), [](const void*) {});
+        EXPECT_THROW(Volume(geometry, volume.type(), samples, volume.bytes(), cancel), Cancelled);
+    }
+}
+
 TEST(Volume, smoothed_twice_is_smoothed_and_smoothed_and_not_at_all_is_the_same) {
     Geometry geometry;
     geometry.size = {4, 3, 2};

@@ -285,6 +285,24 @@ TEST(Dequantize, tells_its_progress_and_stops_when_that_throws) {
     EXPECT_THROW(dequantized(before, options), Cancelled);
 }
 
+TEST(Dequantize, looks_for_levels_only_until_progress_throws) {
+    struct Cancelled {};
+    for (const auto type : {SampleType::uint8, SampleType::float32}) {
+        const Volume volume = scenes::salt({1024, 1024, 1}, 0.5, 1);
+        const Volume before = type == SampleType::uint8 ? volume : smoothed(volume);
+        int reports = 0;
+        DequantizeOptions options;
+        options.progress = [&](double part) {
+            EXPECT_LT(part, 0.1);
+            if (++reports == 2) throw Cancelled();  // the second comes before the first round
+        };
+        EXPECT_THROW((void)dequantized(before, options), Cancelled);
+        const OnProgress cancel = [](double) { throw Cancelled(); };
+        EXPECT_THROW((void)level_of(before, cancel), Cancelled);
+        EXPECT_THROW((void)terraces_of(before, cancel), Cancelled);
+    }
+}
+
 TEST(Dequantize, leaves_data_without_levels_as_they_are) {
     const Volume flat = scenes::noise(scenes::centred(cube(5)), SampleType::uint8, 1, 0);
     EXPECT_EQ(dequantized(flat).type(), SampleType::float32);

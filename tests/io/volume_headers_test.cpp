@@ -446,6 +446,16 @@ TEST(vti, what_stands_beside_the_numbers_of_an_array_is_not_taken_for_them) {
     EXPECT_TRUE(contains(refusal_of(folder, "a.vti", vti_of("UInt8", "1 2 300" + key)), "300"));
 }
 
+TEST(vti, text_with_more_numbers_than_samples_is_refused) {
+    const ScratchFolder folder;
+    for (const std::string type : {"UInt8", "Int32", "Float32", "Float64"}) {
+        EXPECT_EQ(read_bytes(folder, "a.vti", vti_of(type, "1 2 3 ")).volume.sample({2, 0, 0}), 3);
+        const std::string message = refusal_of(folder, "a.vti", vti_of(type, "1 2 3 4"));
+        EXPECT_TRUE(contains(message, "more numbers than its piece has samples")) << message;
+    }
+    refusal_of(folder, "a.vti", vti("0 2 0 3 0 4", "CellData", "", 25));
+}
+
 TEST(vti, vectors_empty_grids_and_wrong_counts_are_refused) {
     const ScratchFolder folder;
     EXPECT_TRUE(

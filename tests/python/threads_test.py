@@ -4,10 +4,12 @@ import functools
 import http.server
 import json
 import os
+import signal
 import socket
 import subprocess
 import sys
 import threading
+import time
 
 import palpate
 
@@ -135,6 +137,10 @@ palpate.motion("slide", palpate.Field(scene.volume), scene.isovalue, settings)
 """) < 10  # of minutes; usually 0.1
 
 
+def test_ctrl_c_ends_the_making_of_a_large_scene():
+    assert interrupted_after("palpate.scene('marschner-lobb:1024x1024x1024')") < 10  # of minutes
+
+
 class SilentAbout(http.server.SimpleHTTPRequestHandler):
     """Answers for all of a folder but the last chunk of the finest level."""
 
@@ -158,3 +164,36 @@ def test_ctrl_c_ends_the_wait_for_a_silent_server():
     with socket.create_server(("127.0.0.1", 0)) as silent:  # connects, and never answers
         address = f"http://127.0.0.1:{silent.getsockname()[1]}/v.zarr"
         assert interrupted_after("palpate.open_store(sys.argv[2])", address) < 10  # of 50
+
+
+class SilentAboutMost(http.server.SimpleHTTPRequestHandler):
+    """Answers for all of a folder but chunks of the finest level, of which it gives only the first."""
+
+    def do_GET(self):
+        if "/0/c/" in self.path and not self.path.endswith("/0/c/0/0/0"):
+            threading.Event().wait()
+        super().do_GET()
+
+
+def test_ctrl_c_ends_the_saving_of_edits_and_they_are_rescued_without_the_server(tmp_path):
+    subprocess.run([os.environ["PALPATE"], "convert", "-q", "synthetic:sphere:200x200x200", tmp_path / "v.zarr",
+                    "--chunk", "64"], check=True)
+    (tmp_path / "c.txt").write_text("0.1 fill 1,1,1:4,4,4 9\n0.2 save no/such/folder.zarr\n")
+    touch = subprocess.Popen([os.environ["PALPATE"], "touch", serve(tmp_path, SilentAboutMost) + "v.zarr", "--headless",
+                              "--normal-priority", "--device", "simulated:hand=hold", "--isovalue", "100",
+                              "--commands", "c.txt", "--save", "e.zarr", "-q"], cwd=tmp_path,
+                             env={**os.environ, "TMPDIR": str(tmp_path)}, stderr=subprocess.PIPE, text=True)
+    assert "create it first" in touch.stderr.readline()  # so the samples are filled
+    begin = time.monotonic()
+    while touch.poll() is None:
+        touch.send_signal(signal.SIGINT)
+        time.sleep(0.1)
+    assert time.monotonic() - begin < 20  # of 100
+    told = touch.stderr.read()
+    assert "saving was interrupted; the edits are kept in" in told, told
+    [kept] = tmp_path.glob("palpate-edits-*/edits.zarr")
+    Server = http.server.SimpleHTTPRequestHandler  # the original is back, at another address
+    note = json.loads((kept / "palpate-edits.json").read_text())
+    note["of"] = serve(tmp_path, Server) + "v.zarr"
+    (kept / "palpate-edits.json").write_text(json.dumps(note))
+    assert palpate.open_store(kept).read([2, 2, 2], [3, 3, 3]).array.max() == 9

@@ -6,6 +6,9 @@
 #include <algorithm>
 
 #include "palpate/filters/dequantize.hpp"
+#include "palpate/io/live_file.hpp"
+#include "palpate/scenes/volumes.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace palpate::run {
 namespace {
@@ -92,6 +95,31 @@ TEST(Source, keeps_the_layout_of_a_raw_file_in_its_names) {
                  std::invalid_argument);
     EXPECT_THROW(source_from({{"volume", "synthetic:torus"}, {"byte-order", "big"}}),
                  std::invalid_argument);
+}
+
+TEST(Source, is_not_waited_for_when_progress_throws) {
+    const support::ScratchFolder folder;
+    const std::string path = (folder / "frames.shm").string();
+    const io::LiveWriter writer(path, scenes::centred({8, 8, 8}), SampleType::uint8);
+    struct Cancelled {};
+    const auto cancel = [](double) { throw Cancelled(); };
+    EXPECT_THROW((void)load(source_named("live:" + path), cancel), Cancelled);
+    for (const std::string name : {"synthetic:noise:512x256x1", "synthetic:beating:512x256x1"}) {
+        EXPECT_THROW((void)load(source_named(name), cancel), Cancelled) << name;
+    }
+}
+
+TEST(Source, is_made_sharpened_and_smoothed_with_progress_that_never_falls) {
+    Source source = source_named("synthetic:noise:512x256x8");
+    source.smooth = 2;
+    source.dequantize = 3;
+    source.prefilter = true;
+    double last = 0;
+    (void)load(source, [&](double part) {
+        EXPECT_GE(part, last);
+        last = part;
+    });
+    EXPECT_EQ(last, 1);
 }
 
 TEST(Source, refuses_rounds_out_of_range_and_a_live_source) {

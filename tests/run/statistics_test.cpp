@@ -95,6 +95,20 @@ TEST(Padding, of_a_scan_is_left_out_of_histogram_mean_and_levels) {
     }
 }
 
+TEST(Padding, and_histograms_are_counted_until_progress_throws) {
+    struct Cancelled {};
+    Geometry geometry;
+    geometry.size = {1024, 1024, 1};
+    std::vector<std::int16_t> samples(std::size_t{1} << 20, 5);
+    samples.front() = -1000;
+    samples.back() = 7;
+    const Volume volume(geometry, std::move(samples));
+    const OnProgress cancel = [](double) { throw Cancelled(); };
+    EXPECT_THROW((void)padding_of(volume, -1000, cancel), Cancelled);
+    EXPECT_THROW((void)histogram_of(volume, 16, {}, cancel), Cancelled);
+    EXPECT_THROW((void)histogram_of(volume, 16, -1000, cancel), Cancelled);
+}
+
 TEST(Padding, is_not_what_is_only_the_least_value) {
     EXPECT_FALSE(padding_of(scan(-1000)));
     EXPECT_FALSE(padding_of(noise_field().field.volume()));

@@ -206,6 +206,22 @@ TEST(Volumes, bad_sizes_are_refused_with_the_form) {
     }
 }
 
+TEST(Volumes, report_progress_and_stop_when_that_throws) {
+    struct Cancelled {};
+    for (const std::string& name : volume_names()) {
+        int reports = 0;
+        (void)make_volume(name + ":512x256x2", {}, [&](double part) {
+            EXPECT_GT(part, 0);
+            EXPECT_LE(part, 1);
+            ++reports;
+        });
+        EXPECT_GE(reports, 3) << name;
+        EXPECT_THROW((void)make_volume(name + ":512x256x2", {}, [](double) { throw Cancelled(); }),
+                     Cancelled)
+            << name;
+    }
+}
+
 TEST(Volumes, absurd_sizes_are_refused_before_memory_is_asked_for) {
     EXPECT_TRUE(contains(message_of("noise:4096x4096x4096"), "GiB"));
     EXPECT_TRUE(contains(message_of("noise:1048576x1048576x1048576"), "GiB"));

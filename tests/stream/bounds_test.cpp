@@ -142,6 +142,17 @@ std::string nested(int depth) {
            std::string(static_cast<std::size_t>(depth), ']');
 }
 
+TEST(Bounds, json_with_more_lists_than_memory_can_hold_is_refused_before_it_is_parsed) {
+    const auto of = [](int lists) {
+        std::string text = "[0";
+        for (int i = 1; i < lists; ++i) text += i % 2 == 0 ? ",[]" : ",{}";
+        return text + "]";
+    };
+    EXPECT_NO_THROW((void)io::parsed_json(of(io::most_json_lists)));
+    EXPECT_THROW((void)io::parsed_json(of(io::most_json_lists + 1)), nlohmann::json::exception);
+    EXPECT_TRUE(io::parsed_or_discarded(of(io::most_json_lists + 1)).is_discarded());
+}
+
 TEST(Bounds, json_that_is_nested_too_deeply_is_refused_before_it_is_parsed) {
     EXPECT_NO_THROW((void)io::parsed_json(nested(io::deepest_json)));
     EXPECT_THROW((void)io::parsed_json(nested(io::deepest_json + 1)), nlohmann::json::exception);

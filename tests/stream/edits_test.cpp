@@ -225,6 +225,34 @@ TEST(Edits, of_an_original_that_has_gone_are_rescued_and_open_when_it_is_back) {
     EXPECT_TRUE(same_bits(volume_of(*open_store(more.string())), flattened(*plain)));
 }
 
+/// A store behind a server that has fallen silent.
+class Silent : public Store {
+  public:
+    explicit Silent(const Store& store) : store_(store) {}
+    const StoreInfo& info() const override { return store_.info(); }
+    Traffic traffic() const override { return store_.traffic(); }
+    void read(int, const SampleBox&, std::span<std::byte>, std::stop_token) const override {
+        throw std::logic_error("is asked");
+    }
+
+  private:
+    const Store& store_;
+};
+
+TEST(Edits, are_rescued_without_asking_for_the_original) {
+    Case c(SampleType::uint8, 18);
+    const auto original = open_store(c.zarr.string());
+    ASSERT_GT(original->info().levels.size(), 1U);
+    auto plain = samples_of(c.volume);
+    const auto edits = c.some_edits(*original, 0, &plain);
+    Opened opened{c.zarr.string(), {}};
+    const Silent silent(*original);
+    EXPECT_THROW(save_edits(silent, opened, 0, *edits, c.out, {}), std::logic_error);
+    opened.is_rescue = true;
+    save_edits(silent, opened, 0, *edits, c.out, {});
+    EXPECT_TRUE(same_bits(volume_of(*open_store(c.out.string())), flattened(*plain)));
+}
+
 TEST(Edits, damaged_notes_are_refused_in_one_line) {
     Case c(SampleType::uint8, 6);
     const auto original = open_store(c.zarr.string());

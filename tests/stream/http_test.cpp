@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
 using support::contains;
 using support::message_of;
 using support::put_bytes;
@@ -173,6 +174,38 @@ TEST(Http, shards_are_read_in_parts_and_a_server_without_parts_is_refused) {
     EXPECT_TRUE(contains(message, "whole files only")) << message;
 }
 
+TEST(Http, shards_that_are_written_anew_after_their_index_was_read_are_noticed) {
+    const ScratchFolder folder;
+    const fs::path zarr = folder / "s.zarr";
+    const VolumeServer server({"--folder", folder.path().string()});
+    StoreOptions with_cache = quick();
+    with_cache.cache_folder = folder / "cache";
+    with_cache.cache_bytes = 1 << 20;
+    const std::tuple<std::string, StoreOptions> ways[] = {{zarr.string(), {}},
+                                                          {server.address("s.zarr"), quick()},
+                                                          {server.address("s.zarr"), with_cache}};
+    for (const auto& [address, options] : ways) {
+        SCOPED_TRACE(address);
+        put_shards(zarr);
+        auto store = open_store(address, options);
+        const auto sample = [&](int z) {
+            return std::to_integer<char>(read_box(*store, 0, {{0, 0, z}, {0, 0, z}}).front());
+        };
+        EXPECT_EQ(sample(0), 'v');
+        put_shards(zarr, false);
+        fs::last_write_time(zarr / "c/0/0/0", fs::file_time_type::clock::now() + 1h);
+        EXPECT_EQ(sample(2), 'u');
+        EXPECT_EQ(sample(0), 'v');
+        store = open_store(address, options);
+        EXPECT_EQ(sample(2), 'u');
+        if (!options.cache_folder.empty()) continue;  // holds all of one time
+        // No chunk is stored any more.
+        put_bytes(zarr / "c/0/0/0", io::test::little(~0ULL) + io::test::little(~0ULL) +
+                                        io::test::little(~0ULL) + io::test::little(~0ULL));
+        EXPECT_EQ(sample(2), 0);
+    }
+}
+
 TEST(Http, endless_redirections_other_protocols_and_silent_hosts_are_errors_in_one_line) {
     const VolumeServer server;
     StoreOptions options = quick();
@@ -255,6 +288,25 @@ TEST(DiskCache, stays_within_its_bound_with_two_users_and_drops_what_was_not_use
     EXPECT_EQ(one->traffic().cached + two->traffic().cached, 0U);
     (void)read_box(*one, 0, {Index3(64 * 11, 64 * 4, 384), Index3(64 * 11, 64 * 4, 384)});
     EXPECT_EQ(one->traffic().cached, 1U);  // the last one is still there
+}
+
+TEST(DiskCache, drops_first_what_a_clock_that_was_set_back_has_left_in_the_future) {
+    const ScratchFolder folder;
+    const VolumeServer server({"--raw"});
+    const auto store =
+        open_store(server.address("virtual.zarr"), cached(folder / "cache", 8 << 20));
+    const auto read = [&](int i) {
+        const Index3 at(64 * (i % 12), 64 * (i / 12), 384);
+        (void)read_box(*store, 0, {at, at});
+    };
+    for (int i = 0; i < 24; ++i) read(i);
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "cache")) {
+        if (entry.is_regular_file()) fs::last_write_time(entry, entry.last_write_time() + 24h);
+    }
+    for (int i = 24; i < 44; ++i) read(i);
+    const std::uint64_t before = store->traffic().cached;
+    for (int i = 36; i < 44; ++i) read(i);
+    EXPECT_EQ(store->traffic().cached - before, 8U);
 }
 
 TEST(DiskCache, survives_processes_that_are_killed_while_they_use_it) {

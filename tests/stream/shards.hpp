@@ -10,7 +10,8 @@
 namespace palpate::stream::test {
 
 /// A Zarr array of 4 x 4 x 8 bytes in two shards with two chunks each: 'v' below, 'u' above.
-inline void put_shards(const std::filesystem::path& folder) {
+/// `upper_first`: where the upper chunk lies in the file before the lower one, as long as before.
+inline void put_shards(const std::filesystem::path& folder, bool upper_first = true) {
     std::filesystem::create_directories(folder);
     support::put_bytes(
         folder / "zarr.json",
@@ -25,9 +26,10 @@ inline void put_shards(const std::filesystem::path& folder) {
     };
     for (const char* shard : {"c/0/0", "c/1/0"}) {
         std::filesystem::create_directories(folder / shard);
-        support::put_bytes(folder / shard / "0", std::string(5, '-') + std::string(32, 'u') +
-                                                     std::string(32, 'v') + entry(37, 32) +
-                                                     entry(5, 32));
+        const std::string lower(32, 'v'), upper(32, 'u'), gap(5, '-');
+        support::put_bytes(folder / shard / "0",
+                           upper_first ? gap + upper + lower + entry(37, 32) + entry(5, 32)
+                                       : gap + lower + upper + entry(5, 32) + entry(37, 32));
     }
 }
 

@@ -62,11 +62,13 @@ double Opened::bright() const {
 Opened open(const run::Source& source, const io::Progress& progress) {
     // Counting takes at most a tenth of the time of reading.
     run::LoadedVolume loaded = loaded_from(source, [&](double part) { progress(0.9 * part); });
+    const OnProgress counting = [&](double) { progress(0.9); };
     run::Histogram histogram = run::histogram_of(
-        loaded.volume, bins, run::padding_of(loaded.volume, loaded.values.padding));
+        loaded.volume, bins, run::padding_of(loaded.volume, loaded.values.padding, counting),
+        counting);
     // An overview's rounding says nothing about the samples that are felt.
     const bool none = source.dequantize > 0 || loaded.streamed;
-    auto terraces = none ? std::nullopt : filters::terraces_of(loaded.volume);
+    auto terraces = none ? std::nullopt : filters::terraces_of(loaded.volume, counting);
     progress(1);
     return {std::move(loaded), std::move(histogram), std::move(terraces)};
 }

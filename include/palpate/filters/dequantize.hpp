@@ -2,7 +2,6 @@
 // core, and oneTBB to work in parallel. See docs/dequantize.md.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -14,7 +13,7 @@ namespace palpate::filters {
 /// that occur. 1 for most integer data, 255 for a mask of 0 and 255, 257 for 8 bits stretched to
 /// 16. Nothing for constant data, and for float samples without levels: more than 65536 values, or
 /// gaps that are not multiples of the smallest one to 1 % of it. One pass over the samples.
-std::optional<double> level_of(const Volume& volume);
+std::optional<double> level_of(const Volume& volume, const OnProgress& progress = {});
 
 /// The most that the coarsest step may be [samples].
 inline constexpr int greatest_step = 32;
@@ -38,7 +37,7 @@ struct Terraces {
     int rounds() const { return mask ? 160 : 40; }
 };
 /// From up to 200,000 samples. Nothing for data without levels.
-std::optional<Terraces> terraces_of(const Volume& volume);
+std::optional<Terraces> terraces_of(const Volume& volume, const OnProgress& progress = {});
 /// The reason to dequantize a volume with these terraces, in words. Empty if there is none.
 std::string reason_to_dequantize(const Terraces& terraces);
 
@@ -55,9 +54,7 @@ struct DequantizeOptions {
     /// Largest number of threads, at most the number of cores. 0: one per core. The result is
     /// always the same, bit for bit.
     int threads = 0;
-    /// Called from the calling thread with the part done, 0 to 1, many times a second. If it
-    /// throws, the work stops and the exception reaches the caller: throw to cancel.
-    std::function<void(double fraction)> progress = {};
+    OnProgress progress = {};
 };
 
 /// The smoothest samples from which rounding makes the volume's own, as float32: no sample moves by

@@ -14,7 +14,7 @@ namespace palpate::filters {
 
 /// The values that occur, ascending. Empty for float samples of more than 65536. Those of a volume
 /// are those of its parts together.
-std::vector<double> values_of(const Volume& volume);
+std::vector<double> values_of(const Volume& volume, const OnProgress& progress = {});
 /// level_of() a volume with these values. `whole_numbers`: its samples are integers.
 std::optional<double> level_of(std::span<const double> values, bool whole_numbers);
 

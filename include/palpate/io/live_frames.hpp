@@ -75,8 +75,9 @@ class LiveFrames {
     double interval() const { return header_.interval; }  ///< [s] nominal; 0: unknown
     /// The last frames; null before the first. Any thread.
     std::shared_ptr<const Samples> newest() const;
-    /// The same, but waits for the first frame for this long at most [s].
-    std::shared_ptr<const Samples> wait(double seconds) const;
+    /// The same, but waits for the first frame for this long at most [s], or until `progress`
+    /// throws.
+    std::shared_ptr<const Samples> wait(double seconds, const OnProgress& progress = {}) const;
     LiveStatus status(
         std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now()) const;
 

@@ -16,10 +16,7 @@
 
 namespace palpate::io {
 
-/// Called from the calling thread with the part of the work that is done, 0 to 1, at least ten
-/// times a second. If it throws, the work stops, nothing is left behind, and the exception reaches
-/// the caller: throw to cancel.
-using Progress = std::function<void(double fraction)>;
+using Progress = OnProgress;
 
 /// Layout of a headerless file: x fastest, then y, then z.
 struct RawLayout {

@@ -12,7 +12,8 @@ namespace palpate::run {
 /// The value [data units] of samples that were not measured (outside a scanner's circle, -2000 in
 /// many CT). It is the least value, if it lies below 0 and the header says so. Otherwise a
 /// thousandth of the samples must have it, a tenth of the others' range below the next value.
-std::optional<double> padding_of(const Volume& volume, std::optional<double> header = {});
+std::optional<double> padding_of(const Volume& volume, std::optional<double> header = {},
+                                 const OnProgress& progress = {});
 
 struct Histogram {
     double low = 0, high = 0;  ///< [data units] ends of the first and last bin
@@ -23,7 +24,8 @@ struct Histogram {
 };
 
 /// The histogram of the samples that are not padding.
-Histogram histogram_of(const Volume& volume, int bins, std::optional<double> padding = {});
+Histogram histogram_of(const Volume& volume, int bins, std::optional<double> padding = {},
+                       const OnProgress& progress = {});
 
 /// The histogram of the gradient's magnitude [data units / mm] at some samples, spread evenly: from
 /// 0 to the greatest (to 1 in constant data). It has no mean and no deviation.

@@ -19,7 +19,8 @@ Geometry beating_grid(const Index3& size = {64, 64, 64});
 double beating_density(const Vec3& point, double phase, double length = beating_length);
 
 /// The scene at a phase of the beat.
-Scene beating_frame(const Geometry& geometry, double phase, SampleType type = SampleType::uint8);
+Scene beating_frame(const Geometry& geometry, double phase, SampleType type = SampleType::uint8,
+                    const OnProgress& progress = {});
 Scene beating_frame(const Index3& size, double phase, SampleType type = SampleType::uint8);
 
 }  // namespace palpate::scenes

@@ -40,6 +40,6 @@ std::vector<std::string> motion_names();
 /// Throws std::invalid_argument listing the names, or saying which setting is not usable.
 std::vector<HandSample> make_motion(std::string_view name, const Field& field, double isovalue,
                                     const MotionSettings& settings = {},
-                                    const std::function<void(double)>& progress = {});
+                                    const OnProgress& progress = {});
 
 }  // namespace palpate::scenes

@@ -36,13 +36,14 @@ std::vector<std::string> volume_names();
 /// 0..largest value in an integer type; shepp-logan is in Hounsfield units in int16 and float32, HU
 /// + 1000 in uint16, and -1000..2000 HU as 0..255 in uint8. Throws std::invalid_argument that lists
 /// the names or the form, or says which size is too large.
-Scene make_volume(std::string_view spec, std::optional<SampleType> type = {});
+Scene make_volume(std::string_view spec, std::optional<SampleType> type = {},
+                  const OnProgress& progress = {});
 
 /// The same scene on a given grid. The shape is in millimetres, as large as the grid allows, around
 /// physical_centre(geometry) and along the grid's own axes: a sphere is a sphere at any spacing.
 /// Throws std::invalid_argument for an unknown name or a geometry that is not valid or too large.
 Scene make_volume(std::string_view name, const Geometry& geometry,
-                  std::optional<SampleType> type = {});
+                  std::optional<SampleType> type = {}, const OnProgress& progress = {});
 
 // Builders of volumes for tests. All but noise take the grid of centred(size).
 
@@ -52,7 +53,8 @@ Geometry centred(const Index3& size, const Vec3& spacing = Vec3::Ones(),
                  const Mat3& direction = Mat3::Identity());
 
 /// White noise: every sample uniform in 0..amplitude (integer types: rounded to the nearest).
-Volume noise(const Geometry& geometry, SampleType type, std::uint64_t seed, double amplitude);
+Volume noise(const Geometry& geometry, SampleType type, std::uint64_t seed, double amplitude,
+             const OnProgress& progress = {});
 
 /// uint8: each sample is 255 with the given probability, else 0.
 Volume salt(const Index3& size, double fraction, std::uint64_t seed);

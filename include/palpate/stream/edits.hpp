@@ -14,8 +14,8 @@ struct Opened {
     StoreOptions options;
     /// What content_below_edits() gave then; empty: not known.
     std::string content = {};
-    /// Saves the edits also if the original was replaced since. They open over the original of
-    /// before only; around them, what was not edited may be of the other one.
+    /// Saves the edits without reading the original, which may be gone, silent or replaced: of the
+    /// edited level only. They open over the original of before only.
     bool is_rescue = false;
 };
 
