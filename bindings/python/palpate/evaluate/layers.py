@@ -321,8 +321,8 @@ def claims_of_energy(table):
     most, least = rows["most_gained_j"].max(), numpy.fmin.reduce(rows["least_lost_with_puncture_j"])
     loops, punctured = int(rows["runs"].sum()), int(rows["loops_with_punctures"].sum())
     kept, lost = rows["runs"].all() and most <= MOST_GAINED, least > 0
-    yield PAGE.claim("gain", kept, most=most, loops=f"; more in {sampling.none_of(loops, 'loops')}" if kept else f" in {loops:,} loops")
-    yield PAGE.claim("loss", lost, least=least, loops=f"; less than nothing in {sampling.none_of(punctured, 'loops')}" if lost
+    yield PAGE.claim("gain", kept, most=most, loops=f", and more in {sampling.none_of(loops, 'loops')}" if kept else f" in {loops:,} loops")
+    yield PAGE.claim("loss", lost, least=least, loops=f", and less than nothing in {sampling.none_of(punctured, 'loops')}" if lost
                      else f" in {punctured:,} loops")
 
 
@@ -339,8 +339,9 @@ def claims_of(table):
 def text_of(table):
     fast = table.where(part="puncture", speed_mm_s=SPEEDS[-1])
     share = 100 * fast["greatest_sampled_mean_n"] / fast["puncture_force_n"]
-    costs = "; ".join("{tick_ns:.0f} ns, {of_one_surface:.2f} [{of_one_surface_low:.2f}, {of_one_surface_high:.2f}] times that with one "
-                      "surface, where the hand {hand} ({field} field)".format(**row) for row in table.where(part="cost", surfaces=FEELS[2]))
+    costs = " ".join("{tick_ns:.0f} ns where the hand {hand} ({field} field), which is {of_one_surface:.2f} [{of_one_surface_low:.2f}, "
+                     "{of_one_surface_high:.2f}] times as long as with one surface.".format(**row)
+                     for row in table.where(part="cost", surfaces=FEELS[2]))
     return PAGE.text(least=share.min(), least_of=fast[int(share.argmin())]["layer"], heads=" ".join(text_of_heads(table)), costs=costs,
                      off=[largest(table.where(part="needle", phase=phase)["rms_n"]) for phase in PHASES])
 
