@@ -183,17 +183,19 @@ def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
             assert "with ros" in program.stdout.readline()
             until(lambda: peer.wrench.get_num_connections() == 1 and peer.forces)
 
-            lowest = 0
+            lowest, reach = 0, 3
 
             def presses():
-                """Down to the first force, then up and down there: a force that late poses ended begins low."""
-                nonlocal lowest
+                """Down to the first force, then down there again and again: a force that late poses ended begins low, so each time from
+                farther out."""
+                nonlocal lowest, reach
                 time.sleep(0.01)
                 if not lowest and not peer.rests():
                     lowest = peer.height - 1
                 peer.height -= 0.1 if lowest else 0.5
                 if peer.height < lowest:
-                    peer.height = lowest + 3 if lowest else 100
+                    peer.height = lowest + reach if lowest else 100
+                    reach = min(2 * reach, 100)
                 return peer.pushes()
             until(presses)
             program.send_signal(end)

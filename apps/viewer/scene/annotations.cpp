@@ -47,6 +47,9 @@ void Annotations::show_bar(const Content& what) {
     const double size = em * 72 / (window ? window->GetDPI() : 72);
     text_->GetTextProperty()->SetFontSize(static_cast<int>(std::lround(size)));
     text_->GetTextProperty()->SetColor(what.ink.red, what.ink.green, what.ink.blue);
+    // The line of the volume's box may lie behind it.
+    text_->GetTextProperty()->SetBackgroundColor(what.paper.red, what.paper.green, what.paper.blue);
+    text_->GetTextProperty()->SetBackgroundOpacity(0.8);
     text_->SetPosition(bar.middle, 1.6 * em);
 }
 

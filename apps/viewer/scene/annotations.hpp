@@ -23,9 +23,9 @@ class Annotations {
         bool orientation = true, scale_bar = true;
         bool oriented = true;  ///< as in Geometry
         pictures::Camera camera;
-        int width = 1, height = 1;  ///< [device pixels]
-        double em = 12;             ///< [device pixels] height of the widget's font
-        pictures::Colour ink;
+        int width = 1, height = 1;    ///< [device pixels]
+        double em = 12;               ///< [device pixels] height of the widget's font
+        pictures::Colour ink, paper;  ///< of the bar, and behind its words
     };
     void show(const Content& what);
 

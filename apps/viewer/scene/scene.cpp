@@ -326,6 +326,7 @@ void Scene::lay_out() {
     annotations.height = static_cast<int>(std::lround(height() * ratio));
     annotations.em = ratio * QFontMetricsF(font()).ascent();
     annotations.ink = ink;
+    annotations.paper = background;
     parts_->annotations.show(annotations);
     parts_->outdated = false;
 }

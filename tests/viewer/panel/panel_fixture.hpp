@@ -78,7 +78,7 @@ class PanelFixture : public testing::Test {
     void set(const RendererSettings& settings = {}, double isovalue = 300,
              Solid solid = Solid::above) {
         session_settings = settings;
-        field.emplace(head_like(), solid);
+        field.emplace(linear_field(head_like(), solid));
         begin(*field, isovalue, settings);
     }
 
