@@ -245,15 +245,15 @@ function stacked(frames, notes) {
   const near = (a, b, part) => !a === !b && (a ?? []).every((x, i) => Math.abs(x - b[i]) <= part);
   const alike = ({ orientation, spacing }) => near(orientation?.flat(), first.orientation?.flat(), 1e-3) && near(spacing, first.spacing, 1e-3 * Math.max(...(first.spacing ?? [1])));
   if (!frames.every(alike)) refuse("the slices of this series differ in spacing or orientation");
-  const isPlaced = frames.every(({ position, orientation }) => position && orientation);
-  const [across, down] = isPlaced ? first.orientation : [[1, 0, 0], [0, 1, 0]];
+  const isDirected = frames.every(({ orientation }) => orientation);
+  const [across, down] = isDirected ? first.orientation : [[1, 0, 0], [0, 1, 0]];
   const normal = cross(across, down);
   if (frames.length === 1) {
     note("it gives no distance between slices: 1 mm was taken", !(first.thickness > 0));
-    note("it does not say how it lies in the body", !isPlaced);
+    note("it does not say how it lies in the body", !isDirected);
     return { slices: frames, directions: [across, down, normal], gap: first.thickness > 0 ? first.thickness : 1 };
   }
-  if (!isPlaced) refuse("the slices of this series do not say where they lie (ImagePositionPatient, ImageOrientationPatient)");
+  if (!isDirected || !frames.every(({ position }) => position)) refuse("the slices of this series do not say where they lie (ImagePositionPatient, ImageOrientationPatient)");
   const slices = frames.map((frame) => ({ ...frame, height: dot(normal, frame.position) })).sort((a, b) => a.height - b.height);
   const gap = (slices.at(-1).height - slices[0].height) / (slices.length - 1);
   const gaps = slices.slice(1).map(({ height }, i) => height - slices[i].height);
@@ -315,10 +315,9 @@ export async function readDicom(files) {
   if (label) notes.push(`series '${label}'`);
   const values = new Float32Array(countOf([columns, rows, slices.length]));
   slices.forEach((slice, i) => valuesOf(slice, values.subarray(i * rows * columns, (i + 1) * rows * columns)));
-  const isPlaced = orientation !== undefined && place !== undefined;
   const axes = [spacing[1], spacing[0], gap].map((step, a) => directions[a].map((x) => x * step));
   return {
-    samples: narrowed(values), geometry: geometryOf([columns, rows, slices.length], axes, isPlaced ? place : [0, 0, 0]), oriented: isPlaced, notes,
+    samples: narrowed(values), geometry: geometryOf([columns, rows, slices.length], axes, (orientation && place) ?? [0, 0, 0]), oriented: orientation !== undefined, notes,
     marks: modality === "CT" ? { skin: -300, bone: 250 } : undefined, // [HU] docs/isovalue.md
   };
 }
