@@ -16,18 +16,21 @@ namespace palpate::filters {
 namespace {
 
 constexpr std::size_t most_levels = 65536;
+constexpr std::size_t between_reports = std::size_t{1} << 20;  // samples
 
 /// The values that occur, ascending; empty if there are more than most_levels.
 template <class T>
 std::vector<double> values_in(std::span<const T> samples, const OnProgress& progress) {
     std::vector<double> values;
-    ReportedItems reported(progress, samples.size(), std::size_t{1} << 20);
+    ReportedItems reported(progress, samples.size(), between_reports);
     if constexpr (std::is_integral_v<T>) {
         constexpr int lowest = std::numeric_limits<T>::lowest();
         std::vector<std::uint8_t> occurs(std::size_t(std::numeric_limits<T>::max() - lowest) + 1);
-        for (const T s : samples) {
-            occurs[std::size_t(s - lowest)] = 1;
-            reported.done();
+        for (std::span<const T> rest = samples; !rest.empty();) {
+            const std::span<const T> some = rest.first(std::min(rest.size(), between_reports));
+            for (const T s : some) occurs[std::size_t(s - lowest)] = 1;
+            reported.done(some.size());
+            rest = rest.subspan(some.size());
         }
         for (std::size_t i = 0; i < occurs.size(); ++i) {
             if (occurs[i] != 0) values.push_back(double(i) + lowest);
