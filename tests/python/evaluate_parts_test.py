@@ -124,7 +124,7 @@ def test_the_judge_of_tools_notices_one_in_the_solid():
     path, verdict = tools.judged(scene, tool, hands, turns)
     assert verdict["chords"] > 0 and verdict["worst_excess_of_range"] < 0
     path["pose_position"] = path["pose_position"] - [0, 0, 5.5]  # as no update leads
-    assert tools.greatest_on_chords(scene, *tools.chords_of(tool, path)) > GRANTED
+    assert tools.judge(scene, tool, path)[1] > GRANTED
 
 
 def test_a_penalty_lets_a_scalpel_through_the_shell_and_the_exact_method_does_not():
