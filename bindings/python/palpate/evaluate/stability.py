@@ -238,9 +238,9 @@ def claims_of_rest(table, plan):
     yield from claims_of_trembling(table)
     found = compared(table, plan, *list(PARTS)[:2], 2)
     more, same, less = counted(found)
-    losses = "".join(f"{name} at {rate:g} Hz: {smooth:.1f} against {linear:.1f} N/mm; "
-                     for name, rate, linear, smooth in found if smooth < linear)
-    yield PAGE.claim("smooth", less == 0, losses=losses, same=same, more=more)
+    losses = ", ".join(f"{name} at {rate:g} Hz ({smooth:.1f} against {linear:.1f} N/mm)" for name, rate, linear, smooth in found
+                       if smooth < linear)
+    yield PAGE.claim("smooth", less == 0, same=same, more=more, less=f"{less}: {losses}" if less else "0")
     corner = table.where(part="map", rate_hz=250, stiffness_N_mm=LARGEST, encoder_step_mm=0)[0]  # the map can tell
     yield PAGE.claim("buzz", corner["at_rest"] == "no", moved=corner["position_peak_to_peak_mm"])
 
