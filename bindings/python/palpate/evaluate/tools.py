@@ -349,7 +349,7 @@ def hostile(options):
 def summary_of(table):
     for row in table.where(part="hostile", method="exact"):
         penalty = table.where(part="hostile", method="penalty", scene=row["scene"], tool=row["tool"], points=row["points"])[0]
-        yield {"scene": row["scene"], "tool": f"{row['tool']}, {row['points']} points", "rounds, mean": row["rounds_mean"],
+        yield {"scene": row["scene"], "tool": row["tool"], "points": row["points"], "rounds, mean": row["rounds_mean"],
                "update, mean, exact [µs]": row["update_mean_us"], "update, mean, penalty [µs]": penalty["update_mean_us"],
                "goes on in the next tick [%]": 100 * row["unfinished_share"],
                "deepest point, exact [range]": max(0.0, row["worst_excess_of_range"]),
