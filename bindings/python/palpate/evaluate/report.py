@@ -82,9 +82,11 @@ def write_files(report, folder):
 
 
 def html_table(table):
-    rows = [f"<th>{html.escape(name)}</th>" for name in table.columns], *(
-        [f"<td>{html.escape(text).replace('**no**', '<b>NO</b>')}</td>" for text in texts] for texts in table.cells(short))
-    return "<table>\n" + "".join(f"<tr>{''.join(row)}</tr>\n" for row in rows) + "</table>\n" if table else ""
+    """Its first row comes again on each page of paper."""
+    head = "".join(f"<th>{html.escape(name)}</th>" for name in table.columns)
+    rows = ("".join(f"<td>{html.escape(text).replace('**no**', '<b>NO</b>')}</td>" for text in texts) for texts in table.cells(short))
+    return f"<table>\n<thead><tr>{head}</tr></thead>\n" + "".join(
+        f"<tr>{row}</tr>\n" for row in rows) + "</table>\n" if table else ""
 
 
 def small(text):
