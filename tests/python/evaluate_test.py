@@ -354,7 +354,7 @@ def test_an_experiment_leaves_a_table_figures_and_a_page_that_says_where_it_was_
     assert names == ["walk-through-smooth.pdf", "walk-through-smooth.svg", "walk-through.csv", "walk-through.md",
                      "walk-through.pdf", "walk-through.svg"]
     page = (tmp_path / "found/walk-through.md").read_text()
-    for part in ("MHz", "governor", "Linux", "commit", "-O", "`palpate evaluate walk-through --quick --output found`"):
+    for part in ("MHz", "governor", "load ", "Linux", "commit", "-O", "`palpate evaluate walk-through --quick --output found`"):
         assert part in page, part
 
 
