@@ -5,7 +5,10 @@ import dataclasses
 import functools
 import itertools
 import operator
+import os
+import pathlib
 import signal
+import subprocess
 
 import numpy
 import palpate
@@ -124,7 +127,7 @@ def test_the_judge_of_tools_notices_one_in_the_solid():
     path, verdict = tools.judged(scene, tool, hands, turns)
     assert verdict["chords"] > 0 and verdict["worst_excess_of_range"] < 0
     path["pose_position"] = path["pose_position"] - [0, 0, 5.5]  # as no update leads
-    assert tools.greatest_on_chords(scene, *tools.chords_of(tool, path)) > GRANTED
+    assert tools.judge(scene, tool, path)[1] > GRANTED
 
 
 def test_a_penalty_lets_a_scalpel_through_the_shell_and_the_exact_method_does_not():
@@ -222,6 +225,25 @@ def test_times_of_updates_are_in_order_and_each_is_measured():
     found = performance.numbers_of(taken, hand, 20)
     assert 0 < found["p50_ns"] <= found["p99_ns"] <= found["p999_ns"] <= found["max_ns"] <= found["interrupted_max_ns"]
     assert found["updates"] == 1006 and found["cold_p50_ns"] > 0
+
+
+def inline_functions(path, kinds):
+    """Sizes of compiled copies, by name."""
+    sizes = {}
+    for line in subprocess.run(["nm", "-S", path], capture_output=True, text=True, check=True).stdout.splitlines():
+        words = line.split()
+        if len(words) == 4 and words[2] in kinds:
+            sizes.setdefault(words[3], set()).add(words[1])
+    return sizes
+
+
+def test_times_in_dev_builds_are_those_of_optimized_code():
+    build = pathlib.Path(os.environ["PALPATE_BUILD"])
+    if "CMAKE_BUILD_TYPE:STRING=RelWithDebInfo" not in (build / "CMakeCache.txt").read_text():
+        pytest.skip("the module is compiled like the core")
+    core, module = inline_functions(build / "src/libpalpate.a", "W"), inline_functions(palpate._palpate.__file__, "tW")
+    both = core.keys() & module.keys()
+    assert len(both) > 100 and [name for name in both if not module[name] <= core[name]] == []
 
 
 def test_a_ball_has_the_same_samples_around_its_centre_in_a_grid_of_any_size():

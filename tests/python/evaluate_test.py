@@ -58,6 +58,8 @@ def test_claims_hold_in_quick_mode(quick, name):
     assert [claim for claim in claims if not claim["holds"]] == []
     for ending in (".csv", ".svg", ".md", ".pdf"):
         assert (folder / (name + ending)).exists(), name
+    rows = re.findall(r"^\| (?!---).*", (folder / f"{name}.md").read_text(), re.MULTILINE)
+    assert len(set(rows)) == len(rows)
 
 
 def test_all_makes_one_report_that_needs_no_other_file(quick):
@@ -66,7 +68,9 @@ def test_all_makes_one_report_that_needs_no_other_file(quick):
     assert (folder / "report.pdf").read_bytes().startswith(b"%PDF-")
     assert list(experiments) == list(program.EXPERIMENTS)
     assert all(f'<h2 id="{name}">' in page for name in experiments)
-    assert page.count('src="data:image/') == page.count('src="') >= len(experiments)
+    assert page.count('src="data:image/') == page.count('src="') == page.count('style="width:') >= len(experiments)
+    assert page.count("<thead>") == page.count("<table>") and "`" not in page  # which is Markdown's
+    assert page.count("Measured on") == len({experiment["circumstances"] for experiment in experiments.values()})
 
 
 def rows_of(path, parts=None):
@@ -350,7 +354,7 @@ def test_an_experiment_leaves_a_table_figures_and_a_page_that_says_where_it_was_
     assert names == ["walk-through-smooth.pdf", "walk-through-smooth.svg", "walk-through.csv", "walk-through.md",
                      "walk-through.pdf", "walk-through.svg"]
     page = (tmp_path / "found/walk-through.md").read_text()
-    for part in ("MHz", "governor", "Linux", "commit", "-O", "`palpate evaluate walk-through --quick --output found`"):
+    for part in ("MHz", "governor", "load ", "Linux", "commit", "-O", "`palpate evaluate walk-through --quick --output found`"):
         assert part in page, part
 
 

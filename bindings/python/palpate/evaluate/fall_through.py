@@ -1,5 +1,6 @@
 """fall-through: does a fast hand fall through a thin wall?"""
 
+import collections
 import dataclasses
 import itertools
 
@@ -11,7 +12,7 @@ from . import figures, sampling
 from .experiment import GRANTED, Page, Result, Table, largest
 from .outside import Outside
 from .subjects import CONTESTANTS, GUARDED, Subject
-from .walls import Lines, closed_shell, lines_through
+from .walls import closed_shell, lines_through
 
 PAGE = Page(__name__)
 COUNTS_AS_INSIDE = 0.01  # of the data's range
@@ -25,7 +26,7 @@ class Wall:
 
     subject: Subject
     outside: Outside
-    lines: Lines
+    lines: numpy.recarray
 
     @property
     def median_path(self):
@@ -34,13 +35,7 @@ class Wall:
         return median / self.subject.voxel if numpy.isfinite(median) else numpy.nan
 
 
-@dataclasses.dataclass
-class Group:
-    """Walls of one row of the table, by interpolation: the same thickness on either field."""
-
-    name: str
-    thickness: float
-    walls: dict
+Group = collections.namedtuple("Group", "name thickness walls")  # of one row of the table; walls by interpolation, equally thick
 
 
 def walls_of(subject, anywhere, count, options):
@@ -101,7 +96,7 @@ def crossings_of(wall, contestant, step, random):
     lines, phase = wall.lines, 1 - random.random(len(wall.lines.wall))
     rows = numpy.ceil(numpy.minimum(lines.end, lines.wall + STEPS_BEHIND * step) / step) + 4
     part = (numpy.cumsum(rows) // ROWS_AT_ONCE).astype(int)
-    return [cross(wall, contestant, lines.part(part == p), step, phase[part == p]) for p in numpy.unique(part)]
+    return [cross(wall, contestant, lines[part == p], step, phase[part == p]) for p in numpy.unique(part)]
 
 
 def row_of(group, contestant, speed, rate, seed):

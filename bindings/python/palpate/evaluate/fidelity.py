@@ -121,7 +121,7 @@ def ball_rows(table, samples, method="exact", trajectory="circle"):
 
 
 def summary_of(table):
-    for method, samples, *_ in dict.fromkeys((*BALL, *SOURCES)):
+    for method, samples in dict.fromkeys(line[:2] for line in (*BALL, *SOURCES)):
         for row in ball_rows(table, samples, method):
             yield {"samples": samples, "method": method, "grid": row["grid"], "mean angle [deg]": row["off_ideal_mean_deg"],
                    "p99 [deg]": row["off_ideal_p99_deg"], "turn per tick, largest [deg]": row.get("turn_max_deg", numpy.nan)}

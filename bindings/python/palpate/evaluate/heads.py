@@ -127,4 +127,5 @@ def claims_of_heads(table):
 
 
 def text_of_heads(table):
-    return PAGE.text(orders=" ".join(f"{row['body']}: {row['order'].replace(';', ',')}." for row in table.where(part="head", surfaces="drilling")))
+    drilled = table.where(part="head", surfaces="drilling")
+    return PAGE.text(orders=" ".join(f"In {row['body']}: {row['order'].replace(';', ',')}." for row in drilled))

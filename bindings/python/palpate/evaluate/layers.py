@@ -339,9 +339,8 @@ def claims_of(table):
 def text_of(table):
     fast = table.where(part="puncture", speed_mm_s=SPEEDS[-1])
     share = 100 * fast["greatest_sampled_mean_n"] / fast["puncture_force_n"]
-    costs = " ".join("{tick_ns:.0f} ns where the hand {hand} ({field} field), which is {of_one_surface:.2f} [{of_one_surface_low:.2f}, "
-                     "{of_one_surface_high:.2f}] times as long as with one surface.".format(**row)
-                     for row in table.where(part="cost", surfaces=FEELS[2]))
+    costs = " ".join("The hand {hand}, {field} field: {tick_ns:.0f} ns ({of_one_surface:.2f} [{of_one_surface_low:.2f}, "
+                     "{of_one_surface_high:.2f}]).".format(**row) for row in table.where(part="cost", surfaces=FEELS[2]))
     return PAGE.text(least=share.min(), least_of=fast[int(share.argmin())]["layer"], heads=" ".join(text_of_heads(table)), costs=costs,
                      off=[largest(table.where(part="needle", phase=phase)["rms_n"]) for phase in PHASES])
 

@@ -1,4 +1,4 @@
-"""Describes the machine and the build that numbers come from: processor, clock, kernel, governor, compiler, flags, commit and command.
+"""Describes the machine and the build that numbers come from: processor, clock, load, kernel, governor, compiler, flags, commit and command.
 Nothing in it identifies the machine itself."""
 
 import os
@@ -20,11 +20,14 @@ def first(path, pattern, otherwise="unknown"):
     return found.group(1).strip() if found else otherwise
 
 
+LOAD = first("/proc/loadavg", r"^(\S+)")  # of other programs, as this is read when the command begins
+
+
 def processor():
     model = first("/proc/cpuinfo", r"^model name\s*:\s*(.*)$")
     clock = first("/proc/cpuinfo", r"^cpu MHz\s*:\s*(\d+)")
     governor = first("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", r"(\w+)", "not visible")
-    return f"{model} ({os.cpu_count()} processors, {clock} MHz at the time, frequency governor {governor})"
+    return f"{model} ({os.cpu_count()} processors, {clock} MHz at the time, frequency governor {governor}, load {LOAD} at the begin)"
 
 
 def build():

@@ -1,5 +1,6 @@
 """performance: what does an update cost? (Corenthy et al. 2012, Table 1)"""
 
+import collections
 import dataclasses
 import itertools
 
@@ -26,12 +27,7 @@ TIMES = {"max_ns": ("max", figures.VERMILION, "D"), "cold_p50_ns": ("p50, caches
          "p50_ns": ("p50", figures.BLUE, ".")}
 
 
-@dataclasses.dataclass
-class Effort:
-    trajectories: int
-    trajectory_s: float
-    passes: int
-    cold: int  # so many updates are timed after the caches were emptied
+Effort = collections.namedtuple("Effort", "trajectories trajectory_s passes cold")  # cold: so many updates after emptied caches
 
 
 def cases_of(options):
@@ -124,16 +120,6 @@ def summary_of(table):
                   for what, of in (("the paper's method here", paper), ("exact on the smooth field", smooth))}}
 
 
-def label_times(axes, x, rows):
-    """Names of the times beside those of the last row, pushed apart."""
-    ends = [(rows[column][-1] / 1000, text, colour) for column, (text, colour, _) in TIMES.items()]
-    height = -numpy.inf
-    for value, text, colour in sorted(end for end in (*ends, (rows["paper_mean_us"][-1], "loop in the paper", figures.PURPLE))
-                                      if not numpy.isnan(end[0])):
-        height = max(numpy.log10(value), height + 0.33)
-        axes.text(x, 10**height, text, color=colour, fontsize=6.5, va="center")
-
-
 def figure_of(table):
     """LR and HR of a volume side by side."""
     drawn, panels = figures.panels(rows=3, height=7, width=5.2, sharex=True, sharey=True,
@@ -142,13 +128,13 @@ def figure_of(table):
         rows = table.where(method=name)
         at = numpy.array([2.6 * (i // 2) + i % 2 for i in range(len(rows))])
         axes.vlines(at, rows["p50_ns"] / 1000, rows["max_ns"] / 1000, color="#d0d0d0", lw=1)
-        axes.plot(at, rows["paper_mean_us"], "*", color=figures.PURPLE, ms=6)
-        for column, (_, colour, marker) in TIMES.items():
-            axes.plot(at, rows[column] / 1000, marker, color=colour, mfc="none" if column == "cold_p50_ns" else colour, ms=4)
-        axes.set(title=title, yscale="log", ylim=(0.02, 3000), ylabel="time of an update [µs]", xlim=(-0.8, at[-1] + 2.4))
+        axes.plot(at, rows["paper_mean_us"], "*", color=figures.PURPLE, ms=6, label="loop in the paper")
+        for column, (text, colour, marker) in TIMES.items():
+            axes.plot(at, rows[column] / 1000, marker, color=colour, mfc="none" if column == "cold_p50_ns" else colour, ms=4, label=text)
+        axes.set(title=title, yscale="log", ylim=(0.02, 3000), ylabel="time of an update [µs]")
         figures.limit(axes, 1000, "a tick at 1 kHz")
-        label_times(axes, at[-1] + 0.25, rows)
     panels[-1].set_xticks(at, [f"{row['resolution']}\n{row['volume'] if i % 2 == 0 else ''}" for i, row in enumerate(rows)], fontsize=6.5)
+    figures.label_ends(*panels)
     return PAGE.figure(drawn)
 
 

@@ -6,6 +6,7 @@ import dataclasses
 import html
 import importlib.util
 import math
+import re
 import string
 from pathlib import Path
 
@@ -48,6 +49,10 @@ def claims_of(result):
     return Table({"claim": c.statement, "holds": "yes" if c.held else "**no**", "measured": c.measured} for c in result.claims)
 
 
+def data_of(result):
+    return [f"Data: `{file}` from the {origin}, SHA-256 `{sha256}`." for file, sha256, origin in result.data]
+
+
 def files_of(report):
     """(file, caption) of each figure."""
     for figure in report.result.figures:
@@ -65,7 +70,7 @@ def markdown(report):
     text += markdown_table(result.summary)
     text += "".join(f"![{caption}]({file})\n\n{caption}\n\n" for file, caption in files_of(report))
     text += markdown_table(claims_of(result))
-    text += "".join(f"Data: `{file}` from the {origin}, SHA-256 `{sha256}`.\n\n" for file, sha256, origin in result.data)
+    text += "".join(f"{line}\n\n" for line in data_of(result))
     return text + f"All numbers: [{report.name}.csv]({report.name}.csv). {report.circumstances}\n"
 
 
@@ -77,9 +82,15 @@ def write_files(report, folder):
 
 
 def html_table(table):
-    rows = [f"<th>{html.escape(name)}</th>" for name in table.columns], *(
-        [f"<td>{html.escape(text).replace('**no**', '<b>NO</b>')}</td>" for text in texts] for texts in table.cells(short))
-    return "<table>\n" + "".join(f"<tr>{''.join(row)}</tr>\n" for row in rows) + "</table>\n" if table else ""
+    """Its first row comes again on each page of paper."""
+    head = "".join(f"<th>{html.escape(name)}</th>" for name in table.columns)
+    rows = ("".join(f"<td>{html.escape(text).replace('**no**', '<b>NO</b>')}</td>" for text in texts) for texts in table.cells(short))
+    return f"<table>\n<thead><tr>{head}</tr></thead>\n" + "".join(
+        f"<tr>{row}</tr>\n" for row in rows) + "</table>\n" if table else ""
+
+
+def small(text):
+    return "<p class=c>" + re.sub("`(.*?)`", r"<code>\1</code>", html.escape(text)) + "</p>\n"
 
 
 def section(report, folder, whole):
@@ -90,18 +101,27 @@ def section(report, folder, whole):
         # WeasyPrint 57 sets the text of such SVG in wrong sizes, so paper gets pixels.
         kind, data = ("svg+xml", (folder / file).read_bytes()) if whole else ("png", figures.pixels(figure.drawn))
         caption = html.escape(caption)
-        parts.append(f'<figure><img src="data:image/{kind};base64,{base64.b64encode(data).decode()}" alt="{caption}">'
+        parts.append(f'<figure><img style="width:{figure.drawn.get_figwidth():g}in" alt="{caption}" '
+                     f'src="data:image/{kind};base64,{base64.b64encode(data).decode()}">'
                      f"<figcaption>{caption}</figcaption></figure>\n")
     table = report.result.table
     numbers = (f"<details><summary>All numbers ({len(table)} rows)</summary>\n{html_table(table)}</details>\n" if whole else
-               f"<p class=c>All {len(table)} rows of numbers are in {report.name}.csv.</p>\n")
-    return "".join([*parts, html_table(claims_of(report.result)), numbers, f"<p class=c>{html.escape(report.circumstances)}</p>\n"])
+               small(f"All {len(table)} rows of numbers are in {report.name}.csv."))
+    return "".join([*parts, html_table(claims_of(report.result)), numbers, *map(small, data_of(report.result))])
+
+
+def circumstances_of(reports):
+    """A paragraph for all of them, or one for those that share a machine, a moment and a build."""
+    shared = {text: [r.name for r in reports if r.circumstances == text] for text in (r.circumstances for r in reports)}
+    return [small(text if len(shared) == 1 else f"{', '.join(names)}: {text}") for text, names in shared.items()]
 
 
 def page_of(reports, folder, whole=True):
     """HTML of all reports; `folder` holds the figures, which are embedded. whole: with the tables of all numbers."""
     page = string.Template((Path(__file__).parent / "pages" / "report.html").read_text(encoding="utf-8"))
-    return page.substitute(sections="".join(section(report, folder, whole) for report in reports), entries="".join(
+    held = [claim.held for report in reports for claim in report.claims]
+    return page.substitute(sections="".join(section(report, folder, whole) for report in reports), held=sum(held), claims=len(held),
+                           circumstances="".join(circumstances_of(reports)), entries="".join(
         f'<li><a href="#{r.name}">{r.name}</a>: {html.escape(r.title)} '
         f"({sum(c.held for c in r.claims)} of {len(r.claims)} claims hold)</li>\n" for r in reports))
 

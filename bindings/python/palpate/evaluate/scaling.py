@@ -2,12 +2,11 @@
 
 import dataclasses
 import itertools
-from pathlib import Path
 
 import numpy
 import palpate
 
-from . import figures
+from . import figures, machine
 from .experiment import GRANTED, Page, Result, Table
 from .performance import Effort, moved_rows, numbers_of, timed
 from .sampling import quantile
@@ -105,10 +104,8 @@ def time_rows(part, subject, hand, passes, **cells):
 
 def has_room(size, copies, what, options):
     """Whether there is memory for so many times the samples of a cube; if not, says what is left out."""
-    lines = Path("/proc/meminfo").read_text().splitlines()
-    free = [1024 * float(line.split()[1]) for line in lines if line.startswith("MemAvailable:")]
     needed = copies * size**3
-    if not free or free[0] > needed:
+    if 1024 * float(machine.first("/proc/meminfo", r"^MemAvailable:\s*(\d+)", "inf")) > needed:
         return True
     options.note(f"{what} at {size}^3 left out, which takes {1e-9 * needed:.1f} GB of memory")
     return False

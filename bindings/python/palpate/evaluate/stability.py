@@ -1,7 +1,7 @@
 """stability: how stiff may a surface be before it buzzes? A loop that does not come to rest is in a limit cycle, felt as buzzing."""
 
 import copy
-import dataclasses
+import collections
 import itertools
 import tempfile
 
@@ -31,14 +31,7 @@ PARTS = {"profiles": ("as they are", True, "linear"), "profiles, smooth field": 
 ROTATION = {"rotation, ideal": "no delay, friction, steps", "rotation, delayed": "delay alone", "rotation": "as they are"}
 
 
-@dataclasses.dataclass
-class Plan:
-    rates: list  # [Hz]
-    encoders: list  # [mm]
-    stiffnesses: list  # [N/mm]
-    bound_parts: list  # of the theory's bound of rotational stiffness
-
-
+Plan = collections.namedtuple("Plan", "rates encoders stiffnesses bound_parts")  # [Hz], [mm], [N/mm], of the theory's bound of rotation
 QUICK = Plan([250, 1000], [0, 0.1], [0.5, LARGEST], [0.5, 0.8, 0.9, 1.25, 2])
 FULL = Plan([250, 500, 1000, 2000, 4000], [0, 0.01, 0.03, 0.1], [0.1 * i for i in range(1, 30)] + [LARGEST],
             [0.05 * i for i in range(2, 51)])
@@ -238,9 +231,9 @@ def claims_of_rest(table, plan):
     yield from claims_of_trembling(table)
     found = compared(table, plan, *list(PARTS)[:2], 2)
     more, same, less = counted(found)
-    losses = "".join(f"{name} at {rate:g} Hz: {smooth:.1f} against {linear:.1f} N/mm; "
-                     for name, rate, linear, smooth in found if smooth < linear)
-    yield PAGE.claim("smooth", less == 0, losses=losses, same=same, more=more)
+    losses = ", ".join(f"{name} at {rate:g} Hz ({smooth:.1f} against {linear:.1f} N/mm)" for name, rate, linear, smooth in found
+                       if smooth < linear)
+    yield PAGE.claim("smooth", less == 0, same=same, more=more, less=f"{less}: {losses}" if less else "0")
     corner = table.where(part="map", rate_hz=250, stiffness_N_mm=LARGEST, encoder_step_mm=0)[0]  # the map can tell
     yield PAGE.claim("buzz", corner["at_rest"] == "no", moved=corner["position_peak_to_peak_mm"])
 

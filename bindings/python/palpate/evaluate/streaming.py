@@ -1,6 +1,6 @@
 """streaming: how long does a hand wait for a volume that is read while it is touched? The judge is in evaluation/stroke.cpp."""
 
-import dataclasses
+import collections
 import itertools
 
 import numpy
@@ -16,14 +16,7 @@ LEVELS = ("finest level", "coarse first")
 COLOURS = (figures.BLUE, figures.GREEN, figures.ORANGE, figures.VERMILION)  # of latencies
 
 
-@dataclasses.dataclass
-class Plan:
-    latencies: tuple  # [ms]
-    speeds: tuple  # [voxel/s]
-    seconds: float  # of a stroke
-    rate: float  # [Hz]
-
-
+Plan = collections.namedtuple("Plan", "latencies speeds seconds rate")  # [ms], [voxel/s], of a stroke, [Hz]
 QUICK = Plan((0, 50), (300, 3000), 1.5, 1000)
 FULL = Plan((0, 20, 100, 200), (100, 300, 1000, 5000, 20000), 10, 2500)
 

@@ -125,33 +125,34 @@ def steepest(field):
 
 
 def greatest_on_chords(scene, starts, ends):
-    """[range] The greatest excess on any of the chords: of nine places on each, refined around the greatest where a chord may reach more
-    than is known already."""
-    along = ends - starts
+    """[range] The greatest excess on any of the chords: at both ends, at places between them, and refined around the greatest of these.
+    Chords are left out as soon as their excess cannot reach above what is known already."""
+    along, ends_excess = ends - starts, numpy.stack([scene.excess_at(starts), scene.excess_at(ends)])
+    rise = steepest(scene.field) * numpy.linalg.norm(along, axis=1)
+    known = ends_excess.max(initial=-numpy.inf)
+    open_ = ends_excess.max(axis=0) + 0.5 * rise > known
+    starts, along, rise = starts[open_], along[open_], rise[open_]
     parts = numpy.arange(PLACES + 1) / PLACES
-    excess = scene.excess_at((starts[:, None] + parts[:, None] * along[:, None]).reshape(-1, 3)).reshape(len(starts), -1)
-    best, most = parts[excess.argmax(axis=1)], excess.max(axis=1)
-    reach = steepest(scene.field) * numpy.linalg.norm(along, axis=1) / (2 * PLACES)
-    open_ = most + reach > most.max()
-    starts, along, best, most, known = starts[open_], along[open_], best[open_], most[open_], most.max()
-    step = 0.5 / PLACES
-    while step > FINEST and len(starts):
+    excess = scene.excess_at((starts[:, None] + parts[:, None] * along[:, None]).reshape(-1, 3)).reshape(-1, len(parts))
+    best, most, step = parts[excess.argmax(axis=1)], excess.max(axis=1), 0.5 / PLACES
+    while True:
+        known = max(known, most.max(initial=-numpy.inf))
+        open_ = most + 2 * step * rise > known  # the steps that are left are less than 2 * step together
+        if step <= FINEST or not open_.any():
+            return float(known)
+        starts, along, rise, best, most = starts[open_], along[open_], rise[open_], best[open_], most[open_]
         middle = best
         for side in (-step, step):
             part = middle + side
             here = numpy.where((part >= 0) & (part <= 1), scene.excess_at(starts + part[:, None] * along), -numpy.inf)
             best, most = numpy.where(here > most, part, best), numpy.maximum(most, here)
         step *= 0.5
-    return max(known, float(most.max(initial=-numpy.inf)))
 
 
-def chords_of(tool, path):
-    """(starts, ends) of the ways of points, (n, 3) each, from pose to pose. Of a tool with many points a part is judged, another one at
-    each pose; not while it is brought out of the solid, and not where it is placed."""
-    points, step, tick = tool.points, 1 + (len(tool.points) - 1) // MOST_JUDGED, path["pose_tick"]
-    poses = numpy.flatnonzero((tick > 0) & ~path["recovering"][tick - 1])
-    if not len(poses):
-        return numpy.empty((0, 3)), numpy.empty((0, 3))
+def chords_of(tool, path, poses, step):
+    """(starts, ends) of the ways of points, (n, 3) each, to some poses from those before them: every so many points, others at each
+    pose."""
+    points, tick = tool.points, path["pose_tick"]
     chosen = [numpy.arange(pose % step, len(points), step) for pose in poses]
     row, which = numpy.repeat(poses, [len(part) for part in chosen]), numpy.concatenate(chosen)
     first = tick[row] != tick[row - 1]  # begins where the update before it ended
@@ -162,6 +163,21 @@ def chords_of(tool, path):
         return position + Rotation.from_quat(orientation).apply(points[which])
 
     return places(*before), places(path["pose_position"][row], path["pose_orientation_xyzw"][row])
+
+
+def judge(scene, tool, path):
+    """(chords, [range] the greatest excess on them), in parts that fit into memory. Not while the tool is brought out of the solid, and
+    not where it is placed."""
+    step, tick = 1 + (len(tool.points) - 1) // MOST_JUDGED, path["pose_tick"]
+    poses = numpy.flatnonzero((tick > 0) & ~path["recovering"][tick - 1])
+
+    def of(part):
+        chords = chords_of(tool, path, part, step)
+        return len(chords[0]), greatest_on_chords(scene, *chords)
+
+    parts = numpy.array_split(poses, 1 + len(poses) * MOST_JUDGED // CHUNK) if len(poses) else []
+    counts, worst = numpy.array([(0, -1), *in_parallel(of, parts)]).T
+    return int(counts.sum()), worst.max()
 
 
 def distances(tool, path, hands, turns):
@@ -185,12 +201,10 @@ def followed(scene, tool, hands, turns, method="exact"):
 def judged(scene, tool, hands, turns):
     """(path, verdict) of a tool that starts at the first hand, in free space."""
     path, update_us = followed(scene, tool, hands, turns)
-    starts, ends = chords_of(tool, path)
-    parts = [slice(i, i + CHUNK) for i in range(0, len(starts), CHUNK)]
-    worst = in_parallel(lambda part: greatest_on_chords(scene, starts[part], ends[part]), parts)
+    chords, worst = judge(scene, tool, path)
     now, before = distances(tool, path, hands, turns)
     known = ~path["recovering"][:-1]
-    return path, {"update_mean_us": update_us, "chords": len(starts), "worst_excess_of_range": max(worst, default=-1.0),
+    return path, {"update_mean_us": update_us, "chords": chords, "worst_excess_of_range": worst,
                   "worst_growth_voxel": largest((now - before)[known]),
                   "unfinished_share": path["unfinished"][1:].mean(), **{f"{name}_{what}": of(path[name][1:]) for name in ("rounds", "work")
                                                                         for what, of in (("mean", numpy.mean), ("most", numpy.max))}}
@@ -335,7 +349,7 @@ def hostile(options):
 def summary_of(table):
     for row in table.where(part="hostile", method="exact"):
         penalty = table.where(part="hostile", method="penalty", scene=row["scene"], tool=row["tool"], points=row["points"])[0]
-        yield {"scene": row["scene"], "tool": f"{row['tool']}, {row['points']} points", "rounds, mean": row["rounds_mean"],
+        yield {"scene": row["scene"], "tool": row["tool"], "points": row["points"], "rounds, mean": row["rounds_mean"],
                "update, mean, exact [µs]": row["update_mean_us"], "update, mean, penalty [µs]": penalty["update_mean_us"],
                "goes on in the next tick [%]": 100 * row["unfinished_share"],
                "deepest point, exact [range]": max(0.0, row["worst_excess_of_range"]),

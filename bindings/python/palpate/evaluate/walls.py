@@ -1,7 +1,5 @@
 """Closed walls of any thickness, and straight lines of a hand through them."""
 
-import dataclasses
-
 import numpy
 import palpate
 
@@ -14,6 +12,9 @@ FULL = 255
 # In voxels of the shortest side.
 THINNEST_WALL, THICKEST_WALL, END_IN_BODY, END_BEHIND_WALL, OFF_SURFACE = 1e-3, 16, 4, 3, 1e-6
 FLATTEST = 0.2588190451025208  # cosine of 75 degrees
+# Of a line from outside into the solid: where it first meets the surface [mm], its unit direction, and its way in the wall and the hand's
+# way, both from the entry [mm].
+LINE = numpy.dtype([("entry", "3f8"), ("along", "3f8"), ("wall", "f8"), ("end", "f8")])
 
 
 def full_samples(body, layers):
@@ -52,20 +53,6 @@ def closed_shell(shape, thickness, interpolation):
     return cube(shape, numpy.ascontiguousarray(full * numpy.uint8(FULL)), FULL * level, interpolation)
 
 
-@dataclasses.dataclass
-class Lines:
-    """Lines from outside into the solid: where they first meet the surface (entry [mm]), unit directions (along), their way in the wall
-    and the hand's way, both from the entry [mm]."""
-
-    entry: numpy.ndarray
-    along: numpy.ndarray
-    wall: numpy.ndarray
-    end: numpy.ndarray
-
-    def part(self, rows):
-        return Lines(self.entry[rows], self.along[rows], self.wall[rows], self.end[rows])
-
-
 def lines_through(subject, outside, anywhere, count, random):
     """Lines at most 75 degrees off the normal where they meet the surface. A line goes through the first wall to 3 voxels behind it, or
     half the distance to the next wall, if no free path from outside leads there. With `anywhere`, lines into a body thicker than 16
@@ -79,7 +66,7 @@ def lines_through(subject, outside, anywhere, count, random):
         places = random.random(along.shape) * (numpy.asarray(subject.field.geometry.size) - 1)
         kept.append(usable(subject, outside, anywhere, places, along / numpy.linalg.norm(along, axis=1, keepdims=True)))
         tried += len(places)
-    return Lines(*(numpy.concatenate(parts)[:count] for parts in zip(*kept)))
+    return numpy.rec.fromarrays([numpy.concatenate(parts)[:count] for parts in zip(*kept)], LINE)
 
 
 def usable(subject, outside, anywhere, places, along):
