@@ -122,11 +122,17 @@ Session recorded_session(const io::RecordingHead& head, const LoadedVolume& load
         settings.method = baselines::method_named(head.method);
         settings.layers = with_labels(settings.layers, recording);
         check(head.session);
+        // A servo may be sent what a tool does not feel (docs/tools.md). It is kept for the point.
+        const auto tool = std::exchange(settings.tool, nullptr);
         Session session{make_renderer(Field(start_samples(loaded), head.solid, head.background,
                                             head.interpolation),
                                       head.isovalue, settings),
                         head.session};
-        make_room_for_tools(session.renderer);
+        Renderer& renderer = session.renderer;
+        check_tool(tool.get(), settings.method, kind_of(renderer.field));
+        if (tool) renderer.tool_proxy.emplace(tool);
+        renderer.settings.tool = tool;
+        make_room_for_tools(renderer);
         return session;
     } catch (const std::invalid_argument& e) {
         throw io::InputError(recording +

@@ -196,7 +196,12 @@ void CubicSite::make_piece() {
     const auto make = [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
         cubic::make_piece(kept.piece, t, centre, row, slice, isovalue);
     };
-    visit_cube(make);
+    if (field.is_background_around(t.cell)) {  // of which no sample needs to be gathered
+        kept.piece = {};
+        kept.piece.value = cubic::scale * (field.background() - field.offset() - isovalue);
+    } else {
+        visit_cube(make);
+    }
     if (sign < 0) kept.piece = -kept.piece;
     kept.isovalue = isovalue;
     kept.sign = sign;

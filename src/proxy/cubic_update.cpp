@@ -139,6 +139,10 @@ class CubicDescent {
             if (end == End::at_rest) return Rest::on_surface;
             h = h_mm();
             const double after = dot(h, h);
+            if (end == End::landed) {
+                before = after;
+                continue;
+            }
             const bool closer = after < (1 - least_progress) * before;
             before = after;
             if (closer || end == End::target_changed) {
@@ -155,7 +159,8 @@ class CubicDescent {
     }
 
   private:
-    enum class End { moved, at_target, at_rest, target_changed };
+    /// A landing need not gain anything; whether its slide did is known afterwards.
+    enum class End { moved, landed, at_target, at_rest, target_changed };
 
     /// The target and lengths as the site's tetrahedron sees them. Mostly the next moves stay in
     /// it.
@@ -190,14 +195,15 @@ class CubicDescent {
     /// One round: a straight motion through free space, or a slide and a fall. `h` leads to the
     /// target.
     End move(const Vec3& h, int failures) {
-        if (!site_.in_contact()) return fall_to_target();
+        if (!site_.in_contact()) {
+            const End end = fall_to_target();
+            return end == End::moved ? End::landed : end;
+        }
         const Vec3 slope = site_.here().gradient.cwiseProduct(per_mm());
         const double into = dot(slope, h);
         if (into <= 0) return fall_to_target();
         const Contact c(slope, h, into);
-        const double least = least_distance * shortest_;
-        if (!(c.aside_squared >
-              std::max(resting_slope * resting_slope * c.depth * into, least * least))) {
+        if (is_resting(c, into)) {
             return is_flat(slope) && look_round() ? End::moved : End::at_rest;
         }
         if (friction_pending_) {
@@ -206,6 +212,12 @@ class CubicDescent {
         }
         slide(h, BentContact(c, site_.here().hessian, per_mm()), failures);
         return End::moved;
+    }
+
+    bool is_resting(const Contact& c, double into) const {
+        const double least = least_distance * shortest_;
+        return !(c.aside_squared >
+                 std::max(resting_slope * resting_slope * c.depth * into, least * least));
     }
 
     /// Where the gradient says nothing.
@@ -252,29 +264,39 @@ class CubicDescent {
         }
         if (!go(c.raised(s.step, lift), h, site_.slide_level(), progress_)) return;
         progress_.report(StepKind::slide, site_);
-        if (!site_.in_contact()) fall_to_foot(shrink);
+        while (!site_.in_contact() && fall_to_foot(shrink)) {
+        }
     }
 
     /// From above the surface down to the target's foot on it, or to a part of the way there: where
-    /// a slide crosses walls, only the curvature at its end says where that is.
-    void fall_to_foot(double shrink) {
+    /// a slide crosses walls, only the curvature at its end says where that is. A crest may hide
+    /// the foot. Then the motion passes over the crest, and the result is true.
+    bool fall_to_foot(double shrink) {
         const Vec3 h = h_mm();
         const cubic::Expansion& here = site_.here();
         const Vec3 slope = here.gradient.cwiseProduct(per_mm());
         const double into = dot(slope, h);
         Vec3 to_foot = h;
+        bool passes = false;
         if (into > 0 && !is_flat(slope)) {
             const BentContact c(Contact(slope, h, into), here.hessian, per_mm());
             double part = shrink * c.to_foot(0.4);
             if (part * part * c.aside_squared > shortest_ * shortest_) {
                 part = shortest_ / std::sqrt(c.aside_squared);
             }
-            to_foot = c.raised(part * c.aside, here.value + 0.5 * part * part * c.bend);
+            double down = here.value + 0.5 * part * part * c.bend;
+            passes = part * part * c.bend < 2 * here.value && !is_resting(c, into);
+            if (passes) {
+                // Along the tangent to the crest (2 times the height), but a little above it.
+                part = std::sqrt(2 * here.value / c.bend);
+                down = 1.6 * here.value;
+            }
+            to_foot = c.raised(part * c.aside, down);
         }
         // Aim past the foot, in case the surface lies lower.
-        if (go(2 * to_foot, h, site_.level(), progress_)) {
-            progress_.report(StepKind::slide, site_);
-        }
+        if (!go(2 * to_foot, h, site_.level(), progress_)) return false;
+        progress_.report(StepKind::slide, site_);
+        return passes && progress_.budget > 0;
     }
 
     /// Moves the target back against the direction in which the SCP would slide, so that the SCP

@@ -93,6 +93,29 @@ TEST(CubicProxy, keeps_its_guarantees_on_plateaus_at_the_isovalue) {
     expect_much_contact(run_smooth(terraces_field(), 20));
 }
 
+// With the hand near its centre, a ball hides the foot, and no motion towards the hand is long.
+TEST(CubicProxy, passes_over_crests_in_few_motions) {
+    constexpr double radius = 6;
+    const Field field(scenes::ball(Index3::Constant(40)), Solid::above, std::nullopt,
+                      Interpolation::cubic);
+    const double isovalue = value_at(field, {radius, 0, 0});
+    int work = 0;
+    for (const double from_centre : {0.02, 0.05, 0.1, 0.2}) {
+        for (const double angle : {0.3, 1.0, 2.0}) {
+            Proxy proxy;
+            ASSERT_TRUE(place(proxy, field, {0.1, 0.2, radius + 1}, isovalue));
+            const auto hand_at = [&](double turned) {
+                const double arm = from_centre * radius;
+                return Vec3(arm * std::sin(turned), 0.01, arm * std::cos(turned));
+            };
+            update_exact(proxy, field, hand_at(0.1));
+            CubicGuarantees checked(field);
+            work += checked.update(proxy, hand_at(0.1 + angle)).work;
+        }
+    }
+    EXPECT_LT(work, 650);  // 924 where each motion ended on the surface
+}
+
 TEST(CubicProxy, what_an_update_keeps_for_the_next_changes_no_result) {
     const Geometry geometry = grid(cube(12), {1, 1, 1.5});
     const auto noise = [&](std::uint64_t seed) {

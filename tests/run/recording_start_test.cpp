@@ -152,6 +152,19 @@ struct Begun {
     }
 };
 
+/// Renders a recording again.
+void expect_the_same(const std::filesystem::path& path, const LoadedVolume& loaded) {
+    io::RecordingReader reader(path);
+    Replay replay(reader, loaded, path.string());
+    while (const auto tick = replay.next()) {
+        const auto differs = difference(tick->recorded, tick->again);
+        ASSERT_FALSE(differs) << differs->part << " in tick " << tick->number << ": "
+                              << differs->recorded << ", again " << differs->again;
+    }
+    EXPECT_TRUE(reader.complete());
+    EXPECT_EQ(reader.lost(), 0);
+}
+
 class RecordingStart : public testing::TestWithParam<Case> {};
 
 TEST_P(RecordingStart, is_not_felt_and_the_recording_comes_out_the_same) {
@@ -165,16 +178,7 @@ TEST_P(RecordingStart, is_not_felt_and_the_recording_comes_out_the_same) {
         ASSERT_LE((forces[i] - without[i]).norm(), GetParam().apart) << "tick " << i;
     }
 
-    io::RecordingReader reader(path);
-    const LoadedVolume loaded = load(recorded_source(reader.head(), path));
-    Replay replay(reader, loaded, path.string());
-    while (const auto tick = replay.next()) {
-        const auto differs = difference(tick->recorded, tick->again);
-        ASSERT_FALSE(differs) << differs->part << " in tick " << tick->number << ": "
-                              << differs->recorded << ", again " << differs->again;
-    }
-    EXPECT_TRUE(reader.complete());
-    EXPECT_EQ(reader.lost(), 0);
+    expect_the_same(path, load(recorded_source(io::RecordingReader(path).head(), path)));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -191,6 +195,43 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"with_a_tool", from::with_a_tool, a_ball, a_turning_hand},
         Case{"playing", from::playing, a_heart, a_hand, std::numeric_limits<double>::infinity()}),
     [](const auto& info) { return info.param.name; });
+
+/// A servo alone does not refuse layers beside a tool: they wait until it is put down.
+TEST(Recordings, of_a_servo_with_a_tool_beside_layers_come_out_the_same) {
+    const support::ScratchFolder folder;
+    Begun begun({"pressing", from::pressing}, folder.path());
+    const LoadedVolume loaded = load(source_named(a_ball));
+    begun.live.record(folder / "head.csv");
+    begun.live.stop();
+    io::RecordingHead head = io::RecordingReader(folder / "head.csv").head();
+    head.settings.transform = {};
+    Session session = recorded_session(head, loaded, "head.csv");
+
+    const auto layers = std::make_shared<const Layers>(soft_shells());
+    const auto tool = std::make_shared<const Tool>(sphere_tool(2, 0.5));
+    support::ScriptedDevice device([](double time) {
+        return support::ready_at({15 - 30 * time, 0.3, 0.2});
+    });
+    Servo servo(session, device, {.real_time = false});
+    std::int64_t now = 0;  // [ns]
+    const auto step = [&](int ticks) {
+        for (int i = 0; i < ticks; ++i) ASSERT_TRUE(servo.step(now += 1'000'000));
+    };
+    ASSERT_TRUE(servo.send(command::UseLayers{layers}));
+    ASSERT_TRUE(servo.send(command::UseTool{tool}));
+    step(100);
+    head.settings.layers = layers;
+    head.settings.tool = tool;
+    io::RecordingWriter writer(folder / "a.csv", head, Pace::by_steps);
+    ASSERT_TRUE(servo.record(writer.queue()));
+    step(50);
+    ASSERT_TRUE(servo.send(command::UseTool{nullptr}));
+    step(300);
+    EXPECT_GT(servo.snapshot()->session.tick.layers.inside, 0);
+    servo.stop_recording();
+    writer.finish(servo.report().unrecorded);
+    expect_the_same(folder / "a.csv", loaded);
+}
 
 /// One that ends at once, with the next in its place: each has its own ticks.
 TEST(Recordings, follow_each_other_while_the_session_goes_on) {
