@@ -31,9 +31,3 @@ class DeviceError(Error, OSError):
 
 class QueueFull(Error, RuntimeError):
     """Commands come faster than a servo carries them out; those before are still carried out."""
-
-
-def exit_status(error: BaseException) -> int:
-    """Of a program that ends with this error, as palpate's own (docs/command_line.md)."""
-    kinds = ((InputError, 3), (DeviceError, 4), (OutputError, 5), (KeyboardInterrupt, 130))
-    return next((status for kind, status in kinds if isinstance(error, kind)), 2)
