@@ -5,13 +5,13 @@
 #include <stdexcept>
 
 #include "io/json_members.hpp"
+#include "palpate/enum_names.hpp"
 
 namespace palpate::io {
 namespace {
 
-constexpr std::array<const char*, haptic_property_count> property_names{
-    "stiffness", "static_friction", "dynamic_friction", "damping", "viscosity", "puncture_force",
-    "drag"};
+constexpr auto& property_names = names_of<HapticProperty>.names;
+static_assert(property_names.size() == haptic_property_count);
 
 /// An object whose members are taken out one by one; what is left at the end is an error.
 class Members {
@@ -85,7 +85,7 @@ Json json_of(const Layer& layer, const char* level) {
     json[level] = number_to_json(layer.level);
     json["colour"] = layer.colour;
     json["opacity"] = layer.opacity;
-    for (std::size_t p = 0; p < property_names.size(); ++p) {
+    for (std::size_t p = 0; p < haptic_property_count; ++p) {
         if (layer.own[p]) json[property_names[p]] = number_to_json(*layer.own[p]);
     }
     return json;
@@ -110,7 +110,7 @@ ReadLayer layer_from(const Json& json, const std::string& where) {
     members.take("colour", colour);
     layer.colour = {colour[0], colour[1], colour[2]};
     members.take("opacity", layer.opacity);
-    for (std::size_t p = 0; p < property_names.size(); ++p) {
+    for (std::size_t p = 0; p < haptic_property_count; ++p) {
         double value = 0;
         if (members.take(property_names[p], value)) layer.own[p] = value;
     }
@@ -154,7 +154,7 @@ Json to_json(const Layers& layers) {
         list.push_back(json_of(layers.layers[i], both && is_label(layers, i) ? "label" : "level"));
     }
     Json curves = Json::object();
-    for (std::size_t p = 0; p < property_names.size(); ++p) {
+    for (std::size_t p = 0; p < haptic_property_count; ++p) {
         const PropertyCurves& of = layers.curves[p];
         if (!of.density.knots.empty()) curves[property_names[p]]["density"] = json_of(of.density);
         if (!of.gradient.knots.empty()) {
@@ -176,7 +176,7 @@ Layers layers_from_json(const Json& json) {
     if (const auto list = members.take("layers")) take_layers(*list, layers);
     if (const auto all = members.take("curves")) {
         Members curves(*all, "curves");
-        for (std::size_t p = 0; p < property_names.size(); ++p) {
+        for (std::size_t p = 0; p < haptic_property_count; ++p) {
             if (const auto one = curves.take(property_names[p])) {
                 layers.curves[p] = curves_from(*one, curves.full(property_names[p]));
             }

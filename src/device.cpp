@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "palpate/enum_names.hpp"
+
 namespace palpate {
 namespace {
 
@@ -42,23 +44,7 @@ Mat3 axes_facing(Facing facing) {
 }  // namespace
 
 const char* name_of(DeviceStatus status) {
-    switch (status) {
-        case DeviceStatus::starting:
-            return "starting";
-        case DeviceStatus::ready:
-            return "ready";
-        case DeviceStatus::uncalibrated:
-            return "uncalibrated";
-        case DeviceStatus::stale:
-            return "stale";
-        case DeviceStatus::lost:
-            return "lost";
-        case DeviceStatus::fault:
-            return "fault";
-        case DeviceStatus::finished:
-            return "finished";
-    }
-    return "unknown";
+    return text_of(status);
 }
 
 DeviceTransform fit_workspace(const Geometry& geometry, const DeviceInfo& device, Facing facing) {

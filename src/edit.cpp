@@ -10,7 +10,7 @@
 
 #include "edit/before.hpp"
 #include "edit/reach.hpp"
-#include "palpate/names.hpp"
+#include "palpate/enum_names.hpp"
 
 namespace palpate {
 namespace {
@@ -275,27 +275,11 @@ void check_sweep(const edit::Sweep& sweep, const Geometry& geometry) {
 }  // namespace
 
 std::string_view name_of(BrushKind kind) {
-    switch (kind) {
-        case BrushKind::carve:
-            return "carve";
-        case BrushKind::add:
-            return "add";
-        case BrushKind::smooth:
-            return "smooth";
-        case BrushKind::paint:
-            break;
-    }
-    return "paint";
+    return text_of(kind);
 }
 
 BrushKind brush_kind_from(std::string_view name) {
-    for (const auto kind :
-         {BrushKind::carve, BrushKind::add, BrushKind::smooth, BrushKind::paint}) {
-        if (name == name_of(kind)) return kind;
-    }
-    const std::string names[] = {"carve", "add", "smooth", "paint"};
-    throw std::invalid_argument("there is no brush '" + std::string(name) +
-                                "': " + use_one_of(names, name));
+    return named<BrushKind>(name);
 }
 
 void check(const Edit& edit, const Samples& samples) {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "palpate/names.hpp"
+#include "palpate/enum_names.hpp"
 
 namespace palpate {
 namespace {
@@ -20,16 +20,11 @@ constexpr double most_ranges_from_zero = 1 << 19;
 }  // namespace
 
 std::string_view name_of(Interpolation interpolation) {
-    return interpolation == Interpolation::cubic ? "cubic" : "linear";
+    return text_of(interpolation);
 }
 
 Interpolation interpolation_from(std::string_view name) {
-    for (const Interpolation known : {Interpolation::linear, Interpolation::cubic}) {
-        if (name == name_of(known)) return known;
-    }
-    const std::string names[] = {"linear", "cubic"};
-    throw std::invalid_argument("there is no field '" + std::string(name) +
-                                "': " + use_one_of(names, name));
+    return named<Interpolation>(name);
 }
 
 Field::Field(Volume volume, Solid solid, std::optional<double> background,

@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "palpate/names.hpp"
+#include "palpate/enum_names.hpp"
 
 namespace palpate {
 namespace {
@@ -51,27 +51,11 @@ std::size_t size_of(SampleType type) {
 }
 
 std::string_view name_of(SampleType type) {
-    switch (type) {
-        case SampleType::uint8:
-            return "uint8";
-        case SampleType::int16:
-            return "int16";
-        case SampleType::uint16:
-            return "uint16";
-        case SampleType::float32:
-            break;
-    }
-    return "float32";
+    return text_of(type);
 }
 
 SampleType sample_type_from(std::string_view name) {
-    for (const auto type :
-         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
-        if (name == name_of(type)) return type;
-    }
-    const std::string names[] = {"uint8", "int16", "uint16", "float32"};
-    throw std::invalid_argument("there is no sample type '" + std::string(name) +
-                                "': " + use_one_of(names, name));
+    return named<SampleType>(name);
 }
 
 SampleBox united(const SampleBox& a, const SampleBox& b) {

@@ -4,18 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
 #include "apps/options/values.hpp"
 #include "io/system/number.hpp"
 #include "palpate/devices/devices.hpp"
+#include "palpate/enum_names.hpp"
 #include "palpate/io/written_formats.hpp"
 
 namespace palpate::app {
 namespace {
-
-constexpr std::array facings{"anterior", "posterior", "left", "right", "superior", "inferior"};
 
 run::ButtonSetup button_from(const std::string& option, const std::string& text) {
     if (text == "none") return {};
@@ -69,14 +67,10 @@ void RunOptions::add_device_options(CLI::App& command) {
         ->default_str(run::text_of(given.device));
     command
         .add_option_function<std::string>(
-            "--facing",
-            [this](const std::string& name) {
-                given.facing =
-                    static_cast<Facing>(std::ranges::find(facings, name) - facings.begin());
-            },
+            "--facing", [this](const std::string& name) { given.facing = named<Facing>(name); },
             "Side of the body that faces you")
-        ->check(one_of(std::vector<std::string>(facings.begin(), facings.end())))
-        ->default_str(facings.front());
+        ->check(one_of(all_names<Facing>()))
+        ->default_str(text_of(given.facing));
     command.add_option_function<std::string>(
         "--clutch",
         [this](const std::string& text) { given.clutch = button_from("--clutch", text); },

@@ -9,6 +9,7 @@
 #include "apps/options/no_effect.hpp"
 #include "apps/options/say.hpp"
 #include "apps/options/values.hpp"
+#include "palpate/enum_names.hpp"
 #include "palpate/filters/dequantize.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/renderer.hpp"
@@ -30,7 +31,7 @@ void SourceOptions::add_to(CLI::App& command, bool optional) {
     };
     text("dims", "Size of a raw file in samples: WxHxD")->type_name("WxHxD");
     text("type", "Sample type of a raw file (or a synthetic volume)")
-        ->check(one_of({"uint8", "int16", "uint16", "float32"}));
+        ->check(one_of(all_names<SampleType>()));
     text("spacing", "Spacing [mm], which replaces that of the file: X,Y,Z")->type_name("X,Y,Z");
     text("orientation",
          "Side of the body that each axis runs to, which replaces that of the file: three letters "
@@ -165,13 +166,10 @@ void add_field_options(CLI::App& command, run::FieldSetup& field) {
 void add_side_options(CLI::App& command, run::FieldSetup& field) {
     command
         .add_option_function<std::string>(
-            "--solid",
-            [&field](const std::string& text) {
-                field.solid = text == "below" ? Solid::below : Solid::above;
-            },
+            "--solid", [&field](const std::string& text) { field.solid = named<Solid>(text); },
             "Which side of the level is solid")
-        ->check(one_of({"above", "below"}))
-        ->default_str("above");
+        ->check(one_of(all_names<Solid>()))
+        ->default_str(text_of(field.solid));
     command
         .add_option_function<std::string>(
             "--field",

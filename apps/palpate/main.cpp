@@ -4,15 +4,15 @@
 #include <algorithm>
 
 #include "apps/palpate/commands.hpp"
-#include "apps/palpate/evaluation.hpp"
 #include "apps/palpate/program.hpp"
+#include "apps/palpate/python_commands.hpp"
 #include "apps/palpate/window.hpp"
 
 int main(int argc, char** argv) {
     // Bricks and pieces that are dropped go back to the system, whatever lies behind them.
     mallopt(M_MMAP_THRESHOLD, 128 << 10);
     using namespace palpate::app;
-    if (argc > 1 && argv[1] == evaluation_command) become_evaluation(argv);
+    become_python(argc, argv);
     // What follows the command's name, for a command that becomes another program.
     const Words words{std::max(argc - 2, 0), argv + std::min(argc, 2)};
     return run_program(argc, argv, [&words](CLI::App& app) {
@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
         add_tool(app);
         add_render(app);
         add_demo(app);
-        add_missing_evaluation(app);
+        add_missing_python(app);
         add_touch(app, words);
         add_view(app, words);
         add_record(app);

@@ -119,6 +119,13 @@ extern "C" PALPATE_API palpate_status palpate_run_set_penetration(palpate_run* r
     });
 }
 
+extern "C" PALPATE_API palpate_status palpate_run_set_ranges(palpate_run* run, double threshold,
+                                                             const double* ranges, size_t count) {
+    return send(run, [&](const run::Run& now) {
+        return penetrability_ranges(threshold, ranges_from(ranges, count), now.field().solid());
+    });
+}
+
 extern "C" PALPATE_API palpate_status palpate_run_set_tool(palpate_run* run, const char* tool) {
     return send(run, [&](const run::Run& now) {
         const double spacing = io::usual_spacing(now.field().geometry());

@@ -13,7 +13,7 @@ run::Data& data_of(const palpate_data* data) {
 
 run::HandBrush hand_brush(const palpate_brush& asked) {
     run::HandBrush brush;
-    brush.kind = one_of<BrushKind>(asked.kind, 4, "brush.kind");
+    brush.kind = one_of<BrushKind>(asked.kind, "brush.kind");
     brush.radius = asked.radius;
     brush.hardness = 1 - asked.softness;
     if (asked.rate != 0) brush.rate = asked.rate;
@@ -23,11 +23,11 @@ run::HandBrush hand_brush(const palpate_brush& asked) {
 
 Brush stroke_brush(const palpate_brush& asked) {
     Brush brush;
-    brush.kind = one_of<BrushKind>(asked.kind, 4, "brush.kind");
+    brush.kind = one_of<BrushKind>(asked.kind, "brush.kind");
     brush.radius = asked.radius;
     brush.hardness = 1 - asked.softness;
     brush.level = asked.level;
-    brush.solid = one_of<Solid>(asked.solid, 2, "brush.solid");
+    brush.solid = one_of<Solid>(asked.solid, "brush.solid");
     brush.value = asked.value;
     return brush;
 }

@@ -37,7 +37,7 @@ run::Setup setup_from(const palpate_run_options& asked) {
     setup.render = render_setup(render);
     setup.render.force.start_below = run::live_start_below;
     if (render.has_isovalue) setup.field.isovalue = render.isovalue;
-    setup.facing = one_of<Facing>(asked.facing, 6, "facing");
+    setup.facing = one_of<Facing>(asked.facing, "facing");
     setup.real_time = asked.no_real_time == 0;
     if (asked.deadman_button != 0) setup.deadman = run::Button{asked.deadman_button};
     choose_device(asked, setup);

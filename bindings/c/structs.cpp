@@ -55,10 +55,11 @@ palpate_geometry geometry_to(const Geometry& geometry) {
 run::FieldSetup field_setup(const palpate_field_options* options) {
     const auto given = taken_or_default(options, "field");
     run::FieldSetup setup;
-    setup.solid = one_of<Solid>(given.solid, 2, "field.solid");
-    setup.interpolation = one_of<int>(given.interpolation, 2, "field.interpolation") == 0
-                              ? Interpolation::cubic
-                              : Interpolation::linear;
+    setup.solid = one_of<Solid>(given.solid, "field.solid");
+    // Here 0 is cubic.
+    const auto other = one_of<Interpolation>(given.interpolation, "field.interpolation");
+    setup.interpolation =
+        other == Interpolation::linear ? Interpolation::cubic : Interpolation::linear;
     if (given.has_background) setup.background = given.background;
     return setup;
 }
@@ -67,6 +68,17 @@ std::optional<double> usual_isovalue(const run::LoadedVolume& loaded,
                                      const run::FieldSetup& setup) {
     if (!(loaded.volume.maximum() > loaded.volume.minimum())) return std::nullopt;
     return run::isovalue_of(loaded, setup);
+}
+
+std::vector<DensityRange> ranges_from(const double* ranges, std::size_t count) {
+    given(ranges, "ranges");
+    if (count > Penetrability::most_ranges) throw std::invalid_argument("ranges: at most 16");
+    std::vector<DensityRange> made(count);
+    for (DensityRange& range : made) {
+        range.low = *ranges++;
+        range.high = *ranges++;
+    }
+    return made;
 }
 
 run::RenderSetup render_setup(const palpate_render_options& options) {
@@ -82,6 +94,14 @@ run::RenderSetup render_setup(const palpate_render_options& options) {
     }
     if (options.penetration != 0)
         setup.penetrability = run::ThresholdSetup{options.penetration, {}};
+    if (options.ranges || options.range_count != 0) {
+        run::RangesSetup ranges;
+        if (options.penetration != 0) ranges.threshold = options.penetration;
+        for (const auto& [low, high] : ranges_from(options.ranges, options.range_count)) {
+            ranges.ranges.push_back({low, high});
+        }
+        setup.penetrability = ranges;
+    }
     if (options.tool) setup.tool = io::tool_spec_from(options.tool);
     if (options.layers) setup.layers = io::layers_named(options.layers);
     return setup;

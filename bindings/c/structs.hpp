@@ -6,8 +6,10 @@
 #include <cstring>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "bindings/c/status.hpp"
+#include "palpate/enum_names.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/run/setup.hpp"
 
@@ -78,9 +80,10 @@ void put(const Mat3& from, double* rows);
 Quaternion quaternion(const double* xyzw);
 void put(const Quaternion& from, double* xyzw);
 
-/// One of `count` enumerators that begin at 0. Throws std::invalid_argument for another number.
-template <class Enum>
-Enum one_of(std::int32_t number, int count, const char* name) {
+/// The enumerator of this number. Throws std::invalid_argument for a number of none.
+template <HasNames Enum>
+Enum one_of(std::int32_t number, const char* name) {
+    constexpr auto count = static_cast<std::int32_t>(names_of<Enum>.names.size());
     if (number < 0 || number >= count) {
         throw std::invalid_argument(std::string(name) + " is " + std::to_string(number) +
                                     "; the last one there is is " + std::to_string(count - 1));
@@ -94,6 +97,8 @@ palpate_geometry geometry_to(const Geometry& geometry);
 run::FieldSetup field_setup(const palpate_field_options* options);
 /// A level that is worth feeling; nothing for constant data.
 std::optional<double> usual_isovalue(const run::LoadedVolume& loaded, const run::FieldSetup& setup);
+/// Pairs of low and high. Throws std::invalid_argument for null or too many.
+std::vector<DensityRange> ranges_from(const double* ranges, std::size_t count);
 /// Reads the files of tool and layers.
 run::RenderSetup render_setup(const palpate_render_options& options);
 DeviceTransform transform_from(const palpate_transform* transform);

@@ -24,7 +24,7 @@ palpate_volume* in_memory(Volume volume) {
 }
 
 SampleType type_from(std::int32_t type) {
-    return one_of<SampleType>(type, 4, "type");
+    return one_of<SampleType>(type, "type");
 }
 
 void* copied(const void* samples, std::size_t bytes) {

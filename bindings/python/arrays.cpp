@@ -8,9 +8,11 @@ namespace {
 
 std::optional<SampleType> type_of(const py::dtype& dtype) {
     if (!dtype.attr("isnative").cast<bool>()) return std::nullopt;
-    for (const auto& [name, type] : Named<SampleType>::values) {
+    for (const std::string& name : all_names<SampleType>()) {
         const py::dtype known(name);
-        if (dtype.kind() == known.kind() && dtype.itemsize() == known.itemsize()) return type;
+        if (dtype.kind() == known.kind() && dtype.itemsize() == known.itemsize()) {
+            return sample_type_from(name);
+        }
     }
     return std::nullopt;
 }

@@ -96,17 +96,12 @@ void bind_closed_loop(py::module_& module) {
         "closed_loop", &closed_loop, py::arg("renderer"), py::arg("device"), py::arg("seconds"),
         py::arg("rate"), py::arg("straight") = false, py::kw_only(),
         py::arg("progress") = py::none(),
-        "A simulated device, 'simulated:touch,grip=light,hand=hold', whose workspace the grid "
-        "fills, in a\n"
-        "closed loop with a copy "
-        "of the\n"
-        "renderer, as fast as possible and without the GIL: arrays by name, position [device mm],\n"
-        "orientation_xyzw, force [N], torque [N mm] and constrained. straight: in place of a "
-        "surface,\n"
-        "the rotational spring of the renderer's ForceSettings holds the handle straight. "
-        "progress: "
-        "called\n"
-        "with the part that is done.");
+        "A simulated device, 'simulated:touch,grip=light,hand=hold', whose workspace the grid\n"
+        "fills, in a closed loop with a copy of the renderer, as fast as possible and without the\n"
+        "GIL: arrays by name, position [device mm], orientation_xyzw, force [N], torque [N mm]\n"
+        "and constrained. straight: in place of a surface, the rotational spring of the\n"
+        "renderer's ForceSettings holds the handle straight. progress: called with the part that\n"
+        "is done.");
     module.def(
         "simulated_info",
         [](const std::string& text, const Field& field, double isovalue, double rate) {

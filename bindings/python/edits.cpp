@@ -77,9 +77,8 @@ void bind_edits(py::module_& module) {
                 return box_of(e.apply(edit, same_step ? EditStep::same : EditStep::own));
             },
             py::arg("edit"), py::arg("same_step") = false, py::call_guard<py::gil_scoped_release>(),
-            "The box of samples that changed, (low, high), or None. same_step: belongs to the "
-            "last\n"
-            "step of undo().")
+            "The box of samples that changed, (low, high), or None. same_step: belongs to the\n"
+            "last step of undo().")
         .def(
             "undo", [](Editor& e) { return box_of(e.undo()); },
             "The box of samples that changed, or None.")

@@ -79,19 +79,13 @@ void bind_explore(py::module_& module) {
         py::arg("speed_mm_s") = 50.0, py::arg("touching") = 0.6, py::arg("depth_mm") = 0.5,
         py::arg("trajectories") = 20, py::arg("trajectory_s") = 5.0, py::arg("seed") = 1,
         py::arg("wanted") = py::none(), py::arg("progress") = py::none(),
-        "A simulated hand at 1 kHz that explores free space, comes back to the surface and slides "
-        "along\n"
-        "it, again and again: hips and first as for follow_each(). speed_mm_s: its mean; touching: "
-        "the\n"
-        "part of its time that it means to touch; depth_mm: below the surface. wanted: (mean "
-        "speed, "
-        "share\n"
-        "of updates in contact), to which speed and touching are tuned; speed_mm_s and "
-        "constrained_share\n"
-        "say how near it comes, and depth_mm how deep it presses then. progress: called with the "
-        "part\n"
-        "that is done. Raises ValueError for a level that nothing meets, which calls the volume "
-        "`name`.");
+        "A simulated hand at 1 kHz that explores free space, comes back to the surface and slides\n"
+        "along it, again and again: hips and first as for follow_each(). speed_mm_s: its mean;\n"
+        "touching: the part of its time that it means to touch; depth_mm: below the surface.\n"
+        "wanted: (mean speed, share of updates in contact), to which speed and touching are\n"
+        "tuned; speed_mm_s and constrained_share say how near it comes, and depth_mm how deep it\n"
+        "presses then. progress: called with the part that is done. Raises ValueError for a level\n"
+        "that nothing meets, which calls the volume `name`.");
 }
 
 py::dict explicit_surface(const Field& field, double isovalue, const Doubles& starts,
@@ -122,17 +116,12 @@ void bind_explicit_surface(py::module_& module) {
         "explicit_surface", &explicit_surface, py::arg("field"), py::arg("isovalue"),
         py::arg("starts"), py::arg("ends"), py::kw_only(), py::arg("repeats") = 1,
         py::arg("progress") = py::none(),
-        "The explicit approach in a process of its own: the whole isosurface (VTK, flying edges), "
-        "a\n"
-        "bounding volume hierarchy on it (Embree), and where segments [mm, physical] first meet "
-        "it. A\n"
-        "dict: hits, from 0 to 1 along each, NaN for none; vertices, triangles; extraction_s, "
-        "tree_s and\n"
-        "cpu_s of all threads, the least of the repeats; mesh_bytes, tree_bytes, and peak_bytes "
-        "without\n"
-        "the samples; segment_ns, the mean. Raises RuntimeError where the program "
-        "palpate-explicit-helper\n"
-        "fails or is missing.");
+        "The explicit approach in a process of its own: the whole isosurface (VTK, flying edges),\n"
+        "a bounding volume hierarchy on it (Embree), and where segments [mm, physical] first meet\n"
+        "it. A dict: hits, from 0 to 1 along each, NaN for none; vertices, triangles;\n"
+        "extraction_s, tree_s and cpu_s of all threads, the least of the repeats; mesh_bytes,\n"
+        "tree_bytes, and peak_bytes without the samples; segment_ns, the mean. Raises\n"
+        "RuntimeError where the program palpate-explicit-helper fails or is missing.");
 }
 
 py::dict streaming_stroke(double latency, double failures, double speed, bool coarse_first,
@@ -166,17 +155,12 @@ void bind_streaming_stroke(py::module_& module) {
         py::arg("failures"), py::arg("speed_mm_s"), py::arg("coarse_first"), py::arg("seconds"),
         py::arg("rate"), py::arg("memory_bytes"), py::arg("seed") = 1,
         py::arg("progress") = py::none(),
-        "In real time, a hand goes to and fro through a row of balls of 256 voxels of BALL_VOXEL "
-        "[mm], in\n"
-        "a volume of 12288^3 computed samples, while they are read as over a network of this "
-        "latency, of\n"
-        "whose requests a share fails. A dict: ticks, and of those touching, waiting and coarse; "
-        "the\n"
-        "greatest depth of the path in a ball, deepest_voxel, and beyond_voxel, the same less what "
-        "the\n"
-        "rounding and the interpolation of the samples may take; first_contact_s (negative: none), "
-        "most_bytes,\n"
-        "requests, retries and read_bytes.");
+        "In real time, a hand goes to and fro through a row of balls of 256 voxels of BALL_VOXEL\n"
+        "[mm], in a volume of 12288^3 computed samples, while they are read as over a network of\n"
+        "this latency, of whose requests a share fails. A dict: ticks, and of those touching,\n"
+        "waiting and coarse; the greatest depth of the path in a ball, deepest_voxel, and\n"
+        "beyond_voxel, the same less what the rounding and the interpolation of the samples may\n"
+        "take; first_contact_s (negative: none), most_bytes, requests, retries and read_bytes.");
 }
 
 Subject subject(const std::string& text, const std::optional<std::string>& contestant) {

@@ -139,9 +139,8 @@ void bind_loaded(py::module_& module) {
     copied_as_itself(loaded)
         .def(py::init(&loaded_as), py::arg("volume"), py::arg("name") = "array",
              py::arg("isovalue") = py::none(),
-             "A volume of yours, for Run. name: what recordings call it; to validate them, write "
-             "the\n"
-             "volume to a file of that name. isovalue: a good one [data units].")
+             "A volume of yours, for Run. name: what recordings call it; to validate them, write\n"
+             "the volume to a file of that name. isovalue: a good one [data units].")
         .def_property_readonly(
             "volume", [](const run::LoadedVolume& l) { return l.volume; },
             "The Volume; of a sequence its first frame.")

@@ -26,8 +26,8 @@ Curve curve_from(const Knots& knots) {
 
 Curves curves_of(const io::LayersFile& file) {
     Curves curves;
-    for (const auto& [name, property] : Named<HapticProperty>::values) {
-        const PropertyCurves& of = file.layers[property];
+    for (const std::string& name : all_names<HapticProperty>()) {
+        const PropertyCurves& of = file.layers[named<HapticProperty>(name)];
         if (of.density.knots.empty() && of.gradient.knots.empty()) continue;
         curves[name] = {knots_of(of.density), knots_of(of.gradient)};
     }
@@ -44,8 +44,8 @@ void set_curves(io::LayersFile& file, const Curves& curves) {
 
 std::map<std::string, double> properties_of(const Layer& layer) {
     std::map<std::string, double> own;
-    for (const auto& [name, property] : Named<HapticProperty>::values) {
-        if (layer[property]) own[name] = *layer[property];
+    for (const std::string& name : all_names<HapticProperty>()) {
+        if (const auto value = layer[named<HapticProperty>(name)]) own[name] = *value;
     }
     return own;
 }
@@ -56,33 +56,23 @@ void set_properties(Layer& layer, const std::map<std::string, double>& own) {
     layer = changed;
 }
 
-/// A field of core Layers inside the file.
-template <class Value>
-auto get(Value Layers::*member) {
-    return [member](const io::LayersFile& file) { return file.layers.*member; };
-}
-template <class Value>
-auto set(Value Layers::*member) {
-    return [member](io::LayersFile& file, Value value) { file.layers.*member = std::move(value); };
-}
-
 void bind_layers_class(py::module_& module) {
     using F = io::LayersFile;
     py::class_<F> layers =
         Record<F>(module, "Layers",
                   "A haptic transfer function: surfaces from outside in, each with its own feel\n"
                   "(docs/layers.md). Lists and dicts are copies: assign them to change them.")
-            .property("name", get(&Layers::name), set(&Layers::name), "")
+            .part("name", "", &F::layers, &Layers::name)
             .field("units", &F::units, "Of levels: 'HU', '%' of the data's range; '': the data's.")
             .field("about", &F::about, "For people: what it is for, where its numbers come from.")
-            .property("layers", get(&Layers::layers), set(&Layers::layers), "A list of Layer.")
+            .part("layers", "A list of Layer.", &F::layers, &Layers::layers)
             .property("curves", &curves_of, &set_curves,
                       "{property: (knots over density, knots over gradient)}, a knot (at, value).")
-            .property("closing", get(&Layers::closing), set(&Layers::closing),
-                      "[mm, physical] a punctured surface closes behind the SCP")
-            .property("needle", get(&Layers::needle), set(&Layers::needle), "Needle or None.")
+            .part("closing", "[mm, physical] a punctured surface closes behind the SCP", &F::layers,
+                  &Layers::closing)
+            .part("needle", "Needle or None.", &F::layers, &Layers::needle)
             .done();
-    layers.def_property_readonly("by_label", get(&Layers::by_label),
+    layers.def_property_readonly("by_label", member_of(&F::layers, &Layers::by_label),
                                  "Places come from a label volume.");
     layers.def_property_readonly(
         "level_count", [](const F& file) { return level_count(file.layers); },

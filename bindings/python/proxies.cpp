@@ -414,26 +414,22 @@ void bind_proxies(py::module_& module) {
         py::arg("first"), py::arg("method") = "exact", py::arg("threads") = 0, py::kw_only(),
         py::arg("progress") = py::none(),
         "Many hands, one behind the other in `hips` [mm, physical], shape (n, 3); `first`: the\n"
-        "row in which each begins. A proxy of its own is put there and follows to the next\n"
-        "hand's row. On all processors, or `threads`, at most 256; the result does not depend on "
-        "that.\n"
+        "row in which each begins. A proxy of its own is put there and follows to the next hand's\n"
+        "row. On all processors, or `threads`, at most 256; the result does not depend on that.\n"
         "ValueError, as of Proxy and update_times(), for what replay() refuses.");
     module.def(
         "update_times", &update_times, py::arg("field"), py::arg("isovalue"), py::arg("hips"),
         py::arg("first"), py::arg("method") = "exact", py::arg("batch") = 1, py::arg("cold") = 0,
         py::kw_only(), py::arg("progress") = py::none(),
-        "[ns] per update of hands as for follow_each(), in one thread, measured in C++ over "
-        "batches\n"
-        "of so many updates. batch=0: the clock's own cost. cold: only every so many updates, "
-        "after the\n"
-        "processor's caches were emptied.");
+        "[ns] per update of hands as for follow_each(), in one thread, measured in C++ over\n"
+        "batches of so many updates. batch=0: the clock's own cost. cold: only every so many\n"
+        "updates, after the processor's caches were emptied.");
     module.def("follow_levels", &follow_levels, py::arg("field"), py::arg("hips"), py::arg("first"),
                py::arg("levels"),
-               "Hands as for follow_each(), in one thread, each update at a level of its own [data "
-               "units],\n"
-               "shape (n,). A dict: trace, a ProxyTrace; heap_growth_bytes, the most that the "
-               "process took\n"
-               "from the heap until after an update with another level; state_bytes of a proxy.");
+               "Hands as for follow_each(), in one thread, each update at a level of its own\n"
+               "[data units], shape (n,). A dict: trace, a ProxyTrace; heap_growth_bytes, the\n"
+               "most that the process took from the heap until after an update with another\n"
+               "level; state_bytes of a proxy.");
     module.def("ray_ns", &ray_ns, py::arg("field"), py::arg("isovalue"), py::arg("starts"),
                py::arg("ends"), "Mean time of a segment of cast_rays() [ns].");
     module.def(

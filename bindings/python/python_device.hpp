@@ -10,6 +10,7 @@
 
 #include "bindings/python/casters.hpp"
 #include "bindings/python/own_process.hpp"
+#include "bindings/python/without_gil.hpp"
 #include "devices/linked_device.hpp"
 #include "palpate/devices/error.hpp"
 
@@ -82,6 +83,39 @@ void stop_session(Owner& owner) {
     throw devices::DeviceError("the device: " + owner.python_device->problem() +
                                ": the session has ended, a force of zero was written, and the "
                                "thread that hangs is left behind");
+}
+
+/// What all sessions offer.
+template <class Owner>
+void add_session(py::class_<Owner, std::shared_ptr<Owner>>& kind) {
+    using Unlocked = py::call_guard<py::gil_scoped_release>;
+    const auto start = [](const py::object& self) {
+        auto& owner = self.cast<Owner&>();
+        owner.process.check();
+        stop_at_exit<Owner>(self, [](Owner& running) { stop_session(running); });
+        const py::gil_scoped_release unlocked;
+        owner.start();
+    };
+    kind.def("start", start, "Once.")
+        .def("stop", &stop_session<Owner>, Unlocked(),
+             "Zero force, for good, and the end of all threads: a device in Python is written a\n"
+             "last zero and closed. Raises DeviceError if its functions do not return within 2 s:\n"
+             "the caller's thread has then written the zero. Raises RuntimeError in a forked\n"
+             "child, which has no servo.")
+        .def("snapshot", &Owner::snapshot, "The newest tick, a Snapshot; None before the first.")
+        .def("report", &Owner::report, "ServoReport")
+        .def_property_readonly(
+            "privileges", [](const Owner& o) { return std::vector<std::string>(o.privileges()); },
+            "A sentence for each privilege of real time. After start().")
+        .def("__enter__",
+             [start](const py::object& self) {
+                 start(self);
+                 return self;
+             })
+        .def("__exit__", [](Owner& owner, const py::args&) {
+            const py::gil_scoped_release unlocked;
+            if (owner.process.is_here()) stop_session(owner);
+        });
 }
 
 /// Whoever lets go last. Where that are the device's own functions, another thread of Python does

@@ -17,6 +17,18 @@ std::string text_of(const Setting<Owner, Value>& setting) {
     return text;
 }
 
+/// Reads a member of a member: member_of(&Tick::proxy, &ProxyUpdate::scp)(tick).
+template <class Owner, class First, class... Path>
+auto member_of(First Owner::*first, Path... path) {
+    return [=](const Owner& whole) { return ((whole.*first).*....*path); };
+}
+
+/// Adds a member of a member that cannot be set.
+template <class... Options, class... Path>
+void add_part(py::class_<Options...>& kind, const char* name, const char* about, Path... path) {
+    kind.def_property_readonly(name, member_of(path...), about);
+}
+
 template <class T>
 class Record {
   public:
@@ -36,6 +48,14 @@ class Record {
         for_each_setting<Owner>(
             [&](const auto& one) { field(one.name, one.member, text_of(one).c_str()); });
         return *this;
+    }
+    /// A member of a member: part("solid", "Side", &Setup::field, &FieldSetup::solid).
+    template <class Owner, class First, class... Path>
+    Record& part(const char* name, const char* about, First Owner::*first, Path... path) {
+        using Value = decltype(member_of(first, path...)(std::declval<const T&>()));
+        return property(
+            name, [=](const T& whole) { return member_of(first, path...)(whole); },
+            [=](T& whole, Value value) { ((whole.*first).*....*path) = std::move(value); }, about);
     }
     /// A field that looks otherwise in Python: get(const T&), set(T&, value).
     template <class Get, class Set>

@@ -6,6 +6,7 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/progress.hpp"
+#include "bindings/python/record.hpp"
 #include "bindings/python/renderer.hpp"
 
 namespace palpate::python {
@@ -148,55 +149,36 @@ void bind_flags(py::module_& module) {
 }
 
 void bind_tick(py::module_& module) {
-    py::class_<Tick>(module, "Tick", "The result of one tick.")
-        .def_readonly("time", &Tick::time, "[s]")
-        .def_property_readonly(
-            "hip", [](const Tick& t) { return t.proxy.hip; }, "Place of the hand [mm, physical].")
-        .def_property_readonly(
-            "scp", [](const Tick& t) { return t.proxy.scp; },
-            "Surface contact point: the proxy [mm, physical].")
-        .def_property_readonly(
-            "mode", [](const Tick& t) { return t.proxy.mode; }, "'free' or 'constrained'.")
-        .def_property_readonly(
-            "status", [](const Tick& t) { return t.proxy.status; },
-            "'done', 'out_of_budget', 'recovering', 'refused', 'not_finite', or 'waiting' for\n"
-            "samples of a store.")
-        .def_property_readonly(
-            "density", [](const Tick& t) { return t.proxy.density; }, "At the SCP [data units].")
-        .def_property_readonly(
-            "isovalue", [](const Tick& t) { return t.proxy.isovalue; },
-            "Of the surface felt [data units].")
-        .def_property_readonly(
-            "tetrahedra", [](const Tick& t) { return t.proxy.tetrahedra; },
-            "How many the SCP moved through.")
-        .def_property_readonly(
-            "force", [](const Tick& t) { return t.force; }, "[N], device axes.")
-        .def_property_readonly(
-            "torque", [](const Tick& t) { return t.torque; },
-            "[N mm], device axes, about the tool's reference point.")
-        .def_readonly("force_flags", &Tick::force_flags, "Bits of FORCE_FLAGS.")
-        .def_property_readonly(
-            "hand_orientation_xyzw", [](const Tick& t) { return t.tool.hand; },
-            "Unit quaternion, tool axes to physical axes.")
-        .def_property_readonly(
-            "proxy_orientation_xyzw", [](const Tick& t) { return t.tool.proxy; },
-            "The same of the proxy.")
-        .def_property_readonly(
-            "contacts", [](const Tick& t) { return t.tool.contacts; },
-            "How many points of the tool hold the proxy.")
-        .def_property_readonly(
-            "layer", [](const Tick& t) { return int{t.layers.touched}; },
-            "Number of the layer touched; -1: none.")
-        .def_property_readonly(
-            "inside", [](const Tick& t) { return int{t.layers.inside}; },
-            "How many layers the SCP is inside.")
-        .def_property_readonly(
-            "punctured", [](const Tick& t) { return int{t.layers.punctured}; },
-            "Surfaces that gave way in this tick.")
-        .def("__repr__", [](const Tick& t) {
-            return py::str("Tick(time={:g}, mode={!r}, scp={}, force={})")
-                .format(t.time, text_of(t.proxy.mode), py::cast(t.proxy.scp), py::cast(t.force));
-        });
+    py::class_<Tick> result(module, "Tick", "The result of one tick.");
+    const auto add = [&](auto... part) { add_part(result, part...); };
+    using T = Tick;
+    using P = ProxyUpdate;
+    using L = LayersFelt;
+    add("time", "[s]", &T::time);
+    add("hip", "Place of the hand [mm, physical].", &T::proxy, &P::hip);
+    add("scp", "Surface contact point: the proxy [mm, physical].", &T::proxy, &P::scp);
+    add("mode", "'free' or 'constrained'.", &T::proxy, &P::mode);
+    add("status",
+        "'done', 'out_of_budget', 'recovering', 'refused', 'not_finite', or 'waiting' for\n"
+        "samples of a store.",
+        &T::proxy, &P::status);
+    add("density", "At the SCP [data units].", &T::proxy, &P::density);
+    add("isovalue", "Of the surface felt [data units].", &T::proxy, &P::isovalue);
+    add("tetrahedra", "How many the SCP moved through.", &T::proxy, &P::tetrahedra);
+    add("force", "[N], device axes.", &T::force);
+    add("torque", "[N mm], device axes, about the tool's reference point.", &T::torque);
+    add("force_flags", "Bits of FORCE_FLAGS.", &T::force_flags);
+    add("hand_orientation_xyzw", "Unit quaternion, tool axes to physical axes.", &T::tool,
+        &ToolFelt::hand);
+    add("proxy_orientation_xyzw", "The same of the proxy.", &T::tool, &ToolFelt::proxy);
+    add("contacts", "How many points of the tool hold the proxy.", &T::tool, &ToolFelt::contacts);
+    add("layer", "Number of the layer touched; -1: none.", &T::layers, &L::touched);
+    add("inside", "How many layers the SCP is inside.", &T::layers, &L::inside);
+    add("punctured", "Surfaces that gave way in this tick.", &T::layers, &L::punctured);
+    result.def("__repr__", [](const T& t) {
+        return py::str("Tick(time={:g}, mode={!r}, scp={}, force={})")
+            .format(t.time, text_of(t.proxy.mode), py::cast(t.proxy.scp), py::cast(t.force));
+    });
 }
 
 void bind_changes(py::class_<SharedRenderer>& renderer) {
@@ -264,25 +246,20 @@ void bind_renderer(py::module_& module) {
              py::arg("armed") = true, py::arg("released") = false,
              py::arg("pointing") = Vec3(0, 0, 0),
              "One tick: `time` [s], strictly increasing; `position` [device mm];\n"
-             "`orientation_xyzw`, a quaternion, tool axes to device axes. valid=False: broken "
-             "input, no force;\n"
-             "armed=False: a dead-man switch is open; released: no force, within the rate limit.\n"
-             "pointing: unit, to a needle's tip. Takes microseconds and keeps the GIL, so threads "
-             "may\n"
-             "share a Renderer. RuntimeError, as of all changes, while another thread is in "
-             "follow().")
+             "`orientation_xyzw`, a quaternion, tool axes to device axes. valid=False: broken\n"
+             "input, no force; armed=False: a dead-man switch is open; released: no force, within\n"
+             "the rate limit. pointing: unit, to a needle's tip. Takes microseconds and keeps the\n"
+             "GIL, so threads may share a Renderer. RuntimeError, as of all changes, while\n"
+             "another thread is in follow().")
         .def(
             "follow", &follow_ticks, py::arg("time"), py::arg("position"), py::kw_only(),
             py::arg("pointing") = py::none(), py::arg("alternatives") = false,
             py::arg("progress") = py::none(),
             "render() for each row of `time` [s], shape (n,), and `position` [device mm], (n, 3),\n"
             "without the GIL: arrays by name, scp, density, constrained, behind (it holds from\n"
-            "inside), force, layer, inside and punctured, as of a Tick. alternatives: each row by "
-            "a\n"
-            "copy of the renderer as it is, which stays. progress: called with the part that is "
-            "done; "
-            "if it\n"
-            "raises, the renderer is as before.")
+            "inside), force, layer, inside and punctured, as of a Tick. alternatives: each row by\n"
+            "a copy of the renderer as it is, which stays. progress: called with the part that is\n"
+            "done; if it raises, the renderer is as before.")
         .def("batch_ns", &batch_ns, py::arg("time"), py::arg("position"), py::arg("batch"),
              py::kw_only(), py::arg("progress") = py::none(),
              "The time of a tick [ns]: the mean of each `batch` ticks, without a clock inside.")

@@ -16,55 +16,61 @@ namespace {
 using Unlocked = py::call_guard<py::gil_scoped_release>;
 namespace fs = std::filesystem;
 
-/// run::Setup with what Python gives otherwise.
-struct Setup {
-    Solid solid = Solid::above;
-    std::optional<io::Level> background, isovalue;
-    std::optional<Interpolation> interpolation;
-    RenderSetup render;
-    std::string device = "simulated";
-    Facing facing = Facing::anterior;
-    std::optional<int> clutch, deadman;
-    double speed = 1;
-    bool loop = true;
-    std::uint64_t memory_bytes = std::uint64_t{1} << 30;
-    bool real_time = true;
+struct Setup : run::Setup {
+    RenderSetup asked;  ///< in place of its `render`
 };
 
-ForceSettings live_force() {
-    ForceSettings force;
-    force.start_below = run::live_start_below;
-    return force;
+run::Setup live_setup(const Setup& given) {
+    run::Setup setup = given;
+    ForceSettings usual;
+    usual.start_below = run::live_start_below;
+    setup.render = setup_of(given.asked, usual);
+    return setup;
 }
 
-run::Setup live_setup(const Setup& given) {
-    run::Setup setup;
-    setup.field = {given.solid, given.background, given.isovalue, given.interpolation};
-    setup.render = setup_of(given.render, live_force());
-    setup.device = devices::parse_device(given.device);
-    setup.facing = given.facing;
-    if (given.clutch) setup.clutch = run::Button{*given.clutch};
-    if (given.deadman) setup.deadman = run::Button{*given.deadman};
-    setup.playback = {given.speed, {given.memory_bytes, given.loop}};
-    setup.real_time = given.real_time;
-    return setup;
+std::optional<int> number_of(const run::ButtonSetup& setup) {
+    const auto* button = std::get_if<run::Button>(&setup);
+    return button ? std::optional(button->number) : std::nullopt;
+}
+
+/// A button by its number; `usual` where that is None.
+template <class Usual>
+void add_button(Record<Setup>& record, const char* name, run::ButtonSetup run::Setup::*button,
+                Usual usual, const char* about) {
+    record.property(
+        name, [=](const Setup& s) { return number_of(s.*button); },
+        [=](Setup& s, std::optional<int> number) {
+            s.*button = number ? run::ButtonSetup(run::Button{*number}) : usual;
+        },
+        about);
 }
 
 void bind_setup(py::module_& module) {
     using S = Setup;
-    Record<S>(module, "Setup", "How a volume is felt live; what is None is filled in.")
-        .field("solid", &S::solid, "'above' or 'below' the isovalue.")
-        .field("background", &S::background, "Level outside the data, or None.")
-        .field("isovalue", &S::isovalue, "A number [data units], '53%', or None: a suggested one.")
-        .field("interpolation", &S::interpolation, "'linear', 'cubic' or None: as the method.")
-        .field("render", &S::render, "RenderSetup")
-        .field("device", &S::device, "As for --device: 'simulated', 'haply:port=10001', ...")
-        .field("facing", &S::facing, "The side of the body that faces the person.")
-        .field("clutch", &S::clutch, "Number of the button, from 1; None: the usual one.")
-        .field("deadman", &S::deadman, "Number of the button, from 1; None: none.")
-        .field("speed", &S::speed, "Of a sequence, at the start.")
-        .field("loop", &S::loop, "A sequence begins again.")
-        .field("memory_bytes", &S::memory_bytes, "For frames of a sequence.")
+    using F = run::FieldSetup;
+    Record<S> record(module, "Setup", "How a volume is felt live; what is None is filled in.");
+    record.part("solid", "'above' or 'below' the isovalue.", &S::field, &F::solid)
+        .part("background", "Level outside the data, or None.", &S::field, &F::background)
+        .part("isovalue", "A number [data units], '53%', or None: a suggested one.", &S::field,
+              &F::isovalue)
+        .part("interpolation", "'linear', 'cubic' or None: as the method.", &S::field,
+              &F::interpolation)
+        .field("render", &S::asked, "RenderSetup")
+        .property(
+            "device", [](const S& s) { return run::text_of(s.device); },
+            [](S& s, const std::string& text) { s.device = devices::parse_device(text); },
+            "As for --device: 'simulated', 'haply:port=10001', ...")
+        .field("facing", &S::facing, "The side of the body that faces the person.");
+    add_button(record, "clutch", &S::clutch, run::UsualButton{},
+               "Number of the button, from 1; None: the usual one.");
+    add_button(record, "deadman", &S::deadman, std::monostate{},
+               "Number of the button, from 1; None: none.");
+    using P = run::PlaybackSetup;
+    using L = io::LoaderSettings;
+    record.part("speed", "Of a sequence, at the start.", &S::playback, &P::speed)
+        .part("loop", "A sequence begins again.", &S::playback, &P::loader, &L::loop)
+        .part("memory_bytes", "For frames of a sequence.", &S::playback, &P::loader,
+              &L::memory_bytes)
         .field("real_time", &S::real_time, "Ask for real-time priority.")
         .done();
 }
@@ -131,9 +137,9 @@ std::shared_ptr<run::Data> data_from(const Feelable& what, const run::PlaybackSe
 
 /// Throws std::invalid_argument for what only the first run on a sequence decides.
 void check_playback(const Setup& given, const Feelable& what, const run::Data& data) {
-    const Setup usual;
-    const bool is_usual = given.speed == usual.speed && given.loop == usual.loop &&
-                          given.memory_bytes == usual.memory_bytes;
+    const run::PlaybackSetup usual, &now = given.playback;
+    const bool is_usual = now.speed == usual.speed && now.loader.loop == usual.loader.loop &&
+                          now.loader.memory_bytes == usual.loader.memory_bytes;
     const bool is_shared = py::isinstance<LiveRun>(what);
     if (is_usual || (data.is_sequence() && !is_shared)) return;
     throw std::invalid_argument(
@@ -204,14 +210,6 @@ void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
             py::arg("path"), Unlocked(), "Writes the samples as they are now. Raises OutputError.");
 }
 
-void start(const py::object& self) {
-    auto& r = self.cast<LiveRun&>();
-    r.process.check();
-    stop_at_exit<LiveRun>(self, [](LiveRun& running) { stop_session(running); });
-    const py::gil_scoped_release unlocked;
-    r.start();
-}
-
 void record_together(const std::vector<std::shared_ptr<LiveRun>>& runs, const fs::path& path) {
     std::vector<run::Run*> hands;
     for (const auto& one : runs) {
@@ -235,23 +233,15 @@ void bind_run(py::module_& module) {
         module, "Run",
         "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
         "By one thread at a time.");
-    live.def(
-            py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(), py::kw_only(),
-            py::arg("device") = py::none(), py::arg("device_rate") = 1000.0,
-            "loaded: from load(), a Volume, a Store, or another Run: then both are hands in the "
-            "same "
-            "data, and\neach feels what the other edits. setup: Setup, by default Setup(). device: "
-            "one that is\nwritten in Python, as for a Servo, in place of the setup's; device_rate "
-            "[Hz]: how often it is asked.\nOpens the "
-            "device; nothing moves before start(). Raises ValueError, InputError, DeviceError.")
-        .def("start", &start, "Once.")
-        .def("stop", &stop_session<R>, Unlocked(),
-             "Forces go to zero; for good. Raises DeviceError for a device in Python that hangs, "
-             "RuntimeError in a forked child, which has no servo.")
+    live.def(py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(), py::kw_only(),
+             py::arg("device") = py::none(), py::arg("device_rate") = 1000.0,
+             "loaded: from load(), a Volume, a Store, or another Run: then both are hands in the\n"
+             "same data, and each feels what the other edits. setup: Setup, by default Setup().\n"
+             "device: one that is written in Python, as for a Servo, in place of the setup's;\n"
+             "device_rate [Hz]: how often it is asked. Opens the device; nothing moves before\n"
+             "start(). Raises ValueError, InputError, DeviceError.")
         .def("send", &send, py::arg("command"), Unlocked(),
              "As Servo.send(). Raises ValueError, QueueFull.")
-        .def("snapshot", &R::snapshot, "The newest tick, a Snapshot; None before the first.")
-        .def("report", &R::report, "ServoReport")
         .def(
             "record",
             [](R& r, const fs::path& path) {
@@ -268,18 +258,8 @@ void bind_run(py::module_& module) {
             Unlocked(), "The number of its ticks. The session goes on.")
         .def("field", &R::field_now, Unlocked(), "A copy of the Field felt, edits included.")
         .def_property_readonly("device", &R::device, "DeviceInfo")
-        .def_property_readonly("privileges",
-                               [](const R& r) { return std::vector<std::string>(r.privileges()); })
-        .def_property_readonly("isovalue", &R::isovalue, "Asked for last [data units].")
-        .def("__enter__",
-             [](const py::object& self) {
-                 start(self);
-                 return self;
-             })
-        .def("__exit__", [](R& r, const py::args&) {
-            const py::gil_scoped_release unlocked;
-            if (r.process.is_here()) stop_session(r);
-        });
+        .def_property_readonly("isovalue", &R::isovalue, "Asked for last [data units].");
+    add_session(live);
     bind_playback(live);
     bind_editing(live);
     module.def(

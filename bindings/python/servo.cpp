@@ -25,7 +25,10 @@ struct DeviceServo {
         servo.stop();
         return python_device->finish();
     }
-    void stop() { stop_session(*this); }
+    void start() { servo.start(); }
+    auto snapshot() const { return servo.snapshot(); }
+    ServoReport report() const { return servo.report(); }
+    auto& privileges() const { return servo.privileges(); }
 
     OwnProcess process;
     std::unique_ptr<PythonDevice> python_device;
@@ -36,7 +39,6 @@ struct DeviceServo {
 };
 
 using Held = std::shared_ptr<DeviceServo>;
-using Unlocked = py::call_guard<py::gil_scoped_release>;
 
 Held make_servo(const SharedRenderer& renderer, const py::object& device, double rate,
                 bool real_time, double device_rate) {
@@ -48,14 +50,6 @@ Held make_servo(const SharedRenderer& renderer, const py::object& device, double
     const py::gil_scoped_release unlocked;
     return {new DeviceServo(std::move(own), std::move(its_device), settings),
             &destroy_session<DeviceServo>};
-}
-
-void start_servo(const py::object& self) {
-    auto& s = self.cast<DeviceServo&>();
-    s.process.check();
-    stop_at_exit<DeviceServo>(self, [](DeviceServo& running) { running.stop(); });
-    const py::gil_scoped_release unlocked;
-    s.servo.start();
 }
 
 void send_to_servo(DeviceServo& s, const Sent& sent) {
@@ -71,49 +65,27 @@ void send_to_servo(DeviceServo& s, const Sent& sent) {
 }  // namespace
 
 void bind_servo(py::module_& module) {
-    py::class_<DeviceServo, Held>(
+    py::class_<DeviceServo, Held> servo(
         module, "Servo",
         "A session that runs on a real-time thread of its own, with a device written in Python.\n"
         "The servo thread never takes the GIL. The device's functions run on another thread:\n"
         "info() -> DeviceInfo, read() -> DeviceReading, and, where there are, write(force [N],\n"
         "torque [N mm]) and close(). While Python does not come back to them readings become "
         "stale\n"
-        "after 20 ms and there is no force. For devices by name, sequences and recordings use Run.")
+        "after 20 ms and there is no force. For devices by name, sequences and recordings use "
+        "Run.");
+    servo
         .def(py::init(&make_servo), py::arg("renderer"), py::arg("device"), py::kw_only(),
              py::arg("rate") = 1000.0, py::arg("real_time") = true, py::arg("device_rate") = 1000.0,
              "rate [Hz] 250 to 8000. device_rate [Hz]: how often the device is asked.")
-        .def("start", &start_servo, "Once.")
-        .def("stop", &DeviceServo::stop, Unlocked(),
-             "Zero force, and the end of both threads: the device is written a last zero and "
-             "closed.\n"
-             "Raises DeviceError if its functions do not return within 2 s: the caller's thread "
-             "has\n"
-             "then written the zero. Raises RuntimeError in a forked child, which has no servo.")
         .def("send", &send_to_servo, py::arg("command"),
              "A command of palpate.command, or ForceSettings, Friction, Penetrability,\n"
              "DeviceTransform or DeviceLimits. Never waits. Raises ValueError, QueueFull.")
-        .def(
-            "snapshot", [](const DeviceServo& s) { return s.servo.snapshot(); },
-            "The newest tick, a Snapshot; None before the first.")
-        .def(
-            "report", [](const DeviceServo& s) { return s.servo.report(); }, "ServoReport")
-        .def_property_readonly(
-            "privileges",
-            [](const DeviceServo& s) { return std::vector<std::string>(s.servo.privileges()); },
-            "A sentence for each privilege of real time. After start().")
         .def_property_readonly(
             "device_problem", [](const DeviceServo& s) { return s.python_device->problem(); },
             "What the device's functions raised or returned in place of what they have to, until\n"
-            "they do as they should; usually empty.")
-        .def("__enter__",
-             [](const py::object& self) {
-                 start_servo(self);
-                 return self;
-             })
-        .def("__exit__", [](DeviceServo& s, const py::args&) {
-            const py::gil_scoped_release unlocked;
-            if (s.process.is_here()) s.stop();
-        });
+            "they do as they should; usually empty.");
+    add_session(servo);
 }
 
 }  // namespace palpate::python

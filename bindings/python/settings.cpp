@@ -1,5 +1,5 @@
 // Settings of force, friction, device and penetrability, and the setup that has them all.
-#include <algorithm>
+#include <cmath>
 
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/record.hpp"
@@ -11,8 +11,12 @@
 
 namespace palpate::python {
 
-AskedForce::AskedForce(const ForceSettings& given) : ForceSettings(given) {
-    for (const auto& [number, open] : left_open) this->*open = given.*number;
+AskedForce::AskedForce() {
+    for_each_setting<ForceSettings>([&](const auto& one) {
+        if constexpr (std::same_as<decltype(one.member), double ForceSettings::*>) {
+            if (*one.left_open != '\0') this->*one.member = std::nan("");
+        }
+    });
 }
 
 ForceSettings offline_force() {
@@ -24,35 +28,37 @@ ForceSettings offline_force() {
 
 ForceSettings force_of(const AskedForce& asked, const ForceSettings& usual) {
     ForceSettings force = asked;
-    for (const auto& [number, open] : left_open) {
-        force.*number = (asked.*open).value_or(usual.*number);
-    }
+    for_each_setting<ForceSettings>([&](const auto& one) {
+        if constexpr (std::same_as<decltype(one.member), double ForceSettings::*>) {
+            if (std::isnan(force.*one.member)) force.*one.member = usual.*one.member;
+        }
+    });
     return force;
 }
 
 std::shared_ptr<const Tool> tool_in(const RenderSetup& setup) {
-    const auto* tool = std::get_if<std::shared_ptr<Tool>>(&setup.tool);
+    const auto* tool = std::get_if<std::shared_ptr<Tool>>(&setup.asked_tool);
     return tool ? *tool : nullptr;
 }
 
 run::RenderSetup setup_of(const RenderSetup& setup, const ForceSettings& usual) {
-    run::RenderSetup made = setup.given;
-    made.force = force_of(setup.force, usual);
-    made.limit = setup.force.asked_limit;
-    made.stiffness = setup.force.asked_stiffness;
+    run::RenderSetup made = setup;
+    made.force = force_of(setup.asked_force, usual);
+    made.limit = asked(setup.asked_force.limit);
+    made.stiffness = asked(setup.asked_force.stiffness);
     if (const std::shared_ptr<const Tool> tool = tool_in(setup)) {
         const auto points = tool->points();
         made.tool = io::PointsSpec{{points.begin(), points.end()}, tool->turns(), tool->shape()};
     } else {
-        made.tool = io::tool_spec_from(std::get<std::string>(setup.tool));
+        made.tool = io::tool_spec_from(std::get<std::string>(setup.asked_tool));
     }
     if (made.tool_spacing && (std::holds_alternative<io::PointSpec>(made.tool) ||
                               std::holds_alternative<io::PointsSpec>(made.tool))) {
         throw std::invalid_argument(
             "tool_spacing does nothing: it is for a tool whose points are made, such as sphere:2");
     }
-    if (!setup.penetrability) return made;
-    const PressThrough& press = *setup.penetrability;
+    if (!setup.press) return made;
+    const PressThrough& press = *setup.press;
     if (press.minimum && !press.ranges.empty()) {
         throw std::invalid_argument(
             "Penetrability.minimum does nothing with ranges, which have levels of their own");
@@ -69,17 +75,24 @@ run::RenderSetup setup_of(const RenderSetup& setup, const ForceSettings& usual) 
 
 Penetrability penetrability_for(const PressThrough& press, const Field& field, double isovalue) {
     RenderSetup setup;
-    setup.penetrability = press;
+    setup.press = press;
     return run::render_settings(setup_of(setup), field, isovalue).penetrability;
 }
 
 namespace {
 
-/// The member of which Python sees this number; null: it cannot be left open.
-std::optional<double> AskedForce::*open_member(double ForceSettings::*number) {
-    const auto found =
-        std::ranges::find(left_open, number, &decltype(left_open)::value_type::first);
-    return found == left_open.end() ? nullptr : found->second;
+/// A number that is None where it is left open.
+void add_open(Record<AskedForce>& force, const Setting<ForceSettings, double>& one) {
+    force.property(
+        one.name, [one](const AskedForce& from) { return asked(from.*one.member); },
+        [one](AskedForce& to, std::optional<double> value) {
+            if (value && std::isnan(*value)) {
+                throw std::invalid_argument(std::string(one.title) + " = nan: must be " +
+                                            one.range.words);
+            }
+            to.*one.member = value.value_or(std::nan(""));
+        },
+        text_of(one).c_str());
 }
 
 void bind_force(py::module_& module) {
@@ -96,10 +109,7 @@ void bind_force(py::module_& module) {
         "What is None depends on use and device: each field says how.");
     for_each_setting<ForceSettings>([&](const auto& one) {
         if constexpr (std::same_as<decltype(one.member), double ForceSettings::*>) {
-            if (const auto open = open_member(one.member)) {
-                force.field(one.name, open, text_of(one).c_str());
-                return;
-            }
+            if (*one.left_open != '\0') return add_open(force, one);
         }
         force.field(one.name, one.member, text_of(one).c_str());
     });
@@ -131,8 +141,8 @@ void bind_device_settings(py::module_& module) {
 }
 
 LayersChoice layers_given(const RenderSetup& setup) {
-    if (!setup.given.layers) return {};
-    return *setup.given.layers;
+    if (!setup.layers) return {};
+    return *setup.layers;
 }
 struct MakeLayers {
     std::optional<io::LayersFile> operator()(std::monostate) const { return std::nullopt; }
@@ -142,16 +152,6 @@ struct MakeLayers {
     }
 };
 
-/// A field of run::RenderSetup inside our own.
-template <class Value>
-auto getter(Value run::RenderSetup::*member) {
-    return [member](const RenderSetup& setup) { return setup.given.*member; };
-}
-template <class Value>
-auto setter(Value run::RenderSetup::*member) {
-    return [member](RenderSetup& setup, Value value) { setup.given.*member = std::move(value); };
-}
-
 }  // namespace
 
 void bind_settings(py::module_& module) {
@@ -160,54 +160,42 @@ void bind_settings(py::module_& module) {
 }
 
 void bind_render_setup(py::module_& module) {
-    using R = run::RenderSetup;
     using S = RenderSetup;
-    const auto own = [](auto member) { return std::pair(getter(member), setter(member)); };
-    const auto [get_friction, set_friction] = own(&R::friction);
-    const auto [get_spacing, set_spacing] = own(&R::tool_spacing);
-    const auto [get_budget, set_budget] = own(&R::step_budget);
-    const auto [get_scale, set_scale] = own(&R::scale);
-    const auto [get_rate, set_rate] = own(&R::rate);
     Record<S>(module, "RenderSetup",
               "How to feel. What is None depends on volume and device and is filled in later.")
         .property(
-            "method", [](const S& s) { return std::string(s.given.method.name); },
-            [](S& s, const std::string& name) { s.given.method = run::named_method(name); },
+            "method", [](const S& s) { return std::string(s.method.name); },
+            [](S& s, const std::string& name) { s.method = run::named_method(name); },
             "The proxy method: one of methods().")
-        .field("penetrability", &S::penetrability, "Penetrability or None.")
+        .field("penetrability", &S::press, "Penetrability or None.")
         .property(
             "layers", &layers_given,
-            [](S& s, const LayersChoice& layers) {
-                s.given.layers = std::visit(MakeLayers{}, layers);
-            },
+            [](S& s, const LayersChoice& layers) { s.layers = std::visit(MakeLayers{}, layers); },
             "Layers, the name of a built-in set, a file, or None.")
         .property(
-            "tool", [](const S& s) { return s.tool; },
+            "tool", [](const S& s) { return s.asked_tool; },
             [](S& s, const ToolChoice& tool) {
                 S changed = s;
-                changed.tool = tool;
+                changed.asked_tool = tool;
                 setup_of(changed);  // says now what is wrong
                 s = changed;
             },
             "A Tool, or text: 'point', 'sphere:RADIUS', 'needle', a mesh file, ... [mm]")
-        .property("tool_spacing", get_spacing, set_spacing,
-                  "Of a tool's points [mm]; None: half a voxel.")
-        .property("friction", get_friction, set_friction, "Friction or None.")
-        .field("force", &S::force, "ForceSettings")
+        .field("tool_spacing", &S::tool_spacing, "Of a tool's points [mm]; None: half a voxel.")
+        .field("friction", &S::friction, "Friction or None.")
+        .field("force", &S::asked_force, "ForceSettings")
         .alias("limit")
         .alias("stiffness")
-        .property("step_budget", get_budget, set_budget, "Pieces that an update may use.")
-        .property("scale", get_scale, set_scale,
-                  "physical mm per device mm; None: fits the workspace.")
-        .property("rate", get_rate, set_rate,
-                  "[Hz] None: 1000, live 250 with a device that renders no force.")
+        .field("step_budget", &S::step_budget, "Pieces that an update may use.")
+        .field("scale", &S::scale, "physical mm per device mm; None: fits the workspace.")
+        .field("rate", &S::rate, "[Hz] None: 1000, live 250 with a device that renders no force.")
         .done()
         .def_static(
             "offline",
             [] {
                 RenderSetup setup;
-                setup.force.asked_ramp = offline_force().ramp;
-                setup.force.asked_rate_limit = offline_force().rate_limit;
+                setup.asked_force.ramp = offline_force().ramp;
+                setup.asked_force.rate_limit = offline_force().rate_limit;
                 return setup;
             },
             "For a Renderer that renders as replay() does: no ramp, and no limit on the change\n"

@@ -1,7 +1,7 @@
 // How to feel, as Python gives it: run::RenderSetup with a tool by its text or as points.
 #pragma once
 
-#include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -20,31 +20,23 @@ struct PressThrough {
     std::vector<std::pair<io::Level, io::Level>> ranges;
 };
 
-/// ForceSettings of which the usual ones depend on use and device.
+/// ForceSettings whose numbers that are left open are NaN. The usual ones depend on use and device.
 struct AskedForce : ForceSettings {
-    AskedForce() = default;
-    explicit AskedForce(const ForceSettings& given);
-
-    std::optional<double> asked_stiffness, asked_limit, asked_rate_limit, asked_ramp,
-        asked_start_below;  ///< nothing: the usual one
+    AskedForce();
+    explicit AskedForce(const ForceSettings& given) : ForceSettings(given) {}
 };
-
-/// The numbers that may be left open.
-inline constexpr std::array left_open{
-    std::pair{&ForceSettings::stiffness, &AskedForce::asked_stiffness},
-    std::pair{&ForceSettings::limit, &AskedForce::asked_limit},
-    std::pair{&ForceSettings::rate_limit, &AskedForce::asked_rate_limit},
-    std::pair{&ForceSettings::ramp, &AskedForce::asked_ramp},
-    std::pair{&ForceSettings::start_below, &AskedForce::asked_start_below}};
+/// Nothing for a number that is left open.
+inline std::optional<double> asked(double number) {
+    return std::isnan(number) ? std::nullopt : std::optional(number);
+}
 
 using ToolChoice = std::variant<std::string, std::shared_ptr<Tool>>;
 using LayersChoice = std::variant<std::monostate, io::LayersFile, std::filesystem::path>;
 
-struct RenderSetup {
-    run::RenderSetup given;  ///< but for force, tool and penetrability
-    AskedForce force;
-    std::optional<PressThrough> penetrability;
-    ToolChoice tool = "point";
+struct RenderSetup : run::RenderSetup {  ///< but for its force, tool and penetrability
+    AskedForce asked_force;
+    std::optional<PressThrough> press;
+    ToolChoice asked_tool = "point";
 };
 
 /// The usual ones of `palpate replay`: no ramp, no limit on the change of force.

@@ -1,6 +1,7 @@
 // Snapshots and reports of a live session.
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/record.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::python {
@@ -49,30 +50,26 @@ void bind_report(py::module_& module) {
 
 void bind_snapshots(py::module_& module) {
     using S = Snapshot;
-    py::class_<S>(module, "Snapshot", "The newest tick of a live session, and its state.")
-        .def_property_readonly(
-            "tick", [](const S& s) { return s.session.tick; }, "Tick")
-        .def_property_readonly(
-            "device", [](const S& s) { return s.session.device; }, "DeviceReading")
-        .def_property_readonly(
-            "transform", [](const S& s) { return s.session.transform; }, "DeviceTransform in use.")
-        .def_property_readonly("frozen", [](const S& s) { return s.session.frozen; })
-        .def_property_readonly("clutched", [](const S& s) { return s.session.clutched; })
-        .def_property_readonly(
-            "moment", [](const S& s) { return s.session.moment; }, "[s] of a sequence")
-        .def_property_readonly(
-            "version", [](const S& s) { return s.session.version; }, "Of the samples.")
-        .def_readonly("number", &S::number, "Of the tick, from 0.")
-        .def_readonly("missed", &S::missed, "Deadlines so far.")
-        .def_readonly("speed", &S::speed, "At which a sequence is played.")
-        .def_readonly("stiffness", &S::stiffness, "[N/mm] in use")
-        .def_property_readonly(
-            "normal", [](const S& s) { return s.normal; },
-            "At the SCP, unit, out of the solid, physical axes.")
+    using T = SessionTick;
+    py::class_<S> snapshot(module, "Snapshot", "The newest tick of a live session, and its state.");
+    const auto add = [&](auto... part) { add_part(snapshot, part...); };
+    add("tick", "Tick", &S::session, &T::tick);
+    add("device", "DeviceReading", &S::session, &T::device);
+    add("transform", "DeviceTransform in use.", &S::session, &T::transform);
+    add("frozen", "", &S::session, &T::frozen);
+    add("clutched", "", &S::session, &T::clutched);
+    add("moment", "[s] of a sequence", &S::session, &T::moment);
+    add("version", "Of the samples.", &S::session, &T::version);
+    add("number", "Of the tick, from 0.", &S::number);
+    add("missed", "Deadlines so far.", &S::missed);
+    add("speed", "At which a sequence is played.", &S::speed);
+    add("stiffness", "[N/mm] in use", &S::stiffness);
+    add("normal", "At the SCP, unit, out of the solid, physical axes.", &S::normal);
+    add("penetrability_on", "", &S::penetrability_on);
+    add("forces_on", "", &S::forces_on);
+    snapshot
         .def_property_readonly("contacts", &contacts_of,
                                "Of a tool: (place [mm], normal, pressure [mm]); pressure 0: near.")
-        .def_readonly("penetrability_on", &S::penetrability_on)
-        .def_readonly("forces_on", &S::forces_on)
         .def("__repr__", [](const S& s) {
             return py::str("Snapshot(number={}, {!r})").format(s.number, py::cast(s.session.tick));
         });

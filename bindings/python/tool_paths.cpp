@@ -94,17 +94,13 @@ void bind_tool_paths(py::module_& module) {
         "follow_tool", &follow_tool, py::arg("field"), py::arg("isovalue"),
         py::arg("tool").none(false), py::arg("position"), py::arg("orientation_xyzw"),
         py::arg("method") = "exact", py::kw_only(), py::arg("progress") = py::none(),
-        "An update of a tool for each pose of the hand, position [mm, physical], shape (n, 3), "
-        "and\n"
-        "orientation_xyzw, (n, 4); the tool starts at the first pose. method: 'exact', or "
-        "'penalty', a\n"
-        "baseline. Arrays by name: position, orientation_xyzw, contacts, unfinished, recovering, "
-        "rounds\n"
-        "and work of each update; pose_tick, pose_position and pose_orientation_xyzw of every pose "
-        "on\n"
-        "the way, between which each point of the tool goes straight (exact). progress: called "
-        "with the\n"
-        "part that is done. ValueError for what replay() refuses.");
+        "An update of a tool for each pose of the hand, position [mm, physical], shape (n, 3),\n"
+        "and orientation_xyzw, (n, 4); the tool starts at the first pose. method: 'exact', or\n"
+        "'penalty', a baseline. Arrays by name: position, orientation_xyzw, contacts, unfinished,\n"
+        "recovering, rounds and work of each update; pose_tick, pose_position and\n"
+        "pose_orientation_xyzw of every pose on the way, between which each point of the tool\n"
+        "goes straight (exact). progress: called with the part that is done. ValueError for what\n"
+        "replay() refuses.");
 }
 
 }  // namespace palpate::python

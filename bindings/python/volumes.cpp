@@ -74,14 +74,13 @@ void bind_volumes(py::module_& module) {
             }),
             py::arg("array"), py::arg("spacing") = py::none(), py::arg("origin") = Vec3(0, 0, 0),
             py::arg("direction") = py::none(), py::arg("copy") = false,
-            "Shares the samples of an array of shape (z, y, x) of uint8, int16, uint16 or "
-            "float32,\n"
-            "without a copy: do not write to it afterwards. An array that is not C-contiguous is\n"
-            "a ValueError. copy=True copies any array, copy=None those that cannot be shared. "
-            "spacing and origin in mm (x, y, z), LPS.\n"
-            "Without a direction the geometry is not `oriented`: nothing says which side is left.\n"
-            "Without a spacing, 1 mm is assumed and it is not `measured`.\n"
-            "as_volume() converts other types and understands nibabel and zarr.")
+            "Shares the samples of an array of shape (z, y, x) of uint8, int16, uint16 or\n"
+            "float32, without a copy: do not write to it afterwards. An array that is not\n"
+            "C-contiguous is a ValueError. copy=True copies any array, copy=None those that\n"
+            "cannot be shared. spacing and origin in mm (x, y, z), LPS. Without a direction the\n"
+            "geometry is not `oriented`: nothing says which side is left. Without a spacing, 1 mm\n"
+            "is assumed and it is not `measured`. as_volume() converts other types and\n"
+            "understands nibabel and zarr.")
         .def_property_readonly("geometry", &Volume::geometry, "A copy of its Geometry.",
                                py::return_value_policy::copy)
         .def_property_readonly(

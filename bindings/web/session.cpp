@@ -13,6 +13,7 @@
 #include "devices/haply/haply.hpp"
 #include "devices/simulated/simulated.hpp"
 #include "io/recording/samples_json.hpp"
+#include "palpate/enum_names.hpp"
 #include "palpate/settings.hpp"
 
 namespace palpate::web {
@@ -35,8 +36,7 @@ Field field_from(const std::shared_ptr<const Samples>& samples, const Json& setu
         setup.contains("background")
             ? std::optional(io::number_from_json(setup["background"], "background"))
             : std::nullopt;
-    const bool below = setup.value("solid", "above") == "below";
-    return Field(samples, below ? Solid::below : Solid::above, background,
+    return Field(samples, named<Solid>(setup.value("solid", "above")), background,
                  interpolation_from(setup.value("field", "cubic")));
 }
 

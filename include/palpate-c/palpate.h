@@ -188,6 +188,10 @@ typedef struct palpate_render_options {
     double rate;           /* [Hz] 250 to 8000; 0: 1000, without force 250 */
     const char *tool;      /* "sphere:5", "needle", a file, ...; null: a point */
     const char *layers;    /* a file or the name of a built-in set; null: none */
+    const double *ranges;  /* low, high, low, high, ... [data units]: only these levels are touched, and
+                              a press by `penetration` (0: 1) leads to the next range; null: none.
+                              Since 0.3 */
+    size_t range_count;    /* pairs, at most 16 */
 } palpate_render_options;
 
 /* Place of the device's space: physical = translation + scale * rotation * device. */
@@ -521,6 +525,9 @@ PALPATE_API palpate_status palpate_run_set_friction(palpate_run *run, double sta
                                                     double dynamic_coefficient);
 /* [device mm] 0: the surface never gives way. Levels beyond the one felt now are felt then. */
 PALPATE_API palpate_status palpate_run_set_penetration(palpate_run *run, double threshold);
+/* Only `count` ranges of levels are touched, as in palpate_render_options. Since 0.3. */
+PALPATE_API palpate_status palpate_run_set_ranges(palpate_run *run, double threshold,
+                                                  const double *ranges, size_t count);
 /* As in palpate_render_options; null: none. */
 PALPATE_API palpate_status palpate_run_set_tool(palpate_run *run, const char *tool);
 PALPATE_API palpate_status palpate_run_set_layers(palpate_run *run, const char *layers);

@@ -7,10 +7,11 @@
 #include <array>
 #include <stdexcept>
 
+#include "palpate/enum_names.hpp"
+
 namespace palpate::io {
 namespace {
 
-constexpr std::array<std::string_view, 4> type_names{"uint8", "int16", "uint16", "float32"};
 /// Members that are the same for all hands.
 constexpr std::array shared_members{"version", "begun", "volume"};
 
@@ -40,9 +41,7 @@ VolumeIdentity volume_from_json(const Json& json) {
         if (!(edge >= 1 && edge <= 1e6)) throw std::invalid_argument("'size' is out of range");
         volume.size[a] = static_cast<int>(edge);
     }
-    const auto type = std::ranges::find(type_names, text_of(json, "type"));
-    if (type == type_names.end()) throw std::invalid_argument("'type' is no sample type");
-    volume.type = static_cast<SampleType>(type - type_names.begin());
+    volume.type = sample_type_from(text_of(json, "type"));
     const double crc = number_from_json(member(json, "crc32"), "crc32");
     if (!(crc >= 0 && crc <= 4294967295.0)) throw std::invalid_argument("'crc32' is out of range");
     volume.crc32 = static_cast<std::uint32_t>(crc);
@@ -55,9 +54,9 @@ Json json_of_one(const RecordingHead& head) {
     json["begun"] = head.begun;
     json["volume"] = {{"options", head.volume.options},
                       {"size", {head.volume.size[0], head.volume.size[1], head.volume.size[2]}},
-                      {"type", type_names[static_cast<std::size_t>(head.volume.type)]},
+                      {"type", name_of(head.volume.type)},
                       {"crc32", head.volume.crc32}};
-    json["solid"] = head.solid == Solid::above ? "above" : "below";
+    json["solid"] = palpate::text_of(head.solid);
     json["field"] = name_of(head.interpolation);
     json["background"] = number_to_json(head.background);
     json["isovalue"] = number_to_json(head.isovalue);
@@ -74,11 +73,7 @@ RecordingHead head_from_json(const Json& json) {
     head.version = text_of(json, "version");
     head.begun = text_of(json, "begun");
     head.volume = volume_from_json(member(json, "volume"));
-    const std::string solid = text_of(json, "solid");
-    if (solid != "above" && solid != "below") {
-        throw std::invalid_argument("'solid' must be above or below");
-    }
-    head.solid = solid == "above" ? Solid::above : Solid::below;
+    head.solid = named<Solid>(text_of(json, "solid"));
     // Recordings made before there was a choice have none.
     if (json.contains("field")) head.interpolation = interpolation_from(text_of(json, "field"));
     head.background = number_from_json(member(json, "background"), "background");

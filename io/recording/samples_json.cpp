@@ -8,6 +8,7 @@
 #include <string>
 
 #include "io/json_members.hpp"
+#include "palpate/enum_names.hpp"
 
 namespace palpate::io {
 namespace {
@@ -25,11 +26,10 @@ Json json_of(const Pose& pose) {
 }
 
 Json json_of(const Brush& brush) {
-    return {
-        {"kind", name_of(brush.kind)}, {"radius", brush.radius},
-        {"hardness", brush.hardness},  {"strength", brush.strength},
-        {"level", brush.level},        {"solid", brush.solid == Solid::below ? "below" : "above"},
-        {"value", brush.value}};
+    return {{"kind", name_of(brush.kind)}, {"radius", brush.radius},
+            {"hardness", brush.hardness},  {"strength", brush.strength},
+            {"level", brush.level},        {"solid", text_of(brush.solid)},
+            {"value", brush.value}};
 }
 
 Json json_of(const edit::Stroke& stroke) {
@@ -111,7 +111,7 @@ Brush brush_from(const Json& json) {
     brush.hardness = number(json, "hardness");
     brush.strength = number(json, "strength");
     brush.level = number(json, "level");
-    brush.solid = word(json, "solid") == "below" ? Solid::below : Solid::above;
+    brush.solid = named<Solid>(word(json, "solid"));
     brush.value = number(json, "value");
     return brush;
 }

@@ -70,7 +70,9 @@ VALUES = {  # line: what is offered, and nothing else
 }
 if "--seeds" in options_of("evaluate"):  # a build with Python
     VALUES |= {"evaluate dr": {"drift"}, "evaluate a": {"all"}, "evaluate drift -o ": {"scans"},
-               "evaluate walk-through --method gradient-": {"gradient-improved"}}
+               "evaluate walk-through --method gradient-": {"gradient-improved"},
+               "study he": {"head.nrrd"}, "study --analyse ": {"a.csv", "scans"}, "study --stan": {"--standard"},
+               "ros head.nrrd --ros ": {"1", "2"}, "distribute a b --compression g": {"gzip"}}
 for line, values in VALUES.items():
     assert completed(f"palpate {line}") == values, (line, completed(f"palpate {line}"))
 assert "ct-bone-drilling" in completed("palpate replay head.nrrd --layers ct-b")

@@ -107,7 +107,7 @@ def volume():
     (lambda: palpate.Layer(colour=(1, 0)), "Layer.colour must be a list of 3, each a number, not (1, 0)"),
     (lambda: palpate.Snapshot(), "Snapshot() cannot be called: functions of palpate return one"),
     (lambda: palpate.Field(volume(), solid="abve"),
-     "solid 'abve': use one of above, below (did you mean above?)"),
+     "there is no solid side 'abve': use one of above, below (did you mean above?)"),
 ])
 def test_messages_say_what_to_write(call, text):
     assert complaint(call) == text

@@ -5,7 +5,6 @@ import pathlib
 import re
 import signal
 import subprocess
-import sys
 import time
 
 import distributed
@@ -199,7 +198,7 @@ def test_stages_hold_all_rounds_in_their_order_and_reach_no_farther_than_the_hal
 
 def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_path):
     source, out = ball(tmp_path), tmp_path / "out.zarr"
-    command = [sys.executable, "-m", "palpate.distributed", source, out, "--chunk", "16", "--block", "16",
+    command = [PROGRAM, "distribute", source, out, "--chunk", "16", "--block", "16",
                "--dequantize", "4", "--workers", "1"]
     running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     records = pathlib.Path(f"{out}.partial", "work", "records", "state-0")
@@ -207,10 +206,10 @@ def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_p
         time.sleep(0.05)
     running.send_signal(signal.SIGINT)
     _, said = running.communicate(timeout=300)
-    assert running.returncode == 130 and "the same command goes on" in said
+    assert running.returncode == 130 and "the same command continues" in said
     again = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     assert int(re.search(r"\((\d+) kept", again.stdout)[1]) > 60
     assert files(out) == on_one_machine(source, tmp_path / "one.zarr", "--chunk", "16", "--dequantize=4")
     refused = subprocess.run(command, check=False, stderr=subprocess.PIPE, text=True)
-    assert refused.returncode == 1 and "is there already" in refused.stderr
+    assert refused.returncode == 5 and "is there already" in refused.stderr
     assert "Traceback" not in refused.stderr

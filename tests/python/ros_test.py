@@ -176,7 +176,7 @@ def test_without_the_process_of_ros_the_device_is_lost_and_the_servo_goes_on(ros
 def test_a_session_that_hangs_or_is_killed_leaves_no_force(ros, end):
     with Peer(ros, "/left") as peer:
         peer.height = 100  # the hand begins outside
-        program = subprocess.Popen([sys.executable, "-B", "-m", "palpate.ros", "synthetic:sphere:40x40x40",
+        program = subprocess.Popen([os.environ["PALPATE"], "ros", "synthetic:sphere:40x40x40",
                                     "--ros", str(ros.version),
                                     "--arm", "/left", "--pose-rate", "50", "__name:=killed"], stdout=subprocess.PIPE, text=True)
         try:
@@ -363,9 +363,9 @@ def test_a_second_node_that_sends_poses_ends_the_force(ros):
 
 
 def test_a_volume_that_is_not_there_and_ctrl_c_have_their_exit_statuses(ros, tmp_path):
-    command = [sys.executable, "-B", "-m", "palpate.ros", "--ros", str(ros.version)]
+    command = [os.environ["PALPATE"], "ros", "--ros", str(ros.version)]
     lost = subprocess.run([*command, tmp_path / "lost.nrrd"], stderr=subprocess.PIPE, text=True, check=False)
-    assert lost.returncode == 3 and lost.stderr == f"palpate.ros: {tmp_path / 'lost.nrrd'}: does not exist; check the name\n"
+    assert lost.returncode == 3 and lost.stderr == f"palpate: {tmp_path / 'lost.nrrd'}: does not exist; check the name\n"
     recorded = tmp_path / "hand.csv"
     session = subprocess.Popen([*command, "synthetic:sphere:16x16x16", "--record", recorded], stdout=subprocess.PIPE)
     assert session.stdout.readline().startswith(b"touching")

@@ -22,6 +22,9 @@ def stub_names(body):
             names.setdefault(node.name, []).append(node)
         elif isinstance(node, ast.AnnAssign):
             names.setdefault(node.target.id, []).append(node)
+        elif isinstance(node, ast.ImportFrom) and node.level:  # written in Python, with its types
+            for alias in node.names:
+                names.setdefault(alias.asname, []).append(node)
     return names
 
 
@@ -139,6 +142,8 @@ palpate.Run("head.nrrd")
 palpate.Run(palpate.load("head.nrrd"), device="simulated")
 point, normal = palpate.Field(palpate.load("head.nrrd").volume).cast_ray(300, (0, 0, 0), (1, 0, 0))
 palpate.find_devices()[0].name
+low: str = palpate.as_volume([[[1]]]).minimum
+palpate.replay(palpate.load("head.nrrd"), 300, [0], [[0, 0, 0]])
 '''
 
 

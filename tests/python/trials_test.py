@@ -1,15 +1,16 @@
 """Trials with people, by an observer whose threshold is known."""
 
 import copy
+import importlib
 import os
 import subprocess
-import sys
 
 import numpy
 import pytest
 
 import palpate
 from palpate import RenderSetup, trials
+from palpate.__main__ import COMMANDS
 from palpate.trials import Observer, Plan, fit, next_trial, psychometric, put, read, session, staircase
 
 
@@ -129,12 +130,12 @@ BALL = ("synthetic:sphere:24x24x24", "x.csv", "--standard", "0.2")
 
 
 @pytest.mark.parametrize("words, status, said", [
-    (("run",), 2, "the following arguments are required"), (("run", *BALL, "--secnds", "1"), 2, "unrecognized arguments"),
-    (("run", *BALL[:2], "--standard", "x"), 2, "invalid float value"),
-    (("run", BALL[0] + "@abc", *BALL[1:]), 2, "'abc' is not a level"), (("run", *BALL, "--seconds", "0"), 2, "above 0"),
-    (("run", *BALL, "--setting", "stifness"), 2, "did you mean stiffness?"), (("run", *BALL, "--device", "haplo"), 2, "no device"),
-    (("run", BALL[0], "nowhere/x.csv", *BALL[2:]), 5, "nowhere/x.csv: cannot be written"),
-    (("analyse", "nowhere.csv"), 3, "nowhere.csv: No such file"), (("analyse", "text.csv"), 3, "no session of trials")],
+    (BALL[:1], 2, "FILE: it is needed"), ((*BALL, "--secnds", "1"), 2, "there is no option --secnds: did you mean --seconds?"),
+    ((*BALL[:2], "--standard", "x"), 2, "--standard: 'x' is not a number"),
+    ((BALL[0] + "@abc", *BALL[1:]), 2, "'abc' is not a level"), ((*BALL, "--seconds", "0"), 2, "0 is not a number above 0"),
+    ((*BALL, "--setting", "stifness"), 2, "did you mean stiffness?"), ((*BALL, "--device", "haplo"), 2, "no device"),
+    ((BALL[0], "nowhere/x.csv", *BALL[2:]), 5, "nowhere/x.csv: cannot be written"),
+    (("--analyse", "nowhere.csv"), 3, "nowhere.csv: No such file"), (("--analyse", "text.csv"), 3, "no session of trials")],
     ids=lambda given: given if isinstance(given, str) else "")
 def test_what_is_wrong_is_said_in_a_line(tmp_path, monkeypatch, capsys, words, status, said):
     monkeypatch.chdir(tmp_path)
@@ -178,10 +179,10 @@ def test_a_device_that_tells_only_once_it_is_connected_that_it_is_too_weak_ends_
 
 def test_a_person_at_the_keys_touches_answers_and_is_analysed(tmp_path):
     def start(*words, keys=""):
-        return subprocess.run([sys.executable, "-B", "-m", "palpate.trials", *words], cwd=tmp_path, input=keys, text=True,
+        return subprocess.run([os.environ["PALPATE"], "study", *words], cwd=tmp_path, input=keys, text=True,
                               capture_output=True, check=False, env=os.environ)
 
-    run = ("run", f"{palpate.sample_volume()}@34.5", "p.csv", "--standard", "0.2", "--differences", "0.5", "--repeats", "2",
+    run = (f"{palpate.sample_volume()}@34.5", "p.csv", "--standard", "0.2", "--differences", "0.5", "--repeats", "2",
            "--seconds", "0.2")
     assert start(*run, keys="x\n1\n2\n").returncode == 0
     rows = read(tmp_path / "p.csv")
@@ -191,14 +192,62 @@ def test_a_person_at_the_keys_touches_answers_and_is_analysed(tmp_path):
     assert all(palpate.read_recording(path).trace.force.any() for path in touches)
     # A hand far from the head feels nothing and is asked again, until the keys end.
     (tmp_path / "air.csv").write_text("t,x,y,z\n0,0,0,500\n9,0,0,500\n")
-    air = start(*run[:2], "r.csv", *run[3:], "--device", f"simulated:file={tmp_path / 'air.csv'}", keys="\n")
+    air = start(run[0], "r.csv", *run[2:], "--device", f"simulated:file={tmp_path / 'air.csv'}", keys="\n")
     assert air.returncode == 2 and air.stderr.count("touch 2") == 2 and read(tmp_path / "r.csv") == []
-    stiff = start(*run[:2], "s.csv", "--standard", "2", "--device", "simulated:touch,jitter=no,hand=press", "--seconds", "0.2", keys="1\n")
+    stiff = start(run[0], "s.csv", "--standard", "2", "--device", "simulated:touch,jitter=no,hand=press", "--seconds", "0.2", keys="1\n")
     assert stiff.returncode == 2 and "stiffness [N/mm] = 4: must be at most 3.6" in stiff.stderr and "touch 1" not in stiff.stderr
-    lost = start("run", "lost.nrrd@35", *run[2:], keys="")
+    lost = start("lost.nrrd@35", *run[1:], keys="")
     assert lost.returncode == 3 and lost.stderr.startswith("palpate: lost.nrrd: does not exist")
-    few = start("analyse", "p.csv")
+    few = start("--analyse", "p.csv")
     assert few.returncode == 2 and "10 trials" in few.stderr
     session(tmp_path / "q.csv", Plan(0.3), Observer(0.1))
-    line = start("analyse", "q.csv").stdout.splitlines()[1].split(",")
+    line = start("--analyse", "q.csv").stdout.splitlines()[1].split(",")
     assert line[0] == "q.csv" and float(line[3]) <= float(line[2]) <= float(line[4])
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_command_in_python_is_known_to_the_program_by_its_own_words(command):
+    def said(*words):
+        return subprocess.run([os.environ["PALPATE"], *words], text=True, capture_output=True, check=True).stdout
+
+    assert f"  {command:<27} {said(command, '--help').splitlines()[0]}\n" in said("--help")
+    assert said(command, "--version") == said("--version")
+
+
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "evaluate"])
+def test_values_that_are_impossible_are_refused_in_a_line_and_examples_are_taken(command, capsys):
+    parser = importlib.import_module(f"palpate.{COMMANDS[command]}").PARSER
+
+    def refused(*words):
+        with pytest.raises(SystemExit) as end:
+            parser.arguments(words)
+        told = capsys.readouterr().err
+        assert end.value.code == 2 and told.startswith("palpate: ") and told.count("\n") == 1 and len(told) < 420
+        return told
+
+    for action in parser._actions:
+        if not (action.type and action.option_strings):
+            continue
+        option = action.option_strings[-1]
+        assert f"{option}: the value is empty" in refused(option, "")
+        assert f"{option} needs a value: {action.help}" in refused(option)
+        for value in ("nan", "1e400", "1,5", "0x10") if action.type.shown.startswith(("FLOAT", "UINT")) else ():
+            assert f"{option}: " in refused(option, value)
+    for example in parser.examples:
+        parser.arguments([word for word in example.split()[2:] if ":=" not in word])
+
+
+@pytest.mark.parametrize("words, text", [
+    ("study head.nrrd p.csv", "--standard: it is needed, as in palpate study head.nrrd@34.5 p01.csv --standard 0.3 --difference 0.5"),
+    ("study --standard 1 --standard 2", "--standard: it is given more than once"),
+    ("study --analyse p.csv --seed 3", "--analyse stands alone, without seed"),
+    ("study a b c", "'c' is one argument too many"),
+    ("distribute a b --prefilter=3", "--prefilter: this option takes no value"),
+    ("distribute a b --compression gzp",
+     "--compression: there is no 'gzp': use one of none, gzip, zstd, blosc (did you mean gzip?)"),
+    ("distribute a b --workers 2 --scheduler tcp://x:1", "--scheduler and --workers exclude each other"),
+    ("ros", "VOLUME: it is needed, as in palpate ros head.nrrd --device haply"),
+    ("ros a --arm /a --device haply", "--arm and --device exclude each other")])
+def test_a_wrong_command_line_is_answered_in_one_line(words, text):
+    ran = subprocess.run([os.environ["PALPATE"], *words.split()], text=True, capture_output=True, check=False)
+    assert (ran.returncode, ran.stderr, ran.stdout) == (2, f"palpate: {text} (see palpate {words.split()[0]} --help)\n", "")

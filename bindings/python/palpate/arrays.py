@@ -3,17 +3,23 @@
 import copy
 import operator
 import warnings
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy
+from numpy.typing import ArrayLike
 
-from ._palpate import Volume
+if TYPE_CHECKING:
+    from . import Volume
+else:
+    from ._palpate import Volume
 
 # The smallest of Palpate's sample types that holds all values of a type; else float32.
 _WIDER = {"bool": "uint8", "int8": "int16"}
 _KEPT = ("uint8", "int16", "uint16", "float32")
 
 
-def as_volume(data, spacing=None, origin=None, direction=None, frame=None):
+def as_volume(data: Any, spacing: Optional[ArrayLike] = None, origin: Optional[ArrayLike] = None,
+              direction: Optional[ArrayLike] = None, frame: Optional[int] = None) -> Volume:
     """A Volume from `data`, without a copy where its samples can be shared.
 
     data: a Volume; a nibabel image (its affine, RAS, gives spacing, origin and direction, LPS);

@@ -1,13 +1,12 @@
 """Work that outgrows one machine, on Dask: pyramids of volumes, dequantizing, smoothing, and studies of
 settings (docs/beyond_one_machine.md).
 
-    python3 -m palpate.distributed SOURCE OUT.zarr --dequantize 40 --workers 4
+    palpate distribute SOURCE OUT.zarr --dequantize 40 --workers 4
 
 Workers and the program that starts them see the same files under the same names. The results have the
 bits of one machine. What an earlier run has finished, and is found whole, is kept.
 """
 
-import argparse
 import contextlib
 import dataclasses
 import functools
@@ -20,12 +19,15 @@ import sys
 import threading
 import zlib
 from pathlib import Path
-from typing import Any, Callable, Optional
+from typing import TYPE_CHECKING, Any, Callable, Optional
 
 import numpy
-from distributed import Client, LocalCluster, as_completed
 
 from . import InputError, Volume, __version__, _palpate, open_store, sharpened, smoothed
+from .command_line import Kind, Parser, one_of, run, whole
+
+if TYPE_CHECKING:  # help needs no Dask
+    from distributed import Client
 
 # What a block reads round itself while it is dequantized: more means fewer stages, each with more to
 # do twice [samples].
@@ -212,6 +214,7 @@ def check_workers(client):
 
 def each_piece(client, stage, function, blocks, progress):
     """function(work) for all pieces of work on the workers; their results, in no order."""
+    from distributed import as_completed
     futures = client.map(function, blocks, pure=False)
     results = []
     try:
@@ -352,7 +355,7 @@ def _growing(out, job):
     folder = _palpate._GrowingFolder(out, job)
     try:
         if folder.note:
-            print(f"palpate.distributed: note: {folder.note}", file=sys.stderr)
+            print(f"palpate: note: {folder.note}", file=sys.stderr)
         yield
         for left in Path(_result(out)).rglob("*.part-*"):  # of workers that were killed
             left.unlink()
@@ -369,7 +372,7 @@ def _work(out):
     return f"{out}.partial/work"
 
 
-def convert(client: Client, source: str, out: str, *, level: int = 0, dequantize: int = 0,
+def convert(client: "Client", source: str, out: str, *, level: int = 0, dequantize: int = 0,
             smooth: int = 0, prefilter: bool = False, chunk: int = 64, compression: str = "zstd",
             ome_version: str = "0.5", block: int = 256, options: Optional[dict] = None,
             progress: Progress = None) -> Converted:
@@ -402,42 +405,42 @@ def convert(client: Client, source: str, out: str, *, level: int = 0, dequantize
         return _Conversion(client, job, block, progress).run(dequantize)
 
 
-def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="python3 -m palpate.distributed", description=convert.__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("source", metavar="SOURCE")
-    parser.add_argument("out", metavar="OUT")
-    for name, default in (("level", 0), ("dequantize", 0), ("smooth", 0), ("chunk", 64), ("block", 256)):
-        parser.add_argument(f"--{name}", type=int, default=default, metavar="N")
-    parser.add_argument("--prefilter", action="store_true")
-    parser.add_argument("--compression", choices=("none", "gzip", "zstd", "blosc"), default="zstd")
-    parser.add_argument("--ome-version", choices=("0.4", "0.5"), default="0.5")
-    where = parser.add_mutually_exclusive_group()
-    where.add_argument("--scheduler", metavar="ADDRESS", help="of a running Dask (tcp://HOST:8786)")
-    where.add_argument("--workers", type=int, metavar="N", help="processes on this machine (one a core)")
-    given = vars(parser.parse_args(arguments))
-    scheduler, workers = given.pop("scheduler"), given.pop("workers") or os.cpu_count() or 1
+PARSER = Parser("distribute", "Write a store as multiscale OME-Zarr on the workers of a Dask cluster, as palpate convert writes it", (
+    "source.zarr head.zarr --dequantize 40 --workers 4", "source.zarr head.zarr --smooth 1 --scheduler tcp://HOST:8786"))
+PARSER.add("source", kind=Kind("FOLDER"), help="Store that every worker sees under this name or web address")
+PARSER.add("out", kind=Kind("FOLDER"), help="OME-Zarr to write. The same command continues an interrupted run")
+PARSER.add("--level", kind=whole(), default=0, help="Level of detail of the source, 0 for the finest")
+PARSER.add("--dequantize", kind=whole(), default=0, help="Rounds that remove the terraces of rounded data, such as 40")
+PARSER.add("--smooth", kind=whole(), default=0, help="Smooth the samples this many times, up to 64")
+PARSER.add_argument("--prefilter", action="store_true", help="Sharpen the samples for the smooth field")
+PARSER.add("--chunk", kind=whole(), default=64, help="Samples of a chunk along each axis")
+PARSER.add("--block", kind=whole(), default=256, help="Samples of a piece of work along each axis, a multiple of the chunk")
+PARSER.add("--compression", kind=one_of(("none", "gzip", "zstd", "blosc")), default="zstd", help="Compression of the chunks")
+PARSER.add("--ome-version", kind=one_of(("0.4", "0.5")), default="0.5", help="Version of OME-Zarr")
+PARSER.add("--scheduler", kind=Kind("ADDRESS"), help="Address of a running Dask, tcp://HOST:8786")
+PARSER.add("--workers", kind=whole(1), help="Processes on this machine instead (default: one per core)")
+
+
+def _convert(scheduler, workers, given):
+    from distributed import Client, LocalCluster
 
     def tell(stage, done, count):
         if sys.stderr.isatty() or done == count:
             print(f"\r{stage}: {done} of {count}", end="\n" if done == count else "", file=sys.stderr)
 
-    try:
-        with contextlib.ExitStack() as stack:
-            cluster = scheduler or stack.enter_context(LocalCluster(
-                n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0"))
-            client = stack.enter_context(Client(cluster))
-            print(f"dashboard: {client.dashboard_link}", file=sys.stderr)
-            done = convert(client, progress=tell, **given)
-    except (ValueError, OSError) as error:
-        sys.exit(f"palpate.distributed: {error}")
-    except KeyboardInterrupt:
-        print("\npalpate.distributed: stopped; the same command goes on", file=sys.stderr)
-        sys.exit(130)
+    with contextlib.ExitStack() as stack:
+        cluster = scheduler or stack.enter_context(LocalCluster(
+            n_workers=workers or os.cpu_count() or 1, threads_per_worker=1, dashboard_address="127.0.0.1:0"))
+        client = stack.enter_context(Client(cluster))
+        print(f"dashboard: {client.dashboard_link}", file=sys.stderr)
+        done = convert(client, progress=tell, **given)
     print(f"{given['out']}: OME-Zarr {given['ome_version']}, {done.levels} levels, {done.blocks} blocks "
           f"({done.kept} kept from before)")
 
 
-if __name__ == "__main__":  # workers know the functions by the module's name
-    from palpate.distributed import main as main_of_module
-    main_of_module()
+def main(words):
+    given = vars(PARSER.arguments(words))
+    scheduler, workers, _, _ = (given.pop(name) for name in ("scheduler", "workers", "help", "version"))
+    if scheduler and workers:
+        PARSER.error("--scheduler and --workers exclude each other")
+    return run(lambda: _convert(scheduler, workers, given), "interrupted; the same command continues")

@@ -1,5 +1,8 @@
 """The exceptions of Palpate. Wrong arguments are Python's own ValueError and TypeError."""
 
+from collections.abc import Sequence
+from typing import Any
+
 
 class Error(Exception):
     """Base of the exceptions below."""
@@ -13,12 +16,12 @@ class SeriesChoice(InputError):
     """A file or folder has several DICOM series. ``series`` describes each; choose one by its
     UID or number with ``load(..., series=...)``."""
 
-    def __init__(self, message, series=()):
+    def __init__(self, message: str, series: Sequence[dict[str, Any]] = ()) -> None:
         super().__init__(message, series)
         self.series = list(series)
 
-    def __str__(self):
-        return self.args[0]
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
 class OutputError(Error, OSError):
@@ -31,9 +34,3 @@ class DeviceError(Error, OSError):
 
 class QueueFull(Error, RuntimeError):
     """Commands come faster than a servo carries them out; those before are still carried out."""
-
-
-def exit_status(error: BaseException) -> int:
-    """Of a program that ends with this error, as palpate's own (docs/command_line.md)."""
-    kinds = ((InputError, 3), (DeviceError, 4), (OutputError, 5), (KeyboardInterrupt, 130))
-    return next((status for kind, status in kinds if isinstance(error, kind)), 2)

@@ -1,11 +1,19 @@
 """The result of a replay: arrays with one row per tick."""
 
 import dataclasses
+import os
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy
+from numpy.typing import ArrayLike, NDArray
 
 from . import _palpate, notebook
-from ._palpate import RenderSetup
+
+if TYPE_CHECKING:
+    from . import Field, RenderSetup
+
+_Path = Union[str, bytes, "os.PathLike[str]"]
 
 
 @dataclasses.dataclass(repr=False, eq=False)
@@ -22,29 +30,29 @@ class Trace:
     position [mm], orientation x, y, z, w) of a tool's proxy. The last two are None unless asked for. nested_layers: so
     many of the layers, the first ones, are levels; the others are labels.
     """
-    t: numpy.ndarray
-    hip: numpy.ndarray
-    scp: numpy.ndarray
-    force: numpy.ndarray
-    density: numpy.ndarray
-    isovalue: numpy.ndarray
-    constrained: numpy.ndarray
-    tetrahedra: numpy.ndarray
-    update_ns: numpy.ndarray
-    layer: numpy.ndarray
-    inside: numpy.ndarray
-    torque: numpy.ndarray
-    hand_orientation_xyzw: numpy.ndarray
-    proxy_orientation_xyzw: numpy.ndarray
-    contacts: numpy.ndarray
-    summary: dict = dataclasses.field(default_factory=dict)
-    layer_names: tuple = ()
+    t: NDArray[numpy.float64]
+    hip: NDArray[numpy.float64]
+    scp: NDArray[numpy.float64]
+    force: NDArray[numpy.float64]
+    density: NDArray[numpy.float64]
+    isovalue: NDArray[numpy.float64]
+    constrained: NDArray[numpy.bool_]
+    tetrahedra: NDArray[numpy.int32]
+    update_ns: NDArray[numpy.int64]
+    layer: NDArray[numpy.int32]
+    inside: NDArray[numpy.int32]
+    torque: NDArray[numpy.float64]
+    hand_orientation_xyzw: NDArray[numpy.float64]
+    proxy_orientation_xyzw: NDArray[numpy.float64]
+    contacts: NDArray[numpy.int32]
+    summary: dict[str, Any] = dataclasses.field(default_factory=dict)
+    layer_names: tuple[str, ...] = ()
     nested_layers: int = 0
     has_tool: bool = False
-    path: tuple = None
-    poses: tuple = None
+    path: Optional[tuple[NDArray[numpy.int64], NDArray[numpy.float64]]] = None
+    poses: Optional[tuple[NDArray[numpy.int64], NDArray[numpy.float64], NDArray[numpy.float64]]] = None
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.t)
 
     def __repr__(self):
@@ -53,13 +61,13 @@ class Trace:
     def _repr_html_(self):
         return notebook.of_trace(self)
 
-    def write(self, path):
+    def write(self, path: _Path) -> None:
         """Writes a CSV file, as `palpate replay` does, that read_trace() and other programs read.
         Raises OutputError; ValueError for arrays of other lengths."""
         columns = {name: getattr(self, name) for name in COLUMNS}
         _palpate._write_trace(path, columns, self.layer_names, self.nested_layers, self.has_tool)
 
-    def plot(self, axes=None):
+    def plot(self, axes: Any = None) -> Any:
         """Draws force and depth of the hand below the proxy over time, with contact shaded. Needs
         Matplotlib. axes: two of it, else a new figure's. Returns them."""
         if axes is None:
@@ -77,11 +85,13 @@ class Trace:
         return axes
 
 
-COLUMNS = [field.name for field in dataclasses.fields(Trace) if field.type is numpy.ndarray]
+COLUMNS = [field.name for field in dataclasses.fields(Trace)
+           if field.default is field.default_factory is dataclasses.MISSING]
 
 
-def replay(field, isovalue, time, position, *, orientation_xyzw=None, setup=None, path=False,
-           poses=False, progress=None, **settings):
+def replay(field: "Field", isovalue: Union[float, str], time: ArrayLike, position: ArrayLike, *,
+           orientation_xyzw: Optional[ArrayLike] = None, setup: "Optional[RenderSetup]" = None, path: bool = False,
+           poses: bool = False, progress: Optional[Callable[[float], Any]] = None, **settings: Any) -> Trace:
     """Renders a motion of the hand offline: the same bits as `palpate replay`.
 
     field: Field. isovalue: a number [data units] or '53%'. time [s], rising, shape (n,). position
@@ -92,12 +102,12 @@ def replay(field, isovalue, time, position, *, orientation_xyzw=None, setup=None
     if setup is not None and settings:
         raise TypeError("give a setup or its fields, not both")
     if setup is None:
-        setup = RenderSetup(**settings)
+        setup = _palpate.RenderSetup(**settings)
     return Trace(**_palpate._replay(field, isovalue, time, position, orientation_xyzw, setup, path,
                                     poses, progress))
 
 
-def read_trace(path):
+def read_trace(path: _Path) -> Trace:
     """A trace file (CSV) as a Trace, without layers and the number of contacts. Raises InputError."""
     columns = _palpate._read_trace(path)
     with open(path, encoding="utf-8", errors="replace") as file:
@@ -105,7 +115,8 @@ def read_trace(path):
     return Trace(**columns, has_tool="proxy_qw" in head)
 
 
-def read_trajectory(path):
+def read_trajectory(
+        path: _Path) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], Optional[NDArray[numpy.float64]]]:
     """A motion of the hand from CSV: (time [s], position [mm], orientation x, y, z, w or
     None). Raises InputError."""
     return _palpate._read_trajectory(path)
@@ -120,9 +131,9 @@ class Recording:
     command, the number of the tick that it came before. complete: not cut off; lost: events that
     the recording lost; hands: how many the recording has.
     """
-    head: dict
+    head: dict[str, Any]
     trace: Trace
-    commands: numpy.ndarray
+    commands: NDArray[numpy.int64]
     complete: bool
     lost: int
     hands: int = 1
@@ -131,7 +142,7 @@ class Recording:
         return f"Recording({len(self.trace)} ticks, {len(self.commands)} commands)"
 
 
-def read_recording(path, hand=1):
+def read_recording(path: _Path, hand: int = 1) -> Recording:
     """A recording as a Recording; hand: which one of several, from 1. Raises InputError; validate() renders it again."""
     head, table, commands, complete, lost, hands = _palpate._read_recording(path, hand)
     return Recording(head, Trace(**table), commands, complete, lost, hands)

@@ -1,11 +1,10 @@
 """Trials with people: which of two touches had more of a setting? A staircase or constant differences in random order, a CSV from which
 an interrupted session continues, and the fit of a psychometric function (docs/tutorials/user_study.md).
 
-    python3 -m palpate.trials run head.nrrd@34.5 p01.csv --setting stiffness --standard 0.3 --device haply
-    python3 -m palpate.trials analyse p01.csv p02.csv
+    palpate study head.nrrd@34.5 p01.csv --setting stiffness --standard 0.3 --device haply
+    palpate study --analyse p01.csv p02.csv
 """
 
-import argparse
 import csv
 import dataclasses
 import difflib
@@ -14,11 +13,12 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NoReturn, Optional, Union
+from typing import Any, Optional, Union
 
 import numpy
 
-from .errors import InputError, OutputError, exit_status
+from .command_line import ABOVE_ZERO, Kind, Parser, run, whole
+from .errors import DeviceError, InputError, OutputError
 
 _Path = Union[str, Path]
 _Row = dict[str, float]
@@ -220,7 +220,7 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
             time.sleep(seconds)
             run.stop_recording()
             if run.problem:
-                raise RuntimeError(f"device: {run.problem}")
+                raise DeviceError(f"device: {run.problem}")
             now = run.snapshot()
             if now and now.stiffness < stiffness:  # a device may tell its limits only once it is connected
                 raise ValueError(f"stiffness [N/mm] = {stiffness:g}: the device renders only {now.stiffness:g} stably")
@@ -244,50 +244,46 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
     return ask
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        self.exit(2, f"palpate: {message} (see {self.prog} --help)\n")
+PARSER = Parser("study", "Find the least difference that people can feel, by trials of two touches", (
+    "head.nrrd@34.5 p01.csv --standard 0.3 --difference 0.5",
+    "head.nrrd@34.5 p02.csv --setting friction.static_coefficient --standard 0.2 --differences 0.5 1 --repeats 10",
+    "--analyse p01.csv p02.csv"))
+PARSER.add("volume", kind=Kind("VOLUME@ISOVALUE"), optional=True, help="Volume and level to feel, such as head.nrrd@34.5 or head.nrrd@20%. Without @ the suggested level")
+PARSER.add("file", kind=Kind("FILE.csv"), optional=True, help="Table of the session. The same command continues an interrupted session")
+PARSER.add("--analyse", kind=Kind("FILE.csv"), nargs="+", help="Fit a psychometric function to each of these sessions instead")
+PARSER.add("--setting", kind=Kind("NAME"), default="stiffness", help="Number in RenderSetup that differs, such as force.damping")
+PARSER.add("--standard", kind=ABOVE_ZERO, help="Value of the setting that others are compared with")
+PARSER.add("--difference", kind=ABOVE_ZERO, default=0.5, help="First difference of the staircase, as a part of the standard")
+PARSER.add("--most", kind=ABOVE_ZERO, default=1.0, help="Largest difference, as a part of the standard")
+PARSER.add("--differences", kind=ABOVE_ZERO, nargs="+", default=(), help="Constant differences in random order, instead of a staircase")
+PARSER.add("--repeats", kind=whole(1), default=20, help="Trials of each constant difference")
+PARSER.add("--seed", kind=whole(0, 2**64 - 1), default=1, help="Seed of the order, another one for each participant")
+PARSER.add("--device", kind=Kind("TEXT"), default="simulated:hand=press", help="Device, as for palpate touch")
+PARSER.add("--seconds", kind=ABOVE_ZERO, default=3.0, help="Duration of each touch [s]")
 
 
-def main(words: Optional[Sequence[str]] = None) -> int:
-    parser = _Parser(prog="python3 -m palpate.trials", description="Two-alternative trials over a setting of touch")
-    commands = parser.add_subparsers(dest="command", required=True)
-    run = commands.add_parser("run", help="ask the trials that are missing in FILE; it continues after an interruption")
-    run.add_argument("volume", help="VOLUME@ISOVALUE, such as head.nrrd@34.5 or head.nrrd@20%%; without @ the suggested level")
-    run.add_argument("file", help="CSV of the session")
-    run.add_argument("--setting", default="stiffness", help="name in RenderSetup, such as force.damping [stiffness]")
-    run.add_argument("--standard", type=float, required=True, help="value of the setting that others are compared with")
-    run.add_argument("--difference", type=float, default=0.5, help="of the staircase's first trial, as a part of the standard [0.5]")
-    run.add_argument("--most", type=float, default=1, help="largest difference that is asked, as a part of the standard [1]")
-    run.add_argument("--differences", type=float, nargs="+", default=(), help="constant ones in random order instead of a staircase")
-    run.add_argument("--repeats", type=int, default=20, help="of each constant difference [20]")
-    run.add_argument("--seed", type=int, default=1, help="another one for each participant [1]")
-    run.add_argument("--device", default="simulated:hand=press")
-    run.add_argument("--seconds", type=float, default=3, help="of each touch [3]")
-    analyse = commands.add_parser("analyse", help="fit a psychometric function to each session")
-    analyse.add_argument("files", nargs="+")
-    chosen = parser.parse_args(words)
-    try:
-        if chosen.command == "run":
-            volume, at, level = chosen.volume.rpartition("@")
-            volume, level = (volume, level) if at else (level, None)
-            plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed, chosen.most)
-            largest = plan.standard * (1 + (max(plan.differences) if plan.differences else plan.most))
-            touches = Path(chosen.file).with_suffix(".touches")
-            session(chosen.file, plan, touching(volume, level, chosen.device, chosen.setting, chosen.seconds, touches, largest))
-            return 0
-        print("file,trials,threshold,low,high,slope")
-        for file in chosen.files:
-            rows = read(file)
-            print(file, len(rows), *(f"{value:.4g}" for value in fit(rows)), sep=",")
-    except KeyboardInterrupt as error:
-        print("\nthe same command continues", file=sys.stderr)
-        return exit_status(error)
-    except (ValueError, OSError, RuntimeError, EOFError) as error:
-        print(f"palpate: {error}", file=sys.stderr)
-        return exit_status(error)
-    return 0
+def _ask(chosen: Any) -> None:
+    volume, at, level = chosen.volume.rpartition("@")
+    plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed, chosen.most)
+    largest = plan.standard * (1 + (max(plan.differences) if plan.differences else plan.most))
+    session(chosen.file, plan, touching(volume if at else level, level if at else None, chosen.device, chosen.setting, chosen.seconds,
+                                        Path(chosen.file).with_suffix(".touches"), largest))
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def _analyse(files: Sequence[str]) -> None:
+    print("file,trials,threshold,low,high,slope")
+    for file in files:
+        rows = read(file)
+        print(file, len(rows), *(f"{value:.4g}" for value in fit(rows)), sep=",")
+
+
+def main(words: Sequence[str]) -> int:
+    chosen = PARSER.arguments(words)
+    if chosen.analyse:
+        if idle := sorted(PARSER.given - {"analyse"}):
+            PARSER.error(f"--analyse stands alone, without {idle[0]}")
+        return run(lambda: _analyse(chosen.analyse))
+    for name, value in (("VOLUME", chosen.volume), ("FILE", chosen.file), ("--standard", chosen.standard)):
+        if value is None:
+            PARSER.error(f"{name}: it is needed, as in {PARSER.examples[0]}")
+    return run(lambda: _ask(chosen), "interrupted; the same command continues")

@@ -1,7 +1,5 @@
-"""Types of palpate, for editors and type checkers: what is written in Python. bindings/python/types/generate.py adds
-those of the compiled part."""
+"""Types of palpate, for editors and type checkers. bindings/python/types/generate.py adds those of the compiled part."""
 
-import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
@@ -24,59 +22,8 @@ class _Device(Protocol):
     def info(self) -> DeviceInfo: ...
     def read(self) -> DeviceReading: ...
 
-class Error(Exception): ...
-class InputError(Error, ValueError): ...
-class SeriesChoice(InputError):
-    series: list[dict[str, Any]]
-    def __init__(self, message: str, series: Sequence[dict[str, Any]] = ()) -> None: ...
-class OutputError(Error, OSError): ...
-class DeviceError(Error, OSError): ...
-class QueueFull(Error, RuntimeError): ...
-
-@dataclasses.dataclass
-class Trace:
-    t: NDArray[numpy.float64]
-    hip: NDArray[numpy.float64]
-    scp: NDArray[numpy.float64]
-    force: NDArray[numpy.float64]
-    density: NDArray[numpy.float64]
-    isovalue: NDArray[numpy.float64]
-    constrained: NDArray[numpy.bool_]
-    tetrahedra: NDArray[numpy.int32]
-    update_ns: NDArray[numpy.int64]
-    layer: NDArray[numpy.int32]
-    inside: NDArray[numpy.int32]
-    torque: NDArray[numpy.float64]
-    hand_orientation_xyzw: NDArray[numpy.float64]
-    proxy_orientation_xyzw: NDArray[numpy.float64]
-    contacts: NDArray[numpy.int32]
-    summary: dict[str, Any] = ...
-    layer_names: tuple[str, ...] = ()
-    nested_layers: int = 0
-    has_tool: bool = False
-    path: Optional[tuple[NDArray[numpy.int64], NDArray[numpy.float64]]] = None
-    poses: Optional[tuple[NDArray[numpy.int64], NDArray[numpy.float64],
-                          NDArray[numpy.float64]]] = None
-    def __len__(self) -> int: ...
-    def write(self, path: _Path) -> None: ...
-    def plot(self, axes: Any = None) -> Any: ...
-
-@dataclasses.dataclass
-class Recording:
-    head: dict[str, Any]
-    trace: Trace
-    commands: NDArray[numpy.int64]
-    complete: bool
-    lost: int
-    hands: int
-
-def as_volume(data: Any, spacing: Optional[ArrayLike] = None, origin: Optional[ArrayLike] = None,
-              direction: Optional[ArrayLike] = None, frame: Optional[int] = None) -> Volume: ...
-def replay(field: Field, isovalue: Union[float, str], time: ArrayLike, position: ArrayLike,
-           *, orientation_xyzw: Optional[ArrayLike] = None, setup: Optional[RenderSetup] = None,
-           path: bool = False, poses: bool = False,
-           progress: Optional[Callable[[float], Any]] = None, **settings: Any) -> Trace: ...
-def read_trace(path: _Path) -> Trace: ...
-def read_trajectory(path: _Path) -> tuple[
-    NDArray[numpy.float64], NDArray[numpy.float64], Optional[NDArray[numpy.float64]]]: ...
-def read_recording(path: _Path, hand: int = 1) -> Recording: ...
+from .arrays import as_volume as as_volume
+from .errors import (DeviceError as DeviceError, Error as Error, InputError as InputError, OutputError as OutputError,
+                     QueueFull as QueueFull, SeriesChoice as SeriesChoice)
+from .trace import (Recording as Recording, Trace as Trace, read_recording as read_recording, read_trace as read_trace,
+                    read_trajectory as read_trajectory, replay as replay)

@@ -77,6 +77,8 @@ static class FeelsABall
     static void ChangeWhatIsFelt(IntPtr run, IntPtr data)
     {
         Native.Check(Native.palpate_run_set_friction(run, 0.3, 0.2));
+        Native.Check(Native.palpate_run_set_ranges(run, 1, new double[] { 95, 110, 150, 160 }, (UIntPtr)2));
+        Native.Check(Native.palpate_run_set_penetration(run, 0));
         Native.Check(Native.palpate_run_set_layers(run, "ct-needle"));
         Native.Check(Native.palpate_run_change_layers(run, "ct-needle"));
         Native.Check(Native.palpate_run_set_layers(run, null));

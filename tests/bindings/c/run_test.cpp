@@ -262,6 +262,11 @@ TEST_F(CRun, commands_show_in_snapshots) {
     EXPECT_EQ(palpate_run_set_friction(run_, 0.3, 0.2), PALPATE_OK);
     EXPECT_EQ(palpate_run_set_penetration(run_, 1), PALPATE_OK);
     EXPECT_EQ(palpate_run_set_penetration(run_, -1), PALPATE_INVALID);
+    const std::array<double, 4> ranges{95, 110, 150, 160};
+    EXPECT_EQ(palpate_run_set_ranges(run_, 1, ranges.data(), 2), PALPATE_OK);
+    EXPECT_EQ(palpate_run_set_ranges(run_, 1, ranges.data(), 0), PALPATE_INVALID);
+    EXPECT_EQ(palpate_run_set_ranges(run_, 1, ranges.data(), 17), PALPATE_INVALID);
+    EXPECT_EQ(palpate_run_set_ranges(run_, 1, nullptr, 2), PALPATE_INVALID);
     EXPECT_EQ(palpate_run_set_penetration(run_, 0), PALPATE_OK);
     EXPECT_EQ(palpate_run_set_tool(run_, "sphere:5"), PALPATE_OK);
     EXPECT_EQ(palpate_run_set_tool(run_, "no-such-tool"), PALPATE_INVALID);

@@ -1,6 +1,7 @@
 // Settings by name in the C interface: their descriptions, and that setting one has its effect.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -118,6 +119,34 @@ TEST_F(CSettings, names_and_values_that_cannot_be_are_refused_and_change_nothing
     EXPECT_EQ(palpate_renderer_set(nullptr, "force.limit", 1), PALPATE_INVALID);
     EXPECT_EQ(palpate_run_set(nullptr, "force.limit", 1), PALPATE_INVALID);
     EXPECT_EQ(palpate_run_set(nullptr, nullptr, 1), PALPATE_INVALID);
+}
+
+TEST(CRanges, only_their_levels_are_touched) {
+    palpate_volume* const volume = ball();
+    palpate_field* field = nullptr;
+    ASSERT_EQ(palpate_field_create(volume, nullptr, &field), PALPATE_OK);
+    palpate_volume_destroy(volume);
+    const std::array<double, 2> range{150, 160};  // from 10 mm
+    PALPATE_STRUCT(palpate_render_options, options);
+    options.has_isovalue = 1;
+    options.isovalue = 100;
+    options.ranges = range.data();
+    palpate_renderer* renderer = nullptr;
+    EXPECT_EQ(palpate_renderer_create(field, &options, nullptr, &renderer), PALPATE_INVALID);
+    options.range_count = 1;
+    ASSERT_EQ(palpate_renderer_create(field, &options, nullptr, &renderer), PALPATE_OK)
+        << palpate_last_error();
+    for (int i = 0; i < 1000; ++i) {
+        PALPATE_STRUCT(palpate_hand, hand);
+        PALPATE_STRUCT(palpate_felt, felt);
+        hand.time = 1 + 0.001 * i;
+        hand.position[2] = 25 - 0.0155 * i;
+        ASSERT_EQ(palpate_renderer_render(renderer, &hand, &felt), PALPATE_OK);
+        if (std::abs(hand.position[2] - 10) < 0.1) continue;
+        EXPECT_EQ(felt.mode == PALPATE_CONSTRAINED, hand.position[2] < 10) << hand.position[2];
+    }
+    palpate_renderer_destroy(renderer);
+    palpate_field_destroy(field);
 }
 
 }  // namespace

@@ -1,46 +1,42 @@
-"""The command line: python3 -m palpate.ros VOLUME (docs/ros.md)."""
+"""The command line: palpate ros VOLUME (docs/ros.md)."""
 
-import argparse
 import math
-import sys
 import time
 
 import palpate
 
-from ..errors import exit_status
+from ..command_line import ABOVE_ZERO, Kind, Parser, number, one_of, run, whole
 from . import POSE_RATE, Node
+
+PARSER = Parser("ros", "Touch a volume with ROS: hand, proxy, force and status are topics", (
+    "head.nrrd --device haply", "synthetic:sphere --arm /arm --record hand.csv", "synthetic:sphere --ros 2 __node:=left"))
+PARSER.add("volume", kind=Kind("VOLUME"), help="As for palpate touch. Words with := go to ROS, such as __name:=left or ~status:=/diagnostics")
+PARSER.add("--isovalue", kind=Kind("TEXT"), help="Level to feel, in the data's units (300) or percent of its range (53%)")
+PARSER.add("--ros", kind=one_of(("1", "2")), default="1", help="Version of ROS")
+PARSER.add("--device", kind=Kind("TEXT"), help="Device, as for palpate touch")
+PARSER.add("--arm", kind=Kind("TEXT"), help="Namespace of a device of ROS instead: measured_cp moves the hand, servo_cf gets the force")
+PARSER.add("--axes", kind=Kind("X,Y,Z"), default="-y,z,-x", help="Directions of the arm in ROS: right, up and towards the person")
+PARSER.add("--pose-rate", kind=ABOVE_ZERO, default=POSE_RATE, help="Least rate of the arm's poses for any force [Hz]")
+PARSER.add("--model", kind=one_of(palpate.simulated_profiles()), help="Model that the arm has the limits and workspace of")
+PARSER.add("--force-limit", kind=number(), help="Largest force [N]")
+PARSER.add("--stiffness", kind=number(), help="Stiffness [N/mm]")
+PARSER.add("--clutch", kind=whole(), help="Number of the button that holds the volume to the hand")
+PARSER.add("--dead-man", kind=whole(), help="Number of the button that must be held")
+PARSER.add("--record", kind=Kind("FILE.csv"), help="Recording to write")
+PARSER.add("--rate", kind=number("a number from 1 to 1000", lambda x: 1 <= x <= 1000), default=100.0, help="Rate of the topics [Hz]")
+PARSER.add("--seconds", kind=ABOVE_ZERO, default=math.inf, help="End after this time [s]")
 
 
 def arguments_from(given):
-    parser = argparse.ArgumentParser(
-        prog="python3 -m palpate.ros", description="Touch a volume with ROS: hand, proxy, force and status are "
-        "topics, and with --arm the device is one of ROS.", epilog="Arguments with := go to ROS: __name:=left, "
-        "~status:=/diagnostics")
-    parser.add_argument("volume", help="as for palpate touch")
-    parser.add_argument("--isovalue", help="a number or a percentage [a suggested one]")
-    parser.add_argument("--ros", type=int, choices=(1, 2), default=1, help="version of ROS [%(default)s]")
-    hand = parser.add_mutually_exclusive_group()
-    hand.add_argument("--device", help="as for palpate touch [simulated]")
-    hand.add_argument("--arm", help="namespace of a device of ROS: measured_cp moves the hand, servo_cf gets the force")
-    parser.add_argument("--axes", default="-y,z,-x", help="of the arm: what right, up and towards the person are in ROS [%(default)s]")
-    parser.add_argument("--pose-rate", type=float, default=POSE_RATE, help="Hz: no force with fewer poses of the arm [%(default)s]")
-    parser.add_argument("--model", choices=palpate.simulated_profiles(), help="of the arm: limits and workspace of this model")
-    parser.add_argument("--force-limit", type=float, help="N")
-    parser.add_argument("--stiffness", type=float, help="N/mm")
-    parser.add_argument("--clutch", type=int, help="number of the button [the usual one]")
-    parser.add_argument("--dead-man", type=int, help="number of the button [none]")
-    parser.add_argument("--record", help="writes a recording")
-    parser.add_argument("--rate", type=float, default=100, help="Hz, of the topics [%(default)s]")
-    parser.add_argument("--seconds", type=float, default=math.inf, help="ends after this time")
-    ros = [text for text in given if ":=" in text]
+    """The options, and the words for ROS."""
     rest = [text for text in given if ":=" not in text]
     if "--axes" in rest:  # argparse takes -y,z,-x for an option, unless it is joined
         at = rest.index("--axes")
         rest[at:at + 2] = ["=".join(rest[at:at + 2])]
-    options = parser.parse_args(rest)
-    if not 1 <= options.rate <= 1000:
-        parser.error("--rate: 1 to 1000 Hz")
-    return options, ros
+    options = PARSER.arguments(rest)
+    if options.arm and options.device:
+        PARSER.error("--arm and --device exclude each other")
+    return options, [text for text in given if ":=" in text]
 
 
 def setup_from(options):
@@ -63,33 +59,23 @@ def model_info(name):
 
 def touch(options, ros):
     loaded = palpate.load(options.volume)
-    with Node(ros, arm=options.arm or "", ros=options.ros) as node:
+    with Node(ros, arm=options.arm or "", ros=int(options.ros)) as node:
         arm = node.device(model_info(options.model), options.axes, options.pose_rate) if options.arm else None
-        run = palpate.Run(loaded, setup_from(options), device=arm)
+        live = palpate.Run(loaded, setup_from(options), device=arm)
         if options.record:
-            run.record(options.record)
+            live.record(options.record)
         try:
-            with run:
-                print(f"touching {options.volume} at isovalue {run.isovalue:g} with {run.device.name}; Ctrl-C ends it",
+            with live:
+                print(f"touching {options.volume} at isovalue {live.isovalue:g} with {live.device.name}; Ctrl-C ends it",
                       flush=True)
                 end = time.monotonic() + options.seconds
                 while time.monotonic() < end:
-                    node.publish(run)
+                    node.publish(live)
                     time.sleep(1 / options.rate)
         finally:
-            run.stop_recording()
+            live.stop_recording()
 
 
-def main():
-    options, ros = arguments_from(sys.argv[1:])
-    try:
-        touch(options, ros)
-    except KeyboardInterrupt as error:
-        sys.exit(exit_status(error))
-    except (palpate.Error, ValueError) as error:
-        print(f"palpate.ros: {error}", file=sys.stderr)
-        sys.exit(exit_status(error))
-
-
-if __name__ == "__main__":
-    main()
+def main(words):
+    options, ros = arguments_from(words)
+    return run(lambda: touch(options, ros))

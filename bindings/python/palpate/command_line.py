@@ -1,0 +1,182 @@
+"""Commands of the program palpate that are written in Python: options, help and complaints as those of the commands in C++
+(apps/options), signals and exit status as docs/command_line.md says."""
+
+import argparse
+import difflib
+import math
+import os
+import re
+import signal
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NoReturn, Optional
+
+from .errors import DeviceError, Error, InputError
+
+ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+STATUS = ((InputError, 3), (DeviceError, 4), (OSError, 5))  # docs/command_line.md
+EMPTY = "the value is empty"
+_NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf)", re.IGNORECASE)
+
+
+class Kind:
+    """What an option takes: as --help shows it, and how its text is read."""
+
+    def __init__(self, shown: str, read: Callable[[str], Any] = str) -> None:
+        self.shown, self.read = shown, read
+
+    def __call__(self, text: str) -> Any:
+        if not text:
+            raise argparse.ArgumentTypeError(EMPTY)
+        return self.read(text)
+
+
+def number(words: str = "", fits: Callable[[float], bool] = math.isfinite) -> Kind:
+    """A number that fits; `words` say which do."""
+    def read(text: str) -> float:
+        if not _NUMBER.fullmatch(text):
+            comma = ": its decimals follow a point, as in 1.5" if re.search(r"\d,\d", text) else ""
+            raise argparse.ArgumentTypeError(f"'{text}' is not a number{comma}")
+        if not fits(float(text)):
+            raise argparse.ArgumentTypeError(f"{text} is not {words or 'a finite number'}")
+        return float(text)
+    return Kind(f"FLOAT:{words}" if words else "FLOAT", read)
+
+
+ABOVE_ZERO = number("a number above 0", lambda x: 0 < x < math.inf)
+
+
+def whole(least: int = 0, most: int = 2**31 - 1) -> Kind:
+    def read(text: str) -> int:
+        if not re.fullmatch(r"[+-]?\d+", text) or not least <= int(text) <= most:
+            raise argparse.ArgumentTypeError(f"{text} is not a whole number from {least} to {most}")
+        return int(text)
+    return Kind("UINT", read)
+
+
+def one_of(names: Sequence[str]) -> Kind:
+    def read(text: str) -> str:
+        if text not in names:
+            raise argparse.ArgumentTypeError(f"there is no '{text}': use one of {', '.join(names)}{_meant(text, names)}")
+        return text
+    return Kind(f"TEXT:{{{','.join(names)}}}", read)
+
+
+def _meant(word: str, names: Sequence[str]) -> str:
+    near = difflib.get_close_matches(word, names, 1, 0.65)
+    return f" (did you mean {near[0]}?)" if near else ""
+
+
+class _Once(argparse.Action):
+    def __call__(self, parser: Any, namespace: Any, values: Any, option: Optional[str] = None) -> None:
+        if self.dest in parser.given:
+            raise argparse.ArgumentError(self, "it is given more than once")
+        parser.given.add(self.dest)
+        setattr(namespace, self.dest, values)
+
+
+class Parser(argparse.ArgumentParser):
+    """Of one command. Options take a Kind as their type; `optional` positionals are checked by the command."""
+
+    def __init__(self, name: str, about: str, examples: Sequence[str]) -> None:
+        super().__init__(prog=f"palpate {name}", description=about, add_help=False, allow_abbrev=False, exit_on_error=False)
+        self.examples, self.given = [f"palpate {name} {words}" for words in examples], set[str]()
+        for store in (None, "store"):
+            self.register("action", store, _Once)
+        self.add_argument("-h", "--help", action="store_true", help="Print this help message and exit")
+        self.add_argument("--version", action="store_true", help="Display program version information and exit")
+
+    def add(self, *names: str, kind: Kind, optional: bool = False, **more: Any) -> None:
+        action = self.add_argument(*names, type=kind, metavar=kind.shown, **more)
+        if not action.option_strings:
+            action.metavar, action.required = names[0].upper(), not optional
+
+    def arguments(self, words: Sequence[str]) -> argparse.Namespace:
+        """Ends the program after help, the version or a complaint."""
+        if "-h" in words or "--help" in words:
+            self.exit(0, self.format_help())
+        if "--version" in words:
+            from . import __version__
+            self.exit(0, f"palpate {__version__}\n")
+        self.given.clear()
+        needed = [action for action in self._actions if action.required]
+        for action in needed:  # is asked for after misspelt options
+            action.required = False
+        try:
+            chosen, rest = self.parse_known_args(words)
+        except argparse.ArgumentError as error:
+            self.error(self._complaint(error))
+        options = [action.option_strings[-1] for action in self._actions if action.option_strings]
+        for word in rest:
+            if word.startswith("-") and word != "--":
+                near = _meant(word.partition("=")[0], options).strip(" ()")
+                self.error(f"there is no option {word}" + (f": {near}" if near else ""))
+            self.error(f"'{word}' is one argument too many")
+        for action in needed:
+            if action.dest not in self.given:
+                self.error(f"{(action.option_strings or [str(action.metavar)])[-1]}: it is needed, as in {self.examples[0]}")
+        return chosen
+
+    def _complaint(self, error: argparse.ArgumentError) -> str:
+        name = str(error.argument_name).rpartition("/")[2]
+        if error.message.startswith("expected"):
+            about = next(action.help for action in self._actions if name in (*action.option_strings, action.metavar))
+            return f"{name} needs a value: {about}"
+        if error.message.startswith("ignored explicit argument"):
+            return f"{name}: this option takes no value"
+        return f"{name}: {error.message}"
+
+    def error(self, message: str) -> NoReturn:
+        tell(f"{message} (see {self.prog} --help)")
+        sys.exit(2)
+
+    def exit(self, status: int = 0, message: Optional[str] = None) -> NoReturn:
+        print(message, end="", flush=True)
+        sys.exit(status)
+
+    def format_help(self) -> str:
+        positionals = [action for action in self._actions if not action.option_strings]
+        usage = ["[OPTIONS]", *(f"{action.metavar}" if action.required else f"[{action.metavar}]" for action in positionals)]
+        lines = [str(self.description), f"Usage: {self.prog} {' '.join(usage)}"]
+        for title, actions in (("Positionals", positionals), ("Options", [a for a in self._actions if a.option_strings])):
+            if actions:
+                lines += ["", f"{title}:", *(line for action in actions for line in _entry(action))]
+        return "\n".join([*lines, "", "Examples:", *(f"  {words}" for words in self.examples), ""])
+
+
+def _entry(action: argparse.Action) -> Iterator[str]:
+    names = ",".join(action.option_strings) or str(action.metavar)
+    kind = action.type.shown if isinstance(action.type, Kind) else ""
+    head = " ".join(filter(None, (names, kind, "..." if action.nargs == "+" else "", "REQUIRED" if action.required else "")))
+    usual = f"{action.default:g}" if isinstance(action.default, float) else str(action.default)
+    about = f"{action.help}{f' [{usual}]' if action.type and action.default not in (None, (), math.inf) else ''}"
+    yield from ([f"  {head:<27} {about}"] if len(head) < 28 else [f"  {head}", f"{'':30}{about}"])
+
+
+def tell(text: object) -> None:
+    """On standard error, in a line."""
+    print(f"palpate: {text}", file=sys.stderr, flush=True)
+
+
+def _end(number: int, frame: Any) -> NoReturn:
+    raise KeyboardInterrupt(number)
+
+
+def run(work: Callable[[], Any], interrupted: str = "interrupted") -> int:
+    """Does the work of a command. Returns its exit status; what goes wrong is one line on standard error."""
+    for end in ENDS:
+        signal.signal(end, _end)
+    try:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDS)  # the program blocks them until they can be handled
+        work()
+        sys.stdout.flush()
+    except KeyboardInterrupt as error:
+        tell(interrupted)
+        return 128 + (error.args or (signal.SIGINT,))[0]
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at its end
+        return 141
+    except (Error, ValueError, OSError, RuntimeError, EOFError) as error:
+        tell(error)
+        return next((status for kind, status in STATUS if isinstance(error, kind)), 2)
+    return 0
