@@ -1,6 +1,7 @@
 """Files of kinds that other programs got wrong, by their public bug reports. Each was made by hand, or by the program that
 writes such files, and is compared with the numbers it was made of."""
 
+import gzip
 import json
 import struct
 
@@ -13,7 +14,7 @@ import zarr
 
 from dicom_readers_test import frames_of
 from formats_test import n5_array
-from readers_test import SHAPE, noted, ramp, refused, save, slice_of
+from readers_test import SHAPE, noted, ramp, refused, save, slice_of, stack
 
 DOSE = {"Modality": "RTDOSE", "SOPClassUID": "1.2.840.10008.5.1.4.1.1.481.2", "DoseGridScaling": 0.01, "DoseUnits": "GY",
         "RescaleSlope": None, "RescaleIntercept": None}
@@ -259,3 +260,59 @@ def test_an_stl_text_may_begin_with_blanks(tmp_path):
     (tmp_path / "a.stl").write_text("\n  solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
                                     "endloop\nendfacet\nendsolid a\n")
     assert len(palpate.read_mesh(tmp_path / "a.stl").triangles) == 1
+
+
+# pynrrd 12, ITK's MetaIO: the samples of a header may be in several files, by a list or by numbers.
+@pytest.mark.parametrize("form", ("NRRD", "MetaImage"))
+@pytest.mark.parametrize("packed", (False, True))
+@pytest.mark.parametrize("names, step", (("LIST\n4.raw\n3.raw\n2.raw\n1.raw\n0.raw", -1), ("%d.raw 4 0 -1", -1), ("%02d.raw 0 4 1", 1),
+                                         ("LIST 2\n0.raw\n1.raw\n2.raw\n3.raw\n4.raw\n", 1)))
+def test_the_slices_of_a_header_may_be_in_several_files(tmp_path, form, packed, names, step):
+    for i, plane in enumerate(ramp("<i2")):
+        data = gzip.compress(plane.tobytes()) if packed else plane.tobytes()
+        for name in (f"{i}.raw", f"{i:02}.raw"):
+            (tmp_path / name).write_bytes(data)
+    path = tmp_path / ("a.nhdr" if form == "NRRD" else "a.mhd")
+    path.write_text("NRRD0004\ntype: short\ndimension: 3\nsizes: 6 4 5\nendian: little\nspacings: 2 3 4\n"
+                    f"encoding: {'gzip' if packed else 'raw'}\ndata file: {names}" if form == "NRRD" else
+                    "NDims = 3\nDimSize = 6 4 5\nElementSpacing = 2 3 4\nElementType = MET_SHORT\n"
+                    f"CompressedData = {packed}\nElementDataFile = {names}")
+    volume = palpate.load(path).volume
+    assert numpy.array_equal(volume.array, ramp("i2")[::step]) and numpy.array_equal(volume.geometry.spacing, (2, 3, 4))
+    (tmp_path / "3.raw").rename(tmp_path / "03.raw")
+    (tmp_path / "03.raw").write_bytes(bytes(5))
+    refused(path, "3.raw'")
+    path.write_text(path.read_text().replace("%d.raw 4 0 -1", "%d.raw 3 0 -1").replace("0 4 1", "0 3 1").replace("\n0.raw", ""))
+    refused(path, "4 data files for 5 slices")
+
+
+# nibabel 1004, vtk-dicom 96: pairs of files, of NIfTI and of the format before it, which does not place the body.
+@pytest.mark.parametrize("packed", ("", ".gz"))
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("kind", (nibabel.Nifti1Pair, nibabel.Nifti2Pair, nibabel.AnalyzeImage, nibabel.Spm2AnalyzeImage))
+def test_a_pair_of_header_and_image_is_one_volume(tmp_path, kind, order, packed):
+    header, affine = kind.header_class(endianness=order), numpy.diag([-2, -3, 4, 1])
+    header.set_data_dtype("i2")
+    image = kind(ramp("i2").T, affine, header)
+    nibabel.save(image, tmp_path / "a.img")
+    if kind is nibabel.Spm2AnalyzeImage:  # nibabel writes a slope of its own
+        data = bytearray((tmp_path / "a.hdr").read_bytes())
+        data[112:116] = struct.pack(order + "f", 0.5)
+        (tmp_path / "a.hdr").write_bytes(data)
+    for name in ("a.hdr", "a.img") if packed else ():
+        (tmp_path / (name + packed)).write_bytes(gzip.compress((tmp_path / name).read_bytes()))
+        (tmp_path / name).unlink()
+    is_nifti = "Nifti" in kind.__name__
+    for name in ("a.hdr", "a.img"):
+        loaded = palpate.load(tmp_path / (name + packed))
+        assert numpy.array_equal(loaded.volume.array, nibabel.load(tmp_path / ("a.img" + packed)).get_fdata().T)
+        geometry = loaded.volume.geometry
+        assert numpy.array_equal(geometry.spacing, (2, 3, 4)) and geometry.oriented == is_nifti
+        assert numpy.array_equal(geometry.direction, numpy.eye(3))
+    (tmp_path / ("a.hdr" + packed)).unlink()
+    refused(tmp_path / ("a.img" + packed), "the other is not beside it")
+
+
+def test_a_slice_of_dicom_may_be_called_img(tmp_path):
+    path = save(tmp_path / "a", stack(ramp("i2")[:1])) / "001.dcm"
+    assert numpy.array_equal(palpate.load(path.rename(tmp_path / "a.img")).volume.array, ramp("i2")[:1])
