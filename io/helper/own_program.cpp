@@ -76,6 +76,7 @@ const char* program_for_file(const fs::path& path) {
     if (extension == ".vti") return vtk;
     if (extension == ".tif" || extension == ".tiff") return images;
     if (has_dicom_name(path) || begins_as_dicom(path)) return dicom;
+    if (begins_as_tiff(path)) return images;
     if (extension.starts_with(".hdr") || extension.starts_with(".img")) {
         throw Failure(
             "is one of a pair of files (.hdr and .img), and the other is not beside it; put it "

@@ -316,3 +316,36 @@ def test_a_pair_of_header_and_image_is_one_volume(tmp_path, kind, order, packed)
 def test_a_slice_of_dicom_may_be_called_img(tmp_path):
     path = save(tmp_path / "a", stack(ramp("i2")[:1])) / "001.dcm"
     assert numpy.array_equal(palpate.load(path.rename(tmp_path / "a.img")).volume.array, ramp("i2")[:1])
+
+
+def grey_tiff(path, pages, bits, fill_order=1):
+    """Pages of 6x4 samples of so many bits, as they are."""
+    data = b"II*\0" + struct.pack("<I", 8)
+    for page in pages:
+        entries = {256: 6, 257: 4, 258: bits, 259: 1, 262: 1, 277: 1, 278: 4, 279: len(page), 266: fill_order}
+        entries[273] = len(data) + 2 + 12 * (len(entries) + 1) + 4
+        data += struct.pack("<H", len(entries)) + b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in
+                                                            sorted(entries.items()))
+        following = entries[273] + len(page)
+        data += struct.pack("<I", 0 if page is pages[-1] else following) + page
+    path.write_bytes(data)
+    return path
+
+
+# tifffile, Fiji: masks of one bit, and cameras of 10 and 12 bits, packed without a gap; rows begin at bytes.
+@pytest.mark.parametrize("bits", (1, 2, 4, 6, 10, 12, 14))
+def test_samples_of_any_number_of_bits_are_read(tmp_path, bits):
+    array = ramp("u2") * 67 % 2**bits
+    rows = [["".join(f"{sample:0{bits}b}" for sample in row) for row in plane] for plane in array]
+    pages = [b"".join(int(row.ljust(-len(row) % 8 + len(row), "0"), 2).to_bytes((len(row) + 7) // 8, "big") for row in plane)
+             for plane in rows]
+    assert numpy.array_equal(palpate.load(grey_tiff(tmp_path / "a.tif", pages, bits)).volume.array, array)
+    reverse = [bytes(int(f"{byte:08b}"[::-1], 2) for byte in page) for page in pages]
+    assert numpy.array_equal(palpate.load(grey_tiff(tmp_path / "b.tif", reverse, bits, 2)).volume.array, array)
+
+
+@pytest.mark.parametrize("name", ("a.lsm", "a.btf", "a.tf8", "a.data"))
+def test_a_tiff_of_another_name_is_known_by_its_bytes(tmp_path, name):
+    for big in (False, True):
+        tifffile.imwrite(tmp_path / name, ramp("i8"), photometric="minisblack", metadata=None, bigtiff=big, byteorder="><"[big])
+        assert numpy.array_equal(palpate.load(tmp_path / name).volume.array, ramp("i8"))
