@@ -8,9 +8,11 @@ import struct
 import nibabel
 import numpy
 import palpate
+import pydicom
 import pytest
 import tifffile
 import zarr
+from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
 
 from dicom_readers_test import frames_of
 from formats_test import n5_array
@@ -349,3 +351,47 @@ def test_a_tiff_of_another_name_is_known_by_its_bytes(tmp_path, name):
     for big in (False, True):
         tifffile.imwrite(tmp_path / name, ramp("i8"), photometric="minisblack", metadata=None, bigtiff=big, byteorder="><"[big])
         assert numpy.array_equal(palpate.load(tmp_path / name).volume.array, ramp("i8"))
+
+
+def region(units=3, x=0.02, y=-0.03):
+    part = Dataset()
+    part.PhysicalUnitsXDirection = part.PhysicalUnitsYDirection = units
+    part.PhysicalDeltaX, part.PhysicalDeltaY = x, y
+    return part
+
+
+# OHIF 202, VolView 863: ultrasound has the size of its pixels with its regions.
+@pytest.mark.parametrize("regions, spacing, note", (
+    ([region()], (0.2, 0.3), "of its ultrasound regions"), ([region(4), region()], (0.2, 0.3), "of its ultrasound regions"),
+    ([region(), region(x=0.05)], (1, 1), "different sizes"), ([region(4)], (1, 1), "no pixel spacing")))
+def test_pixels_of_ultrasound_have_the_size_of_their_region(tmp_path, regions, spacing, note):
+    changes = {"PixelSpacing": None, "SequenceOfUltrasoundRegions": regions, "Modality": "US"}
+    folder = save(tmp_path / "a", [slice_of(ramp("u1")[0], 1, (1, 2, 3), **changes)])
+    assert numpy.allclose(noted(folder, note).geometry.spacing[:2], spacing)
+
+
+def test_values_of_pet_have_the_units_of_their_tag(tmp_path):
+    change = lambda i: {"Modality": "PT", "Units": "BQML", "RescaleSlope": 1 + i}
+    assert palpate.load(save(tmp_path / "a", stack(ramp("i2"), change=change))).values["units"] == "BQML"
+
+
+# dcm2niix: reports of a scanner and spectra lie beside the images; numbers that no image needs may be words.
+def test_objects_without_an_image_beside_slices_are_passed_over(tmp_path):
+    change = lambda i: {"InstanceNumber": None, "RescaleSlope": [2, 2]}
+    slices = stack(ramp("i2"), change=change)
+    for i, data in enumerate(slices):
+        data.add(pydicom.DataElement(0x00200013, "LO", f"A{i}"))
+        data.add(pydicom.DataElement(0x00200012, "LO", "one"))
+    folder = tmp_path / "a"
+    folder.mkdir()
+    report, spectrum = Dataset(), slice_of(ramp("i2")[0], 1, (1, 2, 3), PixelData=None)
+    report.SOPClassUID, report.SOPInstanceUID, report.SeriesInstanceUID = "1.3.12.2.1107.5.9.1", "1.2.9", "1.2.10"
+    spectrum.SOPClassUID = "1.2.840.10008.5.1.4.1.1.4.2"
+    for i, data in enumerate((*slices, report, spectrum)):
+        meta = FileMetaDataset()
+        meta.MediaStorageSOPClassUID, meta.MediaStorageSOPInstanceUID = data.SOPClassUID, data.SOPInstanceUID
+        meta.TransferSyntaxUID = "1.2.840.10008.1.2.1"
+        file = FileDataset(str(folder / f"{i}.dcm"), data, file_meta=meta, preamble=bytes(128))
+        file.is_little_endian, file.is_implicit_VR = True, False
+        file.save_as(file.filename, write_like_original=False)
+    assert numpy.array_equal(palpate.load(folder).volume.array, ramp("i2") * 2)
