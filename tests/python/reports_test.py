@@ -395,3 +395,12 @@ def test_objects_without_an_image_beside_slices_are_passed_over(tmp_path):
         file.is_little_endian, file.is_implicit_VR = True, False
         file.save_as(file.filename, write_like_original=False)
     assert numpy.array_equal(palpate.load(folder).volume.array, ramp("i2") * 2)
+
+
+# assimp, Blender: a text of Windows may begin with a byte order mark, in front of the first vertex.
+def test_a_byte_order_mark_does_not_hide_the_first_vertex_of_an_obj_file(tmp_path):
+    text = "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nv 50 50 50\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+    (tmp_path / "a.obj").write_text(text)
+    (tmp_path / "b.obj").write_text("\ufeff" + text, encoding="utf-8")
+    plain, marked = (palpate.read_mesh(tmp_path / name) for name in ("a.obj", "b.obj"))
+    assert numpy.array_equal(plain.vertices, marked.vertices) and len(marked.vertices) == 5
