@@ -351,10 +351,11 @@ void read_frames(const std::filesystem::path& file, const std::vector<int>& fram
 }
 
 bool has_no_image(const std::string& sop_class) {
-    static const char* const storage = "1.2.840.10008.5.1.4.1.1.";
-    if (sop_class == "1.2.840.10008.1.3.10") return true;  // DICOMDIR
-    for (const char* kind : {"9.", "11.", "66", "88.", "104.", "481."}) {
-        if (sop_class.rfind(storage + std::string(kind), 0) == 0) return true;
+    static const std::string storage = "1.2.840.10008.5.1.4.1.1.";
+    // A DICOMDIR, a protocol, or a private class, as scanners write them beside their images.
+    if (!sop_class.starts_with(storage)) return true;
+    for (const char* kind : {"9.", "11.", "66", "67", "88.", "104.", "481."}) {
+        if (sop_class.starts_with(storage + kind)) return true;
     }
     return false;
 }

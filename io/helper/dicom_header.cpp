@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <utility>
 
@@ -20,14 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr DicomTag groups_of_frames{0x5200, 0x9230};
 constexpr DicomTag position_tag{0x0020, 0x0032}, orientation_tag{0x0020, 0x0037},
     pixel_tag{0x0028, 0x0030}, thickness_tag{0x0018, 0x0050}, between_tag{0x0018, 0x0088},
     intercept_tag{0x0028, 0x1052}, slope_tag{0x0028, 0x1053};
 
-/// The number of a tag that has one; nothing if it is not there.
+/// The number of a tag that has one, or one again and again; nothing if it is not there.
 std::vector<double> one_number(const DicomGroup& group, DicomTag tag, const std::string& name) {
     const auto numbers = group.numbers(tag);
-    if (numbers.size() <= 1) return numbers;
+    if (std::ranges::adjacent_find(numbers, std::ranges::not_equal_to()) == numbers.end()) {
+        return numbers;
+    }
     throw Failure("its DICOM tag " + name + " has " + std::to_string(numbers.size()) +
                   " numbers instead of 1; correct it");
 }
@@ -48,6 +52,30 @@ void set_place(DicomSlice& s, const std::vector<double>& p, const std::vector<do
 
 void set_place(DicomSlice& s, const DicomGroup& group) {
     set_place(s, group.numbers(position_tag), group.numbers(orientation_tag));
+}
+
+/// Ultrasound has the size of pixels with each region of the image (PS3.3 C.8.5.5), in cm.
+void set_pixel_of_region(DicomSlice& s, const DicomGroup& data) {
+    constexpr std::uint32_t centimetres = 3;
+    std::optional<Vec3> pixel;
+    for (const DicomGroup& region : data.items({0x0018, 0x6011})) {
+        const auto along_x = region.counts({0x0018, 0x6024}),
+                   along_y = region.counts({0x0018, 0x6026});
+        if (along_x != std::vector{centimetres} || along_y != along_x) continue;  // no lengths
+        const Vec3 size(10 * std::abs(region.real({0x0018, 0x602c})),
+                        10 * std::abs(region.real({0x0018, 0x602e})), 0);
+        if (!(size.head<2>().minCoeff() >= least_length && size.maxCoeff() <= greatest_length)) {
+            continue;
+        }
+        if (pixel && *pixel != size) {
+            add_note(s.notes, "its regions have pixels of different sizes, which were not used");
+            return;
+        }
+        pixel = size;
+    }
+    if (!pixel) return;
+    s.pixel = pixel;
+    add_note(s.notes, "its pixel spacing is that of its ultrasound regions");
 }
 
 void set_pixel(DicomSlice& s, const DicomGroup& measures) {
@@ -74,6 +102,7 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
         if (tag != pixel_tag) add_note(s.notes, std::string("its pixel spacing is that ") + where);
         break;
     }
+    if (!s.pixel && !measures.has(groups_of_frames)) set_pixel_of_region(s, measures);
     if (const auto shape = measures.numbers({0x0028, 0x0034}); shape.size() == 2) {
         s.aspect = shape[0] / shape[1];
         check_spacing(s.aspect, "DICOM tag PixelAspectRatio");
@@ -161,7 +190,7 @@ DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGr
 }
 
 std::vector<DicomSlice> enhanced_frames(const DicomSlice& file, const DicomGroup& data) {
-    const auto frames = data.items({0x5200, 0x9230});
+    const auto frames = data.items(groups_of_frames);
     if (frames.size() != static_cast<std::size_t>(file.frames)) {
         throw Failure(quoted(file.file) + " has " + std::to_string(file.frames) +
                       " frames, and describes " + std::to_string(frames.size()) +
@@ -336,6 +365,7 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     set_pixel(s, data);
     if (s.values.modality == "CT") s.values.units = "HU";
     set_rescale(s, data);
+    if (s.values.units.empty()) s.values.units = data.text({0x0054, 0x1001});  // of PET
     set_window(s, data);
     set_padding(s, data);
     set_table(s, data);
@@ -372,6 +402,7 @@ std::vector<DicomSlice> slices_of(const fs::path& file) {
     const DicomExtent extent = check_dicom(file);
     // Reports, plans and the folder's index have no rows; an image that has none is cut off.
     if (extent.rows < 1 && has_no_image(extent.sop_class)) return {};
+    if (extent.sop_class == "1.2.840.10008.5.1.4.1.1.4.2") return {};  // spectra in rows
     if (extent.rows < 1 || extent.columns < 1) {
         throw Failure(quoted(file) +
                       " gives no size of its image; it is cut off or damaged: copy "
@@ -397,7 +428,7 @@ std::vector<DicomSlice> slices_of(const fs::path& file) {
         throw Failure(quoted(file) +
                       " is a mosaic of slices; convert it to NIfTI (dcm2niix) and give that file");
     }
-    if (data.has({0x5200, 0x9230})) return enhanced_frames(slice, data);
+    if (data.has(groups_of_frames)) return enhanced_frames(slice, data);
     return slice.frames == 1 ? std::vector{slice} : plain_frames(slice, data);
 }
 

@@ -79,7 +79,11 @@ void set_kind(DicomSlice& s, const DicomGroup& data) {
 /// What orders the images of one place in one series.
 void set_moment(DicomSlice& s, const DicomGroup& data) {
     const double none = std::numeric_limits<double>::quiet_NaN();
-    const double number = data.number({0x0020, 0x0013}, 0);
+    const auto number_of = [&](DicomTag tag) {
+        const double number = data.optional_number(tag);
+        return std::isnan(number) ? 0 : number;
+    };
+    const double number = number_of({0x0020, 0x0013});
     s.instance = static_cast<int>(number);
     s.keys.assign(first_dimension, none);
     if (s.frames > 1) s.keys[file_number] = number;
@@ -92,7 +96,7 @@ void set_moment(DicomSlice& s, const DicomGroup& data) {
             moment_of(data.text({0x0008, 0x0022}), data.text({0x0008, 0x0032}));
     }
     s.keys[content_time] = moment_of(data.text({0x0008, 0x0023}), data.text({0x0008, 0x0033}));
-    s.keys[acquisition_number] = data.number({0x0020, 0x0012}, 0);
+    s.keys[acquisition_number] = number_of({0x0020, 0x0012});
     s.keys[frame_number] = number;
 }
 

@@ -69,7 +69,13 @@ Result read_by_header(const Request& request) {
 
 VolumeHeader locate_by_header(const Request& request) {
     VolumeHeader header = header_reader(request.path)(request);
-    if (header.place.encoding != DataPlace::Encoding::raw) {
+    if (header.places.size() > 1) {
+        throw OnlyWhole(
+            "its samples are spread over several files, so they cannot be read piece by piece; "
+            "convert it to OME-Zarr");
+    }
+    DataPlace& place = header.places.front();
+    if (place.encoding != DataPlace::Encoding::raw) {
         throw OnlyWhole(
             "its samples are compressed or text, so they cannot be read piece by piece; save it "
             "uncompressed, or convert it to OME-Zarr");
@@ -81,7 +87,7 @@ VolumeHeader locate_by_header(const Request& request) {
             "volume of it");
     }
     check_raw_length(header);
-    header.place.offset += header.place.skip;
+    place.offset += place.skip;
     put_in(request.grid, header.geometry);
     check_geometry(header.geometry);
     header.geometry = orthonormal(header.geometry);

@@ -1,11 +1,52 @@
 // Shared by the readers of headers: fields, lists of numbers, spacings.
 #include "io/helper/headers.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "io/system/number.hpp"
 
 namespace palpate::io {
+namespace {
+
+constexpr std::size_t most_files = 1 << 16;
+
+/// "a%03d.raw 1 9 2": files that are named by their numbers.
+struct FilePattern {
+    std::string before, after;
+    std::size_t width = 0;
+    char fill = ' ';
+    int first = 0, last = 0, step = 0;
+};
+
+std::optional<FilePattern> pattern_in(const std::string& name) {
+    std::istringstream words(name);
+    FilePattern pattern;
+    std::string file;
+    if (!(words >> file >> pattern.first >> pattern.last >> pattern.step)) return std::nullopt;
+    const std::size_t at = file.find('%');
+    const std::size_t letter = at == file.npos ? at : file.find_first_not_of("0123456789", at + 1);
+    if (letter == file.npos || file[letter] != 'd') return std::nullopt;
+    const std::string width = file.substr(at + 1, letter - at - 1);
+    pattern.before = file.substr(0, at);
+    pattern.after = file.substr(letter + 1);
+    pattern.width = number_from<unsigned char>(width).value_or(0);
+    if (width.starts_with('0')) pattern.fill = '0';
+    const std::int64_t most = std::int64_t{1} << 30;
+    if (pattern.step == 0 ||
+        std::max({std::abs(std::int64_t{pattern.first}), std::abs(std::int64_t{pattern.last}),
+                  std::abs(std::int64_t{pattern.step})}) > most) {
+        throw Failure("its numbers of data files make no sense; correct the header");
+    }
+    return pattern;
+}
+
+}  // namespace
 
 std::string HeaderFields::value(const std::string& name) const {
     const auto found = values.find(name);
@@ -26,8 +67,23 @@ std::uint64_t VolumeHeader::samples() const {
 }
 
 std::string extension_of(const std::filesystem::path& path) {
-    const std::string name = lower(path.filename().string());
-    return name.ends_with(".nii.gz") ? ".nii.gz" : lower(path.extension().string());
+    const std::string last = lower(path.extension().string());
+    return last == ".gz" ? lower(path.stem().extension().string()) + last : last;
+}
+
+std::filesystem::path other_half(const std::filesystem::path& path) {
+    const std::string extension = extension_of(path);
+    const bool is_header = extension == ".hdr" || extension == ".hdr.gz";
+    if (!is_header && extension != ".img" && extension != ".img.gz") return {};
+    std::string name = path.string();
+    name.resize(name.size() - extension.size());
+    for (const std::string end : {".img", ".IMG", ".img.gz", ".hdr", ".HDR", ".hdr.gz"}) {
+        if (lower(end).starts_with(is_header ? ".img" : ".hdr") &&
+            std::filesystem::is_regular_file(name + end)) {
+            return name + end;
+        }
+    }
+    return {};
 }
 
 ReadHeader* header_reader(const std::filesystem::path& path) {
@@ -35,6 +91,7 @@ ReadHeader* header_reader(const std::filesystem::path& path) {
     if (extension == ".nrrd" || extension == ".nhdr") return &nrrd_header;
     if (extension == ".mha" || extension == ".mhd") return &meta_image_header;
     if (extension == ".nii" || extension == ".nii.gz") return &nifti_header;
+    if (!other_half(path).empty()) return &nifti_header;
     return nullptr;
 }
 
@@ -77,19 +134,54 @@ std::int64_t whole_number_in(const std::string& text, const std::string& field, 
     return static_cast<std::int64_t>(numbers[0]);
 }
 
-bool names_several_files(const std::string& name) {
-    if (name.starts_with("LIST") && name.find_first_not_of(" \t0123456789", 4) == name.npos) {
-        return true;
-    }
-    for (std::size_t at = 0; (at = name.find('%', at)) != name.npos; ++at) {
-        const std::size_t letter = name.find_first_not_of("0123456789", at + 1);
-        if (letter == name.npos || name[letter] != 'd') continue;
-        const std::size_t last = name.find_last_not_of("-0123456789");
-        if (last != name.npos && last > letter && last + 1 < name.size() && name[last] == ' ') {
-            return true;
+bool is_list(const std::string& name) {
+    return name.starts_with("LIST") && name.find_first_not_of(" \t0123456789", 4) == name.npos;
+}
+
+std::vector<std::filesystem::path> data_files(const std::string& name, const HeaderFields& fields,
+                                              const std::filesystem::path& header) {
+    std::vector<std::filesystem::path> files;
+    const auto add = [&](const std::string& file) {
+        files.push_back(header.parent_path() / file);
+        if (files.size() > most_files)
+            throw Failure("it has more than 65536 data files; save it as one");
+    };
+    if (is_list(name)) {
+        std::ifstream in(header, std::ios::binary);
+        in.seekg(static_cast<std::streamoff>(fields.data_offset));
+        for (std::string line; std::getline(in, line);) {
+            if (!trimmed(line).empty()) add(trimmed(line));
         }
+        if (files.empty()) throw Failure("its list of data files is empty; correct the header");
+    } else if (const auto pattern = pattern_in(name)) {
+        const auto [before, after, width, fill, first, last, step] = *pattern;
+        for (int i = first; step > 0 ? i <= last : i >= last; i += step) {
+            const std::string digits = std::to_string(i);
+            add(before + std::string(width - std::min(width, digits.size()), fill) + digits +
+                after);
+        }
+    } else {
+        add(name);
     }
-    return false;
+    return files;
+}
+
+std::uint64_t file_bytes(const VolumeHeader& header) {
+    std::uint64_t slices = 1, bytes = 0;
+    for (std::size_t a = 2; a < header.sizes.size(); ++a) {
+        slices *= static_cast<std::uint64_t>(header.sizes[a]);
+    }
+    const std::size_t files = header.places.size();
+    if (slices % files != 0) {
+        throw Failure("its header names " + std::to_string(files) + " data files for " +
+                      std::to_string(slices) + " slices; correct the header");
+    }
+    for (const DataPlace& place : header.places) {
+        std::error_code error;
+        const std::uint64_t size = std::filesystem::file_size(place.file, error);
+        bytes += error ? 0 : size;
+    }
+    return bytes;
 }
 
 }  // namespace palpate::io

@@ -42,7 +42,8 @@ struct VolumeHeader {
     std::vector<std::string> notes;
     FrameTimes times;  ///< of a file with several volumes
     Geometry geometry;
-    DataPlace place;
+    /// Where the samples lie; in several files, one behind the other, as many in each.
+    std::vector<DataPlace> places{1};
     std::int64_t steps = 1;  ///< volumes in the file
     /// Samples of one volume that lie together, before those of the next volume: the whole volume
     /// where the volumes follow each other, 1 where the axis that counts them is the first.
@@ -51,6 +52,7 @@ struct VolumeHeader {
 
     std::uint64_t samples() const;  ///< of all volumes
     std::uint64_t bytes() const { return samples() * size_of(stored); }
+    std::uint64_t bytes_each() const { return bytes() / places.size(); }  ///< of a file
 };
 
 VolumeHeader nrrd_header(const Request& request);
@@ -60,7 +62,11 @@ VolumeHeader nifti_header(const Request& request);
 using ReadHeader = VolumeHeader(const Request& request);
 ReadHeader* header_reader(const std::filesystem::path& path);
 
-/// In lower case; of a.nii.gz both.
+/// The other file of a pair of NIfTI or Analyze, a.hdr and a.img, which may be packed; empty if
+/// there is none.
+std::filesystem::path other_half(const std::filesystem::path& path);
+
+/// In lower case; of a.nii.gz both, which are packed.
 std::string extension_of(const std::filesystem::path& path);
 
 /// Throws Failure unless the file has the bytes that raw samples take. Up to 4096 more give a note,
@@ -80,8 +86,14 @@ std::vector<std::int64_t> sizes_in(const std::string& text, const std::string& f
 /// The same for a field of one whole number of at least `least`.
 std::int64_t whole_number_in(const std::string& text, const std::string& field, double least);
 
-/// Whether a header's name of its data file stands for several: "LIST", "LIST 2", or a pattern with
-/// %d in it.
-bool names_several_files(const std::string& name);
+/// Whether the name of a data file says that a list of them follows.
+bool is_list(const std::string& name);
+/// The data files that a header names: one, those of a pattern such as "a%03d.raw 1 9 2", or after
+/// "LIST" those of the lines in the header from `fields.data_offset` on.
+std::vector<std::filesystem::path> data_files(const std::string& name, const HeaderFields& fields,
+                                              const std::filesystem::path& header);
+/// The bytes of all data files; a missing one has none, which reading them says. Throws Failure
+/// unless each may have as many slices.
+std::uint64_t file_bytes(const VolumeHeader& header);
 
 }  // namespace palpate::io

@@ -65,6 +65,17 @@ bool has_dicom_index(const fs::path& folder) {
     return false;
 }
 
+bool begins_as_tiff(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::string start(4, ' ');
+    in.read(start.data(), 4);
+    for (const char version : {'*', '+'}) {  // classic and BigTIFF
+        if (start == std::string{'I', 'I', version, '\0'}) return true;
+        if (start == std::string{'M', 'M', '\0', version}) return true;
+    }
+    return false;
+}
+
 bool looks_like_tiff(const fs::path& file) {
     const std::string extension = lower(file.extension().string());
     return extension == ".tif" || extension == ".tiff";

@@ -37,7 +37,7 @@ void check_length_of_stl(const std::filesystem::path& path) {
     const std::string text(head, static_cast<std::size_t>(in.gcount()));
     // A text begins with this word, perhaps behind blanks, and so does the free header of some
     // binary files, which have bytes in it that no text has.
-    const std::size_t word = std::min(text.find_first_not_of(" \t\r\n"), text.size());
+    const std::size_t word = std::min(text.find_first_not_of(" \t\r\n\xef\xbb\xbf"), text.size());
     if (lower(text.substr(word, 5)) == "solid" && text.find('\0') == std::string::npos) return;
     if (text.size() < head_bytes) throw Failure("is too short for an STL file; copy it again");
     std::uint32_t count = 0;
@@ -73,9 +73,10 @@ vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::stri
                   "' names a vertex that is not there; export it again");
 }
 
-/// The next line of an OBJ file without its comment. False at the end.
+/// The next line of an OBJ file without its comment and a byte order mark. False at the end.
 bool next_line(std::istream& in, std::string& line) {
     if (!std::getline(in, line)) return false;
+    if (line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
     line.resize(std::min(line.find_first_of("#\r"), line.size()));
     return true;
 }

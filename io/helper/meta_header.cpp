@@ -57,19 +57,11 @@ Stored stored_from(const std::string& type) {
     return found->second;
 }
 
-DataPlace place_of(const HeaderFields& fields, const std::filesystem::path& path) {
+std::vector<DataPlace> places_of(const HeaderFields& fields, const std::filesystem::path& path) {
     DataPlace place;
     const std::string name = fields.needed("elementdatafile");
-    if (lower(name) == "local") {
-        place.file = path;
-        place.offset = fields.data_offset;
-    } else if (names_several_files(name)) {
-        throw Failure(
-            "its samples are spread over several files, which is not read; save it as "
-            "one file (.mha)");
-    } else {
-        place.file = path.parent_path() / name;
-    }
+    const bool is_local = lower(name) == "local";
+    if (is_local) place.offset = fields.data_offset;
     if (fields.has("headersize")) {
         // -1: the samples are the end of the file; then any size that suffices is right.
         const auto skip = whole_number_in(fields.value("headersize"), "HeaderSize", -1);
@@ -97,7 +89,12 @@ DataPlace place_of(const HeaderFields& fields, const std::filesystem::path& path
     }
     const bool is_big = is_true(element) || is_true(data);
     place.swapped = is_big != (std::endian::native == std::endian::big);
-    return place;
+    std::vector<DataPlace> places;
+    for (const auto& file : is_local ? std::vector{path} : data_files(name, fields, path)) {
+        places.push_back(place);
+        places.back().file = file;
+    }
+    return places;
 }
 
 /// The first of these fields that is there, with `count` numbers; empty if none is. A note says it
@@ -184,18 +181,19 @@ VolumeHeader meta_image_header(const Request& request) {
         throw Failure("it has " + channels +
                       " values a sample (colours or vectors); give a volume with one");
     }
-    header.place = place_of(fields, request.path);
-    std::error_code error;
-    const auto file_bytes = std::filesystem::file_size(header.place.file, error);
-    const std::uint64_t bytes =
-        checked_bytes(header.sizes, size_of(header.stored), error ? 0 : file_bytes, request);
+    header.places = places_of(fields, request.path);
+    checked_bytes(header.sizes, size_of(header.stored), file_bytes(header), request);
     const bool at_end = fields.has("headersize") &&
                         whole_number_in(fields.value("headersize"), "HeaderSize", -1) == -1;
-    if (at_end && header.place.encoding != DataPlace::Encoding::raw) {
-        throw Failure("its HeaderSize of -1 is for raw samples only; correct the header");
-    }
-    if (at_end && !error && file_bytes >= bytes + header.place.offset) {
-        header.place.offset = file_bytes - bytes;
+    for (DataPlace& place : header.places) {
+        if (at_end && place.encoding != DataPlace::Encoding::raw) {
+            throw Failure("its HeaderSize of -1 is for raw samples only; correct the header");
+        }
+        std::error_code error;
+        const std::uint64_t size = std::filesystem::file_size(place.file, error);
+        if (at_end && !error && size >= header.bytes_each() + place.offset) {
+            place.offset = size - header.bytes_each();
+        }
     }
     for (std::size_t a = 3; a < header.sizes.size(); ++a) header.steps *= header.sizes[a];
     header.together = static_cast<std::int64_t>(header.samples()) / header.steps;

@@ -30,7 +30,9 @@ struct Header {
     std::array<std::byte, 540> bytes{};
     std::size_t size = 0;  ///< [bytes] that the file has of these
     bool swapped = false;
-    bool is_second = false;  ///< NIfTI-2
+    bool is_second = false;   ///< NIfTI-2
+    bool is_analyze = false;  ///< of the format before NIfTI, which has no place in the body
+    bool is_pair = false;     ///< the samples are in another file
 
     std::size_t header_bytes() const { return is_second ? 540 : 348; }
     template <class First, class Second>
@@ -44,9 +46,12 @@ struct Header {
     double real(NiftiField field, std::size_t index = 0) const {
         return number<float, double>(field, index);
     }
-    int code(NiftiField field) const { return number<std::int16_t, std::int32_t>(field); }
+    /// Of a transform.
+    int code(NiftiField field) const {
+        return is_analyze ? 0 : number<std::int16_t, std::int32_t>(field);
+    }
     int type(NiftiField field) const { return number<std::int16_t, std::int16_t>(field); }
-    int unit() const { return number<std::uint8_t, std::int32_t>(xyzt_units); }
+    int unit() const { return is_analyze ? 0 : number<std::uint8_t, std::int32_t>(xyzt_units); }
     std::string magic() const {
         const std::size_t at = is_second ? magic_field.second : magic_field.first;
         const auto* text = reinterpret_cast<const char*>(bytes.data()) + at;
@@ -74,7 +79,8 @@ Header read_header(const std::filesystem::path& path) {
     return header;
 }
 
-void check_kind(Header& header) {
+/// `is_pair`: by its name, the file is one of a pair.
+void check_kind(Header& header, bool is_pair) {
     const auto either_way = [&](std::int32_t number) {
         for (const bool swapped : {false, true}) {
             header.swapped = swapped;
@@ -91,8 +97,12 @@ void check_kind(Header& header) {
     if (!header.is_second && !either_way(348)) {
         throw Failure("is not a NIfTI file (its first number is not 348); check its name");
     }
-    if (header.magic() == "ni" + number) {
-        throw Failure("is one half of a .hdr/.img pair; save it as one .nii file");
+    const bool is_half = header.magic() == "ni" + number;
+    header.is_analyze = is_pair && !header.is_second && header.magic() != "n+1" && !is_half;
+    header.is_pair = header.is_analyze || (is_pair && is_half);
+    if (header.is_pair) return;
+    if (is_half) {
+        throw Failure("is one half of a .hdr/.img pair; name the header .hdr and the samples .img");
     }
     if (header.magic() != "n+" + number) {
         throw Failure("has no magic of NIfTI-" + number +
@@ -355,8 +365,10 @@ DataPlace place_of(const Header& header, const std::filesystem::path& path, std:
     const double offset = header.is_second
                               ? static_cast<double>(header.number<float, std::int64_t>(vox_offset))
                               : header.real(vox_offset);
-    const bool within = offset == 0 || (offset >= header_bytes && offset < whole_header);
-    if (!(within || (offset >= header_bytes && offset < 1e9)) || offset != std::floor(offset)) {
+    const bool within =
+        !header.is_pair && (offset == 0 || (offset >= header_bytes && offset < whole_header));
+    const double least = header.is_pair ? 0 : static_cast<double>(header_bytes);
+    if (!(within || (offset >= least && offset < 1e9)) || offset != std::floor(offset)) {
         throw Failure("its header puts the samples at byte " + text_of(offset) +
                       "; the header is damaged");
     }
@@ -378,23 +390,27 @@ DataPlace place_of(const Header& header, const std::filesystem::path& path, std:
 }  // namespace
 
 VolumeHeader nifti_header(const Request& request) {
-    Header bytes = read_header(request.path);
-    check_kind(bytes);
+    const std::filesystem::path other = other_half(request.path);
+    const bool is_image = !other.empty() && extension_of(request.path).starts_with(".img");
+    const std::filesystem::path& file = is_image ? other : request.path;
+    Header bytes = read_header(file);
+    check_kind(bytes, !other.empty());
+    const std::filesystem::path& samples = !bytes.is_pair ? file : is_image ? request.path : other;
     VolumeHeader header;
-    header.format = "NIfTI";
+    header.format = bytes.is_analyze ? "Analyze" : "NIfTI";
     header.stored = stored_from(bytes.type(datatype));
     const int bits = bytes.type(bitpix);  // some programs leave it out
     if (bits != 0 && bits != static_cast<int>(8 * size_of(header.stored))) {
         throw Failure("its header's bits a sample do not fit its type; the header is damaged");
     }
     header.sizes = sizes_of(bytes);
-    const std::uint64_t sample_bytes = checked_bytes(
-        header.sizes, size_of(header.stored), std::filesystem::file_size(request.path), request);
+    const std::uint64_t sample_bytes = checked_bytes(header.sizes, size_of(header.stored),
+                                                     std::filesystem::file_size(samples), request);
     if (header.sizes.size() > 4) {
         throw Failure("it has " + text_of(header.sizes) +
                       " samples in more than 4 axes (vectors?); save one volume of it");
     }
-    header.place = place_of(bytes, request.path, sample_bytes, header.notes);
+    header.places = {place_of(bytes, samples, sample_bytes, header.notes)};
     header.geometry = geometry_of(bytes, header.notes);
     header.value_map = values_of(bytes, header.notes);
     if (header.sizes.size() == 4) {

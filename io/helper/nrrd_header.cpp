@@ -75,10 +75,12 @@ HeaderFields read_fields(const std::filesystem::path& path) {
             continue;
         }
         const std::string name = field_named(lower(trimmed(text.substr(0, colon))));
-        if (!fields.values.emplace(name, trimmed(text.substr(colon + 1))).second) {
+        const std::string value = trimmed(text.substr(colon + 1));
+        if (!fields.values.emplace(name, value).second) {
             throw Failure("its header has the field '" + name.substr(0, 40) +
                           "' twice; remove the wrong one");
         }
+        if (name == "data file" && is_list(value)) break;
     }
     if (in) fields.data_offset = static_cast<std::uint64_t>(in.tellg());
     if (!in && !fields.has("data file")) {
@@ -111,20 +113,9 @@ Stored stored_from(const std::string& type) {
     return found->first;
 }
 
-DataPlace place_of(const HeaderFields& fields, const std::filesystem::path& path) {
+std::vector<DataPlace> places_of(const HeaderFields& fields, const std::filesystem::path& path) {
     DataPlace place;
-    place.file = path;
-    place.offset = fields.data_offset;
-    if (fields.has("data file")) {
-        const std::string name = fields.value("data file");
-        if (names_several_files(name)) {
-            throw Failure(
-                "its samples are spread over several files, which is not read; save it as one "
-                "(unu save -f nrrd)");
-        }
-        place.file = path.parent_path() / name;
-        place.offset = 0;
-    }
+    place.offset = fields.has("data file") ? 0 : fields.data_offset;
     const std::string encoding = lower(fields.needed("encoding"));
     if (encoding == "gzip" || encoding == "gz") {
         place.encoding = DataPlace::Encoding::compressed;
@@ -134,7 +125,14 @@ DataPlace place_of(const HeaderFields& fields, const std::filesystem::path& path
         throw Failure("its encoding '" + encoding +
                       "' is not read; save it with gzip or raw (unu save -e gzip)");
     }
-    return place;
+    std::vector<DataPlace> places;
+    for (const auto& file : fields.has("data file")
+                                ? data_files(fields.value("data file"), fields, path)
+                                : std::vector{path}) {
+        places.push_back(place);
+        places.back().file = file;
+    }
+    return places;
 }
 
 /// "line skip" and "byte skip"; a byte skip of -1 means that the samples are the file's end.
@@ -218,13 +216,12 @@ VolumeHeader nrrd_header(const Request& request) {
         header.sizes.empty()) {
         throw Failure("its header's dimension and sizes do not agree; correct the header");
     }
-    header.place = place_of(fields, request.path);
-    std::error_code error;
-    const auto file_bytes = std::filesystem::file_size(header.place.file, error);
-    const std::uint64_t bytes =
-        checked_bytes(header.sizes, size_of(header.stored), error ? 0 : file_bytes, request);
-    apply_skips(fields, bytes, header.place);
-    header.place.swapped = is_swapped(fields, header.stored, header.place);
+    header.places = places_of(fields, request.path);
+    checked_bytes(header.sizes, size_of(header.stored), file_bytes(header), request);
+    for (DataPlace& place : header.places) {
+        apply_skips(fields, header.bytes_each(), place);
+        place.swapped = is_swapped(fields, header.stored, place);
+    }
     take_axes(fields, header);
     note_ignored(fields, header.notes);
     header.values.labels = labels_of(fields, request.time_step);

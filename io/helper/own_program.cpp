@@ -76,12 +76,16 @@ const char* program_for_file(const fs::path& path) {
     if (extension == ".vti") return vtk;
     if (extension == ".tif" || extension == ".tiff") return images;
     if (has_dicom_name(path) || begins_as_dicom(path)) return dicom;
-    if (extension == ".hdr" || extension == ".img") {
+    if (begins_as_tiff(path)) return images;
+    if (extension.starts_with(".hdr") || extension.starts_with(".img")) {
         throw Failure(
-            "is one of a pair of files (.hdr and .img), which is not read; save the pair as one "
-            ".nii file (3D Slicer does)");
+            "is one of a pair of files (.hdr and .img), and the other is not beside it; put it "
+            "there, or save the pair as one .nii file");
     }
-    if (extension == ".zip") throw Failure("is packed; unpack it and give what is in it");
+    for (const char* packed : {".zip", ".gz", ".bz2", ".xz", ".7z", ".tar", ".ozx"}) {
+        if (!extension.ends_with(packed)) continue;
+        throw Failure("is packed; unpack it and give what is in it");
+    }
     throw Failure(
         "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, dcm, tif, vti); if "
         "it holds nothing but samples, give its dims and type");

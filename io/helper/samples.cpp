@@ -22,12 +22,15 @@ constexpr int longest_word = 512;  // a double has up to some 320 digits
 /// machine's order and says how far it is.
 class SampleBytes {
   public:
-    SampleBytes(const VolumeHeader& header, const ByteSink& sink)
+    /// `place`: one of the header's.
+    SampleBytes(const VolumeHeader& header, const DataPlace& place, const ByteSink& sink)
         : sample_bytes_(size_of(header.stored)),
-          begin_(header.place.skip),
-          end_(header.place.skip + header.bytes()),
-          swapped_(header.place.swapped),
-          sink_(sink) {}
+          begin_(place.skip),
+          end_(place.skip + header.bytes_each()),
+          swapped_(place.swapped),
+          sink_(sink),
+          before_(static_cast<double>(&place - header.places.data())),
+          files_(static_cast<double>(header.places.size())) {}
 
     void operator()(std::span<const std::byte> bytes) {
         const std::uint64_t begin = std::clamp(begin_, seen_, seen_ + bytes.size());
@@ -46,13 +49,14 @@ class SampleBytes {
         const double part = std::min(1.0, static_cast<double>(seen_) / static_cast<double>(end_));
         if (part < told_ + 0.02) return;
         told_ = part;
-        say_progress(part);
+        say_progress((before_ + part) / files_);
     }
 
     std::size_t sample_bytes_;
     std::uint64_t begin_, end_;
     bool swapped_;
     const ByteSink& sink_;
+    double before_, files_;
     std::vector<std::byte> held_;
     std::uint64_t seen_ = 0;
     double told_ = 0;
@@ -132,17 +136,17 @@ class CommasSeen {
 };
 
 /// Numbers of a text, all of them counted, as many as the header says converted.
-void read_text(VolumeHeader& header, const ByteSink& sink) {
-    std::ifstream in(header.place.file, std::ios::binary);
-    in.seekg(static_cast<std::streamoff>(header.place.offset + header.place.skip));
+void read_text(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
+    std::ifstream in(place.file, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(place.offset + place.skip));
     in.imbue(std::locale(in.getloc(), new CommasAreBlank));
-    header.place.skip = 0;
-    header.place.swapped = false;
-    SampleBytes samples(header, sink);
+    place.skip = 0;
+    place.swapped = false;
+    SampleBytes samples(header, place, sink);
     std::vector<std::byte> bytes;
     std::uint64_t count = 0;
     CommasSeen commas;
-    const std::uint64_t wanted = header.samples();
+    const std::uint64_t wanted = header.samples() / header.places.size();
     for (std::string word; in >> std::setw(longest_word) >> word; ++count) {
         const auto number = number_from<double>(word);
         if (!number) {
@@ -176,14 +180,19 @@ std::uint64_t available_at(const DataPlace& place) {
     return file_bytes - std::min(place.offset, file_bytes);
 }
 
-void read_raw_bytes(VolumeHeader& header, const ByteSink& sink) {
-    const DataPlace& place = header.place;
-    check_raw_length(header);
-    SampleBytes samples(header, sink);
+void check_length(VolumeHeader& header, const DataPlace& place) {
+    const std::uint64_t available = available_at(place);
+    compare_samples(available - std::min(place.skip, available), header.bytes_each(),
+                    "bytes of samples", header.notes);
+}
+
+void read_raw_bytes(VolumeHeader& header, const DataPlace& place, const ByteSink& sink) {
+    check_length(header, place);
+    SampleBytes samples(header, place, sink);
     std::ifstream in(place.file, std::ios::binary);
     in.seekg(static_cast<std::streamoff>(place.offset));
     std::vector<std::byte> chunk(chunk_bytes);
-    for (std::uint64_t left = place.skip + header.bytes(); left > 0;) {
+    for (std::uint64_t left = place.skip + header.bytes_each(); left > 0;) {
         in.read(reinterpret_cast<char*>(chunk.data()),
                 static_cast<std::streamsize>(std::min<std::uint64_t>(left, chunk.size())));
         const auto got = static_cast<std::size_t>(in.gcount());
@@ -193,41 +202,50 @@ void read_raw_bytes(VolumeHeader& header, const ByteSink& sink) {
     }
 }
 
-void read_compressed(VolumeHeader& header, std::uint64_t available, const ByteSink& sink) {
-    const DataPlace& place = header.place;
+void read_compressed(VolumeHeader& header, const DataPlace& place, const ByteSink& sink) {
+    const std::uint64_t available = available_at(place);
     if (place.length != UINT64_MAX) {
         compare(available, place.length, "compressed bytes", padding_allowed, header.notes);
     }
-    SampleBytes samples(header, sink);
+    SampleBytes samples(header, place, sink);
     std::uint64_t unpacked = 0;
     try {
-        const std::uint64_t at_most = place.skip + header.bytes() + padding_allowed;
+        const std::uint64_t at_most = place.skip + header.bytes_each() + padding_allowed;
         unpacked =
             inflate_checked(place.file, {place.offset, place.length, at_most}, std::ref(samples));
     } catch (const DamagedStream& e) {
         throw Failure(std::string(e.what()) + "; copy or download it again");
     }
-    compare_samples(unpacked - std::min(place.skip, unpacked), header.bytes(), "bytes of samples",
-                    header.notes);
+    compare_samples(unpacked - std::min(place.skip, unpacked), header.bytes_each(),
+                    "bytes of samples", header.notes);
+}
+
+void stream_file(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
+    switch (place.encoding) {
+        case DataPlace::Encoding::raw:
+            return read_raw_bytes(header, place, sink);
+        case DataPlace::Encoding::compressed:
+            return read_compressed(header, place, sink);
+        case DataPlace::Encoding::text:
+            available_at(place);
+            return read_text(header, place, sink);
+    }
 }
 
 }  // namespace
 
 void check_raw_length(VolumeHeader& header) {
-    const std::uint64_t available = available_at(header.place);
-    compare_samples(available - std::min(header.place.skip, available), header.bytes(),
-                    "bytes of samples", header.notes);
+    for (const DataPlace& place : header.places) check_length(header, place);
 }
 
 void stream_samples(VolumeHeader& header, const ByteSink& sink) {
-    switch (header.place.encoding) {
-        case DataPlace::Encoding::raw:
-            return read_raw_bytes(header, sink);
-        case DataPlace::Encoding::compressed:
-            return read_compressed(header, available_at(header.place), sink);
-        case DataPlace::Encoding::text:
-            available_at(header.place);
-            return read_text(header, sink);
+    for (DataPlace& place : header.places) {
+        try {
+            stream_file(header, place, sink);
+        } catch (const Failure& e) {
+            if (header.places.size() == 1) throw;
+            throw Failure(quoted(place.file) + ": " + e.what());
+        }
     }
 }
 

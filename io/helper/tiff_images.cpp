@@ -60,6 +60,10 @@ Tiling tiling_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
     }
     Tiling tiling;
     tiling.page = page_of(tiff, file, notes);
+    if (tiling.page.is_packed()) {
+        throw Failure("its samples of " + std::to_string(tiling.page.bits) +
+                      " bits are not read by the tile; save it with 8 or 16 bits");
+    }
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &tiling.tile_width);
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &tiling.tile_height);
     if (tiling.page.width == 0 || tiling.page.height == 0 || tiling.tile_width == 0 ||

@@ -81,7 +81,7 @@ void check_shape(const nlohmann::json& told, const TiffPage& page, std::size_t p
 std::size_t planes_behind(TIFF* tiff, const fs::path& file, const TiffPage& page, double told) {
     std::uint16_t compression = COMPRESSION_NONE;
     TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
-    if (compression != COMPRESSION_NONE || TIFFIsTiled(tiff) != 0) return 1;
+    if (compression != COMPRESSION_NONE || TIFFIsTiled(tiff) != 0 || page.is_packed()) return 1;
     std::uint64_t end = TIFFGetStrileOffset(tiff, 0);
     if (end < TIFFCurrentDirOffset(tiff)) return 1;  // the directory would be taken for planes
     const double bytes =

@@ -12,8 +12,8 @@ Stored stored_from(std::uint16_t bits, std::uint16_t format, const fs::path& fil
                              : format == SAMPLEFORMAT_INT                                 ? "int"
                              : format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID ? "uint"
                                                                                           : "";
-    const auto stored = stored_named(kind + std::to_string(bits));
-    if (stored && (bits <= 32 || *stored == Stored::float64)) return *stored;
+    if (kind == "uint" && bits > 0 && bits < 16) return bits > 8 ? Stored::uint16 : Stored::uint8;
+    if (const auto stored = stored_named(kind + std::to_string(bits))) return *stored;
     throw Failure(quoted(file) + " has samples of " + std::to_string(bits) +
                   " bits of a kind that is not read; save it " +
                   (format == SAMPLEFORMAT_IEEEFP ? "as 32-bit float" : "with 8 or 16 bits"));
@@ -38,7 +38,7 @@ Tiff open_to_read(const fs::path& file, const std::string& more) {
 
 std::string text_of(const TiffPage& page) {
     return std::to_string(page.width) + "x" + std::to_string(page.height) + " of " +
-           name_of(page.stored) +
+           (page.is_packed() ? std::to_string(page.bits) + " bits" : name_of(page.stored)) +
            (page.orientation == ORIENTATION_TOPLEFT
                 ? ""
                 : " (Orientation " + std::to_string(page.orientation) + ")");
@@ -88,6 +88,7 @@ TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
                             " was not applied: rows and columns were taken as they are stored");
     }
     page.stored = stored_from(bits, format, file);
+    page.bits = bits;
     return page;
 }
 

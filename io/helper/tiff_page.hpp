@@ -11,8 +11,12 @@ namespace palpate::io {
 
 struct TiffPage {
     std::uint32_t width = 0, height = 0;
-    Stored stored = Stored::uint8;
+    Stored stored = Stored::uint8;                    ///< the narrowest type that holds `bits`
+    std::uint16_t bits = 8;                           ///< of a sample; rows begin at whole bytes
     std::uint16_t orientation = ORIENTATION_TOPLEFT;  ///< of its rows and columns; not applied
+    bool is_packed() const { return bits != 8 * size_of(stored); }
+    /// Those that so many samples of a row take.
+    std::size_t bytes_of(std::size_t samples) const { return (samples * bits + 7) / 8; }
     bool operator==(const TiffPage&) const = default;
 };
 

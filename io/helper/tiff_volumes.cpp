@@ -39,7 +39,7 @@ void check_deflate(TIFF* tiff, const fs::path& file, std::uint32_t piece, bool t
 }
 
 void read_strips(TIFF* tiff, const fs::path& file, const TiffPage& page, std::byte* to) {
-    const std::size_t row = page.width * size_of(page.stored);
+    const std::size_t row = page.bytes_of(page.width);
     std::uint32_t rows = page.height;
     TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &rows);
     rows = std::clamp<std::uint32_t>(rows, 1, page.height);
@@ -57,9 +57,9 @@ void read_tiles(TIFF* tiff, const fs::path& file, const TiffPage& page, std::byt
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &height);
     const std::int64_t sizes[] = {width, height};
-    const std::size_t sample = size_of(page.stored);
-    std::vector<std::byte> tile(checked_bytes(sizes, sample, UINT64_MAX, request));
-    const auto bytes = static_cast<tmsize_t>(tile.size());
+    std::vector<std::byte> tile(checked_bytes(sizes, size_of(page.stored), UINT64_MAX, request));
+    const std::size_t row = page.bytes_of(page.width), tile_row = page.bytes_of(width);
+    const auto bytes = static_cast<tmsize_t>(height * tile_row);
     if (TIFFTileSize(tiff) != bytes) fail_damaged_tiff(file);
     for (std::uint32_t y = 0; y < page.height; y += height) {
         for (std::uint32_t x = 0; x < page.width; x += width) {
@@ -69,9 +69,29 @@ void read_tiles(TIFF* tiff, const fs::path& file, const TiffPage& page, std::byt
                 fail_damaged_tiff(file);
             const std::size_t columns = std::min(width, page.width - x);
             for (std::uint32_t r = 0; r < std::min(height, page.height - y); ++r) {
-                std::memcpy(to + ((y + r) * std::size_t{page.width} + x) * sample,
-                            tile.data() + r * std::size_t{width} * sample, columns * sample);
+                std::memcpy(to + (y + r) * row + std::size_t{x} * page.bits / 8,
+                            tile.data() + r * tile_row, page.bytes_of(columns));
             }
+        }
+    }
+}
+
+/// Gives each sample bytes of its own. They lie bit behind bit, the highest first, whatever the
+/// order of bytes.
+void unpack_bits(const TiffPage& page, std::vector<std::byte>& samples) {
+    const std::vector<std::byte> packed = samples;
+    for (std::size_t i = 0; i < std::size_t{page.width} * page.height; ++i) {
+        const std::byte* const row = packed.data() + i / page.width * page.bytes_of(page.width);
+        unsigned value = 0;
+        for (std::size_t bit = i % page.width * page.bits, end = bit + page.bits; bit < end;
+             ++bit) {
+            value = value << 1 | (std::to_integer<unsigned>(row[bit / 8]) >> (7 - bit % 8) & 1);
+        }
+        const auto sample = static_cast<std::uint16_t>(value);
+        if (size_of(page.stored) == 1) {
+            samples[i] = static_cast<std::byte>(sample);
+        } else {
+            std::memcpy(samples.data() + 2 * i, &sample, 2);
         }
     }
 }
@@ -139,6 +159,7 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
             read_strips(tiff.get(), slice.file, page, page_samples.data());
         }
         if (!first_tiff_error().empty()) fail_damaged_tiff(slice.file);
+        if (page.is_packed()) unpack_bits(page, page_samples);
         const std::size_t count = std::size_t{page.width} * page.height;
         convert(page.stored, page_samples.data(), result.type,
                 samples.data() + i * count * size_of(result.type), count, layout.values);

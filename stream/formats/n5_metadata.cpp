@@ -195,7 +195,7 @@ ChunkedArray n5_array(const Json& attributes, const std::string& folder) {
     const auto stored = io::stored_named(type);
     if (!stored) {
         throw BadMetadata("its samples are of type '" + io::one_line(type.substr(0, 40)) +
-                          "', which cannot be felt; store it as integers or floats");
+                          "', which is not read; store it as integers, float32 or float64");
     }
     array.bytes.stored = *stored;
     array.bytes.swapped = std::endian::native == std::endian::little && array.bytes.size() > 1;

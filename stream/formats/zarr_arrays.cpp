@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 [[noreturn]] void refuse_type(const std::string& type) {
     throw BadMetadata("its samples are of type '" + type +
-                      "', which cannot be felt; store it as integers or floats");
+                      "', which is not read; store it as integers, float32 or float64");
 }
 
 /// "<u2", "|i1", ">f4"

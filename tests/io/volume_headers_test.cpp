@@ -71,7 +71,7 @@ TEST(nrrd, text_gzip_detached_and_skipped_data_are_read) {
     expect_counting(read_bytes(folder, "d.nhdr", plain_nrrd + percent));
     EXPECT_TRUE(contains(
         refusal_of(folder, "d.nhdr", plain_nrrd + replaced(percent, "done.bin", "d.bin 1 4 1")),
-        "several files"));
+        "'501.bin' cannot be read"));
     expect_counting(read_bytes(
         folder, "c.nhdr",
         std::string(plain_nrrd) + "encoding: raw\nbyte skip: -1\ndata file: data.bin\n"));
@@ -306,7 +306,7 @@ TEST(meta_image, headers_that_make_no_sense_are_refused) {
     EXPECT_TRUE(contains(refusal_of(folder, "b.mhd", plain + "ElementDataFile = no.raw\n"),
                          "'no.raw' cannot be read"));
     EXPECT_TRUE(contains(refusal_of(folder, "c.mhd", plain + "ElementDataFile = LIST\na\nb\n"),
-                         "several files"));
+                         "'a' cannot be read"));
 }
 
 TEST(nifti, slope_and_intercept_are_applied_and_said) {

@@ -1,19 +1,22 @@
 """Files of kinds that other programs got wrong, by their public bug reports. Each was made by hand, or by the program that
 writes such files, and is compared with the numbers it was made of."""
 
+import gzip
 import json
 import struct
 
 import nibabel
 import numpy
 import palpate
+import pydicom
 import pytest
 import tifffile
 import zarr
+from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
 
 from dicom_readers_test import frames_of
 from formats_test import n5_array
-from readers_test import SHAPE, noted, ramp, refused, save, slice_of
+from readers_test import SHAPE, noted, ramp, refused, save, slice_of, stack
 
 DOSE = {"Modality": "RTDOSE", "SOPClassUID": "1.2.840.10008.5.1.4.1.1.481.2", "DoseGridScaling": 0.01, "DoseUnits": "GY",
         "RescaleSlope": None, "RescaleIntercept": None}
@@ -259,3 +262,145 @@ def test_an_stl_text_may_begin_with_blanks(tmp_path):
     (tmp_path / "a.stl").write_text("\n  solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
                                     "endloop\nendfacet\nendsolid a\n")
     assert len(palpate.read_mesh(tmp_path / "a.stl").triangles) == 1
+
+
+# pynrrd 12, ITK's MetaIO: the samples of a header may be in several files, by a list or by numbers.
+@pytest.mark.parametrize("form", ("NRRD", "MetaImage"))
+@pytest.mark.parametrize("packed", (False, True))
+@pytest.mark.parametrize("names, step", (("LIST\n4.raw\n3.raw\n2.raw\n1.raw\n0.raw", -1), ("%d.raw 4 0 -1", -1), ("%02d.raw 0 4 1", 1),
+                                         ("LIST 2\n0.raw\n1.raw\n2.raw\n3.raw\n4.raw\n", 1)))
+def test_the_slices_of_a_header_may_be_in_several_files(tmp_path, form, packed, names, step):
+    for i, plane in enumerate(ramp("<i2")):
+        data = gzip.compress(plane.tobytes()) if packed else plane.tobytes()
+        for name in (f"{i}.raw", f"{i:02}.raw"):
+            (tmp_path / name).write_bytes(data)
+    path = tmp_path / ("a.nhdr" if form == "NRRD" else "a.mhd")
+    path.write_text("NRRD0004\ntype: short\ndimension: 3\nsizes: 6 4 5\nendian: little\nspacings: 2 3 4\n"
+                    f"encoding: {'gzip' if packed else 'raw'}\ndata file: {names}" if form == "NRRD" else
+                    "NDims = 3\nDimSize = 6 4 5\nElementSpacing = 2 3 4\nElementType = MET_SHORT\n"
+                    f"CompressedData = {packed}\nElementDataFile = {names}")
+    volume = palpate.load(path).volume
+    assert numpy.array_equal(volume.array, ramp("i2")[::step]) and numpy.array_equal(volume.geometry.spacing, (2, 3, 4))
+    (tmp_path / "3.raw").rename(tmp_path / "03.raw")
+    (tmp_path / "03.raw").write_bytes(bytes(5))
+    refused(path, "3.raw'")
+    path.write_text(path.read_text().replace("%d.raw 4 0 -1", "%d.raw 3 0 -1").replace("0 4 1", "0 3 1").replace("\n0.raw", ""))
+    refused(path, "4 data files for 5 slices")
+
+
+# nibabel 1004, vtk-dicom 96: pairs of files, of NIfTI and of the format before it, which does not place the body.
+@pytest.mark.parametrize("packed", ("", ".gz"))
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("kind", (nibabel.Nifti1Pair, nibabel.Nifti2Pair, nibabel.AnalyzeImage, nibabel.Spm2AnalyzeImage))
+def test_a_pair_of_header_and_image_is_one_volume(tmp_path, kind, order, packed):
+    header, affine = kind.header_class(endianness=order), numpy.diag([-2, -3, 4, 1])
+    header.set_data_dtype("i2")
+    image = kind(ramp("i2").T, affine, header)
+    nibabel.save(image, tmp_path / "a.img")
+    if kind is nibabel.Spm2AnalyzeImage:  # nibabel writes a slope of its own
+        data = bytearray((tmp_path / "a.hdr").read_bytes())
+        data[112:116] = struct.pack(order + "f", 0.5)
+        (tmp_path / "a.hdr").write_bytes(data)
+    for name in ("a.hdr", "a.img") if packed else ():
+        (tmp_path / (name + packed)).write_bytes(gzip.compress((tmp_path / name).read_bytes()))
+        (tmp_path / name).unlink()
+    is_nifti = "Nifti" in kind.__name__
+    for name in ("a.hdr", "a.img"):
+        loaded = palpate.load(tmp_path / (name + packed))
+        assert numpy.array_equal(loaded.volume.array, nibabel.load(tmp_path / ("a.img" + packed)).get_fdata().T)
+        geometry = loaded.volume.geometry
+        assert numpy.array_equal(geometry.spacing, (2, 3, 4)) and geometry.oriented == is_nifti
+        assert numpy.array_equal(geometry.direction, numpy.eye(3))
+    (tmp_path / ("a.hdr" + packed)).unlink()
+    refused(tmp_path / ("a.img" + packed), "the other is not beside it")
+
+
+def test_a_slice_of_dicom_may_be_called_img(tmp_path):
+    path = save(tmp_path / "a", stack(ramp("i2")[:1])) / "001.dcm"
+    assert numpy.array_equal(palpate.load(path.rename(tmp_path / "a.img")).volume.array, ramp("i2")[:1])
+
+
+def grey_tiff(path, pages, bits, fill_order=1):
+    """Pages of 6x4 samples of so many bits, as they are."""
+    data = b"II*\0" + struct.pack("<I", 8)
+    for page in pages:
+        entries = {256: 6, 257: 4, 258: bits, 259: 1, 262: 1, 277: 1, 278: 4, 279: len(page), 266: fill_order}
+        entries[273] = len(data) + 2 + 12 * (len(entries) + 1) + 4
+        data += struct.pack("<H", len(entries)) + b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in
+                                                            sorted(entries.items()))
+        following = entries[273] + len(page)
+        data += struct.pack("<I", 0 if page is pages[-1] else following) + page
+    path.write_bytes(data)
+    return path
+
+
+# tifffile, Fiji: masks of one bit, and cameras of 10 and 12 bits, packed without a gap; rows begin at bytes.
+@pytest.mark.parametrize("bits", (1, 2, 4, 6, 10, 12, 14))
+def test_samples_of_any_number_of_bits_are_read(tmp_path, bits):
+    array = ramp("u2") * 67 % 2**bits
+    rows = [["".join(f"{sample:0{bits}b}" for sample in row) for row in plane] for plane in array]
+    pages = [b"".join(int(row.ljust(-len(row) % 8 + len(row), "0"), 2).to_bytes((len(row) + 7) // 8, "big") for row in plane)
+             for plane in rows]
+    assert numpy.array_equal(palpate.load(grey_tiff(tmp_path / "a.tif", pages, bits)).volume.array, array)
+    reverse = [bytes(int(f"{byte:08b}"[::-1], 2) for byte in page) for page in pages]
+    assert numpy.array_equal(palpate.load(grey_tiff(tmp_path / "b.tif", reverse, bits, 2)).volume.array, array)
+
+
+@pytest.mark.parametrize("name", ("a.lsm", "a.btf", "a.tf8", "a.data"))
+def test_a_tiff_of_another_name_is_known_by_its_bytes(tmp_path, name):
+    for big in (False, True):
+        tifffile.imwrite(tmp_path / name, ramp("i8"), photometric="minisblack", metadata=None, bigtiff=big, byteorder="><"[big])
+        assert numpy.array_equal(palpate.load(tmp_path / name).volume.array, ramp("i8"))
+
+
+def region(units=3, x=0.02, y=-0.03):
+    part = Dataset()
+    part.PhysicalUnitsXDirection = part.PhysicalUnitsYDirection = units
+    part.PhysicalDeltaX, part.PhysicalDeltaY = x, y
+    return part
+
+
+# OHIF 202, VolView 863: ultrasound has the size of its pixels with its regions.
+@pytest.mark.parametrize("regions, spacing, note", (
+    ([region()], (0.2, 0.3), "of its ultrasound regions"), ([region(4), region()], (0.2, 0.3), "of its ultrasound regions"),
+    ([region(), region(x=0.05)], (1, 1), "different sizes"), ([region(4)], (1, 1), "no pixel spacing")))
+def test_pixels_of_ultrasound_have_the_size_of_their_region(tmp_path, regions, spacing, note):
+    changes = {"PixelSpacing": None, "SequenceOfUltrasoundRegions": regions, "Modality": "US"}
+    folder = save(tmp_path / "a", [slice_of(ramp("u1")[0], 1, (1, 2, 3), **changes)])
+    assert numpy.allclose(noted(folder, note).geometry.spacing[:2], spacing)
+
+
+def test_values_of_pet_have_the_units_of_their_tag(tmp_path):
+    change = lambda i: {"Modality": "PT", "Units": "BQML", "RescaleSlope": 1 + i}
+    assert palpate.load(save(tmp_path / "a", stack(ramp("i2"), change=change))).values["units"] == "BQML"
+
+
+# dcm2niix: reports of a scanner and spectra lie beside the images; numbers that no image needs may be words.
+def test_objects_without_an_image_beside_slices_are_passed_over(tmp_path):
+    change = lambda i: {"InstanceNumber": None, "RescaleSlope": [2, 2]}
+    slices = stack(ramp("i2"), change=change)
+    for i, data in enumerate(slices):
+        data.add(pydicom.DataElement(0x00200013, "LO", f"A{i}"))
+        data.add(pydicom.DataElement(0x00200012, "LO", "one"))
+    folder = tmp_path / "a"
+    folder.mkdir()
+    report, spectrum = Dataset(), slice_of(ramp("i2")[0], 1, (1, 2, 3), PixelData=None)
+    report.SOPClassUID, report.SOPInstanceUID, report.SeriesInstanceUID = "1.3.12.2.1107.5.9.1", "1.2.9", "1.2.10"
+    spectrum.SOPClassUID = "1.2.840.10008.5.1.4.1.1.4.2"
+    for i, data in enumerate((*slices, report, spectrum)):
+        meta = FileMetaDataset()
+        meta.MediaStorageSOPClassUID, meta.MediaStorageSOPInstanceUID = data.SOPClassUID, data.SOPInstanceUID
+        meta.TransferSyntaxUID = "1.2.840.10008.1.2.1"
+        file = FileDataset(str(folder / f"{i}.dcm"), data, file_meta=meta, preamble=bytes(128))
+        file.is_little_endian, file.is_implicit_VR = True, False
+        file.save_as(file.filename, write_like_original=False)
+    assert numpy.array_equal(palpate.load(folder).volume.array, ramp("i2") * 2)
+
+
+# assimp, Blender: a text of Windows may begin with a byte order mark, in front of the first vertex.
+def test_a_byte_order_mark_does_not_hide_the_first_vertex_of_an_obj_file(tmp_path):
+    text = "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nv 50 50 50\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+    (tmp_path / "a.obj").write_text(text)
+    (tmp_path / "b.obj").write_text("\ufeff" + text, encoding="utf-8")
+    plain, marked = (palpate.read_mesh(tmp_path / name) for name in ("a.obj", "b.obj"))
+    assert numpy.array_equal(plain.vertices, marked.vertices) and len(marked.vertices) == 5

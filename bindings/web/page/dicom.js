@@ -27,7 +27,8 @@ const unread = {
   "00620002": "segments",
 };
 /** Storage classes without an image: reports, plans, structures, presentations, raw data, the index of a folder. */
-const withoutImage = /^1\.2\.840\.10008\.(1\.3\.10$|5\.1\.4\.1\.1\.(9\.|11\.|66|88\.|104\.|481\.))/;
+const withoutImage = /^((?!1\.2\.840\.10008\.5\.1\.4\.1\.1\.)\d|1\.2\.840\.10008\.5\.1\.4\.1\.1\.(9\.|11\.|66|67|88\.|104\.|481\.))/;
+const spectra = "1.2.840.10008.5.1.4.1.1.4.2";
 
 /** Elements by tag, for example "0020000e": bytes, or for a sequence its items. */
 class Reader {
@@ -201,7 +202,8 @@ function unitVectors(list) {
 
 /** The frames of a file. */
 function framesOf({ header, pixelKind }) {
-  if (!header.set.has(tags.rows) && withoutImage.test(header.text(tags.storage))) return [];
+  const storage = header.text(tags.storage);
+  if (storage === spectra || (!header.set.has(tags.rows) && withoutImage.test(storage))) return [];
   if (!header.has(tags.rows) || !header.has(tags.columns)) refuse("it gives no size of its image: it is cut off or damaged", again);
   if (!header.set.has(tags.pixels)) refuse("it has no pixels, but says how large its image is: it is cut off", `${again}, or leave it out`);
   const format = formatOf(header, pixelKind);
@@ -211,7 +213,9 @@ function framesOf({ header, pixelKind }) {
   if (pixels.length !== expected && pixels.length !== expected + (expected % 2)) refuse(`it has ${pixels.length} bytes of pixels in place of ${expected}`, again);
   return headersOf(header, count).map((one, i) => {
     const spacing = one.numbers(tags.spacing, 2);
-    if (!spacing && (one.has("00181164") || one.has("00182010"))) refuse("its pixel spacing is that at the detector (ImagerPixelSpacing) or of a scan");
+    if (!spacing && (one.has("00181164") || one.has("00182010") || one.items("00186011").length > 0)) {
+      refuse("its pixel spacing is that at the detector (ImagerPixelSpacing), of a scan or of regions of ultrasound");
+    }
     if (spacing?.some((s) => !(s > 0))) refuse(`a PixelSpacing of ${spacing.join(" x ")} mm is not possible`, "correct its header");
     const between = one.numbers(tags.between, 1)?.[0];
     return {

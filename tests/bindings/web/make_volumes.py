@@ -286,6 +286,14 @@ def slices(folder, count=1, each=None, cut=False, values=VALUES, syntax=Explicit
         one.save_as(folder / f"{k}.dcm", write_like_original=False)
 
 
+def reported(folder):
+    """A slice beside a report of a private class."""
+    slices(folder)
+    report = dataset(folder / "report.dcm", ExplicitVRLittleEndian, "1.3.12.2.1107.5.9.1")
+    del report.Rows, report.Columns
+    report.save_as(folder / "report.dcm", write_like_original=False)
+
+
 def sequence(**members):
     inside = Dataset()
     for name, value in members.items():
@@ -342,7 +350,7 @@ SAME_DICOM = {
     "philips": lambda at: grouped(at, private=True), "unspaced": lambda at: slices(at, PixelSpacing="absent", SliceThickness="absent"),
     "even": lambda at: slices(at, 4, apart(0.015)), "unknown": lambda at: damaged(at, unknown_sequence), "padded": lambda at: damaged(at, lambda data: data + b"\0" * 64),
     "negative": lambda at: slices(at, PixelRepresentation=1, values=VALUES - 100), "inverse": lambda at: slices(at, PhotometricInterpretation="MONOCHROME1"),
-    "unplaced": lambda at: slices(at, ImagePositionPatient=None),
+    "unplaced": lambda at: slices(at, ImagePositionPatient=None), "reported": reported,
 }
 REFUSED_DICOM = {
     "cut": ("no pixels", lambda at: damaged(at, cut)), "pixels_twice": ("twice", lambda at: damaged(at, twice)), "bare": ("DICM", lambda at: damaged(at, lambda data: data[132:])),
@@ -355,6 +363,7 @@ REFUSED_DICOM = {
     "echoes": ("2 series", lambda at: slices(at, 4, lambda k: {"EchoTime": 10 + k % 2})), "frames_x": ("'0' frames", lambda at: slices(at, NumberOfFrames=0)),
     "more_bytes": ("bytes of pixels", lambda at: slices(at, PixelData=pixels(VALUES[:2]))), "words": ("big-endian", lambda at: slices(at, BitsAllocated=8, BitsStored=8, HighBit=7, PixelData=bytes(30), syntax=ExplicitVRBigEndian)),
     "detector": ("ImagerPixelSpacing", lambda at: slices(at, PixelSpacing="absent", ImagerPixelSpacing=[0.2, 0.3])), "tilt": ("gantry tilt", lambda at: slices(at, 4, shifted)),
+    "regions": ("of ultrasound", lambda at: slices(at, PixelSpacing="absent", SequenceOfUltrasoundRegions=sequence(PhysicalDeltaX=0.02))),
     "uneven": ("not evenly", lambda at: slices(at, 4, apart(0.03))), "nowhere": ("where they lie", lambda at: slices(at, 3, ImagePositionPatient="absent")),
     "oblique": ("right angles", lambda at: slices(at, ImageOrientationPatient=[1, 0, 0, 0.5, 0.866, 0])), "mixed": ("several volumes", lambda at: (slices(at), write(at / "a.nii", nifti()))),
     "two_files": ("a.nii, b.nii", lambda at: [write(at / name, nifti()) for name in ("a.nii", "b.nii")]),
