@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr DicomTag groups_of_frames{0x5200, 0x9230};
+constexpr DicomTag groups_of_frames{0x5200, 0x9230}, value_mapping{0x0040, 0x9096};
 constexpr DicomTag position_tag{0x0020, 0x0032}, orientation_tag{0x0020, 0x0037},
     pixel_tag{0x0028, 0x0030}, thickness_tag{0x0018, 0x0050}, between_tag{0x0018, 0x0088},
     intercept_tag{0x0028, 0x1052}, slope_tag{0x0028, 0x1053};
@@ -115,7 +115,7 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
 void set_rescale(DicomSlice& s, const DicomGroup& transformation) {
     const auto slope = one_number(transformation, slope_tag, "RescaleSlope"),
                intercept = one_number(transformation, intercept_tag, "RescaleIntercept");
-    s.has_rescale = s.has_rescale || !slope.empty() || !intercept.empty();
+    s.has_rescale = s.has_rescale || !(slope.empty() || intercept.empty());
     if (!slope.empty()) s.slope = slope[0];
     if (!intercept.empty()) s.intercept = intercept[0];
     const auto replace = [&](double& number, bool is_good, const char* name, double with) {
@@ -167,6 +167,12 @@ void set_padding(DicomSlice& s, const DicomGroup& data) {
     s.values.padding = s.slope * value + s.intercept;
 }
 
+void note_value_mapping(DicomSlice& s) {
+    add_note(s.notes,
+             "its Real World Value Mapping was not applied: values are by RescaleSlope and "
+             "RescaleIntercept");
+}
+
 DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGroups& groups,
                           const Segments& segments) {
     DicomSlice s = file;
@@ -177,6 +183,7 @@ DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGr
     groups.with({0x0020, 0x9116}, [&](const DicomGroup& g) { set_place(s, g); });
     groups.with({0x0028, 0x9145}, [&](const DicomGroup& g) { set_rescale(s, g); });
     groups.with({0x0028, 0x9132}, [&](const DicomGroup& g) { set_window(s, g); });
+    groups.with(value_mapping, [&](const DicomGroup&) { note_value_mapping(s); });
     groups.with({0x0020, 0x930e}, [&](const DicomGroup& g) {
         set_place(s, g.binary<double>({0x0020, 0x9301}), {});
         s.in_patient = false;
@@ -369,11 +376,7 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     set_window(s, data);
     set_padding(s, data);
     set_table(s, data);
-    if (data.has({0x0040, 0x9096})) {
-        add_note(s.notes,
-                 "its Real World Value Mapping was not applied: values are by RescaleSlope and "
-                 "RescaleIntercept");
-    }
+    if (data.has(value_mapping)) note_value_mapping(s);
     const std::string colours = data.text({0x0028, 0x0004});
     if (colours == "MONOCHROME1") {
         add_note(s.notes,

@@ -49,7 +49,7 @@ struct DicomSlice {
     double aspect = 1;                ///< of a pixel, height : width, if its size is not given
     double thickness = 0;             ///< [mm] between slices or of one; 0 if not given
     double slope = 1, intercept = 0;  ///< of the values [units]
-    bool has_rescale = false;         ///< it gives one of these, or a table
+    bool has_rescale = false;         ///< it gives both of these, or a table
     bool has_colours = false;
     bool is_moment = false;  ///< the frames of its file are one place at several times
     double seconds = 0;      ///< from one of them to the next; 0 if not given

@@ -129,18 +129,20 @@ void note_files(const std::vector<DicomSlice>& slices, std::vector<std::string>&
     }
 }
 
-/// Slices without slope and intercept among others that have them: a program may have lost these.
+/// Slices without slope or intercept among others that have both: a program may have lost these.
 void note_missing_rescale(const std::vector<DicomSlice>& slices, std::vector<std::string>& notes) {
-    const auto changes = [](const DicomSlice& s) { return s.table || s.slope != 1 || s.intercept; };
+    const auto changes = [](const DicomSlice& s) {
+        return s.has_rescale && (s.table || s.slope != 1 || s.intercept != 0);
+    };
     const auto lacks = [](const DicomSlice& s) { return !s.has_rescale; };
     const auto first = std::ranges::find_if(slices, lacks);
     if (first == slices.end() || std::ranges::none_of(slices, changes)) return;
     const auto count = std::ranges::count_if(slices, lacks);
-    notes.push_back(std::to_string(count) + " of its " + std::to_string(slices.size()) +
-                    " slices (the first in " + quoted(first->file) +
-                    (count == 1 ? ") gives" : ") give") +
-                    " no slope and intercept, and others do: such samples were taken as they are "
-                    "stored, do not trust what is felt there");
+    notes.push_back(
+        std::to_string(count) + " of its " + std::to_string(slices.size()) +
+        " slices (the first in " + quoted(first->file) + (count == 1 ? ") gives" : ") give") +
+        " no slope or no intercept, and others do: a slope of 1 or an intercept of 0 was "
+        "taken, do not trust what is felt there");
 }
 
 std::string bytes_of(const fs::path& file) {

@@ -14,7 +14,7 @@ import tifffile
 import zarr
 from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
 
-from dicom_readers_test import frames_of
+from dicom_readers_test import enhanced, frames_of, items
 from formats_test import n5_array
 from readers_test import SHAPE, noted, ramp, refused, save, slice_of, stack
 
@@ -373,6 +373,21 @@ def test_pixels_of_ultrasound_have_the_size_of_their_region(tmp_path, regions, s
 def test_values_of_pet_have_the_units_of_their_tag(tmp_path):
     change = lambda i: {"Modality": "PT", "Units": "BQML", "RescaleSlope": 1 + i}
     assert palpate.load(save(tmp_path / "a", stack(ramp("i2"), change=change))).values["units"] == "BQML"
+
+
+# dicom-numpy 1: a program may lose the slope of a slice, or the intercept.
+@pytest.mark.parametrize("lost", ({"RescaleSlope": None}, {"RescaleIntercept": None}))
+def test_a_slice_that_lacks_the_slope_or_the_intercept_of_the_others_is_named(tmp_path, lost):
+    change = lambda i: {"RescaleSlope": 2, "RescaleIntercept": -5, **(lost if i == 1 else {})}
+    noted(save(tmp_path / "some", stack(ramp("i2"), change=change)), "1 of its 5 slices (the first in '002.dcm') gives no slope or no")
+    loaded = palpate.load(save(tmp_path / "all", stack(ramp("i2"), change=lambda i: {**change(i), **lost})))
+    assert not any("of its 5 slices" in note for note in loaded.notes), loaded.notes
+
+
+# STIR 1123: frames have a mapping to real values of their own, which is not applied.
+def test_a_mapping_of_values_in_the_groups_of_frames_is_noted(tmp_path):
+    group = lambda i: {"RealWorldValueMappingSequence": items(RealWorldValueSlope=0.5, RealWorldValueIntercept=0.0)}
+    noted(enhanced(tmp_path / "a", list(ramp("u2")), range(5), group), "Real World Value Mapping")
 
 
 # dcm2niix: reports of a scanner and spectra lie beside the images; numbers that no image needs may be words.

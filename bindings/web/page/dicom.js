@@ -222,6 +222,7 @@ function framesOf({ header, pixelKind }) {
       ...format, pixels: pixels.subarray(i * format.size, (i + 1) * format.size), spacing, position: one.numbers(tags.position, 3),
       orientation: unitVectors(one.numbers(tags.orientation, 6)), thickness: between > 0 ? between : one.numbers(tags.thickness, 1)?.[0],
       slope: one.numbers(tags.slope, 1)?.[0], intercept: one.numbers(tags.intercept, 1)?.[0] ?? 0, modality: one.text(tags.modality),
+      isRescaled: one.has(tags.slope) && one.has(tags.intercept),
       label: one.text(tags.description) || one.text(tags.seriesNumber) || one.text(tags.series),
       key: [...["series", "imageType", "echoTime", "echo", "modality"].map((name) => one.text(tags[name])), String(one.set.get(tags.bValue)), format.rows, format.columns].join("|"),
     };
@@ -245,6 +246,9 @@ function stacked(frames, notes) {
   const [first] = frames;
   const note = (text, is) => is && notes.push(text);
   note("it gives no pixel spacing: 1 mm was taken", !first.spacing);
+  const lacking = frames.filter(({ isRescaled }) => !isRescaled).length;
+  note(`${lacking} of its ${frames.length} slices give no slope or no intercept, and others do: do not trust what is felt there`,
+    lacking > 0 && frames.some(({ isRescaled, slope, intercept }) => isRescaled && (slope !== 1 || intercept !== 0)));
   note("its RescaleSlope is 0, which makes no sense: 1 was taken", frames.some(({ slope }) => slope === 0));
   const near = (a, b, part) => !a === !b && (a ?? []).every((x, i) => Math.abs(x - b[i]) <= part);
   const alike = ({ orientation, spacing }) => near(orientation?.flat(), first.orientation?.flat(), 1e-3) && near(spacing, first.spacing, 1e-3 * Math.max(...(first.spacing ?? [1])));

@@ -351,6 +351,7 @@ SAME_DICOM = {
     "even": lambda at: slices(at, 4, apart(0.015)), "unknown": lambda at: damaged(at, unknown_sequence), "padded": lambda at: damaged(at, lambda data: data + b"\0" * 64),
     "negative": lambda at: slices(at, PixelRepresentation=1, values=VALUES - 100), "inverse": lambda at: slices(at, PhotometricInterpretation="MONOCHROME1"),
     "unplaced": lambda at: slices(at, ImagePositionPatient=None), "reported": reported,
+    "lacking": lambda at: slices(at, 4, lambda k: {"RescaleSlope": 2, **({} if k == 1 else {"RescaleIntercept": -5})}),
 }
 REFUSED_DICOM = {
     "cut": ("no pixels", lambda at: damaged(at, cut)), "pixels_twice": ("twice", lambda at: damaged(at, twice)), "bare": ("DICM", lambda at: damaged(at, lambda data: data[132:])),

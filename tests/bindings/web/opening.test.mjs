@@ -118,6 +118,7 @@ test("what was chosen and assumed is told", async () => {
   assert.match(await notes("unspaced"), /no pixel spacing: 1 mm .* no distance between slices: 1 mm .* series/);
   assert.match(await notes("implicit"), /notes\.txt is no DICOM and was passed over/);
   assert.match(await notes("no_slope"), /RescaleSlope is 0/);
+  assert.match(await notes("lacking"), /1 of its 4 slices give no slope or no intercept/);
   assert.match(await notes("holes.nrrd"), /became the least/);
   assert.match(await notes("no_unit.zarr"), /mm were taken/);
   assert.match(await notes("packed.zarr"), /scale_factor .* add_offset .* not applied/);
