@@ -7,7 +7,7 @@
 #include <QToolButton>
 #include <fstream>
 
-#include "apps/viewer/window/appearance.hpp"
+#include "apps/viewer/window/preferences.hpp"
 #include "viewer/window/window_fixture.hpp"
 
 namespace palpate::viewer::test {
