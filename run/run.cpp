@@ -324,14 +324,17 @@ void Run::use_device(const devices::DeviceChoice& device) {
     }
 }
 
-/// The device that was closed for a choice which could not be opened.
+/// The device that was closed for a choice which could not be opened. The hand stays frozen if it
+/// was.
 void Run::reopen(double isovalue, const DeviceInfo& old) {
+    const bool frozen = frozen_;
     try {
         hold(open_for(field_, isovalue, setup_, this));
     } catch (const std::exception& error) {
         hold(std::make_unique<Gone>(old, error.what()));
     }
     launch(session_stopped());
+    if (frozen) send(command::Freeze{true});
 }
 
 void Run::use_field(Solid solid, Interpolation interpolation, std::optional<double> background) {

@@ -12,10 +12,9 @@
 #include "apps/options/values.hpp"
 #include "apps/options/view_options.hpp"
 #include "apps/viewer/model/hands.hpp"
-#include "apps/viewer/model/raw_preview.hpp"
-#include "apps/viewer/window/appearance.hpp"
-#include "apps/viewer/window/language.hpp"
+#include "apps/viewer/model/opening.hpp"
 #include "apps/viewer/window/main_window.hpp"
+#include "apps/viewer/window/preferences.hpp"
 #include "apps/viewer/window/screenshot.hpp"
 
 namespace {

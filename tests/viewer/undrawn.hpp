@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/viewer/scene/painter.hpp"
+#include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/scene/view_space.hpp"
 
 namespace palpate::viewer {

@@ -1,8 +1,14 @@
-// Chooses levels and boxes of a store for pictures.
+// Chooses levels and boxes of a store for slices and scene, and blends samples into the overview.
 #include "apps/viewer/model/detail_choice.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "apps/viewer/model/worker.hpp"
+#include "palpate/field.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -121,6 +127,151 @@ bool has_slice(const SeenStore& store, const stream::DetailBox& box, const SeenB
     margin[axis] = fewest_layers / 2 - 1;
     const SampleBox needed = samples_in(level_of(store, box.level).geometry, seen, margin);
     return united(box.box, needed) == box.box;
+}
+
+namespace {
+
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+/// Of what is seen, beyond each side, so that a small move needs nothing new.
+constexpr double room_around = 0.1;
+/// Fine samples beyond the planes: the cells and normals of a smooth surface need them.
+constexpr int beyond = 2;
+/// Over so many fine samples at most one field becomes the other.
+constexpr double widest_rim = 4;
+
+struct Bounds {
+    Vec3 low = Vec3::Constant(unbounded), high = Vec3::Constant(-unbounded);
+};
+
+/// In the overview's index space, of the points within `radius` [mm] of the middle.
+Bounds bounds_of(const SeenStore& store, const SeenPoints& seen, double radius) {
+    Bounds bounds;
+    for (const Vec3& point : seen.points) {
+        if (!((point - seen.middle).norm() <= radius)) continue;
+        const Vec3 index = index_from_physical(store.overview, point);
+        bounds.low = bounds.low.cwiseMin(index);
+        bounds.high = bounds.high.cwiseMax(index);
+    }
+    return bounds;
+}
+
+/// Whole cells round the bounds, and one more on each side, in which the fields become one.
+PatchChoice cells_round(const SeenStore& store, int level, const Bounds& bounds,
+                        Interpolation interpolation) {
+    const double begin = interpolation == Interpolation::cubic ? -0.5 : 0;
+    PatchChoice patch;
+    patch.level = level;
+    Vec3 from, to;  // in the overview's index space
+    for (int a = 0; a < 3; ++a) {
+        const double low = std::floor(bounds.low[a] - begin) - 1 + begin;
+        const double high = std::ceil(bounds.high[a] - begin) + 1 + begin;
+        const double last = store.overview.size[a] - 1;
+        patch.low[a] = low <= 0 ? -unbounded : low;
+        patch.high[a] = high >= last ? unbounded : high;
+        // The levels' last samples lie in different places.
+        from[a] = low <= 0 ? -2 : low;
+        to[a] = high >= last ? last + 2 : high;
+    }
+    const Geometry& grid = store.info->levels[static_cast<std::size_t>(level)].geometry;
+    const SeenBox box{physical_from_index(store.overview, from),
+                      physical_from_index(store.overview, to), 1};
+    patch.box = samples_in(grid, box, Index3::Constant(beyond));
+    return patch;
+}
+
+bool is_inside(const PatchChoice& patch, const Bounds& bounds) {
+    return (bounds.low.array() >= patch.low.array()).all() &&
+           (bounds.high.array() <= patch.high.array()).all();
+}
+
+/// What is wanted, without the margin for small moves.
+struct Wanted {
+    int level;
+    Bounds bounds;
+};
+
+std::optional<Wanted> wanted_of(const SeenStore& store, const SeenPoints& seen,
+                                Interpolation interpolation, const DetailLimits& limits) {
+    if (seen.points.empty()) return std::nullopt;
+    const std::vector<int> levels = finer_levels(store, seen.pixel_mm);
+    for (const int level : levels) {
+        for (const double radius : {unbounded, 4 * seen.half_height, 2 * seen.half_height}) {
+            Bounds bounds = bounds_of(store, seen, radius);
+            if (!(bounds.low.array() <= bounds.high.array()).all()) continue;
+            const Vec3 more = room_around * (bounds.high - bounds.low);
+            const Bounds all{bounds.low - more, bounds.high + more};
+            const PatchChoice patch = cells_round(store, level, all, interpolation);
+            if (fits(store, level, patch.box, limits)) return Wanted{level, bounds};
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<PatchChoice> patch_for(const SeenStore& store, const SeenPoints& seen,
+                                     Interpolation interpolation, const DetailLimits& limits) {
+    const auto wanted = wanted_of(store, seen, interpolation, limits);
+    if (!wanted) return std::nullopt;
+    const Vec3 more = room_around * (wanted->bounds.high - wanted->bounds.low);
+    const Bounds all{wanted->bounds.low - more, wanted->bounds.high + more};
+    return cells_round(store, wanted->level, all, interpolation);
+}
+
+bool is_enough(const PatchChoice& patch, const SeenStore& store, const SeenPoints& seen,
+               Interpolation interpolation, const DetailLimits& limits) {
+    const auto wanted = wanted_of(store, seen, interpolation, limits);
+    if (!wanted || wanted->level != patch.level) return false;
+    // The rim does not count.
+    const Bounds needed{wanted->bounds.low - Vec3::Ones(), wanted->bounds.high + Vec3::Ones()};
+    return is_inside(patch, needed);
+}
+
+Volume joined_samples(const Volume& fine, const Field& overview, const PatchChoice& patch) {
+    const Geometry& grid = fine.geometry();
+    const Geometry& coarse = overview.geometry();
+    const double rim =
+        std::min(1.0, widest_rim * (grid.spacing.cwiseQuotient(coarse.spacing)).maxCoeff());
+    // The weight of the fine samples along each axis: 0 at a plane and outside, 1 a rim inside.
+    std::array<std::vector<double>, 3> weight;
+    for (int a = 0; a < 3; ++a) {
+        for (int i = 0; i < grid.size[a]; ++i) {
+            Vec3 index = Vec3::Zero();
+            index[a] = i;
+            const double at = index_from_physical(coarse, physical_from_index(grid, index))[a];
+            const double inside = std::min(at - patch.low[a], patch.high[a] - at);
+            weight[static_cast<std::size_t>(a)].push_back(std::clamp(inside / rim, 0.0, 1.0));
+        }
+    }
+    const auto bytes = std::make_shared<std::vector<std::byte>>(
+        static_cast<const std::byte*>(fine.data()),
+        static_cast<const std::byte*>(fine.data()) + fine.bytes());
+    std::vector<std::size_t> layers(static_cast<std::size_t>(grid.size[2]));
+    std::iota(layers.begin(), layers.end(), std::size_t{0});
+    with_type(fine.type(), [&](auto zero) {
+        using T = decltype(zero);
+        T* const samples = reinterpret_cast<T*>(bytes->data());
+        for_each_at_once(layers, [&](std::size_t k) {
+            for (int j = 0; j < grid.size[1]; ++j) {
+                const double across =
+                    std::min(weight[2][k], weight[1][static_cast<std::size_t>(j)]);
+                T* const row = samples + (k * static_cast<std::size_t>(grid.size[1]) +
+                                          static_cast<std::size_t>(j)) *
+                                             static_cast<std::size_t>(grid.size[0]);
+                for (int i = 0; i < grid.size[0]; ++i) {
+                    const double t = std::min(across, weight[0][static_cast<std::size_t>(i)]);
+                    if (t >= 1) continue;
+                    const double w = t * t * (3 - 2 * t);
+                    const Vec3 at = physical_from_index(grid, Vec3(i, j, static_cast<double>(k)));
+                    const double value = w * double(row[i]) + (1 - w) * value_at(overview, at);
+                    row[i] = std::is_integral_v<T> ? static_cast<T>(std::nearbyint(value))
+                                                   : static_cast<T>(value);
+                }
+            }
+            return true;
+        });
+    });
+    return {grid, fine.type(), std::shared_ptr<const void>(bytes, bytes->data()), bytes->size()};
 }
 
 }  // namespace palpate::viewer

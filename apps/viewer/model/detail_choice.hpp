@@ -1,15 +1,15 @@
 // Which part of a store a picture deserves at which level of detail, as far as memory and requests
-// allow. Pure functions; the reader is stream/detail.hpp.
+// allow, and how a finer part joins the overview. Pure functions; the reader is stream/detail.hpp.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include "palpate/field.hpp"
 #include "palpate/stream/detail.hpp"
 
 namespace palpate::viewer {
 
-/// A store as it is seen.
 struct SeenStore {
     const stream::StoreInfo* info = nullptr;
     int finest = 0;     ///< level that is felt: pictures show nothing finer
@@ -54,5 +54,51 @@ std::vector<stream::DetailBox> coarse_to_fine(const SeenStore& store, int level,
 SampleBox slice_box(const SeenStore& store, int level, const SeenBox& seen, int axis);
 /// True if such a box still has what is seen, and the layers that a slice needs.
 bool has_slice(const SeenStore& store, const stream::DetailBox& box, const SeenBox& seen, int axis);
+
+struct SeenPoints {
+    std::vector<Vec3> points;    ///< [mm, physical] spread over the picture
+    Vec3 middle = Vec3::Zero();  ///< of interest: under the middle of the view, or the proxy
+    double half_height = 1;      ///< of the view [mm]
+    double pixel_mm = 1;         ///< of a device pixel
+};
+
+/// A part of the overview that is replaced: whole cells of its lattice.
+struct PatchChoice {
+    int level = 0;
+    SampleBox box;  ///< of that level: two samples more than the cells need
+    /// Planes between cells of the overview, in its index space; infinite where the data end.
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+
+    bool operator==(const PatchChoice&) const = default;
+};
+
+/// A box round what is seen, at the level that the pixels deserve. Where that is too much, only
+/// what lies within a view's height of the middle, then a coarser level. Nothing where a finer
+/// level than the overview's is not allowed. `interpolation` says where the cells lie.
+std::optional<PatchChoice> patch_for(const SeenStore& store, const SeenPoints& seen,
+                                     Interpolation interpolation, const DetailLimits& limits);
+
+/// True if this part has all points and is of the level that patch_for() would choose.
+bool is_enough(const PatchChoice& patch, const SeenStore& store, const SeenPoints& seen,
+               Interpolation interpolation, const DetailLimits& limits);
+
+/// The samples of `fine`, but at the planes of the patch and outside of them those of the field of
+/// the overview, and in between within a cell, or four samples if that is less: surfaces extracted
+/// from both meet at the planes to within a part of a fine sample.
+Volume joined_samples(const Volume& fine, const Field& overview, const PatchChoice& patch);
+
+/// A finer part of what is shown, where the whole is an overview of a store.
+struct DetailField {
+    Field field;              ///< on a grid of its own, all in memory
+    SampleBox box;            ///< where that lies in the grid of `level`
+    Index3 level_size;        ///< samples of the whole level
+    int level = 0;            ///< of the store
+    std::size_t missing = 0;  ///< pieces that have not come: coarser samples stand in for them
+    SampleBox changed = {};   ///< of the field's grid, since the last version of this box
+
+    /// True where the box ends with the data.
+    bool at_begin(int axis) const { return box.low[axis] == 0; }
+    bool at_end(int axis) const { return box.high[axis] == level_size[axis] - 1; }
+};
 
 }  // namespace palpate::viewer

@@ -11,8 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "apps/viewer/model/detail_field.hpp"
-#include "apps/viewer/model/patch_choice.hpp"
+#include "apps/viewer/model/detail_choice.hpp"
 #include "palpate/stream/detail.hpp"
 
 namespace palpate::viewer {
@@ -41,7 +40,6 @@ class DetailMaker {
     bool idle() const;
 
   private:
-    /// What a viewer shows.
     struct Place {
         std::optional<stream::Detail> detail;
         SampleBox changed;  ///< of the detail's grid, not made yet

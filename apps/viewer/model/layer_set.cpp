@@ -77,7 +77,7 @@ void renumber(Layers& layers, const Layers& before) {
                                                   Solid::above, 0.0);  // outside: no layer
 }
 
-Layer another(const Layers& layers, double level) {
+Layer another(const Layers& layers, double level, const std::string& name) {
     static constexpr std::array<double, 3> colours[] = {{0.34, 0.56, 0.75}, {0.84, 0.37, 0.25},
                                                         {0.45, 0.65, 0.35}, {0.80, 0.62, 0.80},
                                                         {0.90, 0.80, 0.35}, {0.40, 0.70, 0.70}};
@@ -85,13 +85,10 @@ Layer another(const Layers& layers, double level) {
     layer.level = level;
     layer.colour = colours[layers.layers.size() % std::size(colours)];
     layer.opacity = glass;
-    const auto taken = [&](const std::string& name) {
-        return std::ranges::count(layers.layers, name, &Layer::name) > 0;
-    };
-    for (std::size_t number = layers.layers.size() + 1; layer.name.empty(); ++number) {
-        const std::string name = "layer " + std::to_string(number);
-        if (!taken(name)) layer.name = name;
-    }
+    std::size_t number = layers.layers.size() + 1;
+    do {
+        layer.name = name + ' ' + std::to_string(number++);
+    } while (std::ranges::count(layers.layers, layer.name, &Layer::name) > 0);
     return layer;
 }
 
@@ -201,7 +198,8 @@ std::optional<double> lowered_stiffness(const Layers& layers, std::size_t layer,
     return rendered < force.stiffness ? std::optional(rendered) : std::nullopt;
 }
 
-std::pair<Layers, std::size_t> with_another(Layers layers, Solid solid, double low, double high) {
+std::pair<Layers, std::size_t> with_another(Layers layers, Solid solid, double low, double high,
+                                            const std::string& name) {
     std::vector<double> levels{low, high};
     for (const Layer& layer : layers.layers) levels.push_back(layer.level);
     std::ranges::sort(levels);
@@ -212,7 +210,7 @@ std::pair<Layers, std::size_t> with_another(Layers layers, Solid solid, double l
         widest = room;
         level = 0.5 * (levels[i] + levels[i - 1]);
     }
-    const Layer added = another(layers, level);
+    const Layer added = another(layers, level, name);
     const double sign = solid == Solid::above ? 1 : -1;
     const auto behind = std::ranges::find_if(
         layers.layers, [&](const Layer& layer) { return sign * layer.level > sign * level; });
@@ -238,10 +236,10 @@ Layers without_layer(Layers layers, std::size_t layer) {
     return layers;
 }
 
-Layers first_layer(double level) {
+Layers first_layer(double level, const std::string& name) {
     Layers layers;
     layers.name = "Own layers";
-    Layer layer = another(layers, level);
+    Layer layer = another(layers, level, name);
     layer.opacity = 1;
     layers.layers.push_back(layer);
     return layers;

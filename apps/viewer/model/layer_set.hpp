@@ -72,13 +72,14 @@ std::optional<double> lowered_stiffness(const Layers& layers, std::size_t layer,
 
 /// One more, in the widest room that levels leave between `low` and `high` [data units]; glass.
 /// `layers` must have room: fewer than Layers::most_layers. The second is its number.
-std::pair<Layers, std::size_t> with_another(Layers layers, Solid solid, double low, double high);
+/// `name` is followed by the number.
+std::pair<Layers, std::size_t> with_another(Layers layers, Solid solid, double low, double high,
+                                            const std::string& name);
 /// The layer `from` at the place `to` in their order, or without it. By label, the places of labels
 /// follow.
 Layers moved_layer(Layers layers, std::size_t from, std::size_t to);
 Layers without_layer(Layers layers, std::size_t layer);
-/// A set of one layer at this level.
-Layers first_layer(double level);
+Layers first_layer(double level, const std::string& name);
 
 /// Values of layers to go back to, and forward again.
 class LayersHistory {

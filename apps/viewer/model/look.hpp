@@ -62,7 +62,6 @@ struct CutBox {
     bool operator==(const CutBox&) const = default;
 };
 
-/// How an overlay is shown.
 struct OverlayLook {
     bool shown = true;
     double opacity = 0.5;         ///< in slices

@@ -1,9 +1,17 @@
-// Loads a volume and takes grey levels and a first isovalue from its histogram.
+// Loads a volume, and reads names and single slices of raw files.
 #include "apps/viewer/model/opening.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
 #include <numeric>
+#include <regex>
 #include <stdexcept>
+#include <vector>
+
+#include "io/byte_order.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -81,6 +89,100 @@ double first_isovalue(const Opened& opened) {
                                     ": the data are constant, there is nothing to feel");
     }
     return levels.front();
+}
+
+namespace {
+
+constexpr double largest_slice = 256e6;  // bytes
+
+/// Grey levels of samples as they lie in a file of this machine's byte order.
+template <class T>
+std::vector<std::uint8_t> grey_of(const std::vector<std::byte>& bytes) {
+    std::vector<T> samples(bytes.size() / sizeof(T));
+    std::memcpy(samples.data(), bytes.data(), samples.size() * sizeof(T));
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const T sample : samples) {
+        const auto value = static_cast<double>(sample);
+        if (!std::isfinite(value)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    std::vector<std::uint8_t> grey(samples.size());
+    const double scale = high > low ? 255 / (high - low) : 0;
+    std::ranges::transform(samples, grey.begin(), [&](T sample) {
+        const double level = scale * (static_cast<double>(sample) - low);
+        return static_cast<std::uint8_t>(std::isfinite(level) ? level : 0);
+    });
+    return grey;
+}
+
+/// The whole number whose cube this is, or 0.
+int cube_root(std::uint64_t samples) {
+    const auto root = static_cast<std::uint64_t>(std::lround(std::cbrt(double(samples))));
+    return root * root * root == samples ? static_cast<int>(root) : 0;
+}
+
+/// 0 where the text is no number that can be a size.
+int size_from(const std::string& text) {
+    return io::number_from<int>(text).value_or(0);
+}
+
+}  // namespace
+
+bool lacks_layout(const run::Source& source) {
+    const auto* file = std::get_if<run::FileSource>(&source.from);
+    const std::regex names("\\.(raw|bin|dat)(\\.gz)?$", std::regex::icase);
+    return file && !file->raw && std::regex_search(file->path, names) &&
+           std::filesystem::is_regular_file(file->path);
+}
+
+io::RawLayout guessed_layout(const std::filesystem::path& path, std::uint64_t bytes) {
+    io::RawLayout layout;
+    const std::string name = path.filename().string();
+    std::smatch found;
+    for (const SampleType type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
+        // "int16" is a part of "uint16", which comes after it.
+        if (name.find(name_of(type)) != std::string::npos) layout.type = type;
+    }
+    layout.big_endian = std::regex_search(name, std::regex("[-_.](be|big)[-_.]"));
+    if (std::regex_search(name, found, std::regex("(\\d+)[xX](\\d+)[xX](\\d+)"))) {
+        for (int a = 0; a < 3; ++a) layout.size[a] = size_from(found[std::size_t(a) + 1].str());
+        if ((layout.size.array() > 0).all()) return layout;
+    }
+    layout.size.setConstant(256);
+    for (const SampleType type : {layout.type, SampleType::uint8, SampleType::uint16}) {
+        const std::size_t each = size_of(type);
+        const int side = bytes % each == 0 ? cube_root(bytes / each) : 0;
+        if (side == 0) continue;
+        layout.size.setConstant(side);
+        layout.type = type;
+        break;
+    }
+    return layout;
+}
+
+double bytes_of(const io::RawLayout& layout) {
+    return layout.size.cast<double>().prod() * double(size_of(layout.type)) + double(layout.skip);
+}
+
+std::optional<io::Thumbnail> raw_slice(const std::filesystem::path& path,
+                                       const io::RawLayout& layout, int z) {
+    const double bytes =
+        double(size_of(layout.type)) * double(layout.size[0]) * double(layout.size[1]);
+    if (path.extension() == ".gz" || !(bytes > 0 && bytes <= largest_slice)) return std::nullopt;
+    std::ifstream file(path, std::ios::binary);
+    std::vector<std::byte> slice(static_cast<std::size_t>(bytes));
+    file.seekg(static_cast<std::streamoff>(double(layout.skip) + bytes * z));
+    file.read(reinterpret_cast<char*>(slice.data()), static_cast<std::streamsize>(slice.size()));
+    if (!file) return std::nullopt;
+    if (layout.big_endian) io::swap_bytes(slice, size_of(layout.type));
+    io::Thumbnail picture;
+    picture.width = layout.size[0];
+    picture.height = layout.size[1];
+    picture.grey =
+        with_type(layout.type, [&](auto zero) { return grey_of<decltype(zero)>(slice); });
+    return picture;
 }
 
 }  // namespace palpate::viewer

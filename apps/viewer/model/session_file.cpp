@@ -9,8 +9,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "apps/viewer/model/colour_map.hpp"
 #include "apps/viewer/model/hands.hpp"
+#include "apps/viewer/model/transfer.hpp"
 #include "io/json_members.hpp"
 #include "io/json_text.hpp"
 #include "palpate/io/address.hpp"

@@ -1,14 +1,29 @@
-// Transfer functions to begin with, made from the data at hand.
+// Colours for numbers: colour maps, and transfer functions to begin with, from the data at hand.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "apps/viewer/model/look.hpp"
 #include "palpate/run/statistics.hpp"
+#include "pictures/scene.hpp"
 
 namespace palpate::viewer {
+
+/// "grey", and others as they are known in the field: "hot", "bone", "viridis", "cool-warm",
+/// "spectrum".
+std::vector<std::string> colour_map_names();
+
+/// 256 colours from the first to the last, 0xffRRGGBB. Throws std::invalid_argument for a name that
+/// is not known.
+using ColourTable = std::array<std::uint32_t, 256>;
+ColourTable colour_table(const std::string& name);
+
+/// A colour for a label without one of its own: neighbours differ.
+pictures::Colour label_colour(int value);
 
 /// The presets that are made for such data, in the order in which people are offered them: those of
 /// CT where the data look like Hounsfield units (int16 or float from -4096..-500 up), or like those

@@ -1,7 +1,9 @@
-// Runs a long task on a thread of its own, with progress; the task can be cancelled.
+// Threads: one that runs a long task with progress, which can be cancelled, and as many as there
+// are processors for a task in pieces.
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -55,5 +57,10 @@ class NewestWorker {
     std::unique_ptr<Worker> newest_;
     std::vector<std::unique_ptr<Worker>> cancelled_;
 };
+
+/// work(item) for all of them, until one says no. Threads keep the caller's priority. False if one
+/// said no. Throws what one of them throws.
+bool for_each_at_once(const std::vector<std::size_t>& items,
+                      const std::function<bool(std::size_t)>& work);
 
 }  // namespace palpate::viewer

@@ -8,13 +8,20 @@
 #include <array>
 #include <functional>
 
-#include "apps/viewer/panel/brush_choice.hpp"
-#include "apps/viewer/panel/quantity.hpp"
-#include "apps/viewer/panel/section.hpp"
+#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/layout.hpp"
+#include "palpate/run/brush.hpp"
 
 class QButtonGroup;
 
 namespace palpate::viewer {
+
+/// Smoothing has no value of its own.
+struct BrushChoice : run::HandBrush {
+    bool on = false;  ///< the probe edits where it is
+
+    bool operator==(const BrushChoice&) const = default;
+};
 
 /// Remembers a typed value for each kind of brush, as a value that carves cannot add. Setters emit
 /// nothing.
@@ -44,7 +51,6 @@ class BrushControls : public QWidget {
     QString reason() const { return reason_->text(); }
     /// As if the switch was pressed.
     void toggle() { on_->click(); }
-    /// Forgets requests that wait.
     void drop();
 
   Q_SIGNALS:

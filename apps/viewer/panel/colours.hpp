@@ -1,7 +1,8 @@
-// Converts colours between the model and Qt.
+// Colours of the model in Qt, and a button to choose one.
 #pragma once
 
 #include <QColor>
+#include <QPushButton>
 
 #include "apps/viewer/model/look.hpp"
 
@@ -14,5 +15,30 @@ inline QColor to_qt(const Colour& colour) {
 inline Colour from_qt(const QColor& colour) {
     return {colour.redF(), colour.greenF(), colour.blueF()};
 }
+
+/// A button that shows a colour and opens a dialog to choose another.
+class ColourButton : public QPushButton {
+    Q_OBJECT
+
+  public:
+    ColourButton(const QString& name, const QString& title);
+
+    /// Shows a colour; emits nothing.
+    void set_colour(const Colour& colour);
+    const Colour& colour() const { return colour_; }
+    /// Opens the dialog, as a click does; the window keeps working.
+    void choose();
+
+  Q_SIGNALS:
+    /// Also emitted while the dialog is open, so that the scene shows the colour; cancelling emits
+    /// the old one.
+    void wanted(const palpate::viewer::Colour& colour);
+
+  protected:
+    void paintEvent(QPaintEvent* event) override;
+
+  private:
+    Colour colour_;
+};
 
 }  // namespace palpate::viewer

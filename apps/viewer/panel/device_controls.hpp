@@ -1,4 +1,5 @@
-// Controls of the device: which one, its state and problems, the scale of the hand.
+// The page of the device: which one, its state and problems, the scale of the hand, and how the
+// servo loop performs.
 #pragma once
 
 #include <QComboBox>
@@ -7,14 +8,34 @@
 #include <QPushButton>
 #include <QWidget>
 
+#include <array>
 #include <vector>
 
 #include "apps/viewer/panel/effect.hpp"
-#include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/section.hpp"
+#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/layout.hpp"
 #include "palpate/devices/backend.hpp"
+#include "palpate/servo.hpp"
 
 namespace palpate::viewer {
+
+/// Shows how the servo loop performs: rate, lateness, compute time, missed deadlines, worst tick.
+class LoopView : public QWidget {
+    Q_OBJECT
+
+  public:
+    LoopView();
+    /// `rate` [Hz] as measured.
+    void show_report(const ServoReport& report, double rate);
+    void clear();
+
+  private:
+    using Row = std::array<QLabel*, 4>;  // p50, p99, p99.9, max
+    static void put(const Row& row, const LatencySummary& summary);
+
+    Row lateness_{}, compute_{};
+    QLabel *rate_, *missed_, *worst_;
+};
 
 class DeviceControls : public QWidget {
     Q_OBJECT

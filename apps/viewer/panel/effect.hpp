@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "apps/viewer/panel/awaited_change.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "palpate/run/statistics.hpp"
 #include "palpate/servo.hpp"
 
@@ -24,7 +24,6 @@ class Effect : public QObject {
     /// Another session. Without `carry_out` a recording is played: nothing can be changed.
     void begin(const Field& field, double isovalue, const RendererSettings& settings,
                const DeviceInfo& device, const run::Histogram& histogram, CarryOut carry_out);
-    /// Nothing is open.
     void end();
     /// The command is carried out, or refused with a reason: then nothing has changed. Without a
     /// session nothing happens.
@@ -34,7 +33,6 @@ class Effect : public QObject {
 
     /// Nothing is felt or played without one.
     bool there() const { return session_.has_value(); }
-    /// A recording is played.
     bool is_played() const { return there() && !carry_out_; }
     // Of a session that is there:
     /// As it began, with all commands since. Its field has no edits.

@@ -9,10 +9,9 @@
 
 #include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/panel/effect.hpp"
+#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
-#include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/rate_limiter.hpp"
-#include "apps/viewer/panel/section.hpp"
 
 namespace palpate::viewer {
 

@@ -9,15 +9,11 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/viewer/panel/curve_controls.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layer_editor.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/level_axis.hpp"
 #include "apps/viewer/panel/names.hpp"
-#include "apps/viewer/panel/needle_controls.hpp"
-#include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/section.hpp"
-#include "apps/viewer/panel/stroke_plot.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -278,8 +274,9 @@ void LayersControls::begin_curve() {
 
 void LayersControls::add_layer() {
     if (!effect_.there()) return;
+    const std::string name = tr("layer", "name of a new one, before its number").toStdString();
     if (!have_surfaces(layers_)) {
-        Layers first = first_layer(std::clamp(effect_.isovalue(), low_, high_));
+        Layers first = first_layer(std::clamp(effect_.isovalue(), low_, high_), name);
         if (layers_) {  // curves without a surface
             Layers next = *layers_;
             next.layers = first.layers;
@@ -287,7 +284,7 @@ void LayersControls::add_layer() {
         }
         return use(std::make_shared<const Layers>(std::move(first)));
     }
-    auto [next, at] = with_another(*layers_, effect_.field().solid(), low_, high_);
+    auto [next, at] = with_another(*layers_, effect_.field().solid(), low_, high_, name);
     edit(std::make_shared<const Layers>(std::move(next)), {});
     choose_layer(static_cast<int>(at));
 }

@@ -15,7 +15,7 @@
 
 #include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/panel/effect.hpp"
-#include "apps/viewer/panel/rate_limiter.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 
 namespace palpate::viewer {
 

@@ -1,11 +1,12 @@
-// Short ways to build what the sections of the panel have in common: named widgets, rows, columns
-// and form rows, without margins.
+// Short ways to build sections of the panel: named widgets, rows, columns and form rows without
+// margins, notes, and headings that fold.
 #pragma once
 
 #include <QAbstractButton>
 #include <QFormLayout>
 #include <QLabel>
 #include <QRegularExpression>
+#include <QToolButton>
 #include <QWidget>
 
 #include <initializer_list>
@@ -46,5 +47,40 @@ void make_bold(QWidget& widget, bool bold = true);
 /// Return presses the buttons in `parent` that are there now: the space bar is the window's, for
 /// the forces.
 void let_return_press_buttons(QWidget& parent);
+
+/// A line or more of text that wraps, and is not there while it is empty.
+class Note : public QLabel {
+  public:
+    enum class Kind { plain, warning };
+    Note(const QString& name, Kind kind);
+    void say(const QString& text);
+
+  protected:
+    void changeEvent(QEvent* event) override;
+
+  private:
+    void paint_text();
+
+    Kind kind_;
+};
+
+class Section : public QWidget {
+    Q_OBJECT
+
+  public:
+    /// Takes ownership of the content. `name` is that of the object; its heading is NAME_heading,
+    /// its message NAME_message.
+    Section(const QString& title, const QString& name, QWidget* content);
+
+    void set_open(bool open);
+    bool is_open() const { return heading_->isChecked(); }
+    /// Why something was refused; empty: all is well. Opens the section.
+    void say(const QString& why);
+
+  private:
+    QToolButton* heading_;
+    QWidget* content_;
+    Note* message_;
+};
 
 }  // namespace palpate::viewer

@@ -1,12 +1,18 @@
-// Converts between levels and pixels, and draws the bars of the histogram.
+// Converts between levels and pixels, and draws histogram, bands and curve.
 #include "apps/viewer/panel/level_axis.hpp"
 
+#include <QLinearGradient>
 #include <QPainter>
 #include <QPainterPath>
 #include <QWheelEvent>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+
+#include "apps/viewer/panel/colours.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 
 namespace palpate::viewer {
 
@@ -118,6 +124,198 @@ bool is_dark(const QPalette& palette) {
 
 QColor readable(const QColor& colour, const QPalette& palette) {
     return is_dark(palette) ? colour.lighter(155) : colour;
+}
+
+namespace {
+
+/// Apart from each other and from the colours of HIP, SCP and force.
+constexpr std::array<QRgb, 6> colours{0xffcc79a7, 0xffe69f00, 0xff56b4e9,
+                                      0xff9a8fd8, 0xfff0e442, 0xff8c6d31};
+
+}  // namespace
+
+BandGrip band_at(const Ranges& ranges, const LevelAxis& axis, double x, double reach) {
+    BandGrip best;
+    double nearest = reach;
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        const double low = axis.x_of(ranges[i].low);
+        const double high = axis.x_of(ranges[i].high);
+        const auto band = static_cast<int>(i);
+        // Of two ends in one place the one on the pointer's side, or a closed band could not open.
+        const double to_low = std::abs(x - low) - (x < low ? 0.01 : 0);
+        const double to_high = std::abs(x - high) - (x > high ? 0.01 : 0);
+        if (std::isfinite(ranges[i].low) && to_low < nearest) {
+            nearest = to_low;
+            best = {band, Grip::low};
+        }
+        if (std::isfinite(ranges[i].high) && to_high < nearest) {
+            nearest = to_high;
+            best = {band, Grip::high};
+        }
+        if (best.grip == Grip::none && x > low && x < high) best = {band, Grip::whole};
+    }
+    return best;
+}
+
+DensityRange dragged(const DensityRange& start, Grip grip, double held_at, double level,
+                     const LevelAxis& axis) {
+    DensityRange range = start;
+    if (grip == Grip::low) range.low = std::min(level, start.high);
+    if (grip == Grip::high) range.high = std::max(level, start.low);
+    if (grip != Grip::whole) return range;
+    double by = level - held_at;
+    if (std::isfinite(start.high)) by = std::min(by, std::max(0.0, axis.high - start.high));
+    if (std::isfinite(start.low)) by = std::max(by, std::min(0.0, axis.low - start.low));
+    range.low += by;
+    range.high += by;
+    return range;
+}
+
+QColor band_colour(int band) {
+    return QColor::fromRgb(colours[static_cast<std::size_t>(band) % colours.size()]);
+}
+
+void paint_bands(QPainter& painter, const Ranges& ranges, const LevelAxis& axis, const QRectF& plot,
+                 const QRectF& strip, int chosen) {
+    painter.save();
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        const auto band = static_cast<int>(i);
+        const double low = axis.x_of(ranges[i].low);
+        const double high = std::max(axis.x_of(ranges[i].high), low + 1);
+        QColor colour = band_colour(band);
+        colour.setAlphaF(0.28);
+        painter.fillRect(QRectF(QPointF(low, plot.top()), QPointF(high, plot.bottom())), colour);
+        colour.setAlphaF(1);
+        const QRectF grip(QPointF(low, strip.top()), QPointF(high, strip.bottom()));
+        painter.fillRect(grip, colour);
+        painter.setPen(QPen(colour, 1));
+        if (std::isfinite(ranges[i].low))
+            painter.drawLine(QPointF(low, plot.top()), grip.topLeft());
+        if (std::isfinite(ranges[i].high)) {
+            painter.drawLine(QPointF(high, plot.top()), grip.topRight());
+        }
+        if (band == chosen) {
+            painter.setPen(QPen(painter.pen().color().darker(190), 1.5));
+            painter.drawRect(grip.adjusted(0.75, 0.75, -0.75, -0.75));
+        }
+    }
+    painter.restore();
+}
+
+CurveLine line_of(const Knots& knots, double least, const QString& unit) {
+    constexpr double room = 1.25;
+    double highest = 0;
+    for (const Curve::Knot& knot : knots) {
+        if (std::isfinite(knot.value)) highest = std::max(highest, knot.value);
+    }
+    return {knots, highest > 0 ? room * highest : least, least, unit};
+}
+
+QPointF CurveLine::place_of(const Curve::Knot& knot, const LevelAxis& axis,
+                            const QRectF& plot) const {
+    const double part = std::clamp(knot.value / top, 0.0, 1.0);
+    return {axis.x_of(knot.at), plot.bottom() - part * plot.height()};
+}
+
+Curve::Knot CurveLine::knot_of(const QPointF& at, const LevelAxis& axis, const QRectF& plot) const {
+    const double part = std::clamp((plot.bottom() - at.y()) / plot.height(), 0.0, 1.0);
+    const double digit = std::pow(10.0, std::floor(std::log10(top)) - 2);  // short numbers
+    return {axis.round_level_of(at.x()), std::round(part * top / digit) * digit};
+}
+
+int CurveLine::knot_at(const QPointF& at, const LevelAxis& axis, const QRectF& plot,
+                       double reach) const {
+    int best = -1;
+    for (std::size_t i = 0; i < knots.size(); ++i) {
+        const QPointF away = place_of(knots[i], axis, plot) - at;
+        const double distance = std::hypot(away.x(), away.y());
+        if (distance > reach) continue;
+        reach = distance;
+        best = static_cast<int>(i);
+    }
+    return best;
+}
+
+void CurveLine::put(std::size_t knot, Curve::Knot to, double gap) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double low = knot > 0 ? knots[knot - 1].at + gap : -infinity;
+    const double high = knot + 1 < knots.size() ? knots[knot + 1].at - gap : infinity;
+    // Between neighbours that are too close it stays where it is.
+    to.at = low <= high ? std::clamp(to.at, low, high) : knots[knot].at;
+    knots[knot] = to;
+}
+
+int CurveLine::add(const Curve::Knot& knot) {
+    const auto behind =
+        std::ranges::find_if(knots, [&](const Curve::Knot& one) { return one.at >= knot.at; });
+    if (behind != knots.end() && behind->at == knot.at) return -1;
+    const auto number = behind - knots.begin();
+    if (!colours.empty()) {
+        const auto last = static_cast<std::ptrdiff_t>(knots.size()) - 1;
+        const auto left = std::size_t(std::max<std::ptrdiff_t>(number - 1, 0));
+        const auto right = std::size_t(std::min(number, last));
+        const Colour &a = colours[left], &b = colours[right];
+        const double t =
+            left == right ? 0 : (knot.at - knots[left].at) / (knots[right].at - knots[left].at);
+        colours.insert(colours.begin() + number,
+                       Colour{std::lerp(a.red, b.red, t), std::lerp(a.green, b.green, t),
+                              std::lerp(a.blue, b.blue, t)});
+    }
+    knots.insert(knots.begin() + number, knot);
+    return static_cast<int>(number);
+}
+
+bool CurveLine::remove(int knot) {
+    if (knot < 0 || knots.size() <= fewest) return false;
+    knots.erase(knots.begin() + knot);
+    if (!colours.empty()) colours.erase(colours.begin() + knot);
+    return true;
+}
+
+/// The area below the line in the colours, and these alone below it.
+void CurveLine::fill(QPainter& painter, const QPainterPath& line, const LevelAxis& axis,
+                     const QRectF& plot) const {
+    QLinearGradient shades(plot.left(), 0, plot.right(), 0);
+    for (std::size_t i = 0; i < knots.size(); ++i) {
+        const double part = (axis.x_of(knots[i].at) - plot.left()) / plot.width();
+        shades.setColorAt(std::clamp(part, 0.0, 1.0), to_qt(colours[i]));
+    }
+    QPainterPath area = line;
+    area.lineTo(plot.bottomRight());
+    area.lineTo(plot.bottomLeft());
+    painter.setOpacity(0.75 * painter.opacity());
+    painter.fillPath(area, shades);
+    painter.setOpacity(painter.opacity() / 0.75);
+    const double high = 0.5 * painter.fontMetrics().height() - 3;
+    painter.fillRect(QRectF(plot.left(), plot.bottom() + 3, plot.width(), high), shades);
+}
+
+/// Constant beyond the outer knots; the chosen one with its value.
+void CurveLine::paint(QPainter& painter, const LevelAxis& axis, const QRectF& plot,
+                      const QColor& colour, int chosen) const {
+    if (knots.empty()) return;
+    QPainterPath line(QPointF(plot.left(), place_of(knots.front(), axis, plot).y()));
+    for (const Curve::Knot& knot : knots) line.lineTo(place_of(knot, axis, plot));
+    line.lineTo(plot.right(), line.currentPosition().y());
+    painter.save();
+    if (!colours.empty()) fill(painter, line, axis, plot);
+    painter.setPen(QPen(colour, 1.5));
+    painter.setBrush(Qt::NoBrush);
+    painter.drawPath(line);
+    for (std::size_t i = 0; i < knots.size(); ++i) {
+        const QPointF at = place_of(knots[i], axis, plot);
+        const double radius = static_cast<int>(i) == chosen ? 4.5 : 3;
+        painter.setBrush(colours.empty() ? colour : to_qt(colours[i]));
+        painter.drawEllipse(at, radius, radius);
+        if (static_cast<int>(i) != chosen) continue;
+        QString text = number_text(knots[i].value, 3);
+        if (!unit.isEmpty()) text += " " + unit;
+        const double wide = painter.fontMetrics().horizontalAdvance(text);
+        const double x = std::clamp(at.x() + 7, plot.left(), plot.right() - wide - 2);
+        painter.drawText(
+            QPointF(x, std::max(at.y() - 6, plot.top() + painter.fontMetrics().height())), text);
+    }
+    painter.restore();
 }
 
 }  // namespace palpate::viewer

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -49,7 +49,7 @@ void LevelChart::clear() {
     set_data({}, {});
     bands_.clear();
     marks_.clear();
-    set_curve({});
+    set_curve(line_of({}));
     level_shown_ = true;
     felt_ = std::numeric_limits<double>::quiet_NaN();
 }
@@ -201,8 +201,7 @@ void LevelChart::mousePressEvent(QMouseEvent* event) {
         press_strip(at);
         return;
     }
-    held_knot_ = curve_.knot_at(at, axis(), plot(), reach);
-    update();
+    hold_knot(knot_at(at));
     if (held_knot_ >= 0) {
         drag_ = Drag::knot;
         return;
@@ -235,10 +234,9 @@ void LevelChart::mouseMoveEvent(QMouseEvent* event) {
             ask_level(level);
             return;
         case Drag::knot:
-            curve_.move(static_cast<std::size_t>(held_knot_), event->localPos(), a, plot());
-            update();
-            Q_EMIT curve_changed(curve_.knots);
-            return;
+            curve_.put(static_cast<std::size_t>(held_knot_),
+                       curve_.knot_of(event->localPos(), a, plot()), a.step());
+            return curve_edited();
         case Drag::mark: {
             LevelMark& mark = marks_[static_cast<std::size_t>(held_mark_)];
             mark.level = std::clamp(level, mark.low, mark.high);
@@ -266,7 +264,10 @@ void LevelChart::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton) return;
     const Drag drag = std::exchange(drag_, Drag::none);
     update();
-    if (drag == Drag::knot) set_curve(Knots(curve_.knots), curve_.least, QString(curve_.unit));
+    if (drag == Drag::knot) {
+        if (curve_.colours.empty()) set_curve(line_of(curve_.knots, curve_.least, curve_.unit));
+        Q_EMIT curve_settled();
+    }
     if (drag == Drag::level) Q_EMIT level_settled();
     if (drag == Drag::band) Q_EMIT bands_settled();
     // A click makes no range.
@@ -279,7 +280,7 @@ void LevelChart::show_cursor(const QPointF& at) {
         const Grip grip = band_at(bands_, axis(), at.x(), reach).grip;
         if (grip == Grip::low || grip == Grip::high) shape = Qt::SizeHorCursor;
         if (grip == Grip::whole && editable_) shape = Qt::OpenHandCursor;
-    } else if (curve_.knot_at(at, axis(), plot(), reach) >= 0) {
+    } else if (knot_at(at) >= 0) {
         shape = Qt::SizeAllCursor;
     } else if ((level_shown_ && std::abs(axis().x_of(level_) - at.x()) < reach) ||
                mark_at(at) >= 0) {
@@ -290,7 +291,7 @@ void LevelChart::show_cursor(const QPointF& at) {
 
 void LevelChart::contextMenuEvent(QContextMenuEvent* event) {
     const QPointF at = event->pos();
-    if (const int knot = curve_.knot_at(at, axis(), plot(), reach); knot >= 0) {
+    if (const int knot = knot_at(at); knot >= 0) {
         return remove_knot(knot);
     }
     const int band = band_at(bands_, axis(), at.x(), reach).band;

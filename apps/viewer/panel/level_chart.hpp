@@ -8,8 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "apps/viewer/panel/curve_line.hpp"
-#include "apps/viewer/panel/range_bands.hpp"
+#include "apps/viewer/panel/level_axis.hpp"
 
 namespace palpate::viewer {
 
@@ -50,9 +49,14 @@ class LevelChart : public QWidget {
     /// Further levels, as lines with a grip below; emits nothing. Ignored while one is dragged.
     void set_marks(const std::vector<LevelMark>& marks);
     /// A curve over levels, with knots to drag; emits nothing. Ignored while one is dragged. No
-    /// knots: none. `least`: the value up to which there is room where all are 0.
-    void set_curve(const Knots& knots, double least = 1, const QString& unit = {});
+    /// knots: none.
+    void set_curve(const CurveLine& curve);
     const CurveLine& curve() const { return curve_; }
+    /// The knot that keys move, or -1.
+    int held_knot() const { return held_knot_; }
+    void hold_knot(int knot);
+    /// Where a knot is drawn [logical pixels].
+    QPointF place_of(std::size_t knot) const;
     /// False: there are no isovalue and no bands, marks are held by their whole lines, and arrow
     /// keys are for the curve.
     void set_level_shown(bool shown);
@@ -79,6 +83,9 @@ class LevelChart : public QWidget {
     void mark_chosen(int mark);
     void mark_moved(int mark, double level);
     void curve_changed(const palpate::viewer::Knots& knots);
+    void curve_settled();  ///< a drag is over
+    void knot_held(int knot);
+    void knot_activated(int knot);  ///< by a double click or Return
     void band_added(const palpate::DensityRange& range);
     void band_deleted(int band);
     void band_chosen(int band);
@@ -103,7 +110,9 @@ class LevelChart : public QWidget {
     void press_strip(const QPointF& at);
     int tick_at(const QPointF& at) const;
     int mark_at(const QPointF& at) const;
+    int knot_at(const QPointF& at) const;
     void remove_knot(int knot);
+    void curve_edited();
     bool step_knot(int key, double steps);
     bool have_bands() const { return level_shown_ && !bands_.empty(); }
     void paint_marks(QPainter& painter, const LevelAxis& axis) const;

@@ -1,12 +1,15 @@
-// Drawing of the level chart.
+// Drawing of the level chart, and its curve by mouse and keys.
+#include "apps/viewer/panel/level_chart.hpp"
+
+#include <QMouseEvent>
 #include <QPainter>
 #include <QPainterPath>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/viewer/panel/colours.hpp"
-#include "apps/viewer/panel/level_chart.hpp"
-#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -111,12 +114,111 @@ void LevelChart::paintEvent(QPaintEvent*) {
     paint_bands(painter, bands, a, p, strip(), chosen_);
     paint_ticks(painter, a);
     paint_marks(painter, a);
-    curve_.paint(painter, a, p, readable(QColor(0, 114, 178), palette()), held_knot_);
+    painter.setOpacity(isEnabled() ? 1 : 0.5);
+    const QColor line = curve_.colours.empty() ? readable(QColor(0, 114, 178), palette())
+                                               : palette().color(QPalette::Text);
+    curve_.paint(painter, a, p, line, held_knot_);
+    painter.setOpacity(1);
     paint_markers(painter, a);
     paint_ends(painter);
     painter.setBrush(Qt::NoBrush);
     painter.setPen(QPen(palette().color(hasFocus() ? QPalette::Highlight : QPalette::Mid), 1));
     painter.drawRect(p);
+}
+
+void LevelChart::set_curve(const CurveLine& curve) {
+    if (drag_ == Drag::knot) return;
+    if (held_knot_ >= static_cast<int>(curve.knots.size())) held_knot_ = -1;
+    curve_ = curve;
+    update();
+}
+
+int LevelChart::knot_at(const QPointF& at) const {
+    constexpr double knot_reach = 6;  // [logical pixels]
+    return curve_.knot_at(at, axis(), plot(), knot_reach);
+}
+
+QPointF LevelChart::place_of(std::size_t knot) const {
+    return curve_.place_of(curve_.knots.at(knot), axis(), plot());
+}
+
+void LevelChart::hold_knot(int knot) {
+    held_knot_ = knot;
+    update();
+    Q_EMIT knot_held(knot);
+}
+
+void LevelChart::curve_edited() {
+    Q_EMIT curve_changed(curve_.knots);
+    hold_knot(held_knot_);
+}
+
+/// Another knot of the curve, or what there is to do with this one.
+void LevelChart::mouseDoubleClickEvent(QMouseEvent* event) {
+    const QPointF at = event->localPos();
+    if (curve_.knots.empty() || event->button() != Qt::LeftButton) return mousePressEvent(event);
+    if (const int knot = knot_at(at); knot >= 0) {
+        drag_ = Drag::none;
+        hold_knot(knot);
+        Q_EMIT knot_activated(knot);
+        return;
+    }
+    if (!plot().contains(at)) return mousePressEvent(event);
+    held_knot_ = curve_.add(curve_.knot_of(at, axis(), plot()));
+    if (held_knot_ >= 0) curve_edited();
+}
+
+/// The last ones stay: a curve without knots says nothing.
+void LevelChart::remove_knot(int knot) {
+    if (!curve_.remove(knot)) return;
+    held_knot_ = -1;
+    curve_edited();
+}
+
+/// Moves the held knot, or holds another. False: the key is for something else.
+bool LevelChart::step_knot(int key, double steps) {
+    const int count = static_cast<int>(curve_.knots.size());
+    if (count == 0) return false;
+    const bool chooses = key == Qt::Key_PageDown || key == Qt::Key_PageUp;
+    if (chooses || held_knot_ < 0) {
+        const bool known = chooses || key == Qt::Key_Left || key == Qt::Key_Right ||
+                           key == Qt::Key_Up || key == Qt::Key_Down;
+        if (!known) return false;
+        const int next = held_knot_ + (key == Qt::Key_PageUp ? -1 : 1);
+        hold_knot(held_knot_ < 0 ? 0 : std::clamp(next, 0, count - 1));
+        return true;
+    }
+    const auto held = static_cast<std::size_t>(held_knot_);
+    QPointF at = place_of(held);
+    switch (key) {  // a pixel is the finest that dragging has
+        case Qt::Key_Left:
+        case Qt::Key_Right:
+            at.rx() += key == Qt::Key_Left ? -steps : steps;
+            break;
+        case Qt::Key_Up:
+        case Qt::Key_Down:
+            at.ry() += key == Qt::Key_Up ? -steps : steps;
+            break;
+        case Qt::Key_Insert: {
+            // In the middle to the next one, or to the edge.
+            const bool last = held + 1 == curve_.knots.size();
+            at = 0.5 * (at + (last ? QPointF(plot().right(), at.y()) : place_of(held + 1)));
+            const int added = curve_.add(curve_.knot_of(at, axis(), plot()));
+            if (added < 0) return true;
+            held_knot_ = added;
+            curve_edited();
+            return true;
+        }
+        case Qt::Key_Return:
+        case Qt::Key_Enter:
+            Q_EMIT knot_activated(held_knot_);
+            return true;
+        default:
+            return false;
+    }
+    curve_.put(held, curve_.knot_of(at, axis(), plot()), axis().step());
+    curve_edited();
+    return true;
 }
 
 }  // namespace palpate::viewer

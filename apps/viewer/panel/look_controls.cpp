@@ -8,11 +8,113 @@
 #include <cmath>
 #include <iterator>
 
-#include "apps/viewer/model/colour_map.hpp"
+#include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/names.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+QString feel_tip() {
+    return SurfaceList::tr("Feel this one; the one felt now takes its place here");
+}
+
+}  // namespace
+
+SurfaceList::SurfaceList()
+    : add_(named(new QPushButton(tr("Add a surface")), "add_surface",
+                 tr("See another level beside the one that is felt: skin over bone"))) {
+    auto* column = column_in(this);
+    for (std::size_t i = 0; i < most_surfaces; ++i) {
+        rows_.push_back(make_row(static_cast<int>(i) + 1));
+        connect_row(rows_.back(), i);
+        column->addWidget(rows_.back().whole);
+    }
+    column->addWidget(add_);
+    connect(add_, &QPushButton::clicked, this, &SurfaceList::add_wanted);
+    set_surfaces({});
+}
+
+SurfaceList::Row SurfaceList::make_row(int number) {
+    const QString name = QString("surface_%1").arg(number);
+    const QString which = tr("Surface %1").arg(number);
+    Row row{};
+    row.shown = named(new QCheckBox, name, tr("Surface %1 is seen").arg(number));
+    row.shown->setAccessibleName(which);
+    row.colour = new ColourButton(name + "_colour", tr("Colour of surface %1").arg(number));
+    row.level = named(new NumberBox, name + "_level",
+                      tr("Its level [data units]; also a line to drag on the histogram"));
+    row.level->setAccessibleName(tr("Level of surface %1").arg(number));
+    row.opacity = named(new NumberBox, name + "_opacity", tr("Its opacity, 0 to 1"));
+    row.opacity->setAccessibleName(tr("Opacity of surface %1").arg(number));
+    row.opacity->setSingleStep(0.05);
+    row.feel = named(new QPushButton(tr("Feel")), name + "_feel", feel_tip());
+    row.feel->setAccessibleName(tr("Feel surface %1").arg(number));
+    row.remove = named(new QPushButton("×"), name + "_remove", tr("Remove it"));
+    row.remove->setAccessibleName(tr("Remove surface %1").arg(number));
+    const int em = fontMetrics().height();
+    row.feel->setMaximumWidth(3 * em);
+    row.remove->setMaximumWidth(2 * em);
+    row.opacity->setMaximumWidth(5 * em);
+    row.whole = row_of({row.shown, row.colour, row.level, row.opacity, row.feel, row.remove}, 2);
+    return row;
+}
+
+void SurfaceList::connect_row(const Row& row, std::size_t at) {
+    const auto change = [this, at](auto set) {
+        set(surfaces_.at(at));
+        Q_EMIT changed(surfaces_);
+    };
+    connect(row.shown, &QCheckBox::clicked, this,
+            [change](bool on) { change([on](SeenSurface& s) { s.shown = on; }); });
+    connect(row.colour, &ColourButton::wanted, this, [change](const Colour& colour) {
+        change([&colour](SeenSurface& s) { s.colour = colour; });
+    });
+    connect(row.level, qOverload<double>(&NumberBox::valueChanged), this,
+            [change](double level) { change([level](SeenSurface& s) { s.level = level; }); });
+    connect(row.opacity, qOverload<double>(&NumberBox::valueChanged), this,
+            [this, change, at](double opacity) {
+                change([opacity](SeenSurface& s) { s.opacity = std::clamp(opacity, 0.0, 1.0); });
+                show_row(at);
+            });
+    connect(row.feel, &QPushButton::clicked, this,
+            [this, at] { Q_EMIT feel_wanted(static_cast<int>(at)); });
+    connect(row.remove, &QPushButton::clicked, this, [this, at] {
+        SeenSurfaces fewer = surfaces_;
+        fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(at));
+        set_surfaces(fewer);
+        Q_EMIT changed(surfaces_);
+    });
+}
+
+void SurfaceList::show_row(std::size_t at) {
+    const SeenSurface& surface = surfaces_[at];
+    const Row& row = rows_[at];
+    row.shown->setChecked(surface.shown);
+    row.colour->set_colour(surface.colour);
+    row.level->show_value(surface.level);
+    row.opacity->show_value(surface.opacity);
+}
+
+void SurfaceList::set_surfaces(const SeenSurfaces& surfaces) {
+    surfaces_ = surfaces;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        rows_[i].whole->setVisible(i < surfaces_.size());
+        if (i < surfaces_.size()) show_row(i);
+    }
+    add_->setEnabled(surfaces_.size() < most_surfaces);
+}
+
+void SurfaceList::set_feelable(bool feelable, const QString& why) {
+    for (const Row& row : rows_) {
+        row.feel->setEnabled(feelable);
+        row.feel->setToolTip(feelable ? feel_tip() : why);
+    }
+}
+
+void SurfaceList::set_step(double step) {
+    for (const Row& row : rows_) row.level->setSingleStep(step);
+}
 
 LookControls::LookControls(Effect& effect)
     : effect_(effect),
@@ -28,13 +130,21 @@ LookControls::LookControls(Effect& effect)
           tr("Cut surfaces and volume open, to see inside. Drag the blue balls in the scene.\n"
              "Choose the plane again to have it face you."))),
       colours_(named(new QComboBox, "colours", tr("Colour map of the slices"))),
-      editor_(new TransferEditor),
+      editor_(named(
+          new LevelChart, "transfer_editor",
+          tr("Opacity (upwards, 0 to 1) and colour by level [data units].\n"
+             "Drag a point; double click adds one, or on a point chooses its colour; right click "
+             "or Del deletes.\nPage keys choose a point, arrows move it, Insert adds one, Return "
+             "chooses its colour.\nChoose the preset again to undo. Ctrl-wheel zooms, shift-wheel "
+             "moves, Ctrl+0 shows all again."))),
       point_level_(
           named(new NumberBox, "point_level", tr("Level of the chosen point [data units]"))),
       point_opacity_(named(new NumberBox, "point_opacity",
                            tr("Opacity of the chosen point, 0 to 1, of a layer as thick as the "
                               "smallest spacing"))),
       limiter_(this) {
+    editor_->setAccessibleName(tr("Transfer function"));
+    editor_->set_level_shown(false);
     column_in(this, {make_surface(), surfaces_, make_cut(), make_volume(), make_rest()});
     connect(surface_colour_, &ColourButton::wanted, this, [this](const Colour& colour) {
         look_.surface_colour = colour;
@@ -139,7 +249,7 @@ void LookControls::connect_effect() {
     connect(&effect_, &Effect::ended, this, show_layered);
     connect(&effect_, &Effect::ended, this, [this] {
         limiter_.drop();
-        editor_->set_data({});
+        editor_->set_data({}, {});
     });
 }
 
@@ -219,34 +329,59 @@ void LookControls::connect_transfer() {
         if (!effect_.there()) return;
         const std::string name = preset_->itemData(at).toString().toStdString();
         look_.transfer = preset(name, effect_.histogram(), effect_.field().volume());
-        editor_->set_transfer(look_.transfer);
+        show_transfer();
         changed();
     });
-    connect(editor_, &TransferEditor::changed, this, [this](const TransferFunction& transfer) {
-        look_.transfer = transfer;
-        show_preset();
-        changed();
-    });
-    connect(editor_, &TransferEditor::settled, &limiter_, &RateLimiter::flush);
-    connect(editor_, &TransferEditor::point_chosen, this, &LookControls::show_point);
-    connect(editor_, &TransferEditor::colour_wanted, point_colour_, &ColourButton::choose);
-    // The level typed for the chosen point; the editor keeps it between its neighbours.
-    const auto change = [this](auto set) {
-        const int chosen = editor_->chosen();
-        if (chosen < 0) return;
-        ControlPoint point = look_.transfer.points[static_cast<std::size_t>(chosen)];
-        set(point);
-        editor_->change_chosen(point);
-        show_point(chosen);
-    };
+    connect(editor_, &LevelChart::curve_changed, this, &LookControls::take_transfer);
+    connect(editor_, &LevelChart::curve_settled, &limiter_, &RateLimiter::flush);
+    connect(editor_, &LevelChart::knot_held, this, &LookControls::show_point);
+    connect(editor_, &LevelChart::knot_activated, point_colour_, &ColourButton::choose);
     connect(point_level_, qOverload<double>(&NumberBox::valueChanged), this,
-            [change](double level) { change([level](ControlPoint& p) { p.level = level; }); });
-    connect(
-        point_opacity_, qOverload<double>(&NumberBox::valueChanged), this,
-        [change](double opacity) { change([opacity](ControlPoint& p) { p.opacity = opacity; }); });
-    connect(point_colour_, &ColourButton::wanted, this, [change](const Colour& colour) {
-        change([&colour](ControlPoint& p) { p.colour = colour; });
+            [this](double level) { change_point([level](ControlPoint& p) { p.level = level; }); });
+    connect(point_opacity_, qOverload<double>(&NumberBox::valueChanged), this,
+            [this](double opacity) {
+                change_point([opacity](ControlPoint& p) { p.opacity = opacity; });
+            });
+    connect(point_colour_, &ColourButton::wanted, this, [this](const Colour& colour) {
+        change_point([&colour](ControlPoint& p) { p.colour = colour; });
     });
+}
+
+/// The chosen one, as its numbers were typed; it stays between its neighbours.
+void LookControls::change_point(const std::function<void(ControlPoint&)>& how) {
+    const int chosen = editor_->held_knot();
+    if (chosen < 0) return;
+    const auto at = static_cast<std::size_t>(chosen);
+    ControlPoint point = look_.transfer.points[at];
+    how(point);
+    CurveLine line = editor_->curve();
+    line.put(at, {point.level, std::clamp(point.opacity, 0.0, 1.0)}, editor_->axis().step());
+    line.colours[at] = point.colour;
+    editor_->set_curve(line);
+    take_transfer();
+    show_point(chosen);
+}
+
+void LookControls::take_transfer() {
+    const CurveLine& line = editor_->curve();
+    look_.transfer = {};
+    for (std::size_t i = 0; i < line.knots.size(); ++i) {
+        look_.transfer.points.push_back({line.knots[i].at, line.colours[i], line.knots[i].value});
+    }
+    show_preset();
+    changed();
+}
+
+void LookControls::show_transfer() {
+    CurveLine line;
+    line.fewest = 2;
+    for (const ControlPoint& point : look_.transfer.points) {
+        line.knots.push_back({point.level, point.opacity});
+        line.colours.push_back(point.colour);
+    }
+    editor_->set_curve(line);
+    show_point(editor_->held_knot());
+    show_preset();
 }
 
 void LookControls::begin() {
@@ -256,7 +391,7 @@ void LookControls::begin() {
         add_choice(*preset_, name);
     }
     show_preset();
-    editor_->set_data(histogram);
+    editor_->set_data(histogram, {});
     const LevelAxis axis = axis_of(histogram, QRectF(0, 0, 100, 1));
     point_level_->setSingleStep(axis.step());
     surfaces_->set_step(axis.step());
@@ -272,8 +407,7 @@ void LookControls::set_look(const Look& look) {
     surfaces_->set_surfaces(look.surfaces);
     cut_->setCurrentIndex(static_cast<int>(look.cut));
     colours_->setCurrentIndex(colours_->findData(QString::fromStdString(look.colours)));
-    editor_->set_transfer(look.transfer);
-    show_preset();
+    show_transfer();
     Q_EMIT look_set();
 }
 
@@ -290,7 +424,7 @@ void LookControls::show_point(int point) {
         one->setEnabled(any);
     }
     if (!any) return;
-    const ControlPoint& at = editor_->transfer().points[static_cast<std::size_t>(point)];
+    const ControlPoint& at = look_.transfer.points[static_cast<std::size_t>(point)];
     point_level_->show_value(at.level);
     point_opacity_->show_value(at.opacity);
     point_colour_->set_colour(at.colour);

@@ -1,20 +1,61 @@
-// Controls of the look: what the scene shows, its colours, the transfer function.
+// Controls of the look: what the scene shows, its colours and surfaces, the transfer function.
 #pragma once
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QPushButton>
 #include <QWidget>
 
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/panel/colour_button.hpp"
+#include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/effect.hpp"
-#include "apps/viewer/panel/quantity.hpp"
-#include "apps/viewer/panel/surface_list.hpp"
-#include "apps/viewer/panel/transfer_editor.hpp"
+#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/level_chart.hpp"
 
 namespace palpate::viewer {
+
+// The surfaces that are seen beside the felt one: a row each.
+using SeenSurfaces = std::vector<SeenSurface>;
+
+/// Object names: surface_N (shown or not), surface_N_colour, _level, _opacity, _feel, _remove, from
+/// N = 1; add_surface.
+class SurfaceList : public QWidget {
+    Q_OBJECT
+
+  public:
+    SurfaceList();
+
+    /// Shows them; emits nothing.
+    void set_surfaces(const SeenSurfaces& surfaces);
+    /// [data units] Of the levels' boxes.
+    void set_step(double step);
+    /// Whether one of them can be felt in place of the isovalue; else `why` not.
+    void set_feelable(bool feelable, const QString& why);
+
+  Q_SIGNALS:
+    void changed(const palpate::viewer::SeenSurfaces& surfaces);
+    void add_wanted();
+    /// This one is to be felt.
+    void feel_wanted(int row);
+
+  private:
+    struct Row {
+        QWidget* whole;
+        QCheckBox* shown;
+        ColourButton* colour;
+        NumberBox *level, *opacity;
+        QPushButton *feel, *remove;
+    };
+    Row make_row(int number);
+    void connect_row(const Row& row, std::size_t at);
+    void show_row(std::size_t at);
+
+    SeenSurfaces surfaces_;
+    std::vector<Row> rows_;  // all there can be; those that are not used are hidden
+    QPushButton* add_;
+};
 
 class LookControls : public QWidget {
     Q_OBJECT
@@ -53,6 +94,9 @@ class LookControls : public QWidget {
     void add_surface();
     QWidget* make_rest();
     void connect_transfer();
+    void change_point(const std::function<void(ControlPoint&)>& how);
+    void take_transfer();
+    void show_transfer();
     void show_point(int point);
     void show_preset();
     void changed();
@@ -65,7 +109,7 @@ class LookControls : public QWidget {
     QComboBox* preset_;
     SurfaceList* surfaces_;
     QComboBox *cut_, *colours_;
-    TransferEditor* editor_;
+    LevelChart* editor_;
     NumberBox *point_level_, *point_opacity_;
     RateLimiter limiter_;
 };

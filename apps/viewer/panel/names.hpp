@@ -14,7 +14,6 @@ namespace palpate::viewer {
 /// Of transfer functions, colour maps, and causes of slow ticks; others as they are.
 QString shown_name(const std::string& name);
 
-/// Of a set of layers.
 QString shown_set(const std::string& name);
 
 /// What felt_words() says, in the person's language.

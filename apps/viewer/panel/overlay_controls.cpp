@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "apps/viewer/model/colour_map.hpp"
+#include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/names.hpp"

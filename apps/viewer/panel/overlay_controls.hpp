@@ -9,7 +9,7 @@
 #include <QWidget>
 
 #include "apps/viewer/model/overlay.hpp"
-#include "apps/viewer/panel/quantity.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 
 namespace palpate::viewer {
 

@@ -11,16 +11,13 @@
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/force_controls.hpp"
-#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
+#include "apps/viewer/panel/layer_editor.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
-#include "apps/viewer/panel/loop_view.hpp"
 #include "apps/viewer/panel/overlay_controls.hpp"
 #include "apps/viewer/panel/penetrability_controls.hpp"
-#include "apps/viewer/panel/property_words.hpp"
-#include "apps/viewer/panel/section.hpp"
 #include "apps/viewer/panel/session_bar.hpp"
 #include "apps/viewer/panel/tool_controls.hpp"
 
@@ -116,7 +113,6 @@ void Panel::build() {
     column->addWidget(tabs_, 1);
 }
 
-/// Shows the page that a section is on.
 void Panel::raise_page(const Section& section) {
     for (int i = 0; i < tabs_->count(); ++i) {
         if (tabs_->widget(i)->isAncestorOf(&section)) tabs_->setCurrentIndex(i);
@@ -206,8 +202,8 @@ void Panel::show_marks() {
     }
     isovalue_->chart().set_marks(marks);
     const PropertyWords& words = words_of(layers_->curve_property());
-    isovalue_->chart().set_curve(layers ? (*layers)[words.property].density.knots : Knots(),
-                                 words.high, words.unit);
+    isovalue_->chart().set_curve(line_of(layers ? (*layers)[words.property].density.knots : Knots(),
+                                         words.high, words.unit));
 }
 
 void Panel::connect_edits() {

@@ -37,7 +37,6 @@ class Panel : public QWidget {
     explicit Panel(Effect& effect, QWidget* parent = nullptr);
     ~Panel() override;
 
-    /// Sections, for controllers.
     IsovalueControls& isovalue_controls() { return *isovalue_; }
     LookControls& look_controls() { return *look_; }
     OverlayControls& overlay_controls() { return *overlay_; }

@@ -2,15 +2,187 @@
 #include "apps/viewer/panel/penetrability_controls.hpp"
 
 #include <QHBoxLayout>
+#include <QHeaderView>
+#include <QKeyEvent>
 #include <QRadioButton>
+#include <QSignalBlocker>
 #include <QVariant>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Ranges rising(Ranges ranges) {
+    std::ranges::sort(ranges, {}, &DensityRange::low);
+    return ranges;
+}
+
+}  // namespace
+
+Penetrability penetrability_of(const PressThrough& shown, Solid solid) {
+    if (shown.mode == PressThrough::Mode::off) return no_penetrability();
+    Penetrability p = shown.mode == PressThrough::Mode::threshold
+                          ? penetrability_threshold(shown.threshold, shown.minimum, solid)
+                          : penetrability_ranges(shown.threshold, shown.ranges, solid);
+    p.function = shown.function;
+    p.context = shown.context;
+    return p;
+}
+
+PressThrough shown_from(const Penetrability& p, Solid solid, PressThrough before) {
+    // A single range without a far end is a threshold with a minimum, unless it was made as a
+    // range.
+    const bool as_ranges = before.mode == PressThrough::Mode::ranges;
+    PressThrough shown = std::move(before);
+    shown.mode = PressThrough::Mode::off;
+    if (!p.on) return shown;
+    shown.threshold = p.threshold;
+    shown.function = p.function;
+    shown.context = p.context;
+    const DensityRange& first = p.ranges[0];
+    const double far = solid == Solid::above ? first.high : -first.low;
+    if (!as_ranges && p.range_count == 1 && far == infinity) {
+        shown.mode = PressThrough::Mode::threshold;
+        shown.minimum = solid == Solid::above ? first.low : first.high;
+        return shown;
+    }
+    shown.mode = PressThrough::Mode::ranges;
+    shown.ranges = rising(Ranges(p.ranges.begin(), p.ranges.begin() + p.range_count));
+    return shown;
+}
+
+PressThrough first_press_through(double isovalue, double low, double high, Solid solid) {
+    PressThrough shown;
+    const double begin = std::isfinite(isovalue) ? std::clamp(isovalue, low, high) : low;
+    shown.minimum = begin;
+    const double width = 0.1 * (high - low);
+    shown.ranges = {solid == Solid::above ? DensityRange{begin, begin + width}
+                                          : DensityRange{begin - width, begin}};
+    return shown;
+}
+
+Ranges bands_of(const PressThrough& shown, Solid solid) {
+    switch (shown.mode) {
+        case PressThrough::Mode::off:
+            return {};
+        case PressThrough::Mode::threshold:
+            return {solid == Solid::above ? DensityRange{shown.minimum, infinity}
+                                          : DensityRange{-infinity, shown.minimum}};
+        case PressThrough::Mode::ranges:
+            break;
+    }
+    return shown.ranges;
+}
+
+PressThrough with_bands(PressThrough shown, const Ranges& bands, Solid solid) {
+    if (shown.mode == PressThrough::Mode::threshold && !bands.empty()) {
+        shown.minimum = solid == Solid::above ? bands.front().low : bands.front().high;
+    } else if (shown.mode == PressThrough::Mode::ranges) {
+        shown.ranges = bands;
+    }
+    return shown;
+}
+
+RangeTable::RangeTable() : QTableWidget(0, 2) {
+    setObjectName("ranges");
+    setAccessibleName(tr("Ranges of interest"));
+    setHorizontalHeaderLabels({tr("from"), tr("to")});
+    horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+    verticalHeader()->setDefaultSectionSize(static_cast<int>(1.7 * fontMetrics().height()));
+    setSelectionBehavior(QAbstractItemView::SelectRows);
+    setSelectionMode(QAbstractItemView::SingleSelection);
+    setTabKeyNavigation(false);  // Tab leaves the table
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    setToolTip(
+        tr("Ranges of interest [data units]: only these levels are felt. Del deletes a row."));
+    connect(this, &QTableWidget::cellChanged, this, &RangeTable::read);
+    connect(this, &QTableWidget::itemSelectionChanged, this,
+            [this] { Q_EMIT row_chosen(chosen()); });
+}
+
+void RangeTable::write(int row) {
+    const DensityRange& range = ranges_[static_cast<std::size_t>(row)];
+    const QString texts[] = {number_text(range.low), number_text(range.high)};
+    for (int column = 0; column < 2; ++column) {
+        if (!item(row, column)) setItem(row, column, new QTableWidgetItem);
+        item(row, column)->setText(texts[column]);
+    }
+}
+
+void RangeTable::set_ranges(const Ranges& ranges) {
+    const QSignalBlocker quiet(this);
+    const bool resized = ranges.size() != ranges_.size();
+    ranges_ = ranges;
+    setRowCount(static_cast<int>(ranges.size()));
+    for (int row = 0; row < rowCount(); ++row) {
+        write(row);
+        if (!verticalHeaderItem(row)) {
+            auto* chip = new QTableWidgetItem(QString::number(row + 1));
+            QPixmap colour(16, 16);
+            colour.fill(band_colour(row));
+            chip->setIcon(QIcon(colour));
+            setVerticalHeaderItem(row, chip);
+        }
+    }
+    if (resized) updateGeometry();
+}
+
+int RangeTable::chosen() const {
+    return selectedItems().isEmpty() ? -1 : selectedItems().front()->row();
+}
+
+void RangeTable::choose(int row) {
+    const QSignalBlocker quiet(this);
+    if (row < 0) {
+        clearSelection();
+    } else {
+        selectRow(row);
+    }
+}
+
+void RangeTable::read(int row, int column) {
+    if (row >= static_cast<int>(ranges_.size())) return;
+    DensityRange range = ranges_[static_cast<std::size_t>(row)];
+    double& end = column == 0 ? range.low : range.high;
+    const QString text = item(row, column)->text();
+    if (text == number_text(end)) return;  // only looked at
+    if (const auto number = number_from(text.trimmed())) {
+        end = *number;
+        Q_EMIT edited(row, range);
+        return;
+    }
+    {
+        const QSignalBlocker quiet(this);
+        write(row);
+    }
+    Q_EMIT nonsense(tr("'%1' is not a number").arg(text));
+}
+
+void RangeTable::keyPressEvent(QKeyEvent* event) {
+    if ((event->key() == Qt::Key_Delete || event->key() == Qt::Key_Backspace) &&
+        currentRow() >= 0) {
+        Q_EMIT delete_wanted(currentRow());
+        return;
+    }
+    QTableWidget::keyPressEvent(event);
+}
+
+QSize RangeTable::sizeHint() const {
+    const int rows = std::clamp(rowCount(), 1, 5);
+    const int height = horizontalHeader()->sizeHint().height() +
+                       rows * verticalHeader()->defaultSectionSize() + 2 * frameWidth();
+    return {14 * fontMetrics().height(), height};
+}
+
 namespace {
 
 using Mode = PressThrough::Mode;

@@ -1,18 +1,190 @@
-// Connects the switches, and shows force and contact.
+// Connects the switches, and shows hands, force and contact.
 #include "apps/viewer/panel/session_bar.hpp"
 
 #include <QBoxLayout>
+#include <QButtonGroup>
+#include <QCoreApplication>
 #include <QEvent>
+#include <QLabel>
+#include <QPainter>
+#include <QPainterPath>
 #include <QVariant>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/options/words.hpp"
-#include "apps/viewer/model/hand_state.hpp"
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/level_axis.hpp"
 
 namespace palpate::viewer {
+
+HandSwitch::HandSwitch() {
+    setObjectName("hand_switch");
+    auto* group = new QButtonGroup(this);
+    auto* row = row_in(this, {new QLabel(tr("Settings of"))});
+    for (int hand = 1; hand <= most_hands; ++hand) {
+        QPushButton* button = buttons_[hand] =
+            named(new QPushButton, QString("hand_%1").arg(hand),
+                  tr("The panel shows the settings of this hand (N: the next one). Commands, keys "
+                     "and the mouse are for it"));
+        const QColor colour = to_qt(colours_of(hand).hip);
+        button->setStyleSheet(QString("QPushButton:checked { background-color: %1; color: %2; "
+                                      "font-weight: bold; border: 1px solid %3; border-radius: "
+                                      "4px; padding: 3px; } QPushButton:checked:focus { border: "
+                                      "2px solid palette(text); }")
+                                  .arg(colour.name(),
+                                       colour.lightnessF() < 0.45 ? "white" : "black",
+                                       colour.darker(150).name()));
+        button->setText(QString::number(hand));
+        button->setCheckable(true);
+        group->addButton(button, hand);
+        row->addWidget(button, 1);
+    }
+    connect(group, &QButtonGroup::idClicked, this, &HandSwitch::wanted);
+    show_hands({}, 1);
+}
+
+void HandSwitch::show_hands(const std::vector<Hand>& hands, int chosen) {
+    setVisible(hands.size() > 1);
+    if (hands.size() < 2) return;
+    for (int hand = 1; hand <= static_cast<int>(hands.size()); ++hand) {
+        const Hand& its = hands[static_cast<std::size_t>(hand - 1)];
+        QPushButton& button = *buttons_[hand];
+        const QString words = tr("Hand %1: %2").arg(hand).arg(its.device);
+        const QString text = its.problem.isEmpty() ? words : QString::fromUtf8("⚠ ") + words;
+        button.setChecked(hand == chosen);
+        // Each change is told by screen readers.
+        if (button.text() == text && button.accessibleDescription() == its.problem) continue;
+        button.setText(text);
+        button.setAccessibleName(tr("Settings of hand %1, %2").arg(hand).arg(its.device));
+        button.setAccessibleDescription(its.problem);
+    }
+}
+
+namespace {
+
+constexpr Colour near_limit{0.835, 0.369, 0};
+
+/// Words of app::force_words(), as a person reads them, and what they mean.
+struct ForceWords {
+    Q_DECLARE_TR_FUNCTIONS(palpate::viewer::ForceGauge)
+  public:
+    struct Row {
+        const char *words, *meaning;
+    };
+    static constexpr Row all[] = {
+        {QT_TR_NOOP("off"), QT_TR_NOOP("Off: forces are switched off")},
+        {QT_TR_NOOP("recovering"), QT_TR_NOOP("Recovering: the proxy is leaving the solid")},
+        {QT_TR_NOOP("not finite"), ""},
+        {QT_TR_NOOP("no input"), QT_TR_NOOP("No input: the device gives no reliable position")},
+        {QT_TR_NOOP("too late"),
+         QT_TR_NOOP("Too late: a tick took too long, its force was cancelled")},
+        {QT_TR_NOOP("waiting"),
+         QT_TR_NOOP("Waiting: forces begin when the hand is where they are small")},
+        {QT_TR_NOOP("ramp"), QT_TR_NOOP("Ramp: from zero to full force after a start or pause")},
+        {QT_TR_NOOP("limit"), QT_TR_NOOP("Limit: the computed force is larger than the limit")},
+        {QT_TR_NOOP("motors warm"),
+         QT_TR_NOOP("Motors warm: the force is limited until they have cooled")},
+        {QT_TR_NOOP("rate limit"), QT_TR_NOOP("Rate limit: the force may not change faster")}};
+};
+
+/// The words in the person's language, or their meaning; empty: nothing is known.
+QString told(const QString& words, const char* ForceWords::Row::*part) {
+    const auto known = std::ranges::find_if(
+        ForceWords::all, [&](const ForceWords::Row& one) { return words == one.words; });
+    const bool any = known != std::end(ForceWords::all) && *((*known).*part) != '\0';
+    return any ? ForceWords::tr((*known).*part) : QString();
+}
+
+/// Others as they are.
+QString shown_words(const QString& words) {
+    const QString text = told(words, &ForceWords::Row::words);
+    return text.isEmpty() ? words : text;
+}
+
+QString tip_for(const QString& words) {
+    const QString what = ForceGauge::tr("Force on the hand [N] against the limit in use");
+    const QString meaning = told(words, &ForceWords::Row::meaning);
+    return meaning.isEmpty() ? what : what + "\n" + meaning;
+}
+
+}  // namespace
+
+ForceGauge::ForceGauge() {
+    setObjectName("force_gauge");
+    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    setToolTip(tip_for({}));
+}
+
+void ForceGauge::set_force(double force, double limit, const QString& words) {
+    if (words != words_) setToolTip(tip_for(words));
+    // Called thirty times a second: repaints only where the change can be seen.
+    const bool seen = words != words_ || limit != limit_ || std::abs(force - force_) > 0.002;
+    if (!seen) return;
+    force_ = force;
+    limit_ = limit;
+    words_ = words;
+    setAccessibleName(
+        tr("Force %1 N of %2 N %3").arg(force, 0, 'f', 2).arg(limit).arg(shown_words(words)));
+    update();
+}
+
+void ForceGauge::clear() {
+    set_force(0, 0, {});
+}
+
+double ForceGauge::filled() const {
+    return limit_ > 0 ? std::clamp(force_ / limit_, 0.0, 1.0) : 0;
+}
+
+QSize ForceGauge::sizeHint() const {
+    const int height = fontMetrics().height();
+    return {14 * height, static_cast<int>(2.4 * height)};
+}
+
+QSize ForceGauge::minimumSizeHint() const {
+    return {9 * fontMetrics().height(), sizeHint().height()};
+}
+
+void ForceGauge::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    painter.setRenderHint(QPainter::Antialiasing);
+    const double line = fontMetrics().height();
+    const QRectF all = QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5);
+    QFont bold = font();
+    bold.setBold(true);
+    painter.setFont(bold);
+    painter.setPen(
+        palette().color(isEnabled() ? QPalette::Active : QPalette::Disabled, QPalette::WindowText));
+    const QRectF text(all.left(), all.top(), all.width(), line * 1.15);
+    const QString number = QString("%1 N").arg(force_, 0, 'f', 2);
+    painter.drawText(text, Qt::AlignLeft | Qt::AlignVCenter, number);
+    const double after = QFontMetricsF(bold).horizontalAdvance(number) + 0.6 * line;
+    painter.setFont(font());
+    painter.drawText(text.adjusted(after, 0, 0, 0), Qt::AlignLeft | Qt::AlignVCenter,
+                     shown_words(words_));
+    painter.setPen(palette().color(QPalette::PlaceholderText));
+    if (limit_ > 0) {
+        painter.drawText(text, Qt::AlignRight | Qt::AlignVCenter,
+                         tr("of %1 N").arg(QString::number(limit_, 'g', 3)));
+    }
+    const QRectF bar(all.left(), text.bottom() + 1, all.width(), all.bottom() - text.bottom() - 1);
+    QPainterPath frame;
+    frame.addRoundedRect(bar, 3, 3);
+    painter.fillPath(frame, palette().color(QPalette::Base));
+    painter.save();
+    painter.setClipPath(frame);
+    const bool high = filled() > 0.9;
+    painter.fillRect(QRectF(bar.left(), bar.top(), bar.width() * filled(), bar.height()),
+                     readable(to_qt(high ? near_limit : pictures::force_colour), palette()));
+    painter.restore();
+    painter.setPen(QPen(palette().color(QPalette::Mid), 1));
+    painter.drawPath(frame);
+}
 
 SessionSwitch::SessionSwitch(const QString& on, const QString& off) : on_(on), off_(off) {
     setCheckable(true);

@@ -1,11 +1,11 @@
 // The timeline below the views: plays a sequence or a recording, seeks, sets speed and loop.
 #pragma once
 
+#include <QAbstractSlider>
 #include <QIcon>
 #include <QWidget>
 
-#include "apps/viewer/panel/awaited_change.hpp"
-#include "apps/viewer/panel/rate_limiter.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/timeline_view.hpp"
 
 class QCheckBox;
@@ -14,8 +14,58 @@ class QToolButton;
 
 namespace palpate::viewer {
 
+/// A click or drag chooses a time; arrows step to the frames beside it, Page Up and Down go by a
+/// tenth of the whole, Home and End to the ends. As a slider its value counts milliseconds from the
+/// begin.
+class TimelineTrack : public QAbstractSlider {
+    Q_OBJECT
+
+  public:
+    TimelineTrack();
+
+    /// All but the time; emits nothing. True if times or frames are others than before.
+    bool set_view(const TimelineView& view);
+    const TimelineView& view() const { return view_; }
+    /// [s], between begin and end.
+    double time() const { return time_; }
+    /// [s]; brought within begin and end. Emits nothing.
+    void set_time(double time);
+
+    QSize sizeHint() const override;
+    QSize minimumSizeHint() const override;
+
+  Q_SIGNALS:
+    /// By the user [s].
+    void chosen(double time);
+    /// A frame forward (1) or back (-1).
+    void stepped(int direction);
+
+  protected:
+    bool event(QEvent* event) override;
+    void paintEvent(QPaintEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
+    void mousePressEvent(QMouseEvent* event) override;
+    void mouseMoveEvent(QMouseEvent* event) override;
+    void mouseReleaseEvent(QMouseEvent* event) override;
+    void sliderChange(SliderChange change) override;
+
+  private:
+    double length() const;
+    QRectF plot() const;
+    double x_of(double time) const;
+    double time_at(double x) const;
+    void choose_at(double x);
+    void place();
+    void paint_loaded(QPainter& painter, const QRectF& box) const;
+    void paint_frames(QPainter& painter, const QRectF& box) const;
+    void paint_overview(QPainter& painter, const QRectF& box) const;
+
+    TimelineView view_;
+    double time_ = 0;
+    bool telling_ = true;
+};
+
 class NumberBox;
-class TimelineTrack;
 
 /// Has no clock: it shows the views that it is given, and emits what the user asks for. That is
 /// shown at once (AwaitedChange). For a live source only the play button works.

@@ -8,7 +8,6 @@
 namespace palpate::viewer {
 namespace {
 
-/// Words of this file.
 struct TimelineWords {
     Q_DECLARE_TR_FUNCTIONS(TimelineWords)
 };

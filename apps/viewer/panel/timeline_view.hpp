@@ -23,7 +23,6 @@ struct TimelineView : run::PlayState {
     std::shared_ptr<const Overview> overview;  ///< of a recording; else null
 };
 
-/// Nothing to play.
 bool empty(const TimelineView& view);
 /// A time brought between begin and end: wrapped around in a loop, else the nearer end.
 double within(const TimelineView& view, double time);

@@ -1,16 +1,70 @@
-// Lists tools and makes the one that is chosen.
+// Lists tools in sizes that suit the data, and makes the one that is chosen.
 #include "apps/viewer/panel/tool_controls.hpp"
 
 #include <QFormLayout>
 
+#include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 #include <variant>
+#include <vector>
 
-#include "apps/viewer/model/tool_choice.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "palpate/io/tool_file.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+/// The next of 1, 2, 5, 10, 20, ...
+double rounded_up(double length) {
+    const double decade = std::pow(10, std::floor(std::log10(length)));
+    for (const double step : {1.0, 2.0, 5.0}) {
+        if (step * decade >= length) return step * decade;
+    }
+    return 10 * decade;
+}
+
+/// A point, then each built-in shape: some voxels large, but for the fingertip, which has its own
+/// size.
+std::vector<io::ToolSpec> built_in_tools(const Geometry& geometry) {
+    const double unit = rounded_up(3 * geometry.spacing.minCoeff());  // [mm]
+    return {io::PointSpec{},        io::SphereSpec{unit},
+            io::RodSpec{10 * unit}, io::NeedleSpec{20 * unit, 0.25 * unit},
+            io::BurrSpec{unit},     io::BoxSpec{{4 * unit, 2 * unit, unit}},
+            io::FingertipSpec{}};
+}
+
+struct MadeTool {
+    std::shared_ptr<const Tool> tool;  ///< null: a point
+    double spacing = 0;                ///< [mm] of its points
+};
+
+/// Of the tool `scale` times as large. Points are half a voxel apart, or farther where that would
+/// be more than two thousand, which a tick has time for. Throws std::invalid_argument for what is
+/// no tool.
+MadeTool made_tool(const io::ToolSpec& spec, double scale, const Geometry& geometry) {
+    constexpr std::size_t most_points = 2000;
+    if (std::holds_alternative<io::PointSpec>(spec)) return {};
+    const io::ToolSpec scaled = io::scaled(spec, scale);
+    MadeTool made{nullptr, io::usual_spacing(geometry)};
+    constexpr int tries = 60;
+    for (int i = 0;; ++i) {
+        try {
+            made.tool = io::make_tool(scaled, made.spacing);
+        } catch (const std::invalid_argument&) {  // most likely far too many points
+            if (i == tries) throw;
+            made.spacing *= 2;
+            continue;
+        }
+        const std::size_t count = made.tool->points().size();
+        const bool given = std::holds_alternative<io::PointsSpec>(spec);
+        if (count <= most_points || given || i == tries) return made;
+        made.spacing *= 1.02 * std::sqrt(double(count) / double(most_points));
+    }
+}
+
+}  // namespace
 
 ToolControls::ToolControls(Effect& effect)
     : effect_(effect),

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "apps/viewer/panel/effect.hpp"
-#include "apps/viewer/panel/quantity.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "palpate/io/tool_file.hpp"
 
 namespace palpate::viewer {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "apps/viewer/model/sample_block.hpp"
-#include "apps/viewer/scene/hand_over.hpp"
+#include "apps/viewer/scene/threads.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -9,9 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/scene/painter.hpp"
-#include "apps/viewer/scene/patched_source.hpp"
 #include "apps/viewer/scene/render_request.hpp"
+#include "apps/viewer/scene/surface_source.hpp"
 
 namespace palpate::viewer {
 

@@ -1,5 +1,4 @@
-// A rendered image with depths as a prop in a VTK scene: nearer props cover it, farther ones do
-// not.
+// Rendered images with depths: put over each other, and as a prop in a VTK scene.
 #pragma once
 
 #include <vtkOpenGLQuadHelper.h>
@@ -8,10 +7,20 @@
 #include <vtkTextureObject.h>
 
 #include <memory>
+#include <vector>
 
 #include "apps/viewer/scene/render_request.hpp"
+#include "pictures/vtk/layer.hpp"
 
 namespace palpate::viewer {
+
+// Puts translucent layers over each other.
+using pictures::Layer;
+
+/// One layer that looks as all of them do, the nearest first at each pixel, without what lies
+/// behind `solid`; its depth is the nearest one's. Colours are not multiplied by alpha. Empty
+/// without layers. All must have as many pixels.
+Layer composed(std::vector<Layer> layers, const Layer& solid);
 
 /// Fills the viewport, wherever the camera is. Drawn in its turn among the opaque props.
 class LayerProp : public vtkProp {

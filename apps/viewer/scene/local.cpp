@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/viewer/scene/block_mesh.hpp"
+#include "apps/viewer/scene/surface_blocks.hpp"
 #include "palpate/surface.hpp"
 
 namespace palpate::viewer {

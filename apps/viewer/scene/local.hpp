@@ -27,7 +27,6 @@ struct LocalTetrahedron {
     std::optional<ConstraintPlane> plane;
 };
 
-/// All tetrahedra that contain the point.
 std::vector<LocalTetrahedron> local_tetrahedra(const Field& field, const LatticePoint& point,
                                                double isovalue);
 

@@ -7,6 +7,8 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
+#include <array>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -14,10 +16,35 @@
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/scene/local.hpp"
-#include "apps/viewer/scene/twin.hpp"
 #include "palpate/servo.hpp"
+#include "pictures/scene.hpp"
 
 namespace palpate::viewer {
+
+/// Something drawn twice: with the scene, and faintly over it, so that it can be seen behind a
+/// surface.
+struct Twin {
+    vtkSmartPointer<vtkActor> solid, depth, faint;
+    vtkSmartPointer<vtkPolyData> data;  ///< of all three
+
+    std::array<vtkActor*, 3> actors() const { return {solid, depth, faint}; }
+};
+inline constexpr double faint_opacity = 0.4;
+
+/// Not visible yet.
+Twin twin_of(const pictures::Colour& colour, vtkSmartPointer<vtkPolyData> data);
+void set_visible(const Twin& twin, bool visible);
+/// Adds the faint actors of these. One over its visible twin changes nothing; over a surface that
+/// hides the twin it shows where that is. Of all of them only the nearest part is seen.
+void add_faint_actors(vtkRenderer& overlay, std::initializer_list<const Twin*> twins);
+
+/// Each edge once.
+void put_edges(vtkPolyData& data, const std::vector<LocalTetrahedron>& all, const Vec3& origin);
+/// The isosurface in the tetrahedra.
+void put_patches(vtkPolyData& data, const std::vector<LocalTetrahedron>& all, const Vec3& origin);
+/// A disc, one and a half voxels [mm] wide, for each plane, and its normal as a line.
+void put_planes(vtkPolyData& discs, vtkPolyData& normals, const std::vector<LocalTetrahedron>& all,
+                const Vec3& origin, double voxel);
 
 /// The part of a snapshot that is drawn.
 struct Contact {

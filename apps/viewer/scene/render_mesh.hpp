@@ -1,10 +1,15 @@
-// Meshes as arrays for graphics hardware, and simplified ones for drawing while things move.
+// Meshes as arrays for graphics hardware, and meshes of fewer triangles: for drawing while things
+// move, and for files.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
+
+#include "palpate/surface.hpp"
 
 namespace palpate::viewer {
 
@@ -36,5 +41,11 @@ using MeshBlocks = std::vector<std::shared_ptr<const RenderMesh>>;
 std::size_t triangle_count(std::span<const std::shared_ptr<const RenderMesh>> blocks);
 /// All in one, without seams; the only one itself. Null if there is no triangle.
 std::shared_ptr<const RenderMesh> joined(std::span<const std::shared_ptr<const RenderMesh>> blocks);
+
+/// The mesh with about `most_triangles`, or more where its shape does not allow so few. A closed
+/// mesh stays closed, and its vertices stay where they are: some are left out. Without normals.
+/// Throws what `progress` throws. (Schroeder, Zarge and Lorensen 1992)
+SurfaceMesh decimated(const SurfaceMesh& mesh, std::size_t most_triangles,
+                      const std::function<void(double)>& progress);
 
 }  // namespace palpate::viewer

@@ -1,8 +1,11 @@
-// What a render thread is asked to draw, and the image that it returns: values and immutable shared
-// data.
+// What is to be drawn, the image of it, and the painter that makes one from the other: values and
+// immutable shared data. No VTK.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/viewer/model/look.hpp"
@@ -13,7 +16,6 @@
 
 namespace palpate::viewer {
 
-/// A surface in the scene.
 struct DrawnSurface {
     ExtractedSurface surface;
     Colour colour;
@@ -53,5 +55,33 @@ struct RenderedImage {
     double seconds = 0;     ///< that it took
     bool hardware = false;  ///< drawn by graphics hardware, not by the processor
 };
+
+/// Draws the newest request. To be used on the window's thread.
+class Painter {
+  public:
+    /// Called on any thread.
+    struct Results {
+        std::function<void(RenderedImage)> drawn;
+        std::function<void(std::string what)> failed;
+    };
+    /// With low priority other threads go first.
+    enum class Priority { normal, low };
+
+    Painter() = default;
+    Painter(const Painter&) = delete;
+    Painter& operator=(const Painter&) = delete;
+    virtual ~Painter() = default;
+
+    /// Draws this one next; a request that still waits is dropped.
+    virtual void draw(RenderRequest request) = 0;
+    /// Drops a waiting request and cancels the present one; neither gives an image.
+    virtual void give_up() = 0;
+};
+
+using MakePainter =
+    std::function<std::unique_ptr<Painter>(Painter::Priority priority, Painter::Results results)>;
+
+/// A RenderThread: what the program uses.
+std::unique_ptr<Painter> make_render_thread(Painter::Priority priority, Painter::Results results);
 
 }  // namespace palpate::viewer

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/viewer/scene/painter.hpp"
+#include "apps/viewer/scene/render_request.hpp"
 
 class QOffscreenSurface;
 class QOpenGLContext;

@@ -10,12 +10,12 @@
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/model/detail_choice.hpp"
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/model/measurement.hpp"
-#include "apps/viewer/model/patch_choice.hpp"
-#include "apps/viewer/scene/cut_handles.hpp"
+#include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/navigation.hpp"
-#include "apps/viewer/scene/painter.hpp"
+#include "apps/viewer/scene/render_request.hpp"
 #include "palpate/servo.hpp"
 #include "pictures/scene.hpp"
 #include "pictures/view.hpp"
@@ -53,7 +53,6 @@ class Scene : public QVTKOpenGLNativeWidget {
     bool is_in_view(const Vec3& point) const;
     /// The picture is the fine one of the newest camera and look; a patch may still come.
     bool shows_whole() const;
-    /// An empty scene.
     void clear();
     /// The surface is extracted again in the background, coarse first; the newest isovalue wins.
     void set_isovalue(double isovalue);

@@ -13,12 +13,10 @@
 #include <vector>
 
 #include "apps/viewer/model/hands.hpp"
-#include "apps/viewer/scene/annotations.hpp"
 #include "apps/viewer/scene/background_renderer.hpp"
-#include "apps/viewer/scene/cut_marks.hpp"
 #include "apps/viewer/scene/layer_prop.hpp"
 #include "apps/viewer/scene/markers.hpp"
-#include "apps/viewer/scene/measure_marks.hpp"
+#include "apps/viewer/scene/marks.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/scene/tool_marks.hpp"
 #include "pictures/vtk/props.hpp"

@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "apps/viewer/model/sample_block.hpp"
-#include "apps/viewer/scene/thread_priority.hpp"
+#include "apps/viewer/scene/threads.hpp"
 
 namespace palpate::viewer {
 namespace {

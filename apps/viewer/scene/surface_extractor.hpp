@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "apps/viewer/model/coarse_samples.hpp"
+#include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/scene/surface_blocks.hpp"
 #include "palpate/field.hpp"
 
@@ -69,7 +69,6 @@ class SurfaceExtractor {
     /// [mm, physical] From which positions count, of surfaces asked for from now on; without it the
     /// middle of their grid.
     void set_origin(const Vec3& origin);
-    /// Cancels all requests.
     void forget();
 
   private:

@@ -1,11 +1,17 @@
-// The surface of one level of a field, extracted in the background and kept at the newest.
+// The surface of one level of a field, extracted in the background and kept at the newest. A finer
+// part of it replaces it where the data are an overview of a store (docs/viewer_internals.md). Also
+// surfaces of labels.
 #pragma once
 
 #include <QObject>
 
 #include <cmath>
+#include <map>
+#include <memory>
 #include <optional>
 
+#include "apps/viewer/model/detail_choice.hpp"
+#include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/scene/surface_extractor.hpp"
 
 namespace palpate::viewer {
@@ -52,5 +58,96 @@ class SurfaceSource : public QObject {
     bool asked_ = false;  // not by an update
     SurfaceExtractor extractor_;
 };
+
+/// A box of whole cells of the overview; on a side where the data end it has no end.
+struct PatchBounds {
+    Geometry grid;  ///< of the overview
+    /// Planes between cells, in its index space; infinite: none.
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+
+    bool operator==(const PatchBounds&) const = default;
+    bool has(const Vec3& index) const {
+        return (index.array() >= low.array()).all() && (index.array() <= high.array()).all();
+    }
+};
+
+/// The finer part: its samples reach at least two beyond the bounds, and come to be those of the
+/// overview's field there (model/patch_samples.hpp).
+struct ScenePatch {
+    std::shared_ptr<const DetailField> detail;
+    PatchBounds bounds;
+};
+
+/// Puts the two together. What did not change stays the same, block by block.
+class PatchedSurface {
+  public:
+    /// Of the whole surface the triangles outside, each of which lies in one cell; of the finer one
+    /// those that reach in.
+    ExtractedSurface of(const ExtractedSurface& whole, const ExtractedSurface& finer,
+                        const PatchBounds& bounds);
+
+  private:
+    using Mesh = std::shared_ptr<const RenderMesh>;
+    enum class Keep : std::uint8_t { outside, not_inside, reaching_in };
+    struct Cut {
+        Mesh from, to;
+    };
+    Mesh cut(const Mesh& mesh, Keep keep);
+
+    PatchBounds bounds_;
+    ExtractedSurface whole_, finer_, both_;                          // as they were last time
+    std::map<std::pair<const RenderMesh*, Keep>, Cut> cuts_, used_;  // of last time, of this time
+};
+
+/// As SurfaceSource, of which it has two. Belongs to the window's thread.
+class PatchedSource : public QObject {
+    Q_OBJECT
+  public:
+    explicit PatchedSource(const SurfaceLimits& limits = {});
+
+    /// Other data, without a patch.
+    void set_field(const Field& field, double level);
+    void update_field(const Field& field, const SampleBox& changed);
+    /// A finer part of the data; what was shown stays until its surface is there. Nothing: none.
+    void set_patch(const std::optional<ScenePatch>& patch);
+    void set_level(double level);
+    void clear();
+    void set_most_triangles(std::size_t triangles) { whole_.set_most_triangles(triangles); }
+
+    double level() const { return whole_.level(); }
+    const ExtractedSurface& surface() const { return surface_; }
+    bool extracting() const { return whole_.extracting() || (finer_ && finer_->extracting()); }
+    /// The surface of the whole data is still being made.
+    bool extracting_whole() const { return whole_.extracting(); }
+
+  Q_SIGNALS:
+    /// surface() is another one.
+    void made();
+    /// As SurfaceSource, of the whole.
+    void finished();
+    void problem(const QString& what);
+
+  private:
+    void make_source();
+    void take_finer();
+    void put_together();
+
+    SurfaceLimits limits_;
+    SurfaceSource whole_;
+    std::unique_ptr<SurfaceSource> finer_;  // from the first patch on: it has a thread
+    std::optional<ScenePatch> patch_;       // whose surface is made
+    struct Finer {
+        PatchBounds bounds;
+        ExtractedSurface surface;
+    };
+    std::optional<Finer> shown_;
+    PatchedSurface both_;
+    ExtractedSurface surface_;
+};
+
+/// One for each label, as smooth as its mask allows; positions from the middle of the overlay's
+/// grid. `progress` may throw to stop.
+std::vector<ExtractedSurface> label_surfaces(const Overlay& overlay,
+                                             const std::function<void(double part)>& progress);
 
 }  // namespace palpate::viewer

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "apps/viewer/model/hands.hpp"
-#include "apps/viewer/scene/twin.hpp"
+#include "apps/viewer/scene/markers.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {

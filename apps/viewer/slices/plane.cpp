@@ -2,6 +2,7 @@
 #include "apps/viewer/slices/plane.hpp"
 
 #include <QtGlobal>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -6,12 +6,11 @@
 
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
-#include "apps/viewer/slices/slice_map.hpp"
+#include "apps/viewer/slices/plane.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
 
-/// A slice in a widget.
 struct SliceSheet {
     const SlicePlane& plane;
     const Geometry& geometry;
@@ -44,7 +43,6 @@ void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measure
 /// Which side of the body is at each edge.
 void paint_letters(QPainter& painter, const SliceSheet& sheet);
 
-/// Lines of text in a corner.
 void paint_corner(QPainter& painter, const QSizeF& size, Qt::Alignment corner,
                   const QStringList& lines);
 

@@ -11,8 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/viewer/model/hand_state.hpp"
-#include "apps/viewer/slices/overlay_picture.hpp"
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/slices/slice_content.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"

@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "apps/viewer/model/detail_choice.hpp"
-#include "apps/viewer/model/detail_field.hpp"
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
-#include "apps/viewer/slices/slice_map.hpp"
+#include "apps/viewer/slices/plane.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
 #include "palpate/servo.hpp"
 

@@ -1,16 +1,209 @@
-// Windows and enlarges the samples, and draws the contour on top.
+// Windows and enlarges the samples, looks every pixel up in the overlay, and draws the contour on
+// top.
 #include "apps/viewer/slices/slice_picture.hpp"
 
+#include <QCoreApplication>
 #include <QPainter>
 #include <QRegion>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <unordered_map>
 
-#include "apps/viewer/slices/line_mask.hpp"
-#include "apps/viewer/slices/overlay_picture.hpp"
+#include "apps/viewer/model/transfer.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+/// [pixels] A longer line is cut, so that the box round it is not mostly empty.
+constexpr double longest = 8;
+
+}  // namespace
+
+LineMask::LineMask(int width, int height)
+    : width_(std::max(width, 0)),
+      height_(std::max(height, 0)),
+      covered_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0) {}
+
+void LineMask::draw(double x0, double y0, double x1, double y1, double radius) {
+    if (!std::isfinite(x0 + y0 + x1 + y1)) return;
+    const double margin = radius + 1;
+    // The part inside the picture, for a line may be far longer than it (Liang and Barsky 1984).
+    double from = 0, to = 1;
+    const auto clip = [&](double start, double length, double low, double high) {
+        if (length == 0) {
+            if (start < low || start > high) to = -1;
+            return;
+        }
+        const double a = (low - start) / length, b = (high - start) / length;
+        from = std::max(from, std::min(a, b));
+        to = std::min(to, std::max(a, b));
+    };
+    const double dx = x1 - x0, dy = y1 - y0;
+    clip(x0, dx, -margin, width_ + margin);
+    clip(y0, dy, -margin, height_ + margin);
+    if (!(from <= to)) return;
+    const double length = (to - from) * std::sqrt(dx * dx + dy * dy);
+    const int parts = std::max(1, static_cast<int>(std::ceil(length / longest)));
+    for (int i = 0; i < parts; ++i) {
+        const double a = from + (to - from) * i / parts, b = from + (to - from) * (i + 1) / parts;
+        draw_short(x0 + a * dx, y0 + a * dy, x0 + b * dx, y0 + b * dy, radius);
+    }
+}
+
+void LineMask::draw_short(double x0, double y0, double x1, double y1, double radius) {
+    const auto fx0 = static_cast<float>(x0), fy0 = static_cast<float>(y0);
+    const auto dx = static_cast<float>(x1 - x0), dy = static_cast<float>(y1 - y0);
+    const auto r = static_cast<float>(radius);
+    const float squared = dx * dx + dy * dy;
+    const float scale = squared > 0 ? 1 / squared : 0;
+    const double reach = radius + 0.5;
+    const float outer = (r + 0.5F) * (r + 0.5F);                  // beyond this nothing is covered,
+    const float inner = r > 0.5F ? (r - 0.5F) * (r - 0.5F) : -1;  // up to this all
+    const auto pixel = [](double at, int count) {
+        return static_cast<int>(std::clamp(std::floor(at), 0.0, double(count)));
+    };
+    const int left = pixel(std::min(x0, x1) - reach, width_);
+    const int right = pixel(std::max(x0, x1) + reach + 1, width_);
+    const int top = pixel(std::min(y0, y1) - reach, height_);
+    const int bottom = pixel(std::max(y0, y1) + reach + 1, height_);
+    for (int y = top; y < bottom; ++y) {
+        std::uint8_t* const covered = covered_.data() + static_cast<std::ptrdiff_t>(y) * width_;
+        const float py = static_cast<float>(y) + 0.5F - fy0;
+        for (int x = left; x < right; ++x) {
+            const float px = static_cast<float>(x) + 0.5F - fx0;
+            const float along = std::clamp((px * dx + py * dy) * scale, 0.0F, 1.0F);
+            const float ex = px - along * dx, ey = py - along * dy;
+            const float away = ex * ex + ey * ey;
+            if (away >= outer) continue;
+            const float near = away <= inner ? 1 : r + 0.5F - std::sqrt(away);
+            const auto value = static_cast<std::uint8_t>(255 * std::min(near, 1.0F));
+            covered[x] = std::max(covered[x], value);
+        }
+    }
+}
+
+namespace {
+
+struct OverlayWords {
+    Q_DECLARE_TR_FUNCTIONS(OverlayWords)
+};
+
+/// The sample nearest to a point in index space; nothing outside the voxels.
+std::optional<double> nearest_sample(const Volume& volume, const Vec3& index) {
+    const Vec3 rounded = (index.array() + 0.5).floor();
+    const Vec3 last = (volume.geometry().size - Index3::Ones()).cast<double>();
+    if (!(rounded.array() >= 0).all() || !(rounded.array() <= last.array()).all()) {
+        return std::nullopt;
+    }
+    return volume.sample(rounded.cast<int>());
+}
+
+/// Trilinear; beyond the outermost samples, up to their voxels' ends, these go on.
+std::optional<double> interpolated(const Volume& volume, const Vec3& index) {
+    const Index3 size = volume.geometry().size;
+    const Vec3 last = (size - Index3::Ones()).cast<double>();
+    if (!(index.array() >= -0.5).all() || !(index.array() <= last.array() + 0.5).all()) {
+        return std::nullopt;
+    }
+    const Vec3 in = index.cwiseMax(Vec3::Zero()).cwiseMin(last);
+    const Index3 low = in.cast<int>().cwiseMin((size - Index3::Constant(2)).cwiseMax(0));
+    const Vec3 part = in - low.cast<double>();
+    double value = 0;
+    for (int c = 0; c < 8; ++c) {
+        const Index3 side(c & 1, c >> 1 & 1, c >> 2 & 1);
+        double weight = 1;
+        for (int a = 0; a < 3; ++a) weight *= side[a] ? part[a] : 1 - part[a];
+        if (weight > 0) value += weight * volume.sample(low + side);
+    }
+    return value;
+}
+
+struct Ink {
+    QRgb colour = 0;
+    double alpha = 0;
+};
+
+/// Colours of the values of an overlay.
+class Inks {
+  public:
+    Inks(const Overlay& overlay, const OverlayLook& look)
+        : overlay_(overlay), look_(look), table_(colour_table(look.colours)) {
+        for (const Label& label : overlay.labels) {
+            const bool hidden = std::ranges::count(look.hidden, label.value) > 0;
+            const Colour& c = label.colour;
+            labels_[label.value] = {QColor::fromRgbF(c.red, c.green, c.blue).rgb(),
+                                    hidden ? 0 : look.opacity};
+        }
+    }
+    Ink at(const Vec3& index) const {
+        if (overlay_.is_label_map()) {
+            const auto value = nearest_sample(overlay_.volume, index);
+            const auto found = value ? labels_.find(static_cast<int>(*value)) : labels_.end();
+            return found == labels_.end() ? Ink{} : found->second;
+        }
+        const auto value = interpolated(overlay_.volume, index);
+        if (!value) return {};
+        constexpr double fades = 0.15;  // of the range
+        const double part = (*value - overlay_.dark) / (overlay_.bright - overlay_.dark);
+        const double clamped = std::clamp(part, 0.0, 1.0);
+        return {table_[static_cast<std::size_t>(std::lround(255 * clamped))],
+                look_.opacity * std::min(1.0, clamped / fades)};
+    }
+
+  private:
+    const Overlay& overlay_;
+    const OverlayLook& look_;
+    ColourTable table_;
+    std::unordered_map<int, Ink> labels_;
+};
+
+QRgb mixed(QRgb under, const Ink& ink) {
+    const auto mix = [&](int a, int b) {
+        return static_cast<int>(std::lround(a + (b - a) * ink.alpha));
+    };
+    return qRgb(mix(qRed(under), qRed(ink.colour)), mix(qGreen(under), qGreen(ink.colour)),
+                mix(qBlue(under), qBlue(ink.colour)));
+}
+
+}  // namespace
+
+void draw_overlay(QImage& picture, const SlicePlane& plane, const Geometry& geometry,
+                  const SliceMap& map, double position, const Overlay& overlay,
+                  const OverlayLook& look) {
+    const double scale = picture.devicePixelRatio();
+    const auto index_of = [&](double x, double y) {
+        const QPointF at = map.sample(QPointF((x + 0.5) / scale, (y + 0.5) / scale));
+        const Vec3 physical = physical_from_index(
+            geometry, index_from_slice(plane, geometry, {at.x(), at.y(), position}));
+        return index_from_physical(overlay.volume.geometry(), physical);
+    };
+    // All of it is affine.
+    const Vec3 first = index_of(0, 0);
+    const Vec3 right = index_of(1, 0) - first, down = index_of(0, 1) - first;
+    const Inks inks(overlay, look);
+    for (int y = 0; y < picture.height(); ++y) {
+        auto* const line = reinterpret_cast<QRgb*>(picture.scanLine(y));
+        for (int x = 0; x < picture.width(); ++x) {
+            const Ink ink = inks.at(first + x * right + y * down);
+            if (ink.alpha > 0) line[x] = mixed(line[x], ink);
+        }
+    }
+}
+
+QString overlay_words(const Overlay& overlay, const Vec3& physical) {
+    const Vec3 index = index_from_physical(overlay.volume.geometry(), physical);
+    if (!overlay.is_label_map()) {
+        const auto value = interpolated(overlay.volume, index);
+        return value ? OverlayWords::tr("overlay %1").arg(*value, 0, 'g', 5) : QString();
+    }
+    const auto value = nearest_sample(overlay.volume, index);
+    if (!value) return {};
+    const auto found = std::ranges::find(overlay.labels, static_cast<int>(*value), &Label::value);
+    return found == overlay.labels.end() ? QString() : QString::fromStdString(found->name);
+}
+
 namespace {
 
 /// [device pixels] Half the contour's width, for a scale of 1.

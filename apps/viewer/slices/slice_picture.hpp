@@ -1,25 +1,59 @@
-// The image of a slice: grey levels and the isosurface's contour.
+// The image of a slice: grey levels, an overlay, and the isosurface's contour.
 #pragma once
 
 #include <QColor>
 #include <QImage>
 #include <QRectF>
+#include <QString>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/model/colour_map.hpp"
 #include "apps/viewer/model/overlay.hpp"
+#include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/slices/contour.hpp"
-#include "apps/viewer/slices/slice_map.hpp"
+#include "apps/viewer/slices/plane.hpp"
 
 namespace palpate::viewer {
+
+/// Draws many short lines smoothly and fast: how much of each pixel they cover. No Qt.
+class LineMask {
+  public:
+    /// [pixels]
+    LineMask(int width, int height);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    /// A line of `radius` [pixels] with round ends. Pixel (0, 0) is centred at (0.5, 0.5). What is
+    /// outside is left out; where lines meet, nothing is drawn twice.
+    void draw(double x0, double y0, double x1, double y1, double radius);
+    /// Covered part of each pixel of a row, 0 to 255.
+    const std::uint8_t* row(int y) const {
+        return covered_.data() + static_cast<std::ptrdiff_t>(y) * width_;
+    }
+
+  private:
+    void draw_short(double x0, double y0, double x1, double y1, double radius);
+
+    int width_, height_;
+    std::vector<std::uint8_t> covered_;
+};
+
+/// Over `picture`, by the look's opacity: labels in their colours, sample by sample; an image in
+/// its colour map, interpolated, fading out towards its dark end. Each pixel is looked up in the
+/// overlay's own grid, whatever that is. `position`: of the slice, in layers of `geometry`.
+void draw_overlay(QImage& picture, const SlicePlane& plane, const Geometry& geometry,
+                  const SliceMap& map, double position, const Overlay& overlay,
+                  const OverlayLook& look);
+
+/// What the overlay has at a point [mm, physical]: a label's name, or a number. Empty outside.
+QString overlay_words(const Overlay& overlay, const Vec3& physical);
 
 /// The colour of the contour: a light vermilion, like the proxy's.
 QColor contour_colour();
 
-/// How a slice is shown.
 struct SliceStyle {
     GreyWindow
         window;  ///< levels up to window.low have the first colour, from window.high the last

@@ -1646,6 +1646,11 @@ Jetzt aus dem Wert der Sitzung (Kraft)</translation>
         <source>%1   label %2</source>
         <translation>%1   Label %2</translation>
     </message>
+    <message>
+        <source>layer</source>
+        <comment>name of a new one, before its number</comment>
+        <translation>Schicht</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::LevelChart</name>
@@ -1841,6 +1846,20 @@ Wählen Sie die Ebene noch einmal, damit sie zu Ihnen zeigt.</translation>
     <message>
         <source>Layers are felt, not an isovalue: choose No layers to feel one</source>
         <translation>Es werden Schichten gefühlt, kein Isowert: Wählen Sie „Keine Schichten“, um einen zu fühlen</translation>
+    </message>
+    <message>
+        <source>Opacity (upwards, 0 to 1) and colour by level [data units].
+Drag a point; double click adds one, or on a point chooses its colour; right click or Del deletes.
+Page keys choose a point, arrows move it, Insert adds one, Return chooses its colour.
+Choose the preset again to undo. Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again.</source>
+        <translation>Deckkraft (aufwärts, 0 bis 1) und Farbe nach Wert [Dateneinheiten].
+Punkte ziehen; Doppelklick fügt einen hinzu oder wählt auf einem Punkt seine Farbe; Rechtsklick oder Entf löscht.
+Die Bild-Tasten wählen einen Punkt, Pfeile bewegen ihn, Einfg fügt einen hinzu, Eingabe wählt seine Farbe.
+Die Vorlage noch einmal wählen macht rückgängig. Strg+Rad zoomt, Umschalt+Rad verschiebt, Strg+0 zeigt wieder alles.</translation>
+    </message>
+    <message>
+        <source>Transfer function</source>
+        <translation>Transferfunktion</translation>
     </message>
 </context>
 <context>
@@ -2894,6 +2913,14 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>The panel shows the settings of hand %1</source>
         <translation>Die Leiste zeigt die Einstellungen von Hand %1</translation>
     </message>
+    <message>
+        <source>%1: this is a tool: open a volume first, and feel it, then open the tool</source>
+        <translation>%1: das ist ein Werkzeug: zuerst ein Volumen öffnen und fühlen, dann das Werkzeug öffnen</translation>
+    </message>
+    <message>
+        <source>Reading the tool</source>
+        <translation>Werkzeug wird gelesen</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::Scene</name>
@@ -3285,17 +3312,6 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
     </message>
 </context>
 <context>
-    <name>palpate::viewer::ToolController</name>
-    <message>
-        <source>%1: this is a tool: open a volume first, and feel it, then open the tool</source>
-        <translation>%1: das ist ein Werkzeug: zuerst ein Volumen öffnen und fühlen, dann das Werkzeug öffnen</translation>
-    </message>
-    <message>
-        <source>Reading the tool</source>
-        <translation>Werkzeug wird gelesen</translation>
-    </message>
-</context>
-<context>
     <name>palpate::viewer::ToolControls</name>
     <message numerus="yes">
         <source>%n points, %1 mm apart.</source>
@@ -3378,27 +3394,6 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
     <message>
         <source>What touches. No point of a tool ever goes through the surface; it pushes and turns the hand. With the mouse, Ctrl and drag in the scene turn it.</source>
         <translation>Womit berührt wird. Kein Punkt eines Werkzeugs geht je durch die Oberfläche; es drückt und dreht die Hand. Mit der Maus drehen es Strg und Ziehen in der Szene.</translation>
-    </message>
-</context>
-<context>
-    <name>palpate::viewer::TransferEditor</name>
-    <message>
-        <source>Transfer function</source>
-        <translation>Transferfunktion</translation>
-    </message>
-    <message>
-        <source>Opacity (upwards, 0 to 1) and colour by level [data units].
-Drag a point; double click adds one, or on a point chooses its colour; right click or Del deletes.
-Arrow keys move the chosen point, comma and period choose the next, Return its colour.
-Choose the preset again to undo. Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again.</source>
-        <translation>Deckkraft (aufwärts, 0 bis 1) und Farbe nach Wert [Dateneinheiten].
-Punkte ziehen; Doppelklick fügt einen hinzu oder wählt auf einem Punkt seine Farbe; Rechtsklick oder Entf löscht.
-Pfeiltasten bewegen den gewählten Punkt, Komma und Punkt wählen den nächsten, Eingabe seine Farbe.
-Die Vorlage noch einmal wählen macht rückgängig. Strg+Rad zoomt, Umschalt+Rad verschiebt, Strg+0 zeigt wieder alles.</translation>
-    </message>
-    <message>
-        <source>choose a preset</source>
-        <translation>Vorlage wählen</translation>
     </message>
 </context>
 <context>

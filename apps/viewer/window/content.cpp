@@ -123,9 +123,20 @@ run::Player* Content::player() const {
     return live() && data_->is_sequence() ? &data_->player() : nullptr;
 }
 
-SharedLayers Content::layers() const {
-    if (live()) return live()->settings().layers;
-    return playback() ? playback()->layers_at(time_) : nullptr;
+SharedLayers Content::layers(int hand) const {
+    if (live(hand)) return live(hand)->settings().layers;
+    return playback(hand) ? playback(hand)->layers_at(time_of(hand)) : nullptr;
+}
+
+void Content::use_layers(const std::map<int, SharedLayers>& by_hand) {
+    const int chosen = hand_;
+    for (const auto& [hand, layers] : by_hand) {
+        if (!live(hand)) continue;
+        choose_hand(hand);
+        effect_.request(command::UseLayers{layers});
+    }
+    choose_hand(chosen);
+    if (live()) Q_EMIT run_changed();
 }
 
 std::shared_ptr<const Tool> Content::tool(int hand) const {

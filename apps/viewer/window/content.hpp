@@ -6,6 +6,7 @@
 #include <QObject>
 #include <QString>
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -87,7 +88,10 @@ class Content : public QObject {
     void set_time(double time) { time_ = time; }
 
     /// The layers in use now, or at the time shown; null: none.
-    SharedLayers layers() const;
+    SharedLayers layers() const { return layers(hand_); }
+    SharedLayers layers(int hand) const;
+    /// Hands of the live run feel these. The chosen one stays chosen.
+    void use_layers(const std::map<int, SharedLayers>& by_hand);
     /// The tool in use now, or at the time shown; null: a point.
     std::shared_ptr<const Tool> tool() const { return tool(hand_); }
     std::shared_ptr<const Tool> tool(int hand) const;

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 
-#include "apps/viewer/scene/hand_over.hpp"
 #include "apps/viewer/scene/scene.hpp"
-#include "apps/viewer/scene/surface_patch.hpp"
-#include "apps/viewer/scene/thread_priority.hpp"
+#include "apps/viewer/scene/surface_source.hpp"
+#include "apps/viewer/scene/threads.hpp"
 #include "apps/viewer/slices/slice_pane.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/views.hpp"

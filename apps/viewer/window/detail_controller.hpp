@@ -10,9 +10,8 @@
 #include <memory>
 #include <optional>
 
-#include "apps/viewer/model/detail_field.hpp"
+#include "apps/viewer/model/detail_choice.hpp"
 #include "apps/viewer/model/detail_maker.hpp"
-#include "apps/viewer/model/patch_choice.hpp"
 #include "apps/viewer/scene/navigation.hpp"
 #include "palpate/servo.hpp"
 

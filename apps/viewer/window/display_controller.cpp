@@ -10,7 +10,7 @@
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
-#include "apps/viewer/scene/cut_handles.hpp"
+#include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/measure_controller.hpp"

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "apps/viewer/panel/brush_controls.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
-#include "apps/viewer/panel/number_box.hpp"
 #include "apps/viewer/panel/panel.hpp"
-#include "apps/viewer/scene/decimated.hpp"
+#include "apps/viewer/scene/render_mesh.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/messages.hpp"

@@ -7,8 +7,8 @@
 #include <functional>
 #include <memory>
 
-#include "apps/viewer/panel/brush_choice.hpp"
-#include "apps/viewer/window/background_task.hpp"
+#include "apps/viewer/panel/brush_controls.hpp"
+#include "apps/viewer/window/messages.hpp"
 #include "palpate/run/data.hpp"
 #include "palpate/surface.hpp"
 

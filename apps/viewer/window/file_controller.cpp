@@ -6,18 +6,16 @@
 #include <utility>
 
 #include "apps/options/exit_status.hpp"
-#include "apps/viewer/model/raw_preview.hpp"
+#include "apps/viewer/model/opening.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/display_controller.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/layers_controller.hpp"
 #include "apps/viewer/window/measure_controller.hpp"
 #include "apps/viewer/window/messages.hpp"
-#include "apps/viewer/window/raw_dialog.hpp"
+#include "apps/viewer/window/open_dialogs.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/run_controller.hpp"
-#include "apps/viewer/window/series_dialog.hpp"
-#include "apps/viewer/window/store_dialog.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/sample_volume.hpp"
 
@@ -267,13 +265,18 @@ void FileController::play(std::shared_ptr<Opened> opened, const QString& path) {
 void FileController::leave_playback() {
     if (!content_.playback()) return;
     SessionFile session = session_now();
-    session.isovalue = display_.isovalue().value_or(session.isovalue);
     session.settings.reset();  // the recorded device's
-    const SharedLayers layers = content_.layers();
+    const int chosen = content_.hand();
+    if (chosen <= 1 + static_cast<int>(session.others.size())) {
+        SessionHand& shown = chosen == 1 ? session : session.others.at(std::size_t(chosen - 2));
+        shown.isovalue = display_.isovalue().value_or(shown.isovalue);
+    }
+    std::map<int, SharedLayers> layers;
+    for (int hand = 1; hand <= content_.hands(); ++hand) {
+        if (content_.layers(hand)) layers[hand] = content_.layers(hand);
+    }
     feel_session(content_.volume(), session, request_for_same());
-    if (!layers || !content_.live()) return;
-    content_.effect().request(command::UseLayers{layers});
-    Q_EMIT content_.run_changed();
+    if (!layers.empty()) content_.use_layers(layers);
 }
 
 SessionFile FileController::session_now() const {
@@ -294,14 +297,15 @@ SessionFile FileController::session_now() const {
             session.others.push_back(hand_now(*content_.live(hand)));
         }
     } else {
-        const io::RecordingHead& head = content_.playback()->head();
+        const io::RecordingHead& head = content_.playback(1)->head();
         session.solid = head.solid;
         session.interpolation = head.interpolation;
         session.background = head.background;
         session.isovalue = head.isovalue;
         session.device = run_.request().setup.device;
         for (const devices::DeviceChoice& device : run_.request().others) {
-            session.others.push_back({device, head.isovalue, {}});
+            const Playback* other = content_.playback(2);
+            session.others.push_back({device, (other ? other->head() : head).isovalue, {}});
         }
         session.method = run::named_method(head.method);
         session.settings = head.settings;

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "apps/viewer/model/session_file.hpp"
-#include "apps/viewer/window/background_task.hpp"
+#include "apps/viewer/window/messages.hpp"
 #include "palpate/io/orientation.hpp"
 
 namespace palpate::viewer {
@@ -35,7 +35,6 @@ class FileController : public QObject {
     void open_path(const QString& path);
     /// Asks how the samples lie in a file without a header, and opens it.
     void ask_layout(const run::Source& source);
-    /// Asks for the address of a store, and opens it.
     void ask_address();
     /// Asks which level, channel and time of the store that is felt, and feels that instead: in the
     /// same view, at the same level of density where the channel is the same.
@@ -56,7 +55,6 @@ class FileController : public QObject {
     /// is felt as before, but seen anew.
     void use_grid(const io::GivenGrid& grid);
 
-    /// What is being read.
     BackgroundTask& loader() { return loader_; }
     bool loading() const { return loader_.busy(); }
 

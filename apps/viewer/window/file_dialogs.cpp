@@ -14,7 +14,6 @@
 namespace palpate::viewer {
 namespace {
 
-/// Words of this file.
 struct FileDialogs {
     Q_DECLARE_TR_FUNCTIONS(FileDialogs)
 };

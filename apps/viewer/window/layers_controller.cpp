@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "apps/viewer/model/label_layers.hpp"
+#include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
@@ -178,16 +178,7 @@ void LayersController::restore(const SessionFile& session, const QString& file) 
         [read, from = std::filesystem::path(file.toStdString())](const io::Progress&) {
             for (auto& [hand, layers] : *read) layers = run::with_labels(layers, from);
         },
-        [this, read] {
-            const int chosen = content_.hand();
-            for (const auto& [hand, layers] : *read) {
-                if (!content_.live(hand)) continue;
-                content_.choose_hand(hand);
-                content_.effect().request(command::UseLayers{layers});
-            }
-            content_.choose_hand(chosen);
-            if (content_.live()) Q_EMIT content_.run_changed();
-        });
+        [this, read] { content_.use_layers(*read); });
 }
 
 /// Layers by label are seen in their label map.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/viewer/model/layer_set.hpp"
-#include "apps/viewer/window/background_task.hpp"
+#include "apps/viewer/window/messages.hpp"
 #include "palpate/io/layers_file.hpp"
 
 namespace palpate::viewer {
@@ -35,7 +35,6 @@ class LayersController : public QObject {
     /// Feels the layers of a file. Errors are shown; the layers before stay then.
     void open(const QString& path);
     void save(const QString& path);
-    /// Feels the labels of the overlay that are shown.
     void feel_labels();
     /// Each hand of the session feels its layers that lack_labels() once their label volume has
     /// been read; a name that is relative counts from the working folder, then from that of `file`.

@@ -22,7 +22,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "apps/viewer/model/hand_state.hpp"
+#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
@@ -34,8 +34,8 @@
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/grid_dialog.hpp"
+#include "apps/viewer/window/hints.hpp"
 #include "apps/viewer/window/menus.hpp"
-#include "apps/viewer/window/streaming_words.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "apps/viewer/window/welcome.hpp"
 #include "palpate/field.hpp"
@@ -70,7 +70,6 @@ MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
       details_(content_, *views_),
       run_(request, content_, *panel_, messages_),
       layers_(content_, overlays_, *panel_, messages_),
-      tools_(content_, *panel_, messages_),
       recordings_(content_, messages_),
       probe_(content_, run_, *views_, messages_),
       editing_(content_, *panel_, messages_, this),
@@ -82,7 +81,7 @@ MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
     setWindowTitle("Palpate");
     setAcceptDrops(true);
     build();
-    make_menus(*this, actions_);
+    make_menus();
     connect_parts();
     connect_welcome();
     restore_layout();
@@ -107,7 +106,7 @@ void MainWindow::build() {
     layout->addWidget(make_progress_strip(files_.loader()));
     layout->addWidget(make_progress_strip(overlays_.loader()));
     layout->addWidget(make_progress_strip(layers_.reader()));
-    layout->addWidget(make_progress_strip(tools_.reader()));
+    layout->addWidget(make_progress_strip(run_.reader()));
     setCentralWidget(centre);
     auto* dock = new QDockWidget(tr("Feel and look"));
     dock->setObjectName("dock");
@@ -194,7 +193,7 @@ void MainWindow::show_title() {
 /// What the file does not say of its grid, and the names of the views that depend on it.
 void MainWindow::show_grid() {
     const Geometry& grid = content_.volume()->loaded.volume.geometry();
-    name_views(actions_, grid.oriented);
+    name_views(grid.oriented);
     use(saved_preferences());
     const bool missing = content_.from_file() && !(grid.oriented && grid.measured);
     views_->set_missing(!missing        ? QString()
@@ -353,7 +352,7 @@ void MainWindow::rest_or_wake(const HandSnapshots& now) {
 
 bool MainWindow::settled() const {
     return !files_.loading() && !editing_.saving() && !probe_.travelling() && overlays_.settled() &&
-           layers_.settled() && tools_.settled() &&
+           layers_.settled() && run_.settled() &&
            (!content_.volume() || (views_->scene().settled() && details_.settled()));
 }
 
@@ -411,7 +410,7 @@ void MainWindow::dropEvent(QDropEvent* event) {
     const QString path = url.isLocalFile() ? url.toLocalFile() : url.toString();
     // The volume stays, with its edits.
     if (LayersController::is_layers_file(path)) return layers_.open(path);
-    if (ToolController::is_tool_file(path)) return tools_.open(path);
+    if (RunController::is_tool_file(path)) return run_.open_tool(path);
     settle_work([this, path] { files_.open_path(path); });
 }
 

@@ -5,8 +5,7 @@
 #include <QMainWindow>
 #include <QTimer>
 
-#include "apps/viewer/scene/painter.hpp"
-#include "apps/viewer/window/actions.hpp"
+#include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/detail_controller.hpp"
 #include "apps/viewer/window/display_controller.hpp"
@@ -15,14 +14,13 @@
 #include "apps/viewer/window/hints.hpp"
 #include "apps/viewer/window/layers_controller.hpp"
 #include "apps/viewer/window/measure_controller.hpp"
+#include "apps/viewer/window/menus.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/overlay_controller.hpp"
 #include "apps/viewer/window/preferences.hpp"
 #include "apps/viewer/window/probe_controller.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
 #include "apps/viewer/window/run_controller.hpp"
-#include "apps/viewer/window/timeline_controller.hpp"
-#include "apps/viewer/window/tool_controller.hpp"
 
 class QLabel;
 
@@ -48,7 +46,6 @@ class MainWindow : public QMainWindow {
     FileController& files() { return files_; }
     RunController& run() { return run_; }
     LayersController& layers() { return layers_; }
-    ToolController& tools() { return tools_; }
     RecordingController& recordings() { return recordings_; }
     EditController& editing() { return editing_; }
     ProbeController& probe() { return probe_; }
@@ -101,6 +98,27 @@ class MainWindow : public QMainWindow {
     void show_streaming();
     void rest_or_wake(const HandSnapshots& now);
 
+    // The menus and the tool bar (menus.cpp).
+    void make_menus();
+    void fill_recent(QMenu& menu);
+    void add_open_actions(QMenu* menu);
+    void add_save_actions(QMenu* menu);
+    void add_recording_actions(QMenu* menu);
+    void add_camera_actions(QMenu* menu);
+    void add_measure_actions(QMenu* view);
+    void add_cut_actions(QMenu* view);
+    void make_file_menu();
+    void make_session_menu();
+    void make_data_menu();
+    void make_view_menu();
+    void make_help_menu();
+    void make_tool_bar();
+    /// Views from the sides of the body, or from the ends of the grid's axes where those are not
+    /// known.
+    void name_views(bool oriented);
+    Actions::Condition if_open() const;
+    Actions::Condition if_live() const;
+
     Content content_;
     Views* views_;
     Welcome* welcome_;
@@ -114,7 +132,6 @@ class MainWindow : public QMainWindow {
     DetailController details_;
     RunController run_;
     LayersController layers_;
-    ToolController tools_;
     RecordingController recordings_;
     ProbeController probe_;
     EditController editing_;

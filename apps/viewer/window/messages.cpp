@@ -1,8 +1,16 @@
-// Shows problems in a dialog that does not block the window.
+// Shows problems in a dialog that does not block the window, and watches tasks.
 #include "apps/viewer/window/messages.hpp"
 
+#include <QHBoxLayout>
+#include <QLabel>
 #include <QMessageBox>
+#include <QProgressBar>
+#include <QPushButton>
+
 #include <cstdio>
+#include <utility>
+
+#include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
 
@@ -37,6 +45,62 @@ void Messages::show_problem(const QString& what, int status) {
     box->setTextInteractionFlags(Qt::TextSelectableByMouse);
     box->setAttribute(Qt::WA_DeleteOnClose);
     box->open();  // does not block the live run
+}
+
+void BackgroundTask::start(const QString& label, Worker::Task task, std::function<void()> then) {
+    abandon();
+    then_ = std::move(then);
+    Q_EMIT began(label);
+    worker_ = std::make_unique<Worker>(std::move(task), [this] {
+        QMetaObject::invokeMethod(
+            this, [this] { look(); }, Qt::QueuedConnection);
+    });
+}
+
+void BackgroundTask::look() {
+    if (!worker_) return;
+    Q_EMIT progressed(worker_->progress());
+    if (!worker_->ended()) return;
+    const auto ended_worker = std::move(worker_);
+    const auto then = std::exchange(then_, nullptr);
+    Q_EMIT ended();
+    messages_.guarded([&] {
+        if (ended_worker->finish()) then();
+    });
+}
+
+void BackgroundTask::cancel() {
+    if (worker_) worker_->cancel();
+}
+
+void BackgroundTask::abandon() {
+    if (!worker_) return;
+    worker_.reset();
+    then_ = nullptr;
+    Q_EMIT ended();
+}
+
+QWidget* make_progress_strip(BackgroundTask& task) {
+    auto* label = new QLabel;
+    auto* bar = new QProgressBar;
+    bar->setRange(0, 100);
+    auto* cancel = named(new QPushButton(BackgroundTask::tr("Cancel")), "cancel");
+    auto* strip = named(new QWidget, "progress");
+    auto* row = new QHBoxLayout(strip);
+    row->addWidget(label);
+    row->addWidget(bar, 1);
+    row->addWidget(cancel);
+    QObject::connect(cancel, &QPushButton::clicked, &task, &BackgroundTask::cancel);
+    QObject::connect(&task, &BackgroundTask::began, strip, [=](const QString& what) {
+        label->setText(what);
+        bar->setValue(0);
+        strip->show();
+    });
+    QObject::connect(&task, &BackgroundTask::progressed, strip,
+                     [bar](double fraction) { bar->setValue(static_cast<int>(100 * fraction)); });
+    QObject::connect(&task, &BackgroundTask::ended, strip, &QWidget::hide);
+    strip->hide();
+    return strip;
 }
 
 }  // namespace palpate::viewer

@@ -7,10 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/model/label_layers.hpp"
 #include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/scene/surface_source.hpp"
-#include "apps/viewer/window/background_task.hpp"
+#include "apps/viewer/window/messages.hpp"
 
 namespace palpate::viewer {
 

@@ -1,16 +1,120 @@
-// Keeps preferences in QSettings, and shows them in a form.
+// Keeps preferences in QSettings, sets palettes and translations, and shows all in a form.
 #include "apps/viewer/window/preferences.hpp"
 
+#include <QApplication>
 #include <QComboBox>
+#include <QCoreApplication>
 #include <QDialogButtonBox>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
+#include <QLibraryInfo>
+#include <QLocale>
+#include <QPalette>
 #include <QSettings>
+
 #include <algorithm>
 
 #include "apps/viewer/panel/layout.hpp"
 
+// Outside of all namespaces, as Qt wants it. A static library's resources are linked only if
+// called.
+static void use_resources() {
+    Q_INIT_RESOURCE(translations);
+}
+
 namespace palpate::viewer {
+namespace {
+
+QPalette palette_of(const QColor& window, const QColor& base, const QColor& text,
+                    const QColor& faint) {
+    QPalette palette(window, window);  // buttons, and what is made from them
+    for (const auto role : {QPalette::WindowText, QPalette::ButtonText, QPalette::BrightText}) {
+        palette.setColor(role, text);
+    }
+    palette.setColor(QPalette::Base, base);
+    palette.setColor(QPalette::AlternateBase, window);
+    palette.setColor(QPalette::Text, text);
+    palette.setColor(QPalette::ToolTipBase, base);
+    palette.setColor(QPalette::ToolTipText, text);
+    palette.setColor(QPalette::PlaceholderText, faint);
+    palette.setColor(QPalette::Highlight, QColor(0, 114, 178));
+    palette.setColor(QPalette::HighlightedText, Qt::white);
+    palette.setColor(QPalette::Link, QColor(86, 180, 233));
+    for (const auto role : {QPalette::Text, QPalette::WindowText, QPalette::ButtonText}) {
+        palette.setColor(QPalette::Disabled, role, faint);
+    }
+    return palette;
+}
+
+}  // namespace
+
+void set_appearance(Appearance appearance) {
+    static const QPalette system = QApplication::palette();
+    QSettings().setValue("appearance", static_cast<int>(appearance));
+    switch (appearance) {
+        case Appearance::system:
+            QApplication::setPalette(system);
+            break;
+        case Appearance::light:
+            QApplication::setPalette(
+                palette_of(QColor(239, 239, 239), Qt::white, QColor(20, 20, 20), Qt::gray));
+            break;
+        case Appearance::dark:
+            QApplication::setPalette(palette_of(QColor(45, 46, 48), QColor(30, 31, 33),
+                                                QColor(226, 226, 226), QColor(130, 130, 130)));
+            break;
+    }
+}
+
+Appearance last_appearance() {
+    const int last = QSettings().value("appearance", 0).toInt();
+    return last == 1 ? Appearance::light : last == 2 ? Appearance::dark : Appearance::system;
+}
+
+namespace {
+
+constexpr const char* language_key = "preferences/language";
+constexpr const char* resources = ":/translations";
+
+QLocale locale_of(Language language) {
+    switch (language) {
+        case Language::system:
+            break;
+        case Language::english:
+            return {QLocale::English};
+        case Language::german:
+            return {QLocale::German};
+    }
+    return QLocale::system();
+}
+
+}  // namespace
+
+Language chosen_language() {
+    const QString code = QSettings().value(language_key).toString();
+    return code == "en" ? Language::english : code == "de" ? Language::german : Language::system;
+}
+
+void choose_language(Language language) {
+    if (language == Language::system) return QSettings().remove(language_key);
+    QSettings().setValue(language_key, locale_of(language).name().section('_', 0, 0));
+}
+
+Translation::Translation(Language language) {
+    use_resources();
+    // The first of the person's languages that there is; English has a file, too, for its plurals.
+    if (!own_.load(locale_of(language), "palpate", "_", resources)) {
+        (void)own_.load("palpate_en", resources);
+    }
+    QCoreApplication::installTranslator(&own_);
+    // Fields read and show numbers as all other words do: with a decimal point.
+    QLocale::setDefault(QLocale(QLocale::English));
+    if (qt_.load(QLocale(own_.language()), "qtbase", "_",
+                 QLibraryInfo::location(QLibraryInfo::TranslationsPath))) {
+        QCoreApplication::installTranslator(&qt_);
+    }
+}
+
 namespace {
 
 constexpr double least_wheel = 2, most_wheel = 100;

@@ -1,13 +1,38 @@
-// What a person prefers, kept from one day to the next, and the dialog to change it.
+// Preferences of a person, kept from one day to the next, such as appearance and language, and the
+// dialog to change them.
 #pragma once
 
 #include <QDialog>
+#include <QTranslator>
 
 #include "apps/viewer/model/measurement.hpp"
-#include "apps/viewer/window/appearance.hpp"
-#include "apps/viewer/window/language.hpp"
 
 namespace palpate::viewer {
+
+enum class Appearance { system, light, dark };
+
+/// For the whole application, at once, and for the next start; `system` is what it had when this
+/// was first called.
+void set_appearance(Appearance appearance);
+/// What was set last, in this run or another.
+Appearance last_appearance();
+
+/// The language of the window's words: the system's, or one that was chosen in the preferences.
+enum class Language { system, english, german };
+
+/// For the next start. From QSettings; the system's where nothing, or nothing that exists, is kept.
+Language chosen_language();
+void choose_language(Language language);
+
+/// Translates all words, Qt's own too, as long as it lives. What a window shows already stays as it
+/// is. Words without a translation are English.
+class Translation {
+  public:
+    explicit Translation(Language language);
+
+  private:
+    QTranslator own_, qt_;
+};
 
 struct Preferences {
     Appearance appearance = Appearance::system;

@@ -36,20 +36,20 @@ constexpr double hold_seconds = 0.6, press_speed = 3;
 ProbeController::ProbeController(Content& content, RunController& run, Views& views,
                                  Messages& messages)
     : content_(content), views_(views), messages_(messages) {
-    connect(&views, &Views::probe_dragged, this, [this](const Vec3& by) {
+    connect(&views.scene(), &Scene::probe_dragged, this, [this](const Vec3& by) {
         forget_press();
         move_by(by);
     });
     connect(&views, &Views::double_clicked, this, &ProbeController::forget_press);
-    connect(&views, &Views::tool_turned, this, &ProbeController::turn_by);
+    connect(&views.scene(), &Scene::tool_turned, this, &ProbeController::turn_by);
     connect(&views, &Views::probe_aimed, this, &ProbeController::move_to);
-    connect(&views, &Views::probe_pressed, this, [this](const Vec3& at) {
+    connect(&views.scene(), &Scene::probe_pressed, this, [this](const Vec3& at) {
         pressed_ = at;
         since_.start();
         held_ = true;
         pressed_seconds_ = 0;
     });
-    connect(&views, &Views::probe_released, this, [this] { held_ = false; });
+    connect(&views.scene(), &Scene::probe_released, this, [this] { held_ = false; });
     connect(&content, &Content::run_started, this, [this] {
         for (bool& hand : approaching_) hand = true;
     });

@@ -8,12 +8,15 @@
 
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
-#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
-#include "apps/viewer/panel/loop_view.hpp"
 #include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/panel/session_bar.hpp"
+#include "apps/viewer/panel/tool_controls.hpp"
 #include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/messages.hpp"
+#include "palpate/io/mesh_file.hpp"
+#include "palpate/io/tool_file.hpp"
 
 namespace palpate::viewer {
 
@@ -30,11 +33,18 @@ void RunRequest::use_devices_of(const RunRequest& other) {
 
 RunController::RunController(const RunRequest& request, Content& content, Panel& panel,
                              Messages& messages)
-    : request_(request), content_(content), panel_(panel), messages_(messages), search_(messages) {
+    : request_(request),
+      content_(content),
+      panel_(panel),
+      messages_(messages),
+      search_(messages),
+      reader_(messages) {
     connect(&content, &Content::run_changed, this, &RunController::show_terraces);
     connect(&panel.device_controls(), &DeviceControls::chosen, this, &RunController::use_device);
     connect(&panel.device_controls(), &DeviceControls::added, this, &RunController::add_hand);
     connect(&panel.device_controls(), &DeviceControls::removed, this, &RunController::remove_hand);
+    connect(&content, &Content::closed, this, [this] { reader_.abandon(); });
+    connect(&panel.tool_controls(), &ToolControls::open_wanted, this, &RunController::ask_tool);
     connect(&panel.hand_switch(), &HandSwitch::wanted, this, &RunController::choose_hand);
     for (const auto changed : {&Content::run_changed, &Content::playback_started,
                                &Content::hand_changed, &Content::closed}) {
@@ -103,6 +113,33 @@ void RunController::restore(const RendererSettings& settings) {
     send(settings.transform);
     send(command::Forces{settings.forces_on});
     Q_EMIT content_.run_changed();
+}
+
+bool RunController::is_tool_file(const QString& path) {
+    return io::names_a_mesh(path.toStdString());
+}
+
+void RunController::ask_tool() {
+    if (!content_.live()) return;
+    const QString path = ask_open_tool_name(messages_.window());
+    if (!path.isEmpty()) open_tool(path);
+}
+
+void RunController::open_tool(const QString& path) {
+    messages_.forget();
+    if (!content_.live()) {
+        return messages_.show_problem(
+            tr("%1: this is a tool: open a volume first, and feel it, then open the tool")
+                .arg(short_name(path)));
+    }
+    remember_folder(path);
+    const auto read = std::make_shared<io::ToolSpec>();
+    reader_.start(
+        tr("Reading the tool"),
+        [read, path](const io::Progress&) { *read = io::tool_spec_from(path.toStdString()); },
+        [this, read, path] {
+            if (content_.live()) panel_.tool_controls().add(short_name(path), *read);
+        });
 }
 
 void RunController::find_devices() {

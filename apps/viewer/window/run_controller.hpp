@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/window/background_task.hpp"
+#include "apps/viewer/window/messages.hpp"
 #include "palpate/devices/devices.hpp"
 #include "palpate/run/setup.hpp"
 #include "palpate/servo.hpp"
@@ -28,9 +28,7 @@ struct RunRequest {
     /// Of the hands beside the first.
     std::vector<devices::DeviceChoice> others = {};
 
-    /// How each hand feels.
     std::vector<run::Setup> setups() const;
-    /// With the devices of another one.
     void use_devices_of(const RunRequest& other);
 };
 
@@ -58,6 +56,15 @@ class RunController : public QObject {
     /// lack_labels().
     void restore(const RendererSettings& settings);
 
+    /// Whether a file that is dropped on the window is a tool: a mesh, by its name.
+    static bool is_tool_file(const QString& path);
+    /// Feels with the tool of a file, for which it asks by a dialog. Errors are shown; the tool
+    /// before stays then.
+    void ask_tool();
+    void open_tool(const QString& path);
+    /// Of tools.
+    BackgroundTask& reader() { return reader_; }
+    bool settled() const { return !reader_.busy(); }
     void find_devices();
     /// Of the chosen hand.
     void use_device(const QString& option);
@@ -87,7 +94,7 @@ class RunController : public QObject {
     Content& content_;
     Panel& panel_;
     Messages& messages_;
-    BackgroundTask search_;
+    BackgroundTask search_, reader_;
     std::vector<devices::DeviceFinding> findings_;
     std::optional<DeviceStatus> status_;
     QString problem_;

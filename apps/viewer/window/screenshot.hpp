@@ -14,7 +14,6 @@ class Screenshot : public QObject {
   public:
     /// `after` [s] of the session; of a recording, from its beginning.
     Screenshot(MainWindow& window, const QString& path, double after);
-    /// The program's exit status.
     int status() const { return status_; }
 
   private:

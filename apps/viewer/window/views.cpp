@@ -46,10 +46,6 @@ Views::Views(MakePainter make_painter, QWidget* parent)
         connect(pane, &SlicePane::point_chosen, this, &Views::point_chosen);
         connect(pane, &SlicePane::point_pointed_at, this, &Views::point_pointed_at);
     }
-    connect(scene_, &Scene::probe_dragged, this, &Views::probe_dragged);
-    connect(scene_, &Scene::tool_turned, this, &Views::tool_turned);
-    connect(scene_, &Scene::probe_pressed, this, &Views::probe_pressed);
-    connect(scene_, &Scene::probe_released, this, &Views::probe_released);
     connect(scene_, &Scene::point_chosen, this,
             [this](const Vec3& at) { Q_EMIT point_chosen(on_surface(at)); });
     connect(scene_, &Scene::point_pointed_at, this,

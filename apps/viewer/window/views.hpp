@@ -11,7 +11,7 @@
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/overlay.hpp"
-#include "apps/viewer/scene/painter.hpp"
+#include "apps/viewer/scene/render_request.hpp"
 #include "palpate/servo.hpp"
 
 class QPushButton;
@@ -83,14 +83,8 @@ class Views : public QWidget {
     SlicePane& slice(int axis) { return *slices_.at(static_cast<std::size_t>(axis)); }
 
   Q_SIGNALS:
-    /// The user asks the probe to move by, or to go to [mm, physical].
-    void probe_dragged(const palpate::Vec3& by);
+    /// The user asks the probe to go to a point of a slice [mm, physical].
     void probe_aimed(const palpate::Vec3& to);
-    /// As Scene's.
-    void tool_turned(const palpate::Vec3& rotation);
-    /// As Scene's.
-    void probe_pressed(const palpate::Vec3& at);
-    void probe_released();
     /// A pane was enlarged, or all are shown again.
     void double_clicked();
     /// The button of set_missing() was pressed.

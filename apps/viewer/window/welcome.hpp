@@ -1,10 +1,13 @@
-// What an empty window shows: what can be opened, how to touch it, and which devices there are.
+// What a new user reads: the page of an empty window, and the dialogs of the menu Help.
 #pragma once
 
 #include <QWidget>
 
 class QLabel;
 class QVBoxLayout;
+
+class QDialog;
+class QWidget;
 
 namespace palpate::viewer {
 
@@ -29,5 +32,12 @@ class Welcome : public QWidget {
     QWidget* recent_;
     QLabel* devices_;
 };
+
+/// How to open, touch and edit a volume, on a page.
+QDialog* make_first_steps_dialog(QWidget* window);
+/// The shortcuts of all actions of `window`, and what the mouse does.
+QDialog* make_shortcuts_dialog(QWidget* window);
+/// Versions, source and licence.
+QDialog* make_about_dialog(QWidget* window);
 
 }  // namespace palpate::viewer

@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "apps/viewer/model/patch_choice.hpp"
 #include "palpate/field.hpp"
 #include "support/edits.hpp"
 #include "support/random.hpp"

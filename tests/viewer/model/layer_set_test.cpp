@@ -84,14 +84,14 @@ TEST(LayerSet, a_new_layer_lies_in_the_widest_room_and_keeps_the_order) {
         Layers layers = skin_and_bone();
         if (solid == Solid::below) std::ranges::reverse(layers.layers);
         while (layers.layers.size() < Layers::most_layers) {
-            const auto [next, at] = with_another(layers, solid, -1000, 3000);
+            const auto [next, at] = with_another(layers, solid, -1000, 3000, "layer");
             EXPECT_EQ(next.layers.size(), layers.layers.size() + 1);
             EXPECT_NO_THROW(check(next, solid));
             EXPECT_EQ(next.layers[at].name.substr(0, 6), "layer ");
             layers = next;
         }
     }
-    EXPECT_NO_THROW(check(first_layer(100), Solid::above));
+    EXPECT_NO_THROW(check(first_layer(100, "layer"), Solid::above));
 }
 
 TEST(LayerSet, a_stiffness_that_the_device_cannot_render_is_known) {

@@ -9,9 +9,9 @@
 #include <functional>
 #include <limits>
 
-#include "apps/viewer/panel/force_gauge.hpp"
-#include "apps/viewer/panel/force_rows.hpp"
-#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/force_controls.hpp"
+#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/session_bar.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -8,10 +8,9 @@
 
 #include <cmath>
 
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
-#include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/rate_limiter.hpp"
 
 namespace palpate::viewer {
 namespace {

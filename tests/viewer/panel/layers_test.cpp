@@ -11,9 +11,9 @@
 #include <limits>
 #include <set>
 
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
-#include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/stroke_plot.hpp"
+#include "apps/viewer/panel/layer_editor.hpp"
 #include "tests/viewer/panel/layers_fixture.hpp"
 
 namespace palpate::viewer {

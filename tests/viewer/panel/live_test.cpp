@@ -5,8 +5,8 @@
 #include <QSlider>
 
 #include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
-#include "apps/viewer/panel/number_box.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {

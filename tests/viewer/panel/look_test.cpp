@@ -4,14 +4,14 @@
 #include <QCheckBox>
 #include <QColorDialog>
 #include <QComboBox>
+#include <QContextMenuEvent>
 
 #include <memory>
 
 #include "apps/viewer/model/transfer.hpp"
-#include "apps/viewer/panel/colour_button.hpp"
+#include "apps/viewer/panel/colours.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
-#include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/transfer_editor.hpp"
 #include "tests/viewer/transfer_function.hpp"
 
 namespace palpate::viewer {
@@ -30,10 +30,13 @@ class Looks : public PanelFixture {
         for (const Look& one : looks) EXPECT_TRUE(is_valid(one.transfer));
         EXPECT_TRUE(commands.empty()) << "a look is no command";
     }
-    TransferEditor* editor() { return find<TransferEditor>("transfer_editor"); }
-    QPointF place(std::size_t point) {
-        return editor()->place_of(editor()->transfer().points.at(point));
+    LevelChart* editor() { return find<LevelChart>("transfer_editor"); }
+    QPointF place(std::size_t point) { return editor()->place_of(point); }
+    void right_click(const QPointF& at) {
+        QContextMenuEvent click(QContextMenuEvent::Mouse, at.toPoint());
+        QApplication::sendEvent(editor(), &click);
     }
+    const TransferFunction& transfer() { return panel.look_controls().look().transfer; }
     const Look& last() {
         settle();
         EXPECT_FALSE(looks.empty());
@@ -168,12 +171,12 @@ TEST_F(Looks, a_double_click_adds_a_point_with_the_colour_that_is_there) {
     const ControlPoint was = sampled(look.transfer, points[5].level);
     EXPECT_EQ(points[5].colour, was.colour);
     EXPECT_LT(points[5].opacity, was.opacity - 0.1);
-    EXPECT_NEAR(editor()->place_of(points[5]).x(), at.x(), 1.5);
-    EXPECT_EQ(editor()->chosen(), 5);
+    EXPECT_NEAR(place(5).x(), at.x(), 1.5);
+    EXPECT_EQ(editor()->held_knot(), 5);
 }
 
 TEST_F(Looks, right_click_and_del_delete_points_but_two_stay) {
-    QTest::mouseClick(editor(), Qt::RightButton, {}, place(2).toPoint());
+    right_click(place(2));
     EXPECT_EQ(last().transfer.points.size(), look.transfer.points.size() - 1);
     EXPECT_EQ(last().transfer.points[2], look.transfer.points[3]);
     editor()->setFocus();
@@ -190,19 +193,21 @@ TEST_F(Looks, choosing_the_preset_again_undoes_changes) {
     box->setFocus();
     QTest::keyClick(box, Qt::Key_Home);
     EXPECT_EQ(last().transfer, look.transfer);
-    EXPECT_EQ(editor()->transfer(), look.transfer);
+    EXPECT_EQ(transfer(), look.transfer);
 }
 
 TEST_F(Looks, keys_choose_and_move_points) {
     editor()->setFocus();
-    editor()->choose(2);
-    QTest::keyClick(editor(), Qt::Key_Period);
-    EXPECT_EQ(editor()->chosen(), 3);
+    editor()->hold_knot(2);
+    QTest::keyClick(editor(), Qt::Key_PageDown);
+    EXPECT_EQ(editor()->held_knot(), 3);
+    const double y = place(3).y();
     QTest::keyClick(editor(), Qt::Key_Up, Qt::ShiftModifier);
-    EXPECT_NEAR(last().transfer.points[3].opacity, look.transfer.points[3].opacity + 0.1, 1e-9);
+    EXPECT_NEAR(place(3).y(), y - 10, 0.6) << "as far as dragging, to a hundredth";
+    EXPECT_GT(last().transfer.points[3].opacity, look.transfer.points[3].opacity);
     QTest::keyClick(editor(), Qt::Key_Insert);
     EXPECT_EQ(last().transfer.points.size(), look.transfer.points.size() + 1);
-    EXPECT_EQ(editor()->chosen(), 4);
+    EXPECT_EQ(editor()->held_knot(), 4);
 }
 
 TEST_F(Looks, numbers_of_the_chosen_point_can_be_typed) {
@@ -249,8 +254,8 @@ TEST_F(Looks, the_panel_can_be_destroyed_during_a_drag_with_a_dialog_open) {
     other->look_controls().set_look(look);
     other->show();
     wait_until_exposed(*other);
-    auto* held = other->findChild<TransferEditor*>();
-    const QPointF at = held->place_of(look.transfer.points[3]);
+    auto* held = other->findChild<LevelChart*>("transfer_editor");
+    const QPointF at = held->place_of(3);
     drag(held, at, at + QPointF(8, -15), Qt::NoModifier, false);
     drag(other->findChild<QWidget*>("level_chart"), QPointF(80, 40), QPointF(200, 40),
          Qt::NoModifier, false);
@@ -268,7 +273,7 @@ TEST_F(Looks, random_edits_always_leave_a_valid_function) {
                        std::uniform_int_distribution(-10, editor()->height() + 10)(random));
     };
     for (int i = 0; i < 150; ++i) {
-        const auto point = random() % editor()->transfer().points.size();
+        const auto point = random() % transfer().points.size();
         switch (random() % 4) {
             case 0:
                 drag(editor(), place(point), anywhere());
@@ -277,15 +282,15 @@ TEST_F(Looks, random_edits_always_leave_a_valid_function) {
                 drag(editor(), anywhere(), anywhere());
                 break;
             case 2:
-                editor()->choose(static_cast<int>(point));
+                editor()->hold_knot(static_cast<int>(point));
                 QTest::keyClick(editor(), random() % 2 ? Qt::Key_Left : Qt::Key_Insert);
                 break;
             default:
-                QTest::mouseClick(editor(), Qt::RightButton, {}, place(point).toPoint());
+                right_click(place(point));
         }
-        ASSERT_TRUE(is_valid(editor()->transfer())) << i;
+        ASSERT_TRUE(is_valid(transfer())) << i;
     }
-    EXPECT_EQ(last().transfer, editor()->transfer());
+    EXPECT_EQ(last().transfer, transfer());
 }
 
 class Presets : public PanelFixture {

@@ -18,9 +18,9 @@
 
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
-#include "apps/viewer/panel/section.hpp"
 #include "viewer/waiting.hpp"
 
 namespace palpate::viewer {

@@ -11,8 +11,7 @@
 #include <cmath>
 
 #include "apps/viewer/panel/level_chart.hpp"
-#include "apps/viewer/panel/press_through.hpp"
-#include "apps/viewer/panel/range_table.hpp"
+#include "apps/viewer/panel/penetrability_controls.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -17,8 +17,7 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/panel/timeline_track.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "viewer/waiting.hpp"
 
 namespace palpate::viewer {

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "apps/viewer/model/coarse_samples.hpp"
 #include "apps/viewer/model/sample_block.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/scenes/volumes.hpp"

@@ -1,5 +1,5 @@
 // A finer part of a surface in place of a coarse one: the two meet without holes.
-#include "apps/viewer/scene/surface_patch.hpp"
+#include "apps/viewer/scene/surface_source.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "apps/viewer/model/patch_choice.hpp"
+#include "apps/viewer/model/detail_choice.hpp"
 #include "apps/viewer/scene/surface_blocks.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/parameter.hpp"

@@ -1,9 +1,8 @@
 // Several surfaces, cuts and the patch round a hand that presses through.
 #include <gtest/gtest.h>
 
-#include "apps/viewer/scene/compose.hpp"
-#include "apps/viewer/scene/cut_handles.hpp"
-#include "apps/viewer/scene/cut_planes.hpp"
+#include "apps/viewer/scene/cut.hpp"
+#include "apps/viewer/scene/layer_prop.hpp"
 #include "apps/viewer/scene/local.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"

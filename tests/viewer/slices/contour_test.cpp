@@ -32,14 +32,14 @@ std::vector<TestField> smooth_fields() {
     return all;
 }
 
-struct Cut {
+struct Sliced {
     Field field;
     SlicePlane plane;
     SliceSamples samples;
     std::vector<ContourPiece> pieces;
 
-    Cut(const TestField& test, int axis, double position,
-        ContourDetail detail = ContourDetail::lattice)
+    Sliced(const TestField& test, int axis, double position,
+           ContourDetail detail = ContourDetail::lattice)
         : field(test.field), plane(slice_plane(field.geometry(), axis)), samples(field, plane) {
         samples.go_to(position);
         append_contour(samples, test.isovalue, {-1, -1, samples.width(), samples.height()}, detail,
@@ -57,7 +57,7 @@ TEST(Contour, lies_on_the_surface_that_is_felt) {
         for (int axis = 0; axis < 3; ++axis) {
             std::size_t pieces = 0;
             for (const double position : positions(test.field, axis)) {
-                const Cut cut(test, axis, position);
+                const Sliced cut(test, axis, position);
                 pieces += cut.pieces.size();
                 for (const ContourPiece& p : cut.pieces) {
                     for (const float t : {0.0F, 0.3F, 1.0F}) {
@@ -75,7 +75,7 @@ TEST(Contour, lies_on_the_surface_that_is_felt) {
 }
 
 /// Of the field in the slice [data units a sample].
-double slope_at(const Cut& cut, double u, double v) {
+double slope_at(const Sliced& cut, double u, double v) {
     constexpr double step = 1e-3;
     return std::hypot(cut.value(u + step, v) - cut.value(u - step, v),
                       cut.value(u, v + step) - cut.value(u, v - step)) /
@@ -87,7 +87,7 @@ TEST(Contour, of_a_smooth_field_is_bent_along_the_surface_that_is_felt) {
         int pieces = 0, off = 0;
         for (int axis = 0; axis < 3; ++axis) {
             for (const double position : positions(test.field, axis)) {
-                const Cut cut(test, axis, position);
+                const Sliced cut(test, axis, position);
                 for (const ContourPiece& p : cut.pieces) {
                     const float u = 0.5F * (p.u0 + p.u1), v = 0.5F * (p.v0 + p.v1);
                     const double hair = 1e-3 * test.field.range();
@@ -104,7 +104,7 @@ TEST(Contour, of_a_smooth_field_is_bent_along_the_surface_that_is_felt) {
 }
 
 /// The pieces by the cell that they are in.
-std::map<std::pair<int, int>, std::vector<ContourPiece>> by_cell(const Cut& cut) {
+std::map<std::pair<int, int>, std::vector<ContourPiece>> by_cell(const Sliced& cut) {
     std::map<std::pair<int, int>, std::vector<ContourPiece>> cells;
     for (const ContourPiece& p : cut.pieces) {
         cells[{static_cast<int>(std::floor(0.5F * (p.u0 + p.u1))),
@@ -132,7 +132,7 @@ TEST(Contour, is_met_wherever_one_goes_from_solid_to_free) {
         int changes = 0;
         for (int axis = 0; axis < 3; ++axis) {
             for (const double position : positions(test.field, axis)) {
-                const Cut cut(test, axis, position);
+                const Sliced cut(test, axis, position);
                 const auto cells = by_cell(cut);
                 const double sign = test.field.sign();
                 for (int i = 0; i < support::scaled(400); ++i) {
@@ -164,7 +164,7 @@ TEST(Contour, of_a_smooth_field_is_met_from_solid_to_free) {
         int changes = 0, missed = 0;
         for (int axis = 0; axis < 3; ++axis) {
             for (const double position : positions(test.field, axis)) {
-                const Cut cut(test, axis, position);
+                const Sliced cut(test, axis, position);
                 const double sign = test.field.sign();
                 for (int i = 0; i < support::scaled(400); ++i) {
                     const double u = random.uniform(-1, cut.samples.width());
@@ -185,7 +185,7 @@ TEST(Contour, of_a_smooth_field_is_met_from_solid_to_free) {
 
 TEST(Contour, of_two_triangles_a_cell_is_less_than_a_sample_away) {
     const TestField test = support::marschner_lobb_field();
-    const Cut exact(test, 2, 11.3), quick(test, 2, 11.3, ContourDetail::cells);
+    const Sliced exact(test, 2, 11.3), quick(test, 2, 11.3, ContourDetail::cells);
     ASSERT_GT(quick.pieces.size(), 100U);
     EXPECT_LT(3 * quick.pieces.size(), exact.pieces.size());
     for (const ContourPiece& q : quick.pieces) {
@@ -201,7 +201,7 @@ TEST(Contour, no_level_without_a_surface_has_one) {
     const TestField test = support::noise_field();
     for (const double isovalue : {-1e9, 1e9, std::nan(""), std::numeric_limits<double>::infinity(),
                                   -std::numeric_limits<double>::infinity()}) {
-        const Cut cut({test.name, test.field, isovalue}, 0, 4.5);
+        const Sliced cut({test.name, test.field, isovalue}, 0, 4.5);
         // Where all of the data are solid and the background too, there is no border either.
         EXPECT_TRUE(cut.pieces.empty()) << isovalue;
     }
@@ -209,7 +209,7 @@ TEST(Contour, no_level_without_a_surface_has_one) {
 
 TEST(Contour, a_range_of_cells_gives_the_pieces_of_those_cells) {
     const TestField test = support::noise_field();
-    const Cut whole(test, 1, 3.25);
+    const Sliced whole(test, 1, 3.25);
     std::vector<ContourPiece> parts;
     const SliceSamples& samples = whole.samples;
     append_contour(samples, test.isovalue, {-5, -5, 9, 100}, ContourDetail::lattice, parts);

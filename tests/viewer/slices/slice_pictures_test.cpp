@@ -1,15 +1,265 @@
-// Pictures of slice panes on real data, for people to look at.
+// Orientation and samples of slices, smooth lines in a mask, and pictures on real data.
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
 #include <QGridLayout>
 #include <QPalette>
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
+#include <set>
 
+#include "apps/viewer/slices/plane.hpp"
+#include "apps/viewer/slices/samples.hpp"
+#include "apps/viewer/slices/slice_picture.hpp"
 #include "palpate/run/source.hpp"
 #include "support/fields.hpp"
+#include "support/random.hpp"
 #include "viewer/slices/pane_support.hpp"
 
 namespace palpate::viewer {
 namespace {
+
+using support::grid;
+
+Mat3 columns(const Vec3& x, const Vec3& y, const Vec3& z) {
+    Mat3 direction;
+    direction << x, y, z;
+    return direction;
+}
+
+const Vec3 left(1, 0, 0), back(0, 1, 0), head(0, 0, 1);
+
+/// Grids whose axes run along the body's in every order and direction, 48 of them.
+std::vector<Mat3> signed_orders() {
+    std::vector<Mat3> all;
+    std::array<int, 3> order{0, 1, 2};
+    do {
+        for (int signs = 0; signs < 8; ++signs) {
+            Mat3 direction = Mat3::Zero();
+            for (int a = 0; a < 3; ++a) direction(order[a], a) = signs >> a & 1 ? -1 : 1;
+            all.push_back(direction);
+        }
+    } while (std::next_permutation(order.begin(), order.end()));
+    return all;
+}
+
+TEST(SlicePlane, every_grid_is_shown_in_the_radiological_convention) {
+    for (const Mat3& direction : signed_orders()) {
+        const Geometry geometry = grid({4, 5, 6}, {1, 2, 3}, {7, 8, 9}, direction);
+        std::set<std::string> titles;
+        for (int axis = 0; axis < 3; ++axis) {
+            const SlicePlane plane = slice_plane(geometry, axis);
+            titles.insert(plane.title);
+            if (plane.title == "Axial") {
+                EXPECT_EQ(plane.at_left + plane.at_right, "RL");
+                EXPECT_EQ(plane.at_top + plane.at_bottom, "AP");
+            } else if (plane.title == "Coronal") {
+                EXPECT_EQ(plane.at_left + plane.at_right, "RL");
+                EXPECT_EQ(plane.at_top + plane.at_bottom, "SI");
+            } else {
+                EXPECT_EQ(plane.at_left + plane.at_right, "AP");
+                EXPECT_EQ(plane.at_top + plane.at_bottom, "SI");
+            }
+        }
+        EXPECT_EQ(titles.size(), 3U);
+    }
+}
+
+TEST(SlicePlane, sides_that_the_file_does_not_tell_are_not_named) {
+    for (const Mat3& direction : signed_orders()) {
+        Geometry geometry = grid({4, 5, 6}, {1, 2, 3}, {7, 8, 9}, direction);
+        geometry.oriented = false;
+        for (int axis = 0; axis < 3; ++axis) {
+            const SlicePlane plane = slice_plane(geometry, axis);
+            std::string all = plane.title + plane.at_left + plane.at_right + plane.at_top;
+            all += plane.at_bottom + position_text(plane, geometry, {10, 20, 30});
+            all.resize(all.find(" "));
+            EXPECT_EQ(all.find_first_not_of("XYZ+-"), std::string::npos) << all;
+        }
+    }
+}
+
+TEST(SlicePlane, right_on_the_screen_is_where_its_letter_says) {
+    for (const Mat3& direction : signed_orders()) {
+        const Geometry geometry = grid({4, 5, 6}, {1, 2, 3}, {7, 8, 9}, direction);
+        for (int axis = 0; axis < 3; ++axis) {
+            const SlicePlane plane = slice_plane(geometry, axis);
+            const auto at = [&](const Vec3& slice) {
+                return physical_from_index(geometry, index_from_slice(plane, geometry, slice));
+            };
+            const Vec3 right = at({1, 0, 2}) - at({0, 0, 2}), down = at({0, 1, 2}) - at({0, 0, 2});
+            EXPECT_GT(right.dot(plane.at_right == "L" ? left : back), 0.5);
+            EXPECT_GT(down.dot(plane.at_bottom == "P" ? back : -head), 0.5);
+        }
+    }
+}
+
+TEST(SlicePlane, slice_coordinates_come_back_from_index_space) {
+    support::Random random(7);
+    for (const Mat3& direction : signed_orders()) {
+        const Geometry geometry = grid({4, 5, 6}, {1, 2, 3}, {7, 8, 9}, direction);
+        for (int axis = 0; axis < 3; ++axis) {
+            const SlicePlane plane = slice_plane(geometry, axis);
+            const Vec3 index = random.point(-2, 7);
+            const Vec3 slice = slice_from_index(plane, geometry, index);
+            EXPECT_LT((index_from_slice(plane, geometry, slice) - index).norm(), 1e-12);
+            EXPECT_EQ(slice[2], index[axis]);
+        }
+    }
+}
+
+TEST(SlicePlane, aslant_grids_name_all_sides_that_an_edge_lies_towards) {
+    const Mat3 turned =
+        Eigen::AngleAxisd(30 * 3.14159265358979 / 180, Vec3::UnitZ()).toRotationMatrix();
+    const SlicePlane axial = slice_plane(grid({4, 5, 6}, Vec3::Ones(), Vec3::Zero(), turned), 2);
+    EXPECT_EQ(axial.title, "Axial");
+    EXPECT_EQ(axial.at_right, "LP");
+    EXPECT_EQ(axial.at_left, "RA");
+    EXPECT_EQ(axial.at_top, "AL");
+    EXPECT_EQ(axial.at_bottom, "PR");
+    const Mat3 little =
+        Eigen::AngleAxisd(10 * 3.14159265358979 / 180, Vec3::UnitZ()).toRotationMatrix();
+    EXPECT_EQ(slice_plane(grid({4, 5, 6}, Vec3::Ones(), Vec3::Zero(), little), 2).at_right, "L");
+}
+
+TEST(SlicePlane, any_orientation_gives_three_different_planes) {
+    support::Random random(11);
+    for (int i = 0; i < 300; ++i) {
+        const Vec3 x = random.direction(), y = x.unitOrthogonal();
+        const Mat3 direction =
+            Eigen::AngleAxisd(random.uniform(0, 7), x) * columns(x, y, x.cross(y));
+        const Geometry geometry = grid({4, 5, 6}, Vec3::Ones(), Vec3::Zero(), direction);
+        std::set<int> body, screen;
+        for (int axis = 0; axis < 3; ++axis) {
+            const SlicePlane plane = slice_plane(geometry, axis);
+            body.insert(plane.anatomical);
+            EXPECT_NE(plane.right.axis, plane.down.axis);
+            EXPECT_NE(plane.right.axis, axis);
+            EXPECT_NE(plane.down.axis, axis);
+        }
+        EXPECT_EQ(body.size(), 3U);
+    }
+}
+
+TEST(SlicePlane, the_position_names_the_side_of_the_body_it_lies_on) {
+    const Geometry mirrored =
+        grid({4, 5, 6}, Vec3::Ones(), Vec3::Zero(), columns(-left, back, -head));
+    EXPECT_EQ(position_text(slice_plane(mirrored, 2), mirrored, {1, 2, 12.5}), "S 12.50 mm");
+    EXPECT_EQ(position_text(slice_plane(mirrored, 2), mirrored, {1, 2, -3}), "I 3.00 mm");
+    EXPECT_EQ(position_text(slice_plane(mirrored, 0), mirrored, {-4, 2, 9}), "R 4.00 mm");
+}
+
+/// A value that tells its place, on a mirrored and turned grid.
+Field ramp(SampleType type) {
+    Mat3 direction;
+    direction << 0, 0, -1, -1, 0, 0, 0, 1, 0;
+    const Geometry geometry = support::grid({7, 6, 5}, {1, 2, 3}, {10, 20, 30}, direction);
+    const auto value = [](const Index3& i) { return i[0] + 10 * i[1] + 40 * i[2]; };
+    return with_type(type, [&](auto zero) {
+        return linear_field(support::volume_of<decltype(zero)>(geometry, value));
+    });
+}
+
+TEST(SliceSamples, are_those_of_the_volume_whatever_its_type_axis_and_direction) {
+    for (const SampleType type :
+         {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
+        const Field field = ramp(type);
+        for (int axis = 0; axis < 3; ++axis) {
+            const SlicePlane plane = slice_plane(field.geometry(), axis);
+            SliceSamples samples(field, plane);
+            for (const double position : {1.25, 2.0, 0.0, 3.5, 3.75, 2.75}) {
+                samples.go_to(position);
+                std::vector<float> row(static_cast<std::size_t>(samples.width()));
+                for (int v = 0; v < samples.height(); ++v) {
+                    samples.interpolate(v, row.data());
+                    for (int u = 0; u < samples.width(); ++u) {
+                        const Vec3 i =
+                            index_from_slice(plane, field.geometry(), Vec3(u, v, position));
+                        EXPECT_NEAR(row[std::size_t(u)], i[0] + 10 * i[1] + 40 * i[2], 1e-4);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(SliceSamples, have_a_ring_of_background_and_are_background_outside) {
+    const Field field = linear_field(ramp(SampleType::int16).volume(), Solid::above, -77);
+    const SlicePlane plane = slice_plane(field.geometry(), 1);
+    SliceSamples samples(field, plane);
+    samples.go_to(2.5);
+    for (int v = -1; v <= samples.height(); ++v) {
+        for (const int layer : {0, 1}) {
+            EXPECT_EQ(samples.row(layer, v)[-1], -77);
+            EXPECT_EQ(samples.row(layer, v)[samples.width()], -77);
+        }
+    }
+    for (const double outside : {-1.0, 6.0, 1e300, -1e300}) {
+        samples.go_to(outside);
+        EXPECT_FALSE(samples.in_data());
+        for (int u = 0; u < samples.width(); ++u) EXPECT_EQ(samples.row(0, 2)[u], -77);
+    }
+    samples.go_to(std::nan(""));
+    EXPECT_TRUE(std::isfinite(samples.position()));
+}
+
+TEST(SliceSamples, beyond_the_last_layer_its_voxels_go_on) {
+    const Field field = ramp(SampleType::float32);
+    SliceSamples samples(field, slice_plane(field.geometry(), 2));
+    std::vector<float> inside(static_cast<std::size_t>(samples.width())), border = inside;
+    for (const auto& [position, layer] : {std::pair{4.4, 4.0}, {-0.4, 0.0}}) {
+        samples.go_to(layer);
+        samples.interpolate(1, inside.data());
+        samples.go_to(position);
+        EXPECT_TRUE(samples.in_data());
+        samples.interpolate(1, border.data());
+        EXPECT_EQ(inside, border);
+    }
+}
+
+double covered(const LineMask& mask) {
+    double sum = 0;
+    for (int y = 0; y < mask.height(); ++y) {
+        for (int x = 0; x < mask.width(); ++x) sum += mask.row(y)[x] / 255.0;
+    }
+    return sum;
+}
+
+TEST(LineMask, covers_as_much_as_the_line_is_large_in_any_direction) {
+    support::Random random(3);
+    for (int i = 0; i < 50; ++i) {
+        LineMask mask(200, 200);
+        const double angle = random.uniform(0, 7), length = random.uniform(20, 80);
+        const double dx = length * std::cos(angle), dy = length * std::sin(angle);
+        mask.draw(100, 100, 100 + dx, 100 + dy, 1.5);
+        const double area = 3 * length + 3.14159 * 1.5 * 1.5;
+        EXPECT_NEAR(covered(mask), area, 0.06 * area);
+    }
+}
+
+TEST(LineMask, the_same_line_twice_or_in_pieces_is_the_same) {
+    LineMask once(50, 50), twice(50, 50);
+    once.draw(5.3, 7.1, 44, 31, 0.8);
+    twice.draw(5.3, 7.1, 44, 31, 0.8);
+    twice.draw(5.3, 7.1, 44, 31, 0.8);
+    for (int y = 0; y < 50; ++y) {
+        for (int x = 0; x < 50; ++x) EXPECT_EQ(once.row(y)[x], twice.row(y)[x]);
+    }
+}
+
+TEST(LineMask, what_is_far_outside_or_far_longer_than_the_picture_does_no_harm) {
+    LineMask mask(20, 10);
+    mask.draw(-50, -50, -40, 90, 1);
+    mask.draw(1e9, 3, 2e9, 3, 1);
+    EXPECT_EQ(covered(mask), 0);
+    mask.draw(-1e9, 5, 1e9, 5, 1);
+    EXPECT_NEAR(covered(mask), 2 * 20, 2);
+    mask.draw(5, 5, 5, 5, 1);  // a dot
+    mask.draw(std::nan(""), 5, 5, 5, 1);
+    LineMask nothing(0, 0);
+    nothing.draw(0, 0, 5, 5, 1);
+}
 
 Volume real(const std::string& name) {
     return run::load(run::source_named(std::string(PALPATE_DATA_FOLDER) + "/" + name)).volume;

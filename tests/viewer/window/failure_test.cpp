@@ -7,7 +7,8 @@
 #include <QToolButton>
 #include <fstream>
 
-#include "apps/viewer/window/appearance.hpp"
+#include "apps/viewer/window/preferences.hpp"
+#include "devices/claim.hpp"
 #include "viewer/window/window_fixture.hpp"
 
 namespace palpate::viewer::test {
@@ -31,6 +32,48 @@ TEST_F(Failures, an_unavailable_device_is_reported_wherever_it_is_requested) {
     wait_until([&] { return !window_->messages().problem().isEmpty(); });
     EXPECT_TRUE(window_->messages().problem().contains("missing.csv"));
     EXPECT_EQ(window_->live(), nullptr);
+}
+
+/// The one device of a test, which only one hand can have.
+class Claimed final : public Device {
+  public:
+    explicit Claimed(const devices::DeviceScene& scene)
+        : claim_("the one device"),
+          device_(devices::open_device(devices::parse_device("simulated:hand=hold"), scene)) {}
+    DeviceInfo info() const override { return device_->info(); }
+    DeviceReading read(double time) override { return device_->read(time); }
+    void write(const Wrench& wrench, double time) override { device_->write(wrench, time); }
+    void stop() noexcept override { device_->stop(); }
+
+  private:
+    const devices::Claim claim_;
+    std::unique_ptr<Device> device_;
+};
+
+TEST_F(Failures, a_hand_stays_frozen_when_its_device_is_chosen_again_and_refused) {
+    run::Setup setup = setup_with("simulated");
+    setup.open_device = [](const auto& choice, const auto& scene) -> std::unique_ptr<Device> {
+        auto device = std::make_unique<Claimed>(scene);
+        if (choice.options.empty()) return device;
+        throw std::runtime_error("no such option");
+    };
+    open_window(setup);
+    feel(sphere);
+    press(Qt::Key_F);
+    wait_until([&] { return now().session.frozen; });
+    const std::int64_t before = now().number;
+    window_->run().use_device("simulated:hand=hold");
+    EXPECT_EQ(window_->messages().problem(), "no such option");
+    window_->messages().forget();
+    wait_until([&] { return now().number != before && now().session.frozen; });
+    wait_for_ticks(50);
+    window_->tick();
+    window_->tick();
+    EXPECT_TRUE(now().session.frozen);
+    EXPECT_TRUE(part<QPushButton>("freeze").isChecked());
+    window_->content().effect().request(command::Freeze{false});
+    wait_until([&] { return !now().session.frozen; });
+    EXPECT_FALSE(part<QPushButton>("freeze").isChecked());
 }
 
 TEST_F(Failures, leaving_a_recording_keeps_level_and_view) {

@@ -6,15 +6,19 @@
 #include <QDoubleSpinBox>
 #include <QElapsedTimer>
 #include <QLabel>
+#include <QMenu>
 #include <QMessageBox>
 #include <QPushButton>
 #include <QRegularExpression>
+#include <QScrollArea>
+#include <QScrollBar>
 #include <QSlider>
 #include <QStatusBar>
 #include <QTextBrowser>
 #include <QToolButton>
 
 #include "apps/viewer/model/probe_route.hpp"
+#include "apps/viewer/window/welcome.hpp"
 #include "palpate/io/sample_volume.hpp"
 #include "viewer/window/window_fixture.hpp"
 
@@ -45,6 +49,31 @@ TEST_F(Window, pressing_with_the_mouse_makes_force_and_letting_go_ends_it) {
     wait_until([&] { return force() == 0; });
 }
 
+TEST_F(Window, the_page_of_an_empty_window_can_be_seen_whole_at_any_size) {
+    Welcome welcome;
+    welcome.set_devices("No haptic device was found: the mouse is the hand.");
+    welcome.show();
+    auto* area = welcome.findChild<QScrollArea*>();
+    ASSERT_NE(area, nullptr);
+    for (const QSize& size : {QSize(900, 700), QSize(500, 560), QSize(300, 240)}) {
+        welcome.resize(size);
+        QApplication::processEvents();
+        const QWidget& page = *area->widget();
+        EXPECT_LE(page.width(), area->viewport()->width());
+        EXPECT_EQ(area->verticalScrollBar()->maximum(),
+                  std::max(0, page.height() - area->viewport()->height()));
+        for (const QWidget* part : page.findChildren<QWidget*>()) {
+            if (!part->isVisible()) continue;
+            const QRect at(part->mapTo(&page, QPoint()), part->size());
+            EXPECT_TRUE(page.rect().contains(at)) << size.width();
+            const int needed = part->hasHeightForWidth() ? part->heightForWidth(part->width())
+                                                         : part->minimumSizeHint().height();
+            EXPECT_GE(part->height(), needed) << part->objectName().toStdString();
+            EXPECT_GE(part->width(), part->minimumSizeHint().width());
+        }
+    }
+}
+
 TEST_F(Window, an_empty_window_welcomes_with_what_can_be_opened) {
     io::write_volume(run::load(run::source_named(large_sphere)).volume,
                      scratch_.path() / "ball.nrrd");
@@ -53,6 +82,12 @@ TEST_F(Window, an_empty_window_welcomes_with_what_can_be_opened) {
     auto& welcome = part<QWidget>("welcome");
     EXPECT_TRUE(welcome.isVisible());
     EXPECT_FALSE(window_->views().isVisible());
+    const auto expect_menus = [this](bool enabled) {
+        for (const char* name : {"measure", "cut", "layout"}) {
+            EXPECT_EQ(window_->findChild<QMenu*>(name)->menuAction()->isEnabled(), enabled) << name;
+        }
+    };
+    expect_menus(false);
     wait_until([&] { return part<QLabel>("welcome_devices").text().contains("mouse"); });
     save("welcome");
     QPushButton* recent = nullptr;
@@ -64,6 +99,7 @@ TEST_F(Window, an_empty_window_welcomes_with_what_can_be_opened) {
     wait_until([&] { return window_->live() && window_->settled(); });
     EXPECT_FALSE(welcome.isVisible());
     EXPECT_TRUE(window_->views().isVisible());
+    expect_menus(true);
 }
 
 TEST_F(Window, the_sample_volume_is_a_click_away) {

@@ -16,12 +16,10 @@
 #include <QTableWidget>
 #include <QToolButton>
 
-#include "apps/viewer/panel/number_box.hpp"
-#include "apps/viewer/window/help.hpp"
-#include "apps/viewer/window/language.hpp"
+#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/window/open_dialogs.hpp"
 #include "apps/viewer/window/preferences.hpp"
-#include "apps/viewer/window/raw_dialog.hpp"
-#include "apps/viewer/window/series_dialog.hpp"
+#include "apps/viewer/window/welcome.hpp"
 #include "palpate/io/sample_volume.hpp"
 #include "viewer/window/window_fixture.hpp"
 
@@ -205,6 +203,20 @@ TEST_F(German, no_page_of_the_panel_is_cut_off_whatever_is_unfolded) {
         wait_until_settled();
         const auto& page = dynamic_cast<const QScrollArea&>(*tabs.widget(i));
         EXPECT_LE(page.widget()->minimumSizeHint().width(), page.viewport()->width()) << i;
+    }
+}
+
+TEST_F(German, a_new_layer_has_a_german_name) {
+    open_german();
+    feel_sample();
+    for (const char* name : {"Schicht 1", "Schicht 2"}) {
+        QTest::mouseClick(&part<QPushButton>("add_layer"), Qt::LeftButton);
+        wait_until_settled();
+        QStringList names;
+        for (const palpate::Layer& layer : window_->live()->settings().layers->layers) {
+            names << QString::fromStdString(layer.name);
+        }
+        EXPECT_TRUE(names.contains(name)) << names.join(", ").toStdString();
     }
 }
 

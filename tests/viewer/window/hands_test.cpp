@@ -4,6 +4,7 @@
 #include <QLabel>
 
 #include "apps/viewer/model/hands.hpp"
+#include "apps/viewer/model/layer_set.hpp"
 #include "run/run_support.hpp"
 #include "viewer/window/window_fixture.hpp"
 
@@ -141,6 +142,33 @@ TEST_F(TwoHands, one_recording_has_both_and_is_played_with_both) {
     press(Qt::Key_Escape);
     wait_until([&] { return window_->live() != nullptr; });
     EXPECT_EQ(content().hands(), 2);
+}
+
+TEST_F(TwoHands, feel_their_own_layers_again_after_a_recording) {
+    feel_with_two();
+    const double level = content().effect().isovalue();
+    for (const int hand : {2, 1}) {
+        content().choose_hand(hand);
+        Layers layers = first_layer(level + 5 * hand, "of hand " + std::to_string(hand));
+        content().effect().request(
+            command::UseLayers{std::make_shared<const Layers>(std::move(layers))});
+    }
+    window_->recordings().start(scratch("layers.csv"));
+    for (const int hand : {1, 2}) {
+        wait_until([&] { return content().live(hand)->recording()->ticks(hand) > 100; });
+    }
+    window_->recordings().stop();
+    window_->files().open_path(scratch("layers.csv"));
+    wait_until([&] { return window_->playback() != nullptr; });
+    press(Qt::Key_N);
+    press(Qt::Key_Escape);
+    wait_until([&] { return window_->live() != nullptr; });
+    for (const int hand : {1, 2}) {
+        ASSERT_NE(settings_of(hand).layers, nullptr) << hand;
+        EXPECT_EQ(settings_of(hand).layers->layers[0].level, level + 5 * hand);
+        EXPECT_EQ(settings_of(hand).layers->layers[0].name,
+                  "of hand " + std::to_string(hand) + " 1");
+    }
 }
 
 TEST_F(TwoHands, a_hand_is_added_and_removed_at_any_time) {

@@ -11,8 +11,8 @@
 
 #include <fstream>
 
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
-#include "apps/viewer/panel/number_box.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "viewer/window/window_fixture.hpp"
 

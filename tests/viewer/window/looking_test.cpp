@@ -14,7 +14,7 @@
 
 #include <map>
 
-#include "apps/viewer/panel/number_box.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "palpate/io/sample_volume.hpp"
 #include "viewer/window/window_fixture.hpp"
 

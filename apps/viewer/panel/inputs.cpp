@@ -1,0 +1,229 @@
+// Number boxes, sliders, and requests that wait until the interval since the last one is over.
+#include "apps/viewer/panel/inputs.hpp"
+
+#include <QBoxLayout>
+#include <QEvent>
+#include <QSignalBlocker>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "apps/viewer/panel/layout.hpp"
+
+namespace palpate::viewer {
+
+RateLimiter::RateLimiter(QObject* parent, int interval) : QObject(parent), timer_(this) {
+    timer_.setSingleShot(true);
+    timer_.setInterval(interval);
+    timer_.setTimerType(Qt::PreciseTimer);
+    connect(&timer_, &QTimer::timeout, this, &RateLimiter::pass);
+}
+
+void RateLimiter::put(std::function<void()> request) {
+    waiting_ = std::move(request);
+    if (timer_.isActive()) return;
+    if (!since_.isValid() || since_.elapsed() >= timer_.interval()) {
+        pass();
+    } else {
+        timer_.start();
+    }
+}
+
+void RateLimiter::flush() {
+    if (waiting_) pass();
+}
+
+void RateLimiter::drop() {
+    timer_.stop();
+    waiting_ = nullptr;
+}
+
+void RateLimiter::pass() {
+    timer_.stop();
+    since_.start();
+    if (const auto request = std::exchange(waiting_, nullptr)) request();
+}
+
+namespace {
+
+class WheelFilter : public QObject {
+  public:
+    using QObject::QObject;
+    bool eventFilter(QObject* watched, QEvent* event) override {
+        if (event->type() != QEvent::Wheel) return false;
+        const auto* widget = qobject_cast<QWidget*>(watched);
+        if (!widget || widget->hasFocus()) return false;
+        event->ignore();  // goes on to the parent
+        return true;
+    }
+};
+
+}  // namespace
+
+void let_wheel_pass(QWidget& widget) {
+    widget.setFocusPolicy(Qt::StrongFocus);
+    widget.installEventFilter(new WheelFilter(&widget));
+}
+
+QString number_text(double value, int digits) {
+    if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+    return QString::number(value == 0 ? 0.0 : value, 'g', digits);
+}
+
+QString count_text(double whole) {
+    QString text = QString::number(whole, 'f', 0);
+    for (int at = text.size() - 3; at > 0; at -= 3) text.insert(at, QChar(0x202F));
+    return text;
+}
+
+std::optional<double> number_from(const QString& text) {
+    if (text == "inf" || text == "+inf") return std::numeric_limits<double>::infinity();
+    if (text == "-inf") return -std::numeric_limits<double>::infinity();
+    bool valid = false;
+    const double number = QLocale::c().toDouble(text, &valid);
+    return valid && std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
+NumberBox::NumberBox() {
+    const double most = std::numeric_limits<double>::infinity();
+    setRange(-most, most);
+    setDecimals(323);  // the most there are: none is rounded away
+    setKeyboardTracking(false);
+    let_wheel_pass(*this);
+    setCorrectionMode(QAbstractSpinBox::CorrectToPreviousValue);
+    setLocale(QLocale::c());
+}
+
+void NumberBox::show_value(double value) {
+    if (value == this->value() && cleanText() == textFromValue(value)) return;
+    const QSignalBlocker quiet(this);
+    setValue(value);
+}
+
+QString NumberBox::textFromValue(double value) const {
+    return number_text(value, 7);
+}
+
+QString NumberBox::bare(const QString& text) const {
+    QString number = text;
+    if (!suffix().isEmpty() && number.endsWith(suffix())) number.chop(suffix().size());
+    return number.trimmed();
+}
+
+double NumberBox::valueFromText(const QString& text) const {
+    const QString number = bare(text);
+    // The text may have fewer digits than the value, which focus alone must not change.
+    if (number == textFromValue(value())) return value();
+    return number_from(number).value_or(0);
+}
+
+QValidator::State NumberBox::validate(QString& text, int&) const {
+    const QString number = bare(text);
+    const std::optional<double> value = number_from(number);
+    if (value && (infinite_ || std::isfinite(*value))) return QValidator::Acceptable;
+    for (const QChar c : number) {
+        const bool letter = c == 'e' || c == 'E' || (infinite_ && QString("inf").contains(c));
+        if (!c.isDigit() && !letter && !QString("+-.").contains(c)) return QValidator::Invalid;
+    }
+    return QValidator::Intermediate;
+}
+
+void NumberBox::fixup(QString& text) const {
+    text = textFromValue(value()) + suffix();  // an incomplete number restores the old one
+}
+
+namespace {
+
+constexpr int slider_places = 1000;  // of the slider
+
+}  // namespace
+
+Quantity::Quantity(const QString& name, const QString& unit, double low, double high, double step,
+                   Scale scale)
+    : low_(low),
+      high_(high),
+      scale_(scale),
+      slider_(named(new QSlider(Qt::Horizontal), name + "_slider")),
+      box_(named(new NumberBox, name + "_box")),
+      limiter_(this) {
+    setObjectName(name);
+    slider_->setRange(0, slider_places);
+    slider_->setSingleStep(slider_places / 100);
+    slider_->setPageStep(slider_places / 10);
+    slider_->setMinimumWidth(3 * fontMetrics().height());
+    let_wheel_pass(*slider_);
+    box_->setSuffix(unit.isEmpty() ? QString() : " " + unit);
+    if (scale == Scale::factors) {
+        box_->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
+    } else {
+        box_->setSingleStep(step);
+    }
+    // All alike, so that they stand in a column; the longest unit is N s/mm.
+    box_->setMinimumWidth(fontMetrics().horizontalAdvance("0.00000 N s/mm") +
+                          2 * fontMetrics().height());
+    box_->setMaximumWidth(box_->minimumWidth());
+    row_in(this, {slider_, box_})->setStretch(0, 1);
+    setFocusProxy(box_);
+    connect(slider_, &QSlider::valueChanged, this, [this](int place) { ask(value_at(place)); });
+    connect(slider_, &QSlider::sliderReleased, &limiter_, &RateLimiter::flush);
+    connect(box_, qOverload<double>(&NumberBox::valueChanged), this, [this](double value) {
+        value_ = value;
+        place_slider();
+        limiter_.drop();
+        Q_EMIT wanted(value);
+    });
+    set_value(low);
+}
+
+void Quantity::set_accessible_name(const QString& name) {
+    slider_->setAccessibleName(name);
+    box_->setAccessibleName(name);
+}
+
+void Quantity::set_value(double value) {
+    value_ = value;
+    box_->show_value(value);
+    if (!slider_->isSliderDown()) place_slider();
+}
+
+void Quantity::set_ends(double low, double high) {
+    low_ = low;
+    high_ = std::max(low, high);
+    if (!slider_->isSliderDown()) place_slider();
+}
+
+/// Short numbers between the ends (of factors three digits), the ends themselves exactly.
+double Quantity::value_at(int place) const {
+    if (place <= 0) return low_;
+    if (place >= slider_places) return high_;
+    const double part = static_cast<double>(place) / slider_places;
+    const bool factors = scale_ == Scale::factors;
+    const double value =
+        factors ? low_ * std::pow(high_ / low_, part) : low_ + (high_ - low_) * part;
+    const double digits = factors ? 2 - std::floor(std::log10(value))
+                                  : std::ceil(std::log10(slider_places / (high_ - low_)));
+    const double scale = std::pow(10.0, digits);
+    const double rounded = std::round(value * scale) / scale;
+    return std::isfinite(rounded) ? std::clamp(rounded, low_, high_) : value;
+}
+
+void Quantity::place_slider() {
+    const QSignalBlocker quiet(slider_);
+    const double bounded = std::clamp(value_, low_, high_);
+    double part = 0;
+    if (high_ > low_) {
+        part = scale_ == Scale::factors ? std::log(bounded / low_) / std::log(high_ / low_)
+                                        : (bounded - low_) / (high_ - low_);
+    }
+    slider_->setValue(static_cast<int>(std::lround(slider_places * part)));
+}
+
+void Quantity::ask(double value) {
+    value_ = value;
+    box_->show_value(value);
+    limiter_.put([this, value] { Q_EMIT wanted(value); });
+}
+
+}  // namespace palpate::viewer

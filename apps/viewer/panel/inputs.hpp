@@ -1,0 +1,131 @@
+// Number boxes and sliders, and how fast their requests are passed on and shown.
+#pragma once
+
+#include <QDoubleSpinBox>
+#include <QElapsedTimer>
+#include <QObject>
+#include <QSlider>
+#include <QTimer>
+#include <QWidget>
+
+#include <functional>
+#include <optional>
+
+namespace palpate::viewer {
+
+/// The first request goes through at once; of those that follow within the interval the last goes
+/// through when the interval is over.
+class RateLimiter : public QObject {
+  public:
+    /// `interval` [ms]: about 60 a second.
+    explicit RateLimiter(QObject* parent, int interval = 16);
+
+    /// Calls `request` now or a little later, unless a newer one comes.
+    void put(std::function<void()> request);
+    /// Lets a waiting request through at once: the drag is over.
+    void flush();
+    void drop();
+
+  private:
+    void pass();
+
+    QTimer timer_;
+    QElapsedTimer since_;
+    std::function<void()> waiting_;
+};
+
+/// Snapshots come thirty times a second and a command takes effect within a tick: after a change up
+/// to three snapshots may still differ from it. A fourth means that it was not carried out.
+class AwaitedChange {
+  public:
+    void begin() { left_ = 3; }
+    void end() { left_ = 0; }
+    /// Whether to ignore a snapshot. `same`: it agrees with the control, so that nothing more is
+    /// awaited.
+    bool passes_over(bool same) {
+        if (same) left_ = 0;
+        return left_ > 0 && left_-- > 0;
+    }
+
+  private:
+    int left_ = 0;  // snapshots that may still differ
+};
+
+/// A number with as few digits as it needs, at most `digits`; "inf" and "-inf" are numbers.
+QString number_text(double value, int digits = 6);
+/// A whole number in groups of three, with narrow spaces: every language reads it alike.
+QString count_text(double whole);
+/// Nothing for a text that is no number.
+std::optional<double> number_from(const QString& text);
+
+/// Shows up to seven significant digits but keeps the whole value. A typed value counts at Enter or
+/// when the focus leaves. The wheel scrolls the panel unless the box has the focus, so that
+/// scrolling never changes a force. "inf" and "-inf" are numbers where `set_infinite(true)`.
+class NumberBox : public QDoubleSpinBox {
+    Q_OBJECT
+
+  public:
+    NumberBox();
+
+    /// Shows a value; emits nothing.
+    void show_value(double value);
+    void set_infinite(bool allowed) { infinite_ = allowed; }
+
+    QString textFromValue(double value) const override;
+    double valueFromText(const QString& text) const override;
+    QValidator::State validate(QString& text, int& position) const override;
+    void fixup(QString& text) const override;
+
+  private:
+    QString bare(const QString& text) const;
+
+    bool infinite_ = false;
+};
+
+/// Puts a filter on a widget that leaves the wheel to the scroll area unless it has the focus.
+void let_wheel_pass(QWidget& widget);
+
+/// The slider runs from `low` to `high`; the box takes any number; one that cannot be
+/// used is refused with the reason. Object names: NAME, NAME_slider, NAME_box.
+class Quantity : public QWidget {
+    Q_OBJECT
+
+  public:
+    /// A step of the slider is a constant amount (linear), or a constant factor for positive values
+    /// that range from small to large.
+    enum class Scale { amounts, factors };
+
+    /// `unit` stands behind the number; the box steps by `step`, or by a few percent where the
+    /// slider goes by factors.
+    Quantity(const QString& name, const QString& unit, double low, double high, double step,
+             Scale scale = Scale::amounts);
+
+    /// Shows a value; emits nothing.
+    void set_value(double value);
+    double value() const { return value_; }
+    /// The ends of the slider; the value stays.
+    void set_ends(double low, double high);
+    double low() const { return low_; }
+    double high() const { return high_; }
+    /// Forgets a request that waits.
+    void drop() { limiter_.drop(); }
+    NumberBox& box() { return *box_; }
+    void set_accessible_name(const QString& name);
+
+  Q_SIGNALS:
+    /// At most 60 a second while the slider moves. From the box any number may come.
+    void wanted(double value);
+
+  private:
+    void ask(double value);
+    double value_at(int place) const;
+    void place_slider();
+
+    double value_ = 0, low_, high_;
+    Scale scale_;
+    QSlider* slider_;
+    NumberBox* box_;
+    RateLimiter limiter_;
+};
+
+}  // namespace palpate::viewer

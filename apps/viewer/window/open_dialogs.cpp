@@ -1,0 +1,431 @@
+// Forms and a table, each with a preview or facts for the choice.
+#include "apps/viewer/window/open_dialogs.hpp"
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QDoubleSpinBox>
+#include <QFileInfo>
+#include <QFormLayout>
+#include <QHeaderView>
+#include <QLabel>
+#include <QLineEdit>
+#include <QPushButton>
+#include <QSlider>
+#include <QSpinBox>
+#include <QTableWidget>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "apps/options/exit_status.hpp"
+#include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/model/opening.hpp"
+#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/scene/threads.hpp"
+#include "apps/viewer/window/hints.hpp"
+
+namespace palpate::viewer {
+
+namespace {
+
+constexpr int picture_side = 280;  // pixels
+
+}  // namespace
+
+RawDialog::RawDialog(const QString& path, QWidget* parent)
+    : QDialog(parent),
+      path_(path),
+      size_{new QSpinBox, new QSpinBox, new QSpinBox},
+      spacing_{new QDoubleSpinBox, new QDoubleSpinBox, new QDoubleSpinBox},
+      type_(named(new QComboBox, "raw_type")),
+      order_(named(new QComboBox, "raw_order")),
+      skip_(named(new QSpinBox, "raw_skip")),
+      skip_rest_(named(new QPushButton(tr("Skip the rest")), "raw_skip_rest",
+                       tr("Takes the bytes that are left over for a header"))),
+      slice_(named(new QSlider(Qt::Horizontal), "raw_slice")),
+      picture_(named(new QLabel, "raw_picture")),
+      verdict_(named(new QLabel, "raw_verdict")) {
+    setObjectName("raw");
+    setWindowTitle(tr("Raw data: %1").arg(QFileInfo(path).fileName()));
+    make_fields();
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
+    accept_ = buttons->button(QDialogButtonBox::Open);
+    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    auto* form = new QFormLayout;
+    add_row(*form, tr("Samples"), row_of({size_[0], size_[1], size_[2]}),
+            tr("How many along x, which runs fastest, y and z"));
+    add_row(*form, tr("Sample type"), type_, tr("Of each sample in the file"));
+    add_row(*form, tr("Byte order"), order_, tr("Of samples of two or four bytes"));
+    add_row(*form, tr("Spacing [mm]"), row_of({spacing_[0], spacing_[1], spacing_[2]}),
+            tr("Between samples along x, y and z"));
+    add_row(*form, tr("Header [bytes]"), row_of({skip_, skip_rest_}),
+            tr("Skipped before the samples"));
+    form->addRow(verdict_);
+    auto* fields = new QWidget;
+    fields->setLayout(form);
+    column_in(this, {row_of({fields, make_preview()}), buttons})->setContentsMargins(9, 9, 9, 9);
+    judge();
+}
+
+void RawDialog::make_fields() {
+    const auto changed = [this] { judge(); };
+    const auto bytes = static_cast<std::uint64_t>(QFileInfo(path_).size());
+    const io::RawLayout guess = guessed_layout(path_.toStdString(), bytes);
+    const char* const axes[] = {"x", "y", "z"};
+    for (std::size_t a = 0; a < 3; ++a) {
+        size_[a]->setRange(1, 65535);
+        size_[a]->setValue(guess.size[int(a)]);
+        size_[a]->setObjectName(QString("size%1").arg(a));
+        size_[a]->setAccessibleName(tr("Samples along %1").arg(axes[a]));
+        spacing_[a]->setRange(1e-4, 1000);
+        spacing_[a]->setDecimals(4);
+        spacing_[a]->setValue(1);
+        spacing_[a]->setAccessibleName(tr("Spacing along %1").arg(axes[a]));
+        connect(size_[a], qOverload<int>(&QSpinBox::valueChanged), this, changed);
+    }
+    type_->addItems({"uint8", "int16", "uint16", "float32"});
+    type_->setCurrentText(QString::fromLatin1(name_of(guess.type).data()));
+    order_->addItems({tr("little-endian (PC)"), tr("big-endian")});
+    order_->setCurrentIndex(guess.big_endian ? 1 : 0);
+    skip_->setRange(0, std::numeric_limits<int>::max());
+    for (QComboBox* box : {type_, order_}) {
+        connect(box, qOverload<int>(&QComboBox::currentIndexChanged), this, changed);
+    }
+    connect(skip_, qOverload<int>(&QSpinBox::valueChanged), this, changed);
+    connect(skip_rest_, &QPushButton::clicked, this, [this] {
+        const double rest = double(QFileInfo(path_).size()) - bytes_of(layout_now());
+        skip_->setValue(static_cast<int>(skip_->value() + rest));
+    });
+    verdict_->setWordWrap(true);
+}
+
+QWidget* RawDialog::make_preview() {
+    picture_->setFixedSize(picture_side, picture_side);
+    picture_->setAlignment(Qt::AlignCenter);
+    picture_->setWordWrap(true);
+    picture_->setFrameShape(QFrame::StyledPanel);
+    slice_->setAccessibleName(tr("Slice of the preview"));
+    slice_->setRange(0, size_[2]->value() - 1);
+    slice_->setValue(size_[2]->value() / 2);
+    connect(slice_, &QSlider::valueChanged, this, &RawDialog::show_slice);
+    return column_of({picture_, slice_});
+}
+
+io::RawLayout RawDialog::layout_now() const {
+    io::RawLayout layout;
+    for (int a = 0; a < 3; ++a) {
+        layout.size[a] = size_.at(static_cast<std::size_t>(a))->value();
+        layout.spacing[a] = spacing_.at(static_cast<std::size_t>(a))->value();
+    }
+    layout.type = sample_type_from(type_->currentText().toStdString());
+    layout.skip = static_cast<std::uint64_t>(skip_->value());
+    layout.big_endian = order_->currentIndex() == 1;
+    return layout;
+}
+
+void RawDialog::judge() {
+    const io::RawLayout layout = layout_now();
+    const double bytes = bytes_of(layout);
+    const bool packed = path_.endsWith(".gz", Qt::CaseInsensitive);
+    const auto have = static_cast<double>(QFileInfo(path_).size());
+    order_->setEnabled(size_of(layout.type) > 1);
+    accept_->setEnabled(packed || bytes == have);
+    skip_rest_->setEnabled(!packed && bytes < have && have - bytes < skip_->maximum());
+    verdict_->setText(
+        packed ? tr("These samples take %1 bytes once unpacked.").arg(count_text(bytes))
+        : bytes == have
+            ? tr("These samples are just what the file holds.")
+            : (have > bytes ? tr("The file holds %1 bytes, %2 more than these samples take.")
+                            : tr("The file holds %1 bytes, %2 fewer than these samples take."))
+                  .arg(count_text(have), count_text(std::abs(have - bytes))));
+    if (slice_->maximum() != layout.size[2] - 1) {
+        slice_->setMaximum(layout.size[2] - 1);
+        slice_->setValue(layout.size[2] / 2);
+    }
+    show_slice();
+}
+
+void RawDialog::show_slice() {
+    const auto slice = raw_slice(path_.toStdString(), layout_now(), slice_->value());
+    if (!slice) return picture_->setText(tr("No preview"));
+    const QImage image(slice->grey.data(), slice->width, slice->height, slice->width,
+                       QImage::Format_Grayscale8);
+    picture_->setPixmap(QPixmap::fromImage(image.scaled(
+        picture_->contentsRect().size(), Qt::KeepAspectRatio, Qt::SmoothTransformation)));
+}
+
+run::FileSource RawDialog::layout_source() const {
+    const io::RawLayout layout = layout_now();
+    const bool given = layout.spacing != Vec3::Ones();
+    return {path_.toStdString(), layout, given ? std::optional(layout.spacing) : std::nullopt, {}};
+}
+
+namespace {
+
+constexpr int picture_size = 64;
+
+QStringList columns() {
+    return {"",
+            SeriesDialog::tr("Series"),
+            SeriesDialog::tr("Modality"),
+            SeriesDialog::tr("Slices"),
+            SeriesDialog::tr("Size"),
+            SeriesDialog::tr("Spacing [mm]"),
+            SeriesDialog::tr("Patient"),
+            SeriesDialog::tr("Study")};
+}
+
+QPixmap pixmap_of(const io::Thumbnail& picture) {
+    if (picture.grey.empty()) return {};
+    const QImage image(picture.grey.data(), picture.width, picture.height, picture.width,
+                       QImage::Format_Grayscale8);
+    return QPixmap::fromImage(
+        image.scaled(picture_size, picture_size, Qt::KeepAspectRatio, Qt::SmoothTransformation));
+}
+
+QStringList texts_of(const io::SeriesInfo& s) {
+    const auto text = [](const std::string& t) { return QString::fromStdString(t); };
+    QString name = s.description.empty() ? text(s.uid) : text(s.description);
+    if (!s.stack.empty()) name = SeriesDialog::tr("%1 (stack %2)").arg(name, text(s.stack));
+    QStringList spacing;
+    for (int a = 0; a < 3 && s.spacing[a] > 0; ++a)
+        spacing << QString::number(s.spacing[a], 'g', 4);
+    return {name,
+            text(s.modality),
+            QString::number(s.slices),
+            QString("%1 x %2").arg(s.size[0]).arg(s.size[1]),
+            spacing.join(" x "),
+            text(s.patient).replace('^', ' ').simplified(),
+            text(s.study)};
+}
+
+}  // namespace
+
+SeriesDialog::SeriesDialog(const QString& name, const std::vector<io::SeriesInfo>& series,
+                           QWidget* parent)
+    : QDialog(parent),
+      table_(named(new QTableWidget(static_cast<int>(series.size()), columns().size()), "series")) {
+    setObjectName("choose-series");
+    setWindowTitle(tr("Choose a series of %1").arg(name));
+    table_->setAccessibleName(tr("Series"));
+    table_->setHorizontalHeaderLabels(columns());
+    table_->setSelectionBehavior(QAbstractItemView::SelectRows);
+    table_->setSelectionMode(QAbstractItemView::SingleSelection);
+    table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    for (int row = 0; row < table_->rowCount(); ++row) {
+        const io::SeriesInfo& s = series[static_cast<std::size_t>(row)];
+        auto* picture = new QLabel;
+        picture->setPixmap(pixmap_of(s.picture));
+        picture->setAlignment(Qt::AlignCenter);
+        table_->setCellWidget(row, 0, picture);
+        const QStringList texts = texts_of(s);
+        for (int i = 0; i < texts.size(); ++i) {
+            auto* item = new QTableWidgetItem(texts[i]);
+            item->setToolTip(QString::fromStdString(s.uid));
+            table_->setItem(row, i + 1, item);
+        }
+        table_->setRowHeight(row, picture_size + 6);
+    }
+    table_->resizeColumnsToContents();
+    table_->setColumnWidth(0, picture_size + 10);
+    // The one with the most slices is most often what is looked for.
+    const auto most = std::ranges::max_element(series, {}, &io::SeriesInfo::slices);
+    table_->selectRow(static_cast<int>(most - series.begin()));
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
+    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    connect(table_, &QTableWidget::cellDoubleClicked, this, &QDialog::accept);
+    connect(table_, &QTableWidget::itemSelectionChanged, buttons,
+            [this, buttons] { buttons->button(QDialogButtonBox::Open)->setEnabled(chosen() > 0); });
+    auto* column = new QVBoxLayout(this);
+    column->addWidget(table_);
+    column->addWidget(buttons);
+    resize(900, 420);
+}
+
+int SeriesDialog::chosen() const {
+    const auto rows = table_->selectionModel()->selectedRows();
+    return rows.isEmpty() ? 0 : rows.front().row() + 1;
+}
+
+namespace {
+
+QString product(const Index3& size) {
+    return QString("%1 x %2 x %3").arg(size[0]).arg(size[1]).arg(size[2]);
+}
+
+QString product(const Vec3& spacing) {
+    const auto number = [](double mm) { return QString::number(mm, 'g', 4); };
+    return number(spacing[0]) + " x " + number(spacing[1]) + " x " + number(spacing[2]);
+}
+
+/// Of a request, while somebody waits before a dialog.
+constexpr int most_attempts = 2;
+constexpr double timeout_s = 5;
+
+}  // namespace
+
+/// Written by the thread that looks.
+struct StoreDialog::Found {
+    stream::StoreInfo info;
+    run::StoreSource source;
+    QString problem;
+};
+
+QString level_words(const stream::StoreInfo& info, int level) {
+    const Geometry& grid = info.levels[static_cast<std::size_t>(level)].geometry;
+    const double bytes = double(sample_count(grid)) * double(size_of(info.type));
+    return StoreDialog::tr("%1: %2 samples, every %3 %4, %5")
+        .arg(QString::number(level), product(grid.size), product(grid.spacing),
+             QString(unit_word(grid)), bytes_text(bytes));
+}
+
+StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time, QWidget* parent)
+    : QDialog(parent),
+      address_(named(new QLineEdit, "store_address")),
+      look_(named(new QPushButton(tr("Look it up")), "store_look",
+                  tr("Reads which levels, channels and times there are"))),
+      level_(named(new QComboBox, "store_level")),
+      channel_(named(new QComboBox, "store_channel")),
+      time_(named(new QSpinBox, "store_time")),
+      all_times_(named(new QCheckBox(tr("All, as a sequence")), "store_all_times",
+                       tr("Plays them; each is read whole at this level"))),
+      forbidden_(named(new QCheckBox(tr("Status 403 means: not stored")), "store_forbidden",
+                       tr("S3 answers so for missing pieces where the list is not public"))),
+      verdict_(named(new QLabel, "store_verdict")),
+      first_time_(time) {
+    setObjectName("store");
+    setWindowTitle(known ? tr("Level, channel and time") : tr("Open an address"));
+    auto* form = new QFormLayout;
+    address_->setPlaceholderText("https://…/image.zarr");
+    address_->setMinimumWidth(60 * fontMetrics().averageCharWidth());
+    add_row(*form, tr("Address"), row_of({address_, look_}, 0),
+            tr("http, https or s3, or the folder or file of a volume that is read in parts"));
+    add_row(*form, tr("Level"), level_,
+            tr("The level of detail that is felt, and the finest that is seen; 0 is the finest"));
+    add_row(*form, tr("Channel"), channel_, tr("Of an image with several"));
+    add_row(*form, tr("Time"), row_of({time_, all_times_}, 0),
+            tr("The moment of an image with several, from 0"));
+    add_row(*form, tr("Missing pieces"), forbidden_,
+            tr("What a server answers for pieces that hold only the fill value"));
+    form->addRow(verdict_);
+    verdict_->setWordWrap(true);
+    verdict_->setTextFormat(Qt::PlainText);
+    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
+    accept_ = buttons->button(QDialogButtonBox::Open);
+    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    auto* fields = new QWidget;
+    fields->setLayout(form);
+    column_in(this, {fields, buttons})->setContentsMargins(9, 9, 9, 9);
+    connect(all_times_, &QCheckBox::toggled, time_, &QWidget::setDisabled);
+    connect(look_, &QPushButton::clicked, this, &StoreDialog::look);
+    connect(address_, &QLineEdit::returnPressed, this, &StoreDialog::look);
+    // Return in the line looks; it must not open what was found at another address.
+    for (auto* button : findChildren<QPushButton*>()) button->setAutoDefault(false);
+    connect(address_, &QLineEdit::textEdited, this, [this] {
+        worker_.cancel();
+        looking_ = found_ = nullptr;
+        show_found();
+    });
+    if (known) {
+        known_ = *known;
+        first_level_ = known->loader.level;
+        first_channel_ = known->options.channel;
+        all_times_->setChecked(known->all_times);
+        forbidden_->setChecked(known->options.forbidden_is_missing);
+        address_->setText(QString::fromStdString(known->address));
+        address_->setReadOnly(true);
+        look();
+    }
+    show_found();
+}
+
+StoreDialog::~StoreDialog() = default;
+
+void StoreDialog::look() {
+    const std::string address = address_->text().trimmed().toStdString();
+    if (address.empty()) return;
+    const auto found = std::make_shared<Found>();
+    found->source = known_;
+    looking_ = found;
+    found_.reset();
+    show_found();
+    verdict_->setText(tr("Looking …"));
+    worker_.start(
+        [found, address, is_known = address == known_.address](const io::Progress& progress) {
+            try {
+                if (!is_known) {
+                    // As a session keeps names: "level" says that it is a store.
+                    const run::Source source =
+                        run::source_from({{"volume", address}, {"level", "0"}});
+                    found->source = std::get<run::StoreSource>(source.from);
+                }
+                stream::StoreOptions options = found->source.options;
+                options.attempts = most_attempts;
+                options.timeout_s = timeout_s;
+                found->info = stream::open_store(address, options, progress)->info();
+            } catch (const std::exception& e) {
+                found->problem = QString::fromStdString(app::failure_of(e).text);
+            }
+        },
+        [this, found] { hand_over(this, [this, found] { take(found); }); });
+}
+
+/// Unless another address was asked for since.
+void StoreDialog::take(const std::shared_ptr<Found>& found) {
+    if (found != looking_ || !worker_.ended()) return;
+    if (found->problem.isEmpty()) found_ = found;
+    show_found();
+    if (!found->problem.isEmpty()) verdict_->setText(found->problem);
+}
+
+void StoreDialog::show_found() {
+    const bool good = found_ != nullptr;
+    level_->clear();
+    channel_->clear();
+    verdict_->clear();
+    for (QWidget* field : std::initializer_list<QWidget*>{level_, channel_, time_, all_times_}) {
+        field->setEnabled(good);
+    }
+    accept_->setEnabled(good);
+    if (!good) return;
+    const stream::StoreInfo& info = found_->info;
+    for (int i = 0; i < static_cast<int>(info.levels.size()); ++i) {
+        level_->addItem(level_words(info, i));
+    }
+    level_->setCurrentIndex(std::min(first_level_, level_->count() - 1));
+    for (std::size_t i = 0; i < info.channels.size(); ++i) {
+        const QString name = QString::fromStdString(info.channels[i]);
+        channel_->addItem(name.isEmpty() ? QString::number(i) : QString("%1: %2").arg(i).arg(name));
+    }
+    channel_->setCurrentIndex(std::min(first_channel_, channel_->count() - 1));
+    channel_->setEnabled(channel_->count() > 1);
+    time_->setRange(0, std::max(0, info.times - 1));
+    time_->setValue(first_time_);
+    all_times_->setEnabled(info.times > 1);
+    time_->setEnabled(info.times > 1 && !all_times_->isChecked());
+    verdict_->setText(QString::fromStdString(info.format));
+    accept_->setFocus();
+}
+
+run::Source StoreDialog::source() const {
+    run::StoreSource store = found_ ? found_->source : known_;
+    store.loader.level = std::max(0, level_->currentIndex());
+    store.options.channel = std::max(0, channel_->currentIndex());
+    store.options.forbidden_is_missing = forbidden_->isChecked();
+    store.all_times = time_->maximum() > 0 && all_times_->isChecked();
+    // They are for what is read as it is felt.
+    if (store.all_times) store.loader.whole_process = store.loader.coarse_first = false;
+    run::Source source;
+    source.from = std::move(store);
+    if (time_->maximum() > 0 && !store.all_times) source.frame = time_->value();
+    return source;
+}
+
+}  // namespace palpate::viewer

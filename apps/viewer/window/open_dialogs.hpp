@@ -1,0 +1,110 @@
+// Dialogs that ask what to open: how a raw file lies, which DICOM series, and which address, level
+// of detail, channel and time.
+#pragma once
+
+#include <QDialog>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/viewer/model/worker.hpp"
+#include "palpate/io/series.hpp"
+#include "palpate/run/source.hpp"
+
+class QComboBox;
+class QDoubleSpinBox;
+class QLabel;
+class QPushButton;
+class QSlider;
+class QSpinBox;
+class QTableWidget;
+class QCheckBox;
+class QComboBox;
+class QLabel;
+class QLineEdit;
+class QPushButton;
+class QSpinBox;
+
+namespace palpate::viewer {
+
+/// Begins with what the file's name and length suggest. Shows at every change a slice, and whether
+/// the file has just the bytes that are needed; else it cannot be accepted.
+class RawDialog : public QDialog {
+    Q_OBJECT
+
+  public:
+    explicit RawDialog(const QString& path, QWidget* parent = nullptr);
+    /// The file with the layout that is chosen.
+    run::FileSource layout_source() const;
+
+  private:
+    void make_fields();
+    QWidget* make_preview();
+    io::RawLayout layout_now() const;
+    void judge();
+    void show_slice();
+
+    QString path_;
+    std::array<QSpinBox*, 3> size_;
+    std::array<QDoubleSpinBox*, 3> spacing_;
+    QComboBox *type_, *order_;
+    QSpinBox* skip_;
+    QPushButton* skip_rest_;
+    QSlider* slice_;
+    QLabel *picture_, *verdict_;
+    QPushButton* accept_;
+};
+
+/// A dialog that asks which of the DICOM series of a file or folder to open.
+class SeriesDialog : public QDialog {
+    Q_OBJECT
+
+  public:
+    SeriesDialog(const QString& name, const std::vector<io::SeriesInfo>& series,
+                 QWidget* parent = nullptr);
+    /// From 1.
+    int chosen() const;
+
+  private:
+    QTableWidget* table_;
+};
+
+/// What an address has is looked up in the background once it was typed; only then can the dialog
+/// be accepted.
+class StoreDialog : public QDialog {
+    Q_OBJECT
+
+  public:
+    /// Without a source: asks for the address, too.
+    explicit StoreDialog(const std::optional<run::StoreSource>& known, int time = 0,
+                         QWidget* parent = nullptr);
+    /// Stops what is looked up.
+    ~StoreDialog() override;
+    run::Source source() const;
+
+  private:
+    struct Found;
+
+    void look();
+    void take(const std::shared_ptr<Found>& found);
+    void show_found();
+
+    QLineEdit* address_;
+    QPushButton* look_;
+    QComboBox *level_, *channel_;
+    QSpinBox* time_;
+    QCheckBox *all_times_, *forbidden_;
+    QLabel* verdict_;
+    QPushButton* accept_;
+    int first_level_ = 0, first_channel_ = 0, first_time_ = 0;  // as they are felt now
+    run::StoreSource known_;
+    std::shared_ptr<Found> looking_, found_;  // asked last; what can be opened
+    NewestWorker worker_;                     // that looks
+};
+
+/// "0: 512 x 512 x 234, every 1 x 1 x 2 mm, 61 MB".
+QString level_words(const stream::StoreInfo& info, int level);
+
+}  // namespace palpate::viewer
