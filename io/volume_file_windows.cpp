@@ -21,7 +21,7 @@ struct Reading {
 thread_local Reading reading;
 
 Result read_with_header(const std::filesystem::path& path, const Request& request) {
-    const bool is_nifti = extension_of(path).starts_with(".nii");
+    const bool is_nifti = header_reader(path) == &nifti_header;
     if (header_reader(path) && !is_nifti) return read_by_header(request);
     throw Failure(
         "Palpate for Windows reads NRRD, MetaImage and raw volumes; convert it to one of them, for "

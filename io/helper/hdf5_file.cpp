@@ -189,7 +189,11 @@ ImageArray Hdf5File::array(const std::string& path) const {
         throw Failure(named(path) + " has not three axes; it is no volume");
     }
     const auto stored = stored_of(type);
-    if (!stored) throw Failure(named(path) + " has samples that are no usual integers or floats");
+    if (!stored) {
+        throw Failure(named(path) +
+                      " has samples that are no usual integers or floats; store them as "
+                      "integers, float32 or float64");
+    }
     ImageArray array;
     array.id = path;
     array.stored = *stored;

@@ -152,7 +152,6 @@ std::vector<std::filesystem::path> data_files(const std::string& name, const Hea
         for (std::string line; std::getline(in, line);) {
             if (!trimmed(line).empty()) add(trimmed(line));
         }
-        if (files.empty()) throw Failure("its list of data files is empty; correct the header");
     } else if (const auto pattern = pattern_in(name)) {
         const auto [before, after, width, fill, first, last, step] = *pattern;
         for (int i = first; step > 0 ? i <= last : i >= last; i += step) {
@@ -163,6 +162,7 @@ std::vector<std::filesystem::path> data_files(const std::string& name, const Hea
     } else {
         add(name);
     }
+    if (files.empty()) throw Failure("its list of data files is empty; correct the header");
     return files;
 }
 

@@ -288,6 +288,17 @@ def test_the_slices_of_a_header_may_be_in_several_files(tmp_path, form, packed, 
     refused(path, "4 data files for 5 slices")
 
 
+@pytest.mark.parametrize("names, words", (("%d.raw 5 1 1", "is empty"), ("%d.raw 1 5 0", "make no sense"), ("LIST\n\n", "is empty"),
+                                          ("%d.raw 0 99999999 1", "more than 65536"), ("%d.raw 1 5 -1", "is empty"),
+                                          ("%d.raw 1 5000000000 1", "cannot be read"), ("%1000000000d.raw 1 5 1", "cannot be read")))
+def test_lists_of_data_files_that_make_no_sense_are_refused(tmp_path, names, words):
+    head = "NRRD0004\ntype: short\ndimension: 3\nsizes: 6 4 5\nendian: little\nencoding: raw\ndata file: "
+    (tmp_path / "a.nhdr").write_text(head + names)
+    (tmp_path / "a.mhd").write_text(f"NDims = 3\nDimSize = 6 4 5\nElementType = MET_SHORT\nElementDataFile = {names}")
+    refused(tmp_path / "a.nhdr", words)
+    refused(tmp_path / "a.mhd", words)
+
+
 # nibabel 1004, vtk-dicom 96: pairs of files, of NIfTI and of the format before it, which does not place the body.
 @pytest.mark.parametrize("packed", ("", ".gz"))
 @pytest.mark.parametrize("order", "<>")
