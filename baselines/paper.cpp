@@ -66,31 +66,25 @@ bool step_constrained(Site& site, Progress& progress) {
 
 ProxyUpdate update_paper(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings, StepObserver observer) {
-    const Vec3 target = index_from_physical(field.geometry(), hip);
-    const bool is_linear = field.interpolation() == Interpolation::linear;
-    if (!is_linear || !accepts(proxy.isovalue, field, target))
-        return refuse_update(proxy, field, hip);
-    Update<Site> update(proxy, field, target, settings, observer);
-    Site& site = update.site;
-    Progress& progress = update.progress;
-    if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
-    const double tolerance = field.tolerance();
-    bool constrained = proxy.mode == Mode::constrained && site.excess() >= -tolerance;
-    while (progress.budget > 0) {
-        if (!constrained) {
-            // The walk crosses into the right tetrahedron by itself.
-            const WalkEnd end = walk(site, progress.folded_to_target(site), progress);
-            progress.report(StepKind::free_move, site);
-            if (end == WalkEnd::target) return finish_update(proxy, update, hip, Rest::at_target);
-            constrained = true;
-            continue;
+    if (field.interpolation() != Interpolation::linear) return refuse_update(proxy, field, hip);
+    const auto descend = [&](Site& site, Progress& progress) {
+        const double tolerance = field.tolerance();
+        bool constrained = proxy.mode == Mode::constrained && site.excess() >= -tolerance;
+        while (progress.budget > 0) {
+            if (!constrained) {
+                // The walk crosses into the right tetrahedron by itself.
+                const WalkEnd end = walk(site, progress.folded_to_target(site), progress);
+                progress.report(StepKind::free_move, site);
+                if (end == WalkEnd::target) return Rest::at_target;
+                constrained = true;
+                continue;
+            }
+            if (!step_constrained(site, progress)) return Rest::on_surface;
+            if (site.excess() < -tolerance) constrained = false;
         }
-        if (!step_constrained(site, progress)) {
-            return finish_update(proxy, update, hip, Rest::on_surface);
-        }
-        if (site.excess() < -tolerance) constrained = false;
-    }
-    return finish_update(proxy, update, hip, Rest::out_of_budget);
+        return Rest::out_of_budget;
+    };
+    return update_by<Site>(proxy, field, hip, settings, observer, descend);
 }
 
 }  // namespace palpate::baselines

@@ -75,36 +75,19 @@ double certified_part(const Bernstein& bernstein, double tolerance) {
 }
 
 CubicSite::CubicSite(const Field& f, double level, double s, const LatticePoint& at)
-    : field(f),
-      isovalue(f.within_reach(level)),
-      sign(s),
-      point(at),
-      range(cubic::scale * f.range()) {}
+    : BoundPoint{f, f.within_reach(level), s, at}, range(cubic::scale * f.range()) {}
 
 CubicSite::CubicSite(const Proxy& proxy, const Field& f, const LatticePoint& at)
-    : field(f),
-      isovalue(f.within_reach(proxy.isovalue - f.offset())),
-      sign(f.sign()),
-      point(at),
+    : BoundPoint{f, f.within_reach(proxy.isovalue - f.offset()), f.sign(), at},
       range(cubic::scale * f.range()),
       kept(proxy.kept) {
-    if (proxy.behind) {
-        behind = f.within_reach(*proxy.behind - f.offset());
-        thickness = cubic::scale * std::max(0.0, sign * (isovalue - behind));
-        if (proxy.turned) exchange_levels();
-    }
+    bound_by(proxy, cubic::scale);
     made = kept.isovalue == isovalue && kept.sign == sign &&
            same_frame(kept.tetrahedron, at.tetrahedron) &&
            visit_cube([&](const auto* centre, auto row, auto slice) {
                return Kept::are(proxy.kept_samples, centre, row, slice);
            });
     if (!made || is_layer() || kept.most == std::numeric_limits<double>::infinity()) look_at_cube();
-}
-
-void CubicSite::exchange_levels() {
-    std::swap(isovalue, behind);
-    sign = -sign;
-    turned = !turned;
 }
 
 void CubicSite::turn() {
@@ -253,13 +236,10 @@ double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
 }
 
 /// On the smooth field, for a point.
-struct CubicCourse {
-    Progress& progress;
+struct CubicCourse : PointCourse {
     double level;
     bool outside;  // the point's cube is background, and so are those round it
 
-    bool spend() { return progress.budget-- > 0; }
-    bool is_enough(double left) const { return left < progress.least_left; }
     double skip(const CubicSite& site, const Vec3& direction, double left) {
         outside = outside && is_outside(site);
         if (!outside) return 0;
@@ -270,12 +250,11 @@ struct CubicCourse {
     }
     std::optional<double> advance(CubicSite& site, const Exit& exit, const Vec3& direction) {
         const Vec3 step = exit.t * direction;
-        const unsigned walls = exit.wall == no_wall ? 0 : 1U << exit.wall;
         double t = 1;
         if (site.reaches(level) || site.reaches_behind()) {
-            t = site.advance_inlined(step, level, walls);
+            t = site.advance_inlined(step, level, exit.walls());
         } else {
-            site.jump(step, walls);
+            site.jump(step, exit.walls());
         }
         progress.tetrahedra += t * exit.t > 0;
         if (t < 1) return t * exit.t;
@@ -299,7 +278,7 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
     }
     // Where something reaches the level there is more than background.
     const bool outside = !site.reaches(level) && CubicCourse::is_outside(site);
-    return walk_straight(site, displacement, CubicCourse{progress, level, outside}).end;
+    return walk_straight(site, displacement, CubicCourse{{progress}, level, outside}).end;
 }
 
 }  // namespace palpate

@@ -13,20 +13,12 @@ namespace palpate {
 /// A lattice point of the smooth field with the cubic of its tetrahedron. Its excess, sign * (f -
 /// isovalue) times cubic::scale, is computed from differences to the isovalue, so it has all its
 /// digits however far the data lie from zero.
-struct CubicSite {
+struct CubicSite : BoundPoint {
     CubicSite(const Field& f, double level, double s, const LatticePoint& at);
     /// The proxy, at a point, with what its last update kept.
     CubicSite(const Proxy& proxy, const Field& f, const LatticePoint& at);
 
-    const Field& field;
-    double isovalue;
-    double sign;
-    LatticePoint point;
-    double range;  // of the field, scaled like the excess
-    // A layer, as a Site has it; the thickness is scaled like the excess.
-    double behind = 0;
-    double thickness = std::numeric_limits<double>::infinity();
-    bool turned = false;
+    double range;    // of the field, scaled like the excess
     int frame = 0;   // another number for each tetrahedron that it comes to
     KeptPiece kept;  // its `most` is that of the point's cube; its piece may be another's
 
@@ -56,7 +48,6 @@ struct CubicSite {
     /// False if nothing in the cube lies above the level.
     bool reaches(double at) const { return kept.most > at; }
     bool reaches_behind() const { return room < -level(); }
-    bool is_layer() const { return thickness < std::numeric_limits<double>::infinity(); }
     void turn();
     CubicSite at(const Vec3& index) const { return {field, isovalue, sign, located(index)}; }
     CubicSite turned_at(const Vec3& index) const {
@@ -90,7 +81,6 @@ struct CubicSite {
     friend struct CubicCourse;
     /// advance(), for the one caller that spends its time there.
     double advance_inlined(const Vec3& step, double level, unsigned walls);
-    void exchange_levels();
     template <class Visit>
     auto visit_cube(Visit&& visit) {
         return field.visit_around(point.tetrahedron.cell, visit, gathered);

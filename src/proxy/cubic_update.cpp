@@ -231,7 +231,10 @@ class CubicDescent {
         const WalkEnd end = walk(site_, to_target, site_.level(), progress_);
         progress_.report(StepKind::free_move, site_);
         if (end != WalkEnd::target) return End::moved;
-        if (progress_.target == hip_) return End::at_target;
+        if (progress_.target == hip_) {
+            proxy_.sliding = false;
+            return End::at_target;
+        }
         // Friction moved the target back to a point in free space, where there is no friction.
         set_target(hip_);
         friction_pending_ = true;
@@ -362,13 +365,10 @@ class CubicDescent {
 
 ProxyUpdate update_cubic(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings, StepObserver observer) {
-    const Vec3 target = index_from_physical(field.geometry(), hip);
-    if (!accepts(proxy.isovalue, field, target)) return refuse_update(proxy, field, hip);
-    Update<CubicSite> update(proxy, field, target, settings, observer);
-    if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
-    const Rest rest = CubicDescent(update.site, update.progress, settings, proxy).run();
-    if (rest == Rest::at_target) proxy.sliding = false;
-    return finish_update(proxy, update, hip, rest);
+    return update_by<CubicSite>(proxy, field, hip, settings, observer,
+                                [&](CubicSite& site, Progress& progress) {
+                                    return CubicDescent(site, progress, settings, proxy).run();
+                                });
 }
 
 }  // namespace palpate

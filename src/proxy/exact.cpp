@@ -77,7 +77,10 @@ Rest descend(Site& site, Progress& progress, const ProxySettings& settings, Prox
             const WalkEnd end = walk(site, move.step, progress);
             progress.report(StepKind::free_move, site);
             if (end != WalkEnd::target) continue;
-            if (progress.target == hip) return Rest::at_target;
+            if (progress.target == hip) {
+                proxy.sliding = false;
+                return Rest::at_target;
+            }
             // Friction moved the target back to a point in free space, where there is no friction.
             progress.target = hip;
             friction_pending = true;
@@ -112,13 +115,9 @@ ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
     if (field.interpolation() == Interpolation::cubic) {
         return update_cubic(proxy, field, hip, settings, observer);
     }
-    const Vec3 target = index_from_physical(field.geometry(), hip);
-    if (!accepts(proxy.isovalue, field, target)) return refuse_update(proxy, field, hip);
-    Update<Site> update(proxy, field, target, settings, observer);
-    if (update.recovering) return finish_update(proxy, update, hip, Rest::recovering);
-    const Rest rest = descend(update.site, update.progress, settings, proxy);
-    if (rest == Rest::at_target) proxy.sliding = false;
-    return finish_update(proxy, update, hip, rest);
+    return update_by<Site>(
+        proxy, field, hip, settings, observer,
+        [&](Site& site, Progress& progress) { return descend(site, progress, settings, proxy); });
 }
 
 }  // namespace palpate

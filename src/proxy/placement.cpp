@@ -1,5 +1,4 @@
 // Placing a proxy away from the servo thread, and straight rays that meet the surface.
-#include <algorithm>
 #include <optional>
 
 #include "proxy/update.hpp"
@@ -64,19 +63,9 @@ std::optional<Segment> near_grid(const Geometry& geometry, const Segment& whole)
     constexpr double margin = 4;  // [voxels] beyond which no sample counts
     const Vec3 way = whole.to - whole.from;
     if (!way.allFinite()) return std::nullopt;
-    double enters = 0, leaves = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double low = -margin - whole.from[axis];
-        const double high = geometry.size[axis] + margin - whole.from[axis];
-        if (way[axis] == 0) {
-            if (low > 0 || high < 0) return std::nullopt;
-            continue;
-        }
-        enters = std::max(enters, std::min(low / way[axis], high / way[axis]));
-        leaves = std::min(leaves, std::max(low / way[axis], high / way[axis]));
-    }
-    if (enters > leaves) return std::nullopt;
-    return Segment{whole.from + enters * way, whole.from + leaves * way};
+    const Stay near = stay_in_box(whole.from, way, 1, -margin, geometry.size, margin);
+    if (near.enter > near.leave) return std::nullopt;
+    return Segment{whole.from + near.enter * way, whole.from + near.leave * way};
 }
 
 }  // namespace

@@ -18,11 +18,7 @@ void Progress::report_to_observer(StepKind kind, const Vec3& index, const Tetrah
 namespace {
 
 /// On the linear field, where the surface is met at a quotient.
-struct LinearCourse {
-    Progress& progress;
-
-    bool spend() { return progress.budget-- > 0; }
-    bool is_enough(double left) const { return left < progress.least_left; }
+struct LinearCourse : PointCourse {
     double skip(const Site& site, const Vec3& direction, double left) {
         if (!site.field.is_background(site.point.tetrahedron.cell)) return 0;
         const double t =
@@ -44,8 +40,7 @@ struct LinearCourse {
             return hit;
         }
         progress.tetrahedra += exit.t > 0;
-        const unsigned walls = exit.wall == no_wall ? 0 : 1U << exit.wall;
-        site.point.folded = snap(site.point.folded + exit.t * direction, walls);
+        site.point.folded = snap(site.point.folded + exit.t * direction, exit.walls());
         return std::nullopt;
     }
     void crossed(Site& site, unsigned wall) {
@@ -57,7 +52,7 @@ struct LinearCourse {
 }  // namespace
 
 WalkEnd walk(Site& site, const Vec3& displacement, Progress& progress) {
-    return walk_straight(site, displacement, LinearCourse{progress}).end;
+    return walk_straight(site, displacement, LinearCourse{{progress}}).end;
 }
 
 bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Progress& progress) {
@@ -74,10 +69,9 @@ bool slide(Site& site, const Vec3& step, unsigned on, unsigned walls, Progress& 
             return false;
         }
     }
-    const unsigned met = exit.wall == no_wall ? 0U : 1U << exit.wall;
-    site.point.folded = snap(from + exit.t * step, walls | met);
+    site.point.folded = snap(from + exit.t * step, walls | exit.walls());
     progress.tetrahedra += exit.t > 0;
-    return met == 0;
+    return exit.wall == no_wall;
 }
 
 }  // namespace palpate

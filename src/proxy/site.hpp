@@ -13,48 +13,52 @@
 
 namespace palpate {
 
-/// A lattice point with the samples of its cell and the linear field of its tetrahedron, both less
-/// the field's offset, like the isovalue. Its excess, sign * (f - isovalue), is > 0 in the solid.
-/// Of a layer (Proxy::behind) the excess stays above -thickness; a site that is turned looks at it
-/// from the other side.
-struct Site {
-    Site(const Field& f, double level, double s, const LatticePoint& at)
-        : field(f),
-          isovalue(level),
-          sign(s),
-          point(at),
-          samples(f.cell(at.tetrahedron.cell)),
-          piece(piece_of(at.tetrahedron, samples)) {}
-
+/// What sites of both fields have: a lattice point, and the levels that bound it, less the field's
+/// offset. The excess, sign * (f - isovalue), is > 0 in the solid. Of a layer (Proxy::behind) it
+/// stays above -thickness; a site that is turned looks at it from the other side.
+struct BoundPoint {
     const Field& field;
     double isovalue;
     double sign;
     LatticePoint point;
-    CellSamples samples;
-    LinearPiece piece;
     double behind = 0;
-    double thickness = std::numeric_limits<double>::infinity();
+    double thickness = std::numeric_limits<double>::infinity();  // in the excess's units
     bool turned = false;
 
-    /// The proxy, at a point, and what an update keeps of it for the next one: nothing.
-    static Site of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
-        Site site{f, proxy.isovalue - f.offset(), f.sign(), at};
-        if (proxy.behind) site.bound(*proxy.behind - f.offset(), proxy.turned);
-        return site;
-    }
-    /// Keeps the site on the solid side of a second level, towards which it may be turned.
-    void bound(double level, bool turn_to_it) {
-        isovalue = field.within_reach(isovalue);
-        behind = field.within_reach(level);
-        thickness = std::max(0.0, sign * (isovalue - behind));
-        if (turn_to_it) turn();
-    }
     bool is_layer() const { return thickness < std::numeric_limits<double>::infinity(); }
-    void turn() {
+    /// Keeps the point on the solid side of a proxy's second level, towards which it may be turned.
+    void bound_by(const Proxy& proxy, double scale) {
+        if (!proxy.behind) return;
+        isovalue = field.within_reach(isovalue);
+        behind = field.within_reach(*proxy.behind - field.offset());
+        thickness = scale * std::max(0.0, sign * (isovalue - behind));
+        if (proxy.turned) exchange_levels();
+    }
+    void exchange_levels() {
         std::swap(isovalue, behind);
         sign = -sign;
         turned = !turned;
     }
+};
+
+/// One with the samples of its cell and the linear field of its tetrahedron, both less the field's
+/// offset.
+struct Site : BoundPoint {
+    Site(const Field& f, double level, double s, const LatticePoint& at)
+        : BoundPoint{f, level, s, at},
+          samples(f.cell(at.tetrahedron.cell)),
+          piece(piece_of(at.tetrahedron, samples)) {}
+
+    CellSamples samples;
+    LinearPiece piece;
+
+    /// The proxy, at a point, and what an update keeps of it for the next one: nothing.
+    static Site of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
+        Site site{f, proxy.isovalue - f.offset(), f.sign(), at};
+        site.bound_by(proxy, 1);
+        return site;
+    }
+    void turn() { exchange_levels(); }
     void keep(Proxy&) const {}
 
     static LatticePoint located(const Vec3& index) { return locate(index); }
@@ -184,6 +188,14 @@ void for_each_incident(const LatticePoint& point, Visit&& visit) {
         t = across(t, next);
     }
 }
+
+/// What walks of a point have in common on both fields.
+struct PointCourse {
+    Progress& progress;
+
+    bool spend() { return progress.budget-- > 0; }
+    bool is_enough(double left) const { return left < progress.least_left; }
+};
 
 /// Walks straight along `displacement` (folded, voxel) through as many tetrahedra as needed,
 /// until its end or until the excess field would rise above zero.

@@ -15,6 +15,9 @@ inline constexpr unsigned no_wall = wall_count;
 struct Exit {
     double t;
     unsigned wall;
+
+    /// As a mask.
+    unsigned walls() const { return wall == no_wall ? 0 : 1U << wall; }
 };
 inline Exit first_exit(const Vec3& folded, const Vec3& direction, double farthest,
                        unsigned without) {
@@ -29,27 +32,36 @@ inline Exit first_exit(const Vec3& folded, const Vec3& direction, double farthes
     return exit;
 }
 
-/// From deep in the background: how much of the motion [0, left] from a point (index space)
-/// certainly stays outside the box from `before` to `size` + `behind` on every axis, which has to
-/// be half a voxel larger than what is not background. This avoids walking through empty space cell
-/// by cell.
-inline double stretch_outside(const Vec3& from, const Vec3& displacement, double left,
-                              double before, const Index3& size, double behind) {
-    double enter = 0;
-    double leave = left;
+/// Which part of the motion [0, left] from a point (index space) is in the box from `before` to
+/// `size` + `behind` on every axis; enter > leave: none.
+struct Stay {
+    double enter, leave;
+};
+inline Stay stay_in_box(const Vec3& from, const Vec3& displacement, double left, double before,
+                        const Index3& size, double behind) {
+    Stay stay{0, left};
     for (int a = 0; a < 3; ++a) {
         const double low = before - from[a];
         const double high = size[a] + behind - from[a];
         if (displacement[a] == 0) {
-            if (low > 0 || high < 0) return left;
+            if (low > 0 || high < 0) return {1, 0};
             continue;
         }
         const double t0 = low / displacement[a];
         const double t1 = high / displacement[a];
-        enter = std::max(enter, std::min(t0, t1));
-        leave = std::min(leave, std::max(t0, t1));
+        stay.enter = std::max(stay.enter, std::min(t0, t1));
+        stay.leave = std::min(stay.leave, std::max(t0, t1));
     }
-    return enter < leave ? enter : left;
+    return stay;
+}
+
+/// From deep in the background: how much of the motion certainly stays outside that box, which has
+/// to be half a voxel larger than what is not background. This avoids walking through empty space
+/// cell by cell.
+inline double stretch_outside(const Vec3& from, const Vec3& displacement, double left,
+                              double before, const Index3& size, double behind) {
+    const Stay stay = stay_in_box(from, displacement, left, before, size, behind);
+    return stay.enter < stay.leave ? stay.enter : left;
 }
 
 enum class WalkEnd { target, surface, out_of_budget };

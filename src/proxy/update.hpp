@@ -75,6 +75,19 @@ enum class Rest { at_target, on_surface, out_of_budget, recovering };
 template <class AnySite>
 ProxyUpdate finish_update(Proxy& proxy, Update<AnySite>& update, const Vec3& hip, Rest rest);
 
+/// An update: bad input is refused, the proxy placed and brought out of the solid, and then
+/// own(site, progress) is the method's own part and returns how it ended.
+template <class AnySite, class Own>
+[[gnu::always_inline]] inline ProxyUpdate update_by(Proxy& proxy, const Field& field,
+                                                    const Vec3& hip, const ProxySettings& settings,
+                                                    StepObserver observer, Own&& own) {
+    const Vec3 target = index_from_physical(field.geometry(), hip);
+    if (!accepts(proxy.isovalue, field, target)) return refuse_update(proxy, field, hip);
+    Update<AnySite> update(proxy, field, target, settings, observer);
+    const Rest rest = update.recovering ? Rest::recovering : own(update.site, update.progress);
+    return finish_update(proxy, update, hip, rest);
+}
+
 /// Brings the site out of the solid: steepest descent of the excess field from tetrahedron to
 /// tetrahedron until it is zero; where that gets stuck, to the nearest free point along 26
 /// directions. True when out. `reach` [voxel] is how far the directions were searched so far; it is

@@ -136,12 +136,11 @@ struct Around::Course {
         return around.empty_part(at, direction, left);
     }
     std::optional<double> advance(CubicSite& at, const Exit& exit, const Vec3& direction) {
-        const unsigned walls = exit.wall == no_wall ? 0 : 1U << exit.wall;
         if (!at.reaches(level)) {
-            at.jump(exit.t * direction, walls);
+            at.jump(exit.t * direction, exit.walls());
             return std::nullopt;
         }
-        const double t = at.advance(exit.t * direction, level, walls);
+        const double t = at.advance(exit.t * direction, level, exit.walls());
         if (t < 1) return t * exit.t;
         return std::nullopt;
     }
