@@ -158,7 +158,7 @@ def test_the_level_is_the_suggested_one_a_number_or_a_percentage(tmp_path, monke
         return lambda trial: 1
 
     monkeypatch.setattr(trials, "touching", touching)
-    assert trials.main(("run", BALL[0] + given, str(tmp_path / "x.csv"), *BALL[2:], "--differences", "0.5", "--repeats", "1")) == 0
+    assert trials.main((BALL[0] + given, str(tmp_path / "x.csv"), *BALL[2:], "--differences", "0.5", "--repeats", "1")) == 0
     assert made == [(BALL[0], level)]
 
 
