@@ -44,7 +44,7 @@ Mat3 axes_facing(Facing facing) {
 }  // namespace
 
 const char* name_of(DeviceStatus status) {
-    return text_of(status);
+    return enum_name(status);
 }
 
 DeviceTransform fit_workspace(const Geometry& geometry, const DeviceInfo& device, Facing facing) {

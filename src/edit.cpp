@@ -275,7 +275,7 @@ void check_sweep(const edit::Sweep& sweep, const Geometry& geometry) {
 }  // namespace
 
 std::string_view name_of(BrushKind kind) {
-    return text_of(kind);
+    return enum_name(kind);
 }
 
 BrushKind brush_kind_from(std::string_view name) {

@@ -20,7 +20,7 @@ constexpr double most_ranges_from_zero = 1 << 19;
 }  // namespace
 
 std::string_view name_of(Interpolation interpolation) {
-    return text_of(interpolation);
+    return enum_name(interpolation);
 }
 
 Interpolation interpolation_from(std::string_view name) {

@@ -51,7 +51,7 @@ std::size_t size_of(SampleType type) {
 }
 
 std::string_view name_of(SampleType type) {
-    return text_of(type);
+    return enum_name(type);
 }
 
 SampleType sample_type_from(std::string_view name) {

@@ -70,7 +70,7 @@ void RunOptions::add_device_options(CLI::App& command) {
             "--facing", [this](const std::string& name) { given.facing = named<Facing>(name); },
             "Side of the body that faces you")
         ->check(one_of(all_names<Facing>()))
-        ->default_str(text_of(given.facing));
+        ->default_str(enum_name(given.facing));
     command.add_option_function<std::string>(
         "--clutch",
         [this](const std::string& text) { given.clutch = button_from("--clutch", text); },

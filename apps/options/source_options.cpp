@@ -169,7 +169,7 @@ void add_side_options(CLI::App& command, run::FieldSetup& field) {
             "--solid", [&field](const std::string& text) { field.solid = named<Solid>(text); },
             "Which side of the level is solid")
         ->check(one_of(all_names<Solid>()))
-        ->default_str(text_of(field.solid));
+        ->default_str(enum_name(field.solid));
     command
         .add_option_function<std::string>(
             "--field",

@@ -19,6 +19,13 @@
 
 namespace palpate::python {
 
+/// What work() returns.
+template <class Work>
+auto without_gil(Work&& work) {
+    const py::gil_scoped_release unlocked;
+    return work();
+}
+
 /// The name of a file, as os.fsdecode() gives it.
 inline py::str text_of_path(const std::string& name) {
     return py::reinterpret_steal<py::str>(
@@ -39,7 +46,7 @@ struct type_caster<E> {
         return true;
     }
     static handle cast(E from, return_value_policy, handle) {
-        return str(palpate::text_of(from)).release();
+        return str(palpate::enum_name(from)).release();
     }
 };
 

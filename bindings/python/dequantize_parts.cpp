@@ -14,11 +14,9 @@ namespace {
 
 py::tuple sites_of(const Volume& part, const Index3& low, const Index3& whole,
                    const Index3& core_low, const Index3& core_high, int step) {
-    std::vector<filters::SurfaceSite> sites;
-    {
-        const py::gil_scoped_release unlocked;
-        sites = filters::sites_of({part, low, whole}, {core_low, core_high - Index3::Ones()}, step);
-    }
+    const auto sites = without_gil([&] {
+        return filters::sites_of({part, low, whole}, {core_low, core_high - Index3::Ones()}, step);
+    });
     return py::make_tuple(
         column(sites, [](const filters::SurfaceSite& s) -> Vec3 { return s.at.cast<double>(); }),
         column(sites, [](const filters::SurfaceSite& s) { return s.slope; }),
@@ -94,12 +92,7 @@ void bind_dequantize_parts(py::module_& module) {
                                       {}};
             }));
     module.def("_values_of", [](const Volume& part) {
-        std::vector<double> values;
-        {
-            const py::gil_scoped_release unlocked;
-            values = filters::values_of(part);
-        }
-        return array_from(std::move(values));
+        return array_from(without_gil([&] { return filters::values_of(part); }));
     });
     module.def("_level_of", [](const std::vector<double>& values, bool whole_numbers) {
         return filters::level_of(values, whole_numbers);

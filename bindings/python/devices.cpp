@@ -10,11 +10,7 @@ namespace palpate::python {
 namespace {
 
 std::vector<py::dict> found_devices() {
-    std::vector<devices::DeviceFinding> findings;
-    {
-        const py::gil_scoped_release unlocked;
-        findings = devices::find_devices();
-    }
+    const auto findings = without_gil([&] { return devices::find_devices(); });
     std::vector<py::dict> list;
     for (const devices::DeviceFinding& f : findings) {
         list.push_back(py::dict(py::arg("name") = f.name, py::arg("found") = f.found,

@@ -30,15 +30,10 @@ py::dict explore(const Subject& subject, evaluation::ExploringHand hand, const W
                          static_cast<std::size_t>(ticks * (wanted ? attempts : 1)),
                          updates_in_slice);
     const auto alive = [&] { slices.done(); };
-    evaluation::TunedHand tuned;
-    {
-        const py::gil_scoped_release unlocked;
-        if (wanted) {
-            tuned = evaluation::tuned_hand(subject, hand, {wanted->first, wanted->second}, alive);
-        } else {
-            tuned = {evaluation::explore(subject, hand, alive), {}, hand};
-        }
-    }
+    const auto tuned = without_gil([&]() -> evaluation::TunedHand {
+        if (!wanted) return {evaluation::explore(subject, hand, alive), {}, hand};
+        return evaluation::tuned_hand(subject, hand, {wanted->first, wanted->second}, alive);
+    });
     std::vector<Vec3> hips;
     std::vector<std::int64_t> first;
     for (const evaluation::Trajectory& one : tuned.trajectories) {
@@ -94,12 +89,10 @@ py::dict explicit_surface(const Field& field, double isovalue, const Doubles& st
     if (from.size() != to.size()) throw std::invalid_argument("as many starts as ends are needed");
     std::vector<evaluation::Segment> segments(from.size());
     for (std::size_t i = 0; i < segments.size(); ++i) segments[i] = {from[i], to[i]};
-    evaluation::ExplicitAnswer answer;
-    {
-        const py::gil_scoped_release unlocked;
-        answer = evaluation::explicit_surface({"", field, isovalue}, segments, repeats,
-                                              progress_of(progress));
-    }
+    auto answer = without_gil([&] {
+        return evaluation::explicit_surface({"", field, isovalue}, segments, repeats,
+                                            progress_of(progress));
+    });
     if (!answer.failure.empty()) throw std::runtime_error(answer.failure);
     const evaluation::ExplicitCost& cost = answer.cost;
     using py::arg;
@@ -127,10 +120,8 @@ void bind_explicit_surface(py::module_& module) {
 py::dict streaming_stroke(double latency, double failures, double speed, bool coarse_first,
                           double seconds, double rate, std::uint64_t memory, std::uint64_t seed,
                           const ProgressFunction& progress) {
-    evaluation::StrokeResult felt;
-    {
-        const py::gil_scoped_release unlocked;
-        felt = evaluation::feel({.network = {latency, failures},
+    const auto felt = without_gil([&] {
+        return evaluation::feel({.network = {latency, failures},
                                  .speed = speed,
                                  .coarse_first = coarse_first,
                                  .seconds = seconds,
@@ -138,7 +129,7 @@ py::dict streaming_stroke(double latency, double failures, double speed, bool co
                                  .memory = memory,
                                  .seed = seed},
                                 progress_of(progress));
-    }
+    });
     using py::arg;
     return py::dict(arg("ticks") = felt.ticks, arg("touching") = felt.touching,
                     arg("waiting") = felt.waiting, arg("coarse") = felt.coarse,

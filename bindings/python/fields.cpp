@@ -156,8 +156,8 @@ void bind_fields(py::module_& module) {
             }))
         .def("__repr__", [](const Field& f) {
             return py::str("Field({!r}, solid={!r}, background={:g}, interpolation={!r})")
-                .format(py::cast(f.volume()), text_of(f.solid()), f.background(),
-                        text_of(f.interpolation()));
+                .format(py::cast(f.volume()), enum_name(f.solid()), f.background(),
+                        enum_name(f.interpolation()));
         });
 }
 

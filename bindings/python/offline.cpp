@@ -141,11 +141,8 @@ py::dict replay(const Field& field, const io::Level& isovalue, const Doubles& ti
     if (path) sinks.corner = [&](std::int64_t tick, const Vec3& at) { corners.add(tick, at); };
     if (poses) sinks.pose = [&](std::int64_t tick, const Pose& pose) { ways.add(tick, pose); };
     sinks.progress = progress_of(progress);
-    run::OfflineSummary summary;
-    {
-        const py::gil_scoped_release unlocked;
-        summary = run::render_offline(renderer, trajectory, sinks);
-    }
+    const auto summary =
+        without_gil([&] { return run::render_offline(renderer, trajectory, sinks); });
     py::dict table = columns_of(rows);
     table["summary"] = dict_of(summary);
     if (renderer.settings.layers) {

@@ -274,12 +274,9 @@ py::array_t<double> update_times(const Field& field, const io::Level& level, con
     const std::vector<std::size_t> begins = begins_of(firsts, points.size());
     ReportedItems slices(progress_of(progress), points.size() / std::max<std::size_t>(1, batch),
                          updates_in_slice);
-    std::vector<double> times;
-    {
-        const py::gil_scoped_release unlocked;
-        times = times_of(way, points, begins, {batch, cold}, slices);
-    }
-    return array_from(std::move(times));
+    return array_from(without_gil([&] {
+        return times_of(way, points, begins, {batch, cold}, slices);
+    }));
 }
 
 /// What the process has from the heap [bytes].

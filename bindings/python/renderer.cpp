@@ -177,7 +177,7 @@ void bind_tick(py::module_& module) {
     add("punctured", "Surfaces that gave way in this tick.", &T::layers, &L::punctured);
     result.def("__repr__", [](const T& t) {
         return py::str("Tick(time={:g}, mode={!r}, scp={}, force={})")
-            .format(t.time, text_of(t.proxy.mode), py::cast(t.proxy.scp), py::cast(t.force));
+            .format(t.time, enum_name(t.proxy.mode), py::cast(t.proxy.scp), py::cast(t.force));
     });
 }
 

@@ -23,11 +23,8 @@ std::pair<py::array_t<double>, py::array_t<double>> motion(const std::string& na
                                                            const io::Level& level,
                                                            const scenes::MotionSettings& settings) {
     const double isovalue = io::level_in(field.volume(), level);
-    std::vector<scenes::HandSample> samples;
-    {
-        const py::gil_scoped_release unlocked;
-        samples = scenes::make_motion(name, field, isovalue, settings, ctrl_c());
-    }
+    const auto samples =
+        without_gil([&] { return scenes::make_motion(name, field, isovalue, settings, ctrl_c()); });
     return {column(samples, [](const scenes::HandSample& s) { return s.t; }),
             column(samples, [](const scenes::HandSample& s) { return s.position; })};
 }

@@ -59,7 +59,7 @@ void bind_store(py::module_& module) {
             "format", [](const OpenStore& s) { return s.info().format; },
             "For people: 'OME-Zarr 0.5', 'NRRD', 'raw'.")
         .def_property_readonly(
-            "type", [](const OpenStore& s) { return std::string(name_of(s.info().type)); },
+            "type", [](const OpenStore& s) { return s.info().type; },
             "'uint8', 'int16', 'uint16' or 'float32'.")
         .def_property_readonly(
             "levels",

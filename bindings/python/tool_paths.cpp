@@ -62,13 +62,11 @@ py::dict follow_tool(const Field& field, const io::Level& level, std::shared_ptr
     if (Proxy proxy; !place(proxy, field, hands.position.front(), isovalue)) {
         throw std::invalid_argument("all of space is solid at this isovalue");
     }
-    ToolPath path;
     ReportedItems slices(progress_of(progress), hands.time.size(), batches_in_slice);
-    {
-        const py::gil_scoped_release unlocked;
-        path =
-            (method == "exact" ? exact_path : penalty_path)(field, isovalue, tool, hands, slices);
-    }
+    const ToolPath path = without_gil([&] {
+        return (method == "exact" ? exact_path : penalty_path)(field, isovalue, tool, hands,
+                                                               slices);
+    });
     const auto of = [&](const auto& value) { return column(path.updates, value); };
     using Update = ToolUpdate;
     return py::dict(

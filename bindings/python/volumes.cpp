@@ -83,9 +83,7 @@ void bind_volumes(py::module_& module) {
             "understands nibabel and zarr.")
         .def_property_readonly("geometry", &Volume::geometry, "A copy of its Geometry.",
                                py::return_value_policy::copy)
-        .def_property_readonly(
-            "type", [](const Volume& v) { return std::string(name_of(v.type())); },
-            "'uint8', 'int16', 'uint16' or 'float32'.")
+        .def_property_readonly("type", &Volume::type, "'uint8', 'int16', 'uint16' or 'float32'.")
         .def_property_readonly("minimum", &Volume::minimum, "Least sample [data units].")
         .def_property_readonly("maximum", &Volume::maximum, "Greatest sample [data units].")
         .def_property_readonly("nbytes", &Volume::bytes, "Bytes of the samples.")

@@ -40,8 +40,8 @@ template <class E>
 concept HasNames = !std::same_as<decltype(names_of<E>), const std::nullptr_t>;
 
 template <>
-inline constexpr auto names_of<SampleType> =
-    enum_names("sample type", "uint8", "int16", "uint16", "float32");
+inline constexpr auto names_of<SampleType> = enum_names("sample type", "uint8", "int16", "uint16",
+                                                        "float32");
 template <>
 inline constexpr auto names_of<Solid> = enum_names("solid side", "above", "below");
 template <>
@@ -51,23 +51,25 @@ inline constexpr auto names_of<BrushKind> = enum_names("brush", "carve", "add", 
 template <>
 inline constexpr auto names_of<Mode> = enum_names("mode", "free", "constrained");
 template <>
-inline constexpr auto names_of<UpdateStatus> = enum_names(
-    "status", "done", "out_of_budget", "recovering", "refused", "not_finite", "waiting");
+inline constexpr auto names_of<UpdateStatus> = enum_names("status", "done", "out_of_budget",
+                                                          "recovering", "refused", "not_finite",
+                                                          "waiting");
 template <>
-inline constexpr auto names_of<HapticProperty> =
-    enum_names("haptic property", "stiffness", "static_friction", "dynamic_friction", "damping",
-               "viscosity", "puncture_force", "drag");
+inline constexpr auto names_of<HapticProperty> = enum_names("haptic property", "stiffness",
+                                                            "static_friction", "dynamic_friction",
+                                                            "damping", "viscosity",
+                                                            "puncture_force", "drag");
 template <>
-inline constexpr auto names_of<DeviceStatus> =
-    enum_names("device status", "starting", "ready", "uncalibrated", "stale", "lost", "fault",
-               "finished");
+inline constexpr auto names_of<DeviceStatus> = enum_names("device status", "starting", "ready",
+                                                          "uncalibrated", "stale", "lost", "fault",
+                                                          "finished");
 template <>
-inline constexpr auto names_of<Facing> =
-    enum_names("facing", "anterior", "posterior", "left", "right", "superior", "inferior");
+inline constexpr auto names_of<Facing> = enum_names("facing", "anterior", "posterior", "left",
+                                                    "right", "superior", "inferior");
 
 /// The name of a value, or "unknown" for a number that is none.
 template <HasNames E>
-constexpr const char* text_of(E value) {
+constexpr const char* enum_name(E value) {
     const auto number = static_cast<std::size_t>(value);
     return number < names_of<E>.names.size() ? names_of<E>.names[number] : "unknown";
 }

@@ -56,7 +56,7 @@ Json json_of_one(const RecordingHead& head) {
                       {"size", {head.volume.size[0], head.volume.size[1], head.volume.size[2]}},
                       {"type", name_of(head.volume.type)},
                       {"crc32", head.volume.crc32}};
-    json["solid"] = palpate::text_of(head.solid);
+    json["solid"] = enum_name(head.solid);
     json["field"] = name_of(head.interpolation);
     json["background"] = number_to_json(head.background);
     json["isovalue"] = number_to_json(head.isovalue);

@@ -28,7 +28,7 @@ Json json_of(const Pose& pose) {
 Json json_of(const Brush& brush) {
     return {{"kind", name_of(brush.kind)}, {"radius", brush.radius},
             {"hardness", brush.hardness},  {"strength", brush.strength},
-            {"level", brush.level},        {"solid", text_of(brush.solid)},
+            {"level", brush.level},        {"solid", enum_name(brush.solid)},
             {"value", brush.value}};
 }
 

@@ -193,6 +193,7 @@ def test_a_person_at_the_keys_touches_answers_and_is_analysed(tmp_path):
     # A hand far from the head feels nothing and is asked again, until the keys end.
     (tmp_path / "air.csv").write_text("t,x,y,z\n0,0,0,500\n9,0,0,500\n")
     air = start(run[0], "r.csv", *run[2:], "--device", f"simulated:file={tmp_path / 'air.csv'}", keys="\n")
+    assert air.stderr.endswith("palpate: standard input ended before an answer\n")
     assert air.returncode == 2 and air.stderr.count("touch 2") == 2 and read(tmp_path / "r.csv") == []
     stiff = start(run[0], "s.csv", "--standard", "2", "--device", "simulated:touch,jitter=no,hand=press", "--seconds", "0.2", keys="1\n")
     assert stiff.returncode == 2 and "stiffness [N/mm] = 4: must be at most 3.6" in stiff.stderr and "touch 1" not in stiff.stderr

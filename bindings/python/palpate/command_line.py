@@ -177,6 +177,6 @@ def run(work: Callable[[], Any], interrupted: str = "interrupted") -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at its end
         return 141
     except (Error, ValueError, OSError, RuntimeError, EOFError) as error:
-        tell(error)
+        tell("standard input ended before an answer" if isinstance(error, EOFError) else error)
         return next((status for kind, status in STATUS if isinstance(error, kind)), 2)
     return 0
