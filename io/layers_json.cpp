@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "io/json_members.hpp"
-#include "palpate/enum_names.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::io {
 namespace {

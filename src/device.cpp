@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "palpate/enum_names.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "edit/before.hpp"
 #include "edit/reach.hpp"
-#include "palpate/enum_names.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate {
 namespace {

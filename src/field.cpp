@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "palpate/enum_names.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "palpate/enum_names.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate {
 namespace {

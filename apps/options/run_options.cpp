@@ -9,8 +9,8 @@
 #include "apps/options/values.hpp"
 #include "io/system/number.hpp"
 #include "palpate/devices/devices.hpp"
-#include "palpate/enum_names.hpp"
 #include "palpate/io/written_formats.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::app {
 namespace {

@@ -9,9 +9,9 @@
 #include "apps/options/no_effect.hpp"
 #include "apps/options/say.hpp"
 #include "apps/options/values.hpp"
-#include "palpate/enum_names.hpp"
 #include "palpate/filters/dequantize.hpp"
 #include "palpate/io/address.hpp"
+#include "palpate/names.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/scenes/volumes.hpp"
 

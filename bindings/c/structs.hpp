@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bindings/c/status.hpp"
-#include "palpate/enum_names.hpp"
+#include "palpate/names.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/run/setup.hpp"
 

@@ -13,9 +13,9 @@
 #include "bindings/python/numbers.hpp"
 #include "palpate/device.hpp"
 #include "palpate/edit.hpp"
-#include "palpate/enum_names.hpp"
 #include "palpate/io/level.hpp"
 #include "palpate/layers.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::python {
 

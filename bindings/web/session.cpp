@@ -13,7 +13,7 @@
 #include "devices/haply/haply.hpp"
 #include "devices/simulated/simulated.hpp"
 #include "io/recording/samples_json.hpp"
-#include "palpate/enum_names.hpp"
+#include "palpate/names.hpp"
 #include "palpate/settings.hpp"
 
 namespace palpate::web {

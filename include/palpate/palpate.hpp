@@ -14,7 +14,6 @@
 // The order is the flow of data, not the alphabet.
 // clang-format off
 #include "palpate/names.hpp"
-#include "palpate/enum_names.hpp"
 #include "palpate/progress.hpp"
 #include "palpate/volume.hpp"
 #include "palpate/tool.hpp"

@@ -7,7 +7,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "palpate/enum_names.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::io {
 namespace {

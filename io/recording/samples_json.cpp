@@ -8,7 +8,7 @@
 #include <string>
 
 #include "io/json_members.hpp"
-#include "palpate/enum_names.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::io {
 namespace {
