@@ -25,7 +25,8 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
 
 /// Why a document is not parsed; empty: it is.
 std::string flaw_in(std::string_view text, bool with_comments) {
-    int depth = 0, lists = 0;
+    int depth = 0;
+    std::size_t bytes = 0;
     for (std::size_t at = 0; at < text.size();) {
         const char c = text[at];
         const std::size_t after = with_comments ? end_of_comment(text, at) : at;
@@ -33,16 +34,14 @@ std::string flaw_in(std::string_view text, bool with_comments) {
             at = after;
             continue;
         }
-        if (c == '[' || c == '{') {
-            ++depth;
-            ++lists;
-        }
-        if (c == ']' || c == '}') --depth;
+        const bool opens = c == '[' || c == '{';
+        depth += opens ? 1 : c == ']' || c == '}' ? -1 : 0;
+        bytes += opens ? 128 : c == '"' ? 64 : c == ',' ? 32 : 0;
         if (depth > deepest_json) {
             return "it is nested more than " + std::to_string(deepest_json) + " levels deep";
         }
-        if (lists > most_json_lists) {
-            return "it has more than " + std::to_string(most_json_lists) + " lists and objects";
+        if (bytes > most_json_bytes) {
+            return "its values take more than " + std::to_string(most_json_bytes >> 20) + " MiB";
         }
         at = c == '"' ? end_of_string(text, at) : at + 1;
     }

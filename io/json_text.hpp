@@ -10,10 +10,11 @@ namespace palpate::io {
 /// What a document may be nested at most. Walks through JSON are recursive: deeper ones overflow
 /// the stack.
 inline constexpr int deepest_json = 64;
-/// Lists and objects, each of which takes some 130 bytes, "[]" as well.
-inline constexpr int most_json_lists = 1 << 19;
+/// What its values may take in memory, roughly: 128 bytes for a list or object, also for "[]", 64
+/// for a string, and 32 for each value but the first.
+inline constexpr std::size_t most_json_bytes = std::size_t{64} << 20;
 
-/// Throws nlohmann::json::exception for what is no JSON, nested deeper, or has more lists.
+/// Throws nlohmann::json::exception for what is no JSON, nested deeper, or larger.
 /// `with_comments`: as in C++ they are left out.
 nlohmann::json parsed_json(std::string_view text, bool with_comments = false);
 

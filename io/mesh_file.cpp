@@ -22,17 +22,34 @@ static_assert(std::endian::native == std::endian::little, "the binary writers co
 
 constexpr const char* made_by = "isosurface by Palpate, millimetres, LPS";
 
+/// The file, and how much of it is written. Progress counts the bytes of a PLY; others differ
+/// little.
+struct MeshOutput {
+    MeshOutput(const std::filesystem::path& path, const SurfaceMesh& mesh, OnProgress progress)
+        : file(path),
+          written(std::move(progress),
+                  24 * (mesh.vertices.size() + mesh.normals.size()) + 13 * mesh.triangles.size(),
+                  std::size_t{1} << 20) {}
+    void write(std::string_view bytes) {
+        file.write(bytes);
+        written.done(bytes.size());
+    }
+
+    PendingFile file;
+    ReportedItems written;
+};
+
 template <class T>
-void put(PendingFile& file, const T& value) {
+void put(MeshOutput& file, const T& value) {
     static_assert(std::is_arithmetic_v<T>);
     file.write({reinterpret_cast<const char*>(&value), sizeof value});
 }
 
-void put(PendingFile& file, const Vec3& v) {
+void put(MeshOutput& file, const Vec3& v) {
     for (int a = 0; a < 3; ++a) put(file, v[a]);
 }
 
-void write_ply(const SurfaceMesh& mesh, PendingFile& file) {
+void write_ply(const SurfaceMesh& mesh, MeshOutput& file) {
     file.write("ply\nformat binary_little_endian 1.0\ncomment " + std::string(made_by) +
                "\nelement vertex " + std::to_string(mesh.vertices.size()) +
                "\nproperty double x\nproperty double y\nproperty double z\n" +
@@ -51,11 +68,11 @@ void write_ply(const SurfaceMesh& mesh, PendingFile& file) {
     }
 }
 
-void put_stl_vector(PendingFile& file, const Vec3& v) {
+void put_stl_vector(MeshOutput& file, const Vec3& v) {
     for (int a = 0; a < 3; ++a) put(file, static_cast<float>(v[a]));
 }
 
-void write_stl(const SurfaceMesh& mesh, PendingFile& file) {
+void write_stl(const SurfaceMesh& mesh, MeshOutput& file) {
     if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max()) {
         throw OutputError("an STL file holds 4294967295 triangles, this isosurface has " +
                           std::to_string(mesh.triangles.size()) + ": write a PLY or VTP");
@@ -76,7 +93,7 @@ void write_stl(const SurfaceMesh& mesh, PendingFile& file) {
     }
 }
 
-void write_obj(const SurfaceMesh& mesh, PendingFile& file) {
+void write_obj(const SurfaceMesh& mesh, MeshOutput& file) {
     file.write("# " + std::string(made_by) + "\n");
     std::string line;
     const auto write_vectors = [&](const char* what, const std::vector<Vec3>& vectors) {
@@ -116,7 +133,7 @@ std::string vtp_array(const std::string& type, const std::string& attributes, st
 }
 
 template <class Id>
-void write_vtp(const SurfaceMesh& mesh, PendingFile& file) {
+void write_vtp(const SurfaceMesh& mesh, MeshOutput& file) {
     const std::string id = sizeof(Id) == 4 ? "Int32" : "Int64";
     const std::uint64_t corners = 3 * std::uint64_t{mesh.triangles.size()};
     const std::uint64_t vertex_bytes = mesh.vertices.size() * 3 * sizeof(double);
@@ -198,13 +215,15 @@ bool names_a_mesh(const std::filesystem::path& path) {
     return format_of(path).has_value();
 }
 
-void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path) {
-    write_mesh(mesh, path, mesh_format_from(path));
+void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path,
+                const OnProgress& progress) {
+    write_mesh(mesh, path, mesh_format_from(path), progress);
 }
 
-void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path, MeshFormat format) {
+void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path, MeshFormat format,
+                const OnProgress& progress) {
     check_vertices(mesh, format);
-    PendingFile file(path);
+    MeshOutput file(path, mesh, progress);
     switch (format) {
         case MeshFormat::ply:
             write_ply(mesh, file);
@@ -223,7 +242,7 @@ void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path, Mesh
             break;
         }
     }
-    file.commit();
+    file.file.commit();
 }
 
 }  // namespace palpate::io

@@ -42,7 +42,9 @@ SurfaceMesh read_mesh(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(path)) {
         throw InputError(path.string() + ": is a folder; give a mesh file");
     }
-    const nlohmann::json request = {{"caller", getpid()}, {"memory", machine_memory()}};
+    const nlohmann::json request = {
+        {"caller", getpid()},
+        {"own_memory", std::min(machine_memory(), own_memory(bytes_in(path), 64))}};
     return asked_of_helper(path, [&] {
         const Descriptor memory = shared_memory();
         const TimeLimits limits(0, bytes_in(path));

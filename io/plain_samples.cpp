@@ -60,7 +60,7 @@ PlainSamples plain_from(const nlohmann::json& done) {
 
 /// What the helper finds in the header.
 nlohmann::json located(const fs::path& path, const ReadOptions& options) {
-    nlohmann::json request = {{"caller", getpid()}};
+    nlohmann::json request = {{"caller", getpid()}, {"own_memory", own_memory(0, 0)}};
     add_to(request, {options.spacing, options.orientation});
     constexpr double seconds = 60;  // for a header
     const double limit = options.time_limit_s > 0 ? options.time_limit_s : seconds;

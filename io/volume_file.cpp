@@ -112,7 +112,8 @@ VolumeFile read_volume(const fs::path& path, const ReadOptions& options) {
                               {"series", options.series},
                               {"pictures", options.series_pictures},
                               {"time_step", options.time_step},
-                              {"memory", limited.memory_limit_bytes}};
+                              {"memory", limited.memory_limit_bytes},
+                              {"own_memory", own_memory(bytes_in(path), 4)}};
     add_to(request, {options.spacing, options.orientation});
     return asked_of_helper(path, [&] {
         const Descriptor samples = shared_memory();
@@ -195,6 +196,7 @@ void write_volume(const Volume& volume, const fs::path& path, const WriteOptions
     const nlohmann::json request = {{"caller", getpid()},
                                     {"geometry", json_from(volume.geometry())},
                                     {"type", name_of(volume.type())},
+                                    {"own_memory", own_memory(double(volume.bytes()), 4)},
                                     {"compress", options.compress}};
     try {
         const Descriptor samples = shared_memory(volume.bytes());

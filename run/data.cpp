@@ -197,21 +197,27 @@ std::string Data::save(const std::filesystem::path& path, const io::Progress& pr
     return "saved " + path.string() + io::opening_words(path, volume);
 }
 
-std::filesystem::path Data::rescue() {
+std::filesystem::path Data::rescue(const io::Progress& progress) {
     // Nothing of the original is read: a silent server would keep the edits waiting.
     if (loaded_.streamed) loaded_.streamed->opened.is_rescue = true;
     std::string problems;
     for (const std::filesystem::path& place : places_of_rescue()) {
         std::filesystem::path folder;
+        const auto remove_empty = [&] {
+            std::error_code ignored;
+            if (!folder.empty()) std::filesystem::remove(folder, ignored);
+        };
         try {
             folder = new_folder_in(place);
             std::filesystem::path kept = folder / (streamer_ ? "edits.zarr" : "edits.nrrd");
-            save(kept, {});
+            save(kept, progress);
             return kept;
         } catch (const std::exception& e) {
             problems += (problems.empty() ? "" : "; ") + std::string(e.what());
-            std::error_code ignored;
-            if (!folder.empty()) std::filesystem::remove(folder, ignored);  // if it is empty
+            remove_empty();
+        } catch (...) {  // of `progress`
+            remove_empty();
+            throw;
         }
     }
     throw io::OutputError(problems);

@@ -89,16 +89,18 @@ Field make_field(const Volume& volume, const FieldSetup& setup, ProxyMethod meth
                  interpolation_in(setup, method));
 }
 
-double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup) {
+double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup,
+                   const OnProgress& progress) {
     if (setup.isovalue) return io::level_in(loaded.volume, *setup.isovalue);
     if (loaded.isovalue) return *loaded.isovalue;
-    const std::vector<double> levels = suggested_isovalues(
-        histogram_of(loaded.volume, bins, padding_of(loaded.volume, loaded.values.padding)));
+    const auto padding = padding_of(loaded.volume, loaded.values.padding, progress);
+    const std::vector<double> levels =
+        suggested_isovalues(histogram_of(loaded.volume, bins, padding, progress));
     if (!levels.empty()) return levels.front();
     throw std::invalid_argument(loaded.name + ": the data are constant, there is nothing to feel");
 }
 
-double isovalue_of(const LoadedVolume& loaded, const Setup& setup) {
+double isovalue_of(const LoadedVolume& loaded, const Setup& setup, const OnProgress& progress) {
     if (setup.render.layers && setup.render.layers->layers.by_label) {
         return setup.field.isovalue ? isovalue_of(loaded, setup.field)
                                     : loaded.isovalue.value_or(loaded.volume.minimum());
@@ -110,7 +112,7 @@ double isovalue_of(const LoadedVolume& loaded, const Setup& setup) {
         }
         return io::layers_for(*setup.render.layers, loaded.volume).layers.front().level;
     }
-    return isovalue_of(loaded, setup.field);
+    return isovalue_of(loaded, setup.field, progress);
 }
 
 std::string layers_warning(const io::LayersFile& file, const LoadedVolume& loaded) {

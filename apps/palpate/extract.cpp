@@ -45,7 +45,10 @@ void extract(const CLI::App& command, const ExtractOptions& options) {
         };
         mesh = extract_surface(field, isovalue, surface);
     }
-    io::write_mesh(mesh, options.output);
+    {
+        ProgressBar bar("writing", options.source.quiet);
+        io::write_mesh(mesh, options.output, [&](double fraction) { bar.at(fraction); });
+    }
     stop_if_interrupted();
     if (options.json) {
         print_json({{"isovalue", isovalue},

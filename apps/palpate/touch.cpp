@@ -109,7 +109,13 @@ void save_as_asked(run::Data& data, const RunOptions& options) {
 std::string rescued(run::Data& data) {
     if (data.is_sequence() || !data.editor().state().changed) return "";
     try {
-        return "; the edits are kept in " + data.rescue().string();
+        const int before = interruptions();
+        const auto until_interrupted = [&](double) {
+            if (interruptions() > before) throw Interrupted{};
+        };
+        return "; the edits are kept in " + data.rescue(until_interrupted).string();
+    } catch (const Interrupted&) {
+        return "; keeping them elsewhere was interrupted";
     } catch (const std::exception& e) {
         return "; they could not be kept elsewhere: " + std::string(e.what());
     }

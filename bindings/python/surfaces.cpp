@@ -82,10 +82,13 @@ void bind_surfaces(py::module_& module) {
             },
             "Unit, out of the solid, shape (n, 3); (0, 3) unless asked for.")
         .def_property_readonly("enclosed_volume", &enclosed_volume, "Of a closed mesh [mm^3].")
-        .def("write",
-             py::overload_cast<const SurfaceMesh&, const std::filesystem::path&>(&io::write_mesh),
-             py::arg("path"), py::call_guard<py::gil_scoped_release>(),
-             "As .ply, .stl, .obj or .vtp, whole or not at all. Raises OutputError.")
+        .def(
+            "write",
+            [](const SurfaceMesh& mesh, const std::filesystem::path& path) {
+                io::write_mesh(mesh, path, ctrl_c());
+            },
+            py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+            "As .ply, .stl, .obj or .vtp, whole or not at all. Raises OutputError.")
         .def(py::pickle(
             [](const py::object& self) {
                 return py::make_tuple(self.attr("vertices"), self.attr("triangles"),

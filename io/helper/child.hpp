@@ -1,4 +1,4 @@
-// The first steps of every helper program: it ties its life to its caller's and limits its memory.
+// The first steps of every helper program: it ties its life to its caller's.
 // Header only, so that each program can use it without the others' libraries.
 #pragma once
 
@@ -46,16 +46,6 @@ inline void go_with_socket(int descriptor) {
         _exit(1);
     }).detach();
     step_back();
-}
-
-/// Limits the address space to `bytes` and 2 GiB for the programs' code and what libraries copy.
-/// Not under a sanitizer, whose shadow memory is address space, too.
-inline void limit_memory([[maybe_unused]] std::uint64_t bytes) {
-#ifndef PALPATE_SANITIZED
-    const rlim_t space = bytes + (rlim_t{2} << 30);
-    const rlimit limit{space, space};
-    if (bytes < UINT64_MAX / 4) setrlimit(RLIMIT_AS, &limit);
-#endif
 }
 
 }  // namespace palpate::io

@@ -106,17 +106,21 @@ void check_coordinate(double coordinate, const std::string& where);
 /// All of a grid: check() and these two. Throws Failure.
 void check_geometry(const Geometry& geometry);
 
-/// While it lives, this process may allocate so many bytes more than it has (and 64 MiB), so that a
-/// library that asks for much more than a file's samples need gets std::bad_alloc.
+/// Lets this process allocate so many bytes more than it has (and 64 MiB) until the next bound, so
+/// that a library that asks for much more than a file needs gets std::bad_alloc. What is shared
+/// with the caller does not count. Returns the bound before it. Does nothing under a sanitizer.
+std::uint64_t bound_memory(std::uint64_t more);
+
+/// The same while it lives.
 class MemoryBound {
   public:
-    explicit MemoryBound(std::uint64_t more);
+    explicit MemoryBound(std::uint64_t more) : before_(bound_memory(more)) {}
     ~MemoryBound();
     MemoryBound(const MemoryBound&) = delete;
     MemoryBound& operator=(const MemoryBound&) = delete;
 
   private:
-    std::uint64_t before_ = 0;
+    std::uint64_t before_;
 };
 
 /// Geometry and finite samples; the requested spacing is put in. Throws Failure.

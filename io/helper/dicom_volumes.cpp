@@ -337,6 +337,7 @@ Result read_folder(const Request& request) {
 }  // namespace
 
 Result read_dicom(const Request& request) {
+    bound_memory(request.memory_limit);  // and each file by what it says of itself
     return fs::is_directory(request.path) ? read_folder(request) : read_file(request);
 }
 

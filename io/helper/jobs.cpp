@@ -66,9 +66,9 @@ nlohmann::json json_of(const SeriesInfo& s) {
             {"grey", s.picture.grey}};
 }
 
-void limit_this_process(const nlohmann::json& asked, std::uint64_t memory) {
+void limit_this_process(const nlohmann::json& asked) {
     go_with_caller(asked.at("caller").get<pid_t>());
-    limit_memory(memory);
+    bound_memory(asked.at("own_memory").get<std::uint64_t>());
 }
 
 nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked, Read* read) {
@@ -79,7 +79,7 @@ nlohmann::json run_read(const fs::path& path, const nlohmann::json& asked, Read*
     request.memory_limit = asked.at("memory").get<std::uint64_t>();
     request.grid = grid_from(asked);
     request.pictures = asked.value("pictures", false);
-    limit_this_process(asked, request.memory_limit);
+    limit_this_process(asked);
     Result result;
     try {
         result = read(request);
@@ -102,7 +102,7 @@ nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked, Loc
     Request request;
     request.path = path;
     request.grid = grid_from(asked);
-    limit_this_process(asked, 1 << 30);
+    limit_this_process(asked);
     VolumeHeader header;
     try {
         header = locate(request);
@@ -133,7 +133,7 @@ std::optional<nlohmann::json> next_question() {
 
 nlohmann::json run_explore(const fs::path& path, const nlohmann::json& asked, Explore* explore) {
     go_with_socket(samples_descriptor);
-    limit_memory(1 << 30);
+    bound_memory(asked.at("own_memory").get<std::uint64_t>());
     if (asked.contains("size")) use_far_file(asked["size"].get<std::uint64_t>());
     while (const auto question = next_question()) {
         report({{"done", explore(path, *question)}});
@@ -214,7 +214,7 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked, cons
     check_geometry(volume.geometry);
     const auto bytes =
         static_cast<std::size_t>(sample_count(volume.geometry)) * size_of(volume.type);
-    limit_this_process(asked, std::max<std::uint64_t>(4 * bytes, 1 << 30));
+    limit_this_process(asked);
     void* const samples = mmap(nullptr, bytes, PROT_READ, MAP_SHARED, samples_descriptor, 0);
     if (samples == MAP_FAILED) throw std::bad_alloc();
     volume.samples = samples;
@@ -226,7 +226,7 @@ nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked, cons
 
 nlohmann::json run_read_mesh(const fs::path& path, const nlohmann::json& asked,
                              ReadMesh* read_mesh) {
-    limit_this_process(asked, asked.at("memory").get<std::uint64_t>());
+    limit_this_process(asked);
     const MeshSize size = read_mesh(path, extension_of(path));
     return {{"vertices", size.vertices}, {"triangles", size.triangles}};
 }

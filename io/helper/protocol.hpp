@@ -6,7 +6,8 @@
 //   palpate-io-helper read-mesh PATH REQUEST  vertices and triangles come back in descriptor 3
 //   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside
 //                                             PATH, is created for the unfinished file and removed
-// REQUEST is JSON. Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},
+// REQUEST is JSON, with "own_memory": the bytes that the helper may allocate for itself.
+// Lines of JSON come back on descriptor 4: {"progress":0.5}, {"doing":"a file"},
 // and at the end {"error":"..."} or {"done":{...}}. Doubles in JSON survive to the bit.
 // Who explores lives until descriptor 3, a socket, is closed. From there it reads lines of JSON:
 // {"channel":0,"time":0} asks what image is in the file,

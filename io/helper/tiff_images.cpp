@@ -74,6 +74,21 @@ Tiling tiling_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
     return tiling;
 }
 
+/// The one file that this process looks into: its directories are read once, not for each question.
+struct Explored {
+    explicit Explored(const fs::path& path)
+        : tiff(open_to_read(path, "O")),  // O: offsets of tiles only when they are asked for
+          layout(layout_of(tiff.get(), path, notes)) {}
+    Tiff tiff;
+    std::vector<std::string> notes;
+    TiffLayout layout;
+};
+
+const Explored& explored(const fs::path& path) {
+    static const Explored file(path);
+    return file;
+}
+
 void go_to(TIFF* tiff, const fs::path& file, const TiffLayout& layout, std::uint32_t page,
            std::size_t level) {
     if (level > 0 && !layout.reduced.empty()) page = layout.reduced.at(level - 1);
@@ -106,9 +121,9 @@ ImageArray level_from(const Tiling& tiling, std::int64_t depth, bool swapped,
 }  // namespace
 
 ChunkedImage tiff_image(const fs::path& path, int channel, int time) {
-    const Tiff tiff = open_to_read(path, "O");  // O: offsets of tiles only when they are asked for
+    const auto& [tiff, notes, layout] = explored(path);
     ChunkedImage found;
-    const TiffLayout layout = layout_of(tiff.get(), path, found.notes);
+    found.notes = notes;
     const OmeImage& image = layout.image;
     found.measured = image.spacing_note.empty();
     if (!found.measured) found.notes.push_back(image.spacing_note);
@@ -144,9 +159,10 @@ void tiff_places(const fs::path& path, const ChunkBox& box, std::span<ChunkPlace
     if (std::sscanf(box.array.c_str(), "%zu %d %d", &level, &channel, &time) != 3) {
         throw Failure("is asked for what it has not");
     }
-    const Tiff tiff = open_to_read(path, "O");
+    const Explored& file = explored(path);
+    const Tiff& tiff = file.tiff;
+    const TiffLayout& layout = file.layout;
     std::vector<std::string> notes;
-    const TiffLayout layout = layout_of(tiff.get(), path, notes);
     const auto page_at = [&](std::int64_t z) {
         return layout.image.pages.at(layout.image.plane(z, channel, time));
     };

@@ -140,7 +140,9 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
             const std::int64_t sizes[] = {page.width, page.height,
                                           static_cast<std::int64_t>(slices.size())};
             const std::int64_t plane[] = {page.width, page.height};
-            checked_bytes(plane, size_of(page.stored), fs::file_size(slice.file), request);
+            const auto file_bytes = fs::file_size(slice.file);
+            bound_memory(4 * file_bytes +
+                         4 * checked_bytes(plane, size_of(page.stored), file_bytes, request));
             result.type = kept_as(page.stored, layout.values);
             samples =
                 shared_samples(checked_bytes(sizes, size_of(result.type), UINT64_MAX, request));

@@ -27,20 +27,21 @@ std::span<std::byte> shared_samples(std::uint64_t bytes) {
     return {static_cast<std::byte*>(at), bytes};
 }
 
-MemoryBound::MemoryBound([[maybe_unused]] std::uint64_t more) {
+std::uint64_t bound_memory([[maybe_unused]] std::uint64_t more) {
     rlimit limit{};
     getrlimit(RLIMIT_DATA, &limit);
-    before_ = limit.rlim_cur;
+    const std::uint64_t before = limit.rlim_cur;
 #ifndef PALPATE_SANITIZED
     // The sixth number of statm: pages of data and stack.
     std::ifstream statm("/proc/self/statm");
     std::uint64_t pages = 0;
     for (int i = 0; i < 6; ++i) statm >> pages;
     const auto now = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
-    if (!statm || more > UINT64_MAX / 4) return;
-    limit.rlim_cur = std::min<rlim_t>(before_, now + more + (rlim_t{64} << 20));
+    if (!statm || more > UINT64_MAX / 4) return before;
+    limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, now + more + (rlim_t{64} << 20));
     setrlimit(RLIMIT_DATA, &limit);
 #endif
+    return before;
 }
 
 MemoryBound::~MemoryBound() {

@@ -266,7 +266,9 @@ void check_size(vtkXMLImageDataReader& reader, const Request& request) {
     for (int a = 0; a < 3; ++a) {
         sizes.push_back(std::int64_t{extent[2 * a + 1]} - extent[2 * a] + 1);
     }
-    checked_bytes(sizes, 1, std::filesystem::file_size(request.path), request);
+    const auto file_bytes = std::filesystem::file_size(request.path);
+    const std::uint64_t samples = checked_bytes(sizes, 1, file_bytes, request);
+    bound_memory(4 * file_bytes + 64 * samples);  // VTK reads all arrays
 }
 
 }  // namespace

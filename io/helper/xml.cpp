@@ -1,41 +1,63 @@
-// Small XML files. See the header.
+// Small XML documents, by expat. See the header.
 #include "io/helper/xml.hpp"
 
-#include <vtkNew.h>
-#include <vtkOutputWindow.h>
-#include <vtkSmartPointer.h>
-#include <vtkXMLDataElement.h>
-#include <vtkXMLUtilities.h>
+#include <expat.h>
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <new>
 
 #include "io/helper/decode.hpp"
-#include "io/helper/vtk_errors.hpp"
 
 namespace palpate::io {
 namespace {
 
 constexpr std::size_t most_bytes = 64 << 20;
-constexpr int deepest = 64;
+constexpr std::size_t deepest = 64;
 
 std::string without_prefix(const std::string& name) {
     return name.substr(name.find(':') == std::string::npos ? 0 : name.find(':') + 1);
 }
 
-XmlElement element_from(vtkXMLDataElement* from, const std::string& where, int depth) {
-    if (depth > deepest) throw Failure(where + " has elements within elements without an end");
-    XmlElement element;
-    element.name = without_prefix(from->GetName() ? from->GetName() : "");
-    element.text = from->GetCharacterData() ? from->GetCharacterData() : "";
-    for (int i = 0; i < from->GetNumberOfAttributes(); ++i) {
-        element.attributes.emplace_back(from->GetAttributeName(i), from->GetAttributeValue(i));
+/// What a document's text becomes. No exception may pass through the parser.
+struct Growing {
+    XML_Parser parser = nullptr;
+    XmlElement top;  ///< its only element is the root
+    std::vector<XmlElement*> open{&top};
+    bool is_too_deep = false, is_too_large = false;
+
+    template <class Work>
+    static void add(void* to, Work&& work) {
+        Growing& self = *static_cast<Growing*>(to);
+        try {
+            work(self);
+        } catch (const std::bad_alloc&) {
+            self.is_too_large = true;
+        }
+        if (self.is_too_large || self.is_too_deep) XML_StopParser(self.parser, XML_FALSE);
     }
-    for (int i = 0; i < from->GetNumberOfNestedElements(); ++i) {
-        element.inner.push_back(element_from(from->GetNestedElement(i), where, depth + 1));
-    }
-    return element;
+};
+
+void begin_element(void* to, const char* name, const char** attributes) {
+    Growing::add(to, [&](Growing& growing) {
+        growing.is_too_deep = growing.open.size() > deepest;
+        XmlElement& element = growing.open.back()->inner.emplace_back();
+        growing.open.push_back(&element);
+        element.name = without_prefix(name);
+        for (; *attributes; attributes += 2) {
+            element.attributes.emplace_back(attributes[0], attributes[1]);
+        }
+    });
+}
+void end_element(void* to, const char*) {
+    static_cast<Growing*>(to)->open.pop_back();
+}
+void add_text(void* to, const char* text, int length) {
+    Growing::add(to, [&](Growing& growing) {
+        growing.open.back()->text.append(text, static_cast<std::size_t>(length));
+    });
 }
 
 }  // namespace
@@ -68,13 +90,24 @@ std::string XmlElement::text_of(const std::string& path) const {
 }
 
 XmlElement parse_xml(const std::string& text, const std::string& where) {
-    const vtkNew<ErrorKeeper> errors;
-    vtkOutputWindow::SetInstance(errors);
-    const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(
-        vtkXMLUtilities::ReadElementFromString(text.c_str()));
-    vtkOutputWindow::SetInstance(nullptr);
-    if (!root || !errors->first().empty()) throw Failure(where + " is no XML; write it again");
-    return element_from(root, where, 0);
+    const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(
+        XML_ParserCreate(nullptr), &XML_ParserFree);
+    if (!parser) throw std::bad_alloc();
+    Growing growing;
+    growing.parser = parser.get();
+    XML_SetUserData(parser.get(), &growing);
+    XML_SetElementHandler(parser.get(), begin_element, end_element);
+    XML_SetCharacterDataHandler(parser.get(), add_text);
+    const bool is_long = text.size() > most_bytes;
+    const bool is_whole = !is_long && XML_Parse(parser.get(), text.data(),
+                                                static_cast<int>(text.size()), 1) == XML_STATUS_OK;
+    if (growing.is_too_deep) throw Failure(where + " has elements within elements without an end");
+    if (is_long || growing.is_too_large || XML_GetErrorCode(parser.get()) == XML_ERROR_NO_MEMORY) {
+        throw Failure(where + " is too large for the memory that may be used; save it without " +
+                      "what is not needed, or allow more memory");
+    }
+    if (!is_whole) throw Failure(where + " is no XML; write it again");
+    return std::move(growing.top.inner.front());
 }
 
 XmlElement read_xml(const std::filesystem::path& file) {

@@ -1,4 +1,4 @@
-// Small XML files, as image formats have them, by VTK's parser.
+// Small XML files, as image formats have them.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,8 @@ struct XmlElement {
     std::string text_of(const std::string& path) const;
 };
 
-/// At most 64 MiB. Throws Failure, which names the file or `where`.
+/// At most 64 MiB, and no more than fits into this process's memory. Throws Failure, which names
+/// the file or `where`.
 XmlElement read_xml(const std::filesystem::path& file);
 XmlElement parse_xml(const std::string& text, const std::string& where);
 

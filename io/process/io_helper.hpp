@@ -2,6 +2,7 @@
 // it starts.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -31,6 +32,13 @@ struct TimeLimits {
         : wall_s(asked_s > 0 ? asked_s : 600 + 2e-6 * bytes),
           processor_s(asked_s > 0 ? asked_s : 120 + 2e-6 * bytes) {}
 };
+
+/// What a helper may allocate before a reader knows how large the samples are [bytes]: enough for
+/// all that libraries make of a header of a file of so many bytes, each of which they may keep
+/// `copies` times.
+inline std::uint64_t own_memory(double bytes, double copies) {
+    return static_cast<std::uint64_t>(std::min(0x1p30 + copies * bytes, 0x1p60));
+}
 
 /// Checks a path without knowing the file's format. Throws InputError.
 void check_readable(const std::filesystem::path& path);

@@ -79,7 +79,7 @@ nlohmann::json ChunkFile::answer(const nlohmann::json& question, const std::stop
     HelperTalk talk = std::exchange(talk_, nullptr);  // kept only if it answers
     const bool is_new = !talk || talker_ != getpid();
     if (is_new) {
-        nlohmann::json request = nlohmann::json::object();
+        nlohmann::json request = {{"own_memory", own_memory_}};
         if (read_) request["size"] = size_;
         constexpr double seconds = 60;  // for metadata
         talk = talk_to_helper(

@@ -27,10 +27,13 @@ class ChunkFile {
     using Read = std::function<std::vector<std::byte>(std::uint64_t offset, std::uint64_t length,
                                                       const std::stop_token& stop)>;
 
-    explicit ChunkFile(std::filesystem::path path) : path_(std::move(path)) {}
+    /// `own_memory`: [bytes] most that the helper may take.
+    explicit ChunkFile(std::filesystem::path path, std::uint64_t own_memory = 1 << 30)
+        : path_(std::move(path)), own_memory_(own_memory) {}
     /// Elsewhere. `name`: in messages, and its extension tells the format. `size` in bytes.
-    ChunkFile(std::filesystem::path name, std::uint64_t size, Read read)
-        : path_(std::move(name)), size_(size), read_(std::move(read)) {}
+    ChunkFile(std::filesystem::path name, std::uint64_t size, Read read,
+              std::uint64_t own_memory = 1 << 30)
+        : path_(std::move(name)), own_memory_(own_memory), size_(size), read_(std::move(read)) {}
 
     const std::filesystem::path& path() const { return path_; }
 
@@ -49,7 +52,7 @@ class ChunkFile {
     nlohmann::json answer(const nlohmann::json& question, const std::stop_token& stop);
 
     std::filesystem::path path_;
-    std::uint64_t size_ = 0;
+    std::uint64_t own_memory_, size_ = 0;
     Read read_;
     HelperTalk talk_;
     int talker_ = 0;  // process that began it: a fork must not take its parent's answers

@@ -101,6 +101,13 @@ int create_to_write(const std::filesystem::path& path) {
     return ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
 }
 
+std::string identity_of(int descriptor) {
+    struct stat status {};
+    if (::fstat(descriptor, &status) != 0) return {};
+    return std::to_string(status.st_ino) + ' ' + std::to_string(status.st_size) + ' ' +
+           std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec);
+}
+
 std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at) {
     std::size_t done = 0;
     while (done < bytes) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 
 namespace palpate::io {
@@ -41,6 +42,8 @@ int create_to_write(const std::filesystem::path& path);
 
 /// How many bytes were read from a place of a file, fewer only at its end; below 0 on an error.
 std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at);
+/// Changes when a file is replaced or written: its number, size and time.
+std::string identity_of(int descriptor);
 /// Writes them all, where a file or stream is written next.
 bool write_all(int descriptor, std::string_view bytes);
 /// The file's content to the disk. File systems without this say so; that is no loss of data.

@@ -109,6 +109,12 @@ int create_to_write(const std::filesystem::path& path) {
     return opened(path, _O_WRONLY | _O_CREAT | _O_EXCL);
 }
 
+std::string identity_of(int descriptor) {
+    struct _stat64 status {};
+    if (::_fstat64(descriptor, &status) != 0) return {};
+    return std::to_string(status.st_size) + ' ' + std::to_string(status.st_mtime);
+}
+
 std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at) {
     const auto file = reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor));
     std::size_t taken = 0;

@@ -25,12 +25,6 @@ std::size_t product(std::span<const std::int64_t> sizes) {
     return count;
 }
 
-double rough_product(std::span<const std::int64_t> sizes) {
-    double count = 1;
-    for (const std::int64_t size : sizes) count *= static_cast<double>(size);
-    return count;
-}
-
 /// Also an index that is not there takes some memory.
 template <class Index>
 std::size_t numbers_in(const Index& index) {
@@ -38,6 +32,12 @@ std::size_t numbers_in(const Index& index) {
 }
 
 }  // namespace
+
+double rough_product(std::span<const std::int64_t> sizes) {
+    double count = 1;
+    for (const std::int64_t size : sizes) count *= static_cast<double>(size);
+    return count;
+}
 
 std::size_t ChunkedArray::samples_in_chunk() const {
     return product(chunk);

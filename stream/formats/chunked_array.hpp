@@ -47,6 +47,9 @@ struct ChunkedArray {
     std::uint64_t bytes_to_read_chunk() const;
 };
 
+/// More than 2^64 are no error.
+double rough_product(std::span<const std::int64_t> sizes);
+
 /// The key of the object with a chunk, or with its shard if there are shards.
 std::string key_of(const ChunkedArray& array, std::span<const std::int64_t> object);
 

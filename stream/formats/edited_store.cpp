@@ -127,8 +127,13 @@ EditsNote read_note(const fs::path& folder, const StoreOptions& options) {
     const auto bytes = folder_objects(folder)->get({io::edits_note, {}, longest_note}, {});
     if (!bytes) throw io::InputError(path.string() + ": is not there");
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    // Of large edits the list of chunks is longer than io::parsed_json() allows.
+    const auto check_depth = [](int depth, Json::parse_event_t, Json&) {
+        if (depth > io::deepest_json) throw std::invalid_argument("nested too deeply");
+        return true;
+    };
     try {
-        return note_from(io::parsed_json(text), folder, options);
+        return note_from(Json::parse(text, check_depth), folder, options);
     } catch (const std::exception&) {  // of the library, or above
         throw io::InputError(path.string() +
                              ": is damaged; without it the edits are of no known volume");

@@ -4,10 +4,12 @@
 #include <algorithm>
 
 #include "io/process/located_chunks.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/formats/chunk_table.hpp"
 #include "stream/formats/metadata_files.hpp"
 #include "stream/formats/stores.hpp"
+#include "stream/formats/unpacking_room.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -41,14 +43,49 @@ ChunkedArray located_array(const io::ImageArray& level, const std::shared_ptr<Lo
     return array;
 }
 
-std::shared_ptr<const Store> store_in(std::shared_ptr<const Objects> folder, io::ChunkFile in,
-                                      const StoreOptions& options, const std::stop_token& stop) {
-    const auto file = std::make_shared<LocatedFile>(std::move(in));
-    const io::ChunkedImage image = file->file.describe(options.channel, options.time, stop);
-    return about(file->file.path().string(), [&] {
-        return chunked_store(std::move(folder), located_volume(image, file, options),
-                             options.unpacking);
-    });
+/// The one file of a store, in its folder. Once opened, it must stay as it is: places from an old
+/// file would give wrong samples of a new one.
+class SteadyFile : public Objects {
+  public:
+    SteadyFile(std::shared_ptr<const Objects> folder, const std::string& name, std::uint64_t size,
+               const std::stop_token& stop)
+        : folder_(std::move(folder)) {
+        // Read each time: a file that was written anew is another one (the cache).
+        (void)folder_->get({.key = name,
+                            .range = ByteRange{0, std::min(size, bytes_of_head)},
+                            .identity = &identity_},
+                           stop);
+    }
+
+    std::string name_of(const std::string& key) const override { return folder_->name_of(key); }
+    std::optional<std::uint64_t> size_of(const std::string& key) const override {
+        return folder_->size_of(key);
+    }
+    Traffic traffic() const override { return folder_->traffic(); }
+    std::string note() const override { return folder_->note(); }
+
+    std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
+        std::string identity;
+        Wanted same = wanted;
+        same.identity = &identity;
+        // Several servers behind one address may not agree on the identity.
+        for (int attempt = 0; attempt < 3; ++attempt) {
+            auto bytes = folder_->get(same, stop);
+            if (!bytes || identity == identity_) return bytes;
+            same.again = true;
+        }
+        throw io::InputError(name_of(wanted.key) +
+                             ": was written anew since it was opened; open it again");
+    }
+
+  private:
+    std::shared_ptr<const Objects> folder_;
+    std::string identity_;
+};
+
+/// As much again as chunks may take while they are unpacked, up to 1 GiB.
+std::uint64_t memory_of_helper(const StoreOptions& options) {
+    return std::min(UnpackingRoom(options.unpacking).most(), std::uint64_t{1} << 30);
 }
 
 }  // namespace
@@ -81,13 +118,6 @@ ChunkedVolume located_volume(const io::ChunkedImage& found,
     return volume_of(image, std::move(volume), options);
 }
 
-std::shared_ptr<const Store> open_located(const std::stop_token& stop, const std::string& path,
-                                          const StoreOptions& options) {
-    io::ChunkFile file{path};
-    auto folder = folder_objects(file.path().parent_path());
-    return store_in(std::move(folder), std::move(file), options, stop);
-}
-
 std::shared_ptr<const Store> open_located(const std::stop_token& stop,
                                           std::shared_ptr<const Objects> folder,
                                           const std::string& name, const StoreOptions& options) {
@@ -96,18 +126,26 @@ std::shared_ptr<const Store> open_located(const std::stop_token& stop,
     if (!size) {
         throw io::InputError(address + ": is not there, or the server does not tell its size");
     }
-    // The first bytes are read each time: a file that was written anew is another one (the cache).
-    (void)folder->get({.key = name, .range = ByteRange{0, std::min(*size, bytes_of_head)}}, stop);
-    const auto read = [folder, name](std::uint64_t offset, std::uint64_t length,
-                                     const std::stop_token& until) {
-        auto part =
-            folder->get({.key = name, .range = ByteRange{offset, length}, .lasting = true}, until);
-        if (!part || part->size() != length) {
-            throw io::InputError(folder->name_of(name) + ": is gone, or shorter than it was");
-        }
-        return *std::move(part);
-    };
-    return store_in(folder, io::ChunkFile(address, *size, read), options, stop);
+    folder = std::make_shared<SteadyFile>(std::move(folder), name, *size, stop);
+    io::ChunkFile::Read read;  // none: the helper reads it here
+    if (io::is_web_address(address)) {
+        read = [folder, name](std::uint64_t offset, std::uint64_t length,
+                              const std::stop_token& until) {
+            auto part = folder->get(
+                {.key = name, .range = ByteRange{offset, length}, .lasting = true}, until);
+            if (!part || part->size() != length) {
+                throw io::InputError(folder->name_of(name) + ": is gone, or shorter than it was");
+            }
+            return *std::move(part);
+        };
+    }
+    const auto file = std::make_shared<LocatedFile>(
+        io::ChunkFile(address, *size, std::move(read), memory_of_helper(options)));
+    const io::ChunkedImage image = file->file.describe(options.channel, options.time, stop);
+    return about(address, [&] {
+        return chunked_store(std::move(folder), located_volume(image, file, options),
+                             options.unpacking);
+    });
 }
 
 }  // namespace palpate::stream

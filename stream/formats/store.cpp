@@ -124,7 +124,11 @@ std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::
     if (is_chunked_folder(address)) {
         return open_chunked(folder_objects(address, stop), address, options);
     }
-    if (is_located(address, options)) return open_located(stop, address, options);
+    if (is_located(address, options)) {
+        const std::filesystem::path path(address);
+        return open_located(stop, folder_objects(path.parent_path()), path.filename().string(),
+                            options);
+    }
     return open_plain_file(address, options);
 }
 

@@ -17,10 +17,8 @@ std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::
 /// Raw, NRRD, MetaImage and NIfTI files whose samples are not compressed.
 std::shared_ptr<const Store> open_plain_file(const std::string& path, const StoreOptions& options);
 
-/// HDF5 and tiled TIFF, whose chunks the helper process locates.
-std::shared_ptr<const Store> open_located(const std::stop_token& stop, const std::string& path,
-                                          const StoreOptions& options);
-/// The same for a file `name` of a folder elsewhere.
+/// HDF5 and tiled TIFF, whose chunks the helper process locates: a file of a folder, here or
+/// elsewhere.
 std::shared_ptr<const Store> open_located(const std::stop_token& stop,
                                           std::shared_ptr<const Objects> folder,
                                           const std::string& name, const StoreOptions& options);

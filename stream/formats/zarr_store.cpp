@@ -53,13 +53,6 @@ std::vector<Node> nodes_in(const Objects& objects, std::span<const std::string> 
     return nodes;
 }
 
-/// Roughly: more than 2^64 are no error here.
-double samples_in(const ChunkedArray& array) {
-    double count = 1;
-    for (const std::int64_t size : array.shape) count *= static_cast<double>(size);
-    return count;
-}
-
 ChunkedArray array_from(const Json& array, int version, const std::string& folder) {
     return version == 3 ? zarr3_array(array, folder) : zarr2_array(array, folder);
 }
@@ -177,7 +170,8 @@ class Opening {
 
     void sort_levels(Image& image) {
         const auto finer = [&](std::size_t one, std::size_t other) {
-            return samples_in(volume_.arrays[one]) > samples_in(volume_.arrays[other]);
+            return rough_product(volume_.arrays[one].shape) >
+                   rough_product(volume_.arrays[other].shape);
         };
         std::vector<std::size_t> order(image.levels.size());
         std::iota(order.begin(), order.end(), std::size_t{0});

@@ -52,6 +52,7 @@ class FolderObjects : public Objects {
             if (errno == ENXIO) fail(wanted.key, "is no file; make the folder again");
             fail(wanted.key, io::reason(errno) + "; check its permissions");
         }
+        const std::string identity = io::identity_of(file.number());
         struct stat status {};
         if (fstat(file.number(), &status) != 0) fail(wanted.key, io::reason(errno));
         const auto size = static_cast<std::uint64_t>(status.st_size);
@@ -67,12 +68,9 @@ class FolderObjects : public Objects {
         }
         Bytes bytes = read(wanted.key, file.number(), range);
         if (wanted.identity) {
-            struct stat after {};
-            if (fstat(file.number(), &after) != 0) fail(wanted.key, io::reason(errno));
-            *wanted.identity = identity_of(status);
+            const std::string after = io::identity_of(file.number());
             // Else what was read is of no known file.
-            if (identity_of(after) != *wanted.identity)
-                *wanted.identity += " to " + identity_of(after);
+            *wanted.identity = after == identity ? identity : identity + " to " + after;
         }
         return bytes;
     }
@@ -80,11 +78,6 @@ class FolderObjects : public Objects {
   private:
     [[noreturn]] void fail(const std::string& key, const std::string& what) const {
         throw io::InputError(name_of(key) + ": " + what);
-    }
-
-    static std::string identity_of(const struct stat& status) {
-        return std::to_string(status.st_ino) + ' ' + std::to_string(status.st_size) + ' ' +
-               std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec);
     }
 
     /// Where a disk has gone, no chunk is there; none of them is just not stored.

@@ -50,6 +50,26 @@ Vec3 take_vec3(std::string_view& bytes) {
 
 }  // namespace
 
+TEST(MeshFile, writing_reports_progress_and_leaves_nothing_where_it_is_stopped) {
+    SurfaceMesh mesh = example();
+    mesh.vertices.resize(200'000, Vec3::Ones());
+    mesh.triangles.resize(200'000, {0, 1, 2});
+    for (const char* name : {"a.ply", "a.stl", "a.obj", "a.vtp"}) {
+        const ScratchFolder folder;
+        double last = 0;
+        write_mesh(mesh, folder / name, [&](double fraction) {
+            EXPECT_GT(fraction, 0) << name;
+            EXPECT_LE(fraction, 1) << name;
+            last = fraction;
+        });
+        EXPECT_GT(last, 0.25) << name;  // lines of an OBJ are short here
+        const auto stop = [](double) { throw std::runtime_error("stopped"); };
+        EXPECT_THROW(write_mesh(mesh, folder / (std::string("b") + name), stop), std::runtime_error)
+            << name;
+        EXPECT_EQ(folder.names(), std::vector<std::string>{name});
+    }
+}
+
 TEST(MeshFile, ply_holds_every_double_and_index) {
     const SurfaceMesh mesh = example();
     const std::string file = written(mesh, "a.ply");

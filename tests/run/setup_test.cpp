@@ -1,4 +1,4 @@
-// The setup of a run: the rate that suits the device.
+// The setup of a run: the rate that suits the device, and the level.
 #include <gtest/gtest.h>
 
 #include "run/run_support.hpp"
@@ -29,6 +29,17 @@ TEST(Setup, a_device_without_force_needs_a_quarter_of_the_ticks_and_shows_the_sa
 
     setup.render.rate = 2000;
     EXPECT_EQ(rate_of(setup.render, without), 2000);
+}
+
+TEST(Setup, who_stops_the_search_for_an_isovalue_is_obeyed) {
+    struct Stopped {};
+    const LoadedVolume loaded = test::loaded("synthetic:sphere:128x128x128");
+    LoadedVolume other = loaded;
+    other.isovalue = std::nullopt;
+    run::Setup setup;
+    EXPECT_NO_THROW((void)isovalue_of(other, setup));
+    EXPECT_THROW((void)isovalue_of(other, setup, [](double) { throw Stopped{}; }), Stopped);
+    EXPECT_NO_THROW((void)isovalue_of(loaded, setup, [](double) { throw Stopped{}; }));
 }
 
 }  // namespace

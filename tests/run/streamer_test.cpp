@@ -316,7 +316,13 @@ TEST(Streamed, edits_are_rescued_where_the_working_folder_has_gone) {
     Data data(load(source_from({{"volume", "../ball.zarr"}, {"level", "0"}})));
     data.editor().apply(edit::Fill{{{10, 10, 10}, {20, 20, 20}}, 3});
     fs::remove(sub);
+    struct Stopped {};
+    fs::create_directory(sub);
+    ::setenv("TMPDIR", sub.c_str(), 1);
+    EXPECT_THROW((void)data.rescue([](double) { throw Stopped{}; }), Stopped);
+    EXPECT_TRUE(fs::is_empty(sub)) << "who stops it does not wait and leaves nothing behind";
     const fs::path kept = data.rescue();
+    ::unsetenv("TMPDIR");
     fs::current_path(before);
     EXPECT_NO_THROW((void)load(source_from({{"volume", kept.string()}})));
     fs::remove_all(kept.parent_path());

@@ -8,6 +8,7 @@
 #include "palpate/stream/loader.hpp"
 #include "stream/formats/unpacking_room.hpp"
 #include "stream/store_support.hpp"
+#include "stream/written_files.hpp"
 #include "support/random.hpp"
 #include "support/traced_process.hpp"
 
@@ -46,6 +47,54 @@ TEST(Bounds, a_chunk_that_takes_more_than_may_be_used_is_refused_by_name_and_cos
         EXPECT_THROW((void)overview_of(*store), io::InputError);
         rusage used{};
         ::getrusage(RUSAGE_SELF, &used);
+        if (static_cast<std::uint64_t>(used.ru_maxrss) * 1024 > 320 * megabyte) {
+            throw std::runtime_error("too much memory");
+        }
+    };
+    EXPECT_EQ(support::end_of(support::start_process(work)), 0);
+}
+
+/// A page of one tile, with a description of many elements.
+void put_tiff(const fs::path& file, const std::string& description) {
+    using io::test::little;
+    const auto tag = [](std::uint16_t number, std::uint16_t type, std::uint32_t count,
+                        std::uint32_t value) {
+        return little(number) + little(type) + little(count) + little(value);
+    };
+    constexpr std::uint32_t tile = 16 * 16, tile_at = 8, directory = tile_at + tile;
+    constexpr std::uint16_t tags = 11;
+    const auto length = static_cast<std::uint32_t>(description.size()) + 1;
+    put_bytes(file, "II*" + std::string(1, '\0') + little(directory) + std::string(tile, 'a') +
+                        little(tags) + tag(256, 4, 1, 16) + tag(257, 4, 1, 16) + tag(258, 3, 1, 8) +
+                        tag(259, 3, 1, 1) + tag(262, 3, 1, 1) +
+                        tag(270, 2, length, directory + 2 + 12 * tags + 4) + tag(277, 3, 1, 1) +
+                        tag(322, 4, 1, 16) + tag(323, 4, 1, 16) + tag(324, 4, 1, tile_at) +
+                        tag(325, 4, 1, tile) + little(std::uint32_t{0}) + description +
+                        std::string(1, '\0'));
+}
+
+TEST(Bounds, an_xml_document_costs_the_helper_no_more_than_may_be_used) {
+    const ScratchFolder folder;
+    std::string many;
+    for (int i = 0; i < 4'000'000; ++i) many += "<a/>";
+    const std::string start =
+        R"(<OME><Image><Pixels DimensionOrder="XYZCT" SizeX="16" SizeY="16"/>)";
+    put_tiff(folder / "small.tif", start + "</Image></OME>");
+    put_tiff(folder / "large.tif", start + "</Image>" + many + "</OME>");
+    fs::copy(hdf5_written() / "lonely.h5", folder / "large.h5");
+    put_bytes(folder / "large.xml", "<SpimData>" + many + "</SpimData>");
+    StoreOptions options;
+    options.unpacking = 128 * megabyte;
+    EXPECT_EQ(open_store(folder / "small.tif", options)->info().format, "OME-TIFF");
+    if (support::is_slow_build) return;  // sanitizers need memory of their own
+    const auto work = [&] {
+        for (const char* name : {"large.tif", "large.h5"}) {
+            const std::string message =
+                message_of<io::InputError>([&] { (void)open_store(folder / name, options); });
+            if (!contains(message, "too large for the memory")) throw std::runtime_error(message);
+        }
+        rusage used{};
+        ::getrusage(RUSAGE_CHILDREN, &used);
         if (static_cast<std::uint64_t>(used.ru_maxrss) * 1024 > 320 * megabyte) {
             throw std::runtime_error("too much memory");
         }
@@ -142,15 +191,20 @@ std::string nested(int depth) {
            std::string(static_cast<std::size_t>(depth), ']');
 }
 
-TEST(Bounds, json_with_more_lists_than_memory_can_hold_is_refused_before_it_is_parsed) {
-    const auto of = [](int lists) {
-        std::string text = "[0";
-        for (int i = 1; i < lists; ++i) text += i % 2 == 0 ? ",[]" : ",{}";
-        return text + "]";
-    };
-    EXPECT_NO_THROW((void)io::parsed_json(of(io::most_json_lists)));
-    EXPECT_THROW((void)io::parsed_json(of(io::most_json_lists + 1)), nlohmann::json::exception);
-    EXPECT_TRUE(io::parsed_or_discarded(of(io::most_json_lists + 1)).is_discarded());
+TEST(Bounds, json_with_more_values_than_memory_can_hold_is_refused_before_it_is_parsed) {
+    const std::pair<const char*, std::size_t> values[] = {
+        {"1", 32}, {"\"\"", 96}, {"[]", 160}, {"{}", 160}};
+    for (const auto& [value, bytes] : values) {
+        const auto of = [&, each = value](std::size_t count) {
+            std::string text = "[0";
+            for (std::size_t i = 0; i < count; ++i) text += std::string(",") + each;
+            return text + "]";
+        };
+        const std::size_t most = (io::most_json_bytes - 128) / bytes;
+        EXPECT_NO_THROW((void)io::parsed_json(of(most)));
+        EXPECT_THROW((void)io::parsed_json(of(most + 1)), nlohmann::json::exception) << value;
+        EXPECT_TRUE(io::parsed_or_discarded(of(most + 1)).is_discarded());
+    }
 }
 
 TEST(Bounds, json_that_is_nested_too_deeply_is_refused_before_it_is_parsed) {

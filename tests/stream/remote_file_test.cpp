@@ -86,6 +86,46 @@ TEST(RemoteFile, a_disk_cache_keeps_its_parts_until_the_file_is_another) {
     EXPECT_GT(read().bytes, 1000U);
 }
 
+/// The same samples in the same places, but for one byte in the middle.
+void write_anew(const fs::path& file) {
+    std::string bytes = support::bytes_of(file);
+    bytes[bytes.size() / 2] ^= 1;
+    const auto later = fs::last_write_time(file) + std::chrono::seconds(1);
+    support::put_bytes(file, bytes);
+    fs::last_write_time(file, later);
+}
+
+void replace(const fs::path& file) {
+    const fs::path other = file.string() + ".new";
+    fs::copy_file(file, other);
+    write_anew(other);
+    fs::rename(other, file);
+}
+
+TEST(RemoteFile, a_file_that_is_written_anew_while_it_is_read_is_an_error_here_and_there) {
+    const ScratchFolder folder;
+    const std::pair<const char*, fs::path> files[] = {{"image.ims", hdf5_written()},
+                                                      {"pages.tif", tiff_written()}};
+    const VolumeServer server({"--folder", folder.path().string()});
+    for (const auto& [name, from] : files) {
+        const fs::path file = folder.path() / name;
+        fs::copy_file(from / name, file);
+        for (const std::string& address : {file.string(), server.address(name)}) {
+            for (const auto change : {write_anew, replace}) {
+                SCOPED_TRACE(address);
+                const auto store = open_store(address);
+                const SampleBox box = whole_box(store->info().levels[0].geometry);
+                const auto before = read_box(*store, 0, box);
+                change(file);
+                const std::string message =
+                    message_of<io::InputError>([&] { (void)read_box(*store, 0, box); });
+                EXPECT_TRUE(contains(message, "was written anew")) << message;
+                EXPECT_EQ(read_box(*open_store(address), 0, box).size(), before.size());
+            }
+        }
+    }
+}
+
 TEST(RemoteFile, what_cannot_be_read_is_one_line) {
     const ScratchFolder folder;
     const fs::path good = hdf5_written() / "image.ims";

@@ -196,7 +196,7 @@ void EditController::write_surface(const QString& path, const std::shared_ptr<Su
     }
     const auto write = [=](const io::Progress& progress) {
         if (most < mesh->triangles.size()) *mesh = decimated(*mesh, most, progress);
-        io::write_mesh(*mesh, path.toStdString());
+        io::write_mesh(*mesh, path.toStdString(), progress);
     };
     saving_.start(tr("Saving %1").arg(path), write, [this, path, mesh] {
         const auto triangles = static_cast<int>(mesh->triangles.size());

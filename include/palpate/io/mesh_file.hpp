@@ -26,8 +26,10 @@ SurfaceMesh read_mesh(const std::filesystem::path& path);
 
 /// Writes the mesh in the format of the path's extension, whole or not at all (PendingFile).
 /// Throws OutputError, and std::invalid_argument as above.
-void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path);
+void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path,
+                const OnProgress& progress = {});
 /// The same in a named format, for targets without an extension ("-", /dev/stdout).
-void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path, MeshFormat format);
+void write_mesh(const SurfaceMesh& mesh, const std::filesystem::path& path, MeshFormat format,
+                const OnProgress& progress = {});
 
 }  // namespace palpate::io

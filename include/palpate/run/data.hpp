@@ -81,8 +81,9 @@ class Data {
 
     /// Saves when other ways have failed: in a new folder that only this user can enter, in the
     /// folder of temporary files or, if that fails, in the home folder or the current one. Returns
-    /// the name. Throws io::OutputError with the reason for each folder.
-    std::filesystem::path rescue();
+    /// the name. Throws io::OutputError with the reason for each folder, and passes on
+    /// exceptions of `progress` that are no std::exception.
+    std::filesystem::path rescue(const io::Progress& progress = {});
 
   private:
     std::string save_edits(const std::filesystem::path& path, const io::Progress& progress);

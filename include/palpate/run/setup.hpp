@@ -105,10 +105,11 @@ Field make_field(const Volume& volume, const FieldSetup& setup, ProxyMethod meth
 
 /// The requested level, else the volume's own, else the first that the histogram suggests. Throws
 /// std::invalid_argument for constant data without a level.
-double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup);
+double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup,
+                   const OnProgress& progress = {});
 /// The same, but with layers their outermost level. Throws std::invalid_argument if an isovalue is
 /// requested as well.
-double isovalue_of(const LoadedVolume& loaded, const Setup& setup);
+double isovalue_of(const LoadedVolume& loaded, const Setup& setup, const OnProgress& progress = {});
 
 /// A warning about these layers in this volume: the volume does not declare their units, or has no
 /// densities at some levels. Empty: no warning.
