@@ -9,14 +9,23 @@ import re
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, NoReturn, Optional
+from typing import Any, NoReturn, Optional, TextIO
 
 from .errors import DeviceError, Error, InputError
 
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 STATUS = ((InputError, 3), (DeviceError, 4), (OSError, 5))  # docs/command_line.md
+READER_GONE = 141
 EMPTY = "the value is empty"
 _NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf)", re.IGNORECASE)
+
+
+class Stop(Exception):
+    """The end of the program with this exit status and, if there is one, a line on standard error."""
+
+    def __init__(self, status: int, text: str = "") -> None:
+        super().__init__(text)
+        self.status = status
 
 
 class Kind:
@@ -48,7 +57,9 @@ ABOVE_ZERO = number("a number above 0", lambda x: 0 < x < math.inf)
 
 def whole(least: int = 0, most: int = 2**31 - 1) -> Kind:
     def read(text: str) -> int:
-        if not re.fullmatch(r"[+-]?\d+", text) or not least <= int(text) <= most:
+        if not re.fullmatch(r"[+-]?\d+", text):
+            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number")
+        if not least <= int(text) <= most:
             raise argparse.ArgumentTypeError(f"{text} is not a whole number from {least} to {most}")
         return int(text)
     return Kind("UINT", read)
@@ -93,25 +104,30 @@ class Parser(argparse.ArgumentParser):
 
     def arguments(self, words: Sequence[str]) -> argparse.Namespace:
         """Ends the program after help, the version or a complaint."""
+        # Closed streams: what is written fails for standard output, and is lost for standard error.
+        sys.stdout = sys.stdout or open(os.open(os.devnull, os.O_RDONLY), "w", encoding="utf-8")
+        sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
         if "-h" in words or "--help" in words:
             self.exit(0, self.format_help())
         if "--version" in words:
             from . import __version__
-            self.exit(0, f"palpate {__version__}\n")
+            self.exit(0, f"palpate {__version__}")
         self.given.clear()
+        known = self._option_string_actions
+        for word in words[:words.index("--") if "--" in words else None]:
+            name = word.partition("=")[0]
+            if word.startswith("-") and not _NUMBER.fullmatch(word) and name not in known and (name[:2] == "--" or name[:2] not in known):
+                near = _meant(name, [action.option_strings[-1] for action in self._actions if action.option_strings]).strip(" ()")
+                self.error(f"there is no option {word}" + (f": {near}" if near else ""))
         needed = [action for action in self._actions if action.required]
-        for action in needed:  # is asked for after misspelt options
+        for action in needed:
             action.required = False
         try:
             chosen, rest = self.parse_known_args(words)
         except argparse.ArgumentError as error:
             self.error(self._complaint(error))
-        options = [action.option_strings[-1] for action in self._actions if action.option_strings]
-        for word in rest:
-            if word.startswith("-") and word != "--":
-                near = _meant(word.partition("=")[0], options).strip(" ()")
-                self.error(f"there is no option {word}" + (f": {near}" if near else ""))
-            self.error(f"'{word}' is one argument too many")
+        if rest := [word for word in rest if word != "--"]:
+            self.error(f"'{rest[0]}' is one argument too many")
         for action in needed:
             if action.dest not in self.given:
                 self.error(f"{(action.option_strings or [str(action.metavar)])[-1]}: it is needed, as in {self.examples[0]}")
@@ -131,7 +147,11 @@ class Parser(argparse.ArgumentParser):
         sys.exit(2)
 
     def exit(self, status: int = 0, message: Optional[str] = None) -> NoReturn:
-        print(message, end="", flush=True)
+        try:
+            say(str(message), last=True)
+        except Stop as stop:
+            tell(stop)
+            status = stop.status
         sys.exit(status)
 
     def format_help(self) -> str:
@@ -141,7 +161,7 @@ class Parser(argparse.ArgumentParser):
         for title, actions in (("Positionals", positionals), ("Options", [a for a in self._actions if a.option_strings])):
             if actions:
                 lines += ["", f"{title}:", *(line for action in actions for line in _entry(action))]
-        return "\n".join([*lines, "", "Examples:", *(f"  {words}" for words in self.examples), ""])
+        return "\n".join([*lines, "", "Examples:", *(f"  {words}" for words in self.examples)])
 
 
 def _entry(action: argparse.Action) -> Iterator[str]:
@@ -153,29 +173,56 @@ def _entry(action: argparse.Action) -> Iterator[str]:
     yield from ([f"  {head:<27} {about}"] if len(head) < 28 else [f"  {head}", f"{'':30}{about}"])
 
 
+def _lost(stream: TextIO) -> None:
+    """For a stream that cannot be written: Python flushes once more at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def say(text: str, last: bool = False) -> None:
+    """On standard output. last: the work is done, so a reader that has gone has all that it wanted."""
+    try:
+        print(text, flush=True)
+    except OSError as error:
+        _lost(sys.stdout)
+        if not isinstance(error, BrokenPipeError):
+            raise Stop(5, f"standard output: {error.strerror}") from error
+        if not last:
+            raise Stop(READER_GONE) from error
+
+
 def tell(text: object) -> None:
     """On standard error, in a line."""
-    print(f"palpate: {text}", file=sys.stderr, flush=True)
+    try:
+        print(f"palpate: {text}", file=sys.stderr, flush=True)
+    except OSError:
+        _lost(sys.stderr)
 
 
 def _end(number: int, frame: Any) -> NoReturn:
     raise KeyboardInterrupt(number)
 
 
-def run(work: Callable[[], Any], interrupted: str = "interrupted") -> int:
-    """Does the work of a command. Returns its exit status; what goes wrong is one line on standard error."""
+def run(work: Callable[[], Any], interrupted: str = "interrupted", load: Callable[[], Any] = lambda: None) -> int:
+    """Does the work of a command. Returns its exit status; what goes wrong is one line on standard error. Modules are loaded by `load`:
+    an interrupt while NumPy or a module of pybind11 is imported would come out of it as an ImportError, or not at all, so it waits."""
     for end in ENDS:
         signal.signal(end, _end)
     try:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDS)  # the program blocks them until they can be handled
+        signal.pthread_sigmask(signal.SIG_BLOCK, ENDS)
+        load()
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDS)
         work()
         sys.stdout.flush()
     except KeyboardInterrupt as error:
         tell(interrupted)
         return 128 + (error.args or (signal.SIGINT,))[0]
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python flushes once more at its end
-        return 141
+        _lost(sys.stdout)
+        return READER_GONE
+    except Stop as stop:
+        if str(stop):
+            tell(stop)
+        return stop.status
     except (Error, ValueError, OSError, RuntimeError, EOFError) as error:
         tell("standard input ended before an answer" if isinstance(error, EOFError) else error)
         return next((status for kind, status in STATUS if isinstance(error, kind)), 2)
