@@ -215,7 +215,7 @@ def test_a_command_in_python_is_known_to_the_program_by_its_own_words(command):
     assert said(command, "--version") == said("--version")
 
 
-@pytest.mark.parametrize("command", [name for name in COMMANDS if name != "evaluate"])
+@pytest.mark.parametrize("command", COMMANDS)
 def test_values_that_are_impossible_are_refused_in_a_line_and_examples_are_taken(command, capsys):
     parser = importlib.import_module(f"palpate.{COMMANDS[command]}").PARSER
 

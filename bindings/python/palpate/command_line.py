@@ -113,25 +113,30 @@ class Parser(argparse.ArgumentParser):
             from . import __version__
             self.exit(0, f"palpate {__version__}")
         self.given.clear()
-        known = self._option_string_actions
-        for word in words[:words.index("--") if "--" in words else None]:
-            name = word.partition("=")[0]
-            if word.startswith("-") and not _NUMBER.fullmatch(word) and name not in known and (name[:2] == "--" or name[:2] not in known):
-                near = _meant(name, [action.option_strings[-1] for action in self._actions if action.option_strings]).strip(" ()")
-                self.error(f"there is no option {word}" + (f": {near}" if near else ""))
         needed = [action for action in self._actions if action.required]
         for action in needed:
             action.required = False
         try:
             chosen, rest = self.parse_known_args(words)
         except argparse.ArgumentError as error:
+            if not str(error.argument_name).startswith("-"):
+                self._refuse_misspelt(words)
             self.error(self._complaint(error))
+        self._refuse_misspelt(words)
         if rest := [word for word in rest if word != "--"]:
             self.error(f"'{rest[0]}' is one argument too many")
         for action in needed:
             if action.dest not in self.given:
                 self.error(f"{(action.option_strings or [str(action.metavar)])[-1]}: it is needed, as in {self.examples[0]}")
         return chosen
+
+    def _refuse_misspelt(self, words: Sequence[str]) -> None:
+        known = self._option_string_actions
+        for word in words[:words.index("--") if "--" in words else None]:
+            name = word.partition("=")[0]
+            if word.startswith("-") and not _NUMBER.fullmatch(word) and name not in known and (name[:2] == "--" or name[:2] not in known):
+                near = _meant(name, [action.option_strings[-1] for action in self._actions if action.option_strings]).strip(" ()")
+                self.error(f"there is no option {word}" + (f": {near}" if near else ""))
 
     def _complaint(self, error: argparse.ArgumentError) -> str:
         name = str(error.argument_name).rpartition("/")[2]

@@ -39,11 +39,11 @@ def interval(text):
                  for part in (low, high))
 
 
-PARSER = Parser("evaluate", "Run experiments, each with a table, figures and checked claims. Exit status 1: a claim does not hold", (
+PARSER = Parser("evaluate", "Run experiments, each with a table, figures and checked claims", (
     "drift --output results", "fall-through --volume head.nrrd@34.5 --volume synthetic:torus",
     "penetration --volume head.nrrd@12% --range 12%:20% --range 45%:100%", "all --quick"))
 PARSER.add("experiment", kind=one_of((*EXPERIMENTS, "all")), help="Name of the experiment, or all to run every one and to write "
-           "report.html and report.pdf, which need no other file")
+           "report.html and report.pdf, which need no other file. If a claim does not hold, the exit status is 1")
 PARSER.add("-o", "--output", kind=Kind("FOLDER"), default="palpate-evaluation", help="Folder for the results")
 PARSER.add("--volume", kind=Kind("VOLUME@ISOVALUE"), action="append", help="Volume to use instead of the experiment's own. May be given again")
 PARSER.add("--data", kind=Kind("FOLDER"), help="Folder with the real volumes that some experiments use, such as lobster.nrrd, and with "
