@@ -15,6 +15,7 @@ namespace palpate::io {
 namespace {
 
 constexpr std::size_t most_files = 1 << 16;
+constexpr std::size_t longest_path = 4096, longest_name = 255;  // of Linux
 
 /// "a%03d.raw 1 9 2": files that are named by their numbers.
 struct FilePattern {
@@ -143,18 +144,23 @@ std::vector<std::filesystem::path> data_files(const std::string& name, const Hea
     std::vector<std::filesystem::path> files;
     const auto add = [&](const std::string& file) {
         files.push_back(header.parent_path() / file);
+        if (file.size() > longest_path || files.back().filename().string().size() > longest_name) {
+            throw Failure("the name of a data file is too long; correct the header");
+        }
         if (files.size() > most_files)
             throw Failure("it has more than 65536 data files; save it as one");
     };
     if (is_list(name)) {
         std::ifstream in(header, std::ios::binary);
         in.seekg(static_cast<std::streamoff>(fields.data_offset));
-        for (std::string line; std::getline(in, line);) {
-            if (!trimmed(line).empty()) add(trimmed(line));
+        std::string line(longest_path + 2, 0);
+        while (in.getline(line.data(), std::ssize(line)) || in.gcount() > 0) {
+            const std::string file = trimmed(line.c_str());
+            if (!file.empty()) add(file);
         }
     } else if (const auto pattern = pattern_in(name)) {
         const auto [before, after, width, fill, first, last, step] = *pattern;
-        for (int i = first; step > 0 ? i <= last : i >= last; i += step) {
+        for (std::int64_t i = first; step > 0 ? i <= last : i >= last; i += step) {
             const std::string digits = std::to_string(i);
             add(before + std::string(width - std::min(width, digits.size()), fill) + digits +
                 after);

@@ -88,6 +88,11 @@ void check_kind(Header& header, bool is_pair) {
         }
         return false;
     };
+    if (is_pair && std::memcmp(header.bytes.data(), "ENVI", 4) == 0) {
+        throw Failure(
+            "its header is of ENVI, which is not read; read the other file as raw samples with "
+            "--dims and --type");
+    }
     header.is_second = either_way(540);
     const std::string number = header.is_second ? "2" : "1";
     if (header.size < header.header_bytes()) {

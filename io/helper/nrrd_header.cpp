@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -142,11 +143,14 @@ void apply_skips(const HeaderFields& fields, std::uint64_t bytes, DataPlace& pla
     };
     const std::int64_t lines = skip_of("line skip", 0);
     const std::int64_t skip = skip_of("byte skip", -1);
-    std::ifstream in(place.file, std::ios::binary);
-    if (lines > 0 && in) {  // reading says it of a file that is not there
+    std::error_code error;
+    // Reading says it of what is not there, or is no file: to open a pipe would wait for its
+    // writer.
+    if (lines > 0 && std::filesystem::is_regular_file(place.file, error)) {
+        std::ifstream in(place.file, std::ios::binary);
         in.seekg(static_cast<std::streamoff>(place.offset));
-        std::string line;
-        for (std::int64_t i = 0; i < lines && std::getline(in, line); ++i) {
+        constexpr auto whole_line = std::numeric_limits<std::streamsize>::max();
+        for (std::int64_t i = 0; i < lines && in.ignore(whole_line, '\n'); ++i) {
         }
         if (!in.good()) {
             throw Failure("its line skip of " + std::to_string(lines) +
@@ -159,7 +163,6 @@ void apply_skips(const HeaderFields& fields, std::uint64_t bytes, DataPlace& pla
         throw Failure("its byte skip of -1 is for raw samples only; correct the header");
     }
     if (skip == -1) {
-        std::error_code error;
         const std::uint64_t size = std::filesystem::file_size(place.file, error);
         if (!error && size >= bytes) place.offset = size - bytes;
     }

@@ -3,6 +3,7 @@ writes such files, and is compared with the numbers it was made of."""
 
 import gzip
 import json
+import os
 import struct
 
 import nibabel
@@ -290,7 +291,9 @@ def test_the_slices_of_a_header_may_be_in_several_files(tmp_path, form, packed, 
 
 @pytest.mark.parametrize("names, words", (("%d.raw 5 1 1", "is empty"), ("%d.raw 1 5 0", "make no sense"), ("LIST\n\n", "is empty"),
                                           ("%d.raw 0 99999999 1", "more than 65536"), ("%d.raw 1 5 -1", "is empty"),
-                                          ("%d.raw 1 5000000000 1", "cannot be read"), ("%1000000000d.raw 1 5 1", "cannot be read")))
+                                          ("%d.raw 1 5000000000 1", "cannot be read"), ("%1000000000d.raw 1 5 1", "cannot be read"),
+                                          ("%d.raw 1073741824 1073741824 1073741824", "cannot be read"),
+                                          ("LIST\n" + "a" * 300000, "too long"), ("LIST\n" + "a/" * 3000, "too long")), ids=range(10))
 def test_lists_of_data_files_that_make_no_sense_are_refused(tmp_path, names, words):
     head = "NRRD0004\ntype: short\ndimension: 3\nsizes: 6 4 5\nendian: little\nencoding: raw\ndata file: "
     (tmp_path / "a.nhdr").write_text(head + names)
@@ -430,3 +433,18 @@ def test_a_byte_order_mark_does_not_hide_the_first_vertex_of_an_obj_file(tmp_pat
     (tmp_path / "b.obj").write_text("\ufeff" + text, encoding="utf-8")
     plain, marked = (palpate.read_mesh(tmp_path / name) for name in ("a.obj", "b.obj"))
     assert numpy.array_equal(plain.vertices, marked.vertices) and len(marked.vertices) == 5
+
+
+@pytest.mark.parametrize("field", ("line skip: 0", "line skip: 1", "encoding: gzip"))
+def test_a_pipe_is_no_data_file_and_is_not_waited_for(tmp_path, field):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "a.nhdr").write_text(f"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 8 8 8\n{'' if 'enc' in field else 'encoding: raw' + chr(10)}"
+                                     f"{field}\ndata file: pipe\n\n")
+    refused(tmp_path / "a.nhdr", "'pipe' cannot be read")
+
+
+def test_a_header_of_envi_is_named(tmp_path):
+    (tmp_path / "a.hdr").write_text("ENVI\nsamples = 8\nlines = 8\nbands = 8\n")
+    (tmp_path / "a.img").write_bytes(bytes(512))
+    refused(tmp_path / "a.hdr", "ENVI")
+    refused(tmp_path / "a.img", "ENVI")

@@ -82,6 +82,22 @@ def test_an_interrupted_session_continues_as_if_it_had_not_been(tmp_path):
         session(tmp_path / "two.csv", Plan(0.4, seed=5), lambda trial: 1)
 
 
+def test_a_file_takes_one_session_at_a_time_and_one_setting_of_one_volume(tmp_path):
+    plan, path = Plan(0.3, differences=(0.1, 0.3), repeats=2), tmp_path / "p.csv"
+
+    def ask(trial):
+        with pytest.raises(palpate.OutputError, match="another session"):
+            session(path, plan, lambda trial: 1, "stiffness of a ball")
+        return 1
+
+    rows = session(path, plan, ask, "stiffness of a ball")
+    assert read(path, plan) == rows and {row["felt"] for row in rows} == {"stiffness of a ball"}
+    before = path.read_bytes()
+    with pytest.raises(palpate.InputError, match="with stiffness of a ball, not with stiffness of a torus"):
+        session(path, plan, ask, "stiffness of a torus")
+    assert path.read_bytes() == before
+
+
 def test_the_order_is_random_and_each_difference_is_asked_as_often():
     plan, seen = Plan(2.0, differences=(0.1, 0.3), repeats=30), []
     while trial := next_trial(plan, [1] * len(seen)):

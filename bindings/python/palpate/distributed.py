@@ -413,7 +413,7 @@ PARSER.add("--level", kind=whole(), default=0, help="Level of detail of the sour
 PARSER.add("--dequantize", kind=whole(), default=0, help="Rounds that remove the terraces of rounded data, such as 40")
 PARSER.add("--smooth", kind=whole(), default=0, help="Smooth the samples this many times, up to 64")
 PARSER.add_argument("--prefilter", action="store_true", help="Sharpen the samples for the smooth field")
-PARSER.add("--chunk", kind=whole(), default=64, help="Samples of a chunk along each axis")
+PARSER.add("--chunk", kind=whole(1), default=64, help="Samples of a chunk along each axis")
 PARSER.add("--block", kind=whole(), default=256, help="Samples of a piece of work along each axis, a multiple of the chunk")
 PARSER.add("--compression", kind=one_of(("none", "gzip", "zstd", "blosc")), default="zstd", help="Compression of the chunks")
 PARSER.add("--ome-version", kind=one_of(("0.4", "0.5")), default="0.5", help="Version of OME-Zarr")

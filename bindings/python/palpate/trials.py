@@ -8,6 +8,8 @@ an interrupted session continues, and the fit of a psychometric function (docs/t
 import csv
 import dataclasses
 import difflib
+import fcntl
+import io
 import math
 import sys
 import time
@@ -17,13 +19,13 @@ from typing import Any, Optional, Union
 
 import numpy
 
-from .command_line import ABOVE_ZERO, Kind, Parser, run, whole
+from .command_line import ABOVE_ZERO, Kind, Parser, run, say, whole
 from .errors import DeviceError, InputError, OutputError
 
 _Path = Union[str, Path]
-_Row = dict[str, float]
+_Row = dict[str, Any]
 
-COLUMNS = ("trial", "difference", "first", "second", "answer", "correct")
+COLUMNS = ("trial", "difference", "first", "second", "answer", "correct", "felt")
 GUESS, LAPSE = 0.5, 0.02  # of two alternatives; answers beside the question, assumed
 DOWN = 3  # right answers in a row that make it harder: converges to 79.4 % without lapses (Levitt 1971)
 AT = 0.5 ** (1 / DOWN)
@@ -92,7 +94,7 @@ def next_trial(plan: Plan, correct: Sequence[float]) -> Optional[Trial]:
 
 
 def read(path: _Path, plan: Optional[Plan] = None) -> list[_Row]:
-    """Rows of a session: dicts of numbers. With a plan, they have to be its trials. Raises InputError."""
+    """Rows of a session: dicts of numbers, and a text `felt`. With a plan, they have to be its trials. Raises InputError."""
     try:
         with open(path, encoding="utf-8", newline="") as file:
             lines = list(csv.reader(file))
@@ -101,11 +103,11 @@ def read(path: _Path, plan: Optional[Plan] = None) -> list[_Row]:
     rows = []
     for number, line in enumerate(lines[1:], 2):
         try:
-            row = dict(zip(COLUMNS, map(float, line)))
+            row: _Row = dict(zip(COLUMNS, [*map(float, line[:-1]), *line[-1:]]))
             if len(line) != len(COLUMNS):
                 raise ValueError
         except ValueError as error:
-            raise InputError(f"{path}, line {number}: {len(COLUMNS)} numbers are needed") from error
+            raise InputError(f"{path}, line {number}: {len(COLUMNS) - 1} numbers and what was felt are needed") from error
         trial = next_trial(plan, [r["correct"] for r in rows]) if plan else None
         if plan and (trial is None or any(abs(row[name] - value) > 1e-9 for name, value in dataclasses.asdict(trial).items())):
             raise InputError(f"{path}, line {number}: this is no trial of the plan; use another file for another plan")
@@ -115,27 +117,41 @@ def read(path: _Path, plan: Optional[Plan] = None) -> list[_Row]:
     return rows
 
 
-def session(path: _Path, plan: Plan, ask: Callable[[Trial], int]) -> list[_Row]:
+def session(path: _Path, plan: Plan, ask: Callable[[Trial], int], felt: str = "") -> list[_Row]:
     """Asks all trials that are missing in the file. ask(trial): 1 or 2, the touch that had more. Every answer is in the file before the
-    next trial begins."""
+    next trial begins. `felt`: which setting of what, the same for all trials of a file. Raises InputError, OutputError."""
     path = Path(path)
-    if not path.exists() or path.stat().st_size == 0:
-        _append(path, ",".join(COLUMNS))
-    rows = read(path, plan)
-    while trial := next_trial(plan, [row["correct"] for row in rows]):
-        answer = ask(trial)
-        row = {**dataclasses.asdict(trial), "answer": answer, "correct": int((answer == 2) == (trial.second > trial.first))}
-        _append(path, ",".join(repr(row[name]) for name in COLUMNS))
-        rows.append(row)
-    return rows
-
-
-def _append(path: Path, line: str) -> None:
     try:
-        with path.open("a", encoding="utf-8") as file:
-            file.write(line + "\n")
+        file = path.open("ab", buffering=0)
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise OutputError(f"{path}: another session writes to it: wait for its end, or use another file") from error
+
+        def put_down(line: Sequence[Any]) -> None:
+            text = io.StringIO(newline="")
+            csv.writer(text, lineterminator="\n").writerow(line)
+            try:
+                file.write(text.getvalue().encode())
+            except OSError as error:
+                raise OutputError(f"{path}: cannot be written: {error.strerror}") from error
+
+        if file.tell() == 0:
+            put_down(COLUMNS)
+        rows = read(path, plan)
+        for other in rows:
+            if other["felt"] != felt:
+                raise InputError(f"{path}: is a session with {other['felt']}, not with {felt}: use another file")
+        while trial := next_trial(plan, [row["correct"] for row in rows]):
+            answer = ask(trial)
+            right = int((answer == 2) == (trial.second > trial.first))
+            row = {**dataclasses.asdict(trial), "answer": answer, "correct": right, "felt": felt}
+            put_down([row[name] for name in COLUMNS])
+            rows.append(row)
+    return rows
 
 
 def psychometric(difference: Any, threshold: float, slope: float) -> Any:
@@ -267,14 +283,15 @@ def _ask(chosen: Any) -> None:
     plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed, chosen.most)
     largest = plan.standard * (1 + (max(plan.differences) if plan.differences else plan.most))
     session(chosen.file, plan, touching(volume if at else level, level if at else None, chosen.device, chosen.setting, chosen.seconds,
-                                        Path(chosen.file).with_suffix(".touches"), largest))
+                                        Path(chosen.file).with_suffix(".touches"), largest),
+            f"{chosen.setting} of {chosen.volume} for {chosen.seconds:g} s")
 
 
 def _analyse(files: Sequence[str]) -> None:
-    print("file,trials,threshold,low,high,slope")
-    for file in files:
-        rows = read(file)
-        print(file, len(rows), *(f"{value:.4g}" for value in fit(rows)), sep=",")
+    sessions = [(file, read(file)) for file in files]
+    say("file,trials,threshold,low,high,slope")
+    for file, rows in sessions:
+        say(",".join((file, str(len(rows)), *(f"{value:.4g}" for value in fit(rows)))))
 
 
 def main(words: Sequence[str]) -> int:
