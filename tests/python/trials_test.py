@@ -242,6 +242,8 @@ def test_values_that_are_impossible_are_refused_in_a_line_and_examples_are_taken
         assert end.value.code == 2 and told.startswith("palpate: ") and told.count("\n") == 1 and len(told) < 420
         return told
 
+    for action in parser.needed * 2:  # the second time as well
+        assert "it is needed" in refused()
     for action in parser._actions:
         if not (action.type and action.option_strings):
             continue

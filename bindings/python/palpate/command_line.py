@@ -92,6 +92,7 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, name: str, about: str, examples: Sequence[str]) -> None:
         super().__init__(prog=f"palpate {name}", description=about, add_help=False, allow_abbrev=False, exit_on_error=False)
         self.examples, self.given = [f"palpate {name} {words}" for words in examples], set[str]()
+        self.needed: list[argparse.Action] = []  # asked for after misspelt options, so argparse does not ask
         for store in (None, "store"):
             self.register("action", store, _Once)
         self.add_argument("-h", "--help", action="store_true", help="Print this help message and exit")
@@ -101,6 +102,9 @@ class Parser(argparse.ArgumentParser):
         action = self.add_argument(*names, type=kind, metavar=kind.shown, **more)
         if not action.option_strings:
             action.metavar, action.required = names[0].upper(), not optional
+        if action.required:
+            self.needed.append(action)
+            action.required = False
 
     def arguments(self, words: Sequence[str]) -> argparse.Namespace:
         """Ends the program after help, the version or a complaint."""
@@ -113,9 +117,6 @@ class Parser(argparse.ArgumentParser):
             from . import __version__
             self.exit(0, f"palpate {__version__}")
         self.given.clear()
-        needed = [action for action in self._actions if action.required]
-        for action in needed:
-            action.required = False
         try:
             chosen, rest = self.parse_known_args(words)
         except argparse.ArgumentError as error:
@@ -125,7 +126,7 @@ class Parser(argparse.ArgumentParser):
         self._refuse_misspelt(words)
         if rest := [word for word in rest if word != "--"]:
             self.error(f"'{rest[0]}' is one argument too many")
-        for action in needed:
+        for action in self.needed:
             if action.dest not in self.given:
                 self.error(f"{(action.option_strings or [str(action.metavar)])[-1]}: it is needed, as in {self.examples[0]}")
         return chosen
@@ -161,18 +162,18 @@ class Parser(argparse.ArgumentParser):
 
     def format_help(self) -> str:
         positionals = [action for action in self._actions if not action.option_strings]
-        usage = ["[OPTIONS]", *(f"{action.metavar}" if action.required else f"[{action.metavar}]" for action in positionals)]
+        usage = ["[OPTIONS]", *(f"{action.metavar}" if action in self.needed else f"[{action.metavar}]" for action in positionals)]
         lines = [str(self.description), f"Usage: {self.prog} {' '.join(usage)}"]
         for title, actions in (("Positionals", positionals), ("Options", [a for a in self._actions if a.option_strings])):
             if actions:
-                lines += ["", f"{title}:", *(line for action in actions for line in _entry(action))]
+                lines += ["", f"{title}:", *(line for action in actions for line in _entry(action, action in self.needed))]
         return "\n".join([*lines, "", "Examples:", *(f"  {words}" for words in self.examples)])
 
 
-def _entry(action: argparse.Action) -> Iterator[str]:
+def _entry(action: argparse.Action, is_needed: bool) -> Iterator[str]:
     names = ",".join(action.option_strings) or str(action.metavar)
     kind = action.type.shown if isinstance(action.type, Kind) else ""
-    head = " ".join(filter(None, (names, kind, "..." if action.nargs == "+" else "", "REQUIRED" if action.required else "")))
+    head = " ".join(filter(None, (names, kind, "..." if action.nargs == "+" else "", "REQUIRED" if is_needed else "")))
     usual = f"{action.default:g}" if isinstance(action.default, float) else str(action.default)
     about = f"{action.help}{f' [{usual}]' if action.type and action.default not in (None, (), math.inf) else ''}"
     yield from ([f"  {head:<27} {about}"] if len(head) < 28 else [f"  {head}", f"{'':30}{about}"])

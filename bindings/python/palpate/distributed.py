@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional
 import numpy
 
 from . import InputError, Volume, __version__, _palpate, open_store, sharpened, smoothed
-from .command_line import Kind, Parser, one_of, run, whole
+from .command_line import Kind, Parser, one_of, run, say, whole
 
 if TYPE_CHECKING:  # help needs no Dask
     from distributed import Client
@@ -434,8 +434,8 @@ def _convert(scheduler, workers, given):
         client = stack.enter_context(Client(cluster))
         print(f"dashboard: {client.dashboard_link}", file=sys.stderr)
         done = convert(client, progress=tell, **given)
-    print(f"{given['out']}: OME-Zarr {given['ome_version']}, {done.levels} levels, {done.blocks} blocks "
-          f"({done.kept} kept from before)")
+    say(f"{given['out']}: OME-Zarr {given['ome_version']}, {done.levels} levels, {done.blocks} blocks ({done.kept} kept from before)",
+        last=True)
 
 
 def main(words):

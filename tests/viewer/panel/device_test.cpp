@@ -1,4 +1,4 @@
-// Devices, the servo loop, the switch of hands, and tools in the panel.
+// The device controls and the servo loop's figures.
 #include <QComboBox>
 #include <QLineEdit>
 #include <QPushButton>
@@ -8,9 +8,7 @@
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/session_bar.hpp"
-#include "apps/viewer/panel/tool_controls.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
-#include "viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -186,160 +184,6 @@ TEST_F(Devices, sections_fold_away_and_open_to_say_what_was_refused) {
     heading->setFocus();
     QTest::keyClick(heading, Qt::Key_Return);
     EXPECT_FALSE(part->is_open());
-}
-
-class HandsOfPanel : public PanelFixture {
-  protected:
-    HandsOfPanel() {
-        QObject::connect(&hands(), &HandSwitch::wanted,
-                         [this](int hand) { wanted.push_back(hand); });
-    }
-    HandSwitch& hands() { return panel.hand_switch(); }
-    std::vector<int> wanted;
-};
-
-TEST_F(HandsOfPanel, one_hand_needs_no_switch_and_two_are_told_apart_by_words_and_colour) {
-    set();
-    hands().show_hands({{"mouse", {}}}, 1);
-    EXPECT_FALSE(hands().isVisible());
-    hands().show_hands({{"mouse", {}}, {"haply", {}}}, 2);
-    EXPECT_TRUE(hands().isVisible());
-    auto *one = find<QPushButton>("hand_1"), *two = find<QPushButton>("hand_2");
-    EXPECT_FALSE(one->isChecked());
-    EXPECT_TRUE(two->isChecked());
-    EXPECT_EQ(two->text(), "Hand 2: haply");
-    EXPECT_EQ(two->accessibleName(), "Settings of hand 2, haply");
-    const auto colour_of = [](QPushButton* button) {
-        return QColor(button->grab().toImage().pixel(6, button->height() / 2));
-    };
-    const QColor second = colour_of(two);
-    hands().show_hands({{"mouse", {}}, {"haply", "lost: check the cable"}}, 1);
-    EXPECT_NE(colour_of(two), second);
-    EXPECT_NE(colour_of(one), second);
-    EXPECT_TRUE(two->text().startsWith(QString::fromUtf8("\u26A0")));
-    EXPECT_EQ(two->accessibleDescription(), "lost: check the cable");
-    EXPECT_TRUE(wanted.empty());
-}
-
-TEST_F(HandsOfPanel, the_other_hand_is_chosen_by_mouse_and_keys) {
-    set();
-    hands().show_hands({{"mouse", {}}, {"haply", {}}}, 1);
-    press("hand_2");
-    EXPECT_EQ(wanted, std::vector{2});
-    find<QPushButton>("hand_2")->setFocus();
-    QTest::keyClick(find<QPushButton>("hand_2"), Qt::Key_Left);
-    EXPECT_EQ(wanted, (std::vector{2, 1}));
-}
-
-TEST_F(HandsOfPanel, a_hand_is_added_with_the_device_that_is_chosen_and_removed) {
-    set();
-    QSignalSpy added(&panel.device_controls(), &DeviceControls::added);
-    QSignalSpy removed(&panel.device_controls(), &DeviceControls::removed);
-    panel.device_controls().set_devices({}, "simulated:seed=3");
-    EXPECT_FALSE(find<QPushButton>("remove_hand")->isVisible());
-    press("add_hand");
-    ASSERT_EQ(added.count(), 1);
-    EXPECT_EQ(added.front().front().toString(), "simulated:seed=3");
-    panel.device_controls().set_hands(2);
-    EXPECT_FALSE(find<QPushButton>("add_hand")->isVisible());
-    press("remove_hand");
-    EXPECT_EQ(removed.count(), 1);
-}
-
-class PanelTool : public PanelFixture {
-  protected:
-    PanelTool() {
-        RendererSettings settings;
-        set(settings);
-    }
-    /// As PanelFixture::set, on the smooth field, which tools need.
-    void set_smooth(const RendererSettings& settings) {
-        session_settings = settings;
-        field.emplace(head_like(), Solid::above, std::nullopt, Interpolation::cubic);
-        begin(*field, 300, settings);
-    }
-    void choose(int row) {
-        auto* choice = find<QComboBox>("tool");
-        choice->setCurrentIndex(row);
-        Q_EMIT choice->activated(row);
-        settle();
-    }
-    std::shared_ptr<const Tool> last_tool() const {
-        const auto* use =
-            commands.empty() ? nullptr : std::get_if<command::UseTool>(&commands.back());
-        return use ? use->tool : nullptr;
-    }
-};
-
-TEST_F(PanelTool, asks_for_the_tool_that_is_chosen_in_the_size_that_is_set) {
-    set_smooth({});
-    commands.clear();
-    choose(1);
-    ASSERT_TRUE(last_tool());
-    const double radius = last_tool()->radius();
-    EXPECT_GT(radius, 1);
-    EXPECT_EQ(effect.settings().tool, last_tool());
-    EXPECT_TRUE(find<QLabel>("tool_about")->text().contains("points"));
-    find<NumberBox>("tool_scale_box")->setValue(2);
-    settle();
-    EXPECT_NEAR(last_tool()->radius(), 2 * radius, 1e-9);
-    choose(0);
-    ASSERT_FALSE(commands.empty());
-    EXPECT_FALSE(std::get<command::UseTool>(commands.back()).tool);
-    EXPECT_TRUE(find<QLabel>("tool_about")->text().isEmpty());
-}
-
-TEST_F(PanelTool, goes_back_where_the_session_refuses) {
-    set_smooth({});
-    choose(4);
-    const auto burr = last_tool();
-    refuse_with = "no";
-    choose(1);
-    EXPECT_EQ(effect.settings().tool, burr);
-    EXPECT_EQ(find<QComboBox>("tool")->currentIndex(), 4);
-    refuse_with.clear();
-    // On the linear field tools are refused in words.
-    set({});
-    commands.clear();
-    choose(2);
-    EXPECT_TRUE(commands.empty());
-    EXPECT_EQ(find<QComboBox>("tool")->currentIndex(), 0);
-    EXPECT_FALSE(find<QLabel>("tool_part_message")->text().isEmpty());
-}
-
-TEST_F(PanelTool, that_a_session_brings_is_shown_and_keeps_its_points) {
-    RendererSettings settings;
-    const std::vector<Vec3> points{Vec3(0, 0, 0), Vec3(0, 0, 7)};
-    const ToolShape shape{{{0, 0, 0}, {1, 0, 0}, {0, 0, 7}}, {{0, 1, 2}}};
-    settings.tool = std::make_shared<const Tool>(points, 3, false, shape);
-    set_smooth(settings);
-    EXPECT_EQ(find<QComboBox>("tool")->currentText(), "As given");
-    EXPECT_TRUE(find<QLabel>("tool_about")->text().contains("2 points"));
-    commands.clear();
-    find<NumberBox>("tool_scale_box")->setValue(0.5);
-    settle();
-    ASSERT_TRUE(last_tool());
-    EXPECT_EQ(last_tool()->points().size(), 2U);
-    EXPECT_NEAR(last_tool()->radius(), 3.5, 1e-9);
-    EXPECT_FALSE(last_tool()->turns());
-    ASSERT_EQ(last_tool()->shape().triangles.size(), 1U);
-    EXPECT_EQ(last_tool()->shape().vertices[2], Vec3(0, 0, 3.5));
-    // Another session's takes its place in the list.
-    const int choices = find<QComboBox>("tool")->count();
-    settings.tool = std::make_shared<const Tool>(rod_tool(7, 1));
-    set_smooth(settings);
-    EXPECT_EQ(find<QComboBox>("tool")->count(), choices);
-    EXPECT_TRUE(find<QLabel>("tool_about")->text().contains("8 points"));
-}
-
-TEST_F(PanelTool, of_a_file_is_one_more_choice) {
-    set_smooth({});
-    commands.clear();
-    panel.tool_controls().add("hook.csv", io::PointsSpec{{Vec3::Zero(), Vec3(1, 0, 2)}});
-    settle();
-    ASSERT_TRUE(last_tool());
-    EXPECT_EQ(last_tool()->points().size(), 2U);
-    EXPECT_EQ(find<QComboBox>("tool")->currentText(), "hook.csv");
 }
 
 }  // namespace

@@ -1,38 +1,20 @@
-// Layers in the window, and controllers by themselves, without the window.
-#include <gtest/gtest.h>
+// Layers in the window: choosing a set, feeling it in one stroke, changing it, saving it.
 #include <QAbstractItemView>
-#include <QAction>
 #include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
 #include <QListWidget>
-#include <QMenu>
-#include <QMessageBox>
 #include <QPushButton>
-#include <QRegularExpression>
 #include <QTabWidget>
-#include <QtTest>
-
-#include <atomic>
-#include <cmath>
 #include <set>
-#include <stdexcept>
 
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layer_editor.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
-#include "apps/viewer/panel/panel.hpp"
-#include "apps/viewer/panel/timeline.hpp"
-#include "apps/viewer/window/content.hpp"
-#include "apps/viewer/window/edit_controller.hpp"
 #include "apps/viewer/window/menus.hpp"
-#include "apps/viewer/window/messages.hpp"
-#include "apps/viewer/window/recording_controller.hpp"
 #include "palpate/io/sample_volume.hpp"
-#include "support/scratch_folder.hpp"
-#include "viewer/waiting.hpp"
 #include "viewer/window/window_fixture.hpp"
 
 namespace palpate::viewer::test {
@@ -257,171 +239,6 @@ TEST_F(LayersInWindow, sets_that_do_not_suit_the_solid_side_cannot_be_picked) {
     EXPECT_TRUE(possible(ct_set));
     window_->run().use_field(Solid::below, Interpolation::cubic);
     EXPECT_FALSE(possible(ct_set));
-}
-
-TEST(PlaybackClock, plays_to_the_end_pauses_there_and_begins_again) {
-    PlaybackClock clock(5, 7);
-    clock.advance(1);
-    EXPECT_EQ(clock.time(), 5) << "it is paused";
-    clock.play(0.5);
-    clock.advance(1);
-    EXPECT_EQ(clock.time(), 5.5);
-    clock.advance(10);
-    EXPECT_EQ(clock.time(), 7);
-    EXPECT_EQ(clock.speed(), 0);
-    clock.play(1);
-    EXPECT_EQ(clock.time(), 5);
-}
-
-TEST(PlaybackClock, wraps_around_in_a_loop) {
-    PlaybackClock clock(5, 7);
-    clock.set_loop(true);
-    clock.play(4);
-    clock.advance(0.625);
-    EXPECT_DOUBLE_EQ(clock.time(), 5.5);
-    EXPECT_EQ(clock.speed(), 4);
-}
-
-TEST(PlaybackClock, a_recording_of_one_tick_ends_at_once_even_in_a_loop) {
-    PlaybackClock clock(3, 3);
-    clock.set_loop(true);
-    clock.play(1);
-    clock.advance(0.1);
-    EXPECT_EQ(clock.time(), 3);
-    EXPECT_EQ(clock.speed(), 0);
-}
-
-TEST(PlaybackClock, seeks_within_the_recording_only) {
-    PlaybackClock clock(5, 7);
-    for (const auto& [asked, is] : {std::pair{6.0, 6.0}, {9.0, 7.0}, {-1.0, 5.0}}) {
-        clock.seek(asked);
-        EXPECT_EQ(clock.time(), is);
-    }
-    clock.seek(std::nan(""));
-    EXPECT_EQ(clock.time(), 5);
-}
-
-class Controllers : public testing::Test {
-  protected:
-    Controllers() {
-        QObject::connect(&messages, &Messages::done, [this](const QString& what) { done = what; });
-    }
-    /// Feels a synthetic volume, with the mouse as device.
-    void feel(const std::string& volume) {
-        run::Setup setup;
-        setup.device = {"mouse", {}};
-        setup.real_time = false;
-        setup.field.isovalue = 100.0;
-        content.start_run(std::make_shared<Opened>(open(run::source_named(volume), [](double) {})),
-                          {setup});
-    }
-
-    QWidget parent;
-    Messages messages{&parent};
-    Content content;
-    QString done;
-    support::ScratchFolder scratch;
-};
-
-TEST_F(Controllers, a_background_task_hands_its_result_over_or_shows_its_error) {
-    BackgroundTask task(messages);
-    int result = 0, then = 0;
-    task.start(
-        "count", [&](const io::Progress&) { result = 3; }, [&] { then = result; });
-    EXPECT_TRUE(task.busy());
-    wait_until([&] { return !task.busy(); });
-    EXPECT_EQ(then, 3);
-    task.start(
-        "fail", [](const io::Progress&) { throw std::runtime_error("no such thing"); },
-        [&] { then = 0; });
-    wait_until([&] { return !task.busy(); });
-    EXPECT_EQ(then, 3);
-    EXPECT_TRUE(messages.problem().contains("no such thing"));
-    EXPECT_NE(parent.findChild<QMessageBox*>("problem"), nullptr);
-}
-
-TEST_F(Controllers, a_cancelled_background_task_has_no_result) {
-    BackgroundTask task(messages);
-    bool then = false;
-    const Worker::Task endless = [](const io::Progress& progress) {
-        for (;;) progress(0.5);
-    };
-    task.start("wait", endless, [&] { then = true; });
-    task.cancel();
-    wait_until([&] { return !task.busy(); });
-    EXPECT_FALSE(then);
-    EXPECT_TRUE(messages.problem().isEmpty());
-}
-
-TEST_F(Controllers, actions_follow_what_is_possible_and_on) {
-    QMenu menu;
-    Actions actions(&parent, messages);
-    bool on = false, possible = false;
-    QAction* action = actions.add_switch(
-        &menu, "switch", "Switch", {}, [&](bool to) { on = to; }, [&] { return on; },
-        [&] { return possible; });
-    actions.refresh();
-    EXPECT_FALSE(action->isEnabled());
-    possible = true;
-    actions.refresh();
-    action->trigger();
-    EXPECT_TRUE(on);
-    on = false;
-    actions.refresh();
-    EXPECT_FALSE(action->isChecked());
-    actions.add(&menu, "throws", "Throws", {}, [] { throw std::runtime_error("impossible"); });
-    actions.find("throws")->trigger();
-    EXPECT_TRUE(messages.problem().contains("impossible"));
-}
-
-TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played_by_the_timeline) {
-    Timeline timeline;
-    RecordingController recordings(content, messages);
-    TimelineController playing(content, timeline, messages);
-    feel("synthetic:sphere:24x24x24");
-    EXPECT_TRUE(timeline.isHidden());
-    const auto file = scratch.path() / "a.csv";
-    recordings.start(QString::fromStdString(file.string()));
-    ASSERT_TRUE(recordings.recording());
-    wait_until([&] { return content.live()->recording()->ticks() > 200; });
-    const auto volume = content.volume();
-    feel("synthetic:torus:24x24x12");
-    EXPECT_FALSE(recordings.recording());
-    EXPECT_EQ(recordings.exit_status(), 0);
-    content.start_playback(volume, Playback::read_hands(file, volume->loaded, [](double) {}));
-    EXPECT_TRUE(done.contains(QRegularExpression("^A recording of [0-9]+\\.[0-9] s")))
-        << done.toStdString();
-    EXPECT_FALSE(timeline.isHidden());
-    EXPECT_EQ(content.time(), content.playback()->begin());
-    playing.show_time(1e9);
-    EXPECT_EQ(content.time(), content.playback()->end());
-    timeline.toggle_playing();
-    EXPECT_EQ(content.time(), content.playback()->begin()) << "it begins again";
-    wait_until([&] {
-        playing.advance();
-        playing.observe();
-        return content.time() > content.playback()->begin();
-    });
-    content.close();
-    EXPECT_TRUE(timeline.isHidden());
-}
-
-TEST_F(Controllers, without_edits_nothing_is_unsaved_and_nothing_can_be_undone) {
-    Panel panel(content.effect());
-    EditController editing(content, panel, messages, &parent);
-    EXPECT_TRUE(editing.may_lose_edits({}));
-    editing.undo();
-    EXPECT_TRUE(done.isEmpty()) << "nothing is open";
-    feel("synthetic:sphere:24x24x24");
-    EXPECT_EQ(editing.unsaved(), nullptr);
-    EXPECT_TRUE(editing.may_lose_edits({}));
-    editing.undo();
-    EXPECT_EQ(done, "There is nothing to undo");
-    const auto file = scratch.path() / "saved.nrrd";
-    editing.save(QString::fromStdString(file.string()));
-    EXPECT_FALSE(editing.may_lose_edits({})) << "it is being saved";
-    wait_until([&] { return !editing.saving(); });
-    EXPECT_TRUE(std::filesystem::exists(file));
 }
 
 }  // namespace
