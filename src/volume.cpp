@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -17,20 +18,41 @@ struct Range {
     double minimum, maximum;
 };
 
+/// Least and greatest of the samples, and 0, or NaN if one is not finite. For several samples at
+/// the same time, because compilers do not reorder comparisons of floats.
+template <class T>
+struct RunningRange {
+    static constexpr std::size_t lanes = 64 / sizeof(T);
+    std::array<T, lanes> low, high, nought{};
+
+    RunningRange() {
+        low.fill(std::numeric_limits<T>::max());
+        high.fill(std::numeric_limits<T>::lowest());
+    }
+    void add(const T* samples, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const T s = samples[i];
+            low[i] = s < low[i] ? s : low[i];
+            high[i] = s > high[i] ? s : high[i];
+            if constexpr (std::is_floating_point_v<T>) nought[i] += s - s;
+        }
+    }
+};
+
 template <class T>
 Range range_of(std::span<const T> samples, const OnProgress& progress) {
     constexpr std::size_t between = std::size_t{1} << 20;
-    T low = std::numeric_limits<T>::max();
-    T high = std::numeric_limits<T>::lowest();
-    bool finite = true;
+    RunningRange<T> range;
     for (std::size_t at = 0; at < samples.size(); at += between) {
-        for (const T s : samples.subspan(at, std::min(between, samples.size() - at))) {
-            low = s < low ? s : low;
-            high = s > high ? s : high;
-            if constexpr (std::is_floating_point_v<T>) finite &= std::isfinite(s);
-        }
+        const auto some = samples.subspan(at, std::min(between, samples.size() - at));
+        std::size_t i = 0;
+        for (; i + range.lanes <= some.size(); i += range.lanes) range.add(&some[i], range.lanes);
+        range.add(some.data() + i, some.size() - i);
         if (progress) progress(1);
     }
+    const T low = *std::ranges::min_element(range.low);
+    const T high = *std::ranges::max_element(range.high);
+    const bool finite = std::ranges::all_of(range.nought, [](T n) { return n == 0; });
     if (!finite) {
         throw std::invalid_argument(
             "some samples are not finite (NaN or infinity): replace them, for example by the "

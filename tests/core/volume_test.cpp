@@ -96,6 +96,19 @@ TYPED_TEST(VolumeOf, holds_the_extremes_of_its_type) {
     EXPECT_EQ(volume.sample({1, 0, 0}), static_cast<double>(low));
 }
 
+TYPED_TEST(VolumeOf, finds_its_least_and_greatest_sample_wherever_they_are) {
+    for (int count = 2; count < 140; ++count) {
+        for (int at = 0; at < count; ++at) {
+            std::vector<TypeParam> samples(static_cast<std::size_t>(count), 50);
+            samples[static_cast<std::size_t>(at)] = 60;
+            samples[static_cast<std::size_t>((at + count / 2) % count)] = 40;
+            const Volume volume(grid({count, 1, 1}), std::move(samples));
+            ASSERT_EQ(volume.minimum(), 40) << at << " of " << count;
+            ASSERT_EQ(volume.maximum(), 60) << at << " of " << count;
+        }
+    }
+}
+
 TYPED_TEST(VolumeOf, gives_its_samples_as_their_own_type_only) {
     const Volume volume(grid({2, 1, 1}), std::vector<TypeParam>{1, 2});
     if constexpr (!std::is_same_v<TypeParam, float>) {
@@ -130,11 +143,11 @@ TEST(Volume, refuses_a_wrong_count_of_samples) {
 
 TEST(Volume, refuses_float_samples_that_are_not_finite) {
     for (const double bad : {not_a_number, infinite, -infinite}) {
-        for (const std::size_t at : {0, 3, 7}) {
-            std::vector<float> samples(8, 1);
+        for (std::size_t at = 0; at < 36; ++at) {
+            std::vector<float> samples(36, 1);
             samples[at] = static_cast<float>(bad);
             EXPECT_NE(refusal([&] {
-                          Volume(grid({2, 2, 2}), samples);
+                          Volume(grid({36, 1, 1}), samples);
                       }).find("not finite"),
                       std::string::npos);
         }
