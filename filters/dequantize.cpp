@@ -11,23 +11,18 @@
 #include <vector>
 
 #include "filters/parallel.hpp"
-#include "filters/round.hpp"
+#include "filters/pyramid.hpp"
 #include "filters/sites.hpp"
-#include "filters/sweep.hpp"
 #include "palpate/filters/dequantize_parts.hpp"
 
 namespace palpate::filters {
 namespace {
 
-/// A hair less than half a level: samples on both sides of a mask's surface must not meet in it.
-constexpr double half_level = 511.0 / 1024, half_level_of_mask = 127.0 / 256;
 /// The coarsest steps that are chosen. A mask does not tell how far it is straight.
 constexpr int usual_coarsest = 16, mask_step = 4;
 /// A step is chosen if it bends half of the surfaces by no more than this [levels].
 constexpr double chosen_bend = 0.5, enough = 0.5;
 constexpr double most_sites = 3e4;
-/// From this bend on a coarse step moves a sample less, from twice of it on not at all [levels].
-constexpr double most_bend = 0.55, most_bend_of_mask = 0.05;
 
 /// Is a good part of the surfaces straight to within the rounding?
 bool straight_over(std::span<const SurfaceSite> sites, double level) {
@@ -50,10 +45,10 @@ int coarsest_for(double level, const std::function<std::vector<SurfaceSite>(int)
 /// Coarse rounds take long waves out of the rounding, and a few too many flatten what is curved.
 /// They leave little to the rounds of step 1.
 int rounds_of(int step, int coarsest, int finest, bool mask) {
-    if (step == 1) return mask || coarsest <= 2 ? finest : (finest + 9) / 10;
-    if (step == 2) return mask ? 20 : 16;
-    if (step == 4) return mask ? 10 : 6;
-    return 2;
+    if (step == 1) return mask || coarsest == 1 ? finest : (finest + 19) / 20;
+    if (step == 2) return mask ? 20 : 24;
+    if (step == 4) return mask ? 5 : 6;
+    return step == 8 ? 4 : 2;
 }
 
 void check(const DequantizeOptions& options) {
@@ -71,11 +66,6 @@ void check(const DequantizeOptions& options) {
         throw std::invalid_argument("the distance between levels must be a number above 0");
     }
     if (options.threads < 0) throw std::invalid_argument("a number of threads is 0 or more");
-}
-
-LevelScale scale_of(const DequantizePlan& plan) {
-    return {float(plan.minimum), float(1 / plan.level),
-            float((plan.maximum - plan.minimum) / plan.level)};
 }
 
 /// Whole numbers above the least one.
@@ -126,7 +116,8 @@ class Workspace {
 
     MovedSamples samples() const {
         const auto slice = std::ptrdiff_t(slice_);
-        MovedSamples samples{geometry_.size, nullptr, nullptr, 2 * slice, moved(0), 2 * slice};
+        MovedSamples samples{geometry_.size, nullptr,   nullptr,          moved(0),
+                             2 * slice,      2 * slice, geometry_.size[0]};
         if (floats_) {
             samples.floats = floats_->samples<float>().data();
             samples.own_slice = slice;
@@ -171,15 +162,6 @@ Volume as_float32(const Volume& volume) {
     return moved_samples(volume, moved, {1, volume.minimum(), volume.maximum(), false, {}});
 }
 
-RoundSettings settings_of(const DequantizePlan& plan, int step) {
-    const double bend = plan.mask ? most_bend_of_mask : most_bend;
-    RoundSettings settings;
-    settings.step = step;
-    settings.half = float(plan.mask ? half_level_of_mask : half_level);
-    if (step > 1) settings.straight = float(bend);
-    return settings;
-}
-
 }  // namespace
 
 std::vector<SurfaceSite> sites_of(const VolumePart& part, const SampleBox& core, int step) {
@@ -205,18 +187,21 @@ DequantizePlan plan_of(double level, double minimum, double maximum,
     const int coarsest = options.coarsest ? *options.coarsest
                          : plan.mask      ? mask_step
                                           : coarsest_for(level, sites);
+    using Way = DequantizePlan::Rounds::Way;
+    for (int step = 1; step < coarsest; step *= 2) plan.rounds.push_back({step, 1, Way::down});
     for (int step = coarsest; step >= 1; step /= 2) {
-        plan.rounds.push_back({step, rounds_of(step, coarsest, options.rounds, plan.mask)});
+        plan.rounds.push_back({step, rounds_of(step, coarsest, options.rounds, plan.mask),
+                               step < coarsest ? Way::up : Way::stay});
     }
     return plan;
 }
 
 void run_rounds(const VolumePart& part, std::span<std::int16_t> moved, const DequantizePlan& plan,
-                const DequantizePlan::Rounds& rounds, int threads,
-                const std::function<void(int)>& at_slab) {
+                std::span<const DequantizePlan::Rounds> rounds, int threads) {
     const Index3& size = part.samples.geometry().size;
     const std::ptrdiff_t slice = std::ptrdiff_t{size[0]} * size[1];
-    MovedSamples samples{size, nullptr, nullptr, slice, moved.data(), slice};
+    MovedSamples samples{size,    nullptr, nullptr, moved.data(), slice, slice,
+                         size[0], 1,       1,       part.low};
     std::vector<std::uint16_t> whole;
     with_type(part.samples.type(), [&](auto zero) {
         using T = decltype(zero);
@@ -230,11 +215,10 @@ void run_rounds(const VolumePart& part, std::span<std::int16_t> moved, const Deq
         }
     });
     const Parallel parallel = in_parallel(threads);
-    const LevelScale scale = scale_of(plan);
-    const TerracedBricks bricks = terraced_bricks(samples, scale, plan.mask, part.low, parallel);
-    for (int round = 0; round < rounds.count; ++round) {
-        run_round(samples, scale, settings_of(plan, rounds.step), bricks, parallel, at_slab);
-    }
+    Pyramid pyramid(samples, plan, terraced_bricks(samples, scale_of(plan), plan.mask, parallel),
+                    parallel);
+    for (const auto& some : rounds) pyramid.run(some, [](double) {});
+    pyramid.go_to(1);
 }
 
 Volume moved_samples(const Volume& volume, std::span<const std::int16_t> moved,
@@ -263,9 +247,12 @@ Volume dequantized(Volume volume, const DequantizeOptions& options) {
     const DequantizePlan plan =
         plan_of(*level, volume.minimum(), volume.maximum(), options,
                 [&](int step) { return sites_of(all_of_it, whole_of(volume), step); });
-    const double slices = volume.geometry().size[2];
     double all = volume.type() == SampleType::float32 ? 2 : 3, done = 0;  // sweeps of all samples
-    for (const auto& rounds : plan.rounds) all += rounds.count;
+    const auto cost = [](int step) { return 1.0 / (step * step * step); };
+    for (const auto& rounds : plan.rounds) {
+        const bool is_up = rounds.way == DequantizePlan::Rounds::Way::up;
+        all += (rounds.count + int(is_up)) * cost(rounds.step);
+    }
     const auto swept = [&](double part) {
         done += part;
         tell(first + (1 - first) * done / all);
@@ -283,13 +270,10 @@ Volume dequantized(Volume volume, const DequantizeOptions& options) {
     };
     Workspace workspace(std::move(volume), told);
     const MovedSamples samples = workspace.samples();
-    const LevelScale scale = scale_of(plan);
-    const TerracedBricks bricks = terraced_bricks(samples, scale, plan.mask, Index3::Zero(), told);
+    Pyramid pyramid(samples, plan, terraced_bricks(samples, scale_of(plan), plan.mask, told),
+                    parallel);
     for (const auto& rounds : plan.rounds) {
-        for (int round = 0; round < rounds.count; ++round) {
-            run_round(samples, scale, settings_of(plan, rounds.step), bricks, parallel,
-                      [&](int count) { swept(count / slices); });
-        }
+        pyramid.run(rounds, [&](double part) { swept(part * cost(rounds.step)); });
     }
     return std::move(workspace).result(plan);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -18,37 +19,39 @@
 #endif
 #ifdef __GNUC__
 #define PALPATE_INLINE [[gnu::always_inline]] inline
+#define PALPATE_INLINE_LAMBDA __attribute__((always_inline))
 #else
 #define PALPATE_INLINE inline
+#define PALPATE_INLINE_LAMBDA
 #endif
 
 namespace palpate::filters {
 
-/// Samples along one axis that are `step` apart: first, first + step, ...
-struct Chain {
-    int first, step, size;
-
-    int at(int i) const { return first + step * std::clamp(i, 0, size - 1); }
-};
-inline Chain chain_of(int first, int step, int size) {
-    return {first, step, (size - 1 - first) / step + 1};
+#ifdef PALPATE_FOR_AVX2
+template <class Work>
+PALPATE_FOR_AVX2 void vectorized_avx2(const Work& work) {
+    work();
+}
+#endif
+/// Calls work(), which is a PALPATE_INLINE_LAMBDA, as it was compiled for this processor.
+template <class Work>
+void vectorized(const Work& work) {
+#ifdef PALPATE_FOR_AVX2
+    if (__builtin_cpu_supports("avx2")) return vectorized_avx2(work);
+#endif
+    work();
 }
 
-/// What is swept: rows begin_y to end_y - 1 of slices begin_z to end_z - 1, counted along their
-/// chains, and of each row the samples begin_x to end_x - 1.
-struct Strip {
-    Chain y, z;
-    int begin_x, end_x, begin_y, end_y, begin_z, end_z;
-};
+/// Calls work(zero) with a zero of the type of the own samples.
+template <class Work>
+void with_own_type(const MovedSamples& samples, const Work& work) {
+    samples.floats ? work(float{}) : work(std::uint16_t{});
+}
 
-/// A row in the result of a sweep. Pointers point to the sample begin_x.
-struct SweptRow {
-    int y, z;                 ///< of the box, not of the chain
-    const float* mean;        ///< b [levels], with a step more at both ends
-    std::ptrdiff_t mean_row;  ///< to the mean of the next row of the chain
-    const float* before;      ///< Bb but for its smoothing along z: of the slice before,
-    const float* here;        ///< of this one,
-    const float* after;       ///< and of the next one
+/// What is swept: the samples begin_x to end_x - 1 of rows begin_y to end_y - 1 of slices begin_z
+/// to end_z - 1.
+struct Strip {
+    int begin_x, end_x, begin_y, end_y, begin_z, end_z;
 };
 
 /// (a + 2b + c) / 4
@@ -60,6 +63,21 @@ PALPATE_INLINE void binomial(const float* a, const float* b, const float* c, flo
     for (int i = 0; i < count; ++i) out[i] = binomial(a[i], b[i], c[i]);
 }
 
+/// A row in the result of a sweep. Pointers point to the sample begin_x.
+struct SweptRow {
+    int y, z;
+    const float* mean;        ///< b [levels], with a sample more at both ends
+    std::ptrdiff_t mean_row;  ///< to the mean of the next row
+    const float* before;      ///< Bb but for its smoothing along z: of the slice before,
+    const float* here;        ///< of this one,
+    const float* after;       ///< and of the next one
+
+    /// b - Bb of a sample
+    PALPATE_INLINE float bend(int i) const {
+        return mean[i] - binomial(before[i], here[i], after[i]);
+    }
+};
+
 /// How far a sample lies above the least one [levels].
 PALPATE_INLINE float in_levels(float own, const LevelScale& scale) {
     return (own - scale.least) * scale.per_level;
@@ -70,53 +88,95 @@ PALPATE_INLINE float in_levels(std::uint16_t own, const LevelScale& scale) {
 /// What `moved` of 1 means [levels].
 inline constexpr float moved_unit = 1.0F / 65536;
 
+/// How much a sample moves at a coarse step, 0 to 1.
+PALPATE_INLINE float part_of(float bend, float per_straight) {
+    return std::min(std::max(2 - std::abs(bend) * per_straight, 0.0F), 1.0F);
+}
+
+/// How far a sample may move.
+struct Limits {
+    float half, top;  ///< as in RoundSettings and LevelScale
+
+    /// `to` is the distance from the volume's sample [levels].
+    PALPATE_INLINE std::int16_t moved(float to, float sample) const {
+        const float low = std::max(-half, -sample), high = std::min(half, top - sample);
+        const float units = std::min(std::max(to, low), high) * (1 / moved_unit);
+        // Adding and taking this rounds to the nearest whole number.
+        constexpr float round = 3 << 22;
+        return static_cast<std::int16_t>(static_cast<int>(units + round - round));
+    }
+};
+
 template <class T>
 const T* own_row(const MovedSamples& samples, int y, int z) {
-    const std::ptrdiff_t at = z * samples.own_slice + std::ptrdiff_t{y} * samples.size[0];
+    const std::ptrdiff_t at = z * samples.own_slice + y * samples.row;
     if constexpr (std::is_same_v<T, float>)
         return samples.floats + at;
     else
         return samples.whole + at;
 }
 inline std::int16_t* moved_row(const MovedSamples& samples, int y, int z) {
-    return samples.moved + z * samples.moved_slice + std::ptrdiff_t{y} * samples.size[0];
+    return samples.moved + z * samples.moved_slice + y * samples.row;
 }
 
-/// The samples begin to end - 1 of a row, as they are moved [levels]. Beyond its ends each chain
-/// goes on as a straight line would: v(-k) = 2 v(0) - v(k).
+/// The samples begin to end - 1 of a row, as they are moved [levels]. Beyond its ends it goes on as
+/// a straight line would: v(-k) = 2 v(0) - v(k).
 template <class T>
 PALPATE_INLINE void load_row(const MovedSamples& samples, const LevelScale& scale, int y, int z,
-                             int step, int begin, int end, float* __restrict out) {
+                             int begin, int end, float* __restrict out) {
     const T* own = own_row<T>(samples, y, z);
     const std::int16_t* moved = samples.moved ? moved_row(samples, y, z) : nullptr;
     const int size = samples.size[0], from = std::max(begin, 0), to = std::min(end, size);
-    if (moved) {
-        for (int x = from; x < to; ++x) {
-            out[x - begin] = in_levels(own[x], scale) + static_cast<float>(moved[x]) * moved_unit;
-        }
+    const auto load = [&](auto apart) PALPATE_INLINE_LAMBDA {
+        const auto value = [&](int x) PALPATE_INLINE_LAMBDA {
+            const float sample = in_levels(own[x * apart], scale);
+            return moved ? sample + static_cast<float>(moved[x * apart]) * moved_unit : sample;
+        };
+        const auto beyond = [&](int x) {
+            const int last = x < 0 ? 0 : size - 1;
+            return 2 * value(last) - value(std::clamp(2 * last - x, 0, size - 1));
+        };
+        for (int x = begin; x < from; ++x) out[x - begin] = beyond(x);
+        for (int x = from; x < to; ++x) out[x - begin] = value(x);
+        for (int x = to; x < end; ++x) out[x - begin] = beyond(x);
+    };
+    samples.apart == 1 ? load(std::integral_constant<int, 1>())
+                       : load(std::integral_constant<int, 2>());
+}
+
+/// The samples begin to end - 1 of a row that may lie beyond the first and the last along y and z.
+template <class T>
+PALPATE_INLINE void load(const MovedSamples& samples, const LevelScale& scale, int y, int z,
+                         int begin, int end, float* __restrict out, float* __restrict scratch) {
+    // out = (2 at the end - mirrored) along y of the same along z
+    const int end_y = std::clamp(y, 0, samples.size[1] - 1),
+              end_z = std::clamp(z, 0, samples.size[2] - 1);
+    load_row<T>(samples, scale, end_y, end_z, begin, end, out);
+    if (end_y == y && end_z == z) return;
+    const auto add = [&](int at_y, int at_z, float weight) {
+        at_y = std::clamp(at_y, 0, samples.size[1] - 1);
+        at_z = std::clamp(at_z, 0, samples.size[2] - 1);
+        load_row<T>(samples, scale, at_y, at_z, begin, end, scratch);
+        for (int i = 0; i < end - begin; ++i) out[i] += weight * scratch[i];
+    };
+    const int mirrored_y = 2 * end_y - y, mirrored_z = 2 * end_z - z;
+    if (end_y != y && end_z != z) {
+        add(end_y, end_z, 3);
+        add(mirrored_y, end_z, -2);
+        add(end_y, mirrored_z, -2);
+        add(mirrored_y, mirrored_z, 1);
     } else {
-        for (int x = from; x < to; ++x) out[x - begin] = in_levels(own[x], scale);
+        add(end_y, end_z, 1);
+        add(mirrored_y, mirrored_z, -1);
     }
-    const auto value = [&](int x) {
-        return in_levels(own[x], scale) +
-               (moved ? static_cast<float>(moved[x]) * moved_unit : 0.0F);
-    };
-    const auto beyond = [&](int x) {
-        const int first = (x % step + step) % step;
-        if (first >= size) return value(0);  // a chain without samples: of no use
-        const int last = size - 1 - (size - 1 - first) % step, end = x < 0 ? first : last;
-        return 2 * value(end) - value(std::clamp(2 * end - x, first, last));
-    };
-    for (int x = begin; x < from; ++x) out[x - begin] = beyond(x);
-    for (int x = to; x < end; ++x) out[x - begin] = beyond(x);
 }
 
 /// Smooths the rows of a strip: once (b) and, but for z, twice. Rows of each kind follow each other
-/// at the same distance and begin 2 steps before begin_x.
+/// at the same distance and begin 2 samples before begin_x.
 struct SweepBuffers {
-    explicit SweepBuffers(const Strip& strip, int step)
+    explicit SweepBuffers(const Strip& strip)
         : rows(strip.end_y - strip.begin_y),
-          row(strip.end_x - strip.begin_x + 4 * step),
+          row(strip.end_x - strip.begin_x + 4),
           kept(std::size_t(row) * std::size_t(9 * rows + 15)),
           memory(std::make_unique_for_overwrite<float[]>(kept)) {}
 
@@ -133,66 +193,37 @@ struct SweepBuffers {
     std::unique_ptr<float[]> memory;
 };
 
-/// A row of a strip, or what stands for it beyond the ends of the chains along y and z.
-template <class T>
-PALPATE_INLINE void load(const MovedSamples& samples, const LevelScale& scale, const Strip& strip,
-                         int y, int z, float* __restrict out, float* __restrict scratch) {
-    const int begin = strip.begin_x - 2 * strip.y.step, end = strip.end_x + 2 * strip.y.step;
-    // out = (2 at the end - mirrored) along y of the same along z
-    const int end_y = std::clamp(y, 0, strip.y.size - 1),
-              end_z = std::clamp(z, 0, strip.z.size - 1);
-    load_row<T>(samples, scale, strip.y.at(end_y), strip.z.at(end_z), strip.y.step, begin, end,
-                out);
-    if (end_y == y && end_z == z) return;
-    const auto add = [&](int at_y, int at_z, float weight) {
-        load_row<T>(samples, scale, strip.y.at(at_y), strip.z.at(at_z), strip.y.step, begin, end,
-                    scratch);
-        for (int i = 0; i < end - begin; ++i) out[i] += weight * scratch[i];
-    };
-    const int mirrored_y = 2 * end_y - y, mirrored_z = 2 * end_z - z;
-    if (end_y != y && end_z != z) {
-        add(end_y, end_z, 3);
-        add(mirrored_y, end_z, -2);
-        add(end_y, mirrored_z, -2);
-        add(mirrored_y, mirrored_z, 1);
-    } else {
-        add(end_y, end_z, 1);
-        add(mirrored_y, mirrored_z, -1);
-    }
-}
-
 /// Calls each(SweptRow) for the rows of a strip, slice by slice.
 template <class T, class Each>
 PALPATE_INLINE void sweep(const MovedSamples& samples, const LevelScale& scale, const Strip& strip,
                           const Each& each) {
-    const int step = strip.y.step, width = strip.end_x - strip.begin_x;
-    SweepBuffers buffers(strip, step);
+    const int width = strip.end_x - strip.begin_x;
+    SweepBuffers buffers(strip);
     const int rows = buffers.rows;
     const auto number = [&](int z) { return z - strip.begin_z + 6; };  // above 0
     for (int z = strip.begin_z - 2; z < strip.end_z + 2; ++z) {
         float* const scratch = buffers.scratch();
         for (int y = -2; y < rows + 2; ++y) {
-            load<T>(samples, scale, strip, strip.begin_y + y, z, buffers.loaded(y), scratch);
+            load<T>(samples, scale, strip.begin_y + y, z, strip.begin_x - 2, strip.end_x + 2,
+                    buffers.loaded(y), scratch);
         }
         const bool has_mean = z >= strip.begin_z;  // of the slice before
         for (int y = -1; y < rows + 1; ++y) {
             binomial(buffers.loaded(y - 1), buffers.loaded(y), buffers.loaded(y + 1), scratch,
-                     width + 4 * step);
-            float* const flat = buffers.flat(number(z), y) + step;
-            binomial(scratch, scratch + step, scratch + 2 * step, flat, width + 2 * step);
+                     width + 4);
+            float* const flat = buffers.flat(number(z), y) + 1;
+            binomial(scratch, scratch + 1, scratch + 2, flat, width + 2);
             if (!has_mean) continue;
-            binomial(buffers.flat(number(z - 2), y) + step, buffers.flat(number(z - 1), y) + step,
-                     flat, buffers.mean(number(z - 1), y) + step, width + 2 * step);
+            binomial(buffers.flat(number(z - 2), y) + 1, buffers.flat(number(z - 1), y) + 1, flat,
+                     buffers.mean(number(z - 1), y) + 1, width + 2);
         }
         if (!has_mean) continue;
         for (int y = 0; y < rows; ++y) {
-            const auto mean = [&](int at) { return buffers.mean(number(z - 1), at) + step; };
-            binomial(mean(y - 1), mean(y), mean(y + 1), scratch, width + 2 * step);
-            binomial(scratch, scratch + step, scratch + 2 * step, buffers.twice(number(z - 1), y),
-                     width);
+            const auto mean = [&](int at) { return buffers.mean(number(z - 1), at) + 1; };
+            binomial(mean(y - 1), mean(y), mean(y + 1), scratch, width + 2);
+            binomial(scratch, scratch + 1, scratch + 2, buffers.twice(number(z - 1), y), width);
             if (z < strip.begin_z + 2) continue;
-            each(SweptRow{strip.y.at(strip.begin_y + y), strip.z.at(z - 2),
-                          buffers.mean(number(z - 2), y) + 2 * step, buffers.row,
+            each(SweptRow{strip.begin_y + y, z - 2, buffers.mean(number(z - 2), y) + 2, buffers.row,
                           buffers.twice(number(z - 3), y), buffers.twice(number(z - 2), y),
                           buffers.twice(number(z - 1), y)});
         }

@@ -29,8 +29,8 @@ struct WeighRow {
         const float* const above = row.mean + row.mean_row;
         const float* const below = row.mean - row.mean_row;
         for (int brick = 0; brick < bricks.count()[0]; ++brick) {
-            const int from = std::max(bricks.first_of(0, brick), 0);
-            const int to = std::min(bricks.first_of(0, brick + 1), strip.end_x);
+            const int from = std::max(bricks.first_of(0, samples, brick), 0);
+            const int to = std::min(bricks.first_of(0, samples, brick + 1), strip.end_x);
             std::int32_t all = 0, stepped = 0;
             for (int i = from; i < to; ++i) {
                 const float x = row.mean[i + 1] - row.mean[i - 1], y = above[i] - below[i];
@@ -48,47 +48,46 @@ struct WeighRow {
     }
 };
 
-template <class T>
-void weigh_strip(const WeighRow<T>& weigh) {
-    sweep<T>(weigh.samples, weigh.scale, weigh.strip, weigh);
-}
-#ifdef PALPATE_FOR_AVX2
-template <class T>
-PALPATE_FOR_AVX2 void weigh_strip_avx2(const WeighRow<T>& weigh) {
-    sweep<T>(weigh.samples, weigh.scale, weigh.strip, weigh);
-}
-#endif
-
-template <class T>
-void weigh(const WeighRow<T>& row) {
-#ifdef PALPATE_FOR_AVX2
-    if (__builtin_cpu_supports("avx2")) return weigh_strip_avx2(row);
-#endif
-    weigh_strip(row);
-}
-
 }  // namespace
 
+MovedSamples every_second(const MovedSamples& samples) {
+    MovedSamples some = samples;
+    const Index3 first(first_coarser(samples, 0), first_coarser(samples, 1),
+                       first_coarser(samples, 2));
+    const std::ptrdiff_t row = first[1] * samples.row + first[0];
+    const std::ptrdiff_t own = first[2] * samples.own_slice + row;
+    if (samples.floats) some.floats += own;
+    if (samples.whole) some.whole += own;
+    some.moved += first[2] * samples.moved_slice + row;
+    some.own_slice *= 2;
+    some.moved_slice *= 2;
+    some.row *= 2;
+    some.apart *= 2;
+    some.step *= 2;
+    some.size = (samples.size - first + Index3::Ones()) / 2;
+    some.low = (samples.low + Index3::Ones()) / 2;
+    return some;
+}
+
 TerracedBricks terraced_bricks(const MovedSamples& samples, const LevelScale& scale, bool mask,
-                               const Index3& low, const Parallel& parallel) {
+                               const Parallel& parallel) {
     MovedSamples own = samples;
     own.moved = nullptr;
-    TerracedBricks bricks(samples.size, low), flat = bricks;
+    TerracedBricks bricks(samples.size, samples.low), flat = bricks;
     const Index3 count = bricks.count();
-    const Chain rows = chain_of(0, 1, samples.size[1]), slices = chain_of(0, 1, samples.size[2]);
     parallel(count[1] * count[2], [&](int i) {
         const int y = i % count[1], z = i / count[1];
         const auto begin = [&](int axis, int brick) {
-            return std::clamp(bricks.first_of(axis, brick), 0, samples.size[axis]);
+            return std::clamp(bricks.first_of(axis, own, brick), 0, own.size[axis]);
         };
-        const Strip strip{rows,        slices,          0,           samples.size[0],
-                          begin(1, y), begin(1, y + 1), begin(2, z), begin(2, z + 1)};
+        const Strip strip{0,           own.size[0],    begin(1, y), begin(1, y + 1),
+                          begin(2, z), begin(2, z + 1)};
         std::vector<BrickSums> sums(static_cast<std::size_t>(count[0]));
-        if (own.floats) {
-            weigh(WeighRow<float>{own, scale, bricks, strip, sums.data()});
-        } else {
-            weigh(WeighRow<std::uint16_t>{own, scale, bricks, strip, sums.data()});
-        }
+        with_own_type(own, [&](auto zero) {
+            using T = decltype(zero);
+            const WeighRow<T> weigh{own, scale, bricks, strip, sums.data()};
+            vectorized([&]() PALPATE_INLINE_LAMBDA { sweep<T>(own, scale, strip, weigh); });
+        });
         for (int x = 0; x < count[0]; ++x) {
             const BrickSums& sum = sums[static_cast<std::size_t>(x)];
             flat.row(y, z)[x] = sum.all == 0;
@@ -97,6 +96,29 @@ TerracedBricks terraced_bricks(const MovedSamples& samples, const LevelScale& sc
     });
     bricks.grow_into(flat);
     return bricks;
+}
+
+void TerracedBricks::for_runs(const MovedSamples& samples, const Index3& low, const Index3& high,
+                              int most, const std::function<void(int, int)>& work) const {
+    std::vector<std::uint8_t> any(static_cast<std::size_t>(count_[0]));
+    const int last_y = brick_of(1, samples, high[1] - 1),
+              last_z = brick_of(2, samples, high[2] - 1);
+    for (int z = brick_of(2, samples, low[2]); z <= last_z; ++z) {
+        for (int y = brick_of(1, samples, low[1]); y <= last_y; ++y) {
+            for (std::size_t i = 0; i < any.size(); ++i) any[i] |= row(y, z)[i];
+        }
+    }
+    const int gap = 1 + samples.step / 4;  // [bricks] a sweep smooths some samples beyond its ends
+    for (int brick = 0, end = 0; brick < count_[0]; brick = end) {
+        end = brick + 1;
+        if (!any[std::size_t(brick)]) continue;
+        for (int i = end; i < std::min({end + gap, brick + most, count_[0]}); ++i) {
+            if (any[std::size_t(i)]) end = i + 1;
+        }
+        const int from = std::max(first_of(0, samples, brick), low[0]);
+        const int to = std::min(first_of(0, samples, end), high[0]);
+        if (from < to) work(from, to);
+    }
 }
 
 void TerracedBricks::grow_into(const TerracedBricks& others) {

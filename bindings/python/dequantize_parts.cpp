@@ -5,6 +5,7 @@
 #include <pybind11/functional.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
@@ -51,14 +52,21 @@ std::vector<std::int16_t> moved_of(const Volume& samples, const std::optional<Vo
     return moved;
 }
 
-/// The state after rounds (step, count); without one, of samples that were not moved.
+using Rounds = std::tuple<int, int, int>;  // step, count, way
+
+filters::DequantizePlan::Rounds rounds_from(const Rounds& rounds) {
+    const auto& [step, count, way] = rounds;
+    return {step, count, filters::DequantizePlan::Rounds::Way(way)};
+}
+
+/// The state after some rounds; without one, of samples that were not moved.
 Volume rounds_of(const Volume& samples, const std::optional<Volume>& state, const Index3& low,
                  const Index3& whole, const filters::DequantizePlan& plan,
-                 const std::vector<std::pair<int, int>>& rounds) {
+                 const std::vector<Rounds>& rounds) {
     std::vector<std::int16_t> moved = moved_of(samples, state);
-    for (const auto& [step, count] : rounds) {
-        filters::run_rounds({samples, low, whole}, moved, plan, {step, count}, 1, [](int) {});
-    }
+    std::vector<filters::DequantizePlan::Rounds> all;
+    for (const Rounds& some : rounds) all.push_back(rounds_from(some));
+    filters::run_rounds({samples, low, whole}, moved, plan, all, 1);
     return {samples.geometry(), std::move(moved)};
 }
 
@@ -75,9 +83,9 @@ void bind_dequantize_parts(py::module_& module) {
         .def(py::init(&plan_of))
         .def_property_readonly("rounds",
                                [](const DequantizePlan& plan) {
-                                   std::vector<std::pair<int, int>> rounds;
+                                   std::vector<Rounds> rounds;
                                    for (const auto& r : plan.rounds)
-                                       rounds.emplace_back(r.step, r.count);
+                                       rounds.emplace_back(r.step, r.count, int(r.way));
                                    return rounds;
                                })
         .def(py::pickle(
@@ -100,6 +108,9 @@ void bind_dequantize_parts(py::module_& module) {
     module.def("_sites_of", &sites_of);
     module.def("_rounds_of", &rounds_of, py::call_guard<py::gil_scoped_release>());
     module.def("_moved_samples", &moved_samples, py::call_guard<py::gil_scoped_release>());
+    module.def("_reach_of", [](const Rounds& rounds) { return rounds_from(rounds).reach(); });
+    module.attr("_DOWN") = int(filters::DequantizePlan::Rounds::Way::down);
+    module.attr("_STAY") = int(filters::DequantizePlan::Rounds::Way::stay);
     module.attr("_TERRACE_REACH") = filters::terrace_reach;
 }
 

@@ -93,7 +93,7 @@ Volume by_parts(const Volume& volume, int edge, const DequantizeOptions& options
             for_each(around, [&](const Index3& at) {
                 here[offset(around, at)] = state[offset(whole, at)];
             });
-            run_rounds({part, around.low, size}, here, plan, rounds, 1, [](int) {});
+            run_rounds({part, around.low, size}, here, plan, {&rounds, 1}, 1);
             for_each(box,
                      [&](const Index3& at) { next[offset(whole, at)] = here[offset(around, at)]; });
         }

@@ -1,11 +1,10 @@
-// A round of dequantization against the slow reference, on grids of all shapes and types, and the
+// Rounds of dequantization against the slow reference, on grids of all shapes and types, and the
 // choice of bricks.
-#include "filters/round.hpp"
+#include "filters/pyramid.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "palpate/scenes/volumes.hpp"
 #include "support/dequantize.hpp"
@@ -26,7 +25,7 @@ struct Moved {
           moved(std::size_t(sample_count(volume.geometry()))) {
         const Index3& size = volume.geometry().size;
         const std::ptrdiff_t slice = std::ptrdiff_t{size[0]} * size[1];
-        samples = {size, nullptr, nullptr, slice, moved.data(), slice};
+        samples = {size, nullptr, nullptr, moved.data(), slice, slice, size[0]};
         if (volume.type() == SampleType::float32) {
             samples.floats = volume.samples<float>().data();
             return;
@@ -54,25 +53,40 @@ TerracedBricks some_bricks(const Index3& size, const Index3& low, std::uint64_t 
     return bricks;
 }
 
-/// `settings` in levels of `level`. Whether some samples moved and some, in other bricks, did not.
-void expect_round(const Volume& volume, const RoundSettings& settings, double level,
-                  const Index3& low = Index3::Zero(), int rounds = 2) {
+using Rounds = std::vector<DequantizePlan::Rounds>;
+using Way = DequantizePlan::Rounds::Way;
+
+/// Of a box whose first sample is `low`. Whether the samples of some bricks move and others do not.
+void expect_rounds(const Volume& volume, double level, bool mask, const Rounds& rounds,
+                   const Index3& low = Index3::Zero()) {
     Moved fast(volume, level);
+    fast.samples.low = low;
     const Index3& size = volume.geometry().size;
     const TerracedBricks bricks = some_bricks(size, low, 5);
     const auto moves = [&](const Index3& at) {
-        return bricks.row(bricks.brick_of(1, at[1]),
-                          bricks.brick_of(2, at[2]))[bricks.brick_of(0, at[0])] != 0;
+        const auto brick = [&](int axis) { return bricks.brick_of(axis, fast.samples, at[axis]); };
+        return bricks.row(brick(1), brick(2))[brick(0)] != 0;
     };
+    const DequantizePlan plan{level, volume.minimum(), volume.maximum(), mask, rounds};
+    Pyramid pyramid(fast.samples, plan, bricks, &backwards);
     support::Grid slow = support::grid_of(volume);
-    int slices = 0;
-    for (int round = 0; round < rounds; ++round) {
-        support::dequantize_once(slow, volume, settings.step, settings.half * level,
-                                 settings.straight * level, moves);
-        run_round(fast.samples, fast.scale, settings, bricks, &backwards,
-                  [&](int done) { slices += done; });
+    double done = 0, count = 0;
+    for (const auto& some : rounds) {
+        pyramid.run(some, [&](double part) { done += part; });
+        count += some.count + int(some.way == Way::up);
+        const support::Moving<decltype(moves)> moving{
+            volume,
+            some.step,
+            some.way == Way::down ? 2 * some.step : some.step,
+            low,
+            (mask ? 127.0 / 256 : 511.0 / 1024) * level,
+            (mask ? 0.05 : 0.55) * level,
+            moves};
+        if (some.way == Way::up) moving.refine(slow);
+        for (int round = 0; round < some.count; ++round) moving.round(slow);
     }
-    EXPECT_EQ(slices, rounds * size[2]);
+    pyramid.go_to(1);
+    EXPECT_NEAR(done, count, 1e-9);
     double worst = 0;
     std::size_t at = 0;
     slow.for_each([&](const Index3& index) {
@@ -83,37 +97,38 @@ void expect_round(const Volume& volume, const RoundSettings& settings, double le
         }
         ++at;
     });
-    EXPECT_LT(worst, 2e-4) << size.transpose() << " " << name_of(volume.type()) << " step "
-                           << settings.step;
+    EXPECT_LT(worst, 2e-4) << size.transpose() << " " << name_of(volume.type()) << " at "
+                           << low.transpose();
 }
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+const Rounds there_and_back = {
+    {1, 1, Way::down}, {2, 1, Way::down}, {4, 2}, {2, 1, Way::up}, {1, 1, Way::up}};
 
-TEST(Round, is_the_formula_on_every_shape_of_grid_and_for_every_step) {
+TEST(Rounds, are_their_formula_on_every_shape_of_grid_and_for_every_step) {
     std::uint64_t seed = 1;
     for (const Index3& size :
          {Index3(1, 1, 1), Index3(2, 1, 3), Index3(1, 9, 2), Index3(7, 5, 9), Index3(16, 3, 4),
           Index3(5, 17, 6), Index3(4, 4, 33), Index3(35, 4, 3), Index3(3, 66, 2)}) {
-        for (const int step : {1, 2, 4, 16, 32}) {
-            const Volume volume =
-                scenes::noise(scenes::centred(size), SampleType::uint8, seed++, 9);
-            expect_round(volume, {step, 0.499F, step == 1 ? infinity : 0.7F}, 1);
-        }
+        const Volume volume = scenes::noise(scenes::centred(size), SampleType::uint8, seed++, 9);
+        expect_rounds(volume, 1, false, there_and_back);
+        for (const int step : {1, 2, 16, 32}) expect_rounds(volume, 1, false, {{step, 2}});
+        expect_rounds(volume, 9, true, there_and_back);
     }
 }
 
-TEST(Round, moves_nothing_outside_of_terraced_bricks_wherever_these_begin) {
-    const Volume volume = scenes::noise(scenes::centred({50, 20, 36}), SampleType::uint8, 7, 9);
-    expect_round(volume, {1, 0.4F}, 1, {3, 15, 8}, 1);
-    expect_round(volume, {2, 0.4F, 0.7F}, 1, {16, 1, 31}, 1);
+TEST(Rounds, are_those_of_the_whole_volumes_grids_wherever_a_part_begins) {
+    const Volume volume = scenes::noise(scenes::centred({40, 20, 36}), SampleType::uint8, 7, 3);
+    for (const Index3& low : {Index3(3, 15, 8), Index3(16, 1, 31), Index3(5, 2, 7)}) {
+        expect_rounds(volume, 1, false, {{1, 1, Way::down}, {2, 1}, {1, 1, Way::up}}, low);
+    }
 }
 
-TEST(Round, is_the_formula_for_every_type_of_sample) {
+TEST(Rounds, are_their_formula_for_every_type_of_sample) {
     for (const SampleType type :
          {SampleType::uint8, SampleType::int16, SampleType::uint16, SampleType::float32}) {
         const double amplitude = type == SampleType::uint8 ? 255 : 30000;
         const Volume volume = scenes::noise(scenes::centred({9, 8, 7}), type, 3, amplitude);
-        expect_round(volume, {2, 0.5F, 0.7F}, amplitude / 20);
+        expect_rounds(volume, amplitude / 4, false, there_and_back);
     }
 }
 
@@ -129,7 +144,7 @@ Volume ramp_and_noise() {
 TEST(TerracedBricks, are_those_of_gentle_slopes_and_of_what_is_constant_beside_them) {
     const Volume volume = ramp_and_noise();
     Moved given(volume, 1);
-    const auto bricks = terraced_bricks(given.samples, given.scale, false, {0, 0, 0}, &backwards);
+    const auto bricks = terraced_bricks(given.samples, given.scale, false, &backwards);
     for (int z = 0; z < 3; ++z) {
         for (int y = 0; y < 3; ++y) {
             const std::vector<int> row(bricks.row(y, z), bricks.row(y, z) + 9);
@@ -141,7 +156,7 @@ TEST(TerracedBricks, are_those_of_gentle_slopes_and_of_what_is_constant_beside_t
 TEST(TerracedBricks, are_all_that_a_masks_surface_crosses) {
     const Volume volume = scenes::box({48, 48, 80}, {20, 20, 20}, {27, 27, 27});
     Moved given(volume, 255);
-    const auto bricks = terraced_bricks(given.samples, given.scale, true, {0, 0, 0}, &backwards);
+    const auto bricks = terraced_bricks(given.samples, given.scale, true, &backwards);
     for (int z = 0; z < 5; ++z) {
         for (int y = 0; y < 3; ++y) {
             for (int x = 0; x < 3; ++x) EXPECT_EQ(bricks.row(y, z)[x], z < 3) << y << " " << z;

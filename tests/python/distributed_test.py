@@ -11,6 +11,7 @@ import distributed
 import numpy
 import palpate
 import pytest
+from palpate import _palpate
 from palpate.distributed import HALO, _stages, convert
 
 PROGRAM = os.environ["PALPATE"]
@@ -188,12 +189,16 @@ def test_a_worker_of_another_version_is_refused(client, tmp_path):
 
 
 def test_stages_hold_all_rounds_in_their_order_and_reach_no_farther_than_the_halo():
-    rounds = [(16, 2), (8, 2), (4, 6), (2, 20), (1, 40)]
+    down, stay, up = 0, 1, 2
+    rounds = [(1, 1, down), (2, 1, down), (4, 1, down), (8, 1, down), (16, 2, stay), (8, 4, up), (4, 6, up), (2, 24, up), (1, 40, up)]
     stages = _stages(rounds)
-    flat = [step for stage in stages for step, count in stage for _ in range(count)]
-    assert flat == [step for step, count in rounds for _ in range(count)]
-    assert all(sum(2 * step * count for step, count in stage) <= HALO for stage in stages)
-    assert len(stages) <= 11
+    pieces = [piece for stage in stages for piece in stage]
+    assert [step for step, count, way in pieces for _ in range(count)] == [step for step, count, way in rounds for _ in range(count)]
+    assert [step for step, count, way in pieces if way == up] == [8, 4, 2, 1]
+    assert all(count == 0 for step, count, way in pieces if way == up)
+    assert [step for step, count, way in pieces if way == down] == [1, 2, 4, 8]
+    assert all(sum(_palpate._reach_of(piece) for piece in stage) <= HALO for stage in stages)
+    assert len(stages) <= 13
 
 
 def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_path):

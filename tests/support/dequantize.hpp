@@ -66,23 +66,79 @@ inline Grid grid_of(const Volume& volume) {
     return grid;
 }
 
-/// One round: u = 2b - Bb, within `half` of the volume's samples and within its range, where
-/// moves(index) says so. Where b and Bb differ by more than `straight` it counts less, from twice
-/// of it on not at all.
-template <class Moves>
-void dequantize_once(Grid& state, const Volume& volume, int step, double half, double straight,
-                     const Moves& moves) {
-    Grid before = state;
-    state.for_each([&](const Index3& index) {
-        if (!moves(index)) return;
-        const double own = volume.sample(index), mean = binomial(before, index, step, 1);
-        const double bend = mean - binomial(before, index, step, 2);
-        const double low = std::max(own - half, volume.minimum());
-        const double high = std::min(own + half, volume.maximum());
-        const double part = std::clamp(2 - std::abs(bend) / straight, 0.0, 1.0);
-        double& value = state.at(index);
-        value = std::clamp(value + part * (mean + bend - value), low, high);
-    });
+/// |b - Bb|, or what it is at the nearest of the samples `step` apart.
+inline double bend_at(Grid& grid, Index3 index, int step) {
+    for (int axis = 0; axis < 3; ++axis) {
+        while (index[axis] < 0) index[axis] += step;
+        while (index[axis] >= grid.size[axis]) index[axis] -= step;
+    }
+    return std::abs(binomial(grid, index, step, 1) - binomial(grid, index, step, 2));
 }
+
+/// Samples that are moved by what is `step` apart: those whose indices in the whole volume are
+/// multiples of `apart`, where moves(index) says so. low: the first sample in the whole volume.
+template <class Moves>
+struct Moving {
+    const Volume& volume;
+    int step, apart;
+    Index3 low;
+    double half, straight;  ///< [data units]
+    const Moves& moves;
+
+    /// Moves samples by part(index) of the way to value(index), within `half` of the volume's
+    /// samples and within its range.
+    template <class Part, class Value>
+    void move(Grid& state, const Part& part, const Value& value) const {
+        state.for_each([&](const Index3& index) {
+            const Index3 at = low + index;
+            if (at.unaryExpr([&](int i) { return i % apart; }).any() || !moves(index)) return;
+            const double own = volume.sample(index);
+            double& sample = state.at(index);
+            sample = std::clamp(sample + part(index) * (value(index) - sample),
+                                std::max(own - half, volume.minimum()),
+                                std::min(own + half, volume.maximum()));
+        });
+    }
+    double part_of(double bend) const { return std::clamp(2 - bend / straight, 0.0, 1.0); }
+
+    /// One round: u = 2b - Bb. Where b and Bb differ by more than `straight` it counts less, from
+    /// twice of it on not at all.
+    void round(Grid& state) const {
+        Grid before = state;
+        move(
+            state,
+            [&](const Index3& i) { return step == 1 ? 1 : part_of(bend_at(before, i, step)); },
+            [&](const Index3& i) {
+                return 2 * binomial(before, i, step, 1) - binomial(before, i, step, 2);
+            });
+    }
+    /// Cubic interpolation of the samples 2 step apart, less where these bend.
+    void refine(Grid& state) const {
+        Grid before = state;
+        move(
+            state, [&](const Index3& i) { return part_between(before, i, 0); },
+            [&](const Index3& i) { return value_between(before, i, 0); });
+    }
+
+  private:
+    bool is_between(const Index3& index, int axis) const {
+        return (low[axis] + index[axis]) % (2 * step) != 0;
+    }
+    double value_between(Grid& grid, const Index3& index, int axis) const {
+        if (axis == 3) return sample_of(grid, index, 2 * step);
+        const auto value = [&](int steps) {
+            return value_between(grid, index + steps * step * Index3::Unit(axis), axis + 1);
+        };
+        if (!is_between(index, axis)) return value(0);
+        return (9 * (value(-1) + value(1)) - (value(-3) + value(3))) / 16;
+    }
+    double part_between(Grid& grid, const Index3& index, int axis) const {
+        if (axis == 3) return part_of(bend_at(grid, index, 2 * step));
+        const auto part = [&](int steps) {
+            return part_between(grid, index + steps * step * Index3::Unit(axis), axis + 1);
+        };
+        return is_between(index, axis) ? (part(-1) + part(1)) / 2 : part(0);
+    }
+};
 
 }  // namespace palpate::support

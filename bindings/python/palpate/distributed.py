@@ -31,7 +31,7 @@ if TYPE_CHECKING:  # help needs no Dask
 
 # What a block reads round itself while it is dequantized: more means fewer stages, each with more to
 # do twice [samples].
-HALO = 32
+HALO = 40
 SITE_STEPS = (16, 8, 4, 2)
 Progress = Optional[Callable[[str, int, int], Any]]
 
@@ -136,7 +136,7 @@ def _survey(job, block):
     if found and found[8:9] == " " and f"{zlib.crc32(found[9:].encode()):08x}" == found[:8]:
         return True, json.loads(found[9:])
     size = tuple(int(n) for n in job.store().levels[job.level].size)
-    around = _grown(block, HALO, size)
+    around = _grown(block, 2 * max(SITE_STEPS), size)
     part = job.store().read(*around, level=job.level)
     own = _cut(part, around, block)
     said = {"values": _palpate._values_of(own).tolist(), "sites": {}}
@@ -151,7 +151,7 @@ def _survey(job, block):
 def _dequantize(job, block, number, plan, rounds):
     """A stage of dequantizing: `rounds` of a block, from the stage before."""
     store = job.store()
-    reach = sum(2 * step * count for step, count in rounds) + _palpate._TERRACE_REACH
+    reach = sum(map(_palpate._reach_of, rounds)) + _palpate._TERRACE_REACH
     around = _grown(block, reach, store.levels[job.level].size)
     samples = store.read(*around, level=job.level)
     state = open_store(job.state(f"state-{number - 1}")).read(*around) if number > 0 else None
@@ -236,18 +236,16 @@ def _blocks(size, edge):
 
 
 def _stages(rounds):
-    """Rounds (step, count) in lists of which each reaches no farther than HALO."""
+    """Rounds (step, count, way) one by one, in lists of which each reaches no farther than HALO."""
     stages, reach = [], HALO + 1
-    for step, count in rounds:
-        for _ in range(count):
-            if reach + 2 * step > HALO:
+    for step, count, way in rounds:
+        pieces = [(step, 1, way)] if way == _palpate._DOWN else [(step, 0, way)] + count * [(step, 1, _palpate._STAY)]
+        for piece in pieces:
+            if reach + _palpate._reach_of(piece) > HALO:
                 stages.append([])
                 reach = 0
-            reach += 2 * step
-            if stages[-1] and stages[-1][-1][0] == step:
-                stages[-1][-1] = (step, stages[-1][-1][1] + 1)
-            else:
-                stages[-1].append((step, 1))
+            reach += _palpate._reach_of(piece)
+            stages[-1].append(piece)
     return stages
 
 

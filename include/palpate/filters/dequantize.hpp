@@ -42,8 +42,8 @@ std::optional<Terraces> terraces_of(const Volume& volume, const OnProgress& prog
 std::string reason_to_dequantize(const Terraces& terraces);
 
 struct DequantizeOptions {
-    /// Rounds of step 1, 1 to most_rounds. After coarser steps than 2, data other than masks takes
-    /// a tenth of them. Coarser steps have fixed numbers of rounds. More rounds flatten the stair
+    /// Rounds of step 1, 1 to most_rounds. After coarser steps, data other than masks takes a
+    /// twentieth of them. Coarser steps have fixed numbers of rounds. More rounds flatten the stair
     /// steps of masks further.
     int rounds = 40;
     /// The coarsest step [samples], a power of two up to greatest_step. Default: the largest up to
@@ -61,12 +61,13 @@ struct DequantizeOptions {
 /// more than half a level, or beyond the volume's range. Samples in bricks without terraces, and
 /// data without levels (level_of()), keep their values.
 ///
-/// A round of step s, from the coarsest to 1: b = B u, with B the binomial (1 2 1)/4 along each
-/// axis over neighbours s apart; u = 2b - Bb, kept within half a level of the volume's sample.
-/// Beyond the border, samples s apart go on as a straight line. 2B -
-/// B^2 (Kaiser and Hamming 1977, "twicing" after Tukey) keeps quadratics, so curved surfaces stay
-/// where they are. The box is that of Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces
-/// of binary volumes", for any number of levels.
+/// A round: b = B u, with B the binomial (1 2 1)/4 along each axis; u = 2b - Bb, kept within half a
+/// level of the volume's sample. Rounds are done on the grids of every s-th sample, s from 1 to the
+/// coarsest step and back. On the way back, a finer grid is first interpolated from the coarser
+/// one. Beyond the border, samples go on as a straight line. 2B - B^2 (Kaiser and Hamming 1977,
+/// "twicing" after Tukey) keeps quadratics, so curved surfaces stay where they are. The box is that
+/// of Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces of binary volumes", for any
+/// number of levels.
 ///
 /// Takes 4 bytes per sample, the result's own, and an eighth of that. The volume is released at the
 /// beginning if the caller has moved it here (not if its samples are floats). Throws

@@ -39,10 +39,16 @@ std::vector<SurfaceSite> sites_of(const VolumePart& part, const SampleBox& core,
 /// The rounds of a whole volume, and what each of them has to know of it.
 struct DequantizePlan {
     struct Rounds {
-        int step = 1;
+        enum class Way {
+            down,  ///< one round, in which only the samples of the next coarser grid move
+            stay,
+            up  ///< first, samples are interpolated from those of the next coarser grid
+        };
+        int step = 1;  ///< their grid has the samples whose indices are multiples of it
         int count = 1;
+        Way way = Way::stay;
         /// A sample depends on others as far away as this, along each axis [samples].
-        int reach() const { return 2 * step * count; }
+        int reach() const { return 2 * step * count + (way == Way::up ? 5 * step : 0); }
     };
     double level = 1;                 ///< distance between levels [data units]
     double minimum = 0, maximum = 0;  ///< of the whole volume [data units]
@@ -60,12 +66,10 @@ inline constexpr int terrace_reach = 2 * 16 + 2;
 
 /// Takes the samples of a part through some rounds, on `threads` threads (0: all cores). `moved`
 /// (x fastest, [1/65536 level]) is the distance of each sample from its own value, before and
-/// afterwards. It begins as zeros. Samples nearer than Rounds::reach() + terrace_reach to a border
-/// of the part that is not the volume's are wrong afterwards. `at_slab` is called from the calling
-/// thread, with the number of slices that were done since the last call.
+/// afterwards. It begins as zeros. Samples nearer than terrace_reach and the Rounds::reach() of
+/// all these rounds to a border of the part that is not the volume's are wrong afterwards.
 void run_rounds(const VolumePart& part, std::span<std::int16_t> moved, const DequantizePlan& plan,
-                const DequantizePlan::Rounds& rounds, int threads,
-                const std::function<void(int slices)>& at_slab);
+                std::span<const DequantizePlan::Rounds> rounds, int threads);
 
 /// The moved samples, as float32, as dequantized() returns them.
 Volume moved_samples(const Volume& volume, std::span<const std::int16_t> moved,

@@ -1,0 +1,90 @@
+// Dequantization on grids of every second, fourth, ... sample.
+#include "filters/pyramid.hpp"
+
+#include <algorithm>
+
+#include "filters/refine.hpp"
+#include "filters/sweep.hpp"
+
+namespace palpate::filters {
+namespace {
+
+/// A hair less than half a level: samples on both sides of a mask's surface must not meet in it.
+constexpr double half_level = 511.0 / 1024, half_level_of_mask = 127.0 / 256;
+/// From this bend on a coarse step moves a sample less, from twice of it on not at all [levels].
+constexpr double most_bend = 0.55, most_bend_of_mask = 0.05;
+
+}  // namespace
+
+LevelScale scale_of(const DequantizePlan& plan) {
+    return {float(plan.minimum), float(1 / plan.level),
+            float((plan.maximum - plan.minimum) / plan.level)};
+}
+
+RoundSettings Pyramid::settings_of(int step) const {
+    RoundSettings settings;
+    settings.half = float(plan_.mask ? half_level_of_mask : half_level);
+    if (step > 1) settings.straight = float(plan_.mask ? most_bend_of_mask : most_bend);
+    return settings;
+}
+
+Pyramid::Grid::Grid(const MovedSamples& every_second, const Parallel& parallel)
+    : samples(every_second) {
+    const Index3& size = samples.size;
+    const std::ptrdiff_t slice = std::ptrdiff_t{size[0]} * size[1];
+    const auto copy = [&](const auto* from, std::ptrdiff_t from_slice, auto& to) {
+        to.resize(static_cast<std::size_t>(slice * size[2]));
+        parallel(size[2], [&](int z) {
+            for (int y = 0; y < size[1]; ++y) {
+                const auto* const row = from + z * from_slice + y * every_second.row;
+                const auto begin = to.begin() + z * slice + std::ptrdiff_t{y} * size[0];
+                for (int x = 0; x < size[0]; ++x) begin[x] = row[2 * x];
+            }
+        });
+        return to.data();
+    };
+    if (samples.floats) samples.floats = copy(samples.floats, samples.own_slice, floats);
+    if (samples.whole) samples.whole = copy(samples.whole, samples.own_slice, whole);
+    samples.moved = copy(samples.moved, samples.moved_slice, moved);
+    samples.own_slice = samples.moved_slice = slice;
+    samples.row = size[0];
+    samples.apart = 1;
+}
+
+void Pyramid::go_to(int step) {
+    while (top().step < step) coarse_.emplace_back(every_second(top()), parallel_);
+    while (top().step > step) {
+        const Grid last = std::move(coarse_.back());
+        coarse_.pop_back();
+        const MovedSamples to = every_second(top());
+        parallel_(to.size[2], [&](int z) {
+            for (int y = 0; y < to.size[1]; ++y) {
+                const std::int16_t* const from = moved_row(last.samples, y, z);
+                std::int16_t* const row = moved_row(to, y, z);
+                for (int x = 0; x < to.size[0]; ++x) row[2 * x] = from[x];
+            }
+        });
+    }
+}
+
+void Pyramid::run(const DequantizePlan::Rounds& rounds, const std::function<void(double)>& done) {
+    using Way = DequantizePlan::Rounds::Way;
+    go_to(rounds.step);
+    const double slices = top().size[2];
+    const auto at_slab = [&](int count) { done(count / slices); };
+    const RoundSettings settings = settings_of(rounds.step);
+    if (rounds.way == Way::down) {
+        Grid next(every_second(top()), parallel_);
+        run_round(top(), scale_, settings, bricks_, parallel_, at_slab, &next.samples);
+        coarse_.push_back(std::move(next));
+        return;
+    }
+    if (rounds.way == Way::up) {
+        refine(top(), scale_, settings_of(2 * rounds.step), bricks_, parallel_, at_slab);
+    }
+    for (int round = 0; round < rounds.count; ++round) {
+        run_round(top(), scale_, settings, bricks_, parallel_, at_slab);
+    }
+}
+
+}  // namespace palpate::filters
