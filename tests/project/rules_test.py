@@ -10,6 +10,7 @@ from pathlib import Path
 import figures
 import globals as writable
 import includes
+import pages
 import prose
 import style
 
@@ -257,6 +258,21 @@ class Figures(unittest.TestCase):
                            ("511", "511: docs/b.csv, max mean_ns"),
                            ("511", "511 of docs/a.csv")):
             self.assertIsNotNone(self.wrong(said, mark), mark)
+
+
+class Pages(unittest.TestCase):
+    def found(self, text):
+        known = {("Proxy", "never_enters_the_solid")}, {"a_hand_that_jumps_over_a_wall"}, {"tests/core/proxy_test.cpp"}
+        return [problem for _, problem in pages.problems(text, *known)]
+
+    def test_names_of_tests_and_files_that_exist_pass(self):
+        self.assertEqual(self.found("`Proxy.never_enters_the_solid`, `Every/Proxy.never_enters_the_solid`, `core/proxy_test.cpp`, "
+                                    "`a_hand_that_jumps_over_a_wall`, `devices/NAME/NAME.cpp`\n```\n`core/none.cpp`\n```\n"), [])
+
+    def test_names_that_lead_nowhere_are_found(self):
+        for name in ("Proxy.always_enters_the_solid", "Field.never_enters_the_solid", "core/prox_test.cpp",
+                     "a_hand_that_jumps_over_the_wall"):
+            self.assertEqual(len(self.found(f"`{name}`")), 1, name)
 
 
 if __name__ == "__main__":
