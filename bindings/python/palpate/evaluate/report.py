@@ -59,6 +59,11 @@ def files_of(report):
         yield f"{report.name}-{figure.suffix}.svg" if figure.suffix else f"{report.name}.svg", figure.caption
 
 
+def in_place_of_a_picture(caption):
+    """Its first sentence. The caption stands below the picture and need not be read out twice."""
+    return caption.partition(". ")[0].rstrip(".")
+
+
 def markdown_table(table):
     lines = [table.columns, ["---"] * len(table.columns), *table.cells(short)]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines) + "\n" if table else ""
@@ -68,7 +73,7 @@ def markdown(report):
     result = report.result
     text = f"# {report.name}: {report.title}\n\n" + "".join(f"{p}\n\n" for p in result.paragraphs)
     text += markdown_table(result.summary)
-    text += "".join(f"![{caption}]({file})\n\n{caption}\n\n" for file, caption in files_of(report))
+    text += "".join(f"![{in_place_of_a_picture(caption)}]({file})\n\n{caption}\n\n" for file, caption in files_of(report))
     text += markdown_table(claims_of(result))
     text += "".join(f"{line}\n\n" for line in data_of(result))
     return text + f"All numbers: [{report.name}.csv]({report.name}.csv). {report.circumstances}\n"
@@ -100,10 +105,10 @@ def section(report, folder, whole):
     for figure, (file, caption) in zip(report.result.figures, files_of(report)):
         # WeasyPrint 57 sets the text of such SVG in wrong sizes, so paper gets pixels.
         kind, data = ("svg+xml", (folder / file).read_bytes()) if whole else ("png", figures.pixels(figure.drawn))
-        caption = html.escape(caption)
-        parts.append(f'<figure><img style="width:{figure.drawn.get_figwidth():g}in" alt="{caption}" '
+        alt = html.escape(in_place_of_a_picture(caption))
+        parts.append(f'<figure><img style="width:{figure.drawn.get_figwidth():g}in" alt="{alt}" '
                      f'src="data:image/{kind};base64,{base64.b64encode(data).decode()}">'
-                     f"<figcaption>{caption}</figcaption></figure>\n")
+                     f"<figcaption>{html.escape(caption)}</figcaption></figure>\n")
     table = report.result.table
     numbers = (f"<details><summary>All numbers ({len(table)} rows)</summary>\n{html_table(table)}</details>\n" if whole else
                small(f"All {len(table)} rows of numbers are in {report.name}.csv."))
