@@ -89,6 +89,32 @@ TEST(Streamed, a_replay_that_waits_gives_the_ticks_of_the_whole_volume_bit_for_b
     EXPECT_GT(constrained, 500);
 }
 
+TEST(Streamed, a_replay_in_real_time_holds_the_proxy_until_its_samples_are_there) {
+    const BallFile ball;
+    const LoadedVolume streamed = load(ball.streamed());
+    const double level = 0.5 * (ball.volume.minimum() + ball.volume.maximum());
+    const io::Trajectory trajectory = stroke(ball.volume);
+    const Field field = make_field(start_samples(streamed), {});
+    Renderer renderer = make_renderer(field, level, offline_settings(RenderSetup{}, field, level));
+    std::vector<double> waited;
+    const auto pace = keep_pace(streamed, trajectory, [&](double seconds) {
+        waited.push_back(seconds);
+        return std::chrono::steady_clock::time_point(std::chrono::milliseconds(waited.size()));
+    });
+    const auto tick = [&](std::int64_t at) {
+        return render(renderer, {trajectory.time[at], trajectory.position[at], true}).proxy;
+    };
+    EXPECT_EQ(tick(0).status, UpdateStatus::waiting);
+    EXPECT_TRUE(support::comes_true([&] {
+        pace(renderer, 1);
+        return is_resident(renderer.field, trajectory.position[1], 1);
+    }));
+    EXPECT_EQ(tick(1).status, UpdateStatus::done);
+    pace(renderer, 2999);
+    EXPECT_EQ(waited.front(), trajectory.time[1] - trajectory.time[0]);
+    EXPECT_EQ(waited.back(), trajectory.time[2999] - trajectory.time[0]);
+}
+
 TEST(Streamed, a_live_run_touches_and_its_recording_repeats_bit_for_bit) {
     const BallFile ball;
     const auto data = test::stepped_data(load(ball.streamed()));
