@@ -14,9 +14,17 @@ import numpy
 import palpate
 import pytest
 
-from palpate.evaluate import bodies, heads, human, layers, needle, performance, recorded, scaling, stability, tissues, tools
+from palpate.evaluate import bodies, figures, heads, human, layers, needle, performance, recorded, scaling, stability, tissues, tools
 from palpate.evaluate.experiment import GRANTED, Options, Table
 from palpate.evaluate.subjects import Subject, of_text
+
+
+def test_an_svg_keeps_its_words_and_its_lines_to_a_tenth_of_a_point():
+    lines = "".join(f'   <path d="M {x}.123456 1 \nL {x}.2 2.004 \nL {x}.21 2.01 \nL 9 9 \n" style="fill: none"/>\n' for x in (1, 2))
+    text = ' <text x="0.123456" style="stroke-width: 0.125" transform="translate(0.001 -0.001) rotate(0.125)">0.123456</text>'
+    assert figures.compact("<svg>\n" + lines + text) == (
+        '<svg>\n<path d="M 1.12 1 L 1.2 2 L 9 9 M 2.12 1 L 2.2 2 L 9 9" style="fill: none"/>\n'
+        '<text x="0.12" style="stroke-width: 0.125" transform="translate(0 0) rotate(0.125)">0.123456</text>')
 
 
 def test_phantoms_have_their_depth_as_density():

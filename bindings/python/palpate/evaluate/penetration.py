@@ -175,6 +175,6 @@ def run(options):
     table, presses, lines = Table(), [], lines_of(options)
     for line, function in options.each((line, function) for line in lines for function in FUNCTIONS):
         presses.append(Press(line, function))
-        table.extend(presses[-1].rows(20 if options.quick else 5))
+        table.extend(presses[-1].rows(20 if options.quick else 10))
     text = PAGE.text(ranges=" ".join(map(ranges_of, lines)))
     return Result(table, [figure_of(lines, presses)], claims_of(presses), text, summary_of(presses))

@@ -3,6 +3,7 @@
 import base64
 import csv
 import dataclasses
+import functools
 import html
 import importlib.util
 import math
@@ -26,18 +27,12 @@ class Report:
         return self.result.claims
 
 
-def number(cell):
-    """Digits that read back as the same double; nothing for NaN."""
-    if isinstance(cell, str):
-        return cell
-    if math.isnan(cell):
-        return ""
-    text = repr(float(cell))
-    return text[:-2] if text.endswith(".0") else text
+def number(cell, digits=12):
+    """To more digits than other compilers repeat; nothing for NaN."""
+    return cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.{digits}g}"
 
 
-def short(cell):
-    return cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.4g}"
+short = functools.partial(number, digits=4)
 
 
 def write_csv(table, path):
