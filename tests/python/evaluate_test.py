@@ -458,6 +458,13 @@ def test_a_signal_before_its_modules_are_loaded_ends_it_with_one_line(tmp_path, 
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_signal_while_modules_are_loaded_ends_it_at_once_with_one_line():
+    load = "os.kill(os.getpid(), signal.SIGINT), print('loaded')"
+    ran = subprocess.run([sys.executable, "-c", "import os, signal, sys; from palpate.command_line import run; "
+                          f"sys.exit(run(lambda: print('done'), load=lambda: ({load})))"], capture_output=True, text=True)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (130, "", "palpate: interrupted\n")
+
+
 def test_nothing_half_written_is_left_when_interrupted(tmp_path):
     running = subprocess.Popen([os.environ["PALPATE"], "evaluate", "drift", "--output", "found"], cwd=tmp_path,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

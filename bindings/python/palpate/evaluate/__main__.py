@@ -1,6 +1,5 @@
 """The command palpate evaluate."""
 
-import argparse
 import contextlib
 import importlib.util
 import json
@@ -11,7 +10,7 @@ import sys
 import uuid
 from pathlib import Path
 
-from ..command_line import Kind, Parser, Stop, one_of, say, tell, whole
+from ..command_line import Kind, Parser, Stop, one_of, remark, say, tell, whole
 from ..command_line import run as command
 
 EXPERIMENTS = ("drift", "fall-through", "performance", "scaling", "fidelity", "stability", "walk-through",
@@ -32,7 +31,7 @@ def interval(text):
         if not low <= high or len({end.endswith("%") for end in ends}) == 2:
             raise ValueError
     except ValueError as error:
-        raise argparse.ArgumentTypeError(f"'{text}' is no range such as 12%:20% or 300:900") from error
+        raise ValueError(f"'{text}' is no range such as 12%:20% or 300:900") from error
     if not text.endswith("%"):
         return (lambda volume: low), (lambda volume: high)
     return tuple((lambda volume, part=part: volume.minimum + part / 100 * (volume.maximum - volume.minimum))
@@ -110,7 +109,7 @@ def options_of(chosen, name):
 
     def progress(part):
         if sys.stderr.isatty() and not (chosen.quiet or chosen.json):
-            print(f"\r{name} {part:4.0%} ", end="\n" if part >= 1 else "", file=sys.stderr, flush=True)
+            remark(f"\r{name} {part:4.0%} ", end="\n" if part >= 1 else "")
 
     def note(text):
         if not chosen.quiet:
