@@ -359,9 +359,14 @@ def test_a_long_call_ends_when_its_progress_raises_and_at_ctrl_c(name):
     assert operator.length_hint(signals) == 9
 
 
+def write(recording, path):
+    rows = numpy.column_stack([recording.time, recording.position, recording.force])
+    numpy.savetxt(path, rows, fmt=["%.3f"] + 6 * ["%.4f"], header=" ".join(recorded.COLUMNS), comments="# ")
+
+
 def test_a_recording_reads_back_as_it_was_written_and_damage_is_named(tmp_path):
     made = recorded.modelled(1, 1)
-    recorded.write(made, tmp_path / "hand.traj")
+    write(made, tmp_path / "hand.traj")
     again = recorded.read(tmp_path / "hand.traj")
     assert again.name == "hand" and abs(again.position - made.position).max() < 1e-4 and abs(again.force - made.force).max() < 1e-4
     (tmp_path / "other.traj").write_text("% fx fy fz t x y z extra\n1, 2, 3, 0.5, 7, 8, 9, 0\n1 2 3 0.6 7 8 9 0\n")
@@ -411,7 +416,7 @@ def test_a_scanned_ball_is_felt_as_it_was_recorded(tmp_path):
     radius = numpy.linalg.norm(mesh.vertices, axis=1).mean()
     folder = tmp_path / "ball"
     folder.mkdir()
-    recorded.write(recorded.Recording("ball", angle, radius * out, pressure[:, None] * out), folder / "probe.traj")
+    write(recorded.Recording("ball", angle, radius * out, pressure[:, None] * out), folder / "probe.traj")
     mesh.write(folder / "ball.obj")
     recording, surface = list(recorded.recordings_of(Options(quick=True, seeds=0, data=tmp_path)))[-1]
     assert recording.name == "ball" and surface.name == "scanned"

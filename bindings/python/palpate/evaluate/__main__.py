@@ -144,13 +144,13 @@ def run(name, chosen, folder, words):
 
 def shown(made):
     lines = [f"{made.name}: {made.title}", *made.result.paragraphs]
-    lines += [f"  {'holds:' if c.held else 'DOES NOT HOLD:'} {c.statement} ({c.measured})" for c in made.claims]
+    lines += [f"  {'holds:' if c.held else 'DOES NOT HOLD:'} {c.statement} ({c.measured})" for c in made.result.claims]
     return "\n".join(lines) + "\n"
 
 
 def as_json(reports):
     return json.dumps([{"experiment": r.name, "paragraph": " ".join(r.result.paragraphs), "claims": [
-        {"statement": c.statement, "holds": c.held, "measured": c.measured} for c in r.claims],
+        {"statement": c.statement, "holds": c.held, "measured": c.measured} for c in r.result.claims],
         "circumstances": r.circumstances} for r in reports], indent=2)
 
 
@@ -180,7 +180,7 @@ def evaluate(chosen, words):
         say(as_json(reports), last=True)
     elif not chosen.quiet:
         say(f"Results: {chosen.output}{' (open report.html)' if chosen.experiment == 'all' else ''}", last=True)
-    broken = sum(not claim.held for made in reports for claim in made.claims)
+    broken = sum(not claim.held for made in reports for claim in made.result.claims)
     if broken:
         raise Stop(CLAIMS_BROKEN, f"{broken} of the claims do not hold (see above)")
 

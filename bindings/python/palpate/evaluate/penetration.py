@@ -50,9 +50,7 @@ def of_a_user(subject):
 
 
 def lines_of(options):
-    lines = [of_a_user(subject) for subject in options.subjects]
-    if not lines:
-        lines = [*map(ct_head, reals([] if options.quick else ["ct-head"], options)), shepp_logan(options.quick)]
+    lines = [*map(of_a_user, options.subjects)] or [*map(ct_head, reals(["ct-head"], options)), shepp_logan(options.quick)]
     for line in lines if options.ranges else ():
         line.ranges = [tuple(end(line.subject.field.volume) for end in ends) for ends in options.ranges]
         line.levels = {line.subject.isovalue: "minimum", **{low: "range" for low, _ in line.ranges}}

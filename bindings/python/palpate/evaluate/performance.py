@@ -34,11 +34,10 @@ def cases_of(options):
     """(volume, the row of the paper's table that it is measured for, if any)."""
     if options.subjects:
         return [(subject, None) for subject in options.subjects]
-    cylinder = synthetic("cylinder", 0.53), "cylinder"
-    if options.quick:
-        return [cylinder, (synthetic("shepp-logan:64x64x64"), "visible-male")]
-    return [cylinder, *((dataclasses.replace(subject, name=NAMES.get(subject.name, subject.name)), STAND_INS[subject.name])
-                        for subject in reals(STAND_INS, options))]
+    head = [(synthetic("shepp-logan:64x64x64"), "visible-male")] if options.quick else []
+    return [(synthetic("cylinder", 0.53), "cylinder"), *head,
+            *((dataclasses.replace(subject, name=NAMES.get(subject.name, subject.name)), STAND_INS[subject.name])
+              for subject in reals(STAND_INS, options))]
 
 
 def moved_rows(hand):

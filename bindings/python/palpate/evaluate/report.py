@@ -22,10 +22,6 @@ class Report:
     result: Result
     circumstances: str
 
-    @property
-    def claims(self):
-        return self.result.claims
-
 
 def number(cell, digits=12):
     """To more digits than other compilers repeat; nothing for NaN."""
@@ -114,11 +110,11 @@ def circumstances_of(reports):
 def page_of(reports, folder, whole=True):
     """HTML of all reports; `folder` holds the figures, which are embedded. whole: with the tables of all numbers."""
     page = string.Template((Path(__file__).parent / "pages" / "report.html").read_text(encoding="utf-8"))
-    held = [claim.held for report in reports for claim in report.claims]
+    held = [claim.held for report in reports for claim in report.result.claims]
     return page.substitute(sections="".join(section(report, folder, whole) for report in reports), held=sum(held), claims=len(held),
                            circumstances="".join(circumstances_of(reports)), entries="".join(
         f'<li><a href="#{r.name}">{r.name}</a>: {html.escape(r.title)} '
-        f"({sum(c.held for c in r.claims)} of {len(r.claims)} claims hold)</li>\n" for r in reports))
+        f"({sum(c.held for c in r.result.claims)} of {len(r.result.claims)} claims hold)</li>\n" for r in reports))
 
 
 def write_pages(reports, folder, into):
