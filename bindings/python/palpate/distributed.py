@@ -417,7 +417,7 @@ PARSER.add("--smooth", kind=whole(), default=0, help="Smooth the samples this ma
 PARSER.add_argument("--prefilter", action="store_true", help="Sharpen the samples for the smooth field")
 PARSER.add("--chunk", kind=whole(1), default=64, help="Samples of a chunk along each axis")
 PARSER.add("--block", kind=whole(), default=256, help="Samples of a piece of work along each axis, a multiple of the chunk")
-PARSER.add("--compression", kind=one_of(("none", "gzip", "zstd", "blosc")), default="zstd", help="Compression of the chunks")
+PARSER.add("--compression", kind=one_of(_palpate._COMPRESSIONS), default="zstd", help="Compression of the chunks")
 PARSER.add("--ome-version", kind=one_of(("0.4", "0.5")), default="0.5", help="Version of OME-Zarr")
 PARSER.add("--scheduler", kind=Kind("ADDRESS"), help="Address of a running Dask, tcp://HOST:8786")
 PARSER.add("--workers", kind=whole(1), help="Processes on this machine instead (default: one per core)")
