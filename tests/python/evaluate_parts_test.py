@@ -228,8 +228,7 @@ def test_times_of_updates_are_in_order_and_each_is_measured():
     weights = performance.weights_of(hand)
     assert list(weights) == 2 * ([50] * 10 + [3]) and len(palpate.update_times(*of, batch=50)) == len(weights)
     assert len(palpate.update_times(*of)) == 1006 and len(palpate.update_times(*of, cold=100)) == 10
-    effort = performance.Effort(2, 0.503, 3, 5)
-    taken = performance.timed(subject, ["exact"], hand, effort)["exact"]
+    taken = performance.timed(subject, ["exact"], hand, 3, 5)["exact"]
     found = performance.numbers_of(taken, hand, 20)
     assert 0 < found["p50_ns"] <= found["p99_ns"] <= found["p999_ns"] <= found["max_ns"] <= found["interrupted_max_ns"]
     assert found["updates"] == 1006 and found["cold_p50_ns"] > 0

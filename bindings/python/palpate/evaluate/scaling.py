@@ -8,7 +8,7 @@ import palpate
 
 from . import figures, machine
 from .experiment import GRANTED, Page, Result, Table
-from .performance import Effort, moved_rows, numbers_of, timed
+from .performance import moved_rows, numbers_of, timed
 from .sampling import quantile
 from .subjects import cube, reals
 
@@ -95,7 +95,7 @@ def cells_of(part, subject):
 def time_rows(part, subject, hand, passes, **cells):
     """A row for each method, timed in turns."""
     way = numpy.linalg.norm(numpy.diff(hand["hips"], axis=0), axis=1)[moved_rows(hand)[1:]].sum()
-    for name, taken in timed(subject, METHODS, hand, Effort(0, 0, passes, 0)).items():
+    for name, taken in timed(subject, METHODS, hand, passes).items():
         numbers = numbers_of(taken, hand)
         yield {**cells_of(part, subject), **cells, "method": name, "path_voxel": way / subject.voxel,
                **{column: numbers[column] for column in MEASURED}}
@@ -161,7 +161,7 @@ def levels_of(subject, hand):
 def dynamic_numbers(subject, hand, segments, passes):
     """What the same touch costs our method."""
     levels, jumped = levels_of(subject, hand)
-    taken = timed(subject, ["exact"], hand, Effort(0, 0, passes, 0))["exact"]
+    taken = timed(subject, ["exact"], hand, passes)["exact"]
     runs = [palpate.follow_levels(subject.field, hand["hips"], hand["first"], levels) for _ in range(passes)]
     trace = runs[0]["trace"]
     medians = numpy.median([run["trace"].update_ns[jumped] for run in runs], axis=0)
