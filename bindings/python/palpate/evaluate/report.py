@@ -3,6 +3,7 @@
 import base64
 import csv
 import dataclasses
+import functools
 import html
 import importlib.util
 import math
@@ -21,23 +22,13 @@ class Report:
     result: Result
     circumstances: str
 
-    @property
-    def claims(self):
-        return self.result.claims
+
+def number(cell, digits=12):
+    """To more digits than other compilers repeat; nothing for NaN."""
+    return cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.{digits}g}"
 
 
-def number(cell):
-    """Digits that read back as the same double; nothing for NaN."""
-    if isinstance(cell, str):
-        return cell
-    if math.isnan(cell):
-        return ""
-    text = repr(float(cell))
-    return text[:-2] if text.endswith(".0") else text
-
-
-def short(cell):
-    return cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.4g}"
+short = functools.partial(number, digits=4)
 
 
 def write_csv(table, path):
@@ -124,11 +115,11 @@ def circumstances_of(reports):
 def page_of(reports, folder, whole=True):
     """HTML of all reports; `folder` holds the figures, which are embedded. whole: with the tables of all numbers."""
     page = string.Template((Path(__file__).parent / "pages" / "report.html").read_text(encoding="utf-8"))
-    held = [claim.held for report in reports for claim in report.claims]
+    held = [claim.held for report in reports for claim in report.result.claims]
     return page.substitute(sections="".join(section(report, folder, whole) for report in reports), held=sum(held), claims=len(held),
                            circumstances="".join(circumstances_of(reports)), entries="".join(
         f'<li><a href="#{r.name}">{r.name}</a>: {html.escape(r.title)} '
-        f"({sum(c.held for c in r.claims)} of {len(r.claims)} claims hold)</li>\n" for r in reports))
+        f"({sum(c.held for c in r.result.claims)} of {len(r.result.claims)} claims hold)</li>\n" for r in reports))
 
 
 def write_pages(reports, folder, into):
