@@ -52,8 +52,8 @@ std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume&
 
 /// For OfflineSinks::change: keeps the pace of the trajectory. With a store, the proxy is held
 /// where samples are missing (UpdateStatus::waiting), as in a live session, so the ticks depend on
-/// how fast the store answers. `wait_until` is called before each tick, with the seconds since the
-/// first; it waits, returns the time, and may throw. Keeps a reference to the trajectory.
+/// how fast the store answers. Before each tick, `wait_until` is called with the seconds since the
+/// first one. It waits, returns the time, and may throw. Keeps a reference to the trajectory.
 std::function<void(Renderer&, std::int64_t)> keep_pace(
     const LoadedVolume& loaded, const io::Trajectory& trajectory,
     std::function<std::chrono::steady_clock::time_point(double seconds)> wait_until);
