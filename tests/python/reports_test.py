@@ -175,6 +175,28 @@ def test_members_of_ome_zarr_may_be_null_and_names_of_axes_in_capitals(tmp_path)
     assert numpy.array_equal(palpate.open_store(str(tmp_path)).levels[0].spacing, (1, 2, 3))
 
 
+# ome-ngff 0.4 names the types of axes, not the axes of space; xarray writes time and channel in full.
+@pytest.mark.parametrize("names, taken", (
+    ("time depth height width", "depth as z, height as y, width as x"), ("channel z lat lon", "lat as y, lon as x"),
+    ("time z y x", "")))
+def test_axes_of_zarr_may_have_other_names(tmp_path, names, taken):
+    names, data = names.split(), numpy.stack([ramp("u2"), ramp("u2") + 1000])
+    second = {names[0]: 1}
+    zarr.save_array(str(tmp_path / "a"), data)
+    zarr.open(str(tmp_path / "a")).attrs["_ARRAY_DIMENSIONS"] = names
+    group = zarr.open_group(str(tmp_path / "b"), mode="w")
+    group.create_dataset("0", data=data)
+    axes = [{"name": name, "type": "space"} for name in names]
+    axes[0]["type"] = names[0]
+    scale = {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1, 4, 3, 2]}]}
+    group.attrs["multiscales"] = [{"version": "0.4", "axes": axes, "datasets": [scale]}]
+    for folder, spacing in (("a", (1, 1, 1)), ("b", (2, 3, 4))):
+        store = palpate.open_store(str(tmp_path / folder), **second)
+        assert numpy.array_equal(store.read((0, 0, 0), store.levels[0].size).array, ramp("u2") + 1000)
+        assert numpy.array_equal(store.levels[0].spacing, spacing)
+        assert any(taken and taken in note for note in store.notes) == (taken != "")
+
+
 # paintera 61, heinrich-2021a 1, CNNectome 17: where a crop lies, in the unit of its resolution.
 @pytest.mark.parametrize("where", ("", "s0"))
 def test_n5_lies_at_its_offset(tmp_path, where):
@@ -287,6 +309,19 @@ def test_the_slices_of_a_header_may_be_in_several_files(tmp_path, form, packed, 
     refused(path, "3.raw'")
     path.write_text(path.read_text().replace("%d.raw 4 0 -1", "%d.raw 3 0 -1").replace("0 4 1", "0 3 1").replace("\n0.raw", ""))
     refused(path, "4 data files for 5 slices")
+
+
+def test_a_list_of_meta_image_may_say_2d_and_blanks_may_stand_before_ome_xml(tmp_path):
+    for i, plane in enumerate(ramp("i2")):
+        (tmp_path / f"{i}.raw").write_bytes(plane.tobytes())
+    names = "".join(f"{i}.raw\n" for i in range(5))
+    (tmp_path / "a.mhd").write_text("NDims = 3\nDimSize = 6 4 5\nElementType = MET_SHORT\nElementSpacing = 2 3 4\n"
+                                    f"BinaryDataByteOrderMSB = False\nElementDataFile = LIST 2D\n{names}")
+    assert numpy.array_equal(palpate.load(tmp_path / "a.mhd").volume.array, ramp("i2"))
+    xml = ('\n <?xml version="1.0"?><OME><Image><Pixels DimensionOrder="XYZCT" Type="uint16" SizeX="6" SizeY="4" SizeZ="5" SizeC="1" '
+           'SizeT="1" PhysicalSizeX="2" PhysicalSizeY="3" PhysicalSizeZ="4"><TiffData/></Pixels></Image></OME>')
+    tifffile.imwrite(tmp_path / "a.tif", ramp("u2"), description=xml, metadata=None)
+    assert numpy.allclose(palpate.load(tmp_path / "a.tif").volume.geometry.spacing, (2e-3, 3e-3, 4e-3))
 
 
 @pytest.mark.parametrize("names, words", (("%d.raw 5 1 1", "is empty"), ("%d.raw 1 5 0", "make no sense"), ("LIST\n\n", "is empty"),
