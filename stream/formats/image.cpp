@@ -160,6 +160,7 @@ class Taking {
         Level level;
         level.chunk = Index3::Ones();
         level.geometry.size = Index3::Ones();
+        if (image.direction) level.geometry.direction = *image.direction;
         for (Eigen::Index i = 0; i < 3; ++i) {
             if (roles.space[static_cast<std::size_t>(i)] < 0) continue;
             const auto a = static_cast<std::size_t>(roles.space[static_cast<std::size_t>(i)]);
@@ -169,10 +170,10 @@ class Taking {
             level.geometry.size[i] = static_cast<int>(array.shape[a]);
             level.chunk[i] = static_cast<int>(array.chunk[a]);
             const double unit = millimetres_of(image.axes[a], volume_.info.notes);
-            level.geometry.spacing[i] = place.scale[a] * unit;
+            level.geometry.spacing[i] = std::abs(place.scale[a]) * unit;
             level.geometry.origin[i] = place.translation[a] * unit;
+            if (place.scale[a] < 0) level.geometry.direction.col(i) *= -1;
         }
-        if (image.direction) level.geometry.direction = *image.direction;
         level.geometry.oriented = image.oriented;
         level.geometry.measured = image.measured;
         try {

@@ -175,28 +175,6 @@ def test_members_of_ome_zarr_may_be_null_and_names_of_axes_in_capitals(tmp_path)
     assert numpy.array_equal(palpate.open_store(str(tmp_path)).levels[0].spacing, (1, 2, 3))
 
 
-# ome-ngff 0.4 names the types of axes, not the axes of space; xarray writes time and channel in full.
-@pytest.mark.parametrize("names, taken", (
-    ("time depth height width", "depth as z, height as y, width as x"), ("channel z lat lon", "lat as y, lon as x"),
-    ("time z y x", "")))
-def test_axes_of_zarr_may_have_other_names(tmp_path, names, taken):
-    names, data = names.split(), numpy.stack([ramp("u2"), ramp("u2") + 1000])
-    second = {names[0]: 1}
-    zarr.save_array(str(tmp_path / "a"), data)
-    zarr.open(str(tmp_path / "a")).attrs["_ARRAY_DIMENSIONS"] = names
-    group = zarr.open_group(str(tmp_path / "b"), mode="w")
-    group.create_dataset("0", data=data)
-    axes = [{"name": name, "type": "space"} for name in names]
-    axes[0]["type"] = names[0]
-    scale = {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1, 4, 3, 2]}]}
-    group.attrs["multiscales"] = [{"version": "0.4", "axes": axes, "datasets": [scale]}]
-    for folder, spacing in (("a", (1, 1, 1)), ("b", (2, 3, 4))):
-        store = palpate.open_store(str(tmp_path / folder), **second)
-        assert numpy.array_equal(store.read((0, 0, 0), store.levels[0].size).array, ramp("u2") + 1000)
-        assert numpy.array_equal(store.levels[0].spacing, spacing)
-        assert any(taken and taken in note for note in store.notes) == (taken != "")
-
-
 # paintera 61, heinrich-2021a 1, CNNectome 17: where a crop lies, in the unit of its resolution.
 @pytest.mark.parametrize("where", ("", "s0"))
 def test_n5_lies_at_its_offset(tmp_path, where):
