@@ -1,4 +1,4 @@
-// One loop over all sockets.
+// Runs the bridge: one loop over all its sockets.
 #include "bridge/bridge.hpp"
 
 #include <poll.h>

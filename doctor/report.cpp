@@ -82,12 +82,16 @@ std::vector<std::pair<const char*, std::string>> lines_of(const Facts& facts) {
     return lines;
 }
 
+std::string hints(std::ptrdiff_t count) {
+    return fmt::format("{} hint{}", count, count == 1 ? "" : "s");
+}
+
 std::string verdict(const std::vector<Fault>& faults) {
     const auto essential = std::ranges::count_if(faults, &Fault::essential);
     if (faults.empty()) return "nothing is missing";
-    if (essential == 0) return fmt::format("nothing essential is missing; {} hints", faults.size());
-    return fmt::format("{} essential, {} hints", essential,
-                       static_cast<std::ptrdiff_t>(faults.size()) - essential);
+    const std::string others = hints(std::ssize(faults) - essential);
+    if (essential == 0) return "nothing essential is missing; " + others;
+    return fmt::format("{} essential, {}", essential, others);
 }
 
 std::string certificate(const Latency& latency) {

@@ -1,4 +1,4 @@
-// Hands the samples and the segments to the helper program, and takes its answer.
+// Sends the samples and the segments to the helper program, and reads its answer.
 #include "evaluation/explicit_surface.hpp"
 
 #include <unistd.h>

@@ -1,5 +1,5 @@
-// A store of 1.9 TB that nobody has: balls, computed when they are asked for, as late and as
-// unreliably as over a network.
+// A made-up store of 1.9 TB: balls, computed when they are requested, as late and as unreliably as
+// over a network.
 #pragma once
 
 #include <mutex>

@@ -1,10 +1,11 @@
 // JSON from lists of members: a struct has a table of settings (palpate/settings.hpp), or one
 // function template members(visitor, value), which calls visitor("name", value.name) for each
 // member, in the struct's namespace or in palpate::io.
-// JsonWriter and JsonReader walk through it. Other types have to_value() and from_value(), found in
-// the same places.
+// JsonWriter and JsonReader walk through it. A visitor.must(...) in it is a rule for the reader.
+// Other types have to_value() and from_value(), found in the same places.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <limits>
 #include <memory>
@@ -21,6 +22,9 @@ namespace palpate::io {
 /// Throws std::invalid_argument: "'name' must be WANTED".
 [[noreturn]] void wrong_member(const std::string& name, const std::string& wanted);
 
+/// "above, below or beside"
+std::string one_of(const std::vector<std::string>& names);
+
 /// S is T, const or not: written from const values, read into others.
 template <class S, class T>
 concept Is = std::same_as<std::remove_const_t<S>, T>;
@@ -29,6 +33,11 @@ template <class T>
 requires(std::same_as<T, bool> || std::same_as<T, int> || std::same_as<T, std::uint32_t> ||
          std::same_as<T, std::string>) Json to_value(const T& value) {
     return value;
+}
+/// By its name.
+template <HasNames E>
+Json to_value(E value) {
+    return enum_name(value);
 }
 inline Json to_value(double value) {
     return number_to_json(value);
@@ -50,6 +59,16 @@ void from_value(const Json& json, const std::string& name, Mat3& value);
 void from_value(const Json& json, const std::string& name, Quaternion& value);
 void from_value(const Json& json, const std::string& name, Layers& layers);
 void from_value(const Json& json, const std::string& name, Tool& tool);
+
+template <HasNames E>
+void from_value(const Json& json, const std::string& name, E& value) {
+    std::string text;
+    from_value(json, name, text);
+    const auto& names = names_of<E>.names;
+    const auto at = std::find(names.begin(), names.end(), text);
+    if (at == names.end()) wrong_member(name, one_of(all_names<E>()));
+    value = static_cast<E>(at - names.begin());
+}
 
 /// The list of members of a struct that has a table of its settings.
 template <class S>
@@ -89,6 +108,7 @@ struct JsonWriter {
         Json& list = json[name] = Json::array();
         for (const T& value : values) list.push_back(of(value));
     }
+    void must(bool, const std::string&, const std::string&) const {}
 };
 
 /// Members that are missing leave their value as it is.
@@ -137,6 +157,12 @@ struct JsonReader {
             const std::string item = where + name + "[" + std::to_string(values.size()) + "]";
             get(value, item, values.emplace_back());
         }
+    }
+    /// A rule for what was read of a member, or where `name` is empty of the whole. Throws
+    /// std::invalid_argument: it "must be WANTED".
+    void must(bool holds, const std::string& name, const std::string& wanted) const {
+        if (!holds)
+            wrong_member(name.empty() ? where.substr(0, where.size() - 1) : where + name, wanted);
     }
 };
 

@@ -1,4 +1,4 @@
-// How JSON has paths. A path of Linux is bytes, which need not be UTF-8, as JSON's text must be.
+// Paths in JSON. A path of Linux is bytes, which need not be UTF-8, as JSON's text must be.
 // Private to io/, stream/, run/ and programs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// DICOM series as text. See the header.
 #include "palpate/io/series.hpp"
 
 #include <cstdio>

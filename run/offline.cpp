@@ -117,15 +117,35 @@ double reach_of(const Renderer& renderer, const Vec3& hip, const Quaternion& tur
     return reach;
 }
 
+/// The proxy's reference point [mm, physical], or the hand where there is no proxy yet.
+Vec3 scp_or(const Renderer& renderer, const Vec3& hip) {
+    if (renderer.settings.tool) {
+        const ToolProxy& proxy = *renderer.tool_proxy;
+        return proxy.placed ? proxy.pose.position : hip;
+    }
+    return renderer.proxy.placed ? renderer.proxy.scp_physical : hip;
+}
+
+std::shared_ptr<stream::BrickLoader> loader_of(const LoadedVolume& loaded) {
+    return std::make_shared<stream::BrickLoader>(loaded.streamed->store, loaded.volume,
+                                                 loaded.streamed->loader);
+}
+
+void take_bricks(stream::BrickLoader& loader, Renderer& renderer) {
+    const auto version = loader.take();
+    if (!version) return;
+    field_will_change(renderer.proxy, felt_field(renderer));
+    renderer.field.use(version->samples);
+}
+
 }  // namespace
 
 std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume& loaded,
                                                              const io::Trajectory& trajectory,
                                                              std::function<void()> tell) {
     if (!loaded.streamed) return {};
-    const auto loader = std::make_shared<stream::BrickLoader>(loaded.streamed->store, loaded.volume,
-                                                              loaded.streamed->loader);
-    return [loader, &trajectory, tell = std::move(tell)](Renderer& renderer, std::int64_t tick) {
+    return [loader = loader_of(loaded), &trajectory, tell = std::move(tell)](Renderer& renderer,
+                                                                             std::int64_t tick) {
         const auto at = static_cast<std::size_t>(tick);
         const Vec3& hip = trajectory.position[at];
         const Quaternion turned =
@@ -134,10 +154,24 @@ std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume&
         if (is_resident(renderer.field, hip, reach)) return;
         stream::while_telling(
             tell, [&](const std::stop_token& stop) { loader->wait_for(hip, reach, stop); });
-        if (const auto version = loader->take()) {
-            field_will_change(renderer.proxy, renderer.field);
-            renderer.field.use(version->samples);
-        }
+        take_bricks(*loader, renderer);
+    };
+}
+
+std::function<void(Renderer&, std::int64_t)> keep_pace(
+    const LoadedVolume& loaded, const io::Trajectory& trajectory,
+    std::function<std::chrono::steady_clock::time_point(double seconds)> wait_until) {
+    return [loader = loaded.streamed ? loader_of(loaded) : nullptr, &trajectory,
+            wait_until = std::move(wait_until),
+            motion = stream::HandMotion{}](Renderer& renderer, std::int64_t tick) mutable {
+        const auto at = static_cast<std::size_t>(tick);
+        const double time = trajectory.time[at];
+        const auto now = wait_until(time - trajectory.time.front());
+        if (!loader) return;
+        motion.see(time, trajectory.position[at]);
+        const stream::Interest hand{scp_or(renderer, motion.at), motion.at, motion.velocity};
+        loader->look(std::span(&hand, 1), now);
+        take_bricks(*loader, renderer);
     };
 }
 

@@ -11,8 +11,6 @@ namespace {
 
 /// Between two looks at hands and loader.
 constexpr std::chrono::milliseconds interval{5};
-/// Of the hand's velocity [s].
-constexpr double smoothing = 0.05;
 
 }  // namespace
 
@@ -100,15 +98,8 @@ void Streamer::look(io::SteadyTime now) {
         const auto felt = hand.servo->snapshot();
         if (!felt || hand.servo->has_ended()) continue;  // memory is for those that go on
         const Tick& tick = felt->session.tick;
-        const double passed = tick.time - hand.time;
-        if (hand.tick >= 0 && passed > 0) {
-            const Vec3 velocity = (tick.proxy.hip - hand.at) / passed;
-            hand.velocity += std::min(1.0, passed / smoothing) * (velocity - hand.velocity);
-        }
-        hand.tick = felt->number;
-        hand.time = tick.time;
-        hand.at = tick.proxy.hip;
-        interests.push_back({tick.proxy.scp, tick.proxy.hip, hand.velocity});
+        hand.motion.see(tick.time, tick.proxy.hip);
+        interests.push_back({tick.proxy.scp, tick.proxy.hip, hand.motion.velocity});
     }
     if (!interests.empty()) loader_.look(interests, now);
 }

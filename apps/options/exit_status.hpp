@@ -1,4 +1,4 @@
-// How failures leave a program: exit status and one line, the same for every program of ours.
+// Turns failures into an exit status and one line, in the same way for every program of ours.
 #pragma once
 
 #include <exception>

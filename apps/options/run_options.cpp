@@ -65,12 +65,7 @@ void RunOptions::add_device_options(CLI::App& command) {
         ->allow_extra_args(false)
         ->type_name(fmt::format("{{{}}}[:KEY=VALUE,...]", fmt::join(devices::device_names(), ",")))
         ->default_str(run::text_of(given.device));
-    command
-        .add_option_function<std::string>(
-            "--facing", [this](const std::string& name) { given.facing = named<Facing>(name); },
-            "Side of the body that faces you")
-        ->check(one_of(all_names<Facing>()))
-        ->default_str(enum_name(given.facing));
+    add_named(command, "--facing", given.facing, "Side of the body that faces you");
     command.add_option_function<std::string>(
         "--clutch",
         [this](const std::string& text) { given.clutch = button_from("--clutch", text); },

@@ -164,12 +164,7 @@ void add_field_options(CLI::App& command, run::FieldSetup& field) {
 }
 
 void add_side_options(CLI::App& command, run::FieldSetup& field) {
-    command
-        .add_option_function<std::string>(
-            "--solid", [&field](const std::string& text) { field.solid = named<Solid>(text); },
-            "Which side of the level is solid")
-        ->check(one_of(all_names<Solid>()))
-        ->default_str(enum_name(field.solid));
+    add_named(command, "--solid", field.solid, "Which side of the level is solid");
     command
         .add_option_function<std::string>(
             "--field",

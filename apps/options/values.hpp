@@ -10,10 +10,21 @@
 #include <string_view>
 #include <vector>
 
+#include "palpate/names.hpp"
+
 namespace palpate::app {
 
 /// One of these words.
 CLI::Validator one_of(std::vector<std::string> names);
+/// Adds an option whose words are the names of an enumeration.
+template <HasNames E>
+CLI::Option* add_named(CLI::App& command, const std::string& option, E& value,
+                       const std::string& help) {
+    const auto read = [&value](const std::string& text) { value = named<E>(text); };
+    return command.add_option_function<std::string>(option, read, help)
+        ->check(one_of(all_names<E>()))
+        ->default_str(enum_name(value));
+}
 /// A number from `low` to `high`.
 CLI::Validator from_to(double low, double high);
 /// A finite number above 0.

@@ -203,18 +203,8 @@ void add_convert(CLI::App& app) {
     command->add_option("--chunk", words->zarr.chunk, "Samples per chunk along each axis")
         ->check(from_to(8, 512))
         ->capture_default_str();
-    command
-        ->add_option_function<std::string>(
-            "--compression",
-            [words](const std::string& text) {
-                words->zarr.compression = text == "none"   ? stream::Compression::none
-                                          : text == "gzip" ? stream::Compression::gzip
-                                          : text == "zstd" ? stream::Compression::zstd
-                                                           : stream::Compression::blosc;
-            },
-            "Compression of chunks: none, gzip, zstd or blosc")
-        ->check(one_of({"none", "gzip", "zstd", "blosc"}))
-        ->default_str("zstd");
+    add_named(*command, "--compression", words->zarr.compression,
+              "Compression of chunks: none, gzip, zstd or blosc");
     command->add_flag("--compress", words->compress, "Compress the samples of other formats");
     command
         ->add_option("--threads", words->zarr.threads,

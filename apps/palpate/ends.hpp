@@ -1,5 +1,4 @@
-// What a program asks of the system before it does anything: signals that end it, streams that are
-// closed.
+// Prepares signals and standard streams before a program does anything else.
 #pragma once
 
 namespace palpate::app {

@@ -1,4 +1,4 @@
-// Carries out what comes in by OpenIGTLink.
+// Carries out requests that arrive by OpenIGTLink.
 #include "apps/palpate/remote.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What others ask of a live run by OpenIGTLink, carried out by the run's own thread.
+// Requests to a live run by OpenIGTLink, carried out by the run's own thread.
 #pragma once
 
 #include <atomic>

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "apps/options/render_options.hpp"
@@ -28,7 +30,7 @@ struct ReplayOptions {
     run::FieldSetup field;
     RenderOptions render;
     std::string trajectory, output, path, poses;
-    bool json = false, validate = false;
+    bool json = false, validate = false, live = false;
     std::string recorded_volume;
 };
 
@@ -108,6 +110,23 @@ void refuse_other_options(const CLI::App& command) {
     }
 }
 
+/// Waits until so many seconds have passed since its first call. Throws Interrupted.
+auto real_time() {
+    using Clock = std::chrono::steady_clock;
+    return [begin = std::optional<Clock::time_point>{}](double seconds) mutable {
+        using Seconds = std::chrono::duration<double>;
+        constexpr Seconds longest{0.05};  // until Ctrl-C is heard
+        if (!begin) begin = Clock::now();
+        for (;;) {
+            stop_if_interrupted();
+            const auto now = Clock::now();
+            const Seconds left = Seconds(seconds) - (now - *begin);
+            if (!(left.count() > 0)) return now;
+            std::this_thread::sleep_for(std::min(left, longest));
+        }
+    };
+}
+
 io::TraceExtras extras_of(const RendererSettings& settings, bool streamed) {
     io::TraceExtras extras;
     extras.tool = settings.tool != nullptr;
@@ -159,7 +178,9 @@ void replay(const ReplayOptions& options) {
     }
     ProgressBar bar("replaying", options.source.quiet);
     run::OfflineSinks sinks;
-    sinks.change = run::wait_for_bricks(loaded, trajectory, [] { stop_if_interrupted(); });
+    sinks.change = options.live
+                       ? run::keep_pace(loaded, trajectory, real_time())
+                       : run::wait_for_bricks(loaded, trajectory, [] { stop_if_interrupted(); });
     sinks.row = [&](const io::TraceRow& row) { trace.add(row); };
     if (path) sinks.corner = [&](std::int64_t tick, const Vec3& p) { path->add(tick, p); };
     if (poses) sinks.pose = [&](std::int64_t tick, const Pose& p) { poses->add(tick, p); };
@@ -201,6 +222,13 @@ void add_replay(CLI::App& app) {
     table("--poses", options->poses, "Poses of a tool's proxy to write");
     add_field_options(*command, options->field);
     options->render.add_to(*command);
+    CLI::Option* const live = command->add_flag(
+        "--live", options->live,
+        "Render in real time and, where samples of a store are missing, hold the proxy");
+    command
+        ->add_flag_function(
+            "--wait", [](std::int64_t) {}, "Wait for all samples before each tick, the default")
+        ->excludes(live);
     command->add_flag("--validate", options->validate,
                       "Render the recording that is given as VOLUME again and compare every tick");
     command

@@ -1,4 +1,4 @@
-// palpate tool: what a tool touches with, before it is felt with.
+// palpate tool: describes a tool and its contact points, before you touch with it.
 #include <fmt/format.h>
 
 #include <algorithm>

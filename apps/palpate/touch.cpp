@@ -319,7 +319,8 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
     if (!is_record) {
         command->add_flag("--headless", options->headless,
                           "Open no window, even if there is a display. The options --json, "
-                          "--seconds, --commands and --igtl do the same, and a third --device");
+                          "--seconds, --unpaced, --commands, --brush, --save and --igtl do the "
+                          "same, and a third --device");
     }
     command
         ->add_option("--igtl", options->igtl,

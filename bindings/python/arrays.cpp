@@ -6,8 +6,8 @@
 namespace palpate::python {
 namespace {
 
+/// In either byte order.
 std::optional<SampleType> type_of(const py::dtype& dtype) {
-    if (!dtype.attr("isnative").cast<bool>()) return std::nullopt;
     for (const std::string& name : all_names<SampleType>()) {
         const py::dtype known(name);
         if (dtype.kind() == known.kind() && dtype.itemsize() == known.itemsize()) {
@@ -27,6 +27,9 @@ std::string why_not_shared(const py::array& array) {
     }
     if (!(array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_)) {
         return "the array's samples are not aligned";
+    }
+    if (!array.dtype().attr("isnative").cast<bool>()) {
+        return "the array's samples have the other byte order than this machine";
     }
     return {};
 }
@@ -53,17 +56,16 @@ Volume volume_from(const py::array& given, const Geometry& geometry_but_size,
     const auto type = type_of(given.dtype());
     if (!type) {
         throw std::invalid_argument("samples of type " + std::string(py::str(given.dtype())) +
-                                    ": a volume takes uint8, int16, uint16 and float32 in the "
-                                    "machine's byte order; convert "
+                                    ": a volume takes uint8, int16, uint16 and float32; convert "
                                     "them with astype(), or use palpate.as_volume()");
     }
     py::array array = given;
     const std::string why = why_not_shared(given);
     if (copy.value_or(!why.empty())) {
-        array = py::module_::import("numpy").attr("array")(given, py::arg("order") = "C");
+        array = py::module_::import("numpy").attr("array")(
+            given, given.dtype().attr("newbyteorder")("="), py::arg("order") = "C");
     } else if (!why.empty()) {
-        throw std::invalid_argument(
-            why + "; pass copy=True or numpy.ascontiguousarray(array) for a copy");
+        throw std::invalid_argument(why + "; pass copy=True for a copy");
     }
     Geometry geometry = geometry_but_size;
     for (const int axis : {0, 1, 2}) {

@@ -11,19 +11,10 @@ namespace {
 namespace fs = std::filesystem;
 using Unlocked = py::call_guard<py::gil_scoped_release>;
 
-stream::Compression compression_of(const std::string& name) {
-    if (name == "none") return stream::Compression::none;
-    if (name == "gzip") return stream::Compression::gzip;
-    if (name == "zstd") return stream::Compression::zstd;
-    if (name == "blosc") return stream::Compression::blosc;
-    throw std::invalid_argument("no compression '" + name +
-                                "'; there are none, gzip, zstd and blosc");
-}
-
 std::unique_ptr<stream::GrowingImage> growing_image(const fs::path& folder, SampleType type,
                                                     const Geometry& finest,
                                                     const std::string& ome_version, int chunk,
-                                                    const std::string& compression,
+                                                    stream::Compression compression,
                                                     const std::string& temporary) {
     if (ome_version != "0.4" && ome_version != "0.5") {
         throw std::invalid_argument("no OME-Zarr " + ome_version + "; there are 0.4 and 0.5");
@@ -31,7 +22,7 @@ std::unique_ptr<stream::GrowingImage> growing_image(const fs::path& folder, Samp
     stream::ConvertOptions options;
     options.zarr_version = ome_version == "0.4" ? 2 : 3;
     options.chunk = chunk;
-    options.compression = compression_of(compression);
+    options.compression = compression;
     return std::make_unique<stream::GrowingImage>(folder, type, finest, options, temporary);
 }
 
@@ -110,6 +101,7 @@ Folder resumable(const fs::path& out, const std::string& job) {
 
 void bind_growing_images(py::module_& module) {
     using stream::GrowingImage;
+    module.attr("_COMPRESSIONS") = py::tuple(py::cast(all_names<stream::Compression>()));
     py::class_<GrowingImage>(module, "_GrowingImage")
         .def(py::init(&growing_image), py::arg("folder"), py::arg("type"), py::arg("finest"),
              py::arg("ome_version"), py::arg("chunk"), py::arg("compression"), py::arg("temporary"))

@@ -1,4 +1,4 @@
-// Objects that own threads which may want the GIL are destroyed without it.
+// Destroys objects that own threads without holding the GIL, because those threads may want it.
 #pragma once
 
 #include <memory>

@@ -260,8 +260,11 @@ class Walk {
             extent_.header +=
                 std::string("\xe0\x7f\1\0UN\0\0\x40\0\0\0", 12) + std::string(ahead, '\0');
         }
-        // One UID is the beginning of the other; the rest is padding.
-        if (syntax == deflated_syntax) extent_.header.replace(syntax_at_ + 19, 3, 3, '\0');
+        // Headers of deflated files (99) and of plain fragments (98) are explicit little endian,
+        // whose UID is the beginning of theirs; the rest is padding.
+        if (syntax == deflated_syntax || syntax == "1.2.840.10008.1.2.1.98") {
+            extent_.header.replace(syntax_at_ + 19, 3, 3, '\0');
+        }
     }
 
     void begin_pixels(std::uint64_t element, std::uint64_t at, const Element& e, bool is_real) {

@@ -1,3 +1,4 @@
+// Reads elements of a DICOM data set. See the header.
 #include "io/helper/dicom_group.hpp"
 
 #include <algorithm>

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -196,6 +197,23 @@ DicomSlice enhanced_frame(const DicomSlice& file, int number, const FunctionalGr
     return s;
 }
 
+/// Classes whose frames are moments of one picture if they have no place: ultrasound and X-rays
+/// from one side.
+bool is_film(const DicomGroup& data) {
+    const std::string kind = data.text({0x0008, 0x0016}), images = "1.2.840.10008.5.1.4.1.1.";
+    return kind == images + "3" || kind == images + "3.1" || kind.starts_with(images + "12.");
+}
+
+void set_film(std::vector<DicomSlice>& slices, const DicomGroup& data) {
+    const double rate = data.number({0x0018, 0x0040}, data.number({0x0008, 0x2144}, 0));
+    for (DicomSlice& s : slices) {
+        s.is_moment = true;
+        s.seconds = data.number({0x0018, 0x1063}, rate > 0 ? 1000 / rate : 0) / 1000;
+        add_note(s.notes, "its " + std::to_string(s.frames) +
+                              " frames are moments of one slice, not slices");
+    }
+}
+
 std::vector<DicomSlice> enhanced_frames(const DicomSlice& file, const DicomGroup& data) {
     const auto frames = data.items(groups_of_frames);
     if (frames.size() != static_cast<std::size_t>(file.frames)) {
@@ -206,11 +224,21 @@ std::vector<DicomSlice> enhanced_frames(const DicomSlice& file, const DicomGroup
     const auto shared = data.items({0x5200, 0x9229});
     const Segments segments = segments_in(data);
     std::vector<DicomSlice> slices;
+    std::set<std::pair<double, double>> directions;  // [degrees] of X-rays
     for (int i = 0; i < file.frames; ++i) {
         const FunctionalGroups groups(frames[static_cast<std::size_t>(i)],
                                       shared.empty() ? nullptr : &shared.front());
         slices.push_back(enhanced_frame(file, i, groups, segments));
+        groups.with({0x0018, 0x9405}, [&](const DicomGroup& g) {
+            directions.emplace(g.number({0x0018, 0x1510}, 0), g.number({0x0018, 0x1511}, 0));
+        });
     }
+    if (directions.size() > 1) {
+        throw Failure(quoted(file.file) +
+                      " has projections from several directions; export a reconstructed volume");
+    }
+    const auto has_place = [](const DicomSlice& s) { return s.position.has_value(); };
+    if (is_film(data) && std::ranges::none_of(slices, has_place)) set_film(slices, data);
     return slices;
 }
 
@@ -307,12 +335,9 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
                       " counts its frames by more than their place or time (projections, phases); "
                       "export a reconstructed volume");
     }
-    if (by == Counted::by_time) {
-        note(all + "are moments of one slice, not slices");
-        for (DicomSlice& s : slices) {
-            s.is_moment = true;
-            s.seconds = data.number({0x0018, 0x1063}, 0) / 1000;
-        }
+    const bool has_place = file.position || data.has(between_tag);
+    if (by == Counted::by_time || (by == Counted::by_nothing && !has_place && is_film(data))) {
+        set_film(slices, data);
         return slices;
     }
     if (by == Counted::by_offset || by == Counted::by_location) {
@@ -430,6 +455,12 @@ std::vector<DicomSlice> slices_of(const fs::path& file) {
     if (data.text({0x0008, 0x0008}).find("MOSAIC") != std::string::npos) {
         throw Failure(quoted(file) +
                       " is a mosaic of slices; convert it to NIfTI (dcm2niix) and give that file");
+    }
+    const auto wide = data.counts({0x0048, 0x0006}), high = data.counts({0x0048, 0x0007});
+    if ((!wide.empty() && wide[0] > extent.columns) || (!high.empty() && high[0] > extent.rows)) {
+        throw Failure(quoted(file) +
+                      " has the tiles of a microscope's slide, which are no slices of a volume; "
+                      "convert it to OME-TIFF");
     }
     if (data.has(groups_of_frames)) return enhanced_frames(slice, data);
     return slice.frames == 1 ? std::vector{slice} : plain_frames(slice, data);

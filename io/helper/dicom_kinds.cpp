@@ -70,9 +70,7 @@ void set_kind(DicomSlice& s, const DicomGroup& data) {
         if (i == 2) s.kind = value;
         if (i > 2) s.contrast += (s.contrast.empty() ? "" : " ") + value;
     }
-    if (const auto echo = data.numbers({0x0018, 0x0081}); !echo.empty()) {
-        add_kind(s, "echo time ", echo[0], " ms");
-    }
+    if (const auto echo = data.numbers({0x0018, 0x0081}); !echo.empty()) s.echo = echo[0];
     add_kind(s, "b-value ", data.real({0x0018, 0x9087}), " s/mm2");
 }
 
@@ -112,9 +110,7 @@ void set_kind(DicomSlice& s, const FunctionalGroups& groups, const Segments& seg
                                 {0x0018, 0x9806}}) {
         groups.with(type, [&](const DicomGroup& g) { add_kind(s, g.text({0x0008, 0x9007})); });
     }
-    groups.with({0x0018, 0x9114}, [&](const DicomGroup& g) {
-        add_kind(s, "echo time ", g.real({0x0018, 0x9082}), " ms");
-    });
+    groups.with({0x0018, 0x9114}, [&](const DicomGroup& g) { s.echo = g.real({0x0018, 0x9082}); });
     groups.with({0x0018, 0x9117}, [&](const DicomGroup& g) {
         add_kind(s, "b-value ", g.real({0x0018, 0x9087}), " s/mm2");
     });

@@ -1,4 +1,4 @@
-// Which slices are of one moment. See the header and docs/io.md.
+// Finds the slices that belong to one moment. See the header and docs/io.md.
 #include "io/helper/dicom_moments.hpp"
 
 #include <algorithm>

@@ -12,11 +12,15 @@ namespace {
     throw Failure(quoted(file) + " " + what + "; it is damaged: copy or export it again");
 }
 
-/// Empty for a syntax without compression, or with one that we know nothing of.
+/// Frames without compression, each in a fragment of its own (PS3.5, A.4.11).
+constexpr const char* plain_in_fragments = "no compression";
+
+/// Empty for a syntax without fragments, or with a compression that we know nothing of.
 std::string compression_of(const std::string& syntax) {
     const std::string family = "1.2.840.10008.1.2.";
     if (syntax.rfind(family, 0) != 0) return {};
     const std::string rest = syntax.substr(family.size());
+    if (rest == "1.98") return plain_in_fragments;
     if (rest == "5") return "RLE";
     if (rest == "4.80" || rest == "4.81") return "JPEG-LS";
     if (rest.rfind("4.9", 0) == 0 || rest.rfind("4.20", 0) == 0) return "JPEG 2000";
@@ -51,18 +55,22 @@ void check_code_stream(const std::filesystem::path& file, std::span<const std::b
 std::vector<std::vector<std::byte>> frames_of(const DicomBytes& bytes, const DicomPixels& pixels,
                                               const DicomExtent& declared) {
     const auto frames = static_cast<std::size_t>(declared.frames);
-    const bool is_rle = compression_of(declared.syntax) == "RLE";
+    const std::string name = compression_of(declared.syntax);
+    const bool is_code_stream = name != "RLE" && name != plain_in_fragments;
     std::vector<std::vector<std::byte>> all;
     for (std::size_t i = 1; i < pixels.fragments.size(); ++i) {
         const auto fragment = bytes.view(pixels.fragments[i].at, pixels.fragments[i].length);
-        const bool next = all.empty() || is_rle || pixels.fragments.size() == frames + 1 ||
+        const bool next = all.empty() || !is_code_stream || pixels.fragments.size() == frames + 1 ||
                           begins_code_stream(fragment);
         if (next) all.emplace_back();
         all.back().insert(all.back().end(), fragment.begin(), fragment.end());
     }
     for (auto& stream : all) {
-        while (!is_rle && ends_code_stream(stream) && stream.back() == std::byte{0}) {
+        while (is_code_stream && ends_code_stream(stream) && stream.back() == std::byte{0}) {
             stream.pop_back();
+        }
+        if (name == plain_in_fragments && stream.size() == declared.bytes() / frames + 1) {
+            stream.pop_back();  // padding to an even length
         }
     }
     return all;
@@ -100,6 +108,12 @@ std::string check_compressed_pixels(const std::filesystem::path& file, const std
                        std::to_string(wanted));
     }
     for (const auto& frame : frames) {
+        if (name == plain_in_fragments) {
+            if (frame.size() == declared.bytes() / wanted) continue;
+            fail(file, "has a frame of " + std::to_string(frame.size()) +
+                           " bytes, its header asks for " +
+                           std::to_string(declared.bytes() / wanted));
+        }
         if (name != "RLE") {
             check_code_stream(file, frame, name, declared);
             continue;
@@ -113,7 +127,7 @@ std::string check_compressed_pixels(const std::filesystem::path& file, const std
                            " that its header says");
         }
     }
-    return name;
+    return name == plain_in_fragments ? "" : name;
 }
 
 }  // namespace palpate::io

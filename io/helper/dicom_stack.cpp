@@ -31,8 +31,14 @@ bool is_same(const std::optional<Vec3>& a, const std::optional<Vec3>& b) {
     return (*a - *b).cwiseAbs().maxCoeff() <= part * a->cwiseAbs().maxCoeff();
 }
 
-bool lie_alike(const DicomSlice& a, const DicomSlice& b) {
-    return is_same(a.row, b.row) && is_same(a.column, b.column) && is_same(a.pixel, b.pixel);
+/// Some scanners write the echo time that they measured for each slice.
+bool is_same_echo(double a, double b) {
+    return std::abs(a - b) <= 0.01 * std::abs(a) || (std::isnan(a) && std::isnan(b));
+}
+
+bool are_alike(const DicomSlice& a, const DicomSlice& b) {
+    return is_same(a.row, b.row) && is_same(a.column, b.column) && is_same(a.pixel, b.pixel) &&
+           is_same_echo(a.echo, b.echo);
 }
 
 /// [mm] nearer slices lie at one place. Some scanners have pixels of 1 um.
@@ -105,7 +111,7 @@ Steps steps_of(Stack& stack) {
     }
     std::vector<double> sorted = gaps;
     std::sort(sorted.begin(), sorted.end());
-    const double median = sorted[sorted.size() / 2];
+    const double median = sorted[(sorted.size() - 1) / 2];  // the lower one: fewer slices lost
     const double total = stack.slices.back().along;
     const double rounding = std::min(0.01, 0.1 * median);  // [mm] in the files' decimals
     const double tolerance = std::max(rounding, even_part * median);
@@ -322,6 +328,14 @@ void pile_up(const DicomSeries& series, const Request& request, Stack& stack) {
                           text_of(stack.geometry.spacing[2]) + " mm apart");
 }
 
+void name_echo(DicomSeries& series) {
+    const double echo = series.slices.front().echo;
+    if (!std::isfinite(echo)) return;
+    for (DicomSlice& s : series.slices) {
+        s.kind += (s.kind.empty() ? "" : ", ") + ("echo time " + text_of(echo)) + " ms";
+    }
+}
+
 bool has_several_at_one_place(const DicomSeries& series) {
     const std::vector<double> along = places_along(series);
     const double least = same_place_mm(series);
@@ -351,13 +365,14 @@ std::vector<DicomSeries> series_of(std::vector<DicomSlice> slices) {
     for (DicomSlice& s : slices) {
         std::vector<DicomSeries>& alike = sorted[key_of(s)];
         auto series = std::ranges::find_if(
-            alike, [&](const DicomSeries& one) { return lie_alike(one.slices.front(), s); });
+            alike, [&](const DicomSeries& one) { return are_alike(one.slices.front(), s); });
         if (series == alike.end()) series = alike.insert(alike.end(), {s.series_uid, {}});
         series->slices.push_back(std::move(s));
     }
     std::vector<DicomSeries> all;
     for (auto& [key, alike] : sorted) {
         for (DicomSeries& one : alike) {
+            name_echo(one);
             std::ranges::move(by_contrast(std::move(one)), std::back_inserter(all));
         }
     }

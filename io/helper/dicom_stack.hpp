@@ -2,6 +2,7 @@
 // missing ones and shifts between them. Uses no library.
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "io/helper/decode.hpp"
@@ -35,6 +36,7 @@ struct DicomSlice {
     std::string patient, study;
     std::string stack, kind;  ///< stacks of one file; magnitude, phase, echoes, segments ...
     std::string contrast;     ///< what else may tell images of one place apart: water, fat ...
+    double echo = std::numeric_limits<double>::quiet_NaN();  ///< [ms] EchoTime; NaN: not given
     ValueInfo values;
     int rows = 0, columns = 0;
     int frames = 1, frame = 0;        ///< how many its file has, and which of them it is

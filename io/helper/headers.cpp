@@ -136,7 +136,7 @@ std::int64_t whole_number_in(const std::string& text, const std::string& field, 
 }
 
 bool is_list(const std::string& name) {
-    return name.starts_with("LIST") && name.find_first_not_of(" \t0123456789", 4) == name.npos;
+    return name.starts_with("LIST") && name.find_first_not_of(" \t0123456789D", 4) == name.npos;
 }
 
 std::vector<std::filesystem::path> data_files(const std::string& name, const HeaderFields& fields,

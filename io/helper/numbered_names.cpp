@@ -1,3 +1,4 @@
+// Orders slices by the numbers in their names. See the header.
 #include "io/helper/numbered_names.hpp"
 
 #include <algorithm>

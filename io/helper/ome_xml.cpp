@@ -155,13 +155,13 @@ void take_pages(const XmlElement& pixels, const std::string& own, OmeImage& imag
 
 bool is_ome_xml(const std::string& description) {
     constexpr std::size_t byte_order_mark = 3;
-    const bool is_xml = description.find('<') <= byte_order_mark;
+    const bool is_xml = trimmed(description).find('<') <= byte_order_mark;
     return is_xml && (description.find("/OME>") != std::string::npos ||
                       description.find(":OME>") != std::string::npos);  // with a prefix
 }
 
 OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes) {
-    const XmlElement root = parse_xml(xml, "its OME-XML");
+    const XmlElement root = parse_xml(trimmed(xml), "its OME-XML");
     if (!root.all("BinaryOnly").empty()) {
         throw Failure("keeps its OME-XML in another file; images over several files are not read");
     }

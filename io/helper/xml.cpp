@@ -4,10 +4,12 @@
 #include <expat.h>
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <new>
+#include <utility>
 
 #include "io/helper/decode.hpp"
 
@@ -46,9 +48,7 @@ void begin_element(void* to, const char* name, const char** attributes) {
         XmlElement& element = growing.open.back()->inner.emplace_back();
         growing.open.push_back(&element);
         element.name = without_prefix(name);
-        for (; *attributes; attributes += 2) {
-            element.attributes.emplace_back(attributes[0], attributes[1]);
-        }
+        for (; *attributes; ++attributes) (element.attributes += *attributes) += '\0';
     });
 }
 void end_element(void* to, const char*) {
@@ -63,8 +63,10 @@ void add_text(void* to, const char* text, int length) {
 }  // namespace
 
 std::string XmlElement::attribute(const std::string& wanted) const {
-    for (const auto& [name_of, value] : attributes) {
-        if (name_of == wanted) return value;
+    for (const char* name_of = attributes.c_str(); *name_of != '\0';) {
+        const char* const value = name_of + std::strlen(name_of) + 1;
+        if (wanted == name_of) return value;
+        name_of = value + std::strlen(value) + 1;
     }
     return "";
 }

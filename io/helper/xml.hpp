@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace palpate::io {
@@ -11,7 +10,7 @@ namespace palpate::io {
 struct XmlElement {
     std::string name;  ///< without a prefix for its namespace
     std::string text;
-    std::vector<std::pair<std::string, std::string>> attributes;
+    std::string attributes;  ///< names and values in turn, a zero after each
     std::vector<XmlElement> inner;
 
     /// Empty if there is none.

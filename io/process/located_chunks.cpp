@@ -1,4 +1,4 @@
-// What image is in a file of chunks, and where its chunks lie. See the header.
+// Describes the image in a file of chunks and the places of its chunks. See the header.
 #include "io/process/located_chunks.hpp"
 
 #include <unistd.h>

@@ -32,6 +32,14 @@ void wrong_member(const std::string& name, const std::string& wanted) {
     throw std::invalid_argument("'" + name + "' must be " + wanted);
 }
 
+std::string one_of(const std::vector<std::string>& names) {
+    std::string words = names.front();
+    for (std::size_t i = 1; i < names.size(); ++i) {
+        words.append(i + 1 < names.size() ? ", " : " or ").append(names[i]);
+    }
+    return words;
+}
+
 Json to_value(const Vec3& value) {
     Json list = Json::array();
     for (int i = 0; i < 3; ++i) list.push_back(number_to_json(value[i]));

@@ -1,4 +1,4 @@
-// Labels that cover a field: the way in for layers.
+// Covers a field with labels. Layers reach the labels of a field through this header.
 #pragma once
 
 #include "palpate/field.hpp"

@@ -1,4 +1,4 @@
-// What bounds the proxy in layers, and which of their surfaces it touches.
+// Finds the levels that bound the proxy in layers, and the layer that it touches.
 #include "layers/tissues.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A tick of layers: what the surfaces feel like that hold the proxy, and when they give way.
+// A tick of layers: how the surfaces that hold the proxy feel, and when they give way.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -25,6 +25,9 @@ struct BoundPoint {
     double thickness = std::numeric_limits<double>::infinity();  // in the excess's units
     bool turned = false;
 
+    BoundPoint(const Field& f, double level, double s, const LatticePoint& at)
+        : field(f), isovalue(level), sign(s), point(at) {}
+
     bool is_layer() const { return thickness < std::numeric_limits<double>::infinity(); }
     /// Keeps the point on the solid side of a proxy's second level, towards which it may be turned.
     void bound_by(const Proxy& proxy, double scale) {

@@ -1,4 +1,4 @@
-// What the points of a tool meet: certified chords on the smooth field, and how far a point may
+// The field around a tool's points: certified chords on the smooth field, and how far a point may
 // certainly go.
 #pragma once
 

@@ -19,14 +19,20 @@ namespace {
 
 constexpr double longest_grid = 1 << 30;  // [samples] along an axis
 
-/// Which axis is which. Throws BadMetadata for one that is neither space, time nor channel.
+/// Which axis is which.
 struct Roles {
     std::array<int, 3> space = {-1, -1, -1};
     int time = -1, channel = -1;
 };
 
-Roles roles_of(const std::vector<ImageAxis>& axes) {
+/// Axes of other names are the axes of space that are left, the last one x. Throws BadMetadata if
+/// there are too many.
+Roles roles_of(const std::vector<ImageAxis>& axes, std::vector<std::string>& notes) {
     Roles roles;
+    std::vector<std::size_t> others;
+    const auto fail = [](const std::string& name) {
+        throw BadMetadata("its axis '" + name + "' is not one of t, c, z, y, x, once each");
+    };
     for (std::size_t a = 0; a < axes.size(); ++a) {
         const std::string& name = axes[a].name;
         int* const role = name == "x"   ? &roles.space[0]
@@ -35,10 +41,23 @@ Roles roles_of(const std::vector<ImageAxis>& axes) {
                           : name == "t" ? &roles.time
                           : name == "c" ? &roles.channel
                                         : nullptr;
-        if (!role || *role >= 0) {
-            throw BadMetadata("its axis '" + name + "' is not one of t, c, z, y, x, once each");
+        if (!role) {
+            others.insert(others.begin(), a);
+            continue;
         }
+        if (*role >= 0) fail(name);
         *role = static_cast<int>(a);
+    }
+    std::string taken;
+    for (const std::size_t a : others) {
+        const auto free = std::ranges::find(roles.space, -1);
+        if (free == roles.space.end()) fail(axes[a].name);
+        *free = static_cast<int>(a);
+        const std::string one = axes[a].name + " as " + "xyz"[free - roles.space.begin()];
+        taken = one + (taken.empty() ? "" : ", ") + taken;
+    }
+    if (!taken.empty()) {
+        notes.push_back("its axes with other names were taken by their order: " + taken);
     }
     if (roles.space[0] < 0 || roles.space[1] < 0) throw BadMetadata("it has no axes x and y");
     return roles;
@@ -76,8 +95,8 @@ class Taking {
 
     ChunkedVolume volume() {
         const Image& image = image_;
-        const Roles roles = roles_of(image.axes);
         StoreInfo& info = volume_.info;
+        const Roles roles = roles_of(image.axes, info.notes);
         const ChunkedArray& finest = volume_.arrays[0];
         for (const ChunkedArray& array : volume_.arrays) {
             if (array.axes() != image.axes.size() || array.bytes.stored != finest.bytes.stored) {
@@ -141,6 +160,7 @@ class Taking {
         Level level;
         level.chunk = Index3::Ones();
         level.geometry.size = Index3::Ones();
+        if (image.direction) level.geometry.direction = *image.direction;
         for (Eigen::Index i = 0; i < 3; ++i) {
             if (roles.space[static_cast<std::size_t>(i)] < 0) continue;
             const auto a = static_cast<std::size_t>(roles.space[static_cast<std::size_t>(i)]);
@@ -150,10 +170,10 @@ class Taking {
             level.geometry.size[i] = static_cast<int>(array.shape[a]);
             level.chunk[i] = static_cast<int>(array.chunk[a]);
             const double unit = millimetres_of(image.axes[a], volume_.info.notes);
-            level.geometry.spacing[i] = place.scale[a] * unit;
+            level.geometry.spacing[i] = std::abs(place.scale[a]) * unit;
             level.geometry.origin[i] = place.translation[a] * unit;
+            if (place.scale[a] < 0) level.geometry.direction.col(i) *= -1;
         }
-        if (image.direction) level.geometry.direction = *image.direction;
         level.geometry.oriented = image.oriented;
         level.geometry.measured = image.measured;
         try {
@@ -226,7 +246,8 @@ std::vector<ImageAxis> usual_axes(std::size_t count) {
 }
 
 void check_axes(const std::vector<ImageAxis>& axes) {
-    (void)roles_of(axes);
+    std::vector<std::string> unused;
+    (void)roles_of(axes, unused);
 }
 
 ChunkedVolume volume_of(const Image& image, ChunkedVolume begun, const StoreOptions& options) {

@@ -45,7 +45,7 @@ struct Image {
 /// Throws BadMetadata unless there are 2 to 5.
 std::vector<ImageAxis> usual_axes(std::size_t count);
 
-/// Throws BadMetadata unless each axis is one of t, c, z, y, x, once, with x and y.
+/// Throws BadMetadata if t, c, z, y or x occurs twice, or there are more axes of space than three.
 void check_axes(const std::vector<ImageAxis>& axes);
 
 /// Completes a volume whose info has address, format and perhaps notes, channels and times, and

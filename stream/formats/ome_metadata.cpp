@@ -141,6 +141,7 @@ void take_direction(const Json& attributes, Image& image) {
 std::string axis_name(const Json& name) {
     std::string text = name.is_string() ? name.get<std::string>() : "";
     std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (text == "time" || text == "channel") return text.substr(0, 1);
     return io::one_line(text.substr(0, 40));
 }
 

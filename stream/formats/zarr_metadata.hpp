@@ -28,7 +28,8 @@ void take_stored_layout(const Objects& objects, ChunkedArray& array,
 /// looked into). Nothing if there is no multiscale image in it.
 std::optional<Image> ome_image(const nlohmann::json& attributes);
 
-/// The name of an axis in lower case, short enough for messages; empty if it is no text.
+/// The name of an axis in lower case, short enough for messages, t for time and c for channel;
+/// empty if it is no text.
 std::string axis_name(const nlohmann::json& name);
 
 }  // namespace palpate::stream

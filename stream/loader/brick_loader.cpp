@@ -1,4 +1,5 @@
-// The bricks round the hands: chooses the next one and the one that goes, and publishes versions.
+// Keeps the bricks around the hands in memory: chooses the next one to read and the one to drop,
+// and publishes versions.
 #include "stream/loader/brick_loader.hpp"
 
 #include <algorithm>

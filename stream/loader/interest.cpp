@@ -12,6 +12,8 @@ namespace {
 /// A hand is followed this far ahead [s], and no farther than this [bricks].
 constexpr double look_ahead = 0.5;
 constexpr double farthest = 16;
+/// Of a hand's velocity [s].
+constexpr double smoothing = 0.05;
 /// Bricks ahead of a moving hand count as this much farther than those it is in.
 constexpr double ahead_factor = 0.5;
 /// And those on a long way from proxy to hand by this: where the proxy waits, all round it is
@@ -41,6 +43,14 @@ double distance(const Segment& s, const Vec3& p) {
 }
 
 }  // namespace
+
+void HandMotion::see(double now, const Vec3& place) {
+    if (const double passed = time ? now - *time : 0; passed > 0) {
+        velocity += std::min(1.0, passed / smoothing) * ((place - at) / passed - velocity);
+    }
+    time = now;
+    at = place;
+}
 
 std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
                                   std::span<const Interest> hands, std::size_t most,

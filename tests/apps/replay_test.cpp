@@ -48,6 +48,20 @@ void put_demo_trajectory(const ScratchFolder& folder) {
     std::filesystem::copy(folder / "demo/trajectory.csv", folder / "t.csv");
 }
 
+TEST(Replay, in_real_time_gives_the_same_ticks_of_a_volume_in_memory_and_marks_those_of_a_store) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    const auto rows = replay(folder, "--wait");
+    EXPECT_TRUE(same_but_for_time(rows, replay(folder, "--live")));
+    ASSERT_EQ(palpate(folder, "convert -q synthetic:sphere:24x24x24 s.zarr").status, 0);
+    const Outcome live = palpate(folder, "replay s.zarr --trajectory t.csv -o a.csv -i 50% --live");
+    ASSERT_EQ(live.status, 0) << live.err;
+    const auto lines = table(folder / "a.csv");
+    EXPECT_EQ(lines.size(), rows.size() + 1);
+    EXPECT_TRUE(contains(lines[0], ",waiting,level"));
+    EXPECT_EQ(palpate(folder, on_sphere + "--live --wait").status, 2);
+}
+
 TEST(Replay, writes_the_columns_of_the_contract_one_row_per_input_row) {
     const ScratchFolder folder;
     put_trajectory(folder);

@@ -8,6 +8,7 @@
 #include <cerrno>
 
 #include "doctor/made_up_machine.hpp"
+#include "doctor/report.hpp"
 #include "doctor/usb.hpp"
 
 namespace palpate::doctor::test {
@@ -292,6 +293,14 @@ TEST(Doctor, names_essential_faults_first) {
     std::vector<std::string> names;
     for (const Fault& fault : machine.faults()) names.push_back(fault.name);
     EXPECT_EQ(names, (std::vector<std::string>{"ticks-missed", "helper-io", "processor-governor"}));
+}
+
+TEST(Doctor, counts_a_single_hint_in_the_singular) {
+    const Fault essential{.name = "a", .essential = true, .meaning = "b", .remedy = "c"};
+    const Fault hint{.name = "d", .essential = false, .meaning = "e", .remedy = "f"};
+    const std::string one = summary_of({}, {hint}), two = summary_of({}, {essential, hint, hint});
+    EXPECT_TRUE(contains(one, "nothing essential is missing; 1 hint\n")) << one;
+    EXPECT_TRUE(contains(two, "1 essential, 2 hints\n")) << two;
 }
 
 TEST(Doctor, lets_root_and_the_owner_open_a_device) {

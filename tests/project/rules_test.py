@@ -10,6 +10,7 @@ from pathlib import Path
 import figures
 import globals as writable
 import includes
+import pages
 import prose
 import style
 
@@ -257,6 +258,29 @@ class Figures(unittest.TestCase):
                            ("511", "511: docs/b.csv, max mean_ns"),
                            ("511", "511 of docs/a.csv")):
             self.assertIsNotNone(self.wrong(said, mark), mark)
+
+
+class Pages(unittest.TestCase):
+    def found(self, text):
+        known = {("Proxy", "never_enters_the_solid")}, {"a_hand_that_jumps_over_a_wall"}, {"tests/core/proxy_test.cpp"}
+        return [problem for _, problem in pages.problems(text, *known)]
+
+    def test_names_of_tests_and_files_that_exist_pass(self):
+        self.assertEqual(self.found("`Proxy.never_enters_the_solid`, `Every/Proxy.never_enters_the_solid`, `core/proxy_test.cpp`, "
+                                    "`a_hand_that_jumps_over_a_wall`, `devices/NAME/NAME.cpp`\n```\n`core/none.cpp`\n```\n"), [])
+
+    def test_options_that_a_command_lacks_are_found(self):
+        def of_command(*command):
+            return "--isovalue --force-limit" if command == ("touch",) else "--beats" if command == ("demo", "beating") else ""
+        text = "`palpate touch a.nrrd --isovalue 3 --force-limit 1`, `palpate demo beating --beats 2`, `palpate ros --arm /a`\n"
+        self.assertEqual(list(pages.options_that_are_none(text, of_command)), [])
+        for wrong in ("touch --force", "touch --isovalues 3", "demo beating --isovalue 3"):
+            self.assertEqual(len(list(pages.options_that_are_none(f"\n    palpate {wrong}\n", of_command))), 1, wrong)
+
+    def test_names_that_lead_nowhere_are_found(self):
+        for name in ("Proxy.always_enters_the_solid", "Field.never_enters_the_solid", "core/prox_test.cpp",
+                     "a_hand_that_jumps_over_the_wall"):
+            self.assertEqual(len(self.found(f"`{name}`")), 1, name)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import random
 
 import numpy
 import palpate
+import pydicom
 import pytest
 from PIL import Image
 from pydicom.encaps import encapsulate
@@ -108,6 +109,19 @@ def test_a_type_of_one_slice_makes_no_series_where_no_place_has_two(tmp_path):
     assert numpy.array_equal(palpate.load(save(tmp_path / "a", stack(ramp("i2"), change=change))).volume.array, ramp("i2"))
 
 
+def test_echo_times_that_were_measured_for_each_slice_make_no_series(tmp_path):
+    slices = stack(ramp("i2"), change=lambda i: {"EchoTime": 30 + 0.004 * i})
+    assert numpy.array_equal(palpate.load(save(tmp_path / "a", slices)).volume.array, ramp("i2"))
+    slices += stack(ramp("i2") + 1000, change=lambda i: {"EchoTime": 31 + 0.004 * i})
+    expect_two_series(numbered(tmp_path / "b", slices), "echo time 31 ms")
+
+
+def test_a_gap_between_three_slices_is_filled_at_the_distance_of_two(tmp_path):
+    slices = [data for i, data in enumerate(stack(ramp("i2")[:4])) if i != 2]
+    volume = noted(save(tmp_path / "a", slices), "1 of 4 slices are missing")
+    assert volume.geometry.spacing[2] == 2 and numpy.array_equal(volume.array[[0, 1, 3]], ramp("i2")[[0, 1, 3]])
+
+
 def numbered(folder, slices):
     for number, data in enumerate(slices):
         data.InstanceNumber, data.SOPInstanceUID = number + 1, f"1.2.3.{number}"
@@ -202,6 +216,32 @@ def test_frames_of_an_ultrasound_volume_lie_in_its_space(tmp_path):
     assert numpy.allclose(geometry.origin, (1, 2, 3)) and geometry.spacing[2] == 2 and not geometry.oriented
 
 
+def unplaced(path, group, kind="1.2.840.10008.5.1.4.1.1.4.1", **changes):
+    """Five frames without a position."""
+    folder = enhanced(path, ramp("u2"), range(PLACES), group, **changes)
+    data = pydicom.dcmread(folder / "001.dcm")
+    data.SOPClassUID = kind
+    for frame in data.PerFrameFunctionalGroupsSequence:
+        del frame.PlanePositionSequence
+    data.save_as(folder / "001.dcm")
+    return folder
+
+
+def test_tiles_of_a_slide_are_no_slices(tmp_path):
+    refused(unplaced(tmp_path / "a", lambda i: {}, TotalPixelMatrixRows=8, TotalPixelMatrixColumns=18), "microscope")
+    whole = unplaced(tmp_path / "b", lambda i: {}, TotalPixelMatrixRows=4, TotalPixelMatrixColumns=6)
+    assert numpy.array_equal(palpate.load(whole).volume.array, ramp("u2"))
+
+
+def test_x_rays_from_several_directions_are_no_slices_and_those_from_one_are_moments(tmp_path):
+    from_side = lambda turned: lambda i: {"PositionerPositionSequence": items(
+        PositionerPrimaryAngle=turned * i, PositionerSecondaryAngle=5)}
+    kind = "1.2.840.10008.5.1.4.1.1.12.1.1"
+    refused(unplaced(tmp_path / "a", from_side(2), kind), "projections")
+    loaded = palpate.load(unplaced(tmp_path / "b", from_side(0), kind), frame=2)
+    assert loaded.time_steps == PLACES and numpy.array_equal(loaded.volume.array, ramp("u2")[2:3])
+
+
 # Frames without functional groups --------------------------------------------------------------------
 
 
@@ -225,6 +265,18 @@ def test_frames_counted_by_location_or_page_are_slices(tmp_path):
                             ("b", 0x00182001, {"PageNumberVector": [1, 2, 3, 4, 5], "SliceThickness": 1.5})):
         volume = palpate.load(save(tmp_path / name, [frames_of(ramp("u2"), FrameIncrementPointer=tag, **more)])).volume
         assert volume.geometry.spacing[2] == 1.5 and numpy.array_equal(volume.array, ramp("u2"))
+
+
+@pytest.mark.parametrize("kind", ("3.1", "12.1", "12.2"))
+def test_frames_of_a_film_are_moments_where_nothing_says_that_they_are_slices(tmp_path, kind):
+    film = {"SOPClassUID": f"1.2.840.10008.5.1.4.1.1.{kind}", "ImageOrientationPatient": None, "CineRate": 20}
+    data = frames_of(ramp("u2"), **film, ImagePositionPatient=None)
+    loaded = palpate.load(save(tmp_path / "a", [data]), frame=3)
+    assert loaded.time_steps == 5 and numpy.array_equal(loaded.volume.array, ramp("u2")[3:4])
+    assert not any("how much time" in note for note in loaded.notes)
+    data = frames_of(ramp("u2"), **film, SpacingBetweenSlices=3)
+    volume = palpate.load(save(tmp_path / "b", [data])).volume
+    assert volume.geometry.spacing[2] == 3 and numpy.array_equal(volume.array, ramp("u2"))
 
 
 def test_a_number_of_frames_may_have_a_sign(tmp_path):
@@ -292,6 +344,24 @@ def coded(folder, array, fragments, **changes):
         data.PixelData = encapsulate([out.getvalue()], fragments_per_frame=fragments)
         data["PixelData"].is_undefined_length = True
     return save(folder, slices, "JPEG 2000")
+
+
+@pytest.mark.parametrize("shape", ((3, 4, 6), (3, 5, 3)))  # of even and odd length
+@pytest.mark.parametrize("dtype", ("u1", "i2"))
+def test_fragments_without_compression_are_frames(tmp_path, dtype, shape):
+    SYNTAXES["in fragments"] = "1.2.840.10008.1.2.1.98"
+    array = ramp(dtype, shape)
+    array[:, -1, -1] = 0xD9  # the end of a code stream, and zeros behind it, are samples here
+    data = frames_of(array, SpacingBetweenSlices=2)
+    for name, planes in (("whole", array), ("cut", array[:, 1:])):
+        data.PixelData = encapsulate([plane.tobytes() for plane in planes])
+        data["PixelData"].is_undefined_length = True
+        folder = save(tmp_path / name, [data], "in fragments")
+        if name == "cut":
+            refused(folder, "its header asks for")
+        else:
+            loaded = palpate.load(folder)
+            assert numpy.array_equal(loaded.volume.array, array) and not loaded.notes
 
 
 @pytest.mark.parametrize("fragments", (1, 3))

@@ -215,6 +215,10 @@ def test_the_program_says_in_a_line_what_is_wrong_and_goes_on_after_a_stop(tmp_p
     again = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     assert int(re.search(r"\((\d+) kept", again.stdout)[1]) > 60
     assert files(out) == on_one_machine(source, tmp_path / "one.zarr", "--chunk", "16", "--dequantize=4")
+    command[2] = tmp_path / "nowhere.zarr"
+    missing = subprocess.run(command, check=False, stderr=subprocess.PIPE, text=True)  # before a cluster is started
+    assert missing.returncode == 3 and missing.stderr.startswith("palpate: ") and missing.stderr.count("\n") == 1
+    command[2] = source
     refused = subprocess.run(command, check=False, stderr=subprocess.PIPE, text=True)
     assert refused.returncode == 5 and "is there already" in refused.stderr
     assert "Traceback" not in refused.stderr

@@ -14,9 +14,17 @@ import numpy
 import palpate
 import pytest
 
-from palpate.evaluate import bodies, heads, human, layers, needle, performance, recorded, scaling, stability, tissues, tools
+from palpate.evaluate import bodies, figures, heads, human, layers, needle, performance, recorded, scaling, stability, tissues, tools
 from palpate.evaluate.experiment import GRANTED, Options, Table
 from palpate.evaluate.subjects import Subject, of_text
+
+
+def test_an_svg_keeps_its_words_and_its_lines_to_a_tenth_of_a_point():
+    lines = "".join(f'   <path d="M {x}.123456 1 \nL {x}.2 2.004 \nL {x}.21 2.01 \nL 9 9 \n" style="fill: none"/>\n' for x in (1, 2))
+    text = ' <text x="0.123456" style="stroke-width: 0.125" transform="translate(0.001 -0.001) rotate(0.125)">0.123456</text>'
+    assert figures.compact("<svg>\n" + lines + text) == (
+        '<svg>\n<path d="M 1.12 1 L 1.2 2 L 9 9 M 2.12 1 L 2.2 2 L 9 9" style="fill: none"/>\n'
+        '<text x="0.12" style="stroke-width: 0.125" transform="translate(0 0) rotate(0.125)">0.123456</text>')
 
 
 def test_phantoms_have_their_depth_as_density():
@@ -220,8 +228,7 @@ def test_times_of_updates_are_in_order_and_each_is_measured():
     weights = performance.weights_of(hand)
     assert list(weights) == 2 * ([50] * 10 + [3]) and len(palpate.update_times(*of, batch=50)) == len(weights)
     assert len(palpate.update_times(*of)) == 1006 and len(palpate.update_times(*of, cold=100)) == 10
-    effort = performance.Effort(2, 0.503, 3, 5)
-    taken = performance.timed(subject, ["exact"], hand, effort)["exact"]
+    taken = performance.timed(subject, ["exact"], hand, 3, 5)["exact"]
     found = performance.numbers_of(taken, hand, 20)
     assert 0 < found["p50_ns"] <= found["p99_ns"] <= found["p999_ns"] <= found["max_ns"] <= found["interrupted_max_ns"]
     assert found["updates"] == 1006 and found["cold_p50_ns"] > 0
@@ -351,9 +358,14 @@ def test_a_long_call_ends_when_its_progress_raises_and_at_ctrl_c(name):
     assert operator.length_hint(signals) == 9
 
 
+def write(recording, path):
+    rows = numpy.column_stack([recording.time, recording.position, recording.force])
+    numpy.savetxt(path, rows, fmt=["%.3f"] + 6 * ["%.4f"], header=" ".join(recorded.COLUMNS), comments="# ")
+
+
 def test_a_recording_reads_back_as_it_was_written_and_damage_is_named(tmp_path):
     made = recorded.modelled(1, 1)
-    recorded.write(made, tmp_path / "hand.traj")
+    write(made, tmp_path / "hand.traj")
     again = recorded.read(tmp_path / "hand.traj")
     assert again.name == "hand" and abs(again.position - made.position).max() < 1e-4 and abs(again.force - made.force).max() < 1e-4
     (tmp_path / "other.traj").write_text("% fx fy fz t x y z extra\n1, 2, 3, 0.5, 7, 8, 9, 0\n1 2 3 0.6 7 8 9 0\n")
@@ -403,7 +415,7 @@ def test_a_scanned_ball_is_felt_as_it_was_recorded(tmp_path):
     radius = numpy.linalg.norm(mesh.vertices, axis=1).mean()
     folder = tmp_path / "ball"
     folder.mkdir()
-    recorded.write(recorded.Recording("ball", angle, radius * out, pressure[:, None] * out), folder / "probe.traj")
+    write(recorded.Recording("ball", angle, radius * out, pressure[:, None] * out), folder / "probe.traj")
     mesh.write(folder / "ball.obj")
     recording, surface = list(recorded.recordings_of(Options(quick=True, seeds=0, data=tmp_path)))[-1]
     assert recording.name == "ball" and surface.name == "scanned"

@@ -311,10 +311,10 @@ def test_a_ratio_of_times_is_not_that_of_interruptions():
     assert sampling.ratio_of_means(times, times) == (1, 1, 1)
 
 
-def test_numbers_read_back_as_the_same_and_what_was_not_measured_is_empty(tmp_path):
-    table = Table([{"name": 'a, "b"', "x": 1 / 3}, {"name": "c", "y": 2.0}])
+def test_numbers_have_twelve_digits_and_what_was_not_measured_is_empty(tmp_path):
+    table = Table([{"name": 'a, "b"', "x": 1 / 3}, {"name": "c", "y": 2.0, "z": 2**37}])
     report.write_csv(table, tmp_path / "t.csv")
-    assert (tmp_path / "t.csv").read_text() == 'name,x,y\n"a, ""b""",0.3333333333333333,\nc,,2\n'
+    assert (tmp_path / "t.csv").read_text() == 'name,x,y,z\n"a, ""b""",0.333333333333,,\nc,,2,137438953472\n'
 
 
 def test_a_page_has_no_markup_of_somebody_else_and_a_claim_that_does_not_hold_stands_out(tmp_path):
@@ -456,6 +456,13 @@ def test_a_signal_before_its_modules_are_loaded_ends_it_with_one_line(tmp_path, 
     assert running.communicate()[1].strip().endswith("interrupted")
     assert running.returncode == 128 + end
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_signal_while_modules_are_loaded_ends_it_at_once_with_one_line():
+    load = "os.kill(os.getpid(), signal.SIGINT), print('loaded')"
+    ran = subprocess.run([sys.executable, "-c", "import os, signal, sys; from palpate.command_line import run; "
+                          f"sys.exit(run(lambda: print('done'), load=lambda: ({load})))"], capture_output=True, text=True)
+    assert (ran.returncode, ran.stdout, ran.stderr) == (130, "", "palpate: interrupted\n")
 
 
 def test_nothing_half_written_is_left_when_interrupted(tmp_path):

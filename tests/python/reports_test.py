@@ -289,6 +289,19 @@ def test_the_slices_of_a_header_may_be_in_several_files(tmp_path, form, packed, 
     refused(path, "4 data files for 5 slices")
 
 
+def test_a_list_of_meta_image_may_say_2d_and_blanks_may_stand_before_ome_xml(tmp_path):
+    for i, plane in enumerate(ramp("i2")):
+        (tmp_path / f"{i}.raw").write_bytes(plane.tobytes())
+    names = "".join(f"{i}.raw\n" for i in range(5))
+    (tmp_path / "a.mhd").write_text("NDims = 3\nDimSize = 6 4 5\nElementType = MET_SHORT\nElementSpacing = 2 3 4\n"
+                                    f"BinaryDataByteOrderMSB = False\nElementDataFile = LIST 2D\n{names}")
+    assert numpy.array_equal(palpate.load(tmp_path / "a.mhd").volume.array, ramp("i2"))
+    xml = ('\n <?xml version="1.0"?><OME><Image><Pixels DimensionOrder="XYZCT" Type="uint16" SizeX="6" SizeY="4" SizeZ="5" SizeC="1" '
+           'SizeT="1" PhysicalSizeX="2" PhysicalSizeY="3" PhysicalSizeZ="4"><TiffData/></Pixels></Image></OME>')
+    tifffile.imwrite(tmp_path / "a.tif", ramp("u2"), description=xml, metadata=None)
+    assert numpy.allclose(palpate.load(tmp_path / "a.tif").volume.geometry.spacing, (2e-3, 3e-3, 4e-3))
+
+
 @pytest.mark.parametrize("names, words", (("%d.raw 5 1 1", "is empty"), ("%d.raw 1 5 0", "make no sense"), ("LIST\n\n", "is empty"),
                                           ("%d.raw 0 99999999 1", "more than 65536"), ("%d.raw 1 5 -1", "is empty"),
                                           ("%d.raw 1 5000000000 1", "cannot be read"), ("%1000000000d.raw 1 5 1", "cannot be read"),

@@ -211,6 +211,9 @@ def test_a_person_at_the_keys_touches_answers_and_is_analysed(tmp_path):
     air = start(run[0], "r.csv", *run[2:], "--device", f"simulated:file={tmp_path / 'air.csv'}", keys="\n")
     assert air.stderr.endswith("palpate: standard input ended before an answer\n")
     assert air.returncode == 2 and air.stderr.count("touch 2") == 2 and read(tmp_path / "r.csv") == []
+    full = ("bash", "-c", '"$PALPATE" study "$@" <<< 1 >/dev/full', "bash", run[0], "f.csv", *run[2:])
+    told = subprocess.run(full, cwd=tmp_path, text=True, stderr=subprocess.PIPE, check=False)
+    assert told.returncode == 5 and told.stderr.endswith("touch 2\npalpate: standard output: No space left on device\n")
     stiff = start(run[0], "s.csv", "--standard", "2", "--device", "simulated:touch,jitter=no,hand=press", "--seconds", "0.2", keys="1\n")
     assert stiff.returncode == 2 and "stiffness [N/mm] = 4: must be at most 3.6" in stiff.stderr and "touch 1" not in stiff.stderr
     lost = start("lost.nrrd@35", *run[1:], keys="")
@@ -266,7 +269,8 @@ def test_values_that_are_impossible_are_refused_in_a_line_and_examples_are_taken
      "--compression: there is no 'gzp': use one of none, gzip, zstd, blosc (did you mean gzip?)"),
     ("distribute a b --workers 2 --scheduler tcp://x:1", "--scheduler and --workers exclude each other"),
     ("ros", "VOLUME: it is needed, as in palpate ros head.nrrd --device haply"),
-    ("ros a --arm /a --device haply", "--arm and --device exclude each other")])
+    ("ros a --arm /a --device haply", "--arm and --device exclude each other"),
+    ("ros a --axes x,y", "--axes: 'x,y' are no axes of a rotation: each one is needed once, and not mirrored")])
 def test_a_wrong_command_line_is_answered_in_one_line(words, text):
     ran = subprocess.run([os.environ["PALPATE"], *words.split()], text=True, capture_output=True, check=False)
     assert (ran.returncode, ran.stderr, ran.stdout) == (2, f"palpate: {text} (see palpate {words.split()[0]} --help)\n", "")

@@ -103,6 +103,14 @@ def test_other_strides_are_refused_by_name_or_copied_when_asked(other):
     assert numpy.array_equal(palpate.Volume(array, copy=True).array, array)
 
 
+@pytest.mark.parametrize("copy", (True, None))
+@pytest.mark.parametrize("dtype", ("int16", "uint16", "float32"))
+def test_samples_of_the_other_byte_order_are_copied_when_asked(dtype, copy):
+    array = samples(dtype)
+    volume = palpate.Volume(array.astype(array.dtype.newbyteorder()), copy=copy)
+    assert numpy.array_equal(volume.array, array) and volume.type == dtype
+
+
 @pytest.mark.parametrize("array, words", [
     (numpy.zeros((3, 3)), "three axes"),
     (numpy.zeros((3, 3, 3)), "float64.*as_volume"),

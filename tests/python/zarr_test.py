@@ -270,3 +270,35 @@ def test_members_that_have_to_be_understood_are_refused(tmp_path, member, ignore
 def test_codecs_that_leave_the_bytes_open_are_refused(tmp_path, codecs, words):
     put(tmp_path / "zarr.json", metadata3(ramp(), codecs=codecs))
     refused(tmp_path, words)
+
+
+# ome-ngff 0.4 names the types of axes, not the axes of space; xarray writes time and channel in full.
+@pytest.mark.parametrize("names, taken", (
+    ("time depth height width", "depth as z, height as y, width as x"), ("channel z lat lon", "lat as y, lon as x"),
+    ("time z y x", "")))
+def test_axes_of_zarr_may_have_other_names(tmp_path, names, taken):
+    names, data = names.split(), numpy.stack([ramp(), ramp() + 1000])
+    second = {names[0]: 1}
+    zarr.save_array(str(tmp_path / "a"), data)
+    zarr.open(str(tmp_path / "a")).attrs["_ARRAY_DIMENSIONS"] = names
+    group = zarr.open_group(str(tmp_path / "b"), mode="w")
+    group.create_dataset("0", data=data)
+    axes = [{"name": name, "type": "space"} for name in names]
+    axes[0]["type"] = names[0]
+    scale = {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1, 4, 3, 2]}]}
+    group.attrs["multiscales"] = [{"version": "0.4", "axes": axes, "datasets": [scale]}]
+    for folder, spacing in (("a", (1, 1, 1)), ("b", (2, 3, 4))):
+        store = palpate.open_store(str(tmp_path / folder), **second)
+        assert numpy.array_equal(store.read((0, 0, 0), store.levels[0].size).array, ramp() + 1000)
+        assert numpy.array_equal(store.levels[0].spacing, spacing)
+        assert any(taken and taken in note for note in store.notes) == (taken != "")
+
+
+# vizarr 297: a negative scale turns an axis round.
+def test_a_negative_scale_of_ome_zarr_turns_an_axis_round(tmp_path):
+    levels = [[scaled(2, -3, 4), moved(1, 30, 0)], [scaled(4, -6, 8), moved(1, 30, 0)]]
+    store, array = opened(image(tmp_path, [ramp(), ramp(2)], levels))
+    assert numpy.array_equal(array, ramp()) and len(store.levels) == 2
+    for level, step in zip(store.levels, (1, 2)):
+        assert numpy.array_equal(level.spacing, (4 * step, 3 * step, 2 * step)) and numpy.array_equal(level.origin, (0, 30, 1))
+        assert numpy.array_equal(level.direction, numpy.diag((1, -1, 1)))

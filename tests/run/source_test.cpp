@@ -1,4 +1,4 @@
-// Sources: the filters of samples after reading, which names keep.
+// Sources: the filters of samples after reading, and their names.
 #include "palpate/run/source.hpp"
 
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "palpate/filters/dequantize.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/io/live_file.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -128,6 +129,25 @@ TEST(Source, refuses_rounds_out_of_range_and_a_live_source) {
     Source live = source_named("live:frames.shm");
     live.dequantize = 1;
     EXPECT_THROW(load(live), std::invalid_argument);
+}
+
+TEST(Source, keeps_no_passwords_but_that_there_was_one) {
+    const auto names = to_names(
+        source_from({{"volume", "https://me:secret@example.org/a.zarr?versionId=3&sig=secret"},
+                     {"forbidden-is-missing", "yes"}}));
+    EXPECT_EQ(names.at("volume"), "https://example.org/a.zarr?versionId=3");
+    EXPECT_EQ(names.at("secrets"), "left out");
+    EXPECT_EQ(names.at("forbidden-is-missing"), "yes");
+    EXPECT_EQ(to_names(source_from(names)), names);
+    EXPECT_FALSE(
+        to_names(source_from({{"volume", "https://example.org/a.zarr"}})).contains("secrets"));
+    try {
+        load(source_from({{"volume", "http://127.0.0.1:9/a.zarr"}, {"secrets", "left out"}}));
+        FAIL() << "nothing is there";
+    } catch (const io::InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("without its password"), std::string::npos)
+            << e.what();
+    }
 }
 
 }  // namespace

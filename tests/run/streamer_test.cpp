@@ -89,6 +89,25 @@ TEST(Streamed, a_replay_that_waits_gives_the_ticks_of_the_whole_volume_bit_for_b
     EXPECT_GT(constrained, 500);
 }
 
+TEST(Streamed, a_replay_in_real_time_holds_the_proxy_until_its_samples_are_there) {
+    const BallFile ball;
+    const LoadedVolume streamed = load(ball.streamed());
+    const io::Trajectory trajectory = stroke(ball.volume);
+    Renderer renderer = make_renderer(make_field(start_samples(streamed), {}), 1);
+    const auto pace = keep_pace(streamed, trajectory, [&](double seconds) {
+        EXPECT_EQ(seconds, trajectory.time[1]);
+        return std::chrono::steady_clock::time_point();
+    });
+    const auto status = [&] {
+        return render(renderer, {trajectory.time[1], trajectory.position[1], true}).proxy.status;
+    };
+    EXPECT_EQ(status(), UpdateStatus::waiting);
+    EXPECT_TRUE(support::comes_true([&] {
+        pace(renderer, 1);
+        return status() == UpdateStatus::done;
+    }));
+}
+
 TEST(Streamed, a_live_run_touches_and_its_recording_repeats_bit_for_bit) {
     const BallFile ball;
     const auto data = test::stepped_data(load(ball.streamed()));
@@ -438,25 +457,6 @@ TEST(Streamed, sources_keep_level_channel_and_memory_in_their_names) {
     EXPECT_TRUE(std::holds_alternative<StoreSource>(
         source_from({{"volume", "https://example.org/a.zarr"}}).from));
     EXPECT_TRUE(std::holds_alternative<FileSource>(ball.whole().from)) << "a small file is read";
-}
-
-TEST(Streamed, sources_keep_no_passwords_but_that_there_was_one) {
-    const auto names = to_names(
-        source_from({{"volume", "https://me:secret@example.org/a.zarr?versionId=3&sig=secret"},
-                     {"forbidden-is-missing", "yes"}}));
-    EXPECT_EQ(names.at("volume"), "https://example.org/a.zarr?versionId=3");
-    EXPECT_EQ(names.at("secrets"), "left out");
-    EXPECT_EQ(names.at("forbidden-is-missing"), "yes");
-    EXPECT_EQ(to_names(source_from(names)), names);
-    EXPECT_FALSE(
-        to_names(source_from({{"volume", "https://example.org/a.zarr"}})).contains("secrets"));
-    try {
-        load(source_from({{"volume", "http://127.0.0.1:9/a.zarr"}, {"secrets", "left out"}}));
-        FAIL() << "nothing is there";
-    } catch (const io::InputError& e) {
-        EXPECT_NE(std::string(e.what()).find("without its password"), std::string::npos)
-            << e.what();
-    }
 }
 
 /// All threads of two runs on the same data at their real pace: servos, streamer, editor with a

@@ -85,8 +85,14 @@ TEST(Bounds, an_xml_document_costs_the_helper_no_more_than_may_be_used) {
     put_bytes(folder / "large.xml", "<SpimData>" + many + "</SpimData>");
     StoreOptions options;
     options.unpacking = 128 * megabyte;
+    std::string attributes;
+    for (int i = 0; i < 200'000; ++i) {
+        attributes += R"(<a b="" c="" d="" e="" f="" g="" h="" i="" j="" k="" l="" m=""/>)";
+    }
+    put_tiff(folder / "attributes.tif", start + "</Image>" + attributes + "</OME>");
     EXPECT_EQ(open_store(folder / "small.tif", options)->info().format, "OME-TIFF");
     if (support::is_slow_build) return;  // sanitizers need memory of their own
+    EXPECT_EQ(open_store(folder / "attributes.tif", options)->info().format, "OME-TIFF");
     const auto work = [&] {
         for (const char* name : {"large.tif", "large.h5"}) {
             const std::string message =

@@ -1,4 +1,4 @@
-// Lays edits over what was read, and joins it with the overview; see the header.
+// Applies edits to the samples that were read, and joins them with the overview; see the header.
 #include "apps/viewer/model/detail_maker.hpp"
 
 #include <algorithm>

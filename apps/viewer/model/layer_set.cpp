@@ -19,12 +19,7 @@ constexpr double glass = 0.35;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 SeenSurface seen(const Layer& layer, bool shown) {
-    SeenSurface surface;
-    surface.level = layer.level;
-    surface.colour = {layer.colour[0], layer.colour[1], layer.colour[2]};
-    surface.opacity = layer.opacity;
-    surface.shown = shown;
-    return surface;
+    return {layer.level, colour_of(layer), layer.opacity, shown};
 }
 
 void put_first(std::vector<SeenSurface>& surfaces, const Layers& layers, std::size_t from,

@@ -15,6 +15,9 @@ namespace palpate::viewer {
 /// Null: no layers.
 using SharedLayers = std::shared_ptr<const Layers>;
 
+inline Colour colour_of(const palpate::Layer& layer) {
+    return {layer.colour[0], layer.colour[1], layer.colour[2]};
+}
 /// How many of their surfaces, the first ones, are levels of the data, not labels.
 inline std::size_t levels_in(const SharedLayers& layers) {
     return layers ? level_count(*layers) : 0;

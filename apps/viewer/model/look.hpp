@@ -1,6 +1,7 @@
 // How a scene is shown: plain values that panel and scene share and a session file keeps.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,11 @@
 namespace palpate::viewer {
 
 using pictures::Colour;
+
+inline Colour mixed(const Colour& a, const Colour& b, double t) {
+    return {std::lerp(a.red, b.red, t), std::lerp(a.green, b.green, t),
+            std::lerp(a.blue, b.blue, t)};
+}
 
 /// Where a transfer function changes: between two points colour and opacity run straight, beyond
 /// the outer ones they stay.

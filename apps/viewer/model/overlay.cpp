@@ -183,11 +183,10 @@ std::shared_ptr<const Overlay> in_colours_of(const std::shared_ptr<const Overlay
     for (std::size_t at = level_count(*layers); at < layers->layers.size(); ++at) {
         const Layer& layer = layers->layers[at];
         for (std::size_t i = 0; i < overlay->labels.size(); ++i) {
-            const Colour colour{layer.colour[0], layer.colour[1], layer.colour[2]};
             const Label& label = overlay->labels[i];
-            if (label.value != layer.level || label.colour == colour) continue;
+            if (label.value != layer.level || label.colour == colour_of(layer)) continue;
             if (!coloured) coloured = std::make_shared<Overlay>(*overlay);
-            coloured->labels[i].colour = colour;
+            coloured->labels[i].colour = colour_of(layer);
         }
     }
     return coloured ? coloured : overlay;

@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "apps/viewer/model/hands.hpp"
@@ -17,6 +17,15 @@
 #include "palpate/io/csv.hpp"
 #include "palpate/io/output.hpp"
 
+namespace palpate {
+
+template <>
+inline constexpr auto names_of<viewer::Cut> = enum_names("cut", "nothing", "plane", "box");
+template <>
+inline constexpr auto names_of<viewer::Measure> = enum_names("measure", "length", "angle");
+
+}  // namespace palpate
+
 namespace palpate::pictures {
 
 static io::Json to_value(const Colour& c) {
@@ -26,14 +35,19 @@ static io::Json to_value(const Colour& c) {
 static void from_value(const io::Json& json, const std::string& name, Colour& colour) {
     Vec3 v;
     io::from_value(json, name, v);
+    if (!(v.array() >= 0 && v.array() <= 1).all()) io::wrong_member(name, "from 0 to 1");
     colour = {v[0], v[1], v[2]};
 }
 
 static void members(auto& v, io::Is<Camera> auto& s) {
     v("focus", s.focus);
+    v.must(s.focus.allFinite(), "focus", "finite");
     v("towards_viewer", s.towards_viewer);
     v("up", s.up);
+    const Vec3 side = s.towards_viewer.normalized().cross(s.up.normalized());
+    v.must(side.norm() > 1e-6, "up", "aslant to 'towards_viewer'");
     v("half_height", s.half_height);
+    v.must(s.half_height > 0 && std::isfinite(s.half_height), "half_height", "above 0");
 }
 
 }  // namespace palpate::pictures
@@ -42,89 +56,93 @@ namespace palpate::viewer {
 
 using io::Is;
 
-// The lists of members, and the names of an enum's values in their order. Not in an unnamed
-// namespace, where io::JsonWriter would not find them.
+// The lists of members with their rules. Not in an unnamed namespace, where io::JsonWriter would
+// not find them.
 
-static constexpr std::array<const char*, 3> value_names(Cut) {
-    return {"nothing", "plane", "box"};
+static void part(auto& v, const char* name, auto& value) {
+    v(name, value);
+    v.must(value >= 0 && value <= 1, name, "from 0 to 1");
 }
 
-static constexpr std::array<const char*, 2> value_names(Measure) {
-    return {"length", "angle"};
+static bool is_finite(double value) {
+    return std::isfinite(value);
 }
-
+static bool is_finite(const Vec3& value) {
+    return value.allFinite();
+}
 template <class T>
-concept Named = requires(T value) {
-    value_names(value);
-};
-
-static io::Json to_value(Named auto value) {
-    return value_names(value)[static_cast<std::size_t>(value)];
+static bool is_finite(const std::optional<T>& value) {
+    return !value || is_finite(*value);
 }
 
-template <Named T>
-static void from_value(const io::Json& json, const std::string& name, T& value) {
-    std::string text;
-    io::from_value(json, name, text);
-    const auto names = value_names(value);
-    const auto at = std::ranges::find(names, text);
-    if (at == names.end()) {
-        std::string wanted = names.front();
-        for (std::size_t i = 1; i < names.size(); ++i) {
-            wanted.append(i + 1 < names.size() ? ", " : " or ").append(names[i]);
-        }
-        io::wrong_member(name, wanted);
-    }
-    value = static_cast<T>(at - names.begin());
+static void finite(auto& v, const char* name, auto& value) {
+    v(name, value);
+    v.must(is_finite(value), name, "finite");
+}
+
+static void colour_map(auto& v, const char* name, auto& value) {
+    v(name, value);
+    v.must(std::ranges::count(colour_map_names(), value) > 0, name,
+           "one of the colour maps, such as grey");
 }
 
 static void members(auto& v, Is<ControlPoint> auto& s) {
-    v("level", s.level);
+    finite(v, "level", s.level);
     v("colour", s.colour);
-    v("opacity", s.opacity);
+    part(v, "opacity", s.opacity);
 }
 
 static void members(auto& v, Is<TransferFunction> auto& s) {
     v("preset", s.preset);
     v("points", s.points);
+    v.must(s.points.size() != 1, "points", "two points or more, or none");
+    for (std::size_t i = 1; i < s.points.size(); ++i) {
+        v.must(s.points[i - 1].level < s.points[i].level, "points[" + std::to_string(i) + "].level",
+               "above that of the point before");
+    }
 }
 
 static void members(auto& v, Is<SeenSurface> auto& s) {
-    v("level", s.level);
+    finite(v, "level", s.level);
     v("colour", s.colour);
-    v("opacity", s.opacity);
+    part(v, "opacity", s.opacity);
     v("shown", s.shown);
 }
 
 static void members(auto& v, Is<CutPlane> auto& s) {
-    v("point", s.point);
-    v("normal", s.normal);
+    finite(v, "point", s.point);
+    finite(v, "normal", s.normal);
+    v.must(s.normal.norm() > 0, "normal", "finite and not zero");
 }
 
 static void members(auto& v, Is<CutBox> auto& s) {
     v("low", s.low);
     v("high", s.high);
+    const auto low = s.low.array(), high = s.high.array();
+    v.must((low >= 0 && low < high && high <= 1).all(), "", "0 <= low < high <= 1 along each axis");
 }
 
 static void members(auto& v, Is<OverlayLook> auto& s) {
     v("shown", s.shown);
-    v("opacity", s.opacity);
-    v("colours", s.colours);
+    part(v, "opacity", s.opacity);
+    colour_map(v, "colours", s.colours);
     v("surface", s.surface);
-    v("surface_opacity", s.surface_opacity);
-    v("level", s.level);
+    part(v, "surface_opacity", s.surface_opacity);
+    finite(v, "level", s.level);
     v("hidden", s.hidden);
 }
 
 static void members(auto& v, Is<Look> auto& s) {
     v("surface", s.surface);
     v("surface_colour", s.surface_colour);
-    v("surface_opacity", s.surface_opacity);
+    part(v, "surface_opacity", s.surface_opacity);
     v("surfaces", s.surfaces);
+    v.must(s.surfaces.size() <= most_surfaces, "surfaces",
+           "not more than " + std::to_string(most_surfaces));
     v("cut", s.cut);
     v("cut_plane", s.cut_plane);
     v("cut_box", s.cut_box);
-    v("colours", s.colours);
+    colour_map(v, "colours", s.colours);
     v("overlay", s.overlay);
     v("volume", s.volume);
     v("transfer", s.transfer);
@@ -142,18 +160,24 @@ static void members(auto& v, Is<Look> auto& s) {
 static void members(auto& v, Is<Measurement> auto& s) {
     v("kind", s.kind);
     v("points", s.points);
+    const bool whole = s.points.size() == points_of(s.kind);
+    v.must(whole && std::ranges::all_of(s.points, [](const Vec3& p) { return is_finite(p); }),
+           "points", std::to_string(points_of(s.kind)) + " finite points");
 }
 
-/// The plain members after `device` and `method`.
+/// The plain members after `method`.
 static void members(auto& v, Is<SessionFile> auto& s) {
+    constexpr std::size_t most_measurements = 1000;
     v("look", s.look);
     v("camera", s.camera);
-    v("crosshair", s.crosshair);
+    finite(v, "crosshair", s.crosshair);
     v("follow", s.follow);
-    v("window_low", s.window_low);
-    v("window_high", s.window_high);
+    finite(v, "window_low", s.window_low);
+    finite(v, "window_high", s.window_high);
+    v.must(s.window_low <= s.window_high, "window_low", "not above 'window_high'");
     v("slices_shown", s.slices_shown);
     v("measurements", s.measurements);
+    v.must(s.measurements.size() <= most_measurements, "measurements", "not more than 1000");
 }
 
 namespace {
@@ -169,127 +193,19 @@ constexpr std::string_view synthetic_prefix = "synthetic:";
     throw std::invalid_argument("'" + name + "' " + what);
 }
 
-void check_part(const std::string& name, double value) {
-    if (!(value >= 0 && value <= 1)) wrong(name, "must be from 0 to 1");
-}
-
-void check_colour(const std::string& name, const Colour& c) {
-    for (const double value : {c.red, c.green, c.blue}) check_part(name, value);
-}
-
-void check_finite(const std::string& name, double value) {
-    if (!std::isfinite(value)) wrong(name, "must be a finite number");
-}
-
-void check_colours(const std::string& name, const std::string& colours) {
-    const auto known = colour_map_names();
-    if (std::ranges::count(known, colours) == 0) {
-        wrong(name, "must be one of the colour maps, such as grey");
-    }
-}
-
-void check_overlay(const OverlayLook& look) {
-    check_part("look.overlay.opacity", look.opacity);
-    check_part("look.overlay.surface_opacity", look.surface_opacity);
-    check_colours("look.overlay.colours", look.colours);
-    if (look.level) check_finite("look.overlay.level", *look.level);
-}
-
-void check_cut(const Look& look) {
-    if (!look.cut_plane.point.allFinite()) wrong("look.cut_plane.point", "must be finite");
-    if (!look.cut_plane.normal.allFinite() || !(look.cut_plane.normal.norm() > 0)) {
-        wrong("look.cut_plane.normal", "must be finite and not zero");
-    }
-    const auto& [low, high] = look.cut_box;
-    if (!(low.array() >= 0 && low.array() < high.array() && high.array() <= 1).all()) {
-        wrong("look.cut_box", "must have 0 <= low < high <= 1 along each axis");
-    }
-}
-
-void check_look(const Look& look) {
-    check_colour("look.surface_colour", look.surface_colour);
-    check_part("look.surface_opacity", look.surface_opacity);
-    if (look.surfaces.size() > most_surfaces) {
-        wrong("look.surfaces", "must not be more than " + std::to_string(most_surfaces));
-    }
-    for (std::size_t i = 0; i < look.surfaces.size(); ++i) {
-        const std::string name = "look.surfaces[" + std::to_string(i) + "].";
-        check_finite(name + "level", look.surfaces[i].level);
-        check_colour(name + "colour", look.surfaces[i].colour);
-        check_part(name + "opacity", look.surfaces[i].opacity);
-    }
-    check_cut(look);
-    check_overlay(look.overlay);
-    check_colours("look.colours", look.colours);
-    const auto& points = look.transfer.points;
-    const std::string list = "look.transfer.points";
-    if (points.size() == 1) wrong(list, "must be two points or more, or none");
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::string name = list + "[" + std::to_string(i) + "].";
-        check_finite(name + "level", points[i].level);
-        check_colour(name + "colour", points[i].colour);
-        check_part(name + "opacity", points[i].opacity);
-        if (i > 0 && !(points[i - 1].level < points[i].level)) {
-            wrong(name + "level", "must be above that of the point before");
-        }
-    }
-}
-
-void check_camera(const pictures::Camera& camera) {
-    if (!camera.focus.allFinite()) wrong("camera.focus", "must be finite");
-    if (!(camera.half_height > 0) || !std::isfinite(camera.half_height)) {
-        wrong("camera.half_height", "must be above 0");
-    }
-    const Vec3 side = camera.towards_viewer.normalized().cross(camera.up.normalized());
-    if (!(side.norm() > 1e-6)) wrong("camera.up", "must not be along 'camera.towards_viewer'");
-}
-
-void check_measurements(const std::vector<Measurement>& measurements) {
-    constexpr std::size_t most = 1000;
-    if (measurements.size() > most) wrong("measurements", "must not be more than 1000");
-    for (std::size_t i = 0; i < measurements.size(); ++i) {
-        const auto& [kind, points] = measurements[i];
-        const std::string name = "measurements[" + std::to_string(i) + "].points";
-        const bool finite =
-            std::ranges::all_of(points, [](const Vec3& p) { return p.allFinite(); });
-        if (points.size() != points_of(kind) || !finite) {
-            wrong(name, "must be " + std::to_string(points_of(kind)) + " finite points");
-        }
-    }
-}
-
-/// `name` is that of its members.
-void check_hand(const std::string& name, const SessionHand& hand, const SessionFile& s) {
-    check_finite(name + "isovalue", hand.isovalue);
-    if (hand.device.name.empty()) wrong(name + "device", "must have a name");
+/// Throws std::invalid_argument naming the member.
+void check_hand(const SessionHand& hand, const SessionFile& session) {
     RendererSettings settings = hand.settings.value_or(RendererSettings{});
-    settings.method = s.method.method;
-    check(settings.penetrability, s.solid);
-    if (settings.layers) check(*settings.layers, s.solid);
+    settings.method = session.method.method;
+    check(settings.penetrability, session.solid);
+    if (settings.layers) check(*settings.layers, session.solid);
     if (settings.layers && settings.layers->by_label) {
         if (settings.layers->label_volume.empty()) {
-            wrong(name + "settings.layers.label_volume", "is missing");
+            wrong("settings.layers.label_volume", "is missing");
         }
         settings.layers.reset();  // their places are read later
     }
     check(settings);
-}
-
-/// Throws std::invalid_argument naming the member.
-void check_session(const SessionFile& s) {
-    if (name_of(s.source).empty()) wrong("volume", "must have a name");
-    if (s.overlay && name_of(*s.overlay).empty()) wrong("overlay", "must have a name");
-    if (s.background) check_finite("background", *s.background);
-    check_hand("", s, s);
-    if (s.others.size() >= most_hands) wrong("hands", "must not be more than the window has");
-    for (const SessionHand& hand : s.others) check_hand("hands.", hand, s);
-    check_look(s.look);
-    if (s.camera) check_camera(*s.camera);
-    check_measurements(s.measurements);
-    if (s.crosshair && !s.crosshair->allFinite()) wrong("crosshair", "must be finite");
-    check_finite("window_low", s.window_low);
-    check_finite("window_high", s.window_high);
-    if (!(s.window_low <= s.window_high)) wrong("window_low", "must not be above 'window_high'");
 }
 
 /// A name from the file, relative to the session's folder.
@@ -365,8 +281,9 @@ void check_head(const Json& json) {
 
 SessionHand hand_from(const Json& json, const std::filesystem::path& folder) {
     SessionHand hand;
-    io::JsonReader::get(needed(json, "isovalue"), "isovalue", hand.isovalue);
     io::JsonReader reader{json};
+    (void)needed(json, "isovalue");
+    finite(reader, "isovalue", hand.isovalue);
     if (const Json* const settings = reader.find("settings")) {
         if (!settings->is_object()) wrong("settings", "must be an object");
         RendererSettings read;
@@ -376,7 +293,7 @@ SessionHand hand_from(const Json& json, const std::filesystem::path& folder) {
     }
     std::string device = run::text_of(hand.device);
     reader("device", device);
-    if (device.empty()) wrong("device", "must have a name");
+    if (device.empty() || device.starts_with(':')) wrong("device", "must have a name");
     hand.device = devices::parse_device(device);
     return hand;
 }
@@ -404,21 +321,18 @@ SessionFile session_from(const Json& json, const std::filesystem::path& folder) 
     static_cast<SessionHand&>(session) = hand_from(json, folder);
     session.others = others_from(json, folder);
     io::JsonReader reader{json};
-    std::string solid = "above";
-    reader("solid", solid);
-    if (solid != "above" && solid != "below") wrong("solid", "must be above or below");
-    session.solid = solid == "above" ? Solid::above : Solid::below;
-    reader("background", session.background);
+    reader("solid", session.solid);
+    finite(reader, "background", session.background);
     std::string method = session.method.name;
     reader("method", method);
     session.method = run::named_method(method);
     // Other methods than the exact one feel the linear field only.
-    std::string field = session.method.method == &update_exact ? "cubic" : "linear";
-    reader("field", field);
-    if (field != "linear" && field != "cubic") wrong("field", "must be linear or cubic");
-    session.interpolation = interpolation_from(field);
+    if (session.method.method != &update_exact) session.interpolation = Interpolation::linear;
+    reader("field", session.interpolation);
     members(reader, session);
-    check_session(session);
+    reader.must(session.others.size() < most_hands, "hands", "not more than the window has");
+    check_hand(session, session);
+    for (const SessionHand& hand : session.others) check_hand(hand, session);
     if (session.settings) session.settings->method = session.method.method;
     for (SessionHand& hand : session.others) {
         if (hand.settings) hand.settings->method = session.method.method;
@@ -446,8 +360,8 @@ SessionFile read_session(const std::filesystem::path& path) {
 }
 
 void write_session(const std::filesystem::path& path, const SessionFile& session) {
-    check_session(session);
-    const auto names_of = [&](const run::Source& source) {
+    const auto names = [&](const run::Source& source) {
+        if (name_of(source).empty()) wrong("volume", "must have a name");
         auto names = run::to_names(source);
         names["volume"] = name_from(names["volume"], path.parent_path());
         return names;
@@ -455,10 +369,10 @@ void write_session(const std::filesystem::path& path, const SessionFile& session
     io::JsonWriter writer;
     writer.json["format"] = format_name;
     writer.json["version"] = version;
-    writer.json["volume"] = names_of(session.source);
-    if (session.overlay) writer.json["overlay"] = names_of(*session.overlay);
-    writer.json["solid"] = session.solid == Solid::above ? "above" : "below";
-    writer.json["field"] = name_of(session.interpolation);
+    writer.json["volume"] = names(session.source);
+    if (session.overlay) writer.json["overlay"] = names(*session.overlay);
+    writer("solid", session.solid);
+    writer("field", session.interpolation);
     write_hand(writer, session, path.parent_path());
     for (const SessionHand& hand : session.others) {
         io::JsonWriter other;
@@ -468,6 +382,7 @@ void write_session(const std::filesystem::path& path, const SessionFile& session
     writer("background", session.background);
     writer("method", std::string(session.method.name));
     members(writer, session);
+    (void)session_from(writer.json, path.parent_path());  // what cannot be read is not written
     std::string text;
     try {
         text = writer.json.dump(1) + "\n";

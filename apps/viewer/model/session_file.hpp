@@ -1,5 +1,5 @@
-// Session files: what was opened, how it was felt and how it looked, to continue another day. JSON;
-// the format is in docs/session_files.md.
+// Session files: the volume, the settings of touch and the look, to continue another day. JSON; the
+// format is in docs/session_files.md.
 #pragma once
 
 #include <filesystem>

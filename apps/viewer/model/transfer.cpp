@@ -12,8 +12,6 @@
 namespace palpate::viewer {
 namespace {
 
-using pictures::Colour;
-
 struct ColourMap {
     std::string name;
     std::vector<Colour> colours;
@@ -42,11 +40,6 @@ std::vector<ColourMap> all_maps() {
               {0.959, 0.598, 0.477},
               {0.706, 0.016, 0.150}}},
             {"spectrum", {{0, 0, 0.5}, {0, 0, 1}, {0, 1, 1}, {1, 1, 0}, {1, 0, 0}, {0.5, 0, 0}}}};
-}
-
-Colour mixed(const Colour& a, const Colour& b, double t) {
-    return {std::lerp(a.red, b.red, t), std::lerp(a.green, b.green, t),
-            std::lerp(a.blue, b.blue, t)};
 }
 
 std::uint32_t packed(const Colour& c) {
@@ -131,99 +124,66 @@ Levels levels_of(const run::Histogram& histogram, const Volume& volume) {
 
 using Points = std::vector<ControlPoint>;
 
-constexpr Colour black{0, 0, 0};
-constexpr Colour white{1, 1, 1};
-constexpr Colour skin{0.91, 0.73, 0.62};
-constexpr Colour muscle{0.72, 0.33, 0.25};
-constexpr Colour fat{0.93, 0.82, 0.58};
-constexpr Colour ivory{0.99, 0.97, 0.90};
-
-Points ct_bone(const Levels& l) {
-    if (l.hounsfield) {
-        return {{-1024, muscle, 0},          {130, muscle, 0},   {230, muscle, 0.06},
-                {350, pictures::bone, 0.35}, {700, ivory, 0.75}, {2000, white, 0.9}};
-    }
-    return {{l.low, muscle, 0},
-            {std::lerp(l.outer, l.inner, 0.75), muscle, 0},
-            {std::lerp(l.outer, l.inner, 0.92), muscle, 0.06},
-            {std::lerp(l.inner, l.high, 0.05), pictures::bone, 0.4},
-            {std::lerp(l.inner, l.high, 0.4), ivory, 0.75},
-            {l.high, white, 0.9}};
-}
-
-Points ct_skin(const Levels& l) {
-    if (l.hounsfield) {
-        return {{-1024, skin, 0},  {-600, skin, 0},   {-350, skin, 0.35},
-                {-150, skin, 0.8}, {250, skin, 0.85}, {600, ivory, 0.95}};
-    }
-    return {{l.low, skin, 0},      {std::lerp(l.low, l.outer, 0.6), skin, 0},
-            {l.outer, skin, 0.35}, {std::lerp(l.outer, l.inner, 0.3), skin, 0.8},
-            {l.inner, skin, 0.85}, {l.high, ivory, 0.95}};
-}
-
-Points ct_soft_tissue(const Levels& l) {
-    if (l.hounsfield) {
-        return {{-1024, fat, 0},
-                {-200, fat, 0},
-                {-100, fat, 0.03},
-                {0, muscle, 0.08},
-                {60, muscle, 0.25},
-                {150, {0.85, 0.45, 0.36}, 0.3},
-                {300, pictures::bone, 0.3},
-                {1500, ivory, 0.6}};
-    }
-    return {{l.low, fat, 0},
-            {std::lerp(l.low, l.outer, 0.8), fat, 0},
-            {std::lerp(l.outer, l.inner, 0.1), fat, 0.04},
-            {std::lerp(l.outer, l.inner, 0.5), muscle, 0.22},
-            {std::lerp(l.outer, l.inner, 0.9), {0.85, 0.45, 0.36}, 0.3},
-            {l.high, ivory, 0.6}};
-}
-
-Points mr(const Levels& l) {
-    return {{l.low, black, 0},
-            {std::lerp(l.low, l.outer, 0.7), {0.16, 0.10, 0.09}, 0},
-            {std::lerp(l.outer, l.inner, 0.3), {0.55, 0.40, 0.36}, 0.12},
-            {l.inner, {0.84, 0.74, 0.68}, 0.3},
-            {l.high, white, 0.65}};
-}
-
-/// Fluorescence: light in the dark, the more the brighter.
-Points microscopy(const Levels& l) {
-    return {{l.low, {0, 0.02, 0.10}, 0},
-            {std::lerp(l.low, l.outer, 0.6), {0, 0.12, 0.28}, 0},
-            {std::lerp(l.outer, l.inner, 0.2), {0.02, 0.48, 0.46}, 0.10},
-            {l.inner, {0.32, 0.82, 0.36}, 0.4},
-            {l.high, {0.98, 0.98, 0.72}, 0.8}};
-}
-
-Points grey(const Levels& l) {
-    return {{l.low, black, 0}, {l.high, white, 0.5}};
-}
-
 enum class For : std::uint8_t { ct, others, all };
 struct Preset {
     const char* name;
-    Points (*points)(const Levels&);
     For data;
+    Points relative;  ///< levels from 0, the least, over 1, `outer`, and 2, `inner`, to 3
+    Points hounsfield = {};
 };
-constexpr std::array<Preset, 9> presets{{{"CT bone", &ct_bone, For::ct},
-                                         {"CT skin", &ct_skin, For::ct},
-                                         {"CT soft tissue", &ct_soft_tissue, For::ct},
-                                         {"Dense parts", &ct_bone, For::others},
-                                         {"Outer surface", &ct_skin, For::others},
-                                         {"Soft parts", &ct_soft_tissue, For::others},
-                                         {"MR", &mr, For::others},
-                                         {"Microscopy", &microscopy, For::others},
-                                         {"Grey", &grey, For::all}}};
 
-ControlPoint mixed(const ControlPoint& a, const ControlPoint& b, double level) {
+std::vector<Preset> all_presets() {
+    constexpr Colour skin{0.91, 0.73, 0.62}, muscle{0.72, 0.33, 0.25}, fat{0.93, 0.82, 0.58},
+        meat{0.85, 0.45, 0.36}, bone = pictures::bone, ivory{0.99, 0.97, 0.90}, black{0, 0, 0},
+                                white{1, 1, 1};
+    const Points dense{{0, muscle, 0},    {1.75, muscle, 0},  {1.92, muscle, 0.06},
+                       {2.05, bone, 0.4}, {2.4, ivory, 0.75}, {3, white, 0.9}},
+        ct_bone{{-1024, muscle, 0}, {130, muscle, 0},   {230, muscle, 0.06},
+                {350, bone, 0.35},  {700, ivory, 0.75}, {2000, white, 0.9}},
+        outer{{0, skin, 0},     {0.6, skin, 0},  {1, skin, 0.35},
+              {1.3, skin, 0.8}, {2, skin, 0.85}, {3, ivory, 0.95}},
+        ct_skin{{-1024, skin, 0},  {-600, skin, 0},   {-350, skin, 0.35},
+                {-150, skin, 0.8}, {250, skin, 0.85}, {600, ivory, 0.95}},
+        soft{{0, fat, 0},         {0.8, fat, 0},    {1.1, fat, 0.04},
+             {1.5, muscle, 0.22}, {1.9, meat, 0.3}, {3, ivory, 0.6}},
+        ct_soft{{-1024, fat, 0},    {-200, fat, 0},   {-100, fat, 0.03}, {0, muscle, 0.08},
+                {60, muscle, 0.25}, {150, meat, 0.3}, {300, bone, 0.3},  {1500, ivory, 0.6}},
+        mr{{0, black, 0},
+           {0.7, {0.16, 0.10, 0.09}, 0},
+           {1.3, {0.55, 0.40, 0.36}, 0.12},
+           {2, {0.84, 0.74, 0.68}, 0.3},
+           {3, white, 0.65}},
+        // Fluorescence: light in the dark, the more the brighter.
+        microscopy{{0, {0, 0.02, 0.10}, 0},
+                   {0.6, {0, 0.12, 0.28}, 0},
+                   {1.2, {0.02, 0.48, 0.46}, 0.10},
+                   {2, {0.32, 0.82, 0.36}, 0.4},
+                   {3, {0.98, 0.98, 0.72}, 0.8}};
+    return {{"CT bone", For::ct, dense, ct_bone},
+            {"CT skin", For::ct, outer, ct_skin},
+            {"CT soft tissue", For::ct, soft, ct_soft},
+            {"Dense parts", For::others, dense, ct_bone},
+            {"Outer surface", For::others, outer, ct_skin},
+            {"Soft parts", For::others, soft, ct_soft},
+            {"MR", For::others, mr},
+            {"Microscopy", For::others, microscopy},
+            {"Grey", For::all, {{0, black, 0}, {3, white, 0.5}}}};
+}
+
+Points points_of(const Preset& preset, const Levels& l) {
+    if (l.hounsfield && !preset.hounsfield.empty()) return preset.hounsfield;
+    const double ends[] = {l.low, l.outer, l.inner, l.high};
+    Points points = preset.relative;
+    for (ControlPoint& point : points) {
+        const int part = std::min(static_cast<int>(point.level), 2);
+        point.level = std::lerp(ends[part], ends[part + 1], point.level - part);
+    }
+    return points;
+}
+
+ControlPoint between(const ControlPoint& a, const ControlPoint& b, double level) {
     const double part = (level - a.level) / (b.level - a.level);
-    return {level,
-            {std::lerp(a.colour.red, b.colour.red, part),
-             std::lerp(a.colour.green, b.colour.green, part),
-             std::lerp(a.colour.blue, b.colour.blue, part)},
-            std::lerp(a.opacity, b.opacity, part)};
+    return {level, mixed(a.colour, b.colour, part), std::lerp(a.opacity, b.opacity, part)};
 }
 
 /// The function restricted to the range of the data, so that an editor can show every point. Points
@@ -281,7 +241,7 @@ bool is_ct(const run::Histogram& histogram, const Levels& levels) {
 std::vector<std::string> preset_names(const run::Histogram& histogram, const Volume& volume) {
     const bool ct = is_ct(histogram, levels_of(histogram, volume));
     std::vector<std::string> names;
-    for (const Preset& p : presets) {
+    for (const Preset& p : all_presets()) {
         if (p.data != (ct ? For::others : For::ct)) names.emplace_back(p.name);
     }
     return names;
@@ -289,10 +249,10 @@ std::vector<std::string> preset_names(const run::Histogram& histogram, const Vol
 
 TransferFunction preset(std::string_view name, const run::Histogram& histogram,
                         const Volume& volume) {
-    for (const Preset& p : presets) {
+    for (const Preset& p : all_presets()) {
         if (name != p.name) continue;
         const Levels levels = levels_of(histogram, volume);
-        return {p.name, over_the_data(p.points(levels), levels)};
+        return {p.name, over_the_data(points_of(p, levels), levels)};
     }
     throw std::invalid_argument(fmt::format("there is no transfer function '{}'; there are: {}",
                                             name,
@@ -317,7 +277,7 @@ ControlPoint sampled(const TransferFunction& transfer, double level) {
     } else if (after == points.end()) {
         point = points.back();
     } else {
-        return mixed(*(after - 1), *after, level);
+        return between(*(after - 1), *after, level);
     }
     point.level = level;
     return point;

@@ -12,7 +12,7 @@
 #include <limits>
 #include <utility>
 
-#include "apps/viewer/panel/layout.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -47,149 +47,179 @@ QString in_words(std::size_t steps) {
 
 }  // namespace
 
-BrushControls::BrushControls()
-    : body_(new QWidget),
+BrushControls::BrushControls(Effect& effect)
+    : effect_(effect),
+      body_(new QWidget),
       reason_(new Note("brush_reason", Note::Kind::plain)),
-      on_(named(new QPushButton, "brush",
-                tr("While it is on, the probe edits the samples where it is"))),
-      kinds_(new QButtonGroup(this)),
-      as_tool_(named(new QCheckBox(tr("Shape of the tool")), "brush_as_tool")),
-      radius_(new Quantity("brush_radius", "mm", 1, 25, 0, Quantity::Scale::factors)),
-      hardness_(new Quantity("brush_hardness", "", 0, 1, 0.05)),
-      rate_box_(
-          new Quantity("brush_rate", "/s", least_rate, most_rate, 0, Quantity::Scale::factors)),
-      at_once_(named(new QCheckBox(tr("At once")), "brush_at_once")),
-      value_(named(new NumberBox, "brush_value")),
-      automatic_(named(new QCheckBox(tr("Automatic")), "brush_automatic")),
-      undo_(named(new QPushButton, "undo")),
-      redo_(named(new QPushButton, "redo")),
-      save_(named(new QPushButton(tr("Save as...")), "save_edits",
-                  tr("Writes the volume as it is now to a file"))),
+      on_(button({"brush", "", tr("While it is on, the probe edits the samples where it is")},
+                 [this] { change([](BrushChoice& c) { c.on = !c.on; }); })),
       state_(named(new QLabel, "edit_state")) {
     setObjectName("brush_controls");
-    build();
-    connect_inputs();
-    set_history(0, 0, false);
-    show_choice();
-}
-
-void BrushControls::build() {
     on_->setCheckable(true);
     make_bold(*on_);
-    radius_->set_accessible_name(tr("Radius of the brush"));
-    hardness_->set_accessible_name(tr("Hardness of the brush"));
-    rate_box_->set_accessible_name(tr("Rate of the brush"));
-    value_->setAccessibleName(tr("Value of the brush"));
-    value_->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
-    value_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    value_->setMinimumWidth(radius_->box().minimumWidth());
-    for (QPushButton* button : {undo_, redo_, save_}) {
-        button->setMinimumWidth(fontMetrics().horizontalAdvance(tr("Undo") + " (000)  "));
-    }
-    auto* rate = row_of({rate_box_, at_once_});
-    rate->setFocusProxy(rate_box_);
-    auto* value = row_of({value_, automatic_});
-    value->setFocusProxy(value_);
-    auto* form = new QFormLayout;
-    form->setVerticalSpacing(3);
-    form->addRow(as_tool_);
-    add_row(*form, tr("Radius"), radius_,
-            tr("Where half of the effect is left [mm in the volume]: from a voxel to a quarter of "
-               "the grid. With the shape of the tool: how far from its skin; with less than a "
-               "voxel, sharp corners stay where they are"));
-    add_row(*form, tr("Hardness"), hardness_,
-            tr("1: an edge of two voxels; 0: an edge as wide as the brush"));
-    add_row(*form, tr("Rate"), rate,
-            tr("How fast the samples approach their final value [1/s]: 63 % of it after 1/rate s"));
-    add_row(
-        *form, tr("Value"), value,
-        tr("What a whole touch leaves [data units]. Automatic: what fits the level that is felt"));
+    each_time(on_, [this](QPushButton& one) {
+        const bool on = choice_.on && reason_->text().isEmpty();
+        one.setChecked(on);
+        one.setText(on ? tr("Brush at the probe is ON") : tr("Brush at the probe is off"));
+    });
     auto* column = column_in(body_, {on_, make_kinds()});
-    column->addLayout(form);
-    column->addWidget(row_of({undo_, redo_, save_}));
+    column->addLayout(make_form());
+    column->addWidget(make_history());
     column->addWidget(state_);
     column_in(this, {reason_, body_});
+    connect(&effect, &Effect::begun, this, [this] {
+        use_grid();
+        reset();
+    });
+    connect(&effect, &Effect::ended, this, &BrushControls::reset);
+    connect(&effect, &Effect::changed, this,
+            [this] { set_tool(effect_.settings().tool != nullptr); });
+    reset();
 }
 
 QWidget* BrushControls::make_kinds() {
     auto* all = row_of({});
+    auto* kinds = new QButtonGroup(this);
     all->setAccessibleName(tr("Kind of brush"));
     all->layout()->setSpacing(2);
     for (const Kind& kind : all_kinds) {
-        const auto name = QString::fromStdString(std::string(name_of(kind.kind)));
-        auto* button = named(new QToolButton, "brush_" + name, tr(kind.tip));
+        auto* button =
+            named(new QToolButton, QString("brush_") + enum_name(kind.kind), tr(kind.tip));
         button->setText(tr(kind.text));
         button->setCheckable(true);
         button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-        kinds_->addButton(button, static_cast<int>(kind.kind));
+        kinds->addButton(button, static_cast<int>(kind.kind));
         all->layout()->addWidget(button);
+        each_time(button, [this, which = kind.kind](QToolButton& one) {
+            one.setChecked(choice_.kind == which);
+            make_bold(one, one.isChecked());  // dark palettes hardly show which one is pressed
+        });
     }
-    return all;
-}
-
-void BrushControls::connect_inputs() {
-    connect(on_, &QPushButton::clicked, this,
-            [this](bool on) { change([on](BrushChoice& c) { c.on = on; }); });
-    connect(kinds_, &QButtonGroup::idClicked, this, [this](int id) {
+    connect(kinds, &QButtonGroup::idClicked, this, [this](int id) {
         change([this, id](BrushChoice& c) {
             c.kind = static_cast<BrushKind>(id);
             c.value = values_[static_cast<std::size_t>(id)];
         });
     });
-    connect(as_tool_, &QCheckBox::clicked, this, [this](bool as_tool) {
-        radius_->drop();
-        change([&](BrushChoice& c) {
-            c.as_tool = as_tool;
-            c.radius = as_tool ? beyond_ : ball_;
-        });
-    });
-    connect(at_once_, &QCheckBox::clicked, this, [this](bool at_once) {
-        rate_box_->drop();
-        const double rate = at_once ? std::numeric_limits<double>::infinity() : rate_;
-        change([rate](BrushChoice& c) { c.rate = rate; });
-    });
-    connect(automatic_, &QCheckBox::clicked, this, [this](bool automatic) {
-        typed_ = false;
-        change([&](BrushChoice& c) {
-            c.value = automatic ? std::optional<double>() : value_->value();
-        });
-    });
-    connect(undo_, &QPushButton::clicked, this, &BrushControls::undo);
-    connect(redo_, &QPushButton::clicked, this, &BrushControls::redo);
-    connect(save_, &QPushButton::clicked, this, &BrushControls::save);
-    connect_numbers();
+    return all;
 }
 
-void BrushControls::connect_numbers() {
-    const auto connect_quantity = [this](Quantity* quantity, double BrushChoice::*member,
-                                         const QString& limits) {
-        connect(quantity, &Quantity::wanted, this, [this, quantity, member, limits](double value) {
-            if (value >= quantity->low() && value <= quantity->high()) {
-                return change([=](BrushChoice& c) { c.*member = value; });
-            }
-            show_choice();
-            const auto text = [](double number) { return QString::number(number, 'g', 4); };
-            Q_EMIT nonsense(limits.arg(text(quantity->low()), text(quantity->high()), text(value)));
-        });
-    };
-    connect_quantity(
-        radius_, &BrushChoice::radius,
+/// Beyond the ends of its slider it says why not.
+Quantity* BrushControls::limited(const Words& words, const Span& span, double BrushChoice::*member,
+                                 const QString& limits) {
+    const QString name = words.name;
+    return quantity(
+        words, span,
+        {[this, member] { return std::isinf(choice_.*member) ? rate_ : choice_.*member; },
+         [this, name, member, limits](double value) {
+             const auto& its = *findChild<Quantity*>(name);
+             if (value >= its.low() && value <= its.high()) {
+                 return change([=](BrushChoice& c) { c.*member = value; });
+             }
+             const auto text = [](double number) { return QString::number(number, 'g', 4); };
+             Q_EMIT nonsense(limits.arg(text(its.low()), text(its.high()), text(value)));
+         }});
+}
+
+QLayout* BrushControls::make_form() {
+    auto* as_tool = check({"brush_as_tool", tr("Shape of the tool")},
+                          {[this] { return choice_.as_tool; },
+                           [this](bool as_tool) {
+                               radius_->drop();
+                               change([&](BrushChoice& c) {
+                                   c.as_tool = as_tool;
+                                   c.radius = as_tool ? beyond_ : ball_;
+                               });
+                           }});
+    each_time(as_tool, [this](QWidget& box) {
+        box.setEnabled(tool_);
+        box.setToolTip(tool_ ? tr("The brush works with what the tool is, also while it turns")
+                             : tr("Take a tool on the page Feel first"));
+    });
+    radius_ = limited(
+        {"brush_radius", "",
+         tr("Where half of the effect is left [mm in the volume]: from a voxel to a quarter of "
+            "the grid. With the shape of the tool: how far from its skin; with less than a "
+            "voxel, sharp corners stay where they are"),
+         tr("Radius of the brush")},
+        {"mm", 1, 25, 0, Quantity::Scale::factors}, &BrushChoice::radius,
         tr("the brush's radius must be from %1 mm (a voxel) to %2 mm (a quarter of the "
            "grid), not %3 mm"));
-    connect_quantity(hardness_, &BrushChoice::hardness,
-                     tr("the brush's hardness must be from %1 to %2, not %3"));
-    connect_quantity(rate_box_, &BrushChoice::rate,
-                     tr("the brush's rate must be from %1 to %2 /s or at once, not %3 /s"));
-    // A typed number is not automatic any more, even if it is the same.
-    const auto own = [this](double value) { change([value](BrushChoice& c) { c.value = value; }); };
-    connect(value_, qOverload<double>(&NumberBox::valueChanged), this, own);
-    connect(value_->findChild<QLineEdit*>(), &QLineEdit::textEdited, this, [this] {
-        typed_ = value_->hasAcceptableInput();
-        automatic_->setChecked(!typed_ && !choice_.value);
+    auto* hardness = limited(
+        {"brush_hardness", "", tr("1: an edge of two voxels; 0: an edge as wide as the brush"),
+         tr("Hardness of the brush")},
+        parts_span, &BrushChoice::hardness,
+        tr("the brush's hardness must be from %1 to %2, not %3"));
+    auto* rate = limited(
+        {"brush_rate", "",
+         tr("How fast the samples approach their final value [1/s]: 63 % of it after 1/rate s"),
+         tr("Rate of the brush")},
+        {"/s", least_rate, most_rate, 0, Quantity::Scale::factors}, &BrushChoice::rate,
+        tr("the brush's rate must be from %1 to %2 /s or at once, not %3 /s"));
+    each_time(rate, [this](Quantity& one) { one.setEnabled(std::isfinite(choice_.rate)); });
+    auto* at_once = check({"brush_at_once", tr("At once")},
+                          {[this] { return std::isinf(choice_.rate); },
+                           [this, rate](bool at_once) {
+                               rate->drop();
+                               const double infinity = std::numeric_limits<double>::infinity();
+                               change([&](BrushChoice& c) { c.rate = at_once ? infinity : rate_; });
+                           }});
+    auto* both = row_of({rate, at_once});
+    both->setFocusProxy(rate);
+    auto* form = new QFormLayout;
+    form->setVerticalSpacing(3);
+    form->addRow(as_tool);
+    add_row(*form, tr("Radius"), radius_, radius_->toolTip());
+    add_row(*form, tr("Hardness"), hardness, hardness->toolTip());
+    add_row(*form, tr("Rate"), both, rate->toolTip());
+    add_row(
+        *form, tr("Value"), make_value(),
+        tr("What a whole touch leaves [data units]. Automatic: what fits the level that is felt"));
+    return form;
+}
+
+/// A typed number is not automatic any more, even if it is the same.
+QWidget* BrushControls::make_value() {
+    const auto own = [this](double value) { change([=](BrushChoice& c) { c.value = value; }); };
+    auto* box = number({"brush_value", "", {}, tr("Value of the brush")},
+                       {[this] { return choice_.value.value_or(fitting()); }, own});
+    box->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
+    box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
+    box->setMinimumWidth(radius_->box().minimumWidth());
+    auto* automatic = check({"brush_automatic", tr("Automatic")},
+                            {[this] { return !choice_.value; },
+                             [this, box](bool automatic) {
+                                 typed_ = false;
+                                 change([&](BrushChoice& c) {
+                                     c.value = automatic ? std::optional<double>() : box->value();
+                                 });
+                             }});
+    connect(box->findChild<QLineEdit*>(), &QLineEdit::textEdited, this, [this, box, automatic] {
+        typed_ = box->hasAcceptableInput();
+        automatic->setChecked(!typed_ && !choice_.value);
     });
-    connect(value_, &QDoubleSpinBox::editingFinished, this, [this, own] {
-        if (std::exchange(typed_, false)) own(value_->value());
+    connect(box, &QDoubleSpinBox::editingFinished, this, [this, box, own] {
+        if (std::exchange(typed_, false)) own(box->value());
     });
+    auto* both = row_of({box, automatic});
+    both->setFocusProxy(box);
+    for (QWidget* one : std::initializer_list<QWidget*>{box, automatic}) {
+        each_time(one, [this](QWidget& w) { w.setEnabled(choice_.kind != BrushKind::smooth); });
+    }
+    return both;
+}
+
+QWidget* BrushControls::make_history() {
+    undo_ = button({"undo", ""}, [this] { Q_EMIT undo(); });
+    redo_ = button({"redo", ""}, [this] { Q_EMIT redo(); });
+    auto* save =
+        button({"save_edits", tr("Save as..."), tr("Writes the volume as it is now to a file")},
+               [this] { Q_EMIT this->save(); });
+    for (QPushButton* one : {undo_, redo_, save}) {
+        one->setMinimumWidth(fontMetrics().horizontalAdvance(tr("Undo") + " (000)  "));
+        connect(one, &QPushButton::pressed, this, [this] { Q_EMIT nonsense({}); });
+    }
+    return row_of({undo_, redo_, save});
 }
 
 void BrushControls::change(const std::function<void(BrushChoice&)>& how) {
@@ -197,7 +227,9 @@ void BrushControls::change(const std::function<void(BrushChoice&)>& how) {
     how(next);
     const bool same = next == choice_;
     set_choice(next);
-    if (!same) Q_EMIT changed(choice_);
+    if (same) return;
+    Q_EMIT nonsense({});
+    Q_EMIT changed(choice_);
 }
 
 void BrushControls::set_choice(const BrushChoice& choice) {
@@ -205,7 +237,7 @@ void BrushControls::set_choice(const BrushChoice& choice) {
     values_[static_cast<std::size_t>(choice.kind)] = choice.value;
     if (std::isfinite(choice.rate)) rate_ = choice.rate;
     (choice.as_tool ? beyond_ : ball_) = choice.radius;
-    show_choice();
+    refresh();
 }
 
 void BrushControls::refuse(const BrushChoice& before, const QString& why) {
@@ -213,67 +245,44 @@ void BrushControls::refuse(const BrushChoice& before, const QString& why) {
     Q_EMIT nonsense(why);
 }
 
+/// The automatic value at the level in effect, from samples without edits.
 double BrushControls::fitting() const {
-    return choice_.kind == BrushKind::carve ? carve_fits_ : add_fits_;
+    if (!effect_.there()) return 0;
+    const Field& felt = effect_.field();
+    const Field field(felt.volume(), felt.solid(), felt.background(), felt.interpolation());
+    const auto kind = choice_.kind == BrushKind::carve ? BrushKind::carve : BrushKind::add;
+    return brush_for(kind, field, effect_.isovalue(), choice_.radius).value;
 }
 
-void BrushControls::show_choice() {
-    const bool on = choice_.on && reason_->text().isEmpty();
-    on_->setChecked(on);
-    on_->setText(on ? tr("Brush at the probe is ON") : tr("Brush at the probe is off"));
-    kinds_->button(static_cast<int>(choice_.kind))->setChecked(true);
-    // Bold: dark palettes hardly show which button is pressed.
-    for (auto* button : kinds_->buttons()) make_bold(*button, button->isChecked());
-    as_tool_->setChecked(choice_.as_tool);
-    radius_->set_value(choice_.radius);
-    hardness_->set_value(choice_.hardness);
-    const bool at_once = std::isinf(choice_.rate);
-    at_once_->setChecked(at_once);
-    rate_box_->setEnabled(!at_once);
-    rate_box_->set_value(rate_);
-    const bool valued = choice_.kind != BrushKind::smooth;
-    value_->setEnabled(valued);
-    automatic_->setEnabled(valued);
-    automatic_->setChecked(!choice_.value);
-    value_->show_value(choice_.value.value_or(fitting()));
-}
-
-void BrushControls::set_grid(const Geometry& geometry) {
+/// Some room also in a thin slab.
+void BrushControls::use_grid() {
+    const Geometry& geometry = effect_.field().geometry();
     const double voxel = geometry.spacing.maxCoeff();
     const double side = geometry.size.cast<double>().cwiseProduct(geometry.spacing).minCoeff();
-    radius_->drop();
-    radius_->set_ends(voxel, std::max(side / 4, 4 * voxel));  // some room also in a thin slab
+    radius_->set_ends(voxel, std::max(side / 4, 4 * voxel));
     ball_ = std::clamp(ball_, radius_->low(), radius_->high());
     beyond_ = voxel;
     choice_.radius = choice_.as_tool ? beyond_ : ball_;
-    show_choice();
 }
 
 void BrushControls::set_tool(bool there) {
-    as_tool_->setEnabled(there);
-    as_tool_->setToolTip(there ? tr("The brush works with what the tool is, also while it turns")
-                               : tr("Take a tool on the page Feel first"));
+    tool_ = there;
     if (!there && choice_.as_tool) {
         change([&](BrushChoice& c) {
             c.as_tool = false;
             c.radius = ball_;
         });
     }
-}
-
-void BrushControls::set_fitting(double carve, double add) {
-    if (carve == carve_fits_ && add == add_fits_) return;
-    carve_fits_ = carve;
-    add_fits_ = add;
-    show_choice();
+    refresh();
 }
 
 void BrushControls::reset() {
-    drop();
     values_ = {};
     choice_.value.reset();
     choice_.on = false;
-    show_choice();
+    set_history(0, 0, false);
+    set_reason({});
+    refresh();
 }
 
 void BrushControls::set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed) {
@@ -293,16 +302,10 @@ void BrushControls::set_history(std::size_t undo_steps, std::size_t redo_steps, 
 
 void BrushControls::set_reason(const QString& why) {
     if (why == reason_->text()) return;
-    drop();
+    drop_requests(*this);
     reason_->say(why);
     body_->setEnabled(why.isEmpty());
-    show_choice();
-}
-
-void BrushControls::drop() {
-    radius_->drop();
-    hardness_->drop();
-    rate_box_->drop();
+    refresh();
 }
 
 }  // namespace palpate::viewer

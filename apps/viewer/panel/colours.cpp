@@ -6,6 +6,14 @@
 
 namespace palpate::viewer {
 
+QIcon icon_of(const Colour& colour) {
+    QPixmap square(16, 16);
+    square.fill(to_qt(colour));
+    QIcon icon(square);
+    icon.addPixmap(square, QIcon::Selected);
+    return icon;
+}
+
 ColourButton::ColourButton(const QString& name, const QString& title) {
     setObjectName(name);
     setAccessibleName(title);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QColor>
+#include <QIcon>
 #include <QPushButton>
 
 #include "apps/viewer/model/look.hpp"
@@ -15,6 +16,9 @@ inline QColor to_qt(const Colour& colour) {
 inline Colour from_qt(const QColor& colour) {
     return {colour.redF(), colour.greenF(), colour.blueF()};
 }
+
+/// A square of it, for lists; not tinted where it is chosen.
+QIcon icon_of(const Colour& colour);
 
 /// A button that shows a colour and opens a dialog to choose another.
 class ColourButton : public QPushButton {

@@ -3,19 +3,22 @@
 
 #include <QBoxLayout>
 #include <QGridLayout>
+#include <QRegularExpression>
 #include <QSignalBlocker>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "apps/options/words.hpp"
-#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/names.hpp"
 #include "palpate/devices/options.hpp"
 
 namespace palpate::viewer {
 namespace {
+
+constexpr const char* columns[] = {"p50", "p99", "p99.9", "max"};
 
 QString time_text(std::int64_t ns) {
     return QString::fromStdString(app::duration_text(ns)).replace(" us", " µs");
@@ -23,50 +26,42 @@ QString time_text(std::int64_t ns) {
 
 }  // namespace
 
-LoopView::LoopView()
-    : rate_(named(new QLabel, "loop_rate", tr("Ticks a second, as measured [Hz]"))),
-      missed_(named(new QLabel, "loop_missed",
-                    tr("Deadlines: ticks that did not happen at their time; and forces that were "
-                       "taken back because a tick took too long"))),
-      worst_(named(new QLabel, "loop_worst")) {
+LoopView::LoopView() {
     auto* grid = new QGridLayout(this);
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setVerticalSpacing(2);
-    const QString heads[] = {tr("Rate"),     tr("Missed"),  "",
-                             tr("Lateness"), tr("Compute"), tr("Worst tick")};
-    for (int row = 0; row < 6; ++row) {
-        grid->addWidget(new QLabel(heads[row]), row, 0, row == 5 ? Qt::AlignTop : Qt::Alignment());
-    }
-    grid->addWidget(rate_, 0, 1, 1, 4);
-    grid->addWidget(missed_, 1, 1, 1, 4);
-    grid->addWidget(worst_, 5, 1, 1, 4);
-    worst_->setWordWrap(true);
-    const char* columns[] = {"p50", "p99", "p99.9", "max"};
+    const auto add = [&](int row, const QString& head, const char* name, const QString& tip) {
+        auto* label = named(new QLabel, name, tip);
+        label->setWordWrap(true);
+        grid->addWidget(new QLabel(head), row, 0, Qt::AlignTop);
+        grid->addWidget(label, row, 1, 1, 4);
+    };
+    add(0, tr("Rate"), "loop_rate", tr("Ticks a second, as measured [Hz]"));
+    add(1, tr("Missed"), "loop_missed",
+        tr("Deadlines: ticks that did not happen at their time; and forces that were taken back "
+           "because a tick took too long"));
+    grid->addWidget(new QLabel(tr("Lateness")), 3, 0);
+    grid->addWidget(new QLabel(tr("Compute")), 4, 0);
     for (int i = 0; i < 4; ++i) {
         const QString name = QString(columns[i]).remove('.');
-        const auto at = static_cast<std::size_t>(i);
-        lateness_[at] = named(new QLabel, "lateness_" + name);
-        compute_[at] = named(new QLabel, "compute_" + name);
         grid->addWidget(new QLabel(columns[i]), 2, i + 1);
-        grid->addWidget(lateness_[at], 3, i + 1);
-        grid->addWidget(compute_[at], 4, i + 1);
+        grid->addWidget(named(new QLabel, "lateness_" + name), 3, i + 1);
+        grid->addWidget(named(new QLabel, "compute_" + name), 4, i + 1);
         grid->setColumnStretch(i + 1, 1);
     }
+    add(5, tr("Worst tick"), "loop_worst", {});
     setToolTip(
         tr("Lateness: how late a tick began, caused by the rest of the machine.\n"
            "Compute: processor time of a tick."));
     clear();
 }
 
-void LoopView::put(const Row& row, const LatencySummary& summary) {
-    row[0]->setText(time_text(summary.p50));
-    row[1]->setText(time_text(summary.p99));
-    row[2]->setText(time_text(summary.p999));
-    row[3]->setText(time_text(summary.max));
+void LoopView::put(const QString& name, const QString& text) {
+    findChild<QLabel*>(name)->setText(text);
 }
 
 void LoopView::show_report(const ServoReport& report, double rate) {
-    rate_->setText(tr("%1 Hz").arg(rate, 0, 'f', 0));
+    put("loop_rate", tr("%1 Hz").arg(rate, 0, 'f', 0));
     QStringList missed{tr("%1 of %2 ticks").arg(report.missed).arg(report.missed + report.ticks)};
     if (report.overruns > 0) {
         missed << tr("%n forces taken back", nullptr, static_cast<int>(report.overruns));
@@ -74,49 +69,39 @@ void LoopView::show_report(const ServoReport& report, double rate) {
     if (report.unrecorded > 0) {
         missed << tr("%n not recorded", nullptr, static_cast<int>(report.unrecorded));
     }
-    missed_->setText(missed.join(", "));
-    put(lateness_, report.lateness);
-    put(compute_, report.compute);
-    if (report.worst.tick < 0) return worst_->setText(tr("none yet"));
+    put("loop_missed", missed.join(", "));
+    for (const auto& [row, its] :
+         {std::pair{"lateness_", report.lateness}, std::pair{"compute_", report.compute}}) {
+        const std::int64_t times[] = {its.p50, its.p99, its.p999, its.max};
+        for (int i = 0; i < 4; ++i) put(row + QString(columns[i]).remove('.'), time_text(times[i]));
+    }
+    if (report.worst.tick < 0) return put("loop_worst", tr("none yet"));
     const std::int64_t whole = report.worst.lateness_ns + report.worst.work_ns;
-    worst_->setText(
+    put("loop_worst",
         tr("%1, mostly %2").arg(time_text(whole), shown_name(name_of(report.worst.cause))));
 }
 
 void LoopView::clear() {
-    for (const Row& row : {lateness_, compute_}) {
-        for (QLabel* cell : row) cell->setText("-");
-    }
-    for (QLabel* one : {rate_, missed_, worst_}) one->setText("-");
+    for (auto* label : findChildren<QLabel*>(QRegularExpression("_"))) label->setText("-");
 }
 
 namespace {
 
 struct StatusLook {
-    QString words;
-    QColor colour;
+    const char* words;
+    QRgb colour;
 };
+constexpr QRgb green = 0xff009e73, orange = 0xffe69f00, red = 0xffd53c1e, grey = 0xff8c8c8c;
 
-StatusLook look_of(DeviceStatus status) {
-    const QColor green(0, 158, 115), orange(230, 159, 0), red(213, 60, 30), grey(140, 140, 140);
-    switch (status) {
-        case DeviceStatus::starting:
-            return {DeviceControls::tr("connecting"), orange};
-        case DeviceStatus::ready:
-            return {DeviceControls::tr("ready"), green};
-        case DeviceStatus::uncalibrated:
-            return {DeviceControls::tr("needs calibration"), orange};
-        case DeviceStatus::stale:
-            return {DeviceControls::tr("sends no new positions"), orange};
-        case DeviceStatus::lost:
-            return {DeviceControls::tr("connection lost"), red};
-        case DeviceStatus::fault:
-            return {DeviceControls::tr("reports a fault"), red};
-        case DeviceStatus::finished:
-            break;
-    }
-    return {DeviceControls::tr("the hand has come to its end"), grey};
-}
+/// In the order of DeviceStatus.
+constexpr StatusLook status_looks[] = {
+    {QT_TRANSLATE_NOOP("palpate::viewer::DeviceControls", "connecting"), orange},
+    {QT_TRANSLATE_NOOP("palpate::viewer::DeviceControls", "ready"), green},
+    {QT_TRANSLATE_NOOP("palpate::viewer::DeviceControls", "needs calibration"), orange},
+    {QT_TRANSLATE_NOOP("palpate::viewer::DeviceControls", "sends no new positions"), orange},
+    {QT_TRANSLATE_NOOP("palpate::viewer::DeviceControls", "connection lost"), red},
+    {QT_TRANSLATE_NOOP("palpate::viewer::DeviceControls", "reports a fault"), red},
+    {QT_TRANSLATE_NOOP("palpate::viewer::DeviceControls", "the hand has come to its end"), grey}};
 
 QString length_text(const Vec3& size) {
     return QString("%1 x %2 x %3 mm")
@@ -132,24 +117,13 @@ DeviceControls::DeviceControls(Effect& effect)
       picker_(named(new QComboBox, "devices",
                     tr("Devices; grey: not found, the tip says what was looked for"))),
       options_(named(new QLineEdit, "device_options")),
-      refresh_(named(new QPushButton(tr("Look again")), "refresh_devices",
-                     tr("Look for devices again; takes about a second"))),
-      connect_(named(new QPushButton(tr("Connect")), "connect_device",
-                     tr("Go on with this device; forces ramp up anew"))),
-      add_(named(new QPushButton(tr("Add as second hand")), "add_hand",
-                 tr("One more hand with the device above. Each feels what the other edits"))),
-      remove_(named(new QPushButton(tr("Remove this hand")), "remove_hand",
-                    tr("Its force ends; the other hand goes on"))),
       missing_(new Note("device_missing", Note::Kind::plain)),
       dot_(named(new QLabel, "device_dot")),
       state_(named(new QLabel, "device_state")),
       model_(named(new QLabel, "device_model")),
       workspace_(named(new QLabel, "device_workspace",
                        tr("The box that the device reaches [mm of the hand], and its most force"))),
-      problem_(new Note("device_problem", Note::Kind::warning)),
-      scale_(named(new NumberBox, "scale",
-                   tr("Scale of the hand: mm in the volume for each mm of the hand. Changes about "
-                      "the proxy, so that neither it nor the force moves"))) {
+      problem_(new Note("device_problem", Note::Kind::warning)) {
     options_->setAccessibleName(tr("Options of the device"));
     picker_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     picker_->setMinimumContentsLength(12);
@@ -157,16 +131,44 @@ DeviceControls::DeviceControls(Effect& effect)
     options_->setClearButtonEnabled(true);
     model_->setWordWrap(true);
     workspace_->setWordWrap(true);
-    scale_->setSuffix(" mm/mm");
-    scale_->setSingleStep(0.1);
-    build();
-    connect_inputs();
-    connect_effect();
+    make_controls();
+    connect(picker_, qOverload<int>(&QComboBox::currentIndexChanged), this,
+            &DeviceControls::choose);
+    connect(&effect, &Effect::begun, this,
+            [this] { show_device(effect_.device(), DeviceStatus::starting, {}); });
+    connect(&effect, &Effect::ended, this, &DeviceControls::clear);
+    connect(&effect, &Effect::changed, this, &DeviceControls::refresh);
+    connect(&effect, &Effect::observed, this, [this](const Snapshot& now) {
+        show_status(now.session.device.status);
+        // A number that is being typed is left alone.
+        if (!findChild<NumberBox*>("scale")->hasFocus()) refresh();
+    });
     set_devices({}, {});
     set_hands(1);
 }
 
-void DeviceControls::build() {
+void DeviceControls::make_controls() {
+    const auto connect_it = [this] { ask_for_device(&DeviceControls::chosen); };
+    connect(options_, &QLineEdit::returnPressed, this, connect_it);
+    auto* look = button(
+        {"refresh_devices", tr("Look again"), tr("Look for devices again; takes about a second")},
+        [this] { Q_EMIT refresh_wanted(); });
+    auto* use =
+        button({"connect_device", tr("Connect"), tr("Go on with this device; forces ramp up anew")},
+               connect_it);
+    add_ = button({"add_hand", tr("Add as second hand"),
+                   tr("One more hand with the device above. Each feels what the other edits")},
+                  [this] { ask_for_device(&DeviceControls::added); });
+    remove_ = button(
+        {"remove_hand", tr("Remove this hand"), tr("Its force ends; the other hand goes on")},
+        [this] { Q_EMIT removed(); });
+    auto* scale = number({"scale", "",
+                          tr("Scale of the hand: mm in the volume for each mm of the hand. Changes "
+                             "about the proxy, so that neither it nor the force moves")},
+                         {[this] { return effect_.settings().transform.scale; },
+                          [this](double to) { effect_.request(command::Scale{to}); }});
+    scale->setSuffix(" mm/mm");
+    scale->setSingleStep(0.1);
     auto* state = row_of({dot_, state_}, 1);
     state->layout()->setSpacing(6);
     auto* form = new QFormLayout;
@@ -174,41 +176,14 @@ void DeviceControls::build() {
     form->addRow(tr("State"), state);
     form->addRow(tr("Model"), model_);
     form->addRow(tr("Reach"), workspace_);
-    form->addRow(tr("Scale of the hand"), scale_);
-    column_in(this, {row_of({picker_, refresh_}, 0), row_of({options_, connect_}, 0),
+    form->addRow(tr("Scale of the hand"), scale);
+    column_in(this, {row_of({picker_, look}, 0), row_of({options_, use}, 0),
                      row_of({add_, remove_}), missing_, problem_})
         ->addLayout(form);
 }
 
-void DeviceControls::connect_inputs() {
-    connect(refresh_, &QPushButton::clicked, this, &DeviceControls::refresh_wanted);
-    const auto ask_to_connect = [this] { ask_for_device(&DeviceControls::chosen); };
-    connect(connect_, &QPushButton::clicked, this, ask_to_connect);
-    connect(options_, &QLineEdit::returnPressed, this, ask_to_connect);
-    connect(add_, &QPushButton::clicked, this, [this] { ask_for_device(&DeviceControls::added); });
-    connect(remove_, &QPushButton::clicked, this, &DeviceControls::removed);
-    connect(picker_, qOverload<int>(&QComboBox::currentIndexChanged), this,
-            &DeviceControls::choose);
-    connect(scale_, qOverload<double>(&NumberBox::valueChanged), this,
-            [this](double scale) { effect_.request(command::Scale{scale}); });
-}
-
-void DeviceControls::connect_effect() {
-    connect(&effect_, &Effect::begun, this,
-            [this] { show_device(effect_.device(), DeviceStatus::starting, {}); });
-    connect(&effect_, &Effect::ended, this, &DeviceControls::clear);
-    connect(&effect_, &Effect::changed, this,
-            [this] { scale_->show_value(effect_.settings().transform.scale); });
-    connect(&effect_, &Effect::observed, this, [this](const Snapshot& now) {
-        show_status(now.session.device.status);
-        // A number that is being typed is left alone.
-        if (!scale_->hasFocus()) scale_->show_value(effect_.settings().transform.scale);
-    });
-}
-
 void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& findings,
                                  const QString& current) {
-    current_ = current;
     findings_ = findings;
     // These two exist on any machine, even before a search.
     for (const char* name : {"mouse", "simulated"}) {
@@ -234,16 +209,10 @@ void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& find
                              Qt::ForegroundRole);
         picker_->setItemData(row, QString::fromStdString(finding.missing), Qt::ToolTipRole);
     }
-    show_current();
-}
-
-void DeviceControls::show_current() {
-    const int colon = current_.indexOf(':');
-    const int row = picker_->findData(current_.left(colon));
-    const QSignalBlocker quiet(picker_);
-    picker_->setCurrentIndex(std::max(0, row));
+    const int colon = current.indexOf(':');
+    picker_->setCurrentIndex(std::max(0, picker_->findData(current.left(colon))));
     choose(picker_->currentIndex());
-    options_->setText(colon < 0 ? QString() : current_.mid(colon + 1));
+    options_->setText(colon < 0 ? QString() : current.mid(colon + 1));
 }
 
 void DeviceControls::choose(int row) {
@@ -267,6 +236,7 @@ void DeviceControls::ask_for_device(void (DeviceControls::*signal)(const QString
         Q_EMIT nonsense(QString::fromStdString(error.what()));
         return;
     }
+    Q_EMIT nonsense({});
     Q_EMIT(this->*signal)(option);
 }
 
@@ -278,11 +248,11 @@ void DeviceControls::set_hands(int hands) {
 void DeviceControls::show_status(DeviceStatus status) {
     if (status == status_ && !state_->text().isEmpty()) return;
     status_ = status;
-    const StatusLook look = look_of(status);
-    state_->setText(look.words);
+    const auto& [words, colour] = status_looks[static_cast<std::size_t>(status)];
+    state_->setText(tr(words));
     dot_->setText(QString::fromUtf8("\u25CF"));
     QPalette colours = palette();
-    colours.setColor(QPalette::WindowText, look.colour);
+    colours.setColor(QPalette::WindowText, QColor::fromRgb(colour));
     dot_->setPalette(colours);
 }
 

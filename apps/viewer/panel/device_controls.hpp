@@ -2,18 +2,13 @@
 // servo loop performs.
 #pragma once
 
-#include <QComboBox>
 #include <QLabel>
 #include <QLineEdit>
-#include <QPushButton>
-#include <QWidget>
 
-#include <array>
 #include <vector>
 
 #include "apps/viewer/panel/effect.hpp"
-#include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "palpate/devices/backend.hpp"
 #include "palpate/servo.hpp"
 
@@ -30,14 +25,10 @@ class LoopView : public QWidget {
     void clear();
 
   private:
-    using Row = std::array<QLabel*, 4>;  // p50, p99, p99.9, max
-    static void put(const Row& row, const LatencySummary& summary);
-
-    Row lateness_{}, compute_{};
-    QLabel *rate_, *missed_, *worst_;
+    void put(const QString& name, const QString& text);
 };
 
-class DeviceControls : public QWidget {
+class DeviceControls : public Form {
     Q_OBJECT
 
   public:
@@ -57,29 +48,23 @@ class DeviceControls : public QWidget {
     /// The hand whose device this is.
     void removed();
     void refresh_wanted();
-    void nonsense(const QString& why);
 
   private:
-    void build();
-    void connect_inputs();
-    void connect_effect();
+    void make_controls();
     void show_status(DeviceStatus status);
     void clear();
     void choose(int row);
-    void show_current();
     void ask_for_device(void (DeviceControls::*signal)(const QString&));
 
     Effect& effect_;
     QComboBox* picker_;
     QLineEdit* options_;
-    QPushButton *refresh_, *connect_, *add_, *remove_;
+    QPushButton *add_ = nullptr, *remove_ = nullptr;
     Note* missing_;
     QLabel *dot_, *state_, *model_, *workspace_;
     Note* problem_;
-    NumberBox* scale_;
     DeviceStatus status_ = DeviceStatus::starting;
     std::vector<devices::DeviceFinding> findings_;  // by row
-    QString current_;
 };
 
 }  // namespace palpate::viewer

@@ -34,10 +34,14 @@ class Effect : public QObject {
     /// Nothing is felt or played without one.
     bool there() const { return session_.has_value(); }
     bool is_played() const { return there() && !carry_out_; }
+    /// The usual ones without a session.
+    const RendererSettings& settings() const {
+        static const RendererSettings usual;
+        return there() ? session_->renderer.settings : usual;
+    }
     // Of a session that is there:
     /// As it began, with all commands since. Its field has no edits.
     const Session& session() const { return *session_; }
-    const RendererSettings& settings() const { return session_->renderer.settings; }
     /// The level that was asked for last.
     double isovalue() const { return session_->renderer.proxy.isovalue; }
     const Field& field() const { return session_->renderer.field; }

@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "apps/viewer/panel/layout.hpp"
 #include "palpate/settings.hpp"
@@ -14,7 +18,7 @@ namespace palpate::viewer {
 namespace {
 
 /// What the table of settings does not say.
-struct Words {
+struct RowWords {
     const char* name;   // of the row
     double high, step;  // of the slider, the box
     const char *label, *tip;
@@ -25,7 +29,7 @@ struct ForceRows {
     Q_DECLARE_TR_FUNCTIONS(ForceRows)
   public:
     /// In the order of the rows.
-    static constexpr Words all[] = {
+    static constexpr RowWords all[] = {
         {"stiffness", 1, 0.05, QT_TR_NOOP("Stiffness"),
          QT_TR_NOOP("Stiffness k of the spring between hand and proxy [N/mm].\nThe slider "
                     "ends where device and loop can no longer render it stably."),
@@ -83,8 +87,8 @@ ForceRow row_of(const SettingWords& setting, const ValueRange& range, double usu
     row.name = row_name(setting.title);
     row.unit = QString(setting.unit).remove("device ").remove(", physical");
     row.infinite = range.has(ranges::infinity);
-    const auto* said = std::ranges::find_if(ForceRows::all,
-                                            [&](const Words& one) { return row.name == one.name; });
+    const auto* said = std::ranges::find_if(
+        ForceRows::all, [&](const RowWords& one) { return row.name == one.name; });
     row.place = int(said - std::begin(ForceRows::all));
     if (said != std::end(ForceRows::all)) {
         row.label = ForceRows::tr(said->label);
@@ -109,24 +113,20 @@ namespace {
 /// Damping must stay below its end, not on it.
 constexpr double just_below = 1 - 1e-9;
 
-using Settings = RendererSettings;
-
-/// Calls visit(setting, number) for each number that the panel shows.
-void for_each_row(Settings& settings, auto&& visit) {
-    const auto each = [&](const std::string&, const auto& setting, double& number) {
-        visit(setting, number);
-    };
-    for_each_number("force", settings.force, each);
-    for_each_number("friction", settings.proxy.friction, each);
+bool is_shown(const std::string& path) {
+    return !path.starts_with("limits.");
 }
 
-std::vector<ForceRow> all_rows() {
-    std::vector<ForceRow> rows;
-    Settings usual;
-    for_each_row(usual, [&](const auto& setting, double number) {
-        rows.push_back(row_of({setting.title, setting.unit, setting.about}, setting.range, number));
-    });
-    std::ranges::stable_sort(rows, {}, &ForceRow::place);
+/// With the paths of their numbers, in the order in which they stand.
+std::vector<std::pair<ForceRow, std::string>> all_rows() {
+    std::vector<std::pair<ForceRow, std::string>> rows;
+    RendererSettings usual;
+    for_each_live_number(
+        usual, [&](const std::string& path, const auto& one, double number, const auto&) {
+            if (!is_shown(path)) return;
+            rows.emplace_back(row_of({one.title, one.unit, one.about}, one.range, number), path);
+        });
+    std::ranges::stable_sort(rows, {}, [](const auto& row) { return row.first.place; });
     return rows;
 }
 
@@ -134,59 +134,49 @@ std::vector<ForceRow> all_rows() {
 
 ForceControls::ForceControls(Effect& effect) : effect_(effect) {
     auto *plain = new QWidget, *advanced = new QWidget;
-    auto *plain_form = new QFormLayout(plain), *advanced_form = new QFormLayout(advanced);
-    for (QFormLayout* form : {plain_form, advanced_form}) {
-        form->setContentsMargins(0, 0, 0, 0);
-        form->setVerticalSpacing(3);
-    }
-    for (const ForceRow& row : all_rows()) {
-        auto* quantity = new Quantity(row.name, row.unit, row.low, row.high, row.step);
-        quantity->set_accessible_name(row.label);
+    auto *plain_form = form_in(plain), *advanced_form = form_in(advanced);
+    for (const auto& [row, its_path] : all_rows()) {
+        const std::string& path = its_path;
+        auto* quantity =
+            quantity_in(row.plain ? *plain_form : *advanced_form, {row.name, row.label, row.tip},
+                        {row.unit, row.low, row.high, row.step},
+                        {[this, path] { return number_at(path); },
+                         [this, path](double value) { change(path, value); }});
         quantity->box().set_infinite(row.infinite);
-        add_row(row.plain ? *plain_form : *advanced_form, row.label, quantity, row.tip);
-        rows_[row.name] = quantity;
-        connect(quantity, &Quantity::wanted, this,
-                [this, name = row.name](double value) { change(name, value); });
     }
     auto* fold = new Section(tr("Advanced"), "force_advanced", advanced);
     fold->set_open(false);
     column_in(this, {plain, fold});
-    connect(&effect, &Effect::changed, this, &ForceControls::show);
-    for (const auto over : {&Effect::begun, &Effect::ended}) {
-        connect(&effect, over, this, [this] {
-            for (const auto& row : rows_) row.second->drop();
-        });
-    }
+    connect(&effect, &Effect::changed, this, [this] {
+        set_ends();
+        refresh();
+    });
 }
 
-void ForceControls::change(const QString& name, double value) {
-    if (!effect_.there()) return;
-    Settings next = effect_.settings();
-    for_each_row(next, [&](const auto& setting, double& number) {
-        if (row_name(setting.title) == name) number = value;
-    });
-    Friction& friction = next.proxy.friction;
-    const bool rubs = name == "static_friction" || name == "dynamic_friction";
-    if (name == "static_friction") {  // dynamic friction must not exceed it
-        friction.dynamic_coefficient = std::min(friction.dynamic_coefficient, value);
-    }
-    effect_.request(rubs ? Command(friction) : Command(next.force));
+double ForceControls::number_at(const std::string& path) const {
+    double found = 0;
+    visit_live_number(effect_.settings(), path,
+                      [&](double number, const auto&) { found = number; });
+    return found;
 }
 
-void ForceControls::show() {
-    Settings settings = effect_.settings();
-    set_ends(settings);
-    for_each_row(settings, [&](const auto& setting, double number) {
-        rows_.at(row_name(setting.title))->set_value(number);
-    });
+void ForceControls::change(const std::string& path, double value) {
+    RendererSettings next = effect_.settings();
+    Command command = palpate::change(next, path, value);
+    if (auto* friction = std::get_if<Friction>(&command);
+        friction && path.ends_with("static_coefficient")) {
+        friction->dynamic_coefficient = std::min(friction->dynamic_coefficient, value);
+    }
+    effect_.request(command);
 }
 
 /// The limits of check(ForceSettings, DeviceLimits).
-void ForceControls::set_ends(const RendererSettings& settings) {
-    const ForceSettings& force = settings.force;
-    const DeviceLimits& limits = settings.device;
+void ForceControls::set_ends() {
+    const ForceSettings& force = effect_.settings().force;
+    const DeviceLimits& limits = effect_.settings().device;
     const auto end = [this](const char* name, double high) {
-        rows_.at(name)->set_ends(rows_.at(name)->low(), high);
+        auto* row = findChild<Quantity*>(name);
+        row->set_ends(row->low(), high);
     };
     const double most = greatest_stiffness(limits, force.damping + force.viscosity);
     end("stiffness", most);
@@ -194,7 +184,7 @@ void ForceControls::set_ends(const RendererSettings& settings) {
                         (1 - force.stiffness / greatest_stiffness(limits, 0)) * just_below;
     end("damping", room - force.viscosity);
     end("viscosity", room - force.damping);
-    end("dynamic_friction", settings.proxy.friction.static_coefficient);
+    end("dynamic_friction", effect_.settings().proxy.friction.static_coefficient);
     const double pull =
         force.magnet.distance > 0 ? most * force.magnet.distance / 4 : limits.maximum_force;
     end("magnet_peak", std::min(limits.maximum_force, pull * just_below));

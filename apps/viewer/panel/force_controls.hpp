@@ -2,12 +2,11 @@
 #pragma once
 
 #include <QString>
-#include <QWidget>
 
-#include <map>
+#include <string>
 
 #include "apps/viewer/panel/effect.hpp"
-#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "palpate/settings.hpp"
 
 namespace palpate::viewer {
@@ -34,19 +33,18 @@ ForceRow row_of(const SettingWords& setting, const ValueRange& range, double usu
 
 /// A row for each number in the tables of force and friction. The sliders end at what the device
 /// can render.
-class ForceControls : public QWidget {
+class ForceControls : public Form {
     Q_OBJECT
 
   public:
     explicit ForceControls(Effect& effect);
 
   private:
-    void change(const QString& name, double value);
-    void show();
-    void set_ends(const RendererSettings& settings);
+    double number_at(const std::string& path) const;
+    void change(const std::string& path, double value);
+    void set_ends();
 
     Effect& effect_;
-    std::map<QString, Quantity*> rows_;  // by their names
 };
 
 }  // namespace palpate::viewer

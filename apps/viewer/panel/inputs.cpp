@@ -46,6 +46,10 @@ void RateLimiter::pass() {
     if (const auto request = std::exchange(waiting_, nullptr)) request();
 }
 
+void drop_requests(const QObject& part) {
+    for (auto* limiter : part.findChildren<RateLimiter*>()) limiter->drop();
+}
+
 namespace {
 
 class WheelFilter : public QObject {
@@ -169,8 +173,7 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
     connect(slider_, &QSlider::valueChanged, this, [this](int place) { ask(value_at(place)); });
     connect(slider_, &QSlider::sliderReleased, &limiter_, &RateLimiter::flush);
     connect(box_, qOverload<double>(&NumberBox::valueChanged), this, [this](double value) {
-        value_ = value;
-        place_slider();
+        set_value(value);
         limiter_.drop();
         Q_EMIT wanted(value);
     });
@@ -186,6 +189,7 @@ void Quantity::set_value(double value) {
     value_ = value;
     box_->show_value(value);
     if (!slider_->isSliderDown()) place_slider();
+    Q_EMIT shown(value);
 }
 
 void Quantity::set_ends(double low, double high) {
@@ -221,8 +225,7 @@ void Quantity::place_slider() {
 }
 
 void Quantity::ask(double value) {
-    value_ = value;
-    box_->show_value(value);
+    set_value(value);
     limiter_.put([this, value] { Q_EMIT wanted(value); });
 }
 

@@ -16,6 +16,8 @@ namespace palpate::viewer {
 /// The first request goes through at once; of those that follow within the interval the last goes
 /// through when the interval is over.
 class RateLimiter : public QObject {
+    Q_OBJECT
+
   public:
     /// `interval` [ms]: about 60 a second.
     explicit RateLimiter(QObject* parent, int interval = 16);
@@ -82,6 +84,9 @@ class NumberBox : public QDoubleSpinBox {
     bool infinite_ = false;
 };
 
+/// Forgets the requests that wait in a part of the window.
+void drop_requests(const QObject& part);
+
 /// Puts a filter on a widget that leaves the wheel to the scroll area unless it has the focus.
 void let_wheel_pass(QWidget& widget);
 
@@ -107,6 +112,10 @@ class Quantity : public QWidget {
     void set_ends(double low, double high);
     double low() const { return low_; }
     double high() const { return high_; }
+    /// As by the slider: shows a value, and asks for it soon.
+    void ask(double value);
+    /// The drag is over.
+    void flush() { limiter_.flush(); }
     /// Forgets a request that waits.
     void drop() { limiter_.drop(); }
     NumberBox& box() { return *box_; }
@@ -115,9 +124,10 @@ class Quantity : public QWidget {
   Q_SIGNALS:
     /// At most 60 a second while the slider moves. From the box any number may come.
     void wanted(double value);
+    /// Whatever it comes from.
+    void shown(double value);
 
   private:
-    void ask(double value);
     double value_at(int place) const;
     void place_slider();
 

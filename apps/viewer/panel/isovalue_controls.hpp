@@ -2,20 +2,14 @@
 // between samples, whether the samples are dequantized, the level felt now.
 #pragma once
 
-#include <QCheckBox>
-#include <QComboBox>
-#include <QSlider>
-#include <QWidget>
-
 #include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/panel/effect.hpp"
-#include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
 
 namespace palpate::viewer {
 
-class IsovalueControls : public QWidget {
+class IsovalueControls : public Form {
     Q_OBJECT
 
   public:
@@ -31,29 +25,19 @@ class IsovalueControls : public QWidget {
     void dequantize_wanted(bool on);  ///< it shows the state before until the next set_dequantized
 
   private:
-    void connect_inputs();
-    void connect_effect();
+    QWidget* make_field();
     void begin();
     void clear();
-    void show();
-    void show_field();
-    void show_isovalue(double isovalue);
-    void show_layered(const SharedLayers& layers);
+    void show_rests();
+    void show_level(double isovalue);
     void show_felt(double isovalue, bool penetrability_on);
-    void request(double isovalue);
-    void ask(double isovalue);
-    LevelAxis slider_axis() const;
 
     Effect& effect_;
     LevelChart* chart_;
-    QSlider* slider_;
-    NumberBox* box_;
-    QComboBox *solid_, *smoothness_;
-    QCheckBox* dequantize_;
+    Quantity* level_;
+    QCheckBox* dequantize_ = nullptr;
     QLabel* felt_;
     Note *warning_, *overruled_, *terraces_;
-    RateLimiter limiter_;
-    double isovalue_ = 0;
     int differing_ = 0;  // consecutive snapshots with another level
 };
 

@@ -9,11 +9,8 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/layer_editor.hpp"
-#include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/level_axis.hpp"
 #include "apps/viewer/panel/names.hpp"
+#include "apps/viewer/panel/stroke_plot.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -32,45 +29,32 @@ QString wrapped(const QString& text) {
 LayersControls::LayersControls(Effect& effect)
     : effect_(effect),
       choice_(named(new QComboBox, "layers", tr("Layers: several surfaces in one stroke"))),
-      open_(named(new QPushButton(tr("Open…")), "open_layers",
-                  tr("A set of layers from a file (JSON)"))),
-      save_(named(new QPushButton(tr("Save as…")), "save_layers",
-                  tr("This set of layers to a file (JSON), for these and other data"))),
-      undo_(named(new QPushButton("↶"), "undo_layers", tr("Undo the last change of layers"))),
-      redo_(named(new QPushButton("↷"), "redo_layers",
-                  tr("Redo the change of layers that was undone"))),
-      add_(named(new QPushButton(tr("Add")), "add_layer")),
-      remove_(named(new QPushButton(tr("Remove")), "remove_layer", tr("Remove the chosen layer"))),
-      earlier_(named(new QPushButton("▲"), "layer_earlier",
-                     tr("Earlier in the list: a surface between two labels has the properties of "
-                        "the later one"))),
-      later_(named(new QPushButton("▼"), "layer_later",
-                   tr("Later in the list: a surface between two labels has the properties of the "
-                      "later one"))),
       note_(new Note("layers_note", Note::Kind::plain)),
       touched_(named(new QLabel, "touched_layers",
                      tr("The layer that is touched, and those that the proxy is in"))),
       list_(named(new QListWidget, "layer_list")),
-      curve_(new CurveControls),
-      editor_(new LayerEditor),
-      needle_(new NeedleControls),
+      factors_(new LevelChart),
       plot_(new StrokePlot),
       limiter_(this) {
     setObjectName("layers_controls");
-    undo_->setAccessibleName(tr("Undo, layers"));
-    redo_->setAccessibleName(tr("Redo, layers"));
-    add_->setAccessibleName(tr("Add a layer"));
-    remove_->setAccessibleName(tr("Remove the layer"));
-    earlier_->setAccessibleName(tr("Layer earlier in the list"));
-    later_->setAccessibleName(tr("Layer later in the list"));
-    open_->setAccessibleName(tr("Open layers"));
-    save_->setAccessibleName(tr("Save layers"));
-    touched_->setTextFormat(Qt::PlainText);
-    touched_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
-    body_ = column_of({make_stroke(), make_list()});
-    column_in(this, {make_choice(), note_, body_});
-    connect_inputs();
-    connect_effect();
+    factors_->setObjectName("gradient_chart");
+    factors_->set_level_shown(false);
+    factors_->setAccessibleName(tr("Factor over the gradient"));
+    factors_->setToolTip(
+        tr("Factor over the gradient's magnitude [data units / mm]; behind it, how often there is "
+           "which (logarithm).\nPoints: drag; double click adds one, right click or Del deletes. "
+           "By keys:\nPage keys choose a point, arrows move it, Insert adds one.\n"
+           "Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again."));
+    auto* body = column_of({make_stroke(), make_list()});
+    each_time(body, [this](QWidget& one) { one.setVisible(layers_ != nullptr); });
+    column_in(this, {make_choice(), note_, body});
+    connect(&effect_, &Effect::begun, this, &LayersControls::begin);
+    connect(&effect_, &Effect::ended, this, &LayersControls::clear);
+    connect(&effect_, &Effect::changed, this, [this] {
+        layers_ = effect_.settings().layers;
+        if (!layers_) plot_->clear();
+        show();
+    });
     show();
 }
 
@@ -79,105 +63,105 @@ QWidget* LayersControls::make_choice() {
     choice_->setAccessibleName(tr("Layers"));
     choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     choice_->setMinimumContentsLength(12);
-    for (QPushButton* one : {undo_, redo_, earlier_, later_})
-        one->setMaximumWidth(2 * fontMetrics().height());
-    return column_of({choice_, row_of({open_, save_, add_, undo_, redo_}, 1)});
+    connect(choice_, qOverload<int>(&QComboBox::activated), this, &LayersControls::choose_set);
+    auto* open = button(
+        {"open_layers", tr("Open…"), tr("A set of layers from a file (JSON)"), tr("Open layers")},
+        [this] { Q_EMIT open_wanted(); });
+    auto* save = button(
+        {"save_layers", tr("Save as…"),
+         tr("This set of layers to a file (JSON), for these and other data"), tr("Save layers")},
+        [this] { Q_EMIT save_wanted(); }, [this] { return layers_ != nullptr; });
+    auto* add = button({"add_layer", tr("Add"), {}, tr("Add a layer")}, [this] { add_layer(); });
+    each_time(add, [this](QWidget& one) {
+        const bool full = count() >= Layers::most_layers;
+        one.setEnabled(!by_label() && !full);
+        one.setToolTip(
+            by_label() ? tr("The labels are chosen in the label map: show those to feel, on the "
+                            "page Data, and feel them again")
+            : full     ? tr("There are %1 layers at most").arg(Layers::most_layers)
+                       : tr("Another layer, where levels leave the most room; the first at the "
+                                "isovalue"));
+    });
+    auto* undo = button(
+        {"undo_layers", "↶", tr("Undo the last change of layers"), tr("Undo, layers")},
+        [this] { step(true); }, [this] { return history_.can_undo(); });
+    auto* redo = button(
+        {"redo_layers", "↷", tr("Redo the change of layers that was undone"), tr("Redo, layers")},
+        [this] { step(false); }, [this] { return history_.can_redo(); });
+    for (QWidget* one : {undo, redo}) one->setMaximumWidth(2 * fontMetrics().height());
+    return column_of({choice_, row_of({open, save, add, undo, redo}, 1)});
 }
 
 /// What is touched, and the force so far.
 QWidget* LayersControls::make_stroke() {
-    auto* clear =
-        named(new QPushButton(tr("Clear")), "clear_stroke", tr("Clear the plot of force by depth"));
-    connect(clear, &QPushButton::clicked, plot_, &StrokePlot::clear);
-    clear->setAccessibleName(tr("Clear the plot"));
+    touched_->setTextFormat(Qt::PlainText);
+    touched_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+    auto* clear = button(
+        {"clear_stroke", tr("Clear"), tr("Clear the plot of force by depth"), tr("Clear the plot")},
+        [this] { plot_->clear(); });
     return column_of({row_of({touched_, clear}, 0), plot_});
 }
 
+/// Layers by label have an order instead of levels.
 QWidget* LayersControls::make_list() {
     list_->setAccessibleName(tr("Layers, from outside in"));
     list_->setUniformItemSizes(true);
-    auto* buttons = row_of({remove_, earlier_, later_});
-    buttons->layout()->setAlignment(Qt::AlignLeft);
-    return column_of({list_, buttons, editor_, needle_, curve_});
-}
-
-void LayersControls::connect_inputs() {
-    connect(choice_, qOverload<int>(&QComboBox::activated), this, [this](int at) {
-        const auto set = static_cast<std::size_t>(at) - 1;
-        if (at == 0) return use(nullptr);
-        if (set >= choices_.size()) return;  // the one in use
-        const SharedLayers layers = choices_[set].layers;
-        if (!lack_labels(layers)) return use(layers);
-        show_choice();  // the one in use, until it has its labels
-        Q_EMIT labels_wanted(layers);
-    });
-    connect(open_, &QPushButton::clicked, this, &LayersControls::open_wanted);
-    connect(save_, &QPushButton::clicked, this, &LayersControls::save_wanted);
-    connect(undo_, &QPushButton::clicked, this, [this] { step(true); });
-    connect(redo_, &QPushButton::clicked, this, [this] { step(false); });
-    connect_list();
-    connect_curve();
-}
-
-void LayersControls::connect_list() {
-    connect(add_, &QPushButton::clicked, this, &LayersControls::add_layer);
-    connect(remove_, &QPushButton::clicked, this, &LayersControls::remove_layer);
-    connect(earlier_, &QPushButton::clicked, this, [this] { shift_layer(-1); });
-    connect(later_, &QPushButton::clicked, this, [this] { shift_layer(1); });
     connect(list_, &QListWidget::currentRowChanged, this, [this] { show(); });
-    connect(needle_, &NeedleControls::changed, this, &LayersControls::change);
-    connect(editor_, &LayerEditor::changed, this,
-            [this](const QString& key, const LayerEditor::Change& how) {
-                const int row = chosen();
-                if (row < 0) return;
-                change(QString("%1 %2").arg(key).arg(row),
-                       [&](Layers& layers) { how(layers.layers[static_cast<std::size_t>(row)]); });
-            });
-    connect(editor_, &LayerEditor::level_wanted, this, [this](double level) {
-        if (chosen() >= 0) move_level(chosen(), level);
+    each_time(list_, [this](QWidget& one) {
+        one.setToolTip(by_label() ? tr("Layers by label; choose one to change it. The order says "
+                                       "which one counts where two meet")
+                                  : tr("Layers from outside in; choose one to change it. Their "
+                                       "levels are lines to drag on the histogram"));
     });
+    const auto levels = [this] { return static_cast<int>(levels_in(layers_)); };
+    auto* remove = button(
+        {"remove_layer", tr("Remove"), tr("Remove the chosen layer"), tr("Remove the layer")},
+        [this] { remove_layer(); }, [this] { return chosen() >= 0; });
+    auto* earlier = button(
+        {"layer_earlier", "▲",
+         tr("Earlier in the list: a surface between two labels has the "
+            "properties of the later one"),
+         tr("Layer earlier in the list")},
+        [this] { shift_layer(-1); }, [this, levels] { return chosen() > levels(); });
+    auto* later = button(
+        {"layer_later", "▼",
+         tr("Later in the list: a surface between two labels has the properties "
+            "of the later one"),
+         tr("Layer later in the list")},
+        [this] { shift_layer(1); },
+        [this, levels] { return chosen() >= levels() && chosen() + 1 < count(); });
+    for (QWidget* one : {earlier, later}) {
+        one->setMaximumWidth(2 * fontMetrics().height());
+        each_time(one, [this](QWidget& shown) { shown.setVisible(by_label()); });
+    }
+    auto* buttons = row_of({remove, earlier, later});
+    buttons->layout()->setAlignment(Qt::AlignLeft);
+    return column_of({list_, buttons, make_layer(), make_needle(), make_curves()});
 }
 
-void LayersControls::connect_curve() {
-    connect(curve_, &CurveControls::chosen, this, [this] {
-        last_key_.clear();
-        show();
-        Q_EMIT curve_chosen();
-    });
-    connect(curve_, &CurveControls::start_wanted, this, &LayersControls::begin_curve);
-    connect(curve_, &CurveControls::remove_wanted, this, [this] {
-        change({}, [property = curve_property()](Layers& layers) {
-            layers[property].density.knots.clear();
-        });
-    });
-    connect(curve_, &CurveControls::factors_wanted, this, &LayersControls::set_factors);
-}
-
-void LayersControls::connect_effect() {
-    connect(&effect_, &Effect::begun, this, &LayersControls::begin);
-    connect(&effect_, &Effect::ended, this, &LayersControls::clear);
-    connect(&effect_, &Effect::changed, this, [this] {
-        layers_ = effect_.settings().layers;
-        if (!layers_) plot_->clear();
-        show();
-    });
+void LayersControls::choose_set(int at) {
+    const auto set = static_cast<std::size_t>(at) - 1;
+    if (at == 0) return use(nullptr);
+    if (set >= choices_.size()) return;  // the one in use
+    const SharedLayers layers = choices_[set].layers;
+    if (!lack_labels(layers)) return use(layers);
+    show_choice();  // the one in use, until it has its labels
+    Q_EMIT labels_wanted(layers);
 }
 
 /// There is nothing to undo.
 void LayersControls::begin() {
     constexpr int bins = 256;
     const Volume& volume = effect_.field().volume();
-    limiter_.drop();
     low_ = volume.minimum();
     high_ = low_ + volume.range();
-    curve_->set_data(run::gradients_of(volume, bins));
+    factors_->set_data(run::gradients_of(volume, bins), {});
     history_.clear();
     note_->say({});
     plot_->clear();
 }
 
 void LayersControls::clear() {
-    limiter_.drop();
     layers_.reset();
     history_.clear();
     choices_.clear();
@@ -230,6 +214,12 @@ void LayersControls::change(const QString& key, const std::function<void(Layers&
     edit(std::make_shared<const Layers>(std::move(next)), key);
 }
 
+void LayersControls::change_layer(const QString& key, const std::function<void(Layer&)>& how) {
+    if (chosen() < 0) return;
+    const auto row = static_cast<std::size_t>(chosen());
+    change(QString("%1 %2").arg(key).arg(row), [&](Layers& layers) { how(layers.layers[row]); });
+}
+
 void LayersControls::use(const SharedLayers& layers) {
     const auto known = std::ranges::find_if(
         choices_, [&](const LayersChoice& one) { return same(one.layers, layers); });
@@ -239,7 +229,7 @@ void LayersControls::use(const SharedLayers& layers) {
 }
 
 LevelRoom LayersControls::room(int layer) const {
-    return room_of(*layers_, static_cast<std::size_t>(layer), least_gap * (high_ - low_));
+    return room_of(*layers_, static_cast<std::size_t>(layer), gap());
 }
 
 void LayersControls::move_level(int layer, double level) {
@@ -251,25 +241,21 @@ void LayersControls::move_level(int layer, double level) {
     });
 }
 
-HapticProperty LayersControls::curve_property() const {
-    return curve_->property();
-}
-
 void LayersControls::set_curve(const std::vector<Curve::Knot>& knots) {
     change(QString("curve %1").arg(knots.size()),
-           [&](Layers& layers) { layers[curve_property()].density.knots = knots; });
+           [&](Layers& layers) { layers[property_].density.knots = knots; });
 }
 
 void LayersControls::set_factors(const std::vector<Curve::Knot>& knots) {
     change(QString("factors %1").arg(knots.size()),
-           [&](Layers& layers) { layers[curve_property()].gradient.knots = knots; });
+           [&](Layers& layers) { layers[property_].gradient.knots = knots; });
 }
 
 /// One point, at the chosen layer's level.
 void LayersControls::begin_curve() {
-    const double middle = rounded_to(0.5 * (low_ + high_), least_gap * (high_ - low_));
+    const double middle = rounded_to(0.5 * (low_ + high_), gap());
     const double at = std::clamp(chosen_level().value_or(middle), low_, high_);
-    set_curve({first_knot(curve_property(), at, effect_.settings())});
+    set_curve({first_knot(property_, at, effect_.settings())});
 }
 
 void LayersControls::add_layer() {
@@ -321,13 +307,26 @@ void LayersControls::step(bool back) {
 }
 
 int LayersControls::chosen() const {
-    const int count = layers_ ? static_cast<int>(layers_->layers.size()) : 0;
-    return std::min(list_->currentRow(), count - 1);
+    return std::min(list_->currentRow(), count() - 1);
+}
+
+const Layers& LayersControls::all() const {
+    static const Layers none;
+    return layers_ ? *layers_ : none;
+}
+
+const Layer& LayersControls::layer() const {
+    static const Layer none;
+    return chosen() < 0 ? none : all().layers[static_cast<std::size_t>(chosen())];
+}
+
+double LayersControls::gap() const {
+    return least_gap * (high_ - low_);
 }
 
 std::optional<double> LayersControls::chosen_level() const {
     if (chosen() < 0 || chosen() >= static_cast<int>(levels_in(layers_))) return std::nullopt;
-    return layers_->layers[static_cast<std::size_t>(chosen())].level;
+    return layer().level;
 }
 
 void LayersControls::choose_layer(int layer) {
@@ -338,43 +337,7 @@ void LayersControls::choose_layer(int layer) {
 void LayersControls::show() {
     show_choice();
     show_list();
-    undo_->setEnabled(history_.can_undo());
-    redo_->setEnabled(history_.can_redo());
-    save_->setEnabled(layers_ != nullptr);
-    body_->setVisible(layers_ != nullptr);
-    const int row = chosen();
-    show_order();
-    remove_->setEnabled(row >= 0);
-    editor_->setVisible(row >= 0);
-    if (!layers_) return;
-    needle_->show_layers(*layers_);
-    curve_->show_layers(*layers_);
-    if (row < 0) return;
-    editor_->show_layer(*layers_, static_cast<std::size_t>(row), effect_.settings(),
-                        rounded_to(least_gap * (high_ - low_), 1e-6));
-}
-
-/// What is different by label: an order instead of levels.
-void LayersControls::show_order() {
-    const bool by_label = layers_ && layers_->by_label;
-    const int row = chosen(), count = layers_ ? static_cast<int>(layers_->layers.size()) : 0;
-    earlier_->setVisible(by_label);
-    later_->setVisible(by_label);
-    const auto levels = static_cast<int>(levels_in(layers_));
-    earlier_->setEnabled(row > levels);
-    later_->setEnabled(row >= levels && row + 1 < count);
-    const bool full = count >= Layers::most_layers;
-    add_->setEnabled(!by_label && !full);
-    add_->setToolTip(
-        by_label ? tr("The labels are chosen in the label map: show those to feel, on the page "
-                      "Data, and feel them again")
-        : full   ? tr("There are %1 layers at most").arg(Layers::most_layers)
-               : tr("Another layer, where levels leave the most room; the first at the isovalue"));
-    list_->setToolTip(
-        by_label ? tr("Layers by label; choose one to change it. The order says which one counts "
-                      "where two meet")
-                 : tr("Layers from outside in; choose one to change it. Their levels are lines to "
-                      "drag on the histogram"));
+    refresh();
 }
 
 /// None, the sets that can be had, and the one in use where it is none of them.
@@ -412,13 +375,12 @@ void LayersControls::show_choice() {
 /// With a mark where the device cannot render what a layer asks for.
 void LayersControls::show_list() {
     const QSignalBlocker quiet(list_);
-    const int count = layers_ ? static_cast<int>(layers_->layers.size()) : 0;
-    const int row = std::clamp(list_->currentRow(), count > 0 ? 0 : -1, count - 1);
-    while (list_->count() > count) delete list_->takeItem(list_->count() - 1);
-    while (list_->count() < count) list_->addItem("");
-    for (int i = 0; i < count; ++i) show_item(i);
+    const int row = std::clamp(list_->currentRow(), count() > 0 ? 0 : -1, count() - 1);
+    while (list_->count() > count()) delete list_->takeItem(list_->count() - 1);
+    while (list_->count() < count()) list_->addItem("");
+    for (int i = 0; i < count(); ++i) show_item(i);
     list_->setCurrentRow(row);
-    const int rows = std::clamp(count, 2, most_rows);
+    const int rows = std::clamp(count(), 2, most_rows);
     list_->setFixedHeight(rows * (fontMetrics().height() + 4) + 6);
 }
 
@@ -426,11 +388,7 @@ void LayersControls::show_item(int row) {
     const auto at = static_cast<std::size_t>(row);
     const Layer& layer = layers_->layers[at];
     QListWidgetItem& item = *list_->item(row);
-    QPixmap colour(16, 16);
-    colour.fill(QColor::fromRgbF(layer.colour[0], layer.colour[1], layer.colour[2]));
-    QIcon icon(colour);
-    icon.addPixmap(colour, QIcon::Selected);  // not tinted
-    item.setIcon(icon);
+    item.setIcon(icon_of(colour_of(layer)));
     QString text = (is_label(*layers_, at) ? tr("%1   label %2") : QString("%1   %2"))
                        .arg(QString::fromStdString(layer.name), number_text(layer.level));
     const auto lowered = lowered_stiffness(*layers_, at, effect_.settings());

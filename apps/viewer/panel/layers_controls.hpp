@@ -2,28 +2,62 @@
 // and the force along the stroke.
 #pragma once
 
-#include <QComboBox>
+#include <QCoreApplication>
 #include <QElapsedTimer>
 #include <QLabel>
 #include <QListWidget>
-#include <QPushButton>
-#include <QWidget>
+#include <QtGlobal>
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/panel/effect.hpp"
-#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/form.hpp"
+#include "apps/viewer/panel/level_chart.hpp"
 
 namespace palpate::viewer {
 
-class CurveControls;
-class LayerEditor;
-class NeedleControls;
-class Note;
 class StrokePlot;
+
+/// Names, units and usual ranges of what layers and their curves give.
+struct PropertyWords {
+    HapticProperty property;
+    const char *label, *name, *unit;
+    double high, step;  ///< of the slider, the box
+    const char* tip;
+};
+
+/// In the order of HapticProperty.
+struct PropertyTable {
+    Q_DECLARE_TR_FUNCTIONS(palpate::viewer::LayersControls)
+  public:
+    static constexpr std::array<PropertyWords, haptic_property_count> rows{
+        {{HapticProperty::stiffness, QT_TR_NOOP("Stiffness"), "layer_stiffness", "N/mm", 3, 0.05,
+          QT_TR_NOOP("Stiffness of the layer's surface [N/mm]")},
+         {HapticProperty::static_friction, QT_TR_NOOP("Static friction"), "layer_static_friction",
+          "", 1.5, 0.05,
+          QT_TR_NOOP("Coefficient past which the proxy begins to slide on the surface (no unit)")},
+         {HapticProperty::dynamic_friction, QT_TR_NOOP("Dynamic friction"),
+          "layer_dynamic_friction", "", 1.5, 0.05,
+          QT_TR_NOOP("Coefficient while it slides; counts as at most the static one")},
+         {HapticProperty::damping, QT_TR_NOOP("Damping"), "layer_damping", "N s/mm", 2e-3, 1e-4,
+          QT_TR_NOOP("Of the surface, against motion along its normal [N s/mm]")},
+         {HapticProperty::viscosity, QT_TR_NOOP("Viscosity"), "layer_viscosity", "N s/mm", 1e-3,
+          1e-4, QT_TR_NOOP("Of what lies behind the surface, against all motion there [N s/mm]")},
+         {HapticProperty::puncture_force, QT_TR_NOOP("Puncture force"), "layer_puncture_force", "N",
+          3, 0.1, QT_TR_NOOP("Force of the press at which the surface gives way [N]")},
+         {HapticProperty::drag, QT_TR_NOOP("Drag"), "layer_drag", "N/mm", 0.1, 0.005,
+          QT_TR_NOOP("Rubbing on a needle's shaft for each millimetre of it in the "
+                     "layer [N/mm]; without a needle there is none")}}};
+};
+inline constexpr const auto& property_words = PropertyTable::rows;
+
+inline constexpr const PropertyWords& words_of(HapticProperty property) {
+    return property_words[static_cast<std::size_t>(property)];
+}
 
 /// A set that can be chosen. One by label may lack the places of its labels: labels_wanted().
 struct LayersChoice {
@@ -33,7 +67,11 @@ struct LayersChoice {
     bool possible = true;  ///< not in these data; the note says why
 };
 
-class LayersControls : public QWidget {
+/// Object names: layer_name, layer_level, layer_colour, layer_opacity, layer_stiffness and so on
+/// for the properties, layer_never; with _clear, the button that clears a property. Of their
+/// curves: curve_property, start_curve, remove_curve, curve_note; start_gradient, remove_gradient,
+/// gradient_chart. layers_closing, needle, needle_lateral, needle_static_ratio, needle_stick_speed.
+class LayersControls : public Form {
     Q_OBJECT
 
   public:
@@ -56,7 +94,7 @@ class LayersControls : public QWidget {
     void set_curve(const std::vector<Curve::Knot>& knots);
     /// The same, over the gradient.
     void set_factors(const std::vector<Curve::Knot>& knots);
-    HapticProperty curve_property() const;
+    HapticProperty curve_property() const { return property_; }
     void choose_layer(int layer);
     LevelRoom room(int layer) const;
     /// What moves fast: the force along a stroke. About sixty times a second.
@@ -76,15 +114,22 @@ class LayersControls : public QWidget {
     QWidget* make_choice();
     QWidget* make_stroke();
     QWidget* make_list();
-    void connect_list();
-    void connect_curve();
-    void connect_inputs();
-    void connect_effect();
+    QWidget* make_layer();
+    void add_property(QFormLayout& form, const PropertyWords& words);
+    QWidget* make_never(Quantity* puncture);
+    QWidget* make_needle();
+    QWidget* make_curves();
+    QWidget* make_property();
+    QWidget* make_ends(const QString& label, const Words& start, const Words& remove,
+                       std::function<const Knots&()> knots, std::function<void()> begin,
+                       std::function<void()> end);
     void begin();
     void clear();
+    void choose_set(int at);
     void request(const SharedLayers& layers);
     void edit(const SharedLayers& next, const QString& key);
     void change(const QString& key, const std::function<void(Layers&)>& how);
+    void change_layer(const QString& key, const std::function<void(Layer&)>& how);
     void add_layer();
     void remove_layer();
     void shift_layer(int by);
@@ -94,8 +139,13 @@ class LayersControls : public QWidget {
     void show_choice();
     void show_list();
     void show_item(int row);
-    void show_order();
     int chosen() const;
+    bool by_label() const { return layers_ && layers_->by_label; }
+    int count() const { return static_cast<int>(all().layers.size()); }
+    /// Empty ones where there are none.
+    const Layers& all() const;
+    const Layer& layer() const;
+    double gap() const;
 
     Effect& effect_;
     SharedLayers layers_, saved_;
@@ -105,16 +155,14 @@ class LayersControls : public QWidget {
     QString last_key_;
     QElapsedTimer since_edit_;
     int one_step_ms_ = 1000;
+    HapticProperty property_ = HapticProperty::stiffness;  // whose curves are shown
+    double last_puncture_ = 1;                             // [N] to go back to
 
     QComboBox* choice_;
-    QPushButton *open_, *save_, *undo_, *redo_, *add_, *remove_, *earlier_, *later_;
     Note* note_;
     QLabel* touched_;
-    QWidget* body_;
     QListWidget* list_;
-    CurveControls* curve_;
-    LayerEditor* editor_;
-    NeedleControls* needle_;
+    LevelChart* factors_;
     StrokePlot* plot_;
     RateLimiter limiter_;
 };

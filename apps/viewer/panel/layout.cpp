@@ -7,6 +7,7 @@
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QVBoxLayout>
+#include <QVariant>
 
 #include "apps/viewer/panel/level_axis.hpp"
 
@@ -54,10 +55,37 @@ QWidget* column_of(std::initializer_list<QWidget*> widgets) {
     return column;
 }
 
+QLabel* label_for(const QString& text, QWidget* field) {
+    auto* label = new QLabel(text);
+    label->setBuddy(field);
+    return label;
+}
+
+QFormLayout* form_in(QWidget* owner) {
+    auto* form = new QFormLayout(owner);
+    form->setContentsMargins(0, 0, 0, 0);
+    form->setVerticalSpacing(3);
+    return form;
+}
+
 void add_row(QFormLayout& form, const QString& label, QWidget* field, const QString& tip) {
     field->setToolTip(tip);
     form.addRow(label, field);  // makes the field the label's buddy
     form.labelForField(field)->setToolTip(tip);
+}
+
+void allow(QWidget& widget, const QString& why) {
+    constexpr const char* usual = "usual_tip";
+    QList<QWidget*> all = widget.findChildren<QWidget*>();
+    all << &widget;
+    for (QWidget* one : all) {
+        if (!one->property(usual).isValid()) one->setProperty(usual, one->toolTip());
+        // A part without a tip shows that of the whole.
+        one->setToolTip(why.isEmpty()    ? one->property(usual).toString()
+                        : one == &widget ? why
+                                         : QString());
+    }
+    widget.setEnabled(why.isEmpty());
 }
 
 void make_bold(QWidget& widget, bool bold) {

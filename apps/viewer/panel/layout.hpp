@@ -40,9 +40,14 @@ QBoxLayout* column_in(QWidget* owner, std::initializer_list<QWidget*> widgets = 
 /// takes the room that is left.
 QWidget* row_of(std::initializer_list<QWidget*> widgets, int wide = -1);
 QWidget* column_of(std::initializer_list<QWidget*> widgets);
+QLabel* label_for(const QString& text, QWidget* field);
+/// A form without margins, dense.
+QFormLayout* form_in(QWidget* owner);
 /// A row of a form, whose label has the tip, too, and is the field's name for screen readers.
 void add_row(QFormLayout& form, const QString& label, QWidget* field, const QString& tip);
 
+/// Empty: it can be used. Else it is grey, and its tip says why instead of what it is for.
+void allow(QWidget& widget, const QString& why);
 void make_bold(QWidget& widget, bool bold = true);
 /// Return presses the buttons in `parent` that are there now: the space bar is the window's, for
 /// the forces.

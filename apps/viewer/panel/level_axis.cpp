@@ -138,21 +138,20 @@ BandGrip band_at(const Ranges& ranges, const LevelAxis& axis, double x, double r
     BandGrip best;
     double nearest = reach;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-        const double low = axis.x_of(ranges[i].low);
-        const double high = axis.x_of(ranges[i].high);
         const auto band = static_cast<int>(i);
-        // Of two ends in one place the one on the pointer's side, or a closed band could not open.
-        const double to_low = std::abs(x - low) - (x < low ? 0.01 : 0);
-        const double to_high = std::abs(x - high) - (x > high ? 0.01 : 0);
-        if (std::isfinite(ranges[i].low) && to_low < nearest) {
-            nearest = to_low;
-            best = {band, Grip::low};
+        const auto& [low, high] = ranges[i];
+        for (const Grip grip : {Grip::low, Grip::high}) {
+            const double level = grip == Grip::low ? low : high, end = axis.x_of(level);
+            // Of two ends in one place the one on the pointer's side, or a closed band could not
+            // open.
+            const bool outside = grip == Grip::low ? x < end : x > end;
+            const double off = std::abs(x - end) - (outside ? 0.01 : 0);
+            if (!std::isfinite(level) || off >= nearest) continue;
+            nearest = off;
+            best = {band, grip};
         }
-        if (std::isfinite(ranges[i].high) && to_high < nearest) {
-            nearest = to_high;
-            best = {band, Grip::high};
-        }
-        if (best.grip == Grip::none && x > low && x < high) best = {band, Grip::whole};
+        const bool inside = x > axis.x_of(low) && x < axis.x_of(high);
+        if (best.grip == Grip::none && inside) best = {band, Grip::whole};
     }
     return best;
 }
@@ -254,12 +253,9 @@ int CurveLine::add(const Curve::Knot& knot) {
         const auto last = static_cast<std::ptrdiff_t>(knots.size()) - 1;
         const auto left = std::size_t(std::max<std::ptrdiff_t>(number - 1, 0));
         const auto right = std::size_t(std::min(number, last));
-        const Colour &a = colours[left], &b = colours[right];
         const double t =
             left == right ? 0 : (knot.at - knots[left].at) / (knots[right].at - knots[left].at);
-        colours.insert(colours.begin() + number,
-                       Colour{std::lerp(a.red, b.red, t), std::lerp(a.green, b.green, t),
-                              std::lerp(a.blue, b.blue, t)});
+        colours.insert(colours.begin() + number, mixed(colours[left], colours[right], t));
     }
     knots.insert(knots.begin() + number, knot);
     return static_cast<int>(number);

@@ -9,6 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <utility>
 
 #include "apps/viewer/panel/inputs.hpp"
 
@@ -16,6 +19,21 @@ namespace palpate::viewer {
 namespace {
 
 constexpr double reach = 5;  // [logical pixels] distance within which the pointer takes hold
+constexpr int jitter = 3;    // [logical pixels] of a pointer that clicks
+
+/// The nearest within reach of a point on the axis, or -1.
+template <class T>
+int nearest(const std::vector<T>& all, const LevelAxis& axis, double x, auto level) {
+    int best = -1;
+    double least = reach + 1;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const double off = std::abs(axis.x_of(std::invoke(level, all[i])) - x);
+        if (off >= least) continue;
+        least = off;
+        best = static_cast<int>(i);
+    }
+    return best;
+}
 
 }  // namespace
 
@@ -41,7 +59,7 @@ void LevelChart::set_data(const run::Histogram& histogram, const std::vector<dou
     histogram_ = histogram;
     suggested_ = suggested;
     view_ = {};
-    drag_ = Drag::none;
+    hold_ = {};
     update();
 }
 
@@ -70,14 +88,14 @@ void LevelChart::set_felt(double level) {
 }
 
 void LevelChart::set_bands(const Ranges& bands) {
-    if (drag_ == Drag::band) return;
+    if (hold_.part == Part::band) return;
     bands_ = bands;
     if (chosen_ >= static_cast<int>(bands_.size())) chosen_ = -1;
     update();
 }
 
 void LevelChart::set_marks(const std::vector<LevelMark>& marks) {
-    if (drag_ == Drag::mark || marks == marks_) return;
+    if (hold_.part == Part::mark || marks == marks_) return;
     marks_ = marks;
     update();
 }
@@ -145,155 +163,139 @@ void LevelChart::step_level(double steps) {
     ask_level(std::clamp(from + steps * fine_step(), a.low, a.high));
 }
 
-/// The suggested level whose tick is under the pointer, or -1.
-int LevelChart::tick_at(const QPointF& at) const {
-    if (at.y() > plot().top() + 1) return -1;
-    int best = -1;
-    double nearest = reach + 1;
-    for (std::size_t i = 0; i < suggested_.size(); ++i) {
-        const double off = std::abs(axis().x_of(suggested_[i]) - at.x());
-        if (off >= nearest) continue;
-        nearest = off;
-        best = static_cast<int>(i);
-    }
-    return best;
+int LevelChart::knot_at(const QPointF& at) const {
+    return curve_.knot_at(at, axis(), plot(), reach + 1);
 }
 
-/// The mark whose grip is under the pointer, or -1.
-int LevelChart::mark_at(const QPointF& at) const {
-    const double top = level_shown_ ? plot().bottom() - 0.7 * text_height() : plot().top();
-    if (at.y() < top || at.y() > plot().bottom() + 1) return -1;
-    int best = -1;
-    double nearest = reach + 1;
-    for (std::size_t i = 0; i < marks_.size(); ++i) {
-        const double off = std::abs(axis().x_of(marks_[i].level) - at.x());
-        if (off >= nearest) continue;
-        nearest = off;
-        best = static_cast<int>(i);
+LevelChart::Hold LevelChart::hold_at(const QPointF& at) const {
+    const QRectF p = plot();
+    if (have_bands() && at.y() >= strip().top()) {
+        const BandGrip band = band_at(bands_, axis(), at.x(), reach);
+        if (!editable_ && band.grip == Grip::whole) return {Part::band};
+        return {Part::band, band.band, band.grip};
     }
-    return best;
-}
-
-void LevelChart::press_strip(const QPointF& at) {
-    grip_ = band_at(bands_, axis(), at.x(), reach);
-    if (!editable_ && grip_.grip == Grip::whole) grip_ = {};
-    chosen_ = grip_.band;
-    Q_EMIT band_chosen(chosen_);
-    if (grip_.band >= 0) {
-        drag_ = Drag::band;
-        held_ = bands_[static_cast<std::size_t>(grip_.band)];
-        held_at_ = axis().round_level_of(at.x());
+    if (const int knot = knot_at(at); knot >= 0) return {Part::knot, knot};
+    if (level_shown_ && at.y() <= p.top() + 1) {
+        const int tick = nearest(suggested_, axis(), at.x(), std::identity());
+        if (tick >= 0) return {Part::tick, tick};
     }
-    update();
+    const double grips = level_shown_ ? p.bottom() - 0.7 * text_height() : p.top();
+    if (at.y() >= grips && at.y() <= p.bottom() + 1) {
+        const int mark = nearest(marks_, axis(), at.x(), &LevelMark::level);
+        if (mark >= 0) return {Part::mark, mark};
+    }
+    return {level_shown_ ? Part::level : Part::none};
 }
 
 void LevelChart::mousePressEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton || histogram_.counts.empty()) return;
     const QPointF at = event->localPos();
+    pressed_at_ = at;
+    held_at_ = axis().round_level_of(at.x());
     if (event->modifiers() & Qt::ShiftModifier) {
-        if (!level_shown_) return;
-        drag_ = Drag::fresh;
-        held_at_ = axis().round_level_of(at.x());
+        if (level_shown_) hold_ = {Part::fresh};
         fresh_ = {held_at_, held_at_};
         return;
     }
-    if (have_bands() && at.y() >= strip().top()) {
-        press_strip(at);
-        return;
+    hold_ = hold_at(at);
+    if (hold_.part != Part::band) hold_knot(hold_.part == Part::knot ? hold_.at : -1);
+    switch (hold_.part) {
+        case Part::tick:
+            ask_level(suggested_[static_cast<std::size_t>(hold_.at)]);
+            Q_EMIT level_settled();
+            break;
+        case Part::mark:
+            Q_EMIT mark_chosen(hold_.at);
+            break;
+        case Part::band:
+            choose_band(hold_.at);
+            Q_EMIT band_chosen(hold_.at);
+            if (hold_.at < 0) {
+                hold_ = {};
+            } else {
+                held_ = bands_[static_cast<std::size_t>(hold_.at)];
+            }
+            break;
+        case Part::level:
+            // Pressing on the line itself does not move it.
+            if (std::abs(axis().x_of(level_) - at.x()) > 1.5) ask_level(held_at_);
+            break;
+        default:
+            break;
     }
-    hold_knot(knot_at(at));
-    if (held_knot_ >= 0) {
-        drag_ = Drag::knot;
-        return;
-    }
-    if (const int tick = tick_at(at); tick >= 0 && level_shown_) {
-        ask_level(suggested_[static_cast<std::size_t>(tick)]);
-        Q_EMIT level_settled();
-        return;
-    }
-    held_mark_ = mark_at(at);
-    if (held_mark_ >= 0) {
-        drag_ = Drag::mark;
-        Q_EMIT mark_chosen(held_mark_);
-        return;
-    }
-    if (!level_shown_) return;
-    drag_ = Drag::level;
-    // Pressing on the line itself does not move it.
-    if (std::abs(axis().x_of(level_) - at.x()) > 1.5) ask_level(axis().round_level_of(at.x()));
 }
 
 void LevelChart::mouseMoveEvent(QMouseEvent* event) {
+    const QPointF at = event->localPos();
+    if (activates_ && (at - pressed_at_).manhattanLength() <= jitter) return;
+    activates_ = false;
+    if (hold_.part == Part::none) return show_cursor(at);
+    drag_to(at);
+}
+
+void LevelChart::drag_to(const QPointF& at) {
     const LevelAxis a = axis();
-    const double level = a.round_level_of(event->localPos().x());
-    switch (drag_) {
-        case Drag::none:
-            show_cursor(event->localPos());
-            return;
-        case Drag::level:
-            ask_level(level);
-            return;
-        case Drag::knot:
-            curve_.put(static_cast<std::size_t>(held_knot_),
-                       curve_.knot_of(event->localPos(), a, plot()), a.step());
+    const double level = a.round_level_of(at.x());
+    const auto held = static_cast<std::size_t>(hold_.at);
+    switch (hold_.part) {
+        case Part::level:
+            return ask_level(level);
+        case Part::knot:
+            curve_.put(held, curve_.knot_of(at, a, plot()), a.step());
             return curve_edited();
-        case Drag::mark: {
-            LevelMark& mark = marks_[static_cast<std::size_t>(held_mark_)];
+        case Part::mark: {
+            LevelMark& mark = marks_[held];
             mark.level = std::clamp(level, mark.low, mark.high);
             update();
-            Q_EMIT mark_moved(held_mark_, mark.level);
+            Q_EMIT mark_moved(hold_.at, mark.level);
             return;
         }
-        case Drag::band: {
-            DensityRange& band = bands_[static_cast<std::size_t>(grip_.band)];
-            const DensityRange moved = dragged(held_, grip_.grip, held_at_, level, whole_axis());
+        case Part::band: {
+            DensityRange& band = bands_[held];
+            const DensityRange moved = dragged(held_, hold_.grip, held_at_, level, whole_axis());
             if (moved.low == band.low && moved.high == band.high) return;
             band = moved;
             update();
             Q_EMIT bands_moved(bands_);
             return;
         }
-        case Drag::fresh:
+        case Part::fresh:
             fresh_ = {std::min(held_at_, level), std::max(held_at_, level)};
             update();
+            return;
+        default:
             return;
     }
 }
 
 void LevelChart::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton) return;
-    const Drag drag = std::exchange(drag_, Drag::none);
+    const Hold hold = std::exchange(hold_, {});
     update();
-    if (drag == Drag::knot) {
+    if (hold.part == Part::knot) {
         if (curve_.colours.empty()) set_curve(line_of(curve_.knots, curve_.least, curve_.unit));
         Q_EMIT curve_settled();
+        if (std::exchange(activates_, false)) Q_EMIT knot_activated(hold.at);
     }
-    if (drag == Drag::level) Q_EMIT level_settled();
-    if (drag == Drag::band) Q_EMIT bands_settled();
+    if (hold.part == Part::level) Q_EMIT level_settled();
+    if (hold.part == Part::band) Q_EMIT bands_settled();
     // A click makes no range.
-    if (drag == Drag::fresh && fresh_.low < fresh_.high) Q_EMIT band_added(fresh_);
+    if (hold.part == Part::fresh && fresh_.low < fresh_.high) Q_EMIT band_added(fresh_);
 }
 
 void LevelChart::show_cursor(const QPointF& at) {
-    Qt::CursorShape shape = Qt::ArrowCursor;
-    if (have_bands() && at.y() >= strip().top()) {
-        const Grip grip = band_at(bands_, axis(), at.x(), reach).grip;
-        if (grip == Grip::low || grip == Grip::high) shape = Qt::SizeHorCursor;
-        if (grip == Grip::whole && editable_) shape = Qt::OpenHandCursor;
-    } else if (knot_at(at) >= 0) {
-        shape = Qt::SizeAllCursor;
-    } else if ((level_shown_ && std::abs(axis().x_of(level_) - at.x()) < reach) ||
-               mark_at(at) >= 0) {
-        shape = Qt::SplitHCursor;
-    }
-    setCursor(shape);
+    const Hold hold = hold_at(at);
+    const bool on_line = hold.part == Part::level && std::abs(axis().x_of(level_) - at.x()) < reach;
+    setCursor(hold.grip == Grip::whole             ? Qt::OpenHandCursor
+              : hold.grip != Grip::none            ? Qt::SizeHorCursor
+              : hold.part == Part::knot            ? Qt::SizeAllCursor
+              : on_line || hold.part == Part::mark ? Qt::SplitHCursor
+                                                   : Qt::ArrowCursor);
 }
 
 void LevelChart::contextMenuEvent(QContextMenuEvent* event) {
     const QPointF at = event->pos();
-    if (const int knot = knot_at(at); knot >= 0) {
-        return remove_knot(knot);
-    }
+    if (const int knot = knot_at(at); knot >= 0) return remove_knot(knot);
     const int band = band_at(bands_, axis(), at.x(), reach).band;
     if (!editable_ || !have_bands() || band < 0) return;
     choose_band(band);
@@ -311,21 +313,12 @@ void LevelChart::keyPressEvent(QKeyEvent* event) {
     if (histogram_.counts.empty()) return QWidget::keyPressEvent(event);
     const double many = event->modifiers() & Qt::ShiftModifier ? 10 : 1;
     if (!level_shown_ && step_knot(event->key(), many)) return;
+    const std::map<int, double> steps{{Qt::Key_Left, -many},   {Qt::Key_Down, -many},
+                                      {Qt::Key_Right, many},   {Qt::Key_Up, many},
+                                      {Qt::Key_PageDown, -10}, {Qt::Key_PageUp, 10}};
+    const auto step = steps.find(event->key());
+    if (step != steps.end()) return step_level(step->second);
     switch (event->key()) {
-        case Qt::Key_Left:
-        case Qt::Key_Down:
-            step_level(-many);
-            break;
-        case Qt::Key_Right:
-        case Qt::Key_Up:
-            step_level(many);
-            break;
-        case Qt::Key_PageDown:
-            step_level(-10);
-            break;
-        case Qt::Key_PageUp:
-            step_level(10);
-            break;
         case Qt::Key_Home:
             if (level_shown_) ask_level(whole_axis().low);
             break;

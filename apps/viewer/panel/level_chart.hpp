@@ -101,16 +101,21 @@ class LevelChart : public QWidget {
     void wheelEvent(QWheelEvent* event) override;
 
   private:
-    enum class Drag { none, level, mark, knot, band, fresh };
+    enum class Part { none, level, tick, mark, knot, band, fresh };
+    /// What the pointer takes hold of, or would.
+    struct Hold {
+        Part part = Part::none;
+        int at = -1;  // of ticks, marks, knots, bands
+        Grip grip = Grip::none;
+    };
 
     QRectF plot() const;
     double text_height() const;
     void ask_level(double level);
     void step_level(double steps);
-    void press_strip(const QPointF& at);
-    int tick_at(const QPointF& at) const;
-    int mark_at(const QPointF& at) const;
     int knot_at(const QPointF& at) const;
+    Hold hold_at(const QPointF& at) const;
+    void drag_to(const QPointF& at);
     void remove_knot(int knot);
     void curve_edited();
     bool step_knot(int key, double steps);
@@ -133,9 +138,10 @@ class LevelChart : public QWidget {
     CurveLine curve_;
     bool level_shown_ = true;
 
-    Drag drag_ = Drag::none;
-    int held_mark_ = -1, held_knot_ = -1;
-    BandGrip grip_;
+    Hold hold_;
+    int held_knot_ = -1;
+    QPointF pressed_at_;
+    bool activates_ = false;     // the knot, by a second press that has not become a drag
     double held_at_ = 0;         // level under the pointer when the drag began
     DensityRange held_, fresh_;  // the band then; the one that is being made
     LevelView view_;

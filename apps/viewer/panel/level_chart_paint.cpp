@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/inputs.hpp"
@@ -110,7 +111,7 @@ void LevelChart::paintEvent(QPaintEvent*) {
     bars.setAlphaF(isEnabled() ? 0.42 : 0.2);
     paint_histogram(painter, histogram_, a, p, bars);
     Ranges bands = level_shown_ ? bands_ : Ranges();
-    if (drag_ == Drag::fresh) bands.push_back(fresh_);
+    if (hold_.part == Part::fresh) bands.push_back(fresh_);
     paint_bands(painter, bands, a, p, strip(), chosen_);
     paint_ticks(painter, a);
     paint_marks(painter, a);
@@ -127,15 +128,10 @@ void LevelChart::paintEvent(QPaintEvent*) {
 }
 
 void LevelChart::set_curve(const CurveLine& curve) {
-    if (drag_ == Drag::knot) return;
+    if (hold_.part == Part::knot) return;
     if (held_knot_ >= static_cast<int>(curve.knots.size())) held_knot_ = -1;
     curve_ = curve;
     update();
-}
-
-int LevelChart::knot_at(const QPointF& at) const {
-    constexpr double knot_reach = 6;  // [logical pixels]
-    return curve_.knot_at(at, axis(), plot(), knot_reach);
 }
 
 QPointF LevelChart::place_of(std::size_t knot) const {
@@ -153,19 +149,21 @@ void LevelChart::curve_edited() {
     hold_knot(held_knot_);
 }
 
-/// Another knot of the curve, or what there is to do with this one.
+/// A second press holds a knot, too, and what there is to do with it is done if it is not dragged.
+/// Elsewhere it makes another knot.
 void LevelChart::mouseDoubleClickEvent(QMouseEvent* event) {
     const QPointF at = event->localPos();
-    if (curve_.knots.empty() || event->button() != Qt::LeftButton) return mousePressEvent(event);
-    if (const int knot = knot_at(at); knot >= 0) {
-        drag_ = Drag::none;
-        hold_knot(knot);
-        Q_EMIT knot_activated(knot);
-        return;
+    const bool left = event->button() == Qt::LeftButton && !curve_.knots.empty();
+    const bool on_knot = hold_at(at).part == Part::knot;
+    if (left && !on_knot && plot().contains(at)) {
+        pressed_at_ = at;
+        held_knot_ = curve_.add(curve_.knot_of(at, axis(), plot()));
+        if (held_knot_ < 0) return;
+        hold_ = {Part::knot, held_knot_};
+        return curve_edited();
     }
-    if (!plot().contains(at)) return mousePressEvent(event);
-    held_knot_ = curve_.add(curve_.knot_of(at, axis(), plot()));
-    if (held_knot_ >= 0) curve_edited();
+    mousePressEvent(event);
+    activates_ = left && on_knot;
 }
 
 /// The last ones stay: a curve without knots says nothing.
@@ -179,44 +177,36 @@ void LevelChart::remove_knot(int knot) {
 bool LevelChart::step_knot(int key, double steps) {
     const int count = static_cast<int>(curve_.knots.size());
     if (count == 0) return false;
+    // A pixel is the finest that dragging has.
+    const std::map<int, QPointF> ways{{Qt::Key_Left, {-steps, 0}},
+                                      {Qt::Key_Right, {steps, 0}},
+                                      {Qt::Key_Up, {0, -steps}},
+                                      {Qt::Key_Down, {0, steps}}};
+    const auto way = ways.find(key);
     const bool chooses = key == Qt::Key_PageDown || key == Qt::Key_PageUp;
-    if (chooses || held_knot_ < 0) {
-        const bool known = chooses || key == Qt::Key_Left || key == Qt::Key_Right ||
-                           key == Qt::Key_Up || key == Qt::Key_Down;
-        if (!known) return false;
+    if (chooses || (held_knot_ < 0 && way != ways.end())) {
         const int next = held_knot_ + (key == Qt::Key_PageUp ? -1 : 1);
         hold_knot(held_knot_ < 0 ? 0 : std::clamp(next, 0, count - 1));
         return true;
     }
+    if (held_knot_ < 0) return false;
     const auto held = static_cast<std::size_t>(held_knot_);
-    QPointF at = place_of(held);
-    switch (key) {  // a pixel is the finest that dragging has
-        case Qt::Key_Left:
-        case Qt::Key_Right:
-            at.rx() += key == Qt::Key_Left ? -steps : steps;
-            break;
-        case Qt::Key_Up:
-        case Qt::Key_Down:
-            at.ry() += key == Qt::Key_Up ? -steps : steps;
-            break;
-        case Qt::Key_Insert: {
-            // In the middle to the next one, or to the edge.
-            const bool last = held + 1 == curve_.knots.size();
-            at = 0.5 * (at + (last ? QPointF(plot().right(), at.y()) : place_of(held + 1)));
-            const int added = curve_.add(curve_.knot_of(at, axis(), plot()));
-            if (added < 0) return true;
-            held_knot_ = added;
-            curve_edited();
-            return true;
-        }
-        case Qt::Key_Return:
-        case Qt::Key_Enter:
-            Q_EMIT knot_activated(held_knot_);
-            return true;
-        default:
-            return false;
+    const QPointF at = place_of(held);
+    if (way != ways.end()) {
+        curve_.put(held, curve_.knot_of(at + way->second, axis(), plot()), axis().step());
+    } else if (key == Qt::Key_Insert) {
+        // In the middle to the next one, or to the edge.
+        const bool last = held + 1 == curve_.knots.size();
+        const QPointF next = last ? QPointF(plot().right(), at.y()) : place_of(held + 1);
+        const int added = curve_.add(curve_.knot_of(0.5 * (at + next), axis(), plot()));
+        if (added < 0) return true;
+        held_knot_ = added;
+    } else if (key == Qt::Key_Return || key == Qt::Key_Enter) {
+        Q_EMIT knot_activated(held_knot_);
+        return true;
+    } else {
+        return false;
     }
-    curve_.put(held, curve_.knot_of(at, axis(), plot()), axis().step());
     curve_edited();
     return true;
 }

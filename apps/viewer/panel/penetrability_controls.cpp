@@ -6,15 +6,12 @@
 #include <QKeyEvent>
 #include <QRadioButton>
 #include <QSignalBlocker>
-#include <QVariant>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-
-#include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/layout.hpp"
+#include <utility>
 
 namespace palpate::viewer {
 namespace {
@@ -127,9 +124,7 @@ void RangeTable::set_ranges(const Ranges& ranges) {
         write(row);
         if (!verticalHeaderItem(row)) {
             auto* chip = new QTableWidgetItem(QString::number(row + 1));
-            QPixmap colour(16, 16);
-            colour.fill(band_colour(row));
-            chip->setIcon(QIcon(colour));
+            chip->setIcon(icon_of(from_qt(band_colour(row))));
             setVerticalHeaderItem(row, chip);
         }
     }
@@ -187,8 +182,6 @@ namespace {
 
 using Mode = PressThrough::Mode;
 
-constexpr const char* usual_tip = "usual_tip";  // property of a widget
-
 struct ModeText {
     const char* name;
     const char* text;
@@ -210,199 +203,159 @@ constexpr ModeText mode_texts[] = {
 }  // namespace
 
 PenetrabilityControls::PenetrabilityControls(Effect& effect, LevelChart& chart)
-    : effect_(effect),
-      chart_(&chart),
-      modes_(new QButtonGroup(this)),
-      threshold_(new Quantity("threshold", "mm", 0, 5, 0.1)),
-      minimum_row_(new QWidget),
-      minimum_(new NumberBox),
-      ranges_row_(new QWidget),
-      table_(new RangeTable),
-      limiter_(this) {
-    auto* modes = new QHBoxLayout;
-    for (int i = 0; i < 3; ++i) {
-        auto* button = named(new QRadioButton(tr(mode_texts[i].text)), mode_texts[i].name,
-                             tr(mode_texts[i].tip));
-        modes_->addButton(button, i);
-        modes->addWidget(button);
-    }
-    modes->addStretch(1);
-    threshold_->box().set_infinite(true);
-    threshold_->set_accessible_name(tr("PT, penetration threshold"));
+    : effect_(effect), chart_(&chart), table_(new RangeTable), limiter_(this) {
     auto* form = new QFormLayout;
-    add_row(
-        *form, "PT", threshold_,
-        tr("PT, the penetration threshold [mm of the hand]: pulled further apart than this, hand "
-           "and proxy get the surface to give way. The spring never exceeds stiffness x PT."));
-    minimum_->setObjectName("minimum");
-    minimum_->set_infinite(true);
-    auto* minimum = new QFormLayout(minimum_row_);
-    minimum->setContentsMargins(0, 0, 0, 0);
-    add_row(
-        *minimum, tr("Minimum level"), minimum_,
-        tr("The least level felt [data units] (the greatest, where below is solid); also by the "
-           "end of the band on the histogram"));
-    auto* add = named(new QPushButton(tr("Add range")), "add_range",
-                      tr("Another range of interest; or shift-drag on the histogram"));
-    auto* remove =
-        named(new QPushButton(tr("Delete range")), "delete_range", tr("Delete the chosen range"));
-    auto* buttons = new QHBoxLayout;
-    buttons->addWidget(add);
-    buttons->addWidget(remove);
-    buttons->addStretch(1);
-    column_in(ranges_row_, {table_})->addLayout(buttons);
+    auto* threshold = quantity_in(
+        *form,
+        {"threshold", "PT",
+         tr("PT, the penetration threshold [mm of the hand]: pulled further apart than this, hand "
+            "and proxy get the surface to give way. The spring never exceeds stiffness x PT."),
+         tr("PT, penetration threshold")},
+        {"mm", 0, 5, 0.1},
+        {[this] { return shown_.threshold; },
+         [this](double to) { change([=](PressThrough& p) { p.threshold = to; }); }});
+    threshold->box().set_infinite(true);
+    each_time(threshold, [this](QWidget& one) { one.setEnabled(shown_.mode != Mode::off); });
+    auto* row = new QWidget;
+    auto* box = number({"minimum", ""},
+                       {[this] { return shown_.minimum; },
+                        [this](double to) { change([=](PressThrough& p) { p.minimum = to; }); }});
+    box->set_infinite(true);
+    add_row(*form_in(row), tr("Minimum level"), box,
+            tr("The least level felt [data units] (the greatest, where below is solid); also by "
+               "the end of the band on the histogram"));
+    each_time(row, [this, box](QWidget& one) {
+        box->setSingleStep(chart_->fine_step());
+        one.setVisible(shown_.mode == Mode::threshold);
+    });
     auto* column = column_in(this);
-    column->addLayout(modes);
+    column->addLayout(make_modes());
     column->addLayout(form);
-    column->addWidget(minimum_row_);
-    column->addWidget(ranges_row_);
-    connect(add, &QPushButton::clicked, this, [this] { add_range(room_for_a_range()); });
-    connect(remove, &QPushButton::clicked, this, [this] { remove_range(table_->chosen()); });
-    connect_inputs();
-    connect_effect();
-    show(shown_);
+    column->addWidget(row);
+    column->addWidget(make_ranges());
+    connect_chart();
+    connect(&effect_, &Effect::begun, this, &PenetrabilityControls::begin);
+    connect(&effect_, &Effect::ended, this, [this] { dragging_ = false; });
+    connect(&effect_, &Effect::changed, this, &PenetrabilityControls::show_effect);
+    refresh();
 }
 
-void PenetrabilityControls::connect_inputs() {
-    const auto change = [this](auto set) {
-        PressThrough next = shown_;
-        set(next);
-        ask(next);
-    };
-    connect(modes_, &QButtonGroup::idClicked, this, [this, change](int id) {
-        const auto mode = static_cast<Mode>(id);
-        if (mode != shown_.mode) change([mode](PressThrough& p) { p.mode = mode; });
-    });
-    connect(threshold_, &Quantity::wanted, this, [change](double threshold) {
-        change([threshold](PressThrough& p) { p.threshold = threshold; });
-    });
-    connect(minimum_, qOverload<double>(&NumberBox::valueChanged), this,
-            [change](double level) { change([level](PressThrough& p) { p.minimum = level; }); });
-    connect(table_, &RangeTable::edited, this, [change](int row, const DensityRange& range) {
+QLayout* PenetrabilityControls::make_modes() {
+    auto* modes = new QHBoxLayout;
+    for (int i = 0; i < 3; ++i) {
+        const auto mode = static_cast<Mode>(i);
+        auto* one = named(new QRadioButton(tr(mode_texts[i].text)), mode_texts[i].name,
+                          tr(mode_texts[i].tip));
+        modes->addWidget(one);
+        connect(one, &QRadioButton::clicked, this, [this, mode] {
+            if (mode != shown_.mode) change([=](PressThrough& p) { p.mode = mode; });
+        });
+        each_time(one, [this, mode](QRadioButton& b) { b.setChecked(shown_.mode == mode); });
+    }
+    modes->addStretch(1);
+    return modes;
+}
+
+QWidget* PenetrabilityControls::make_ranges() {
+    connect(table_, &RangeTable::edited, this, [this](int row, const DensityRange& range) {
         change([&](PressThrough& p) { p.ranges[static_cast<std::size_t>(row)] = range; });
     });
     connect(table_, &RangeTable::nonsense, this, &PenetrabilityControls::nonsense);
     connect(table_, &RangeTable::delete_wanted, this, &PenetrabilityControls::remove_range);
+    each_time(table_, [this](RangeTable& table) { table.set_ranges(shown_.ranges); });
+    auto* buttons =
+        row_of({button({"add_range", tr("Add range"),
+                        tr("Another range of interest; or shift-drag on the histogram")},
+                       [this] { add_range(room_for_a_range()); }),
+                button({"delete_range", tr("Delete range"), tr("Delete the chosen range")},
+                       [this] { remove_range(table_->chosen()); })});
+    buttons->layout()->setAlignment(Qt::AlignLeft);
+    auto* whole = column_of({table_, buttons});
+    return each_time(whole, [this](QWidget& w) { w.setVisible(shown_.mode == Mode::ranges); });
+}
+
+void PenetrabilityControls::connect_chart() {
     connect(table_, &RangeTable::row_chosen, chart_, &LevelChart::choose_band);
     connect(chart_, &LevelChart::band_chosen, table_, &RangeTable::choose);
     connect(chart_, &LevelChart::band_added, this, &PenetrabilityControls::add_range);
     connect(chart_, &LevelChart::band_deleted, this, &PenetrabilityControls::remove_range);
     connect(chart_, &LevelChart::bands_moved, this, [this](const Ranges& bands) {
         dragging_ = true;
-        const PressThrough next = with_bands(shown_, bands, solid_);
-        show(next);
-        limiter_.put([this, next] { request(next); });
+        shown_ = with_bands(shown_, bands, solid_);
+        refresh();
+        limiter_.put([this] { request(); });
     });
     connect(chart_, &LevelChart::bands_settled, this, [this] {
         limiter_.flush();
         if (!std::exchange(dragging_, false)) return;
-        ask(shown_);  // bands that were drawn over each other become one
+        change([](PressThrough&) {});  // bands that were drawn over each other become one
     });
-}
-
-void PenetrabilityControls::connect_effect() {
-    connect(&effect_, &Effect::begun, this, &PenetrabilityControls::begin);
-    connect(&effect_, &Effect::ended, this, [this] {
-        drop();
-        set_layered(false);
-    });
-    connect(&effect_, &Effect::changed, this, [this] {
-        set_layered(have_surfaces(effect_.settings().layers));
-        if (dragging_) return;  // overlapping bands are merged when the drag ends
-        show(shown_from(effect_.settings().penetrability, solid_, shown_));
+    each_time(chart_, [this](LevelChart& chart) {
+        chart.set_editable(shown_.mode == Mode::ranges);
+        chart.set_bands(bands_of(shown_, solid_));
     });
 }
 
 /// Modes that are not in use begin at the level and with the range of the data.
 void PenetrabilityControls::begin() {
-    drop();
+    dragging_ = false;
     const Volume& volume = effect_.field().volume();
     solid_ = effect_.field().solid();
-    minimum_->setSingleStep(chart_->fine_step());
     shown_ = first_press_through(effect_.isovalue(), volume.minimum(),
                                  volume.minimum() + volume.range(), solid_);
 }
 
+/// While layers are felt, this rests.
+void PenetrabilityControls::show_effect() {
+    allow(*this, have_surfaces(effect_.settings().layers)
+                     ? tr("Layers are felt: their surfaces give way by puncture forces. Choose No "
+                          "layers to press through by depth")
+                     : QString());
+    if (dragging_) return;  // overlapping bands are merged when the drag ends
+    shown_ = shown_from(effect_.settings().penetrability, solid_, shown_);
+    refresh();
+}
+
 /// What cannot be is refused there, or here in words.
-void PenetrabilityControls::request(const PressThrough& next) {
+void PenetrabilityControls::request() {
     if (!effect_.there()) return;
     try {
-        const Penetrability penetrability = penetrability_of(next, solid_);
+        const Penetrability penetrability = penetrability_of(shown_, solid_);
         const bool ends = effect_.settings().penetrability.on && !penetrability.on;
         const bool done = effect_.request(penetrability);
         // Else the session keeps the level that the hand has reached.
         if (ends && done) effect_.request(command::Isovalue{effect_.isovalue()});
     } catch (const std::invalid_argument& error) {
         Q_EMIT nonsense(QString::fromStdString(error.what()));
-        show(shown_from(effect_.settings().penetrability, solid_, shown_));
+        show_effect();
     }
 }
 
-/// Layers are felt: this rests meanwhile.
-void PenetrabilityControls::set_layered(bool layered) {
-    setEnabled(!layered);
-    setToolTip(layered
-                   ? tr("Layers are felt: their surfaces give way by puncture forces. Choose No "
-                        "layers to press through by depth")
-                   : "");
-    for (auto* one : findChildren<QWidget*>()) {
-        if (layered && !one->property(usual_tip).isValid()) {
-            one->setProperty(usual_tip, one->toolTip());
-            one->setToolTip("");  // that of the whole shows
-        } else if (!layered && one->property(usual_tip).isValid()) {
-            one->setToolTip(one->property(usual_tip).toString());
-            one->setProperty(usual_tip, QVariant());
-        }
-    }
-}
-
-void PenetrabilityControls::drop() {
+void PenetrabilityControls::change(const std::function<void(PressThrough&)>& how) {
     limiter_.drop();
-    threshold_->drop();
-    dragging_ = false;
-}
-
-void PenetrabilityControls::ask(const PressThrough& next) {
-    limiter_.drop();
-    show(next);
-    request(next);
-}
-
-void PenetrabilityControls::show(const PressThrough& next) {
-    shown_ = next;
-    modes_->button(static_cast<int>(next.mode))->setChecked(true);
-    threshold_->set_value(next.threshold);
-    threshold_->setEnabled(next.mode != Mode::off);
-    minimum_->show_value(next.minimum);
-    minimum_row_->setVisible(next.mode == Mode::threshold);
-    table_->set_ranges(next.ranges);
-    ranges_row_->setVisible(next.mode == Mode::ranges);
-    chart_->set_editable(next.mode == Mode::ranges);
-    chart_->set_bands(bands_of(next, solid_));
+    how(shown_);
+    refresh();
+    request();
 }
 
 /// The first range asks for the mode, too.
 void PenetrabilityControls::add_range(const DensityRange& range) {
-    PressThrough next = shown_;
-    if (next.mode != Mode::ranges) next.ranges.clear();
-    next.mode = Mode::ranges;
-    next.ranges.push_back(range);
-    std::ranges::sort(next.ranges, {}, &DensityRange::low);
-    ask(next);
+    change([&](PressThrough& p) {
+        if (p.mode != Mode::ranges) p.ranges.clear();
+        p.mode = Mode::ranges;
+        p.ranges.push_back(range);
+        std::ranges::sort(p.ranges, {}, &DensityRange::low);
+    });
 }
 
 void PenetrabilityControls::remove_range(int which) {
     if (which < 0 || which >= static_cast<int>(shown_.ranges.size())) {
         Q_EMIT nonsense(tr("choose the range to delete, in the table or on the histogram"));
-        return;
-    }
-    if (shown_.ranges.size() == 1) {
+    } else if (shown_.ranges.size() == 1) {
         Q_EMIT nonsense(tr("the last range stays: switch penetrability off to have none"));
-        return;
+    } else {
+        change([=](PressThrough& p) { p.ranges.erase(p.ranges.begin() + which); });
     }
-    PressThrough next = shown_;
-    next.ranges.erase(next.ranges.begin() + which);
-    ask(next);
 }
 
 /// In the middle of the widest gap, a third of it wide at most.

@@ -2,16 +2,10 @@
 // the level chart and rows of a table.
 #pragma once
 
-#include <QButtonGroup>
-#include <QPushButton>
 #include <QTableWidget>
-#include <QWidget>
-
-#include <utility>
 
 #include "apps/viewer/panel/effect.hpp"
-#include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/level_axis.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
 
 namespace palpate::viewer {
@@ -76,36 +70,27 @@ class RangeTable : public QTableWidget {
     Ranges ranges_;
 };
 
-class PenetrabilityControls : public QWidget {
+class PenetrabilityControls : public Form {
     Q_OBJECT
 
   public:
     /// Shows and reads its bands on the chart, which it does not own.
     PenetrabilityControls(Effect& effect, LevelChart& chart);
 
-  Q_SIGNALS:
-    void nonsense(const QString& why);
-
   private:
-    void connect_effect();
+    QLayout* make_modes();
+    QWidget* make_ranges();
+    void connect_chart();
     void begin();
-    void drop();
-    void set_layered(bool layered);
-    void request(const PressThrough& next);
-    void ask(const PressThrough& next);
-    void show(const PressThrough& next);
-    void connect_inputs();
+    void show_effect();
+    void request();
+    void change(const std::function<void(PressThrough&)>& how);
     void add_range(const DensityRange& range);
     void remove_range(int which);
     DensityRange room_for_a_range() const;
 
     Effect& effect_;
     LevelChart* chart_;
-    QButtonGroup* modes_;
-    Quantity* threshold_;
-    QWidget* minimum_row_;
-    NumberBox* minimum_;
-    QWidget* ranges_row_;
     RangeTable* table_;
     RateLimiter limiter_;
     PressThrough shown_;

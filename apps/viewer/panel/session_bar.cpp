@@ -6,18 +6,16 @@
 #include <QCoreApplication>
 #include <QEvent>
 #include <QLabel>
-#include <QPainter>
-#include <QPainterPath>
 #include <QVariant>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "apps/options/words.hpp"
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/panel/colours.hpp"
-#include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/level_axis.hpp"
 
 namespace palpate::viewer {
@@ -68,6 +66,7 @@ void HandSwitch::show_hands(const std::vector<Hand>& hands, int chosen) {
 namespace {
 
 constexpr Colour near_limit{0.835, 0.369, 0};
+constexpr int places = 1000;  // of the bar
 
 /// Words of app::force_words(), as a person reads them, and what they mean.
 struct ForceWords {
@@ -114,108 +113,73 @@ QString tip_for(const QString& words) {
 
 }  // namespace
 
-ForceGauge::ForceGauge() {
+ForceGauge::ForceGauge()
+    : number_(new QLabel), why_(new QLabel), most_(new QLabel), bar_(new QProgressBar) {
     setObjectName("force_gauge");
-    setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-    setToolTip(tip_for({}));
+    make_bold(*number_);
+    why_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+    bar_->setRange(0, places);
+    bar_->setTextVisible(false);
+    bar_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Expanding);
+    setFixedHeight(static_cast<int>(2.4 * fontMetrics().height()));
+    column_in(this, {row_of({number_, why_, most_}, 1), bar_})->setSpacing(1);
+    set_force(0, 0, {});
 }
 
+/// Called thirty times a second: changes only what can be seen.
 void ForceGauge::set_force(double force, double limit, const QString& words) {
-    if (words != words_) setToolTip(tip_for(words));
-    // Called thirty times a second: repaints only where the change can be seen.
-    const bool seen = words != words_ || limit != limit_ || std::abs(force - force_) > 0.002;
-    if (!seen) return;
+    const bool same = words == words_ && limit == limit_ && std::abs(force - force_) <= 0.002;
+    if (same && !number_->text().isEmpty()) return;
     force_ = force;
     limit_ = limit;
     words_ = words;
+    setToolTip(tip_for(words));
     setAccessibleName(
         tr("Force %1 N of %2 N %3").arg(force, 0, 'f', 2).arg(limit).arg(shown_words(words)));
-    update();
-}
-
-void ForceGauge::clear() {
-    set_force(0, 0, {});
+    number_->setText(QString("%1 N").arg(force, 0, 'f', 2));
+    why_->setText(shown_words(words));
+    most_->setText(limit > 0 ? tr("of %1 N").arg(QString::number(limit, 'g', 3)) : QString());
+    bar_->setValue(static_cast<int>(std::lround(places * filled())));
+    const Colour colour = filled() > 0.9 ? near_limit : pictures::force_colour;
+    QPalette palette = this->palette();
+    palette.setColor(QPalette::Highlight, readable(to_qt(colour), palette));
+    bar_->setPalette(palette);
 }
 
 double ForceGauge::filled() const {
     return limit_ > 0 ? std::clamp(force_ / limit_, 0.0, 1.0) : 0;
 }
 
-QSize ForceGauge::sizeHint() const {
-    const int height = fontMetrics().height();
-    return {14 * height, static_cast<int>(2.4 * height)};
-}
-
-QSize ForceGauge::minimumSizeHint() const {
-    return {9 * fontMetrics().height(), sizeHint().height()};
-}
-
-void ForceGauge::paintEvent(QPaintEvent*) {
-    QPainter painter(this);
-    painter.setRenderHint(QPainter::Antialiasing);
-    const double line = fontMetrics().height();
-    const QRectF all = QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5);
-    QFont bold = font();
-    bold.setBold(true);
-    painter.setFont(bold);
-    painter.setPen(
-        palette().color(isEnabled() ? QPalette::Active : QPalette::Disabled, QPalette::WindowText));
-    const QRectF text(all.left(), all.top(), all.width(), line * 1.15);
-    const QString number = QString("%1 N").arg(force_, 0, 'f', 2);
-    painter.drawText(text, Qt::AlignLeft | Qt::AlignVCenter, number);
-    const double after = QFontMetricsF(bold).horizontalAdvance(number) + 0.6 * line;
-    painter.setFont(font());
-    painter.drawText(text.adjusted(after, 0, 0, 0), Qt::AlignLeft | Qt::AlignVCenter,
-                     shown_words(words_));
-    painter.setPen(palette().color(QPalette::PlaceholderText));
-    if (limit_ > 0) {
-        painter.drawText(text, Qt::AlignRight | Qt::AlignVCenter,
-                         tr("of %1 N").arg(QString::number(limit_, 'g', 3)));
-    }
-    const QRectF bar(all.left(), text.bottom() + 1, all.width(), all.bottom() - text.bottom() - 1);
-    QPainterPath frame;
-    frame.addRoundedRect(bar, 3, 3);
-    painter.fillPath(frame, palette().color(QPalette::Base));
-    painter.save();
-    painter.setClipPath(frame);
-    const bool high = filled() > 0.9;
-    painter.fillRect(QRectF(bar.left(), bar.top(), bar.width() * filled(), bar.height()),
-                     readable(to_qt(high ? near_limit : pictures::force_colour), palette()));
-    painter.restore();
-    painter.setPen(QPen(palette().color(QPalette::Mid), 1));
-    painter.drawPath(frame);
-}
-
-SessionSwitch::SessionSwitch(const QString& on, const QString& off) : on_(on), off_(off) {
-    setCheckable(true);
-    setText(off_);
-}
-
-bool SessionSwitch::set_on_text(const QString& text) {
-    if (text == on_) return false;
-    on_ = text;
-    if (isChecked()) setText(on_);
-    return true;
-}
-
-void SessionSwitch::set_state(bool on) {
-    setChecked(on);
-    setText(on ? on_ : off_);
-}
-
 SessionBar::SessionBar(Effect& effect)
     : effect_(effect),
-      forces_(named(new SessionSwitch(tr("Forces are ON"), tr("Forces are OFF")), "forces",
-                    tr("Forces on or off (space bar). Off: zero at once; on: they ramp up"))),
-      freeze_(named(new SessionSwitch(tr("Frozen"), tr("Freeze")), "freeze",
-                    tr("Hand and proxy stand still for the session, forces are let go"))),
-      clutch_(named(new SessionSwitch(tr("Clutched"), tr("Clutch")), "clutch",
-                    tr("The volume hangs on the hand, to put it elsewhere; forces are let go"))),
       gauge_(new ForceGauge),
       contact_(named(new QLabel, "contact",
                      tr("Whether the proxy is on a surface, and how far it is from the hand (of "
                         "the hand, and in the volume)"))) {
     setObjectName("session_bar");
+    forces_ = make_switch(
+        "forces", tr("Forces on or off (space bar). Off: zero at once; on: they ramp up"),
+        [this] { return effect_.there() && effect_.settings().forces_on; },
+        [](bool on) { return command::Forces{on}; },
+        [this] {
+            return !forces_->isChecked() ? tr("Forces are OFF")
+                   : waits_.isEmpty()    ? tr("Forces are ON")
+                                         : tr("Forces WAIT") + '\n' + waits_;
+        });
+    auto* freeze = make_switch(
+        "freeze", tr("Hand and proxy stand still for the session, forces are let go"),
+        [this] { return effect_.there() && effect_.session().frozen; },
+        [](bool on) { return command::Freeze{on}; },
+        [this] {
+            return effect_.there() && effect_.session().frozen ? tr("Frozen") : tr("Freeze");
+        });
+    auto* clutch = make_switch(
+        "clutch", tr("The volume hangs on the hand, to put it elsewhere; forces are let go"),
+        [this] { return effect_.there() && effect_.session().clutched; },
+        [](bool on) { return command::Clutch{on}; },
+        [this] {
+            return effect_.there() && effect_.session().clutched ? tr("Clutched") : tr("Clutch");
+        });
     QFont big = forces_->font();
     big.setBold(true);
     big.setPointSizeF(1.25 * big.pointSizeF());
@@ -224,85 +188,69 @@ SessionBar::SessionBar(Effect& effect)
     contact_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
     contact_->setFixedHeight(2 * fontMetrics().lineSpacing());  // a tool in contact has two lines
     contact_->setAlignment(Qt::AlignTop);
-    auto* switches = column_of({freeze_, clutch_});
+    auto* switches = column_of({freeze, clutch});
     switches->layout()->setSpacing(2);
     column_in(this, {row_of({forces_, switches}, 0), gauge_, contact_});
-    connect_effect();
+    connect(&effect_, &Effect::begun, this, [this] {
+        contact_->setText(tr("no tick yet"));
+        gauge_->set_force(0, limit(), {});
+    });
+    connect(&effect_, &Effect::ended, this, &SessionBar::clear);
+    connect(&effect_, &Effect::changed, this, &SessionBar::refresh);
+    connect(&effect_, &Effect::observed, this, &SessionBar::show_snapshot);
     colour_forces();
     clear();
 }
 
-void SessionBar::connect_effect() {
-    connect(forces_, &QPushButton::clicked, this,
-            [this](bool on) { effect_.request(command::Forces{on}); });
-    connect(freeze_, &QPushButton::clicked, this,
-            [this](bool on) { effect_.request(command::Freeze{on}); });
-    connect(clutch_, &QPushButton::clicked, this,
-            [this](bool on) { effect_.request(command::Clutch{on}); });
-    connect(&effect_, &Effect::begun, this, &SessionBar::begin);
-    connect(&effect_, &Effect::ended, this, &SessionBar::clear);
-    connect(&effect_, &Effect::changed, this, &SessionBar::show_switches);
-    connect(&effect_, &Effect::observed, this, &SessionBar::show_snapshot);
+QPushButton* SessionBar::make_switch(const char* name, const QString& tip,
+                                     std::function<bool()> state,
+                                     std::function<Command(bool)> command,
+                                     std::function<QString()> text) {
+    auto* one =
+        button({name, "", tip}, [this, state, command] { effect_.request(command(!state())); });
+    one->setCheckable(true);
+    return each_time(one, [state, text](QPushButton& shown) {
+        shown.setChecked(state());
+        shown.setText(text());
+    });
 }
 
 /// On: green, waiting: amber, off: as any button. The text says it, too.
 void SessionBar::colour_forces() {
-    const QString sheet =
+    forces_->setProperty("waiting", !waits_.isEmpty());
+    forces_->setStyleSheet({});  // rules by property and palette are looked up only once
+    forces_->setStyleSheet(
         "QPushButton:checked:enabled { background-color: #00855f; color: white; border: 1px solid "
         "#00553c; border-radius: 4px; }"
         "QPushButton:checked:enabled[waiting=true] { background-color: #ffb000; color: black; "
         "border-color: #8a5f00; }"
-        "QPushButton:checked:enabled:focus { border: 2px solid palette(highlight); }";
-    if (forces_->styleSheet() != sheet) forces_->setStyleSheet(sheet);
+        "QPushButton:checked:enabled:focus { border: 2px solid palette(highlight); }");
 }
 
 void SessionBar::changeEvent(QEvent* event) {
-    // A style sheet keeps the palette it was polished with.
-    if (event->type() == QEvent::PaletteChange) {
-        forces_->setStyleSheet({});
-        colour_forces();
-    }
+    if (event->type() == QEvent::PaletteChange && forces_) colour_forces();
     QWidget::changeEvent(event);
-}
-
-/// `why`: they are on, but there are none; empty: nothing holds them back.
-void SessionBar::show_waiting(const QString& why) {
-    const QString text = why.isEmpty() ? tr("Forces are ON") : tr("Forces WAIT") + '\n' + why;
-    if (!forces_->set_on_text(text)) return;
-    forces_->setProperty("waiting", !why.isEmpty());
-    forces_->setStyleSheet({});  // a rule by property is looked up only once
-    colour_forces();
-}
-
-void SessionBar::show_switches() {
-    const Session& session = effect_.session();
-    forces_->set_state(effect_.settings().forces_on);
-    freeze_->set_state(session.frozen);
-    clutch_->set_state(session.clutched);
 }
 
 double SessionBar::limit() const {
     return std::min(effect_.settings().force.limit, effect_.settings().device.maximum_force);
 }
 
-void SessionBar::begin() {
-    contact_->setText(tr("no tick yet"));
-    gauge_->set_force(0, limit(), {});
-}
-
 void SessionBar::clear() {
-    for (SessionSwitch* one : {forces_, freeze_, clutch_}) one->set_state(false);
-    show_waiting({});
-    gauge_->clear();
+    waits_.clear();
+    colour_forces();
+    refresh();
+    gauge_->set_force(0, 0, {});
     contact_->clear();
 }
 
 void SessionBar::show_snapshot(const Snapshot& now) {
-    show_switches();
     const std::string words = app::force_words(now.session.tick);
-    show_waiting(words == "no input"   ? tr("no input from the device")
-                 : waits_for_hand(now) ? tr("withdraw a little")
-                                       : QString());
+    const QString why = words == "no input"   ? tr("no input from the device")
+                        : waits_for_hand(now) ? tr("withdraw a little")
+                                              : QString();
+    if (why != std::exchange(waits_, why)) colour_forces();
+    refresh();
     const Tick& tick = now.session.tick;
     gauge_->set_force(tick.force.norm(), limit(), QString::fromStdString(words));
     const double apart = (tick.proxy.scp - tick.proxy.hip).norm();

@@ -3,14 +3,15 @@
 #pragma once
 
 #include <QLabel>
-#include <QPushButton>
+#include <QProgressBar>
 #include <QString>
-#include <QWidget>
 
+#include <functional>
 #include <vector>
 
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/panel/effect.hpp"
+#include "apps/viewer/panel/form.hpp"
 
 namespace palpate::viewer {
 
@@ -44,39 +45,21 @@ class ForceGauge : public QWidget {
 
     /// [N]; `words`, as app::force_words() has them, stand beside the number.
     void set_force(double force, double limit, const QString& words);
-    void clear();
     double force() const { return force_; }
     double limit() const { return limit_; }
     const QString& words() const { return words_; }
     /// How much of the bar is filled, 0 to 1.
     double filled() const;
 
-    QSize sizeHint() const override;
-    QSize minimumSizeHint() const override;
-
-  protected:
-    void paintEvent(QPaintEvent* event) override;
-
   private:
     double force_ = 0, limit_ = 0;
     QString words_;
+    QLabel *number_, *why_, *most_;
+    QProgressBar* bar_;
 };
 
-/// A switch of the session, with words for both states.
-class SessionSwitch : public QPushButton {
-    Q_OBJECT
-
-  public:
-    SessionSwitch(const QString& on, const QString& off);
-    /// The state now, whatever was clicked.
-    void set_state(bool on);
-    bool set_on_text(const QString& text);
-
-  private:
-    QString on_, off_;
-};
-
-class SessionBar : public QWidget {
+/// Switches show the session's state, whatever was clicked.
+class SessionBar : public Form {
     Q_OBJECT
 
   public:
@@ -86,17 +69,16 @@ class SessionBar : public QWidget {
     void changeEvent(QEvent* event) override;
 
   private:
-    void connect_effect();
-    void begin();
+    QPushButton* make_switch(const char* name, const QString& tip, std::function<bool()> state,
+                             std::function<Command(bool)> command, std::function<QString()> text);
     void clear();
-    void show_switches();
     void show_snapshot(const Snapshot& now);
     double limit() const;
     void colour_forces();
-    void show_waiting(const QString& why);
 
     Effect& effect_;
-    SessionSwitch *forces_, *freeze_, *clutch_;
+    QString waits_;  // why forces that are on are not there; empty: nothing holds them back
+    QPushButton* forces_ = nullptr;
     ForceGauge* gauge_;
     QLabel* contact_;
 };

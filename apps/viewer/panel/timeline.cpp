@@ -17,6 +17,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/icons.hpp"
@@ -36,6 +37,12 @@ TimelineTrack::TimelineTrack() {
     setAccessibleDescription(tr("Arrows go from frame to frame"));
     setFocusPolicy(Qt::StrongFocus);
     setOrientation(Qt::Horizontal);
+    // By keys, and by whatever else moves a slider.
+    connect(this, &QAbstractSlider::valueChanged, this, [this](int milliseconds) {
+        time_ = view_.begin + std::min(1e-3 * milliseconds, length());
+        update();
+        Q_EMIT chosen(time_);
+    });
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
 }
 
@@ -44,31 +51,26 @@ double TimelineTrack::length() const {
 }
 
 bool TimelineTrack::set_view(const TimelineView& view) {
-    const bool other = view.begin != view_.begin || view.end != view_.end ||
-                       view.live != view_.live || view.frames != view_.frames ||
-                       view.overview != view_.overview;
-    const bool seen = other || view.loop != view_.loop || view.loaded_from != view_.loaded_from ||
-                      view.loaded_to != view_.loaded_to;
-    if (other) {
-        const QSignalBlocker quiet(this);  // a drag that ends by this asks for nothing
-        view_ = view;
-        const double milliseconds = std::min(std::ceil(1e3 * length()), 2e9);
-        telling_ = false;
-        setRange(0, static_cast<int>(milliseconds));
-        telling_ = true;
-        setSingleStep(std::max(1, maximum() / 100));
-        setPageStep(std::max(1, maximum() / 10));
-        setEnabled(!view.live && length() > 0);
-        updateGeometry();
-        time_ = within(view_, time_);
-        place();
-    } else if (seen) {
-        view_.loop = view.loop;
-        view_.loaded_from = view.loaded_from;
-        view_.loaded_to = view.loaded_to;
-    }
-    if (seen) update();
-    return other;
+    const auto what = [](const TimelineView& v) {
+        return std::tie(v.begin, v.end, v.live, v.frames, v.overview);
+    };
+    const auto state = [](const TimelineView& v) {
+        return std::tie(v.loop, v.loaded_from, v.loaded_to);
+    };
+    const bool other = what(view) != what(view_);
+    if (!other && state(view) == state(view_)) return false;
+    view_ = view;
+    update();
+    if (!other) return false;
+    const QSignalBlocker quiet(this);  // a drag that ends by this asks for nothing
+    setRange(0, static_cast<int>(std::min(std::ceil(1e3 * length()), 2e9)));
+    setSingleStep(std::max(1, maximum() / 100));
+    setPageStep(std::max(1, maximum() / 10));
+    setEnabled(!view.live && length() > 0);
+    updateGeometry();
+    time_ = within(view_, time_);
+    place();
+    return true;
 }
 
 void TimelineTrack::set_time(double time) {
@@ -81,18 +83,8 @@ void TimelineTrack::set_time(double time) {
 
 /// The slider's value at the time.
 void TimelineTrack::place() {
-    telling_ = false;
+    const QSignalBlocker quiet(this);
     setValue(static_cast<int>(std::lround(std::min(1e3 * (time_ - view_.begin), 2e9))));
-    telling_ = true;
-}
-
-/// Called for keys and whatever else moves a slider.
-void TimelineTrack::sliderChange(SliderChange change) {
-    QAbstractSlider::sliderChange(change);
-    if (change != SliderValueChange || !telling_) return;
-    time_ = view_.begin + std::min(1e-3 * value(), length());
-    update();
-    Q_EMIT chosen(time_);
 }
 
 QSize TimelineTrack::sizeHint() const {

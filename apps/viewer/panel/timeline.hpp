@@ -47,7 +47,6 @@ class TimelineTrack : public QAbstractSlider {
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
-    void sliderChange(SliderChange change) override;
 
   private:
     double length() const;
@@ -62,7 +61,6 @@ class TimelineTrack : public QAbstractSlider {
 
     TimelineView view_;
     double time_ = 0;
-    bool telling_ = true;
 };
 
 class NumberBox;

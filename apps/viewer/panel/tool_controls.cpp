@@ -1,7 +1,7 @@
 // Lists tools in sizes that suit the data, and makes the one that is chosen.
 #include "apps/viewer/panel/tool_controls.hpp"
 
-#include <QFormLayout>
+#include <QLabel>
 
 #include <cmath>
 #include <memory>
@@ -68,37 +68,37 @@ MadeTool made_tool(const io::ToolSpec& spec, double scale, const Geometry& geome
 
 ToolControls::ToolControls(Effect& effect)
     : effect_(effect),
-      choice_(named(new QComboBox, "tool",
-                    tr("What touches. No point of a tool ever goes through the surface; it pushes "
-                       "and turns the hand. With the mouse, Ctrl and drag in the scene turn it."))),
-      open_(named(new QPushButton(tr("Open…")), "open_tool",
-                  tr("A tool from a file: a mesh (STL, PLY, OBJ, VTP) or points (CSV: x, y, z), in "
-                     "mm from the point that is held"))),
-      scale_(new Quantity("tool_scale", "×", 0.1, 10, 0.1, Quantity::Scale::factors)),
-      about_(named(new QLabel, "tool_about")) {
-    choice_->setAccessibleName(tr("Tool"));
-    open_->setAccessibleName(tr("Open a tool"));
+      choice_(choice({"tool", "",
+                      tr("What touches. No point of a tool ever goes through the surface; it "
+                         "pushes and turns the hand. With the mouse, Ctrl and drag in the scene "
+                         "turn it."),
+                      tr("Tool")},
+                     QStringList(),
+                     {[this] { return shown_.row; }, [this](int row) { choose(row, 1); }})) {
+    auto* open = button({"open_tool", tr("Open…"),
+                         tr("A tool from a file: a mesh (STL, PLY, OBJ, VTP) or points (CSV: x, y, "
+                            "z), in mm from the point that is held"),
+                         tr("Open a tool")},
+                        [this] { Q_EMIT open_wanted(); });
+    auto* form = new QFormLayout;
+    auto* scale = quantity_in(
+        *form,
+        {"tool_scale", tr("Size"), tr("How many times as large as usual the tool is"),
+         tr("Size of the tool")},
+        {"×", 0.1, 10, 0.1, Quantity::Scale::factors},
+        {[this] { return shown_.scale; }, [this](double scale) { choose(shown_.row, scale); }});
+    each_time(scale, [this](Quantity& one) { one.setEnabled(shown_.tool != nullptr); });
+    auto* words = named(new QLabel, "tool_about");
+    each_time(words, [this](QLabel& label) { label.setText(about()); });
+    words->setWordWrap(true);
     choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     choice_->setMinimumContentsLength(8);
-    let_wheel_pass(*choice_);
-    about_->setWordWrap(true);
-    scale_->set_value(1);
-    scale_->set_accessible_name(tr("Size of the tool"));
-    auto* form = new QFormLayout;
-    add_row(*form, tr("Size"), scale_, tr("How many times as large as usual the tool is"));
-    column_in(this, {row_of({choice_, open_}, 0)})->addLayout(form);
-    layout()->addWidget(about_);
-    connect(choice_, qOverload<int>(&QComboBox::activated), this,
-            [this](int row) { choose(row, 1); });
-    connect(scale_, &Quantity::wanted, this, [this](double scale) { choose(shown_.row, scale); });
-    connect(open_, &QPushButton::clicked, this, &ToolControls::open_wanted);
-    connect(&effect, &Effect::begun, this, [this] {
-        scale_->drop();
-        set_grid(effect_.field().geometry());
-    });
-    connect(&effect, &Effect::ended, this, &ToolControls::clear);
-    connect(&effect, &Effect::changed, this, [this] { set_tool(effect_.settings().tool); });
-    show({});
+    column_in(this, {row_of({choice_, open}, 0)})->addLayout(form);
+    layout()->addWidget(words);
+    connect(&effect, &Effect::begun, this, [this] { set_grid(effect_.field().geometry()); });
+    connect(&effect, &Effect::ended, this, [this] { show_tool(); });
+    connect(&effect, &Effect::changed, this, &ToolControls::show_tool);
+    refresh();
 }
 
 /// Of another volume: sizes suit it. Tools of files stay.
@@ -115,64 +115,55 @@ void ToolControls::set_grid(const Geometry& geometry) {
     built_in_ = all.size();
     all.insert(all.end(), choices_.begin(), choices_.end());
     choices_ = std::move(all);
-    before_ = {};
-    show({});
-}
-
-void ToolControls::clear() {
-    scale_->drop();
-    before_ = {};
-    show({});
-}
-
-void ToolControls::show(const Shown& now) {
-    shown_ = now;
-    choice_->clear();
-    for (const Choice& choice : choices_) choice_->addItem(choice.name);
-    choice_->setCurrentIndex(now.row);
-    scale_->set_value(now.scale);
-    scale_->setEnabled(now.tool != nullptr);
-    if (!now.tool) return about_->setText({});
-    const int count = static_cast<int>(now.tool->points().size());
-    const QString points = now.spacing > 0 ? tr("%n points, %1 mm apart.", nullptr, count)
-                                                 .arg(QString::number(now.spacing, 'g', 3))
-                                           : tr("%n points.", nullptr, count);
-    about_->setText(points + ' ' +
-                    tr("Layers, pressing through, magnet and texture are felt with a point only."));
+    shown_ = asked_ = {};
 }
 
 void ToolControls::choose(int row, double scale) {
     if (row < 0 || row >= static_cast<int>(choices_.size())) return;
     const Choice& choice = choices_[static_cast<std::size_t>(row)];
-    Shown next{row, scale, nullptr, 0};
     try {
         const MadeTool made = made_tool(choice.spec, scale, geometry_);
-        next.tool = made.tool;
-        if (!std::holds_alternative<io::PointsSpec>(choice.spec)) next.spacing = made.spacing;
+        const bool given = std::holds_alternative<io::PointsSpec>(choice.spec);
+        asked_ = {row, scale, made.tool, given ? 0 : made.spacing};
     } catch (const std::invalid_argument& e) {
-        show(Shown(shown_));
         Q_EMIT nonsense(QString::fromStdString(e.what()));
         return;
     }
-    before_ = shown_;
-    show(next);
-    effect_.request(command::UseTool{next.tool});
+    effect_.request(command::UseTool{asked_.tool});
 }
 
 /// One that was not made here, such as a session's, is one more choice.
-void ToolControls::set_tool(const std::shared_ptr<const Tool>& tool) {
-    if (tool == shown_.tool) return;
-    if (tool == before_.tool) return show(Shown(before_));
-    if (!tool) return show({});
-    const std::vector<Vec3> points(tool->points().begin(), tool->points().end());
-    const QString name = tr("As given");
-    if (choices_.size() > built_in_ && choices_.back().name == name) choices_.pop_back();
-    choices_.push_back({name, io::PointsSpec{points, tool->turns(), tool->shape()}});
-    show({static_cast<int>(choices_.size()) - 1, 1, tool, 0});
+void ToolControls::show_tool() {
+    const std::shared_ptr<const Tool>& tool = effect_.settings().tool;
+    if (tool == asked_.tool) {
+        shown_ = asked_;
+    } else if (!tool) {
+        shown_ = {};
+    } else if (tool != shown_.tool) {
+        const std::vector<Vec3> points(tool->points().begin(), tool->points().end());
+        const QString name = tr("As given");
+        if (choices_.size() > built_in_ && choices_.back().name == name) choices_.pop_back();
+        choices_.push_back({name, io::PointsSpec{points, tool->turns(), tool->shape()}});
+        shown_ = {static_cast<int>(choices_.size()) - 1, 1, tool, 0};
+    }
+    choice_->clear();
+    for (const Choice& choice : choices_) choice_->addItem(choice.name);
+    refresh();
+}
+
+QString ToolControls::about() const {
+    if (!shown_.tool) return {};
+    const int count = static_cast<int>(shown_.tool->points().size());
+    const QString points = shown_.spacing > 0 ? tr("%n points, %1 mm apart.", nullptr, count)
+                                                    .arg(QString::number(shown_.spacing, 'g', 3))
+                                              : tr("%n points.", nullptr, count);
+    return points + ' ' +
+           tr("Layers, pressing through, magnet and texture are felt with a point only.");
 }
 
 void ToolControls::add(const QString& name, const io::ToolSpec& spec) {
     choices_.push_back({name, spec});
+    choice_->addItem(name);
     choose(static_cast<int>(choices_.size()) - 1, 1);
 }
 

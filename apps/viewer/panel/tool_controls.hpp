@@ -1,21 +1,16 @@
 // Tool: what touches. A point, a built-in shape, or one of a file, and how large it is.
 #pragma once
 
-#include <QComboBox>
-#include <QLabel>
-#include <QPushButton>
-#include <QWidget>
-
 #include <memory>
 #include <vector>
 
 #include "apps/viewer/panel/effect.hpp"
-#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "palpate/io/tool_file.hpp"
 
 namespace palpate::viewer {
 
-class ToolControls : public QWidget {
+class ToolControls : public Form {
     Q_OBJECT
 
   public:
@@ -25,8 +20,6 @@ class ToolControls : public QWidget {
     void add(const QString& name, const io::ToolSpec& spec);
 
   Q_SIGNALS:
-    /// What was asked for is no tool.
-    void nonsense(const QString& why);
     void open_wanted();
 
   private:
@@ -34,27 +27,24 @@ class ToolControls : public QWidget {
         QString name;
         io::ToolSpec spec;
     };
-    struct Shown {
+    /// A tool, and how it was made.
+    struct Made {
         int row = 0;
         double scale = 1;
         std::shared_ptr<const Tool> tool;
         double spacing = 0;  // [mm] 0: as given
     };
     void set_grid(const Geometry& geometry);
-    void clear();
-    void set_tool(const std::shared_ptr<const Tool>& tool);
     void choose(int row, double scale);
-    void show(const Shown& now);
+    void show_tool();
+    QString about() const;
 
     Effect& effect_;
     Geometry geometry_{Index3::Zero()};
     std::size_t built_in_ = 0;     // of the choices, the first ones
     std::vector<Choice> choices_;  // then those of files and sessions
-    Shown shown_, before_;         // before the last request, should that be refused
+    Made shown_, asked_;           // in effect, and last asked for, whatever became of it
     QComboBox* choice_;
-    QPushButton* open_;
-    Quantity* scale_;
-    QLabel* about_;
 };
 
 }  // namespace palpate::viewer

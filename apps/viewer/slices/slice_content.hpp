@@ -1,4 +1,4 @@
-// What a slice pane holds of a volume; for its own sources alone.
+// The part of a volume that a slice pane keeps. Private to the pane's sources.
 #pragma once
 
 #include <QElapsedTimer>

@@ -195,28 +195,46 @@ void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measure
     painter.restore();
 }
 
-void paint_letters(QPainter& painter, const SliceSheet& sheet) {
-    QFont font = painter.font();
-    font.setBold(true);
-    painter.save();
-    painter.setFont(font);
-    const double edge = 0.3 * QFontMetricsF(font).height();
-    const QRectF box = QRectF({0, 0}, sheet.size).adjusted(edge, edge, -edge, -edge);
-    const auto letter = [&](int flags, const std::string& text) {
-        shadowed(painter, box, flags, QString::fromStdString(text));
-    };
-    letter(Qt::AlignLeft | Qt::AlignVCenter, sheet.plane.at_left);
-    letter(Qt::AlignRight | Qt::AlignVCenter, sheet.plane.at_right);
-    letter(Qt::AlignHCenter | Qt::AlignTop, sheet.plane.at_top);
-    letter(Qt::AlignHCenter | Qt::AlignBottom, sheet.plane.at_bottom);
-    painter.restore();
+namespace {
+
+QFont font_of(const SliceWords& words, QFont font) {
+    font.setBold(words.bold);
+    return font;
 }
 
-void paint_corner(QPainter& painter, const QSizeF& size, Qt::Alignment corner,
-                  const QStringList& lines) {
-    const double edge = 0.3 * QFontMetricsF(painter.font()).height();
-    const QRectF box = QRectF({0, 0}, size).adjusted(edge, edge, -edge, -edge);
-    shadowed(painter, box, static_cast<int>(corner), lines.join('\n'));
+QRectF box_in(const QSizeF& size, const QFont& font) {
+    const double edge = 0.3 * QFontMetricsF(font).height();
+    return QRectF({0, 0}, size).adjusted(edge, edge, -edge, -edge);
+}
+
+}  // namespace
+
+std::vector<SliceWords> letters_of(const SlicePlane& plane) {
+    const auto text = [](const std::string& letters) { return QString::fromStdString(letters); };
+    return {{Qt::AlignLeft | Qt::AlignVCenter, text(plane.at_left), true},
+            {Qt::AlignRight | Qt::AlignVCenter, text(plane.at_right), true},
+            {Qt::AlignHCenter | Qt::AlignTop, text(plane.at_top), true},
+            {Qt::AlignHCenter | Qt::AlignBottom, text(plane.at_bottom), true}};
+}
+
+QRegion place_of(const std::vector<SliceWords>& words, const QFont& font, const QSizeF& size) {
+    QRegion places;
+    for (const SliceWords& one : words) {
+        const QFontMetricsF metrics(font_of(one, font));
+        const QRectF box = box_in(size, font_of(one, font));
+        places += metrics.boundingRect(box, static_cast<int>(one.where), one.text).toAlignedRect();
+    }
+    return places;
+}
+
+void paint_words(QPainter& painter, const std::vector<SliceWords>& words, const QSizeF& size) {
+    painter.save();
+    const QFont font = painter.font();
+    for (const SliceWords& one : words) {
+        painter.setFont(font_of(one, font));
+        shadowed(painter, box_in(size, painter.font()), static_cast<int>(one.where), one.text);
+    }
+    painter.restore();
 }
 
 }  // namespace palpate::viewer

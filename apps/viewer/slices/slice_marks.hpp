@@ -2,7 +2,10 @@
 #pragma once
 
 #include <QPainter>
-#include <QStringList>
+#include <QRegion>
+#include <QString>
+
+#include <vector>
 
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
@@ -40,10 +43,17 @@ void paint_brush(QPainter& painter, const SliceSheet& sheet, const Vec3& centre,
 void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measurement& measurement,
                        LengthUnit unit);
 
-/// Which side of the body is at each edge.
-void paint_letters(QPainter& painter, const SliceSheet& sheet);
+/// Words at an edge or in a corner.
+struct SliceWords {
+    Qt::Alignment where;
+    QString text;
+    bool bold = false;
+};
 
-void paint_corner(QPainter& painter, const QSizeF& size, Qt::Alignment corner,
-                  const QStringList& lines);
+/// Which side of the body is at each edge.
+std::vector<SliceWords> letters_of(const SlicePlane& plane);
+/// Where they are painted in a widget of this size.
+QRegion place_of(const std::vector<SliceWords>& words, const QFont& font, const QSizeF& size);
+void paint_words(QPainter& painter, const std::vector<SliceWords>& words, const QSizeF& size);
 
 }  // namespace palpate::viewer

@@ -336,7 +336,10 @@ void SlicePane::paintEvent(QPaintEvent*) {
     make_picture(where);
     painter.drawImage(QPointF(0, 0), content_->picture);
     const SliceSheet sheet{content_->plane, geometry(), where, content_->layer, size()};
+    const std::vector<SliceWords> words = words_in();
+    painter.setClipRegion(QRegion(rect()) - place_of(words, font(), size()));
     paint_crosshair(painter, sheet, sheet.pixel(crosshair_));
+    painter.setClipping(false);
     const bool several = snapshots_[2].has_value();
     for (int hand = 1; hand <= most_hands; ++hand) {
         if (!snapshots_[hand]) continue;
@@ -347,8 +350,7 @@ void SlicePane::paintEvent(QPaintEvent*) {
     for (const Measurement& measurement : measurements_) {
         paint_measurement(painter, sheet, measurement, unit_);
     }
-    paint_letters(painter, sheet);
-    paint_words(painter);
+    paint_words(painter, words, size());
     if (hasFocus()) {
         painter.setPen(QPen(palette().highlight().color(), 2));
         painter.setBrush(Qt::NoBrush);
@@ -356,27 +358,29 @@ void SlicePane::paintEvent(QPaintEvent*) {
     }
 }
 
-void SlicePane::paint_words(QPainter& painter) const {
+/// Letters, and what the corners tell.
+std::vector<SliceWords> SlicePane::words_in() const {
     const double layer = content_->layer;
     const int layers = geometry().size[axis_];
     const bool in_data = layer >= -0.5 && layer <= layers - 0.5;
     const Vec3 middle = point_at(QPointF(rect().center()));
-    painter.setFont(font());
+    std::vector<SliceWords> all = letters_of(content_->plane);
     QStringList corner{title(),
                        in_data ? QString("%1 / %2").arg(std::lround(layer) + 1).arg(layers)
                                : tr("outside the data"),
                        QString::fromStdString(position_text(content_->plane, geometry(), middle))};
     const int beside = width() / 2 - fontMetrics().height();  // the letter of the upper edge
     if (fontMetrics().horizontalAdvance(title()) > beside) corner.push_front("");
-    paint_corner(painter, size(), Qt::AlignLeft | Qt::AlignTop, corner);
-    // Short where the letter of the lower edge is, so that narrow panes have room for both.
-    paint_corner(painter, size(), Qt::AlignRight | Qt::AlignBottom,
-                 {tr("W %1", "window, in the corner").arg(high_ - low_, 0, 'g', 5),
-                  tr("L %1", "level, in the corner").arg(0.5 * (low_ + high_), 0, 'g', 5)});
-    if (!pointer_) return;
+    all.push_back({Qt::AlignLeft | Qt::AlignTop, corner.join('\n')});
+    // Above the letter of the lower edge where there is no room beside it.
+    QStringList grey{tr("W %1", "window, in the corner").arg(high_ - low_, 0, 'g', 5),
+                     tr("L %1", "level, in the corner").arg(0.5 * (low_ + high_), 0, 'g', 5)};
+    if (fontMetrics().horizontalAdvance(grey.back()) > beside) grey << "";
+    all.push_back({Qt::AlignRight | Qt::AlignBottom, grey.join('\n')});
+    if (!pointer_) return all;
     const Vec3 at = point_at(*pointer_);
     const Vec3 index = index_from_physical(geometry(), at);
-    if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return;
+    if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return all;
     const auto mm = [](double x) { return QString::number(x, 'f', 1); };
     QStringList words{QString("(%1, %2, %3) %4")
                           .arg(mm(at[0]), mm(at[1]), mm(at[2]), QString(unit_word(geometry()))),
@@ -385,7 +389,8 @@ void SlicePane::paint_words(QPainter& painter) const {
         const QString there = overlay_words(*style_.overlay, at);
         if (!there.isEmpty()) words.push_front(there);
     }
-    paint_corner(painter, size(), Qt::AlignLeft | Qt::AlignBottom, words);
+    all.push_back({Qt::AlignLeft | Qt::AlignBottom, words.join('\n')});
+    return all;
 }
 
 bool SlicePane::event(QEvent* event) {

@@ -18,6 +18,8 @@
 
 namespace palpate::viewer {
 
+struct SliceWords;
+
 /// Wheel: next slice. Left: crosshair, or the probe (set_hand; Ctrl then is the crosshair). Right
 /// drag: window and level. Middle drag: moves the picture. Ctrl and wheel: zoom. Double click: the
 /// whole slice, the usual grey levels. Arrows, Page Up and Down, +, -, Home do the same by keys.
@@ -130,7 +132,7 @@ class SlicePane : public QWidget {
     void use_window(double low, double high);
     void change_window(const QPointF& drag);
     void reset();
-    void paint_words(QPainter& painter) const;
+    std::vector<SliceWords> words_in() const;
 
     const int axis_;
     std::unique_ptr<Content> content_;  // null without a volume

@@ -701,89 +701,6 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     </message>
 </context>
 <context>
-    <name>palpate::viewer::CurveControls</name>
-    <message>
-        <source>Start</source>
-        <translation>Beginnen</translation>
-    </message>
-    <message>
-        <source>Begin a curve of this property: one point, with the value that counts so far.
-On the histogram: double click for another point, drag it, right click or Del to delete it</source>
-        <translation>Eine Kurve dieser Eigenschaft beginnen: ein Punkt mit dem Wert, der bisher gilt.
-Auf dem Histogramm: Doppelklick für einen weiteren Punkt, ihn ziehen, Rechtsklick oder Entf löscht ihn</translation>
-    </message>
-    <message>
-        <source>Remove</source>
-        <translation>Entfernen</translation>
-    </message>
-    <message>
-        <source>Remove this curve</source>
-        <translation>Diese Kurve entfernen</translation>
-    </message>
-    <message>
-        <source>Start the curve</source>
-        <translation>Kurve beginnen</translation>
-    </message>
-    <message>
-        <source>Remove the curve</source>
-        <translation>Kurve entfernen</translation>
-    </message>
-    <message>
-        <source>Curve</source>
-        <translation>Kurve</translation>
-    </message>
-    <message>
-        <source>Each layer has a value of its own: clear one (×) to let the curve count.</source>
-        <translation>Jede Schicht hat einen eigenen Wert: Löschen Sie einen (×), damit die Kurve gilt.</translation>
-    </message>
-    <message>
-        <source>The property whose curve over density lies over the histogram; in brackets the number of points of its curves.
-A layer that has no value of its own takes it from there.</source>
-        <translation>Die Eigenschaft, deren Kurve über der Dichte auf dem Histogramm liegt; in Klammern die Zahl der Punkte ihrer Kurven.
-Eine Schicht ohne eigenen Wert nimmt ihn von dort.</translation>
-    </message>
-    <message>
-        <source>Begin a factor over the gradient&apos;s magnitude: the property, wherever it comes from, is multiplied by it.
-Steep places, where two tissues meet, then feel different from flat ones</source>
-        <translation>Einen Faktor über dem Betrag des Gradienten beginnen: Die Eigenschaft, woher sie auch kommt, wird mit ihm multipliziert.
-Steile Stellen, wo zwei Gewebe sich treffen, fühlen sich dann anders an als flache</translation>
-    </message>
-    <message>
-        <source>Remove the factor over the gradient</source>
-        <translation>Den Faktor über dem Gradienten entfernen</translation>
-    </message>
-    <message>
-        <source>Property of the curves</source>
-        <translation>Eigenschaft der Kurven</translation>
-    </message>
-    <message>
-        <source>Start the factor over the gradient</source>
-        <translation>Den Faktor über dem Gradienten beginnen</translation>
-    </message>
-    <message>
-        <source>Factor over the gradient</source>
-        <translation>Faktor über dem Gradienten</translation>
-    </message>
-    <message>
-        <source>Factor over the gradient&apos;s magnitude [data units / mm]; behind it, how often there is which (logarithm).
-Points: drag; double click adds one, right click or Del deletes. By keys:
-Page keys choose a point, arrows move it, Insert adds one.
-Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again.</source>
-        <translation>Faktor über dem Betrag des Gradienten [Dateneinheiten / mm]; dahinter, wie oft es welchen gibt (Logarithmus).
-Punkte: ziehen; Doppelklick setzt einen dazu, Rechtsklick oder Entf löscht. Mit Tasten:
-Bild auf und ab wählen einen Punkt, Pfeile verschieben ihn, Einfg setzt einen dazu.
-Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</translation>
-    </message>
-    <message>
-        <source>over density</source>
-        <translation>über der Dichte</translation>
-    </message>
-    <message>
-        <source>over the gradient</source>
-        <translation>über dem Gradienten</translation>
-    </message>
-</context>
-<context>
     <name>palpate::viewer::DeviceControls</name>
     <message>
         <source>connecting</source>
@@ -1216,10 +1133,6 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
 <context>
     <name>palpate::viewer::IsovalueControls</name>
     <message>
-        <source>Isovalue [data units]</source>
-        <translation>Isowert [Dateneinheiten]</translation>
-    </message>
-    <message>
         <source>Isovalue [data units]: the level whose surface is felt</source>
         <translation>Isowert [Dateneinheiten]: der Wert, dessen Oberfläche gefühlt wird</translation>
     </message>
@@ -1292,153 +1205,6 @@ Das Volumen wird neu gelesen; Änderungen gehen verloren.</translation>
     <message>
         <source>Layers by label are felt, not a level of the densities.</source>
         <translation>Es werden Schichten nach Labels gefühlt, kein Wert der Dichten.</translation>
-    </message>
-</context>
-<context>
-    <name>palpate::viewer::LayerEditor</name>
-    <message>
-        <source>Stiffness</source>
-        <translation>Steifigkeit</translation>
-    </message>
-    <message>
-        <source>Stiffness of the layer&apos;s surface [N/mm]</source>
-        <translation>Steifigkeit der Oberfläche der Schicht [N/mm]</translation>
-    </message>
-    <message>
-        <source>Static friction</source>
-        <translation>Haftreibung</translation>
-    </message>
-    <message>
-        <source>Coefficient past which the proxy begins to slide on the surface (no unit)</source>
-        <translation>Koeffizient, ab dem der Proxy auf der Oberfläche zu gleiten beginnt (ohne Einheit)</translation>
-    </message>
-    <message>
-        <source>Dynamic friction</source>
-        <translation>Gleitreibung</translation>
-    </message>
-    <message>
-        <source>Coefficient while it slides; counts as at most the static one</source>
-        <translation>Koeffizient, solange er gleitet; zählt höchstens wie der der Haftreibung</translation>
-    </message>
-    <message>
-        <source>Viscosity</source>
-        <translation>Viskosität</translation>
-    </message>
-    <message>
-        <source>Of what lies behind the surface, against all motion there [N s/mm]</source>
-        <translation>Dessen, was hinter der Oberfläche liegt, gegen jede Bewegung dort [N s/mm]</translation>
-    </message>
-    <message>
-        <source>Puncture force</source>
-        <translation>Durchstoßkraft</translation>
-    </message>
-    <message>
-        <source>Force of the press at which the surface gives way [N]</source>
-        <translation>Kraft, bei der die Oberfläche nachgibt [N]</translation>
-    </message>
-    <message>
-        <source>Drag</source>
-        <translation>Schaftreibung</translation>
-    </message>
-    <message>
-        <source>Name of the layer</source>
-        <translation>Name der Schicht</translation>
-    </message>
-    <message>
-        <source>Its level [data units]; also a line to drag on the histogram</source>
-        <translation>Ihr Wert [Dateneinheiten]; auch eine Linie zum Ziehen auf dem Histogramm</translation>
-    </message>
-    <message>
-        <source>Colour of the layer</source>
-        <translation>Farbe der Schicht</translation>
-    </message>
-    <message>
-        <source>never gives way</source>
-        <translation>gibt nie nach</translation>
-    </message>
-    <message>
-        <source>The surface holds, however hard the hand presses</source>
-        <translation>Die Oberfläche hält, wie stark die Hand auch drückt</translation>
-    </message>
-    <message>
-        <source>Level of the layer</source>
-        <translation>Wert der Schicht</translation>
-    </message>
-    <message>
-        <source>Opacity of the layer</source>
-        <translation>Deckkraft der Schicht</translation>
-    </message>
-    <message>
-        <source>Opacity of the layer in the scene, 0 to 1</source>
-        <translation>Deckkraft der Schicht in der Szene, 0 bis 1</translation>
-    </message>
-    <message>
-        <source>Name</source>
-        <translation>Name</translation>
-    </message>
-    <message>
-        <source>Name and colour of the layer</source>
-        <translation>Name und Farbe der Schicht</translation>
-    </message>
-    <message>
-        <source>Level</source>
-        <translation>Wert</translation>
-    </message>
-    <message>
-        <source>Opacity</source>
-        <translation>Deckkraft</translation>
-    </message>
-    <message>
-        <source>%1 of the layer</source>
-        <translation>%1 der Schicht</translation>
-    </message>
-    <message>
-        <source>Clear the layer&apos;s own value</source>
-        <translation>Den eigenen Wert der Schicht löschen</translation>
-    </message>
-    <message>
-        <source>Clear the layer&apos;s own value: %1</source>
-        <translation>Den eigenen Wert der Schicht löschen: %1</translation>
-    </message>
-    <message>
-        <source>%1.
-Now from its curve over density</source>
-        <translation>%1.
-Jetzt aus der Kurve über der Dichte</translation>
-    </message>
-    <message>
-        <source>%1.
-Now from the session&apos;s value (Force)</source>
-        <translation>%1.
-Jetzt aus dem Wert der Sitzung (Kraft)</translation>
-    </message>
-    <message>
-        <source>Label</source>
-        <translation>Label</translation>
-    </message>
-    <message>
-        <source>Its label: the number that its samples have in the label map</source>
-        <translation>Ihr Label: die Zahl, die ihre Voxel in der Labelkarte haben</translation>
-    </message>
-    <message>
-        <source>Clear the layer&apos;s own value: then its curve over density, %1, counts</source>
-        <translation>Den eigenen Wert der Schicht löschen: Dann gilt die Kurve über der Dichte, %1</translation>
-    </message>
-    <message>
-        <source>Clear the layer&apos;s own value: then the session&apos;s value (Force), %1, counts</source>
-        <translation>Den eigenen Wert der Schicht löschen: Dann gilt der Wert der Sitzung (Kraft), %1</translation>
-    </message>
-    <message>
-        <source>Damping</source>
-        <translation>Dämpfung</translation>
-    </message>
-    <message>
-        <source>Of the surface, against motion along its normal [N s/mm]</source>
-        <translation>Der Oberfläche, gegen Bewegung längs ihrer Normalen [N s/mm]</translation>
-    </message>
-    <message>
-        <source>Rubbing on a needle&apos;s shaft for each millimetre of it in the layer [N/mm]; without a needle there is none</source>
-        <translation>Reibung am Schaft einer Nadel je Millimeter in der Schicht [N/mm]; ohne Nadel gibt es keine</translation>
     </message>
 </context>
 <context>
@@ -1651,6 +1417,270 @@ Jetzt aus dem Wert der Sitzung (Kraft)</translation>
         <comment>name of a new one, before its number</comment>
         <translation>Schicht</translation>
     </message>
+    <message>
+        <source>Name of the layer</source>
+        <translation>Name der Schicht</translation>
+    </message>
+    <message>
+        <source>Colour of the layer</source>
+        <translation>Farbe der Schicht</translation>
+    </message>
+    <message>
+        <source>Name</source>
+        <translation>Name</translation>
+    </message>
+    <message>
+        <source>Name and colour of the layer</source>
+        <translation>Name und Farbe der Schicht</translation>
+    </message>
+    <message>
+        <source>Its level [data units]; also a line to drag on the histogram</source>
+        <translation>Ihr Wert [Dateneinheiten]; auch eine Linie zum Ziehen auf dem Histogramm</translation>
+    </message>
+    <message>
+        <source>Level of the layer</source>
+        <translation>Wert der Schicht</translation>
+    </message>
+    <message>
+        <source>Level</source>
+        <translation>Wert</translation>
+    </message>
+    <message>
+        <source>Label</source>
+        <translation>Label</translation>
+    </message>
+    <message>
+        <source>Its label: the number that its samples have in the label map</source>
+        <translation>Ihr Label: die Zahl, die ihre Voxel in der Labelkarte haben</translation>
+    </message>
+    <message>
+        <source>Opacity</source>
+        <translation>Deckkraft</translation>
+    </message>
+    <message>
+        <source>Opacity of the layer in the scene, 0 to 1</source>
+        <translation>Deckkraft der Schicht in der Szene, 0 bis 1</translation>
+    </message>
+    <message>
+        <source>Opacity of the layer</source>
+        <translation>Deckkraft der Schicht</translation>
+    </message>
+    <message>
+        <source>%1 of the layer</source>
+        <translation>%1 der Schicht</translation>
+    </message>
+    <message>
+        <source>Clear the layer&apos;s own value</source>
+        <translation>Den eigenen Wert der Schicht löschen</translation>
+    </message>
+    <message>
+        <source>Clear the layer&apos;s own value: %1</source>
+        <translation>Den eigenen Wert der Schicht löschen: %1</translation>
+    </message>
+    <message>
+        <source>%1.
+Now from its curve over density</source>
+        <translation>%1.
+Jetzt aus der Kurve über der Dichte</translation>
+    </message>
+    <message>
+        <source>%1.
+Now from the session&apos;s value (Force)</source>
+        <translation>%1.
+Jetzt aus dem Wert der Sitzung (Kraft)</translation>
+    </message>
+    <message>
+        <source>Clear the layer&apos;s own value: then its curve over density, %1, counts</source>
+        <translation>Den eigenen Wert der Schicht löschen: Dann gilt die Kurve über der Dichte, %1</translation>
+    </message>
+    <message>
+        <source>Clear the layer&apos;s own value: then the session&apos;s value (Force), %1, counts</source>
+        <translation>Den eigenen Wert der Schicht löschen: Dann gilt der Wert der Sitzung (Kraft), %1</translation>
+    </message>
+    <message>
+        <source>never gives way</source>
+        <translation>gibt nie nach</translation>
+    </message>
+    <message>
+        <source>The surface holds, however hard the hand presses</source>
+        <translation>Die Oberfläche hält, wie stark die Hand auch drückt</translation>
+    </message>
+    <message>
+        <source>Closes after</source>
+        <translation>Schließt nach</translation>
+    </message>
+    <message>
+        <source>A surface that gave way closes when the proxy is farther than this from where it did [mm of the data]</source>
+        <translation>Eine Fläche, die nachgab, schließt sich, wenn der Proxy weiter als so von der Stelle entfernt ist [mm der Daten]</translation>
+    </message>
+    <message>
+        <source>Distance at which surfaces close</source>
+        <translation>Abstand, ab dem Flächen sich schließen</translation>
+    </message>
+    <message>
+        <source>Needle</source>
+        <translation>Nadel</translation>
+    </message>
+    <message>
+        <source>The hand holds a needle: after the first puncture it moves along a line</source>
+        <translation>Die Hand hält eine Nadel: Nach dem ersten Durchstoß bewegt sie sich entlang einer Linie</translation>
+    </message>
+    <message>
+        <source>Lateral stiffness</source>
+        <translation>Seitliche Steifigkeit</translation>
+    </message>
+    <message>
+        <source>How stiffly the needle is drawn to its line [N/mm]</source>
+        <translation>Wie steif die Nadel zu ihrer Linie gezogen wird [N/mm]</translation>
+    </message>
+    <message>
+        <source>Static ratio</source>
+        <translation>Haftverhältnis</translation>
+    </message>
+    <message>
+        <source>Friction along the shaft at rest, of that in motion (no unit, 1 or more)</source>
+        <translation>Reibung entlang des Schafts in Ruhe, im Verhältnis zu der in Bewegung (ohne Einheit, 1 oder mehr)</translation>
+    </message>
+    <message>
+        <source>Stick speed</source>
+        <translation>Hafttempo</translation>
+    </message>
+    <message>
+        <source>Slower than this along its line, the shaft sticks [mm/s]</source>
+        <translation>Langsamer als so entlang seiner Linie haftet der Schaft [mm/s]</translation>
+    </message>
+    <message>
+        <source>The property whose curve over density lies over the histogram; in brackets the number of points of its curves.
+A layer that has no value of its own takes it from there.</source>
+        <translation>Die Eigenschaft, deren Kurve über der Dichte auf dem Histogramm liegt; in Klammern die Zahl der Punkte ihrer Kurven.
+Eine Schicht ohne eigenen Wert nimmt ihn von dort.</translation>
+    </message>
+    <message>
+        <source>Property of the curves</source>
+        <translation>Eigenschaft der Kurven</translation>
+    </message>
+    <message>
+        <source>Start</source>
+        <translation>Beginnen</translation>
+    </message>
+    <message>
+        <source>Begin a curve of this property: one point, with the value that counts so far.
+On the histogram: double click for another point, drag it, right click or Del to delete it</source>
+        <translation>Eine Kurve dieser Eigenschaft beginnen: ein Punkt mit dem Wert, der bisher gilt.
+Auf dem Histogramm: Doppelklick für einen weiteren Punkt, ihn ziehen, Rechtsklick oder Entf löscht ihn</translation>
+    </message>
+    <message>
+        <source>Start the curve</source>
+        <translation>Kurve beginnen</translation>
+    </message>
+    <message>
+        <source>Remove this curve</source>
+        <translation>Diese Kurve entfernen</translation>
+    </message>
+    <message>
+        <source>Remove the curve</source>
+        <translation>Kurve entfernen</translation>
+    </message>
+    <message>
+        <source>Begin a factor over the gradient&apos;s magnitude: the property, wherever it comes from, is multiplied by it.
+Steep places, where two tissues meet, then feel different from flat ones</source>
+        <translation>Einen Faktor über dem Betrag des Gradienten beginnen: Die Eigenschaft, woher sie auch kommt, wird mit ihm multipliziert.
+Steile Stellen, wo zwei Gewebe sich treffen, fühlen sich dann anders an als flache</translation>
+    </message>
+    <message>
+        <source>Start the factor over the gradient</source>
+        <translation>Den Faktor über dem Gradienten beginnen</translation>
+    </message>
+    <message>
+        <source>Remove the factor over the gradient</source>
+        <translation>Den Faktor über dem Gradienten entfernen</translation>
+    </message>
+    <message>
+        <source>Factor over the gradient</source>
+        <translation>Faktor über dem Gradienten</translation>
+    </message>
+    <message>
+        <source>Factor over the gradient&apos;s magnitude [data units / mm]; behind it, how often there is which (logarithm).
+Points: drag; double click adds one, right click or Del deletes. By keys:
+Page keys choose a point, arrows move it, Insert adds one.
+Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again.</source>
+        <translation>Faktor über dem Betrag des Gradienten [Dateneinheiten / mm]; dahinter, wie oft es welchen gibt (Logarithmus).
+Punkte: ziehen; Doppelklick setzt einen dazu, Rechtsklick oder Entf löscht. Mit Tasten:
+Bild auf und ab wählen einen Punkt, Pfeile verschieben ihn, Einfg setzt einen dazu.
+Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</translation>
+    </message>
+    <message>
+        <source>Each layer has a value of its own: clear one (×) to let the curve count.</source>
+        <translation>Jede Schicht hat einen eigenen Wert: Löschen Sie einen (×), damit die Kurve gilt.</translation>
+    </message>
+    <message>
+        <source>Curve</source>
+        <translation>Kurve</translation>
+    </message>
+    <message>
+        <source>over density</source>
+        <translation>über der Dichte</translation>
+    </message>
+    <message>
+        <source>over the gradient</source>
+        <translation>über dem Gradienten</translation>
+    </message>
+    <message>
+        <source>Stiffness</source>
+        <translation>Steifigkeit</translation>
+    </message>
+    <message>
+        <source>Stiffness of the layer&apos;s surface [N/mm]</source>
+        <translation>Steifigkeit der Oberfläche der Schicht [N/mm]</translation>
+    </message>
+    <message>
+        <source>Static friction</source>
+        <translation>Haftreibung</translation>
+    </message>
+    <message>
+        <source>Coefficient past which the proxy begins to slide on the surface (no unit)</source>
+        <translation>Koeffizient, ab dem der Proxy auf der Oberfläche zu gleiten beginnt (ohne Einheit)</translation>
+    </message>
+    <message>
+        <source>Dynamic friction</source>
+        <translation>Gleitreibung</translation>
+    </message>
+    <message>
+        <source>Coefficient while it slides; counts as at most the static one</source>
+        <translation>Koeffizient, solange er gleitet; zählt höchstens wie der der Haftreibung</translation>
+    </message>
+    <message>
+        <source>Damping</source>
+        <translation>Dämpfung</translation>
+    </message>
+    <message>
+        <source>Of the surface, against motion along its normal [N s/mm]</source>
+        <translation>Der Oberfläche, gegen Bewegung längs ihrer Normalen [N s/mm]</translation>
+    </message>
+    <message>
+        <source>Viscosity</source>
+        <translation>Viskosität</translation>
+    </message>
+    <message>
+        <source>Of what lies behind the surface, against all motion there [N s/mm]</source>
+        <translation>Dessen, was hinter der Oberfläche liegt, gegen jede Bewegung dort [N s/mm]</translation>
+    </message>
+    <message>
+        <source>Puncture force</source>
+        <translation>Durchstoßkraft</translation>
+    </message>
+    <message>
+        <source>Force of the press at which the surface gives way [N]</source>
+        <translation>Kraft, bei der die Oberfläche nachgibt [N]</translation>
+    </message>
+    <message>
+        <source>Drag</source>
+        <translation>Schaftreibung</translation>
+    </message>
+    <message>
+        <source>Rubbing on a needle&apos;s shaft for each millimetre of it in the layer [N/mm]; without a needle there is none</source>
+        <translation>Reibung am Schaft einer Nadel je Millimeter in der Schicht [N/mm]; ohne Nadel gibt es keine</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::LevelChart</name>
@@ -1860,6 +1890,62 @@ Die Vorlage noch einmal wählen macht rückgängig. Strg+Rad zoomt, Umschalt+Rad
     <message>
         <source>Transfer function</source>
         <translation>Transferfunktion</translation>
+    </message>
+    <message>
+        <source>Add a surface</source>
+        <translation>Fläche hinzufügen</translation>
+    </message>
+    <message>
+        <source>See another level beside the one that is felt: skin over bone</source>
+        <translation>Einen weiteren Wert neben dem gefühlten sehen: Haut über Knochen</translation>
+    </message>
+    <message>
+        <source>Its level [data units]; also a line to drag on the histogram</source>
+        <translation>Ihr Wert [Dateneinheiten]; auch eine Linie zum Ziehen auf dem Histogramm</translation>
+    </message>
+    <message>
+        <source>Level of surface %1</source>
+        <translation>Wert von Fläche %1</translation>
+    </message>
+    <message>
+        <source>Its opacity, 0 to 1</source>
+        <translation>Ihre Deckkraft, 0 bis 1</translation>
+    </message>
+    <message>
+        <source>Opacity of surface %1</source>
+        <translation>Deckkraft von Fläche %1</translation>
+    </message>
+    <message>
+        <source>Feel</source>
+        <translation>Fühlen</translation>
+    </message>
+    <message>
+        <source>Feel this one; the one felt now takes its place here</source>
+        <translation>Diese fühlen; die jetzt gefühlte nimmt hier ihren Platz ein</translation>
+    </message>
+    <message>
+        <source>Feel surface %1</source>
+        <translation>Fläche %1 fühlen</translation>
+    </message>
+    <message>
+        <source>Remove it</source>
+        <translation>Entfernen</translation>
+    </message>
+    <message>
+        <source>Remove surface %1</source>
+        <translation>Fläche %1 entfernen</translation>
+    </message>
+    <message>
+        <source>Surface %1 is seen</source>
+        <translation>Fläche %1 ist zu sehen</translation>
+    </message>
+    <message>
+        <source>Surface %1</source>
+        <translation>Fläche %1</translation>
+    </message>
+    <message>
+        <source>Colour of surface %1</source>
+        <translation>Farbe von Fläche %1</translation>
     </message>
 </context>
 <context>
@@ -2308,53 +2394,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Click a point on one side, the corner, and a point on the other side (Esc: give up)</source>
         <translation>Klicken Sie einen Punkt auf einem Schenkel, den Scheitel und einen Punkt auf dem anderen Schenkel an (Esc: aufgeben)</translation>
-    </message>
-</context>
-<context>
-    <name>palpate::viewer::NeedleControls</name>
-    <message>
-        <source>Needle</source>
-        <translation>Nadel</translation>
-    </message>
-    <message>
-        <source>The hand holds a needle: after the first puncture it moves along a line</source>
-        <translation>Die Hand hält eine Nadel: Nach dem ersten Durchstoß bewegt sie sich entlang einer Linie</translation>
-    </message>
-    <message>
-        <source>Distance at which surfaces close</source>
-        <translation>Abstand, ab dem Flächen sich schließen</translation>
-    </message>
-    <message>
-        <source>Closes after</source>
-        <translation>Schließt nach</translation>
-    </message>
-    <message>
-        <source>A surface that gave way closes when the proxy is farther than this from where it did [mm of the data]</source>
-        <translation>Eine Fläche, die nachgab, schließt sich, wenn der Proxy weiter als so von der Stelle entfernt ist [mm der Daten]</translation>
-    </message>
-    <message>
-        <source>Lateral stiffness</source>
-        <translation>Seitliche Steifigkeit</translation>
-    </message>
-    <message>
-        <source>How stiffly the needle is drawn to its line [N/mm]</source>
-        <translation>Wie steif die Nadel zu ihrer Linie gezogen wird [N/mm]</translation>
-    </message>
-    <message>
-        <source>Static ratio</source>
-        <translation>Haftverhältnis</translation>
-    </message>
-    <message>
-        <source>Friction along the shaft at rest, of that in motion (no unit, 1 or more)</source>
-        <translation>Reibung entlang des Schafts in Ruhe, im Verhältnis zu der in Bewegung (ohne Einheit, 1 oder mehr)</translation>
-    </message>
-    <message>
-        <source>Stick speed</source>
-        <translation>Hafttempo</translation>
-    </message>
-    <message>
-        <source>Slower than this along its line, the shaft sticks [mm/s]</source>
-        <translation>Langsamer als so entlang seiner Linie haftet der Schaft [mm/s]</translation>
     </message>
 </context>
 <context>
@@ -2978,44 +3017,8 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
 <context>
     <name>palpate::viewer::SessionBar</name>
     <message>
-        <source>Forces are ON</source>
-        <translation>Kräfte sind AN</translation>
-    </message>
-    <message>
-        <source>Forces are OFF</source>
-        <translation>Kräfte sind AUS</translation>
-    </message>
-    <message>
         <source>Forces on or off (space bar). Off: zero at once; on: they ramp up</source>
         <translation>Kräfte an oder aus (Leertaste). Aus: sofort null; an: sie steigen an</translation>
-    </message>
-    <message>
-        <source>Frozen</source>
-        <translation>Eingefroren</translation>
-    </message>
-    <message>
-        <source>Freeze</source>
-        <translation>Einfrieren</translation>
-    </message>
-    <message>
-        <source>Hand and proxy stand still for the session, forces are let go</source>
-        <translation>Hand und Proxy stehen für die Sitzung still, Kräfte werden losgelassen</translation>
-    </message>
-    <message>
-        <source>Clutched</source>
-        <translation>Gekuppelt</translation>
-    </message>
-    <message>
-        <source>Clutch</source>
-        <translation>Kuppeln</translation>
-    </message>
-    <message>
-        <source>The volume hangs on the hand, to put it elsewhere; forces are let go</source>
-        <translation>Das Volumen hängt an der Hand, um es zu versetzen; Kräfte werden losgelassen</translation>
-    </message>
-    <message>
-        <source>no tick yet</source>
-        <translation>noch kein Takt</translation>
     </message>
     <message numerus="yes">
         <source>%n points of the tool hold, torque %1 N mm</source>
@@ -3023,10 +3026,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
             <numerusform>%n Punkt des Werkzeugs hält, Drehmoment %1 N mm</numerusform>
             <numerusform>%n Punkte des Werkzeugs halten, Drehmoment %1 N mm</numerusform>
         </translation>
-    </message>
-    <message>
-        <source>Forces WAIT</source>
-        <translation>Kräfte WARTEN</translation>
     </message>
     <message>
         <source>no input from the device</source>
@@ -3037,16 +3036,56 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>etwas zurückziehen</translation>
     </message>
     <message>
-        <source>Whether the proxy is on a surface, and how far it is from the hand (of the hand, and in the volume)</source>
-        <translation>Ob der Proxy auf einer Oberfläche ist, und wie weit er von der Hand entfernt ist (der Hand, und im Volumen)</translation>
-    </message>
-    <message>
         <source>In contact, pull %1 mm (%2 %3 in the volume)</source>
         <translation>In Kontakt, Zug %1 mm (%2 %3 im Volumen)</translation>
     </message>
     <message>
         <source>Free, pull %1 mm (%2 %3 in the volume)</source>
         <translation>Frei, Zug %1 mm (%2 %3 im Volumen)</translation>
+    </message>
+    <message>
+        <source>Whether the proxy is on a surface, and how far it is from the hand (of the hand, and in the volume)</source>
+        <translation>Ob der Proxy auf einer Oberfläche ist, und wie weit er von der Hand entfernt ist (der Hand, und im Volumen)</translation>
+    </message>
+    <message>
+        <source>Forces are OFF</source>
+        <translation>Kräfte sind AUS</translation>
+    </message>
+    <message>
+        <source>Forces are ON</source>
+        <translation>Kräfte sind AN</translation>
+    </message>
+    <message>
+        <source>Forces WAIT</source>
+        <translation>Kräfte WARTEN</translation>
+    </message>
+    <message>
+        <source>Hand and proxy stand still for the session, forces are let go</source>
+        <translation>Hand und Proxy stehen für die Sitzung still, Kräfte werden losgelassen</translation>
+    </message>
+    <message>
+        <source>Frozen</source>
+        <translation>Eingefroren</translation>
+    </message>
+    <message>
+        <source>Freeze</source>
+        <translation>Einfrieren</translation>
+    </message>
+    <message>
+        <source>The volume hangs on the hand, to put it elsewhere; forces are let go</source>
+        <translation>Das Volumen hängt an der Hand, um es zu versetzen; Kräfte werden losgelassen</translation>
+    </message>
+    <message>
+        <source>Clutched</source>
+        <translation>Gekuppelt</translation>
+    </message>
+    <message>
+        <source>Clutch</source>
+        <translation>Kuppeln</translation>
+    </message>
+    <message>
+        <source>no tick yet</source>
+        <translation>noch kein Takt</translation>
     </message>
 </context>
 <context>
@@ -3192,65 +3231,6 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
     <message>
         <source>force over depth: press into a layer</source>
         <translation>Kraft über Tiefe: in eine Schicht drücken</translation>
-    </message>
-</context>
-<context>
-    <name>palpate::viewer::SurfaceList</name>
-    <message>
-        <source>Add a surface</source>
-        <translation>Fläche hinzufügen</translation>
-    </message>
-    <message>
-        <source>See another level beside the one that is felt: skin over bone</source>
-        <translation>Einen weiteren Wert neben dem gefühlten sehen: Haut über Knochen</translation>
-    </message>
-    <message>
-        <source>Surface %1</source>
-        <translation>Fläche %1</translation>
-    </message>
-    <message>
-        <source>Surface %1 is seen</source>
-        <translation>Fläche %1 ist zu sehen</translation>
-    </message>
-    <message>
-        <source>Colour of surface %1</source>
-        <translation>Farbe von Fläche %1</translation>
-    </message>
-    <message>
-        <source>Its level [data units]; also a line to drag on the histogram</source>
-        <translation>Ihr Wert [Dateneinheiten]; auch eine Linie zum Ziehen auf dem Histogramm</translation>
-    </message>
-    <message>
-        <source>Level of surface %1</source>
-        <translation>Wert von Fläche %1</translation>
-    </message>
-    <message>
-        <source>Its opacity, 0 to 1</source>
-        <translation>Ihre Deckkraft, 0 bis 1</translation>
-    </message>
-    <message>
-        <source>Opacity of surface %1</source>
-        <translation>Deckkraft von Fläche %1</translation>
-    </message>
-    <message>
-        <source>Feel</source>
-        <translation>Fühlen</translation>
-    </message>
-    <message>
-        <source>Feel this one; the one felt now takes its place here</source>
-        <translation>Diese fühlen; die jetzt gefühlte nimmt hier ihren Platz ein</translation>
-    </message>
-    <message>
-        <source>Feel surface %1</source>
-        <translation>Fläche %1 fühlen</translation>
-    </message>
-    <message>
-        <source>Remove it</source>
-        <translation>Entfernen</translation>
-    </message>
-    <message>
-        <source>Remove surface %1</source>
-        <translation>Fläche %1 entfernen</translation>
     </message>
 </context>
 <context>

@@ -29,7 +29,7 @@ class Stop(Exception):
 
 
 class Kind:
-    """What an option takes: as --help shows it, and how its text is read."""
+    """What an option takes: as --help shows it, and how its text is read, with a ValueError for what it does not take."""
 
     def __init__(self, shown: str, read: Callable[[str], Any] = str) -> None:
         self.shown, self.read = shown, read
@@ -37,7 +37,10 @@ class Kind:
     def __call__(self, text: str) -> Any:
         if not text:
             raise argparse.ArgumentTypeError(EMPTY)
-        return self.read(text)
+        try:
+            return self.read(text)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def number(words: str = "", fits: Callable[[float], bool] = math.isfinite) -> Kind:
@@ -45,9 +48,9 @@ def number(words: str = "", fits: Callable[[float], bool] = math.isfinite) -> Ki
     def read(text: str) -> float:
         if not _NUMBER.fullmatch(text):
             comma = ": its decimals follow a point, as in 1.5" if re.search(r"\d,\d", text) else ""
-            raise argparse.ArgumentTypeError(f"'{text}' is not a number{comma}")
+            raise ValueError(f"'{text}' is not a number{comma}")
         if not fits(float(text)):
-            raise argparse.ArgumentTypeError(f"{text} is not {words or 'a finite number'}")
+            raise ValueError(f"{text} is not {words or 'a finite number'}")
         return float(text)
     return Kind(f"FLOAT:{words}" if words else "FLOAT", read)
 
@@ -58,9 +61,9 @@ ABOVE_ZERO = number("a number above 0", lambda x: 0 < x < math.inf)
 def whole(least: int = 0, most: int = 2**31 - 1) -> Kind:
     def read(text: str) -> int:
         if not re.fullmatch(r"[+-]?\d+", text):
-            raise argparse.ArgumentTypeError(f"'{text}' is not a whole number")
+            raise ValueError(f"'{text}' is not a whole number")
         if not least <= int(text) <= most:
-            raise argparse.ArgumentTypeError(f"{text} is not a whole number from {least} to {most}")
+            raise ValueError(f"{text} is not a whole number from {least} to {most}")
         return int(text)
     return Kind("UINT", read)
 
@@ -68,7 +71,7 @@ def whole(least: int = 0, most: int = 2**31 - 1) -> Kind:
 def one_of(names: Sequence[str]) -> Kind:
     def read(text: str) -> str:
         if text not in names:
-            raise argparse.ArgumentTypeError(f"there is no '{text}': use one of {', '.join(names)}{_meant(text, names)}")
+            raise ValueError(f"there is no '{text}': use one of {', '.join(names)}{_meant(text, names)}")
         return text
     return Kind(f"TEXT:{{{','.join(names)}}}", read)
 
@@ -184,10 +187,10 @@ def _lost(stream: TextIO) -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
-def say(text: str, last: bool = False) -> None:
+def say(text: str, last: bool = False, end: str = "\n") -> None:
     """On standard output. last: the work is done, so a reader that has gone has all that it wanted."""
     try:
-        print(text, flush=True)
+        print(text, end=end, flush=True)
     except OSError as error:
         _lost(sys.stdout)
         if not isinstance(error, BrokenPipeError):
@@ -196,27 +199,47 @@ def say(text: str, last: bool = False) -> None:
             raise Stop(READER_GONE) from error
 
 
-def tell(text: object) -> None:
-    """On standard error, in a line."""
+def answer_to(text: str) -> str:
+    """A line of standard input."""
+    say(text, end="")
+    return input()
+
+
+def remark(text: str, end: str = "\n") -> None:
+    """On standard error, where nothing depends on it."""
     try:
-        print(f"palpate: {text}", file=sys.stderr, flush=True)
+        print(text, end=end, file=sys.stderr, flush=True)
     except OSError:
         _lost(sys.stderr)
+
+
+def tell(text: object) -> None:
+    """On standard error, in a line."""
+    remark(f"palpate: {text}")
 
 
 def _end(number: int, frame: Any) -> NoReturn:
     raise KeyboardInterrupt(number)
 
 
+def _end_at_once(number: int, frame: Any) -> NoReturn:
+    tell("interrupted")
+    os._exit(128 + number)
+
+
 def run(work: Callable[[], Any], interrupted: str = "interrupted", load: Callable[[], Any] = lambda: None) -> int:
     """Does the work of a command. Returns its exit status; what goes wrong is one line on standard error. Modules are loaded by `load`:
-    an interrupt while NumPy or a module of pybind11 is imported would come out of it as an ImportError, or not at all, so it waits."""
-    for end in ENDS:
-        signal.signal(end, _end)
+    an interrupt while NumPy or a module of pybind11 is imported would come out of it as an ImportError, or not at all. There is nothing to
+    put in order yet, so it ends the program."""
+    def handle_ends(by: Callable[[int, Any], NoReturn]) -> None:
+        for end in ENDS:
+            signal.signal(end, by)
+
     try:
-        signal.pthread_sigmask(signal.SIG_BLOCK, ENDS)
-        load()
+        handle_ends(_end_at_once)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDS)
+        load()
+        handle_ends(_end)
         work()
         sys.stdout.flush()
     except KeyboardInterrupt as error:

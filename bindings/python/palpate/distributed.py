@@ -19,12 +19,12 @@ import sys
 import threading
 import zlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Optional
+from typing import TYPE_CHECKING, Any, Callable, Optional, Union
 
 import numpy
 
 from . import InputError, Volume, __version__, _palpate, open_store, sharpened, smoothed
-from .command_line import Kind, Parser, one_of, run, say, whole
+from .command_line import Kind, Parser, one_of, remark, run, say, tell, whole
 
 if TYPE_CHECKING:  # help needs no Dask
     from distributed import Client
@@ -353,7 +353,7 @@ def _growing(out, job):
     folder = _palpate._GrowingFolder(out, job)
     try:
         if folder.note:
-            print(f"palpate: note: {folder.note}", file=sys.stderr)
+            tell(f"note: {folder.note}")
         yield
         for left in Path(_result(out)).rglob("*.part-*"):  # of workers that were killed
             left.unlink()
@@ -370,17 +370,18 @@ def _work(out):
     return f"{out}.partial/work"
 
 
-def convert(client: "Client", source: str, out: str, *, level: int = 0, dequantize: int = 0,
+def convert(client: Union["Client", Callable[[], "Client"]], source: str, out: str, *, level: int = 0, dequantize: int = 0,
             smooth: int = 0, prefilter: bool = False, chunk: int = 64, compression: str = "zstd",
             ome_version: str = "0.5", block: int = 256, options: Optional[dict] = None,
             progress: Progress = None) -> Converted:
     """Writes a level of a store as multiscale OME-Zarr, on the workers of a Dask client: the files of
     `palpate convert` with the same options, byte for byte.
 
-    source: what open_store() opens, with `options` for it (raw, spacing, channel, time). dequantize:
-    rounds (40; 0: none), smooth: passes, prefilter: sharpened(); in this order. block: samples of a
-    piece of work along each axis, a multiple of chunk; a task takes about 12 bytes for each of
-    (block + 64)^3 samples. progress(stage, done, all) may raise to stop; the next call with the same
+    client: may be a function that starts one, which is called when source and settings were found
+    good. source: what open_store() opens, with `options` for it (raw, spacing, channel, time).
+    dequantize: rounds (40; 0: none), smooth: passes, prefilter: sharpened(); in this order. block:
+    samples of a piece of work along each axis, a multiple of chunk; a task takes about 12 bytes for
+    each of (block + 64)^3 samples. progress(stage, done, all) may raise to stop; the next call with the same
     arguments goes on. Raises InputError, OutputError, ValueError.
     """
     out = os.path.abspath(out)
@@ -398,6 +399,7 @@ def convert(client: "Client", source: str, out: str, *, level: int = 0, dequanti
     job = _Job(source, pickle.dumps(options or {}), f"{seen(source)} {content}", level, _result(out), _work(out), kind,
                smooth, prefilter, chunk, compression, ome_version)
     job.image("level-0")  # refuses a wrong format before anything is made
+    client = client() if callable(client) else client
     check_workers(client)
     with _growing(out, json.dumps([__version__, repr(job), dequantize, block])):
         return _Conversion(client, job, block, progress).run(dequantize)
@@ -413,7 +415,7 @@ PARSER.add("--smooth", kind=whole(), default=0, help="Smooth the samples this ma
 PARSER.add_argument("--prefilter", action="store_true", help="Sharpen the samples for the smooth field")
 PARSER.add("--chunk", kind=whole(1), default=64, help="Samples of a chunk along each axis")
 PARSER.add("--block", kind=whole(), default=256, help="Samples of a piece of work along each axis, a multiple of the chunk")
-PARSER.add("--compression", kind=one_of(("none", "gzip", "zstd", "blosc")), default="zstd", help="Compression of the chunks")
+PARSER.add("--compression", kind=one_of(_palpate._COMPRESSIONS), default="zstd", help="Compression of the chunks")
 PARSER.add("--ome-version", kind=one_of(("0.4", "0.5")), default="0.5", help="Version of OME-Zarr")
 PARSER.add("--scheduler", kind=Kind("ADDRESS"), help="Address of a running Dask, tcp://HOST:8786")
 PARSER.add("--workers", kind=whole(1), help="Processes on this machine instead (default: one per core)")
@@ -422,16 +424,19 @@ PARSER.add("--workers", kind=whole(1), help="Processes on this machine instead (
 def _convert(scheduler, workers, given):
     from distributed import Client, LocalCluster
 
-    def tell(stage, done, count):
+    def progress(stage, done, count):
         if sys.stderr.isatty() or done == count:
-            print(f"\r{stage}: {done} of {count}", end="\n" if done == count else "", file=sys.stderr)
+            remark(f"\r{stage}: {done} of {count}", end="\n" if done == count else "")
 
-    with contextlib.ExitStack() as stack:
+    def started():
         cluster = scheduler or stack.enter_context(LocalCluster(
             n_workers=workers or os.cpu_count() or 1, threads_per_worker=1, dashboard_address="127.0.0.1:0"))
         client = stack.enter_context(Client(cluster))
-        print(f"dashboard: {client.dashboard_link}", file=sys.stderr)
-        done = convert(client, progress=tell, **given)
+        remark(f"dashboard: {client.dashboard_link}")
+        return client
+
+    with contextlib.ExitStack() as stack:
+        done = convert(started, progress=progress, **given)
     say(f"{given['out']}: OME-Zarr {given['ome_version']}, {done.levels} levels, {done.blocks} blocks ({done.kept} kept from before)",
         last=True)
 

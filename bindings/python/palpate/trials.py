@@ -11,7 +11,6 @@ import difflib
 import fcntl
 import io
 import math
-import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -19,7 +18,7 @@ from typing import Any, Optional, Union
 
 import numpy
 
-from .command_line import ABOVE_ZERO, Kind, Parser, run, say, whole
+from .command_line import ABOVE_ZERO, Kind, Parser, answer_to, remark, run, say, whole
 from .errors import DeviceError, InputError, OutputError
 
 _Path = Union[str, Path]
@@ -214,7 +213,7 @@ def put(render: Any, name: str, value: float) -> None:
 
 
 def touching(volume: _Path, level: Union[float, str, None], device: str, name: str, seconds: float, folder: _Path, largest: float,
-             key: Callable[[str], str] = input) -> Callable[[Trial], int]:
+             key: Callable[[str], str] = answer_to) -> Callable[[Trial], int]:
     """Asks by two touches of a device, one after the other, and a key. Each touch is recorded in the
     folder. A trial in which nothing was felt is asked again. largest: value of the setting. Raises ValueError if the device cannot
     render it as it is."""
@@ -247,7 +246,7 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
         while True:
             both = True
             for number, value in enumerate((trial.first, trial.second), 1):
-                print(f"Trial {trial.trial + 1}: touch {number}", file=sys.stderr, flush=True)
+                remark(f"Trial {trial.trial + 1}: touch {number}")
                 both &= felt(value, folder / f"{trial.trial}-{number}.csv")
             if both:
                 break

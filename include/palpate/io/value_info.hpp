@@ -1,4 +1,4 @@
-// What a file's header says of its values.
+// The meaning of a file's values, as its header gives it.
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
 // Renders a trajectory of the hand offline: the same ticks as a live run, as fast as possible.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <string>
 #include <vector>
@@ -48,6 +49,14 @@ struct OfflineSinks {
 std::function<void(Renderer&, std::int64_t)> wait_for_bricks(const LoadedVolume& loaded,
                                                              const io::Trajectory& trajectory,
                                                              std::function<void()> tell = {});
+
+/// For OfflineSinks::change: keeps the pace of the trajectory. With a store, the proxy is held
+/// where samples are missing (UpdateStatus::waiting), as in a live session, so the ticks depend on
+/// how fast the store answers. Before each tick, `wait_until` is called with the seconds since the
+/// first one. It waits, returns the time, and may throw. Keeps a reference to the trajectory.
+std::function<void(Renderer&, std::int64_t)> keep_pace(
+    const LoadedVolume& loaded, const io::Trajectory& trajectory,
+    std::function<std::chrono::steady_clock::time_point(double seconds)> wait_until);
 
 /// Renders each position of the trajectory (physical space) in order. The proxy begins at the first
 /// position if that is free, else where recovery finds free space. With layers, it begins in the

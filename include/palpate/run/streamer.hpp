@@ -50,14 +50,11 @@ class Streamer {
     stream::BrickLoaderStatus status() const { return loader_.status(); }
 
   private:
-    /// An attached servo, how many of the versions it has got, and where its hand was.
+    /// An attached servo, how many of the versions it has got, and how its hand moves.
     struct Hand {
         Servo* servo;
         std::uint64_t got = 0;
-        std::int64_t tick = -1;
-        double time = 0;               // [s]
-        Vec3 at = Vec3::Zero();        // [mm, physical]
-        Vec3 velocity = Vec3::Zero();  // [mm/s], low-pass filtered
+        stream::HandMotion motion = {};
     };
 
     void look(std::chrono::steady_clock::time_point now);

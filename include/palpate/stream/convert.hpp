@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "palpate/names.hpp"
 #include "palpate/stream/store.hpp"
 
 namespace palpate::stream {
@@ -51,3 +52,7 @@ void write_plain(const Store& from, int level, const std::filesystem::path& out,
                  const io::WriteOptions& options);
 
 }  // namespace palpate::stream
+
+template <>
+inline constexpr auto palpate::names_of<palpate::stream::Compression> =
+    palpate::enum_names("compression", "none", "gzip", "zstd", "blosc");

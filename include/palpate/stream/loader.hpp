@@ -54,6 +54,15 @@ struct Interest {
     Vec3 velocity = Vec3::Zero();  ///< of the hand [mm/s]
 };
 
+/// How a hand moves, by the places where it was seen.
+struct HandMotion {
+    std::optional<double> time = {};  ///< [s] when it was seen last
+    Vec3 at = Vec3::Zero();           ///< [mm, physical]
+    Vec3 velocity = Vec3::Zero();     ///< [mm/s], smoothed over 50 ms
+
+    void see(double now, const Vec3& place);
+};
+
 /// A brick that came, or with level -1 went.
 struct BrickEvent {
     Index3 brick;

@@ -13,7 +13,7 @@
 
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
-#include "apps/viewer/panel/layer_editor.hpp"
+#include "apps/viewer/panel/stroke_plot.hpp"
 #include "tests/viewer/panel/layers_fixture.hpp"
 
 namespace palpate::viewer {
@@ -346,6 +346,7 @@ TEST_F(LayersPart, the_curve_of_stiffness_is_dragged_and_gets_and_loses_points) 
     EXPECT_GT(knots()[1].at, -500) << "not past its neighbour";
     const QPoint between(int(axis.x_of(0)), int(place(0).y()) - 20);
     QTest::mouseDClick(&chart, Qt::LeftButton, {}, between);
+    QTest::mouseRelease(&chart, Qt::LeftButton, {}, between);
     settle();
     ASSERT_EQ(knots().size(), 3U);
     EXPECT_NO_THROW(check(*asked(), Solid::above));

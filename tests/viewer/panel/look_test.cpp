@@ -36,6 +36,11 @@ class Looks : public PanelFixture {
         QContextMenuEvent click(QContextMenuEvent::Mouse, at.toPoint());
         QApplication::sendEvent(editor(), &click);
     }
+    /// The second press, and its release.
+    void double_click(const QPointF& at) {
+        QTest::mouseDClick(editor(), Qt::LeftButton, {}, at.toPoint());
+        QTest::mouseRelease(editor(), Qt::LeftButton, {}, at.toPoint());
+    }
     const TransferFunction& transfer() { return panel.look_controls().look().transfer; }
     const Look& last() {
         settle();
@@ -163,9 +168,20 @@ TEST_F(Looks, a_point_is_dragged_between_its_neighbours) {
     EXPECT_EQ(last().transfer.points[2], before.points[2]);
 }
 
+TEST_F(Looks, a_second_press_on_a_point_drags_it_too) {
+    const QPointF from = place(3), to = from + QPointF(5, -20);
+    QTest::mouseClick(editor(), Qt::LeftButton, {}, from.toPoint());
+    QTest::mouseDClick(editor(), Qt::LeftButton, {}, from.toPoint());
+    for (int i = 1; i <= 8; ++i) move(editor(), from + (to - from) * (i / 8.0));
+    QTest::mouseRelease(editor(), Qt::LeftButton, {}, to.toPoint());
+    EXPECT_GT(last().transfer.points[3].level, look.transfer.points[3].level);
+    EXPECT_GT(last().transfer.points[3].opacity, look.transfer.points[3].opacity);
+    EXPECT_EQ(panel.findChild<QColorDialog*>(), nullptr) << "it was no double click";
+}
+
 TEST_F(Looks, a_double_click_adds_a_point_with_the_colour_that_is_there) {
     const QPointF at(0.5 * (place(4).x() + place(5).x()), place(4).y() + 25);
-    QTest::mouseDClick(editor(), Qt::LeftButton, {}, at.toPoint());
+    double_click(at);
     const auto& points = last().transfer.points;
     ASSERT_EQ(points.size(), look.transfer.points.size() + 1);
     const ControlPoint was = sampled(look.transfer, points[5].level);
@@ -232,7 +248,7 @@ TEST_F(Looks, a_colour_is_chosen_in_a_dialog_and_cancelled) {
     EXPECT_NEAR(last().surface_colour.green, 200 / 255.0, 1e-4);
     dialog->reject();
     EXPECT_EQ(last().surface_colour, look.surface_colour);
-    QTest::mouseDClick(editor(), Qt::LeftButton, {}, place(3).toPoint());
+    double_click(place(3));
     dialog = nullptr;
     for (auto* one : panel.findChildren<QColorDialog*>()) {
         if (one->isVisible()) dialog = one;

@@ -342,5 +342,25 @@ TEST(SlicePane, odd_sizes_and_places_do_no_harm) {
     single.picture();
 }
 
+TEST(SlicePane, the_crosshair_leaves_room_for_words) {
+    Geometry geometry = scenes::centred({48, 40, 33}, {1, 1.25, 1.5}, Mat3::Identity());
+    geometry.origin += Vec3(120, 120, 120);  // long numbers
+    ShownPane shown(
+        2, linear_field(scenes::make_volume("sphere", geometry, SampleType::float32).volume));
+    const int line = shown.pane.fontMetrics().height();
+    shown.pane.resize(7 * line, 24 * line);
+    const QImage image = shown.picture();
+    keep_picture(shown.pane, "narrow_pane");
+    const double scale = image.devicePixelRatio();
+    const int x = static_cast<int>(shown.pane.pixel_of(shown.pane.crosshair()).x() * scale);
+    const auto yellow = [&](double y) {
+        const QRgb colour = image.pixel(x, static_cast<int>(y * scale));
+        return qRed(colour) - qBlue(colour) > 60;
+    };
+    EXPECT_TRUE(yellow(6 * line)) << "the line is there";
+    // Title, count and position have a line each.
+    for (double y = 0.4 * line; y < 3.2 * line; ++y) EXPECT_FALSE(yellow(y)) << y / line;
+}
+
 }  // namespace
 }  // namespace palpate::viewer

@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/layer_editor.hpp"
 #include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/panel/stroke_plot.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/edit_controller.hpp"

@@ -1,6 +1,5 @@
 """The command palpate evaluate."""
 
-import argparse
 import contextlib
 import importlib.util
 import json
@@ -11,7 +10,7 @@ import sys
 import uuid
 from pathlib import Path
 
-from ..command_line import Kind, Parser, Stop, one_of, say, tell, whole
+from ..command_line import Kind, Parser, Stop, one_of, remark, say, tell, whole
 from ..command_line import run as command
 
 EXPERIMENTS = ("drift", "fall-through", "performance", "scaling", "fidelity", "stability", "walk-through",
@@ -32,7 +31,7 @@ def interval(text):
         if not low <= high or len({end.endswith("%") for end in ends}) == 2:
             raise ValueError
     except ValueError as error:
-        raise argparse.ArgumentTypeError(f"'{text}' is no range such as 12%:20% or 300:900") from error
+        raise ValueError(f"'{text}' is no range such as 12%:20% or 300:900") from error
     if not text.endswith("%"):
         return (lambda volume: low), (lambda volume: high)
     return tuple((lambda volume, part=part: volume.minimum + part / 100 * (volume.maximum - volume.minimum))
@@ -110,7 +109,7 @@ def options_of(chosen, name):
 
     def progress(part):
         if sys.stderr.isatty() and not (chosen.quiet or chosen.json):
-            print(f"\r{name} {part:4.0%} ", end="\n" if part >= 1 else "", file=sys.stderr, flush=True)
+            remark(f"\r{name} {part:4.0%} ", end="\n" if part >= 1 else "")
 
     def note(text):
         if not chosen.quiet:
@@ -145,13 +144,13 @@ def run(name, chosen, folder, words):
 
 def shown(made):
     lines = [f"{made.name}: {made.title}", *made.result.paragraphs]
-    lines += [f"  {'holds:' if c.held else 'DOES NOT HOLD:'} {c.statement} ({c.measured})" for c in made.claims]
+    lines += [f"  {'holds:' if c.held else 'DOES NOT HOLD:'} {c.statement} ({c.measured})" for c in made.result.claims]
     return "\n".join(lines) + "\n"
 
 
 def as_json(reports):
     return json.dumps([{"experiment": r.name, "paragraph": " ".join(r.result.paragraphs), "claims": [
-        {"statement": c.statement, "holds": c.held, "measured": c.measured} for c in r.claims],
+        {"statement": c.statement, "holds": c.held, "measured": c.measured} for c in r.result.claims],
         "circumstances": r.circumstances} for r in reports], indent=2)
 
 
@@ -181,7 +180,7 @@ def evaluate(chosen, words):
         say(as_json(reports), last=True)
     elif not chosen.quiet:
         say(f"Results: {chosen.output}{' (open report.html)' if chosen.experiment == 'all' else ''}", last=True)
-    broken = sum(not claim.held for made in reports for claim in made.claims)
+    broken = sum(not claim.held for made in reports for claim in made.result.claims)
     if broken:
         raise Stop(CLAIMS_BROKEN, f"{broken} of the claims do not hold (see above)")
 

@@ -14,11 +14,8 @@ SHOWN_SPEED, SHOWN_RATE = 200, 1000  # of the hand in the figure
 
 
 def subjects_of(options):
-    if options.subjects:
-        return list(options.subjects)
     names = ("sphere:40x40x40",) if options.quick else ("sphere", "torus", "marschner-lobb")
-    own = [synthetic("cylinder", 0.53), *map(synthetic, names)]
-    return own if options.quick else own + reals(["lobster"], options)
+    return options.subjects or [synthetic("cylinder", 0.53), *map(synthetic, names), *reals(["lobster"], options)]
 
 
 def go_round(subject, ring, contestant, speed, rate, turns):
@@ -42,14 +39,8 @@ def go_round(subject, ring, contestant, speed, rate, turns):
                "constrained_share": numpy.count_nonzero(trace.constrained) / max(1, inside), "updates": updates}
 
 
-def is_noted(turn, turns, shown):
-    """Every turn of the figure's hand at first, then every other one. The last turn is enough for the others."""
-    return turn == turns or (shown and (turn <= 10 or turn % 2 == 0))
-
-
 def summary_of(last):
-    for name in CONTESTANTS:
-        rows = last.where(method=name)
+    for name, rows in last.by("method"):
         worst = rows["worst_deviation_of_range"]
         yield {"method": name, "largest deviation": f"{largest(worst):.2g}",
                "median of the runs [95 % interval]": sampling.in_words(worst, "{:.2g}"), "runs": len(rows),
@@ -58,8 +49,8 @@ def summary_of(last):
 
 def in_words(rows, stay):
     """The contestants that are always on the isosurface, or the others."""
-    return ", ".join(name for name in CONTESTANTS if stay == (
-        largest(rows.where(method=name)["worst_deviation_of_range"]) <= GRANTED)) or "none"
+    return ", ".join(name for name, own in rows.by("method")
+                     if stay == (largest(own["worst_deviation_of_range"]) <= GRANTED)) or "none"
 
 
 def figure_of(table, last):
@@ -67,8 +58,7 @@ def figure_of(table, last):
     shown = table.where(volume=table[0]["volume"], speed_mm_s=SHOWN_SPEED, rate_hz=SHOWN_RATE)
     rates = sorted(last.distinct("rate_hz"))
     left.axhline(shown[0]["isovalue"], color=figures.GREY, lw=0.8, ls="--")
-    for name in CONTESTANTS:
-        rows = shown.where(method=name)
+    for name, rows in shown.by("method"):
         figures.curve(left, name, rows["turn"], rows["density"], markevery=0.25)
         figures.curve(right, name, rates, [max(1e-17, largest(last.where(method=name, rate_hz=rate)["worst_deviation_of_range"]))
                                            for rate in rates])
@@ -98,7 +88,8 @@ def run(options):
     for body, speed, rate, contestant in options.each(itertools.product(bodies, speeds, rates, CONTESTANTS.values())):
         shown = speed == SHOWN_SPEED and rate == SHOWN_RATE
         rows = list(go_round(*body, contestant, speed, rate, turns))
-        table.extend(row for row in rows if is_noted(row["turn"], turns, shown))
         last.append(rows[-1])
+        # Every turn of the figure's hand at first, then every other one. The last turn is enough for the others.
+        table.extend(row for row in rows if row is rows[-1] or shown and (row["turn"] <= 10 or row["turn"] % 2 == 0))
     text = PAGE.text(turns=turns, bodies=len(bodies), speeds=len(speeds), rates=len(rates))
     return Result(table, [figure_of(table, last)], claims_of(last, not options.subjects), text, summary_of(last))

@@ -98,6 +98,10 @@ class Table(list):
     def only(self, holds):
         return Table(row for row in self if holds(row))
 
+    def by(self, column):
+        """(cell, its rows) for each of the cells of a column."""
+        return [(cell, self.where(**{column: cell})) for cell in self.distinct(column)]
+
     def __getitem__(self, column):
         """A column as an array, NaN where nothing was measured; or a row by its number."""
         if not isinstance(column, str):

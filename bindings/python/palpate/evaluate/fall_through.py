@@ -123,8 +123,7 @@ def share_in_words(table, column, of="crossings"):
 
 
 def summary_of(table):
-    for name in table.distinct("method"):
-        rows = table.where(method=name)
+    for name, rows in table.by("method"):
         yield {"method": name, "crossings": f"{rows['crossings'].sum():,.0f}",
                "ends inside [95 % interval]": share_in_words(rows, "inside_share"),
                "inside while the hand is in the wall": share_in_words(rows, "inside_while_pressed_share", "pressed"),
@@ -143,8 +142,7 @@ def figure_of(table):
     shares = {"inside_share": "inside behind the wall", "inside_while_pressed_share": "inside, hand in the wall",
               "unfelt_share": "wall not felt"}
     for axes, (column, title) in zip(panels, shares.items()):
-        for name in table.distinct("method"):
-            rows = table.where(method=name).only(lambda row: not numpy.isnan(row[column]))
+        for name, rows in table.only(lambda row: not numpy.isnan(row[column])).by("method"):
             steps = sorted(rows.distinct("step_mm"))
             values = [100 * rows.where(step_mm=step)[column] for step in steps]
             figures.curve(axes, name, steps, [v.mean() for v in values], markersize=3)
@@ -172,10 +170,7 @@ def map_of(table):
 
 
 def claims_of(table, groups, own_walls):
-    for method in GUARDED:
-        rows = table.where(method=method)
-        if not rows:
-            continue
+    for method, rows in table.only(lambda row: row["method"] in GUARDED).by("method"):
         most, count = largest(rows["inside_share"]), int(rows["crossings"].sum())
         measured = sampling.none_of(count, "crossings") if most == 0 else f"largest share {most:g} of {count:,}"
         yield PAGE.claim("never", most == 0, method=method, measured=measured)

@@ -263,4 +263,6 @@ def run(options):
     if options.subjects:
         return Result(table, [figure_of_users(table)], claims, PAGE.text("volumes of a user"))
     shown = [figure_of_ball(table), figure_of_turn(64 if options.quick else 128), figure_of_losses(table), figure_of_shapes(table)]
-    return Result(table, shown, claims, PAGE.text(steps=steps), summary_of(table))
+    off = {name: largest(ball_rows(table, samples, "smooth")["off_ideal_mean_deg"])
+           for name, samples in (("unrounded", "float32"), ("dequantized", "uint8 dequantized"), ("raw", "uint8"))}
+    return Result(table, shown, claims, PAGE.text(steps=steps, **off), summary_of(table))

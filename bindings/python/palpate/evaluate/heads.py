@@ -42,7 +42,7 @@ def heads_of(options):
     sample = palpate.SAMPLE_SKIN, palpate.SAMPLE_BONE
     levels = {"sample head": sample, "ct-head": (500, 1200), "visible-human": sample}
     scans = [linear("sample head", palpate.load(palpate.sample_volume()).volume, palpate.SAMPLE_SKIN),
-             *reals([] if options.quick else list(levels)[1:], options)]
+             *reals(list(levels)[1:], options)]
     scans = [dataclasses.replace(scan, isovalue=levels[scan.name][0]) for scan in scans]
     return [Head(scan, levels[scan.name][1], way_into_head(scan)) for scan in scans]
 

@@ -74,15 +74,11 @@ def lines_at(speed, quick):
 
 
 def puncture_rows(where, found):
-    for tissue, (name, wanted) in enumerate(zip(TISSUES, PUNCTURE)):
-        extended, sampled = numpy.array([forces for number, *forces in found if number == tissue]).reshape(-1, 2).T
-        row = {"part": "puncture", **where, "layer": name, "punctures": len(extended), "puncture_force_n": wanted}
-        if len(extended):
-            row.update({"extrapolated_mean_n": extended.mean(),
-                        "extrapolated_off_percent": 100 * abs(extended - wanted).max() / wanted,
-                        "greatest_sampled_n": sampled.max(), "greatest_sampled_mean_n": sampled.mean()})
-        if numpy.isfinite(wanted):
-            yield row
+    for tissue, (name, wanted) in enumerate(zip(TISSUES, PUNCTURE[numpy.isfinite(PUNCTURE)])):
+        extended, sampled = numpy.array([both for number, *both in found if number == tissue]).reshape(-1, 2).T
+        forces = {"extrapolated_mean_n": extended.mean(), "extrapolated_off_percent": 100 * abs(extended - wanted).max() / wanted,
+                  "greatest_sampled_n": sampled.max(), "greatest_sampled_mean_n": sampled.mean()} if len(extended) else {}
+        yield {"part": "puncture", **where, "layer": name, "punctures": len(extended), "puncture_force_n": wanted, **forces}
 
 
 def insertions(body, interpolation, options):
@@ -289,8 +285,7 @@ def insertion_figure(table):
 def puncture_figure(table):
     drawn, axes = figures.panels(height=2.6)
     rows = table.where(part="puncture", field="linear", body="balls")
-    for name, colour in zip(rows.distinct("layer"), (figures.BLUE, figures.GREEN, figures.VERMILION, figures.PURPLE)):
-        of = rows.where(layer=name)
+    for (name, of), colour in zip(rows.by("layer"), (figures.BLUE, figures.GREEN, figures.VERMILION, figures.PURPLE)):
         axes.plot(of["speed_mm_s"], 100 * of["greatest_sampled_mean_n"] / of["puncture_force_n"], "o-", color=colour, label=name)
     axes.plot(of["speed_mm_s"], 100 * of["extrapolated_mean_n"] / of["puncture_force_n"], "k--", lw=1, label="extended")
     axes.set(title="a fast hand feels less than the peak", xscale="log", ylim=(70, 103), xlabel="speed of the hand [mm/s]",

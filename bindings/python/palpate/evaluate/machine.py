@@ -33,10 +33,7 @@ def processor():
 def build():
     """How the module was built, as far as its build tree tells."""
     version = f"Palpate {palpate.__version__}"
-    for folder in Path(palpate.__file__).resolve().parents:
-        cache = folder / "CMakeCache.txt"
-        if not cache.exists():
-            continue
+    for cache in filter(Path.exists, (folder / "CMakeCache.txt" for folder in Path(palpate.__file__).resolve().parents)):
         kind = first(cache, r"^CMAKE_BUILD_TYPE:\w+=(\w+)$", "no build type")
         flags = " ".join(first(cache, rf"^CMAKE_CXX_FLAGS{name}:\w+=(.*)$", "")
                          for name in ("", f"_{kind.upper()}")).strip()

@@ -44,7 +44,7 @@ def steady(subject):
 def bodies_of(options):
     """Functions that make one body each."""
     grids = () if options.subjects else (64,) if options.quick else (128, 256)
-    scanned = options.subjects or reals([] if options.quick else ["ct-head"], options)
+    scanned = options.subjects or reals(["ct-head"], options)
     return [*(functools.partial(ball_by, "circle", *of) for of in itertools.product(grids, SAMPLES)),
             *(functools.partial(steady, subject) for subject in scanned)]
 

@@ -50,9 +50,7 @@ def of_a_user(subject):
 
 
 def lines_of(options):
-    lines = [of_a_user(subject) for subject in options.subjects]
-    if not lines:
-        lines = [*map(ct_head, reals([] if options.quick else ["ct-head"], options)), shepp_logan(options.quick)]
+    lines = [*map(of_a_user, options.subjects)] or [*map(ct_head, reals(["ct-head"], options)), shepp_logan(options.quick)]
     for line in lines if options.ranges else ():
         line.ranges = [tuple(end(line.subject.field.volume) for end in ends) for ends in options.ranges]
         line.levels = {line.subject.isovalue: "minimum", **{low: "range" for low, _ in line.ranges}}
@@ -175,6 +173,6 @@ def run(options):
     table, presses, lines = Table(), [], lines_of(options)
     for line, function in options.each((line, function) for line in lines for function in FUNCTIONS):
         presses.append(Press(line, function))
-        table.extend(presses[-1].rows(20 if options.quick else 5))
+        table.extend(presses[-1].rows(20 if options.quick else 10))
     text = PAGE.text(ranges=" ".join(map(ranges_of, lines)))
     return Result(table, [figure_of(lines, presses)], claims_of(presses), text, summary_of(presses))

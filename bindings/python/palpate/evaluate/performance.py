@@ -27,18 +27,17 @@ TIMES = {"max_ns": ("max", figures.VERMILION, "D"), "cold_p50_ns": ("p50, caches
          "p50_ns": ("p50", figures.BLUE, ".")}
 
 
-Effort = collections.namedtuple("Effort", "trajectories trajectory_s passes cold")  # cold: so many updates after emptied caches
+Effort = collections.namedtuple("Effort", "trajectories trajectory_s passes cold")
 
 
 def cases_of(options):
     """(volume, the row of the paper's table that it is measured for, if any)."""
     if options.subjects:
         return [(subject, None) for subject in options.subjects]
-    cylinder = synthetic("cylinder", 0.53), "cylinder"
-    if options.quick:
-        return [cylinder, (synthetic("shepp-logan:64x64x64"), "visible-male")]
-    return [cylinder, *((dataclasses.replace(subject, name=NAMES.get(subject.name, subject.name)), STAND_INS[subject.name])
-                        for subject in reals(STAND_INS, options))]
+    head = [(synthetic("shepp-logan:64x64x64"), "visible-male")] if options.quick else []
+    return [(synthetic("cylinder", 0.53), "cylinder"), *head,
+            *((dataclasses.replace(subject, name=NAMES.get(subject.name, subject.name)), STAND_INS[subject.name])
+              for subject in reals(STAND_INS, options))]
 
 
 def moved_rows(hand):
@@ -48,17 +47,17 @@ def moved_rows(hand):
     return moved
 
 
-def timed(subject, names, hand, effort):
+def timed(subject, names, hand, passes, cold=0):
     """Arrays of times [ns] by contestant. All take turns in each pass, so that others' work on the machine meets all. A proxy does the same
-    work in every pass, so what differs between passes is the machine's."""
+    work in every pass, so what differs between passes is the machine's. cold: about so many updates more, after emptied caches."""
     felt = {name: (CONTESTANTS[name].felt(subject).field, subject.isovalue, hand["hips"], hand["first"], CONTESTANTS[name].method)
             for name in names}
     taken = {name: {"batch": [], "single": []} for name in names}
-    for _, (name, of) in itertools.product(range(effort.passes), felt.items()):
+    for _, (name, of) in itertools.product(range(passes), felt.items()):
         taken[name]["batch"].append(palpate.update_times(*of, batch=BATCH))
         taken[name]["single"].append(palpate.update_times(*of).astype(numpy.float32))
     for name, of in felt.items():
-        every = max(1, moved_rows(hand).sum() // effort.cold) if effort.cold else 0
+        every = max(1, moved_rows(hand).sum() // cold) if cold else 0
         taken[name]["cold"] = palpate.update_times(*of, cold=every) if every else []
         taken[name]["trace"] = palpate.follow_each(*of, threads=1)
     return taken
@@ -89,7 +88,7 @@ def rows_of(subject, row, resolution, effort, seed):
     speed, share = paper["speed_mm_s"], paper["constrained_share"]
     hand = palpate.explore(subject.field, subject.isovalue, name=subject.name, depth_mm=DEPTH * scale, seed=seed,
                            trajectories=effort.trajectories, trajectory_s=effort.trajectory_s, wanted=(speed * scale, share))
-    taken = timed(subject, METHODS, hand, effort)
+    taken = timed(subject, METHODS, hand, effort.passes, effort.cold)
     clock = numpy.median(palpate.update_times(subject.field, subject.isovalue, hand["hips"], hand["first"], batch=0)[:1001])
     for name in METHODS:
         numbers = numbers_of(taken[name], hand, clock)

@@ -57,11 +57,6 @@ def read(path):
     return Recording(path.parent.name if path.name == "probe.traj" else path.stem, table[:, 0], table[:, 1:4], table[:, 4:])
 
 
-def write(recording, path):
-    rows = numpy.column_stack([recording.time, recording.position, recording.force])
-    numpy.savetxt(path, rows, fmt=["%.3f"] + 6 * ["%.4f"], header=" ".join(COLUMNS), comments="# ")
-
-
 def modelled(seed, seconds):
     """The modelled hand on a plane that is no plane of a grid."""
     tip, force = press(Human(), numpy.random.default_rng([seed, 7]), seconds, PRESS, WALL, FRICTION)

@@ -3,6 +3,7 @@
 import base64
 import csv
 import dataclasses
+import functools
 import html
 import importlib.util
 import math
@@ -21,23 +22,13 @@ class Report:
     result: Result
     circumstances: str
 
-    @property
-    def claims(self):
-        return self.result.claims
+
+def number(cell, digits=12):
+    """To more digits than other compilers repeat; nothing for NaN."""
+    return cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.{digits}g}"
 
 
-def number(cell):
-    """Digits that read back as the same double; nothing for NaN."""
-    if isinstance(cell, str):
-        return cell
-    if math.isnan(cell):
-        return ""
-    text = repr(float(cell))
-    return text[:-2] if text.endswith(".0") else text
-
-
-def short(cell):
-    return cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.4g}"
+short = functools.partial(number, digits=4)
 
 
 def write_csv(table, path):
@@ -59,6 +50,11 @@ def files_of(report):
         yield f"{report.name}-{figure.suffix}.svg" if figure.suffix else f"{report.name}.svg", figure.caption
 
 
+def in_place_of_a_picture(caption):
+    """Its first sentence. The caption stands below the picture and need not be read out twice."""
+    return caption.partition(". ")[0].rstrip(".")
+
+
 def markdown_table(table):
     lines = [table.columns, ["---"] * len(table.columns), *table.cells(short)]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines) + "\n" if table else ""
@@ -68,7 +64,7 @@ def markdown(report):
     result = report.result
     text = f"# {report.name}: {report.title}\n\n" + "".join(f"{p}\n\n" for p in result.paragraphs)
     text += markdown_table(result.summary)
-    text += "".join(f"![{caption}]({file})\n\n{caption}\n\n" for file, caption in files_of(report))
+    text += "".join(f"![{in_place_of_a_picture(caption)}]({file})\n\n{caption}\n\n" for file, caption in files_of(report))
     text += markdown_table(claims_of(result))
     text += "".join(f"{line}\n\n" for line in data_of(result))
     return text + f"All numbers: [{report.name}.csv]({report.name}.csv). {report.circumstances}\n"
@@ -100,10 +96,10 @@ def section(report, folder, whole):
     for figure, (file, caption) in zip(report.result.figures, files_of(report)):
         # WeasyPrint 57 sets the text of such SVG in wrong sizes, so paper gets pixels.
         kind, data = ("svg+xml", (folder / file).read_bytes()) if whole else ("png", figures.pixels(figure.drawn))
-        caption = html.escape(caption)
-        parts.append(f'<figure><img style="width:{figure.drawn.get_figwidth():g}in" alt="{caption}" '
+        alt = html.escape(in_place_of_a_picture(caption))
+        parts.append(f'<figure><img style="width:{figure.drawn.get_figwidth():g}in" alt="{alt}" '
                      f'src="data:image/{kind};base64,{base64.b64encode(data).decode()}">'
-                     f"<figcaption>{caption}</figcaption></figure>\n")
+                     f"<figcaption>{html.escape(caption)}</figcaption></figure>\n")
     table = report.result.table
     numbers = (f"<details><summary>All numbers ({len(table)} rows)</summary>\n{html_table(table)}</details>\n" if whole else
                small(f"All {len(table)} rows of numbers are in {report.name}.csv."))
@@ -119,11 +115,11 @@ def circumstances_of(reports):
 def page_of(reports, folder, whole=True):
     """HTML of all reports; `folder` holds the figures, which are embedded. whole: with the tables of all numbers."""
     page = string.Template((Path(__file__).parent / "pages" / "report.html").read_text(encoding="utf-8"))
-    held = [claim.held for report in reports for claim in report.claims]
+    held = [claim.held for report in reports for claim in report.result.claims]
     return page.substitute(sections="".join(section(report, folder, whole) for report in reports), held=sum(held), claims=len(held),
                            circumstances="".join(circumstances_of(reports)), entries="".join(
         f'<li><a href="#{r.name}">{r.name}</a>: {html.escape(r.title)} '
-        f"({sum(c.held for c in r.claims)} of {len(r.claims)} claims hold)</li>\n" for r in reports))
+        f"({sum(c.held for c in r.result.claims)} of {len(r.result.claims)} claims hold)</li>\n" for r in reports))
 
 
 def write_pages(reports, folder, into):

@@ -8,7 +8,7 @@ import palpate
 
 from . import figures, machine
 from .experiment import GRANTED, Page, Result, Table
-from .performance import Effort, moved_rows, numbers_of, timed
+from .performance import moved_rows, numbers_of, timed
 from .sampling import quantile
 from .subjects import cube, reals
 
@@ -30,10 +30,9 @@ class Plan:
     sizes: tuple = (64, 128, 256, 512, 768, 1024)  # samples along an edge
     noises: tuple = (0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)  # of the density's range
     explicit_sizes: tuple = (64, 128, 256, 512, 1024)
-    real: tuple = ("lobster", "ct-head")
 
 
-QUICK = Plan(1500, 3, (20, 100, 500), (0.5, 2), (64, 80, 128), (0, 0.1, 1), (32, 64), ())
+QUICK = Plan(1500, 3, (20, 100, 500), (0.5, 2), (64, 80, 128), (0, 0.1, 1), (32, 64))
 FULL = Plan(20000, 5)
 
 
@@ -96,7 +95,7 @@ def cells_of(part, subject):
 def time_rows(part, subject, hand, passes, **cells):
     """A row for each method, timed in turns."""
     way = numpy.linalg.norm(numpy.diff(hand["hips"], axis=0), axis=1)[moved_rows(hand)[1:]].sum()
-    for name, taken in timed(subject, METHODS, hand, Effort(0, 0, passes, 0)).items():
+    for name, taken in timed(subject, METHODS, hand, passes).items():
         numbers = numbers_of(taken, hand)
         yield {**cells_of(part, subject), **cells, "method": name, "path_voxel": way / subject.voxel,
                **{column: numbers[column] for column in MEASURED}}
@@ -162,7 +161,7 @@ def levels_of(subject, hand):
 def dynamic_numbers(subject, hand, segments, passes):
     """What the same touch costs our method."""
     levels, jumped = levels_of(subject, hand)
-    taken = timed(subject, ["exact"], hand, Effort(0, 0, passes, 0))["exact"]
+    taken = timed(subject, ["exact"], hand, passes)["exact"]
     runs = [palpate.follow_levels(subject.field, hand["hips"], hand["first"], levels) for _ in range(passes)]
     trace = runs[0]["trace"]
     medians = numpy.median([run["trace"].update_ns[jumped] for run in runs], axis=0)
@@ -209,13 +208,12 @@ def by_approach(plan, options):
             yield from compared(shape.sampled(), shape.hand(3, SPEED / RATE * VOXELS, plan.ticks))
 
     yield from () if options.subjects else map(ball, plan.explicit_sizes)
-    for subject in options.subjects or reals(plan.real, options):
+    for subject in options.subjects or reals(("lobster", "ct-head"), options):
         yield compared(subject, over(subject, SPEED, VOXELS, plan.ticks, options.seed))
 
 
 def time_text(seconds):
-    unit, name = next(((unit, name) for unit, name in ((1, "s"), (1e-3, "ms"), (1e-6, "µs")) if seconds >= unit), (1e-9, "ns"))
-    return f"{seconds / unit:.3g} {name}"
+    return figures.matplotlib.ticker.EngFormatter("s")(float(f"{seconds:.3g}"))
 
 
 def summary_of(table):
@@ -330,17 +328,14 @@ def span(values):
 
 
 def text_of(table, own_volumes):
-    def mean(part, method="exact"):
-        return span(table.where(part=part, method=method)["mean_ns"])
-
     rows, sections = table.where(part="explicit"), ["", *(["growth"] if own_volumes else []), "explicit"]
-    values = {"by_speed": mean("speed"), "by_speed_smooth": mean("speed", "smooth"), "by_voxels": mean("voxels-per-mm"),
-              "by_voxels_smooth": mean("voxels-per-mm", "smooth"), "state": rows[0]["state_bytes"]}
+    values = {"state": rows[0]["state_bytes"], "mean": {f"{part} {method}": span(table.where(part=part, method=method)["mean_ns"])
+                                                        for part, method in itertools.product(GROWTH, METHODS)}}
     if own_volumes:
         found, edges = crossings(table), table.where(part="size").distinct("size")
         moved = table.where(part="noise", method="exact")["tetrahedra_per_update"]
-        values.update(fewest=found.min(), most=found.max(), small=edges[0], large=edges[-1], by_size=mean("size"), by_noise=mean("noise"),
-                      calm=moved.max(), noisy=moved.min())
+        values.update(fewest=found.min(), most=found.max(), small=edges[0], large=edges[-1], calm=moved.max(),
+                      noisy=moved.min())
     if not numpy.isnan(rows["explicit_segment_ns"]).all():
         sections.append("segments")
         values.update(segment=span(rows["explicit_segment_ns"]), update=span(rows["mean_ns"]))

@@ -141,12 +141,9 @@ def measured(cases, options):
 def largest_stable(rows, rate, steps=2):
     """The largest stiffness up to which every one tried moves by so many encoder steps at most, which is at rest for two; 0 if none
     does."""
-    found = 0.0
-    for row in rows.where(rate_hz=rate):
-        if not moves_within(steps, row["position_peak_to_peak_mm"], row["encoder_step_mm"]):
-            break
-        found = row["stiffness_N_mm"]
-    return found
+    stable = itertools.takewhile(lambda row: moves_within(steps, row["position_peak_to_peak_mm"], row["encoder_step_mm"]),
+                                 rows.where(rate_hz=rate))
+    return max((row["stiffness_N_mm"] for row in stable), default=0.0)
 
 
 def compared(table, plan, on_linear, on_smooth, steps):

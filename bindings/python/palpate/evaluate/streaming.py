@@ -45,8 +45,7 @@ def summary_of(table, plan):
 def lines(panels, table, plan, column, factor, label):
     """A line for each latency, against the hand's speed; a panel for each kind of levels."""
     for axes, levels in zip(panels, LEVELS):
-        for latency, colour in zip(plan.latencies, COLOURS):
-            rows = table.where(levels=levels, latency_ms=latency)
+        for (latency, rows), colour in zip(table.where(levels=levels).by("latency_ms"), COLOURS):
             axes.plot(rows["speed_voxel_s"], factor * rows[column], "o-", color=colour, label=f"{latency:g} ms per request")
         axes.set(xscale="log", title=levels)
     panels[0].set_ylabel(label)

@@ -97,8 +97,8 @@ def synthetic(specification, isovalue=None, type=None):
 
 
 def reals(names, options):
-    """Those of the real volumes that the data folder has."""
-    return [subject for name in names if (subject := real(name, options))]
+    """Those of the real volumes that the data folder has; none in the quick mode."""
+    return [] if options.quick else [subject for name in names if (subject := real(name, options))]
 
 
 def real(name, options):

@@ -180,32 +180,29 @@ def judge(scene, tool, path):
     return int(counts.sum()), worst.max()
 
 
-def distances(tool, path, hands, turns):
-    """[mm] from hand to proxy, and from each hand to the proxy before it."""
-    proxy = Rotation.from_quat(path["orientation_xyzw"])
+def growth(tool, path, hands, turns):
+    """[mm] How much farther each hand is from the proxy than it was from the proxy before."""
+    def distance(position, orientation):
+        turn = (turns[1:] * Rotation.from_quat(orientation).inv()).magnitude() if tool.turns else 0
+        return numpy.hypot(numpy.linalg.norm(hands[1:] - position, axis=1), tool.gyration * turn)
 
-    def of(ticks):
-        turn = (turns[1:] * proxy[ticks].inv()).magnitude() if tool.turns else 0
-        return numpy.hypot(numpy.linalg.norm(hands[1:] - path["position"][ticks], axis=1), tool.gyration * turn)
-
-    return of(slice(1, None)), of(slice(None, -1))
+    places = path["position"], path["orientation_xyzw"]
+    return distance(*(place[1:] for place in places)) - distance(*(place[:-1] for place in places))
 
 
 def followed(scene, tool, hands, turns, method="exact"):
-    """(path, mean time of an update [us])."""
+    """(path, verdict) of a tool that starts at the first hand, in free space. The verdict has only the mean time of an update [us]."""
     begun = time.perf_counter()
     path = palpate.follow_tool(scene.field, scene.isovalue, tool, hands, turns.as_quat(), method)
-    return path, 1e6 * (time.perf_counter() - begun) / len(hands)
+    return path, {"update_mean_us": 1e6 * (time.perf_counter() - begun) / len(hands)}
 
 
 def judged(scene, tool, hands, turns):
-    """(path, verdict) of a tool that starts at the first hand, in free space."""
-    path, update_us = followed(scene, tool, hands, turns)
+    """The same with a verdict on all chords."""
+    path, taken = followed(scene, tool, hands, turns)
     chords, worst = judge(scene, tool, path)
-    now, before = distances(tool, path, hands, turns)
-    known = ~path["recovering"][:-1]
-    return path, {"update_mean_us": update_us, "chords": chords, "worst_excess_of_range": worst,
-                  "worst_growth_voxel": largest((now - before)[known]),
+    return path, {**taken, "chords": chords, "worst_excess_of_range": worst,
+                  "worst_growth_voxel": largest(growth(tool, path, hands, turns)[~path["recovering"][:-1]]),
                   "unfinished_share": path["unfinished"][1:].mean(), **{f"{name}_{what}": of(path[name][1:]) for name in ("rounds", "work")
                                                                         for what, of in (("mean", numpy.mean), ("most", numpy.max))}}
 
@@ -305,27 +302,26 @@ def deepest(scene, tool, path, ticks):
 
 
 def verdict_of(scene, method, tool, hand, turn):
-    """On one hand. gone: in how many ticks a point is beyond the wall."""
+    """On one hand. through: with a point beyond the wall."""
     path, found = judged(scene, tool, hand, turn) if method == "exact" else followed(scene, tool, hand, turn, method)
-    gone = (farthest(tool, path, numpy.arange(1, len(hand))) > WALL).sum() if is_closed(scene) else 0
-    return {"ticks": len(hand) - 1, "touching": numpy.count_nonzero(path["contacts"][1:]), "gone": int(gone),
-            "deepest_voxel": deepest(scene, tool, path, numpy.arange(1, len(hand), 64 if method == "exact" else 1)),
-            **(found if isinstance(found, dict) else {"update_mean_us": found})}
+    through = farthest(tool, path, numpy.arange(1, len(hand))) > WALL if is_closed(scene) else numpy.array([False])
+    return {"ticks": len(hand) - 1, "touching_share": (path["contacts"][1:] > 0).mean(), "through_share": through.mean(),
+            "deepest_voxel": deepest(scene, tool, path, numpy.arange(1, len(hand), 64 if method == "exact" else 1)), **found}
 
 
 def hostile_row(scene, method, name, tool, hands, counts):
     """One row for the hands of all seeds. counts: ticks of each hand that the method gets."""
     found = Table(verdict_of(scene, method, tool, positions[:count + 1], turns[:count + 1])
                   for (positions, turns), count in zip(hands, counts))
-    ticks = sum(counts)
-    row = {"part": "hostile", "scene": scene.name, "method": method, "tool": name, "points": len(tool.points), "ticks": ticks,
-           "touching_share": sum(found["touching"]) / ticks, "through_share": sum(found["gone"]) / ticks,
-           "deepest_voxel": found["deepest_voxel"].max()}
-    for column in found.columns[4:]:
-        values = found[column]
-        row[column] = (values.sum() if column == "chords" else values @ counts / ticks if column.endswith(("share", "mean", "mean_us"))
-                       else values.max())
-    return row
+
+    def of_all(column):
+        if column in ("ticks", "chords"):
+            return found[column].sum()
+        is_mean = column.endswith(("share", "mean", "mean_us"))
+        return numpy.average(found[column], weights=counts) if is_mean else found[column].max()
+
+    return {"part": "hostile", "scene": scene.name, "method": method, "tool": name, "points": len(tool.points),
+            **{column: of_all(column) for column in found.columns}}
 
 
 def counts_of(scene, ticks, seeds):
@@ -361,8 +357,8 @@ def hostile_figure(table):
     drawn, panels = figures.panels(columns=3, height=2.5, sharey=True,
                                    title="The exact method keeps every point outside; a penalty does not")
     for axes, name in zip(panels, ("noise", "salt", "shell")):
-        for method, colour, marker in (("exact", figures.BLUE, "o"), ("penalty", figures.VERMILION, "^")):
-            rows = Table(sorted(table.where(part="hostile", scene=name, method=method), key=lambda row: row["points"]))
+        hostile = Table(sorted(table.where(part="hostile", scene=name), key=lambda row: row["points"]))
+        for (method, rows), colour, marker in zip(hostile.by("method"), (figures.BLUE, figures.VERMILION), "o^"):
             axes.plot(rows["points"], rows["deepest_voxel"], color=colour, marker=marker, label=method)
         axes.set(title=name, xscale="log", xlabel="points of the tool")
     panels[0].set_ylabel("deepest point [voxel]")

@@ -32,12 +32,12 @@ def axes_from(text: str) -> Any:
     for name in text.replace(" ", "").split(","):
         row = [0.0, 0.0, 0.0]
         if name.lstrip("+-") not in ("x", "y", "z") or len(name) > 2:
-            raise ValueError(f"axes: {text!r} must be three of x, y, z with signs, such as -y,z,-x")
+            raise ValueError(f"'{text}' are no axes: three of x, y, z with signs are needed, such as -y,z,-x")
         row["xyz".index(name[-1])] = -1.0 if name[0] == "-" else 1.0
         rows.append(row)
     axes = numpy.array(rows)
     if axes.shape != (3, 3) or round(numpy.linalg.det(axes)) != 1:
-        raise ValueError(f"axes: {text!r} must be a rotation: each axis once, and not mirrored")
+        raise ValueError(f"'{text}' are no axes of a rotation: each one is needed once, and not mirrored")
     return axes
 
 

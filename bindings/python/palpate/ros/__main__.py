@@ -5,8 +5,15 @@ import time
 
 import palpate
 
-from ..command_line import ABOVE_ZERO, Kind, Parser, number, one_of, run, whole
-from . import POSE_RATE, Node
+from ..command_line import ABOVE_ZERO, Kind, Parser, number, one_of, run, say, whole
+from . import POSE_RATE, Node, axes_from
+
+
+
+def axes(text):
+    axes_from(text)
+    return text
+
 
 PARSER = Parser("ros", "Touch a volume with ROS: hand, proxy, force and status are topics", (
     "head.nrrd --device haply", "synthetic:sphere --arm /arm --record hand.csv", "synthetic:sphere --ros 2 __node:=left"))
@@ -15,7 +22,7 @@ PARSER.add("--isovalue", kind=Kind("TEXT"), help="Level to feel, in the data's u
 PARSER.add("--ros", kind=one_of(("1", "2")), default="1", help="Version of ROS")
 PARSER.add("--device", kind=Kind("TEXT"), help="Device, as for palpate touch")
 PARSER.add("--arm", kind=Kind("TEXT"), help="Namespace of a device of ROS instead: measured_cp moves the hand, servo_cf gets the force")
-PARSER.add("--axes", kind=Kind("X,Y,Z"), default="-y,z,-x", help="Directions of the arm in ROS: right, up and towards the person")
+PARSER.add("--axes", kind=Kind("X,Y,Z", axes), default="-y,z,-x", help="Directions of the arm in ROS: right, up and towards the person")
 PARSER.add("--pose-rate", kind=ABOVE_ZERO, default=POSE_RATE, help="Least rate of the arm's poses for any force [Hz]")
 PARSER.add("--model", kind=one_of(palpate.simulated_profiles()), help="Model that the arm has the limits and workspace of")
 PARSER.add("--force-limit", kind=number(), help="Largest force [N]")
@@ -41,9 +48,8 @@ def arguments_from(given):
 
 def setup_from(options):
     force = palpate.ForceSettings(limit=options.force_limit, stiffness=options.stiffness)
-    setup = palpate.Setup(render=palpate.RenderSetup(force=force), clutch=options.clutch, deadman=options.dead_man)
-    if options.isovalue is not None:
-        setup.isovalue = options.isovalue if options.isovalue.endswith("%") else float(options.isovalue)
+    setup = palpate.Setup(render=palpate.RenderSetup(force=force), clutch=options.clutch, deadman=options.dead_man,
+                          isovalue=options.isovalue)
     if options.device:
         setup.device = options.device
     return setup
@@ -58,16 +64,15 @@ def model_info(name):
 
 
 def touch(options, ros):
-    loaded = palpate.load(options.volume)
+    setup, loaded = setup_from(options), palpate.load(options.volume)
     with Node(ros, arm=options.arm or "", ros=int(options.ros)) as node:
         arm = node.device(model_info(options.model), options.axes, options.pose_rate) if options.arm else None
-        live = palpate.Run(loaded, setup_from(options), device=arm)
+        live = palpate.Run(loaded, setup, device=arm)
         if options.record:
             live.record(options.record)
         try:
             with live:
-                print(f"touching {options.volume} at isovalue {live.isovalue:g} with {live.device.name}; Ctrl-C ends it",
-                      flush=True)
+                say(f"touching {options.volume} at isovalue {live.isovalue:g} with {live.device.name}; Ctrl-C ends it")
                 end = time.monotonic() + options.seconds
                 while time.monotonic() < end:
                     node.publish(live)

@@ -1,0 +1,92 @@
+// Controls that are bound to values: the words of a control, its value and the effect of a change
+// stand in one place. A form keeps no values of its own.
+#pragma once
+
+#include <QCheckBox>
+#include <QComboBox>
+#include <QPushButton>
+#include <QWidget>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/viewer/panel/colours.hpp"
+#include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/layout.hpp"
+
+namespace palpate::viewer {
+
+struct Words {
+    QString name;         ///< of the object
+    QString text;         ///< on the control, or beside it
+    QString tip = {};     ///< one can be set later
+    QString spoken = {};  ///< by screen readers; empty: the text, or what the tip begins with
+};
+
+/// What a control shows, and what is done when a person changes it.
+template <class T>
+struct Value {
+    std::function<T()> get;
+    std::function<void(const T&)> set;
+};
+
+/// Changes are brought to 0 to 1.
+Value<double> as_part(Value<double> value);
+
+/// Of a slider; and the step of its box.
+struct Span {
+    QString unit;
+    double low, high, step;
+    Quantity::Scale scale = Quantity::Scale::amounts;
+};
+/// Of opacities.
+inline const Span parts_span{"", 0, 1, 0.05};
+
+class Form : public QWidget {
+    Q_OBJECT
+
+  public:
+    /// All controls show their values, which must be there.
+    void refresh();
+
+  Q_SIGNALS:
+    /// What was asked for cannot be, and why; empty: all is well again.
+    void nonsense(const QString& why);
+
+  protected:
+    QCheckBox* check(const Words& words, Value<bool> value);
+    NumberBox* number(const Words& words, Value<double> value);
+    Quantity* quantity(const Words& words, const Span& span, Value<double> value);
+    ColourButton* colour(const Words& words, Value<Colour> value);
+    /// The value is the number of a choice, from 0.
+    QComboBox* choice(const Words& words, const QStringList& choices, Value<int> value);
+    /// Choices by their names, as shown_name() has them.
+    QComboBox* choice(const Words& words, const std::vector<std::string>& names,
+                      Value<std::string> value);
+    QPushButton* button(const Words& words, std::function<void()> press,
+                        std::function<bool()> possible = nullptr);
+    /// A quantity with its label, its text, in a form.
+    Quantity* quantity_in(QFormLayout& form, const Words& words, const Span& span,
+                          Value<double> value);
+    /// Calls how(*widget) whenever the values are shown.
+    template <class Widget, class How>
+    Widget* each_time(Widget* widget, How how) {
+        showing_.push_back([widget, how] { how(*widget); });
+        return widget;
+    }
+
+  private:
+    /// A change by a person.
+    template <class T>
+    auto taking(const Value<T>& value) {
+        return [this, set = value.set](const auto& changed) {
+            set(static_cast<T>(changed));
+            refresh();
+        };
+    }
+
+    std::vector<std::function<void()>> showing_;
+};
+
+}  // namespace palpate::viewer
