@@ -47,7 +47,8 @@ void add_probe(std::vector<Mark>& marks, const SeenHand& hand, bool as_tool, con
         marks.push_back(mark_of(there ? shape() : nullptr, colour));
     };
     const auto ball = [&](bool there, const Vec3& at, const Colour& colour) {
-        add(there, [&] { return shapes.ball; }, colour);
+        add(
+            there, [&] { return shapes.ball; }, colour);
         marks.back().place = at_scale(at, radius);
     };
     ball(hip != scp && !as_tool, scp, hand.colours.scp);
@@ -66,7 +67,7 @@ void add_probe(std::vector<Mark>& marks, const SeenHand& hand, bool as_tool, con
 
 /// Each edge once.
 vtkSmartPointer<vtkPolyData> lattice_edges(const std::vector<LocalTetrahedron>& all,
-                                      const Vec3& origin) {
+                                           const Vec3& origin) {
     std::vector<std::array<Vec3, 2>> edges;
     const auto before = [](const Vec3& a, const Vec3& b) {
         return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
@@ -90,7 +91,7 @@ vtkSmartPointer<vtkPolyData> lattice_edges(const std::vector<LocalTetrahedron>& 
 
 /// The isosurface in the tetrahedra.
 vtkSmartPointer<vtkPolyData> lattice_patches(const std::vector<LocalTetrahedron>& all,
-                                        const Vec3& origin) {
+                                             const Vec3& origin) {
     MarkShape shape;
     for (const LocalTetrahedron& t : all) {
         for (const std::vector<Vec3>& polygon : t.patch) {
@@ -177,7 +178,7 @@ vtkSmartPointer<vtkPolyData> torque_of(const SessionTick& tick, const Tool& tool
     const Vec3 ahead = -std::sin(angle) * across + std::cos(angle) * further;
     const double width = ring_width_px * view.pixel;
     return appended({pictures::tube(path, width),
-                   pictures::arrow(path.back(), path.back() + 0.5 * radius * ahead, width)});
+                     pictures::arrow(path.back(), path.back() + 0.5 * radius * ahead, width)});
 }
 
 /// The tool where its proxy is, and transparent in the hand, with contacts and torque, which are
@@ -203,8 +204,8 @@ void add_tool(std::vector<Mark>& marks, const SeenHand& hand, const MarkView& vi
     }
     marks.insert(marks.end(), {proxy, held});
     marks.push_back(mark_of(contacts_of(*hand.snapshot, view), purple));
-    marks.push_back(mark_of(torque_of(hand.snapshot->session, *hand.tool, view),
-                            pictures::force_colour));
+    marks.push_back(
+        mark_of(torque_of(hand.snapshot->session, *hand.tool, view), pictures::force_colour));
 }
 
 }  // namespace
@@ -234,8 +235,8 @@ vtkSmartPointer<vtkPolyData> shape_of(const Tool& tool) {
 HandShapes::HandShapes() : ball(unit_ball()) {
     MarkShape shape;
     for (int axis = 0; axis < 3; ++axis) {
-        const auto ring = shape.ring(Vec3::Zero(), Vec3::Unit((axis + 1) % 3),
-                                     Vec3::Unit((axis + 2) % 3), 64);
+        const auto ring =
+            shape.ring(Vec3::Zero(), Vec3::Unit((axis + 1) % 3), Vec3::Unit((axis + 2) % 3), 64);
         for (std::size_t i = 0; i < ring.size(); ++i) {
             shape.line(ring[i], ring[(i + 1) % ring.size()]);
         }
@@ -251,8 +252,8 @@ void add_hand(std::vector<Mark>& marks, const SeenHand& hand, const Look& look, 
         const bool as_tool = hand.tool && hand.tool->radius() > ball_radius_px * view.pixel;
         add_probe(marks, hand, as_tool, view, shapes);
     }
-    Mark brush = flat_mark_of(hand.brush > 0 ? shapes.circles : nullptr, brush_colour,
-                              1.5 * view.ratio);
+    Mark brush =
+        flat_mark_of(hand.brush > 0 ? shapes.circles : nullptr, brush_colour, 1.5 * view.ratio);
     brush.place = at_scale(hand.snapshot->session.tick.proxy.scp - view.origin, hand.brush);
     marks.push_back(brush);
     add_lattice(marks, hand, look, field, view, ink);

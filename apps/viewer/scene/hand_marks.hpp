@@ -16,10 +16,10 @@ namespace palpate::viewer {
 struct SeenHand {
     std::optional<Snapshot> snapshot;
     HandColours colours;
-    std::shared_ptr<const Tool> tool;         ///< null: a point
-    vtkSmartPointer<vtkPolyData> tool_shape;  ///< from shape_of()
-    double brush = 0;                         ///< [mm] its radius round the proxy; 0: none
-    vtkSmartPointer<vtkPolyData> patch;       ///< of the surface that is felt; null: none
+    std::shared_ptr<const Tool> tool;                ///< null: a point
+    vtkSmartPointer<vtkPolyData> tool_shape;         ///< from shape_of()
+    double brush = 0;                                ///< [mm] its radius round the proxy; 0: none
+    vtkSmartPointer<vtkPolyData> patch;              ///< of the surface that is felt; null: none
     std::shared_ptr<const RenderMesh> patch_memory;  ///< that it reads
 };
 /// The device is ready, and the proxy somewhere.

@@ -108,8 +108,8 @@ void dress(vtkActor& actor, const Mark& mark, double opacity) {
 }
 
 void write_colours(vtkViewport* viewport, bool on) {
-    auto* const window = vtkOpenGLRenderWindow::SafeDownCast(
-        vtkRenderer::SafeDownCast(viewport)->GetRenderWindow());
+    auto* const window =
+        vtkOpenGLRenderWindow::SafeDownCast(vtkRenderer::SafeDownCast(viewport)->GetRenderWindow());
     const unsigned char write = on ? 1 : 0;
     window->GetState()->vtkglColorMask(write, write, write, write);
 }

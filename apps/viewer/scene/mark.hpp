@@ -26,7 +26,7 @@ struct Mark {
     double opacity = 1, faint = 0;
     bool veil = false;  ///< faint marks behind this one are seen through it
     bool lit = true;
-    bool surface = false;  ///< of the data: matt, shaded by its normals alone
+    bool surface = false;                ///< of the data: matt, shaded by its normals alone
     double width = 1;                    ///< [device pixels] of lines and points
     std::shared_ptr<const void> memory;  ///< that the shape reads
 };
