@@ -16,6 +16,7 @@ namespace palpate::pictures {
 namespace {
 
 void name_faces(vtkAnnotatedCubeActor& cube, bool oriented) {
+    cube.SetFaceTextScale(oriented ? 0.62 : 0.42);  // two letters are wider
     cube.SetXPlusFaceText(oriented ? "L" : "+X");
     cube.SetXMinusFaceText(oriented ? "R" : "-X");
     cube.SetYPlusFaceText(oriented ? "P" : "+Y");
@@ -27,15 +28,17 @@ void name_faces(vtkAnnotatedCubeActor& cube, bool oriented) {
 vtkSmartPointer<vtkAnnotatedCubeActor> body_cube() {
     auto cube = vtkSmartPointer<vtkAnnotatedCubeActor>::New();
     name_faces(*cube, true);
-    cube->SetFaceTextScale(0.62);
-    cube->SetXFaceTextRotation(90);
+    cube->SetXFaceTextRotation(0);
     cube->SetYFaceTextRotation(0);
-    cube->SetZFaceTextRotation(90);
+    cube->SetZFaceTextRotation(-90);
+    cube->SetTextEdgesVisibility(0);  // those of sides seen edge-on would be dashes
     cube->GetCubeProperty()->SetColor(0.86, 0.88, 0.9);
     cube->GetCubeProperty()->SetAmbient(0.35);
     cube->GetCubeProperty()->SetDiffuse(0.7);
+    // Seen straight on it is one flat face.
+    cube->GetCubeProperty()->EdgeVisibilityOn();
+    cube->GetCubeProperty()->SetEdgeColor(0.45, 0.46, 0.48);
     constexpr double ink = 0.13;
-    cube->GetTextEdgesProperty()->SetColor(ink, ink, ink);
     for (vtkProperty* face : {cube->GetXPlusFaceProperty(), cube->GetXMinusFaceProperty(),
                               cube->GetYPlusFaceProperty(), cube->GetYMinusFaceProperty(),
                               cube->GetZPlusFaceProperty(), cube->GetZMinusFaceProperty()}) {

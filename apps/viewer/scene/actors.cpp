@@ -2,11 +2,10 @@
 #include "apps/viewer/scene/actors.hpp"
 
 #include <vtkAOSDataArrayTemplate.h>
-#include <vtkCellArray.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkFixedPointVolumeRayCastMapper.h>
-#include <vtkFloatArray.h>
 #include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkImageActor.h>
 #include <vtkImageData.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
@@ -14,13 +13,11 @@
 #include <vtkOutlineSource.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkPointData.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkProperty.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkTexture.h>
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
@@ -242,7 +239,6 @@ constexpr unsigned char black = 8;
 /// where it is all black: such a plane only hides what is behind it.
 vtkSmartPointer<vtkImageData> slice_image(const Field& field, int axis, double where) {
     const Index3& size = field.geometry().size;
-    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
     const int low = std::clamp(static_cast<int>(std::floor(where)), 0, size[axis] - 1);
     const Samples& samples = field.samples();
     const double span = samples.maximum() - samples.minimum(), range = span > 0 ? span : 1;
@@ -255,7 +251,12 @@ vtkSmartPointer<vtkImageData> slice_image(const Field& field, int axis, double w
     };
     const std::vector<float> before = layer(low), after = layer(low + 1);
     auto image = vtkSmartPointer<vtkImageData>::New();
-    image->SetDimensions(size[u], size[v], 1);
+    Index3 sides = size;
+    sides[axis] = 1;
+    const Vec3& spacing = field.geometry().spacing;
+    image->SetDimensions(sides.data());
+    image->SetSpacing(spacing[0], spacing[1], spacing[2]);
+    image->SetOrigin(Vec3(where * spacing[axis] * Vec3::Unit(axis)).data());
     image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
     auto* out = static_cast<unsigned char*>(image->GetScalarPointer());
     bool empty = true;
@@ -268,54 +269,23 @@ vtkSmartPointer<vtkImageData> slice_image(const Field& field, int axis, double w
     return empty ? nullptr : image;
 }
 
-vtkSmartPointer<vtkActor> slice_actor(const Field& field, int axis, double where) {
-    const Geometry& g = field.geometry();
-    const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-    const Vec3 middle = physical_centre(g);
-    vtkNew<vtkPoints> points;
-    vtkNew<vtkFloatArray> coordinates;
-    coordinates->SetNumberOfComponents(2);
-    // Texels are samples: the outermost are half a texel from the texture's edge.
-    const auto texel = [&](int along, int side) {
-        return (side ? g.size[along] - 0.5 : 0.5) / g.size[along];
-    };
-    for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
-        Vec3 index;
-        index[axis] = where;
-        index[u] = i * (g.size[u] - 1);
-        index[v] = j * (g.size[v] - 1);
-        points->InsertNextPoint(Vec3(physical_from_index(g, index) - middle).data());
-        coordinates->InsertNextTuple2(texel(u, i), texel(v, j));
-    }
-    vtkNew<vtkCellArray> quad;
-    const vtkIdType corners[] = {0, 1, 2, 3};
-    quad->InsertNextCell(4, corners);
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    data->SetPolys(quad);
-    data->GetPointData()->SetTCoords(coordinates);
-    vtkNew<vtkPolyDataMapper> mapper;
-    mapper->SetInputData(data);
-    vtkNew<vtkTexture> texture;
+vtkSmartPointer<vtkProp> slice_actor(const Field& field, int axis, double where) {
+    auto actor = vtkSmartPointer<vtkImageActor>::New();
     const vtkSmartPointer<vtkImageData> image = slice_image(field, axis, where);
-    texture->SetInputData(image);
-    texture->SetColorModeToDirectScalars();
-    texture->InterpolateOn();
-    texture->RepeatOff();
-    auto actor = vtkSmartPointer<vtkActor>::New();
-    actor->SetMapper(mapper);
-    actor->SetTexture(texture);
-    actor->GetProperty()->LightingOff();
     actor->SetVisibility(image != nullptr);
+    if (!image) return actor;
+    actor->SetInputData(image);
+    actor->SetDisplayExtent(image->GetExtent());
+    actor->SetUserMatrix(placed(field.geometry(), physical_centre(field.geometry())));
     return actor;
 }
 
 }  // namespace
 
-std::array<vtkSmartPointer<vtkActor>, 3> slice_actors(const Field& field, const Vec3& crosshair) {
+std::array<vtkSmartPointer<vtkProp>, 3> slice_actors(const Field& field, const Vec3& crosshair) {
     const Geometry& g = field.geometry();
     const Vec3 index = index_from_physical(g, crosshair);
-    std::array<vtkSmartPointer<vtkActor>, 3> actors;
+    std::array<vtkSmartPointer<vtkProp>, 3> actors;
     for (int axis = 0; axis < 3; ++axis) {
         const double where = std::clamp(index[axis], 0.0, double(g.size[axis] - 1));
         actors[static_cast<std::size_t>(axis)] = slice_actor(field, axis, where);

@@ -3,6 +3,7 @@
 
 #include <vtkActor.h>
 #include <vtkPlaneCollection.h>
+#include <vtkProp.h>
 #include <vtkSmartPointer.h>
 #include <vtkVolume.h>
 #include <vtkVolumeMapper.h>
@@ -75,7 +76,7 @@ class VolumePart {
 /// Three planes of the grid through a point, grey from the least sample to the greatest, at the
 /// field's moment; hidden where all of it is as good as black. Positions from the middle of the
 /// grid.
-std::array<vtkSmartPointer<vtkActor>, 3> slice_actors(const Field& field, const Vec3& crosshair);
+std::array<vtkSmartPointer<vtkProp>, 3> slice_actors(const Field& field, const Vec3& crosshair);
 
 /// The twelve edges of the box whose corners are the outermost samples.
 vtkSmartPointer<vtkActor> box_actor(const Geometry& geometry);

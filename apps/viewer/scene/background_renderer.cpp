@@ -42,9 +42,9 @@ constexpr SurfaceLimits limits_of_others{2'000'000, 20'000};
 
 BackgroundRenderer::BackgroundRenderer(MakePainter make_painter)
     : make_painter_(std::move(make_painter)) {
-    connect(&felt_, &PatchedSource::made, this, &BackgroundRenderer::paint);
-    connect(&felt_, &PatchedSource::finished, this, [this] { announce_ = true; });
-    connect(&felt_, &PatchedSource::problem, this, &BackgroundRenderer::problem);
+    connect(&felt_, &SurfaceSource::made, this, &BackgroundRenderer::paint);
+    connect(&felt_, &SurfaceSource::finished, this, [this] { announce_ = true; });
+    connect(&felt_, &SurfaceSource::problem, this, &BackgroundRenderer::problem);
     rest_.setSingleShot(true);
     rest_.setInterval(rest_ms);
     connect(&rest_, &QTimer::timeout, this, [this] {
@@ -115,13 +115,13 @@ void BackgroundRenderer::match_sources() {
             if (found != old.end()) others_[i] = std::move(*found);
         }
     };
-    claim([](const PatchedSource& s, const SeenSurface& w) { return s.level() == w.level; });
-    claim([](const PatchedSource&, const SeenSurface&) { return true; });
+    claim([](const SurfaceSource& s, const SeenSurface& w) { return s.level() == w.level; });
+    claim([](const SurfaceSource&, const SeenSurface&) { return true; });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (!others_[i]) {
-            others_[i] = std::make_unique<PatchedSource>(limits_of_others);
-            connect(others_[i].get(), &PatchedSource::made, this, &BackgroundRenderer::paint);
-            connect(others_[i].get(), &PatchedSource::problem, this, &BackgroundRenderer::problem);
+            others_[i] = std::make_unique<SurfaceSource>(limits_of_others);
+            connect(others_[i].get(), &SurfaceSource::made, this, &BackgroundRenderer::paint);
+            connect(others_[i].get(), &SurfaceSource::problem, this, &BackgroundRenderer::problem);
             if (request_.field) {
                 others_[i]->set_field(*request_.field, wanted[i].level);
                 others_[i]->set_patch(patch_);

@@ -65,8 +65,8 @@ class BackgroundRenderer : public QObject {
     double frame_seconds_ = 0;
     bool broken_ = false;  // no painter can draw
     QTimer rest_;
-    PatchedSource felt_;
-    std::vector<std::unique_ptr<PatchedSource>> others_;  // as in the look
+    SurfaceSource felt_;
+    std::vector<std::unique_ptr<SurfaceSource>> others_;  // as in the look
     std::vector<DrawnSurface> overlay_;
     std::unique_ptr<Painter> quick_, fine_;
 };

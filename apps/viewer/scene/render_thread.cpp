@@ -97,7 +97,7 @@ class OffscreenRenderer {
     std::vector<SurfacePart> surfaces_;  // as in the request
     std::optional<Field> sliced_;        // what the slices show
     Vec3 crosshair_ = Vec3::Zero();
-    std::array<vtkSmartPointer<vtkActor>, 3> slices_;
+    std::array<vtkSmartPointer<vtkProp>, 3> slices_;
     std::optional<Geometry> boxed_;
     vtkSmartPointer<vtkActor> box_;
     std::unique_ptr<VolumePart> volume_;

@@ -17,6 +17,7 @@
 #include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/scene_parts.hpp"
 #include "apps/viewer/scene/view_space.hpp"
+#include "pictures/vtk/shapes.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -146,6 +147,7 @@ void Scene::show_snapshot(const std::optional<Snapshot>& snapshot, int hand) {
 void Scene::set_tool(const std::shared_ptr<const Tool>& tool, int hand) {
     if (tool == parts_->hands[hand].tool) return;
     parts_->hands[hand].tool = tool;
+    parts_->hands[hand].tool_shape = tool ? shape_of(*tool) : nullptr;
     refresh();
 }
 
@@ -268,78 +270,66 @@ void Scene::refresh() {
     refresh_.start(0);
 }
 
-/// A patch stays until the proxy has moved by a part of a voxel.
-std::optional<Contact> Scene::contact(int hand, const Field& field) {
-    const Look& look = parts_->wanted.look;
-    auto contact = contact_of(parts_->hands[hand].snapshot, finest_at_proxy(hand, field),
-                              look.tetrahedra || look.planes);
-    if (!contact) return contact;
-    contact->brush = parts_->brush;
-    if (!parts_->pressed || hand != parts_->pressing || !look.surface) return contact;
+/// Where a hand presses through the surface: it stays until the proxy has moved by a part of a
+/// voxel.
+void Scene::show_patch(const Field& field) {
+    for (SeenHand& hand : parts_->hands) hand.patch = nullptr;
+    SeenHand& hand = parts_->hands[parts_->pressing];
+    if (!parts_->pressed || !parts_->wanted.look.surface || !is_seen(hand)) return;
+    const Vec3& scp = hand.snapshot->session.tick.proxy.scp;
     const double unmoved = 0.5 * field.geometry().spacing.minCoeff();
-    if (!((contact->scp - parts_->patched).norm() < unmoved) ||
-        parts_->patched_level != *parts_->pressed) {
-        parts_->patch = local_patch(field, contact->scp, *parts_->pressed);
-        parts_->patched = contact->scp;
+    if (!((scp - parts_->patched).norm() < unmoved) || parts_->patched_level != *parts_->pressed) {
+        const auto patch = parts_->patch = local_patch(field, scp, *parts_->pressed);
+        parts_->patch_shape =
+            patch ? pictures::mesh_of(patch->positions, patch->normals, patch->triangles) : nullptr;
+        parts_->patched = scp;
         parts_->patched_level = *parts_->pressed;
     }
-    contact->patch = parts_->patch;
-    return contact;
-}
-
-void Scene::show_hand(int hand, const Field& field, const pictures::Camera& camera) {
-    const Parts::Hand& its = parts_->hands[hand];
-    const Look& look = parts_->wanted.look;
-    const Vec3 origin = physical_centre(field.geometry());
-    const double pixel = mm_per_pixel(camera, view_size()), ratio = devicePixelRatioF();
-    auto contact = this->contact(hand, field);
-    const auto tool = look.contact ? seen_tool(its.snapshot, its.tool) : std::nullopt;
-    // One that would be smaller than the markers is better seen by those.
-    if (contact) contact->as_tool = tool && tool->tool->radius() > ball_radius_px * pixel;
-    its.markers->show(contact, look, origin, pixel, field.geometry().spacing.mean(),
-                      ink_of(palette()), ratio);
-    its.tool_marks->show(contact ? tool : std::nullopt, origin, pixel, ratio);
+    hand.patch = parts_->patch_shape;
+    hand.patch_memory = parts_->patch;
 }
 
 void Scene::lay_out() {
     const auto& shown = parts_->background.shown();
-    // The camera of the image shown: while that lags, the probe stays in place on the surface.
-    const pictures::Camera& camera = shown ? shown->camera : camera_;
     const auto& field = parts_->background.field();
+    const Look& look = parts_->wanted.look;
     const double ratio = devicePixelRatioF();
-    const Colour background = background_of(palette()), ink = ink_of(palette());
-    parts_->front->SetBackground(background.red, background.green, background.blue);
+    Annotations::Content written;
+    // The camera of the image shown: while that lags, the probe stays in place on the surface.
+    written.camera = shown ? shown->camera : camera_;
+    written.size = view_size();
+    written.ratio = ratio;
+    written.em = ratio * QFontMetricsF(font()).ascent();
+    written.ink = ink_of(palette());
+    written.paper = background_of(palette());
+    parts_->front->SetBackground(written.paper.red, written.paper.green, written.paper.blue);
     shown ? parts_->solid->set_layer(shown, shown->solid, false) : parts_->solid->clear();
     shown ? parts_->glass->set_layer(shown, shown->glass, true) : parts_->glass->clear();
-    const Look& look = parts_->wanted.look;
+    std::vector<Mark> marks;
     if (field) {
-        const Vec3 origin = physical_centre(field->geometry());
-        direct(*parts_->front->GetActiveCamera(), camera, origin, reach_of(field->geometry()));
-        const double pixel = mm_per_pixel(camera, view_size());
-        for (int hand = 1; hand <= most_hands; ++hand) show_hand(hand, *field, camera);
-        parts_->cut->show(look, field->geometry(), origin, pixel, ratio, held_);
-        parts_->measures->show(parts_->measurements,
-                               {origin, camera, view_size(), ratio,
-                                ratio * QFontMetricsF(font()).ascent(), parts_->unit});
-    } else {
-        parts_->measures->show({}, {});
-        parts_->cut->hide();
-        for (const Parts::Hand& hand : parts_->hands) {
-            hand.markers->show({}, look, Vec3::Zero(), 1, 1, ink, ratio);
-            hand.tool_marks->show({}, Vec3::Zero(), 1, ratio);
+        const Geometry& geometry = field->geometry();
+        const MarkView view{physical_centre(geometry), mm_per_pixel(written.camera, written.size),
+                            ratio};
+        direct(*parts_->front->GetActiveCamera(), written.camera, view.origin, reach_of(geometry));
+        show_patch(*field);
+        for (int hand = 1; hand <= most_hands; ++hand) {
+            SeenHand& seen = parts_->hands[hand];
+            seen.brush = parts_->brush;
+            if (!is_seen(seen)) continue;
+            add_hand(marks, seen, look, finest_at_proxy(hand, *field), view, written.ink,
+                     parts_->shapes);
         }
+        add_cut(marks, look, geometry, view, held_, parts_->shapes.ball);
+        add_measurements(marks, parts_->measurements, view);
+        written.measurements = parts_->measurements;
+        written.unit = parts_->unit;
+        written.orientation = look.orientation;
+        written.oriented = geometry.oriented;
+        written.scale_bar = look.scale_bar && geometry.measured;
     }
-    Annotations::Content annotations;
-    annotations.orientation = look.orientation && field;
-    annotations.oriented = field && field->geometry().oriented;
-    annotations.scale_bar = look.scale_bar && field && field->geometry().measured;
-    annotations.camera = camera;
-    annotations.width = static_cast<int>(std::lround(width() * ratio));
-    annotations.height = static_cast<int>(std::lround(height() * ratio));
-    annotations.em = ratio * QFontMetricsF(font()).ascent();
-    annotations.ink = ink;
-    annotations.paper = background;
-    parts_->annotations.show(annotations);
+    parts_->marks->show(marks);
+    parts_->faint_marks->show(marks);
+    parts_->annotations.show(written);
     parts_->outdated = false;
 }
 

@@ -22,7 +22,6 @@
 
 namespace palpate::viewer {
 
-struct Contact;
 struct DrawnSurface;
 struct ScenePatch;
 
@@ -147,8 +146,7 @@ class Scene : public QVTKOpenGLNativeWidget {
     void changed();
     void refresh();
     void lay_out();
-    void show_hand(int hand, const Field& field, const pictures::Camera& camera);
-    std::optional<Contact> contact(int hand, const Field& field);
+    void show_patch(const Field& field);
     const Field& finest_at_proxy(int hand, const Field& field) const;
 
     std::unique_ptr<Parts> parts_;

@@ -9,61 +9,6 @@
 
 namespace palpate::viewer {
 
-SurfaceSource::SurfaceSource(const SurfaceLimits& limits)
-    : extractor_({[this](ExtractedSurface surface) {
-                      hand_over(this, [this, surface] { take(surface); });
-                  },
-                  [this](std::uint64_t request, const std::string& what) {
-                      hand_over(this, [this, request, what] {
-                          if (request != request_) return;
-                          extracting_ = false;
-                          Q_EMIT problem(QString::fromStdString(what));
-                      });
-                  }},
-                 limits) {}
-
-void SurfaceSource::set_field(const Field& field, double level) {
-    field_ = field;
-    surface_ = {};
-    oldest_ = request_ + 1;
-    level_ = std::nan("");
-    set_level(level);
-}
-
-void SurfaceSource::update_field(const Field& field, const SampleBox& changed) {
-    field_ = field;
-    if (changed.empty() || !std::isfinite(level_)) return;
-    extracting_ = true;
-    extractor_.update(++request_, field, level_, changed);
-}
-
-void SurfaceSource::set_level(double level) {
-    if (!field_ || level == level_) return;
-    level_ = level;
-    extracting_ = asked_ = true;
-    extractor_.ask(++request_, *field_, level);
-}
-
-void SurfaceSource::clear() {
-    field_.reset();
-    surface_ = {};
-    oldest_ = request_ + 1;
-    extracting_ = false;
-    extractor_.forget();
-}
-
-void SurfaceSource::take(ExtractedSurface surface) {
-    // Of an older request, too, while a newer one is not there. Never of other data.
-    if (surface.request < oldest_ || surface.request < surface_.request) return;
-    const bool last = surface.request == request_ && surface.finished;
-    surface_ = std::move(surface);
-    if (last) extracting_ = false;
-    Q_EMIT made();
-    if (!last || !asked_) return;
-    asked_ = false;
-    Q_EMIT finished();
-}
-
 PatchedSurface::Mesh PatchedSurface::cut(const Mesh& mesh, Keep keep) {
     if (!mesh) return nullptr;
     const std::pair key{mesh.get(), keep};
@@ -140,77 +85,103 @@ SurfaceLimits limits_of_patch(SurfaceLimits limits) {
 
 }  // namespace
 
-PatchedSource::PatchedSource(const SurfaceLimits& limits) : limits_(limits), whole_(limits) {
-    connect(&whole_, &SurfaceSource::made, this, &PatchedSource::put_together);
-    connect(&whole_, &SurfaceSource::finished, this, &PatchedSource::finished);
-    connect(&whole_, &SurfaceSource::problem, this, &PatchedSource::problem);
+SurfaceSource::SurfaceSource(const SurfaceLimits& limits)
+    : limits_(limits),
+      extractor_({[this](ExtractedSurface surface) {
+                      hand_over(this, [this, surface] { take(surface); });
+                  },
+                  [this](std::uint64_t request, const std::string& what) {
+                      hand_over(this, [this, request, what] {
+                          if (request != request_) return;
+                          extracting_ = false;
+                          Q_EMIT problem(QString::fromStdString(what));
+                      });
+                  }},
+                 limits) {}
+
+void SurfaceSource::set_field(const Field& field, double level) {
+    clear();
+    field_ = field;
+    level_ = std::nan("");
+    set_level(level);
 }
 
-void PatchedSource::make_source() {
-    finer_ = std::make_unique<SurfaceSource>(limits_of_patch(limits_));
-    connect(finer_.get(), &SurfaceSource::made, this, &PatchedSource::take_finer);
-    connect(finer_.get(), &SurfaceSource::problem, this, &PatchedSource::problem);
+void SurfaceSource::update_field(const Field& field, const SampleBox& changed) {
+    field_ = field;
+    if (changed.empty() || !std::isfinite(level_)) return;
+    extracting_ = true;
+    extractor_.update(++request_, field, level_, changed);
 }
 
-void PatchedSource::set_field(const Field& field, double level) {
-    patch_.reset();
-    shown_.reset();
-    surface_ = {};
-    if (finer_) finer_->clear();
-    whole_.set_field(field, level);
+void SurfaceSource::set_level(double level) {
+    if (!field_ || level == level_) return;
+    level_ = level;
+    extracting_ = asked_ = true;
+    extractor_.ask(++request_, *field_, level);
+    if (finer_) finer_->set_level(level);
 }
 
-void PatchedSource::update_field(const Field& field, const SampleBox& changed) {
-    whole_.update_field(field, changed);
-}
-
-void PatchedSource::set_patch(const std::optional<ScenePatch>& patch) {
+void SurfaceSource::set_patch(const std::optional<ScenePatch>& patch) {
     const auto before = std::exchange(patch_, patch);
     if (!patch) {
-        if (finer_) finer_->clear();
-        if (shown_.has_value()) {
-            shown_.reset();
-            put_together();
-        }
+        const bool seen = shown_.has_value();
+        drop_patch();
+        if (seen) put_together();
         return;
     }
-    if (!finer_) make_source();
+    if (!finer_) {
+        finer_ = std::make_unique<SurfaceSource>(limits_of_patch(limits_));
+        connect(finer_.get(), &SurfaceSource::made, this, &SurfaceSource::take_finer);
+        connect(finer_.get(), &SurfaceSource::problem, this, &SurfaceSource::problem);
+    }
     const Field& field = patch->detail->field;
     // Changes of all of it would be taken for a sequence, whose surfaces are coarse.
     const SampleBox& changed = patch->detail->changed;
     if (changed != whole_box(field.geometry()) && before && before->bounds == patch->bounds &&
         before->detail->field.geometry() == field.geometry()) {
-        finer_->update_field(field, changed);
-        return;
+        return finer_->update_field(field, changed);
     }
-    finer_->set_origin(physical_centre(patch->bounds.grid));
-    finer_->set_field(field, whole_.level());
+    finer_->extractor_.set_origin(physical_centre(patch->bounds.grid));
+    finer_->set_field(field, level_);
 }
 
-void PatchedSource::set_level(double level) {
-    whole_.set_level(level);
-    if (finer_) finer_->set_level(level);
-}
-
-void PatchedSource::clear() {
+void SurfaceSource::drop_patch() {
     patch_.reset();
     shown_.reset();
-    surface_ = {};
     if (finer_) finer_->clear();
-    whole_.clear();
 }
 
-void PatchedSource::take_finer() {
+void SurfaceSource::clear() {
+    drop_patch();
+    field_.reset();
+    whole_ = surface_ = {};
+    oldest_ = request_ + 1;
+    extracting_ = false;
+    extractor_.forget();
+}
+
+void SurfaceSource::take(ExtractedSurface surface) {
+    // Of an older request, too, while a newer one is not there. Never of other data.
+    if (surface.request < oldest_ || surface.request < whole_.request) return;
+    const bool last = surface.request == request_ && surface.finished;
+    whole_ = std::move(surface);
+    if (last) extracting_ = false;
+    put_together();
+    if (!last || !asked_) return;
+    asked_ = false;
+    Q_EMIT finished();
+}
+
+void SurfaceSource::take_finer() {
     if (!patch_) return;
     shown_ = {patch_->bounds, finer_->surface()};
     put_together();
 }
 
 /// While a level is dragged the finer part may be of another one.
-void PatchedSource::put_together() {
-    const ExtractedSurface& whole = whole_.surface();
-    const bool fits = shown_ && shown_->surface.isovalue == whole.isovalue;
-    surface_ = fits ? both_.of(whole, shown_->surface, shown_->bounds) : whole;
+void SurfaceSource::put_together() {
+    const bool fits = shown_ && shown_->surface.isovalue == whole_.isovalue;
+    surface_ = fits ? both_.of(whole_, shown_->surface, shown_->bounds) : whole_;
     Q_EMIT made();
 }
 

@@ -16,49 +16,6 @@
 
 namespace palpate::viewer {
 
-/// Belongs to the window's thread.
-class SurfaceSource : public QObject {
-    Q_OBJECT
-  public:
-    explicit SurfaceSource(const SurfaceLimits& limits = {});
-
-    /// Other data: the surface is empty until there is a new one.
-    void set_field(const Field& field, double level);
-    /// Another version of the data; these samples have changed.
-    void update_field(const Field& field, const SampleBox& changed);
-    /// Extracted again, coarse first; the newest level wins. Without a field it does nothing.
-    void set_level(double level);
-    void clear();
-    /// From the next surface on.
-    void set_most_triangles(std::size_t triangles) { extractor_.set_most_triangles(triangles); }
-
-    /// As SurfaceExtractor::set_origin().
-    void set_origin(const Vec3& origin) { extractor_.set_origin(origin); }
-
-    double level() const { return level_; }
-    /// Of the newest level that is there: one that is dragged is seen to move.
-    const ExtractedSurface& surface() const { return surface_; }
-    bool extracting() const { return extracting_; }
-
-  Q_SIGNALS:
-    /// surface() is another one.
-    void made();
-    /// surface() is as fine as it will be, not after an update alone.
-    void finished();
-    void problem(const QString& what);
-
-  private:
-    void take(ExtractedSurface surface);
-
-    std::optional<Field> field_;
-    ExtractedSurface surface_;
-    double level_ = std::nan("");
-    std::uint64_t request_ = 0, oldest_ = 1;  // the last one; the first one of these data
-    bool extracting_ = false;
-    bool asked_ = false;  // not by an update
-    SurfaceExtractor extractor_;
-};
-
 /// A box of whole cells of the overview; on a side where the data end it has no end.
 struct PatchBounds {
     Geometry grid;  ///< of the overview
@@ -99,41 +56,53 @@ class PatchedSurface {
     std::map<std::pair<const RenderMesh*, Keep>, Cut> cuts_, used_;  // of last time, of this time
 };
 
-/// As SurfaceSource, of which it has two. Belongs to the window's thread.
-class PatchedSource : public QObject {
+/// Belongs to the window's thread.
+class SurfaceSource : public QObject {
     Q_OBJECT
   public:
-    explicit PatchedSource(const SurfaceLimits& limits = {});
+    explicit SurfaceSource(const SurfaceLimits& limits = {});
 
-    /// Other data, without a patch.
+    /// Other data, without a patch: the surface is empty until there is a new one.
     void set_field(const Field& field, double level);
+    /// Another version of the data; these samples have changed.
     void update_field(const Field& field, const SampleBox& changed);
     /// A finer part of the data; what was shown stays until its surface is there. Nothing: none.
     void set_patch(const std::optional<ScenePatch>& patch);
+    /// Extracted again, coarse first; the newest level wins. Without a field it does nothing.
     void set_level(double level);
     void clear();
-    void set_most_triangles(std::size_t triangles) { whole_.set_most_triangles(triangles); }
+    /// From the next surface on.
+    void set_most_triangles(std::size_t triangles) { extractor_.set_most_triangles(triangles); }
 
-    double level() const { return whole_.level(); }
+    double level() const { return level_; }
+    /// Of the newest level that is there: one that is dragged is seen to move.
     const ExtractedSurface& surface() const { return surface_; }
-    bool extracting() const { return whole_.extracting() || (finer_ && finer_->extracting()); }
+    bool extracting() const { return extracting_ || (finer_ && finer_->extracting()); }
     /// The surface of the whole data is still being made.
-    bool extracting_whole() const { return whole_.extracting(); }
+    bool extracting_whole() const { return extracting_; }
 
   Q_SIGNALS:
     /// surface() is another one.
     void made();
-    /// As SurfaceSource, of the whole.
+    /// That of the whole data is as fine as it will be, not after an update alone.
     void finished();
     void problem(const QString& what);
 
   private:
-    void make_source();
+    void take(ExtractedSurface surface);
     void take_finer();
+    void drop_patch();
     void put_together();
 
     SurfaceLimits limits_;
-    SurfaceSource whole_;
+    std::optional<Field> field_;
+    ExtractedSurface whole_, surface_;  // the latter with the finer part
+    double level_ = std::nan("");
+    std::uint64_t request_ = 0, oldest_ = 1;  // the last one; the first one of these data
+    bool extracting_ = false;
+    bool asked_ = false;  // not by an update
+    SurfaceExtractor extractor_;
+
     std::unique_ptr<SurfaceSource> finer_;  // from the first patch on: it has a thread
     std::optional<ScenePatch> patch_;       // whose surface is made
     struct Finer {
@@ -142,7 +111,6 @@ class PatchedSource : public QObject {
     };
     std::optional<Finer> shown_;
     PatchedSurface both_;
-    ExtractedSurface surface_;
 };
 
 /// One for each label, as smooth as its mask allows; positions from the middle of the overlay's

@@ -33,12 +33,12 @@ bool touches(const std::optional<Snapshot>& now) {
 
 }  // namespace
 
-DetailController::DetailController(Content& content, Views& views)
-    : content_(content), views_(views) {
-    connect(&content, &Content::closing, this, &DetailController::end);
-    connect(&content, &Content::run_started, this, &DetailController::begin);
-    connect(&content, &Content::field_replaced, this, &DetailController::begin);
-    connect(&content, &Content::playback_started, this, &DetailController::begin);
+DetailController::DetailController(const Desk& desk) : Controller(desk) {
+    connect(&content_, &Content::closing, this, &DetailController::end);
+    for (const auto begins :
+         {&Content::run_started, &Content::field_replaced, &Content::playback_started}) {
+        connect(&content_, begins, this, &DetailController::begin);
+    }
 }
 
 DetailController::~DetailController() = default;

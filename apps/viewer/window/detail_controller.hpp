@@ -13,18 +13,16 @@
 #include "apps/viewer/model/detail_choice.hpp"
 #include "apps/viewer/model/detail_maker.hpp"
 #include "apps/viewer/scene/navigation.hpp"
+#include "apps/viewer/window/desk.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
 
-class Content;
-class Views;
-
-class DetailController : public QObject {
+class DetailController : public Controller {
     Q_OBJECT
 
   public:
-    DetailController(Content& content, Views& views);
+    explicit DetailController(const Desk& desk);
     ~DetailController() override;
 
     /// Looks at what is shown; as often as it is drawn.
@@ -56,8 +54,6 @@ class DetailController : public QObject {
     bool is_in_patch(const Snapshot& now) const;
     void take(std::uint64_t generation, int viewer, const std::shared_ptr<const DetailField>& made);
 
-    Content& content_;
-    Views& views_;
     SeenStore store_;
     Interpolation interpolation_ = Interpolation::linear;
     std::uint64_t generation_ = 0;                            // of readers

@@ -37,24 +37,24 @@ std::optional<pictures::View> face_on(const Geometry& geometry, double is_thin) 
 
 }  // namespace
 
-DisplayController::DisplayController(Content& content, Views& views, Panel& panel,
-                                     MeasureController& measuring, OverlayController& overlays)
-    : content_(content), views_(views), panel_(panel), measuring_(measuring), overlays_(overlays) {
-    connect(&content, &Content::closed, this, &DisplayController::clear);
-    connect(&content, &Content::run_started, this, [this] {
+DisplayController::DisplayController(const Desk& desk, MeasureController& measuring,
+                                     OverlayController& overlays)
+    : Controller(desk), measuring_(measuring), overlays_(overlays) {
+    connect(&content_, &Content::closed, this, &DisplayController::clear);
+    connect(&content_, &Content::run_started, this, [this] {
         const run::Run& live = *content_.live();
         show_volume(content_.seen(content_.felt()), live.isovalue(), live.settings().transform);
     });
-    connect(&content, &Content::field_replaced, this,
+    connect(&content_, &Content::field_replaced, this,
             [this] { show_field(content_.seen(content_.felt()), content_.live()->isovalue()); });
-    connect(&content, &Content::playback_started, this, [this] {
+    connect(&content_, &Content::playback_started, this, [this] {
         const io::RecordingHead& head = content_.playback()->head();
         show_volume(content_.seen(content_.felt()), head.isovalue, head.settings.transform);
     });
-    connect(&panel.look_controls(), &LookControls::look_changed, this,
+    connect(&panel_.look_controls(), &LookControls::look_changed, this,
             &DisplayController::show_look);
-    connect(&panel.look_controls(), &LookControls::cut_wanted, this, &DisplayController::set_cut);
-    connect(&views.scene(), &Scene::cut_moved, &panel.look_controls(), &LookControls::set_look);
+    connect(&panel_.look_controls(), &LookControls::cut_wanted, this, &DisplayController::set_cut);
+    connect(&views_.scene(), &Scene::cut_moved, &panel_.look_controls(), &LookControls::set_look);
 }
 
 void DisplayController::clear() {

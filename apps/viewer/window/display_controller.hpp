@@ -1,26 +1,22 @@
 // Shows the live run or the playback in the scene, the slices and the look section of the panel.
 #pragma once
 
-#include <QObject>
 #include <optional>
 
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/layer_set.hpp"
 #include "apps/viewer/model/session_file.hpp"
+#include "apps/viewer/window/desk.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
 
-class Content;
 class MeasureController;
 class OverlayController;
-class Panel;
-class Views;
 
-class DisplayController : public QObject {
+class DisplayController : public Controller {
   public:
-    DisplayController(Content& content, Views& views, Panel& panel, MeasureController& measuring,
-                      OverlayController& overlays);
+    DisplayController(const Desk& desk, MeasureController& measuring, OverlayController& overlays);
 
     /// Shows the newest snapshots, and the data of the chosen hand's where they have changed.
     /// Returns them.
@@ -51,9 +47,6 @@ class DisplayController : public QObject {
     void show_look();
     void clear();
 
-    Content& content_;
-    Views& views_;
-    Panel& panel_;
     MeasureController& measuring_;
     OverlayController& overlays_;
     std::optional<HandSnapshots> held_;

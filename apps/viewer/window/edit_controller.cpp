@@ -48,10 +48,9 @@ SurfaceMesh surface_of(const Field& field, double isovalue, const io::Progress& 
 
 }  // namespace
 
-EditController::EditController(Content& content, Panel& panel, Messages& messages, QWidget* window)
-    : content_(content), panel_(panel), messages_(messages), window_(window), saving_(messages) {
-    connect(&content, &Content::run_changed, this, &EditController::show);
-    const BrushControls* controls = &panel.brush_controls();
+EditController::EditController(const Desk& desk) : Controller(desk), saving_(messages_) {
+    connect(&content_, &Content::run_changed, this, &EditController::show);
+    const BrushControls* controls = &panel_.brush_controls();
     connect(controls, &BrushControls::changed, this, &EditController::use_brush);
     connect(controls, &BrushControls::undo, this, &EditController::undo);
     connect(controls, &BrushControls::redo, this, &EditController::redo);
@@ -121,7 +120,8 @@ void EditController::ask_save(std::function<void()> then) {
     if (base.startsWith("synthetic:")) base = base.section(':', 1, 1);
     if (base.endsWith("." + suffix, Qt::CaseInsensitive)) base.chop(suffix.size() + 1);
     if (!content_.saved_elsewhere()) base += "-edited";
-    const QString path = ask_save_name(window_, tr("Save the volume"), base + "." + suffix, suffix);
+    const QString path =
+        ask_save_name(messages_.window(), tr("Save the volume"), base + "." + suffix, suffix);
     if (!path.isEmpty()) save(path, std::move(then));
 }
 
@@ -157,9 +157,9 @@ void EditController::ask_save_surface() {
     const auto kind = static_cast<int>(io::written_extension_of(volume).size());  // .nii.gz is one
     const QFileInfo name(QString::fromStdString(volume));
     const QString base = kind > 0 ? name.fileName().chopped(kind) : name.completeBaseName();
-    const QString path = ask_save_name(window_, tr("Save the surface (.ply, .stl, .obj or .vtp)"),
-                                       base.section(':', -1) + ".ply", "ply", true,
-                                       tr("Meshes (*.ply *.stl *.obj *.vtp)"));
+    const QString path = ask_save_name(
+        messages_.window(), tr("Save the surface (.ply, .stl, .obj or .vtp)"),
+        base.section(':', -1) + ".ply", "ply", true, tr("Meshes (*.ply *.stl *.obj *.vtp)"));
     if (!path.isEmpty()) save_surface(path);
 }
 
@@ -186,7 +186,8 @@ void EditController::write_surface(const QString& path, const std::shared_ptr<Su
                            "Simplify it to about %2? It stays closed, and what is left of its "
                            "points stays on the surface.")
                             .arg(count_text(double(most)), count_text(double(many_triangles_))),
-                        QMessageBox::Yes | QMessageBox::No | QMessageBox::Cancel, window_);
+                        QMessageBox::Yes | QMessageBox::No | QMessageBox::Cancel,
+                        messages_.window());
         box.setObjectName("simplify");
         box.button(QMessageBox::Yes)->setText(tr("Simplify"));
         box.button(QMessageBox::No)->setText(tr("All triangles"));
@@ -212,7 +213,8 @@ void EditController::settle_edits(const std::function<void()>& action) {
 bool EditController::may_lose_edits(const std::function<void()>& once_saved) {
     QMessageBox box(QMessageBox::Question, "Palpate",
                     tr("The volume was edited, and not saved since. Save it?"),
-                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
+                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
+                    messages_.window());
     return go_on(box, once_saved);
 }
 
@@ -220,7 +222,8 @@ void EditController::save_edits_first(const std::function<void()>& action) {
     QMessageBox box(QMessageBox::Question, "Palpate",
                     tr("This will name the volume's file, which has not the latest edits. Save the "
                        "volume first?"),
-                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
+                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
+                    messages_.window());
     box.button(QMessageBox::Discard)->setText(tr("Without the edits"));
     if (go_on(box, action)) action();
 }

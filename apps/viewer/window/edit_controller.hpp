@@ -8,25 +8,20 @@
 #include <memory>
 
 #include "apps/viewer/panel/brush_controls.hpp"
+#include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "palpate/run/data.hpp"
 #include "palpate/surface.hpp"
 
 class QMessageBox;
-class QWidget;
 
 namespace palpate::viewer {
 
-class Content;
-class Messages;
-class Panel;
-
-class EditController : public QObject {
+class EditController : public Controller {
     Q_OBJECT
 
   public:
-    /// Dialogs belong to `window`.
-    EditController(Content& content, Panel& panel, Messages& messages, QWidget* window);
+    explicit EditController(const Desk& desk);
 
     void use_brush(const BrushChoice& brush);
     /// While the hand is lifted the brush does nothing.
@@ -67,10 +62,6 @@ class EditController : public QObject {
     void write_surface(const QString& path, const std::shared_ptr<SurfaceMesh>& mesh);
     void step(bool (run::VolumeEditor::*take)(), const QString& if_none);
 
-    Content& content_;
-    Panel& panel_;
-    Messages& messages_;
-    QWidget* window_;
     BackgroundTask saving_;
     QString problem_;
     bool resting_ = false;

@@ -39,17 +39,16 @@ run::Source with_grid(run::Source source, const io::GivenGrid& grid) {
 
 }  // namespace
 
-FileController::FileController(Content& content, RunController& run, LayersController& layers,
+FileController::FileController(const Desk& desk, RunController& run, LayersController& layers,
                                RecordingController& recordings, DisplayController& display,
-                               MeasureController& measuring, Messages& messages)
-    : content_(content),
+                               MeasureController& measuring)
+    : Controller(desk),
       run_(run),
       layers_(layers),
       recordings_(recordings),
       display_(display),
       measuring_(measuring),
-      messages_(messages),
-      loader_(messages) {}
+      loader_(messages_) {}
 
 void FileController::load(const run::Source& source, Then then) {
     struct Result {

@@ -7,12 +7,12 @@
 #include <memory>
 
 #include "apps/viewer/model/session_file.hpp"
+#include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "palpate/io/orientation.hpp"
 
 namespace palpate::viewer {
 
-class Content;
 class DisplayController;
 class LayersController;
 class MeasureController;
@@ -22,13 +22,13 @@ struct Opened;
 struct RunRequest;
 
 /// Errors are shown; what was open then stays open, as long as the new file cannot be read.
-class FileController : public QObject {
+class FileController : public Controller {
     Q_OBJECT
 
   public:
-    FileController(Content& content, RunController& run, LayersController& layers,
+    FileController(const Desk& desk, RunController& run, LayersController& layers,
                    RecordingController& recordings, DisplayController& display,
-                   MeasureController& measuring, Messages& messages);
+                   MeasureController& measuring);
 
     /// A volume, a folder, a session, layers or a recording: its name tells which. Asks for the
     /// layout where lacks_layout().
@@ -73,13 +73,11 @@ class FileController : public QObject {
     void play(std::shared_ptr<Opened> opened, const QString& path);
     SessionFile session_now() const;
 
-    Content& content_;
     RunController& run_;
     LayersController& layers_;
     RecordingController& recordings_;
     DisplayController& display_;
     MeasureController& measuring_;
-    Messages& messages_;
     BackgroundTask loader_;
 };
 

@@ -12,6 +12,7 @@
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
+#include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -112,18 +113,18 @@ void say(QLabel& label, const QString& words, const QPoint& middle) {
 
 }  // namespace
 
-Hints::Hints(const Content& content, const RecordingController& recordings, Scene& scene)
-    : content_(content),
+Hints::Hints(const Desk& desk, const RecordingController& recordings)
+    : Controller(desk),
       recordings_(recordings),
-      scene_(scene),
-      reason_(label_over(scene, "hint", "background-color: #ffb000; color: black;")),
-      brush_(label_over(scene, "brush_on", "background-color: #d55e00; color: white;")),
-      depth_(label_over(scene, "depth", "background-color: rgba(0, 0, 0, 150); color: white;")),
-      recording_(label_over(scene, "recording_clock",
+      scene_(desk.views.scene()),
+      reason_(label_over(scene_, "hint", "background-color: #ffb000; color: black;")),
+      brush_(label_over(scene_, "brush_on", "background-color: #d55e00; color: white;")),
+      depth_(label_over(scene_, "depth", "background-color: rgba(0, 0, 0, 150); color: white;")),
+      recording_(label_over(scene_, "recording_clock",
                             "background-color: rgba(0, 0, 0, 150); color: white;")) {
     for (int hand = 1; hand <= most_hands; ++hand) {
         const QString colour = to_qt(colours_of(hand).hip).name();
-        numbers_[hand] = label_over(scene, QString("hand_number_%1").arg(hand),
+        numbers_[hand] = label_over(scene_, QString("hand_number_%1").arg(hand),
                                     "padding: 1px 4px; color: black; background-color: "
                                     "rgba(255, 255, 255, 190); border: 2px solid " +
                                         colour + ";");

@@ -4,7 +4,6 @@
 
 #include <QElapsedTimer>
 #include <QLabel>
-#include <QObject>
 #include <QString>
 
 #include <optional>
@@ -24,15 +23,14 @@ QString streaming_tip(const stream::BrickLoaderStatus& hand, const DetailControl
 /// Why the hand waits, for where the eye is.
 QString waiting_words(const stream::BrickLoaderStatus& hand);
 
-class Content;
 class RecordingController;
 class Scene;
 
-class Hints : public QObject {
+class Hints : public Controller {
     Q_OBJECT
 
   public:
-    Hints(const Content& content, const RecordingController& recordings, Scene& scene);
+    Hints(const Desk& desk, const RecordingController& recordings);
 
     /// Often: shows what holds now. Without the chosen hand no run is felt or played. `brush`: it
     /// is on.
@@ -44,7 +42,6 @@ class Hints : public QObject {
     void show_numbers(const HandSnapshots& hands);
     void show_depth(const std::optional<Snapshot>& now);
 
-    const Content& content_;
     const RecordingController& recordings_;
     Scene& scene_;
     QLabel *reason_, *brush_, *depth_, *recording_;

@@ -22,13 +22,8 @@
 
 namespace palpate::viewer {
 
-LayersController::LayersController(Content& content, OverlayController& overlays, Panel& panel,
-                                   Messages& messages)
-    : content_(content),
-      overlays_(overlays),
-      panel_(panel),
-      messages_(messages),
-      reader_(messages) {
+LayersController::LayersController(const Desk& desk, OverlayController& overlays)
+    : Controller(desk), overlays_(overlays), reader_(messages_) {
     try {
         for (io::LayersPreset& preset : io::layers_presets()) {
             files_.push_back(std::move(preset.file));
@@ -36,20 +31,20 @@ LayersController::LayersController(Content& content, OverlayController& overlays
     } catch (const io::InputError&) {
         // Without the folder of the built-in ones there are those that are opened.
     }
-    connect(&content, &Content::closed, this, [this] { reader_.abandon(); });
-    connect(&content, &Content::run_changed, this, [this] {
+    connect(&content_, &Content::closed, this, [this] { reader_.abandon(); });
+    connect(&content_, &Content::run_changed, this, [this] {
         offer();
         show_overlay();
     });
     connect(&overlays, &OverlayController::changed, this, &LayersController::offer);
-    connect(&panel.look_controls(), &LookControls::look_changed, this, [this] {
+    connect(&panel_.look_controls(), &LookControls::look_changed, this, [this] {
         if (overlays_.overlay() && overlays_.overlay()->is_label_map()) offer();
     });
-    LayersControls& controls = panel.layers_controls();
+    LayersControls& controls = panel_.layers_controls();
     connect(&controls, &LayersControls::open_wanted, this, &LayersController::ask_open);
     connect(&controls, &LayersControls::save_wanted, this, &LayersController::ask_save);
     connect(&controls, &LayersControls::labels_wanted, this, &LayersController::place);
-    connect(&panel.overlay_controls(), &OverlayControls::feel_wanted, this,
+    connect(&panel_.overlay_controls(), &OverlayControls::feel_wanted, this,
             &LayersController::feel_labels);
 }
 

@@ -6,25 +6,22 @@
 #include <vector>
 
 #include "apps/viewer/model/layer_set.hpp"
+#include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "palpate/io/layers_file.hpp"
 
 namespace palpate::viewer {
 
-class Content;
-class Messages;
 class OverlayController;
 struct Overlay;
-class Panel;
 struct LayersChoice;
 struct SessionFile;
 
-class LayersController : public QObject {
+class LayersController : public Controller {
     Q_OBJECT
 
   public:
-    LayersController(Content& content, OverlayController& overlays, Panel& panel,
-                     Messages& messages);
+    LayersController(const Desk& desk, OverlayController& overlays);
 
     /// Whether a file is a set of layers, by its content.
     static bool is_layers_file(const QString& path);
@@ -51,10 +48,7 @@ class LayersController : public QObject {
     void place(const SharedLayers& layers);
     void show_overlay();
 
-    Content& content_;
     OverlayController& overlays_;
-    Panel& panel_;
-    Messages& messages_;
     std::vector<io::LayersFile> files_;  // built in, then those that were opened
     BackgroundTask reader_;              // of labels
 };

@@ -101,23 +101,19 @@ class MainWindow : public QMainWindow {
     // The menus and the tool bar (menus.cpp).
     void make_menus();
     void fill_recent(QMenu& menu);
-    void add_open_actions(QMenu* menu);
-    void add_save_actions(QMenu* menu);
-    void add_recording_actions(QMenu* menu);
-    void add_camera_actions(QMenu* menu);
-    void add_measure_actions(QMenu* view);
-    void add_cut_actions(QMenu* view);
     void make_file_menu();
     void make_session_menu();
     void make_data_menu();
+    void make_measure_and_cut_menus(QMenu& view);
     void make_view_menu();
     void make_help_menu();
     void make_tool_bar();
     /// Views from the sides of the body, or from the ends of the grid's axes where those are not
     /// known.
     void name_views(bool oriented);
-    Actions::Condition if_open() const;
-    Actions::Condition if_live() const;
+    void record(bool on);
+    void toggle_brush();
+    void look_from_hand();
 
     Content content_;
     Views* views_;
@@ -126,6 +122,7 @@ class MainWindow : public QMainWindow {
     Timeline* timeline_;
     QLabel *streaming_, *readout_, *frame_time_;
     Messages messages_;
+    Desk desk_;
     MeasureController measuring_;
     OverlayController overlays_;
     DisplayController display_;
@@ -139,6 +136,8 @@ class MainWindow : public QMainWindow {
     FileController files_;
     Hints hints_;
     Actions actions_;
+    const ActionRow::Condition if_open_ = [this] { return content_.volume() != nullptr; };
+    const ActionRow::Condition if_live_ = [this] { return live() != nullptr; };
     QTimer timer_;
     bool keeps_layout_ = true;
     int rounds_ = 0, at_rest_ = 0;

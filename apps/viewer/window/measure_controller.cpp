@@ -9,11 +9,10 @@
 
 namespace palpate::viewer {
 
-MeasureController::MeasureController(Content& content, Views& views, Messages& messages)
-    : content_(content), views_(views), messages_(messages) {
-    connect(&views, &Views::point_chosen, this, &MeasureController::add_point);
-    connect(&views, &Views::point_pointed_at, this, [this](const Vec3& at) { show(at); });
-    connect(&content, &Content::closed, this, &MeasureController::remove_all);
+MeasureController::MeasureController(const Desk& desk) : Controller(desk) {
+    connect(&views_, &Views::point_chosen, this, &MeasureController::add_point);
+    connect(&views_, &Views::point_pointed_at, this, [this](const Vec3& at) { show(at); });
+    connect(&content_, &Content::closed, this, &MeasureController::remove_all);
 }
 
 void MeasureController::begin(Measure kind) {

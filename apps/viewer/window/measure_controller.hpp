@@ -1,23 +1,19 @@
 // Measures lengths and angles by clicks in scene and slices.
 #pragma once
 
-#include <QObject>
 #include <optional>
 #include <vector>
 
 #include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/window/desk.hpp"
 
 namespace palpate::viewer {
 
-class Content;
-class Messages;
-class Views;
-
-class MeasureController : public QObject {
+class MeasureController : public Controller {
     Q_OBJECT
 
   public:
-    MeasureController(Content& content, Views& views, Messages& messages);
+    explicit MeasureController(const Desk& desk);
 
     /// The next clicks are its points.
     void begin(Measure kind);
@@ -39,9 +35,6 @@ class MeasureController : public QObject {
     void add_point(const Vec3& at);
     void show(const std::optional<Vec3>& pointed_at = {});
 
-    Content& content_;
-    Views& views_;
-    Messages& messages_;
     std::vector<Measurement> done_, saved_;
     std::optional<Measurement> made_;
     LengthUnit unit_ = LengthUnit::automatic;

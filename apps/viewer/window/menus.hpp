@@ -1,4 +1,5 @@
-// The window's menus and tool bar: actions, each with the conditions that enable and check it.
+// The window's menus and tool bar: tables of actions, each with the conditions that enable and
+// check it.
 #pragma once
 
 #include <QKeySequence>
@@ -6,6 +7,7 @@
 #include <QString>
 
 #include <functional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,22 +19,44 @@ namespace palpate::viewer {
 
 class Messages;
 
-class Actions : public QObject {
-  public:
+/// A line of a menu; one without a name is a separator.
+struct ActionRow {
+    struct Key : QKeySequence {
+        using QKeySequence::QKeySequence;
+        Key(const char* text = "") : QKeySequence(QString(text)) {}
+        Key(const QString& text) : QKeySequence(text) {}
+    };
+    /// With or without the state that a switch is switched to.
+    struct Act : std::function<void(bool)> {
+        template <class Function>
+        Act(Function act)
+            : function([act = std::move(act)](bool on) {
+                  if constexpr (std::is_invocable_v<Function, bool>) {
+                      act(on);
+                  } else {
+                      act();
+                  }
+              }) {}
+    };
     using Condition = std::function<bool()>;
 
+    const char* name = nullptr;  ///< the action's object name
+    QString text = {};
+    Key key = {};
+    Act act = [] {};
+    Condition possible = {};  ///< always, without one
+    Condition on = {};        ///< it is a switch, and on
+};
+
+class Actions : public QObject {
+  public:
     /// Actions are children of `window`. What they throw is shown.
     Actions(QWidget* window, Messages& messages) : window_(window), messages_(messages) {}
 
-    /// `name` is the action's object name. Always possible without a condition. A key that is held
-    /// triggers it once; setAutoRepeat(true) on the result: again and again.
-    QAction* add(QMenu* menu, const char* name, const QString& text, const QString& key,
-                 std::function<void()> action, Condition possible = {});
-    /// A switch: `action` gets the state that it is switched to.
-    QAction* add_switch(QMenu* menu, const char* name, const QString& text, const QString& key,
-                        std::function<void(bool)> action, Condition on, Condition possible = {});
+    /// A key that is held triggers its action once; setAutoRepeat(true): again and again.
+    void add(QMenu* menu, const std::vector<ActionRow>& rows);
     /// Also one that is not made here.
-    void limit(QAction* action, Condition possible) {
+    void limit(QAction* action, ActionRow::Condition possible) {
         entries_.push_back({action, {}, std::move(possible)});
     }
     QAction* find(const char* name) const;
@@ -43,7 +67,7 @@ class Actions : public QObject {
   private:
     struct Entry {
         QAction* action;
-        Condition on, possible;
+        ActionRow::Condition on, possible;
     };
     QWidget* window_;
     Messages& messages_;

@@ -29,19 +29,13 @@ double opacity_of(int label, const SharedLayers& layers) {
 
 }  // namespace
 
-OverlayController::OverlayController(Content& content, Views& views, Panel& panel,
-                                     Messages& messages)
-    : content_(content),
-      views_(views),
-      panel_(panel),
-      messages_(messages),
-      image_({2000000, 20000}),
-      loader_(messages) {
-    connect(&content, &Content::closed, this, &OverlayController::close);
+OverlayController::OverlayController(const Desk& desk)
+    : Controller(desk), image_({2000000, 20000}), loader_(messages_) {
+    connect(&content_, &Content::closed, this, &OverlayController::close);
     connect(&image_, &SurfaceSource::made, this, &OverlayController::show);
-    connect(&panel.look_controls(), &LookControls::look_changed, this, &OverlayController::show);
-    connect(&panel.look_controls(), &LookControls::look_set, this, &OverlayController::show);
-    OverlayControls& controls = panel.overlay_controls();
+    connect(&panel_.look_controls(), &LookControls::look_changed, this, &OverlayController::show);
+    connect(&panel_.look_controls(), &LookControls::look_set, this, &OverlayController::show);
+    OverlayControls& controls = panel_.overlay_controls();
     connect(&controls, &OverlayControls::open_wanted, this, &OverlayController::ask_open);
     connect(&controls, &OverlayControls::close_wanted, this, &OverlayController::close);
     connect(&controls, &OverlayControls::label_wanted, this, &OverlayController::go_to);

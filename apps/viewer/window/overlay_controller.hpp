@@ -9,20 +9,16 @@
 
 #include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/scene/surface_source.hpp"
+#include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 
 namespace palpate::viewer {
 
-class Content;
-class Messages;
-class Panel;
-class Views;
-
-class OverlayController : public QObject {
+class OverlayController : public Controller {
     Q_OBJECT
 
   public:
-    OverlayController(Content& content, Views& views, Panel& panel, Messages& messages);
+    explicit OverlayController(const Desk& desk);
 
     /// By a dialog.
     void ask_open();
@@ -48,10 +44,6 @@ class OverlayController : public QObject {
     void colour();
     void go_to(int label);
 
-    Content& content_;
-    Views& views_;
-    Panel& panel_;
-    Messages& messages_;
     std::shared_ptr<const Overlay> overlay_, coloured_;  // the latter as it is shown
     std::filesystem::path file_;                         // of the overlay; empty: none
     SharedLayers layers_;

@@ -33,24 +33,22 @@ constexpr double hold_seconds = 0.6, press_speed = 3;
 
 }  // namespace
 
-ProbeController::ProbeController(Content& content, RunController& run, Views& views,
-                                 Messages& messages)
-    : content_(content), views_(views), messages_(messages) {
-    connect(&views.scene(), &Scene::probe_dragged, this, [this](const Vec3& by) {
+ProbeController::ProbeController(const Desk& desk, RunController& run) : Controller(desk) {
+    connect(&views_.scene(), &Scene::probe_dragged, this, [this](const Vec3& by) {
         forget_press();
         move_by(by);
     });
-    connect(&views, &Views::double_clicked, this, &ProbeController::forget_press);
-    connect(&views.scene(), &Scene::tool_turned, this, &ProbeController::turn_by);
-    connect(&views, &Views::probe_aimed, this, &ProbeController::move_to);
-    connect(&views.scene(), &Scene::probe_pressed, this, [this](const Vec3& at) {
+    connect(&views_, &Views::double_clicked, this, &ProbeController::forget_press);
+    connect(&views_.scene(), &Scene::tool_turned, this, &ProbeController::turn_by);
+    connect(&views_, &Views::probe_aimed, this, &ProbeController::move_to);
+    connect(&views_.scene(), &Scene::probe_pressed, this, [this](const Vec3& at) {
         pressed_ = at;
         since_.start();
         held_ = true;
         pressed_seconds_ = 0;
     });
-    connect(&views.scene(), &Scene::probe_released, this, [this] { held_ = false; });
-    connect(&content, &Content::run_started, this, [this] {
+    connect(&views_.scene(), &Scene::probe_released, this, [this] { held_ = false; });
+    connect(&content_, &Content::run_started, this, [this] {
         for (bool& hand : approaching_) hand = true;
     });
     connect(&run, &RunController::device_changed, this, [this] {
@@ -58,9 +56,9 @@ ProbeController::ProbeController(Content& content, RunController& run, Views& vi
         end_route();
         approaching_[content_.hand()] = true;
     });
-    connect(&content, &Content::hand_changed, this, &ProbeController::take_over);
-    connect(&content, &Content::playback_started, this, [this] { set_pointing(false); });
-    connect(&content, &Content::closed, this, [this] {
+    connect(&content_, &Content::hand_changed, this, &ProbeController::take_over);
+    connect(&content_, &Content::playback_started, this, [this] { set_pointing(false); });
+    connect(&content_, &Content::closed, this, [this] {
         end_route();
         forget_press();
     });
@@ -243,10 +241,13 @@ void ProbeController::press_deeper(const Snapshot& now) {
 
 void ProbeController::nudge(const Vec3& screen) {
     if (!content_.live()) return;
+    move_by(content_.live()->field().geometry().spacing.minCoeff() * in_view(screen));
+}
+
+/// From axes to the right, up and towards the viewer to physical ones.
+Vec3 ProbeController::in_view(const Vec3& screen) const {
     const ViewAxes axes = axes_of(views_.scene().camera());
-    const double step = content_.live()->field().geometry().spacing.minCoeff();
-    move_by(step *
-            (screen[0] * axes.right + screen[1] * axes.up + screen[2] * axes.towards_viewer));
+    return screen[0] * axes.right + screen[1] * axes.up + screen[2] * axes.towards_viewer;
 }
 
 void ProbeController::turn_by(const Vec3& rotation) {
@@ -260,53 +261,40 @@ void ProbeController::turn_by(const Vec3& rotation) {
     }
 }
 
-void ProbeController::twist(const Vec3& screen) {
-    const ViewAxes axes = axes_of(views_.scene().camera());
-    turn_by(screen[0] * axes.right + screen[1] * axes.up + screen[2] * axes.towards_viewer);
-}
-
+/// Only where the scene has the focus: elsewhere arrows belong to sliders, numbers and slices.
 void ProbeController::add_keys() {
+    const auto add = [this](const QString& text, int key, auto act) {
+        auto* action = new QAction(text, &views_);
+        action->setShortcut(QKeySequence(key));
+        action->setShortcutContext(Qt::WidgetShortcut);
+        connect(action, &QAction::triggered, this, act);
+        views_.scene().addAction(action);
+    };
     struct Key {
         QString text;
         int key;
         Vec3 step;
     };
-    const Key keys[] = {
-        {tr("Nudge the probe to the left"), Qt::Key_Left, {-1, 0, 0}},
-        {tr("Nudge the probe to the right"), Qt::Key_Right, {1, 0, 0}},
-        {tr("Nudge the probe up"), Qt::Key_Up, {0, 1, 0}},
-        {tr("Nudge the probe down"), Qt::Key_Down, {0, -1, 0}},
-        {tr("Nudge the probe into the depth"), Qt::Key_PageUp, {0, 0, -1}},
-        {tr("Nudge the probe towards you"), Qt::Key_PageDown, {0, 0, 1}},
-    };
-    const Key turns[] = {
-        {tr("Turn the tool to the left"), Qt::Key_Left, {0, -1, 0}},
-        {tr("Turn the tool to the right"), Qt::Key_Right, {0, 1, 0}},
-        {tr("Turn the tool up"), Qt::Key_Up, {-1, 0, 0}},
-        {tr("Turn the tool down"), Qt::Key_Down, {1, 0, 0}},
-        {tr("Turn the tool clockwise"), Qt::Key_PageDown, {0, 0, -1}},
-        {tr("Turn the tool anticlockwise"), Qt::Key_PageUp, {0, 0, 1}},
-    };
     constexpr double notch = std::numbers::pi / 36;  // 5 degrees
-    for (const Key& key : turns) {
-        auto* action = new QAction(key.text, &views_);
-        action->setShortcut(QKeySequence(key.key + int(Qt::ControlModifier)));
-        action->setShortcutContext(Qt::WidgetShortcut);
-        connect(action, &QAction::triggered, this,
-                [this, turn = Vec3(notch * key.step)] { twist(turn); });
-        views_.scene().addAction(action);
+    for (const Key& key : {Key{tr("Turn the tool to the left"), Qt::Key_Left, {0, -1, 0}},
+                           {tr("Turn the tool to the right"), Qt::Key_Right, {0, 1, 0}},
+                           {tr("Turn the tool up"), Qt::Key_Up, {-1, 0, 0}},
+                           {tr("Turn the tool down"), Qt::Key_Down, {1, 0, 0}},
+                           {tr("Turn the tool clockwise"), Qt::Key_PageDown, {0, 0, -1}},
+                           {tr("Turn the tool anticlockwise"), Qt::Key_PageUp, {0, 0, 1}}}) {
+        const Vec3 turn = notch * key.step;
+        add(key.text, key.key + int(Qt::ControlModifier), [this, turn] { turn_by(in_view(turn)); });
     }
-    // Only where the scene has the focus: elsewhere arrows belong to sliders, numbers and slices.
-    for (const Key& key : keys) {
-        for (const bool far : {false, true}) {
-            auto* action =
-                new QAction(far ? tr("%1 by ten voxels").arg(key.text) : key.text, &views_);
-            action->setShortcut(QKeySequence(key.key + (far ? int(Qt::ShiftModifier) : 0)));
-            action->setShortcutContext(Qt::WidgetShortcut);
-            const Vec3 step = (far ? 10 : 1) * key.step;
-            connect(action, &QAction::triggered, this, [this, step] { nudge(step); });
-            views_.scene().addAction(action);
-        }
+    for (const Key& key : {Key{tr("Nudge the probe to the left"), Qt::Key_Left, {-1, 0, 0}},
+                           {tr("Nudge the probe to the right"), Qt::Key_Right, {1, 0, 0}},
+                           {tr("Nudge the probe up"), Qt::Key_Up, {0, 1, 0}},
+                           {tr("Nudge the probe down"), Qt::Key_Down, {0, -1, 0}},
+                           {tr("Nudge the probe into the depth"), Qt::Key_PageUp, {0, 0, -1}},
+                           {tr("Nudge the probe towards you"), Qt::Key_PageDown, {0, 0, 1}}}) {
+        const Vec3 step = key.step, far = 10 * step;
+        add(key.text, key.key, [this, step] { nudge(step); });
+        add(tr("%1 by ten voxels").arg(key.text), key.key + int(Qt::ShiftModifier),
+            [this, far] { nudge(far); });
     }
     views_.scene().setFocusPolicy(Qt::StrongFocus);
 }

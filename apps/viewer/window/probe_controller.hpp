@@ -2,24 +2,21 @@
 #pragma once
 
 #include <QElapsedTimer>
-#include <QObject>
 #include <optional>
 #include <vector>
 
 #include "apps/viewer/model/hands.hpp"
+#include "apps/viewer/window/desk.hpp"
 
 namespace palpate::viewer {
 
-class Content;
-class Messages;
 class RunController;
-class Views;
 
-class ProbeController : public QObject {
+class ProbeController : public Controller {
     Q_OBJECT
 
   public:
-    ProbeController(Content& content, RunController& run, Views& views, Messages& messages);
+    ProbeController(const Desk& desk, RunController& run);
 
     /// Whether the mouse is the device.
     bool possible() const;
@@ -33,8 +30,6 @@ class ProbeController : public QObject {
     void nudge(const Vec3& screen);
     /// Turns the tool by a rotation vector [radians, physical axes].
     void turn_by(const Vec3& rotation);
-    /// `screen`: about the axes to the right, up, towards the viewer [radians].
-    void twist(const Vec3& screen);
     /// Lifts the hand, wherever it is, and brings it from in front to the surface under a point of
     /// the picture, until probe or tool touches lightly; nothing where the probe is there already,
     /// or there is no surface.
@@ -52,6 +47,7 @@ class ProbeController : public QObject {
   private:
     void add_keys();
     Vec3 towards_viewer() const;
+    Vec3 in_view(const Vec3& screen) const;
     Vec3 aimed(const DeviceTransform& transform) const;
     void aim(const DeviceTransform& transform, const Vec3& physical);
     std::vector<Vec3> tool_points(const DeviceTransform& transform) const;
@@ -65,9 +61,6 @@ class ProbeController : public QObject {
     void press_deeper(const Snapshot& now);
     Vec3 before_far_side(const Vec3& from, const Vec3& by);
 
-    Content& content_;
-    Views& views_;
-    Messages& messages_;
     bool pointing_ = false;
     // A run has begun: to the first surface, once there is a tick and the hand is chosen.
     PerHand<bool> approaching_;

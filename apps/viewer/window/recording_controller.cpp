@@ -13,10 +13,9 @@
 
 namespace palpate::viewer {
 
-RecordingController::RecordingController(Content& content, Messages& messages)
-    : content_(content), messages_(messages) {
-    connect(&content, &Content::closing, this, &RecordingController::stop);
-    connect(&content, &Content::playback_started, this, &RecordingController::tell_playback);
+RecordingController::RecordingController(const Desk& desk) : Controller(desk) {
+    connect(&content_, &Content::closing, this, &RecordingController::stop);
+    connect(&content_, &Content::playback_started, this, &RecordingController::tell_playback);
 }
 
 void RecordingController::start(const QString& path) {
@@ -89,19 +88,18 @@ void RecordingController::tell_playback() {
     messages_.show_done(words.join("; "));
 }
 
-TimelineController::TimelineController(Content& content, Timeline& timeline, Messages& messages)
-    : content_(content), timeline_(timeline), messages_(messages) {
+TimelineController::TimelineController(const Desk& desk) : Controller(desk) {
     connect_timeline();
-    connect(&content, &Content::closed, &timeline, &QWidget::hide);
-    connect(&content, &Content::run_changed, this, &TimelineController::show);
-    connect(&content, &Content::playback_started, this, [this] {
+    connect(&content_, &Content::closed, &timeline_, &QWidget::hide);
+    connect(&content_, &Content::run_changed, this, &TimelineController::show);
+    connect(&content_, &Content::playback_started, this, [this] {
         clock_ = {};
         show_hand();
     });
-    connect(&content, &Content::hand_changed, this, [this] {
+    connect(&content_, &Content::hand_changed, this, [this] {
         if (content_.playback()) show_hand();
     });
-    timeline.hide();
+    timeline_.hide();
     since_.start();
 }
 

@@ -10,20 +10,19 @@
 #include <cmath>
 #include <memory>
 
+#include "apps/viewer/window/desk.hpp"
+
 namespace palpate::io {
 class RecordingWriter;
 }
 
 namespace palpate::viewer {
 
-class Content;
-class Messages;
-
-class RecordingController : public QObject {
+class RecordingController : public Controller {
     Q_OBJECT
 
   public:
-    RecordingController(Content& content, Messages& messages);
+    explicit RecordingController(const Desk& desk);
 
     /// Errors are shown.
     void start(const QString& path);
@@ -42,8 +41,6 @@ class RecordingController : public QObject {
     void tell_playback();
     double seconds() const;
 
-    Content& content_;
-    Messages& messages_;
     int exit_status_ = 0;
     double began_ = 0;  // [s] of the run
 };
@@ -83,15 +80,12 @@ class PlaybackClock {
     bool loop_ = false;
 };
 
-class Content;
-class Messages;
-class Timeline;
 struct Overview;
 struct TimelineView;
 
-class TimelineController : public QObject {
+class TimelineController : public Controller {
   public:
-    TimelineController(Content& content, Timeline& timeline, Messages& messages);
+    explicit TimelineController(const Desk& desk);
 
     /// Goes to a time of the recording [s]; nothing without one.
     void show_time(double time);
@@ -106,9 +100,6 @@ class TimelineController : public QObject {
     void show();
     TimelineView view() const;
 
-    Content& content_;
-    Timeline& timeline_;
-    Messages& messages_;
     PlaybackClock clock_;
     QElapsedTimer since_;  // the last advance()
     std::shared_ptr<const Overview> overview_;

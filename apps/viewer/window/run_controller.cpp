@@ -31,32 +31,26 @@ void RunRequest::use_devices_of(const RunRequest& other) {
     others = other.others;
 }
 
-RunController::RunController(const RunRequest& request, Content& content, Panel& panel,
-                             Messages& messages)
-    : request_(request),
-      content_(content),
-      panel_(panel),
-      messages_(messages),
-      search_(messages),
-      reader_(messages) {
-    connect(&content, &Content::run_changed, this, &RunController::show_terraces);
-    connect(&panel.device_controls(), &DeviceControls::chosen, this, &RunController::use_device);
-    connect(&panel.device_controls(), &DeviceControls::added, this, &RunController::add_hand);
-    connect(&panel.device_controls(), &DeviceControls::removed, this, &RunController::remove_hand);
-    connect(&content, &Content::closed, this, [this] { reader_.abandon(); });
-    connect(&panel.tool_controls(), &ToolControls::open_wanted, this, &RunController::ask_tool);
-    connect(&panel.hand_switch(), &HandSwitch::wanted, this, &RunController::choose_hand);
+RunController::RunController(const Desk& desk, const RunRequest& request)
+    : Controller(desk), request_(request), search_(messages_), reader_(messages_) {
+    connect(&content_, &Content::run_changed, this, &RunController::show_terraces);
+    connect(&panel_.device_controls(), &DeviceControls::chosen, this, &RunController::use_device);
+    connect(&panel_.device_controls(), &DeviceControls::added, this, &RunController::add_hand);
+    connect(&panel_.device_controls(), &DeviceControls::removed, this, &RunController::remove_hand);
+    connect(&content_, &Content::closed, this, [this] { reader_.abandon(); });
+    connect(&panel_.tool_controls(), &ToolControls::open_wanted, this, &RunController::ask_tool);
+    connect(&panel_.hand_switch(), &HandSwitch::wanted, this, &RunController::choose_hand);
     for (const auto changed : {&Content::run_changed, &Content::playback_started,
                                &Content::hand_changed, &Content::closed}) {
-        connect(&content, changed, this, &RunController::show_hands);
+        connect(&content_, changed, this, &RunController::show_hands);
     }
-    connect(&content, &Content::hand_changed, this, [this] {
+    connect(&content_, &Content::hand_changed, this, [this] {
         show_devices();
         reported_ticks_ = std::numeric_limits<std::int64_t>::max();  // of another servo
     });
-    connect(&panel.device_controls(), &DeviceControls::refresh_wanted, this,
+    connect(&panel_.device_controls(), &DeviceControls::refresh_wanted, this,
             &RunController::find_devices);
-    connect(&panel.isovalue_controls(), &IsovalueControls::field_wanted, this,
+    connect(&panel_.isovalue_controls(), &IsovalueControls::field_wanted, this,
             &RunController::use_field);
     since_report_.start();
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "palpate/devices/devices.hpp"
 #include "palpate/run/setup.hpp"
@@ -14,9 +15,6 @@
 
 namespace palpate::viewer {
 
-class Content;
-class Messages;
-class Panel;
 struct Opened;
 
 /// Settings from the command line for the runs to come, and the devices chosen since.
@@ -32,12 +30,12 @@ struct RunRequest {
     void use_devices_of(const RunRequest& other);
 };
 
-class RunController : public QObject {
+class RunController : public Controller {
     Q_OBJECT
 
   public:
     /// `request`: the command line's, for the runs to come.
-    RunController(const RunRequest& request, Content& content, Panel& panel, Messages& messages);
+    RunController(const Desk& desk, const RunRequest& request);
 
     /// The request for another run. The level, the layers and the recording of the command line are
     /// for the first one only.
@@ -91,9 +89,6 @@ class RunController : public QObject {
     void show_terraces();
 
     RunRequest request_;
-    Content& content_;
-    Panel& panel_;
-    Messages& messages_;
     BackgroundTask search_, reader_;
     std::vector<devices::DeviceFinding> findings_;
     std::optional<DeviceStatus> status_;

@@ -15,6 +15,13 @@
 
 namespace palpate::viewer {
 
+/// Tells the scene and each slice.
+template <class Tell>
+void Views::in_all(Tell tell) {
+    tell(*scene_);
+    for (SlicePane* pane : slices_) tell(*pane);
+}
+
 Views::Views(MakePainter make_painter, QWidget* parent)
     : QWidget(parent),
       scene_(new Scene(nullptr, std::move(make_painter))),
@@ -143,14 +150,12 @@ void Views::set_field(const Field& field, double isovalue, const std::optional<G
 
 void Views::update_field(const Field& field) {
     field_ = field;
-    scene_->update_field(field);
-    for (SlicePane* pane : slices_) pane->update_field(field);
+    in_all([&](auto& pane) { pane.update_field(field); });
 }
 
 void Views::clear() {
     field_.reset();
-    scene_->clear();
-    for (SlicePane* pane : slices_) pane->clear();
+    in_all([](auto& pane) { pane.clear(); });
 }
 
 void Views::set_pressed(const std::optional<double>& level, int hand) {
@@ -165,8 +170,7 @@ void Views::set_next_level(double level) {
 
 void Views::set_isovalue(double isovalue) {
     isovalue_ = isovalue;
-    scene_->set_isovalue(isovalue);
-    for (SlicePane* pane : slices_) pane->set_isovalue(isovalue);
+    in_all([&](auto& pane) { pane.set_isovalue(isovalue); });
 }
 
 void Views::set_look(const Look& look, const SharedLayers& layers) {
@@ -185,8 +189,7 @@ void Views::show_snapshots(const HandSnapshots& hands, int chosen) {
     touched_ = touched_ || (placed && snapshot->session.tick.proxy.mode == Mode::constrained);
     if (placed && follow_ && touched_) set_crosshair(snapshot->session.tick.proxy.scp);
     for (int hand = 1; hand <= most_hands; ++hand) {
-        scene_->show_snapshot(hands[hand], hand);
-        for (SlicePane* pane : slices_) pane->show_snapshot(hands[hand], hand);
+        in_all([&](auto& pane) { pane.show_snapshot(hands[hand], hand); });
     }
 }
 
@@ -196,30 +199,25 @@ void Views::set_hand(bool probe) {
 }
 
 void Views::set_brush(double radius) {
-    scene_->set_brush(radius);
-    for (SlicePane* pane : slices_) pane->set_brush(radius);
+    in_all([&](auto& pane) { pane.set_brush(radius); });
 }
 
 void Views::set_measuring(bool measuring) {
-    scene_->set_measuring(measuring);
-    for (SlicePane* pane : slices_) pane->set_measuring(measuring);
+    in_all([&](auto& pane) { pane.set_measuring(measuring); });
 }
 
 void Views::set_measurements(const std::vector<Measurement>& measurements) {
-    scene_->set_measurements(measurements);
-    for (SlicePane* pane : slices_) pane->set_measurements(measurements);
+    in_all([&](auto& pane) { pane.set_measurements(measurements); });
 }
 
 void Views::set_unit(LengthUnit unit) {
-    scene_->set_unit(unit);
-    for (SlicePane* pane : slices_) pane->set_unit(unit);
+    in_all([&](auto& pane) { pane.set_unit(unit); });
 }
 
 void Views::set_crosshair(const Vec3& physical) {
     if (crosshair_ == physical) return;
     crosshair_ = physical;
-    scene_->set_crosshair(physical);
-    for (SlicePane* pane : slices_) pane->set_crosshair(physical);
+    in_all([&](auto& pane) { pane.set_crosshair(physical); });
 }
 
 /// By hand: then it stays there.
@@ -243,10 +241,6 @@ void Views::set_window(double low, double high) {
 void Views::show_slices(bool shown) {
     slices_shown_ = shown;
     show_panes();
-}
-
-bool Views::slices_shown() const {
-    return slices_shown_;
 }
 
 }  // namespace palpate::viewer

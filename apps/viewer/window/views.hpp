@@ -67,7 +67,7 @@ class Views : public QWidget {
     /// What the file does not say of the volume's grid, on a button over the panes; empty: none.
     void set_missing(const QString& words);
     void show_slices(bool shown);
-    bool slices_shown() const;
+    bool slices_shown() const { return slices_shown_; }
     /// Beside: the slices in a column beside the scene. Four: all panes of the same size, the
     /// sagittal slice below the scene.
     enum class Arrangement { beside, four };
@@ -98,6 +98,8 @@ class Views : public QWidget {
     bool eventFilter(QObject* watched, QEvent* event) override;
 
   private:
+    template <class Tell>
+    void in_all(Tell tell);
     void choose_crosshair(const Vec3& physical);
     Vec3 on_surface(const Vec3& seen) const;
     void order_panes();

@@ -316,6 +316,33 @@ TEST(DrawnScene, a_maximum_intensity_projection_shows_the_brightest_sample_of_ea
     EXPECT_NEAR(red({10, 16, 16}), red({22, 16, 16}), 4);
 }
 
+/// An L has nothing at its upper right; on its side it would, as letters at the edges would.
+TEST(DrawnScene, the_orientation_cube_seen_straight_on_has_one_upright_letter_and_an_edge) {
+    ShownScene shown;
+    Look look = bare();
+    look.orientation = true;
+    look.surface = false;
+    shown.scene.set_look(look);
+    Geometry grid = support::grid(support::cube(8));
+    grid.oriented = true;
+    shown.scene.set_field(
+        linear_field(support::volume_of<std::uint8_t>(grid, [](const Index3&) { return 0; })), 128);
+    shown.scene.look_from(pictures::view_named("left"));
+    const QImage image = shown.settled("cube");
+    const Blob letter = blob(image, [](QRgb p) { return qGray(p) < 80; });
+    const Blob edge = blob(image, [](QRgb p) { return qGray(p) < 200; });
+    ASSERT_GT(letter.count, 20);
+    EXPECT_LT(edge.left, letter.left);
+    EXPECT_GT(edge.right, letter.right);
+    const int right = (letter.left + letter.right + 1) / 2;
+    const int lower = (letter.top + letter.bottom + 1) / 2;
+    for (int y = letter.top; y < lower; ++y) {
+        for (int x = right; x <= letter.right; ++x) {
+            EXPECT_GE(qGray(image.pixel(x, y)), 80) << x << ", " << y;
+        }
+    }
+}
+
 TEST(DrawnScene, can_be_destroyed_while_it_renders) {
     const Field noise = linear_field(
         support::noise_volume<std::uint8_t>(support::grid(support::cube(128)), 3, 0, 256));

@@ -18,7 +18,9 @@
 #include "apps/viewer/window/menus.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
+#include "apps/viewer/window/views.hpp"
 #include "support/scratch_folder.hpp"
+#include "viewer/undrawn.hpp"
 #include "viewer/waiting.hpp"
 
 namespace palpate::viewer::test {
@@ -84,6 +86,10 @@ class Controllers : public testing::Test {
     QWidget parent;
     Messages messages{&parent};
     Content content;
+    Views views{painter_of_test()};
+    Panel panel{content.effect()};
+    Timeline timeline;
+    Desk desk{content, messages, views, panel, timeline};
     QString done;
     support::ScratchFolder scratch;
 };
@@ -122,9 +128,14 @@ TEST_F(Controllers, actions_follow_what_is_possible_and_on) {
     QMenu menu;
     Actions actions(&parent, messages);
     bool on = false, possible = false;
-    QAction* action = actions.add_switch(
-        &menu, "switch", "Switch", {}, [&](bool to) { on = to; }, [&] { return on; },
-        [&] { return possible; });
+    actions.add(&menu, {{"switch",
+                         "Switch",
+                         {},
+                         [&](bool to) { on = to; },
+                         [&] { return possible; },
+                         [&] { return on; }},
+                        {"throws", "Throws", {}, [] { throw std::runtime_error("impossible"); }}});
+    QAction* action = actions.find("switch");
     actions.refresh();
     EXPECT_FALSE(action->isEnabled());
     possible = true;
@@ -134,15 +145,13 @@ TEST_F(Controllers, actions_follow_what_is_possible_and_on) {
     on = false;
     actions.refresh();
     EXPECT_FALSE(action->isChecked());
-    actions.add(&menu, "throws", "Throws", {}, [] { throw std::runtime_error("impossible"); });
     actions.find("throws")->trigger();
     EXPECT_TRUE(messages.problem().contains("impossible"));
 }
 
 TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played_by_the_timeline) {
-    Timeline timeline;
-    RecordingController recordings(content, messages);
-    TimelineController playing(content, timeline, messages);
+    RecordingController recordings(desk);
+    TimelineController playing(desk);
     feel("synthetic:sphere:24x24x24");
     EXPECT_TRUE(timeline.isHidden());
     const auto file = scratch.path() / "a.csv";
@@ -172,8 +181,7 @@ TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played
 }
 
 TEST_F(Controllers, without_edits_nothing_is_unsaved_and_nothing_can_be_undone) {
-    Panel panel(content.effect());
-    EditController editing(content, panel, messages, &parent);
+    EditController editing(desk);
     EXPECT_TRUE(editing.may_lose_edits({}));
     editing.undo();
     EXPECT_TRUE(done.isEmpty()) << "nothing is open";
