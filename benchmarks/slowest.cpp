@@ -2,6 +2,7 @@
 // within the default budget. docs/smooth.md has the results.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -61,9 +62,9 @@ void run(const std::string& name, long updates, State state, Update&& update) {
         work_of_all += work;
         sum += least;
     }
-    std::printf("%-28s slowest %6.1f us, most work %5ld, per unit %5.1f ns, at most %5.1f, not done %ld\n",
-                name.c_str(), slowest, most_work, 1000 * sum / double(work_of_all), dearest,
-                unfinished);
+    std::printf(
+        "%-28s slowest %6.1f us, most work %5ld, per unit %5.1f ns, at most %5.1f, not done %ld\n",
+        name.c_str(), slowest, most_work, 1000 * sum / double(work_of_all), dearest, unfinished);
     std::fflush(stdout);
 }
 
@@ -175,7 +176,9 @@ int main(int argc, char** argv) {
         return 0;
     }
     const Geometry geometry{{std::atoi(argv[4]), std::atoi(argv[5]), std::atoi(argv[6])},
-                            {1, 1, std::atof(argv[7])}, Vec3::Zero(), Mat3::Identity()};
+                            {1, 1, std::atof(argv[7])},
+                            Vec3::Zero(),
+                            Mat3::Identity()};
     std::ifstream file(argv[8], std::ios::binary);
     const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
     const auto count = static_cast<std::size_t>(sample_count(geometry));
@@ -184,8 +187,8 @@ int main(int argc, char** argv) {
         std::memcpy(samples.data(), bytes.data(), std::min(bytes.size(), count * sizeof zero));
         return Volume(geometry, std::move(samples));
     };
-    Field field = linear_field(bytes.size() < 2 * count ? volume(std::uint8_t{})
-                                                        : volume(std::int16_t{}));
+    Field field =
+        linear_field(bytes.size() < 2 * count ? volume(std::uint8_t{}) : volume(std::int16_t{}));
     run_all(argv[2], {std::move(field), std::atof(argv[3]), {}}, updates);
     return 0;
 }
