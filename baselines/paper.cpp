@@ -43,6 +43,8 @@ bool step_constrained(Site& site, Progress& progress) {
     const Vec3& spacing = progress.geometry.spacing;
     const Incident incident = incident_tetrahedra(site.point);
     const HalfSpaces<48> planes = constraint_planes(site, incident, spacing);
+    // Each pair of planes is tried, and compared with all.
+    progress.charge(incident.count + planes.count * planes.count * planes.count / 200);
     const Vec3 h_mm = progress.to_target(site).cwiseProduct(spacing);
     const Vec3 to_goal_mm = project_on_cone(h_mm, planes).point;
     const Vec3 to_goal = to_goal_mm.cwiseQuotient(spacing);

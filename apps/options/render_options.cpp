@@ -84,7 +84,7 @@ void RenderOptions::add_to(CLI::App& command) {
         ->default_str("1");
     command
         .add_option("--step-budget", given.step_budget,
-                    "Largest number of tetrahedra that an update may enter")
+                    "Largest work of an update, in steps through tetrahedra or what takes as long")
         ->default_str(std::to_string(ProxySettings{}.step_budget));
 }
 

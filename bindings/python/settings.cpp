@@ -186,7 +186,8 @@ void bind_render_setup(py::module_& module) {
         .field("force", &S::asked_force, "ForceSettings")
         .alias("limit")
         .alias("stiffness")
-        .field("step_budget", &S::step_budget, "Pieces that an update may use.")
+        .field("step_budget", &S::step_budget,
+               "Work that an update may do, in steps through tetrahedra.")
         .field("scale", &S::scale, "physical mm per device mm; None: fits the workspace.")
         .field("rate", &S::rate, "[Hz] None: 1000, live 250 with a device that renders no force.")
         .done()

@@ -107,10 +107,13 @@ class Field {
     /// The same for a caller that reads one place several times: its samples are gathered once.
     struct Gathered {
         bool done = false;  ///< the caller resets it for another place
+        int work = 0;       ///< of the slow reads so far (ProxySettings::step_budget)
         Neighbours samples;
     };
     template <class Visit>
     auto visit_around(const Index3& at, Visit&& visit, Gathered& gathered) const;
+    /// The most that this adds to Gathered::work.
+    int work_of_samples() const { return cover_.same_grid ? 1 : 3; }
     /// True where all eight samples of `cell` are background.
     bool is_background(const Index3& cell) const {
         // One unsigned comparison an axis covers both ends, here and in cell_of().
@@ -225,6 +228,7 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit, Gathered& kept)
         });
     }
     const Index3 low(at[0] - 1, at[1] - 1, at[2] - 1);
+    if (!kept.done) kept.work += work_of_samples();
     if (const Run run = kept.done ? Run{} : run_of<3>(low); run.first) {
         return with_type(type_, [&](auto zero) {
             const auto* first = static_cast<const decltype(zero)*>(run.first);

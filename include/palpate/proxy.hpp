@@ -83,10 +83,11 @@ struct Friction {
 struct ProxySettings {
     Friction friction = {};
     Friction behind = {};  ///< at the level behind
-    /// Largest number of straight pieces (tetrahedra entered) per update. 4096 are 500 voxels of
-    /// travel, far more than a hand moves in a tick. In the worst case (all of them along a
-    /// surface) they take some 0.3 ms, a third of a tick at 1 kHz. Faster loops need a smaller
-    /// budget.
+    /// Largest work per update, in units of some 500 instructions, which take 30 to 100 ns. A step
+    /// through a tetrahedron counts as 1, its polynomial as 1 more, and other work likewise
+    /// (docs/proxy.md, "The budget"). 4096 are 500 voxels of travel through free space, far more
+    /// than a hand moves in a tick, and take at most half a tick at 1 kHz. Faster loops need a
+    /// smaller budget.
     int step_budget = 4096;
 };
 
@@ -121,7 +122,7 @@ struct ProxyUpdate {
     double isovalue = 0;  ///< [data units] of the touched surface. In free space: of the one ahead
     bool behind = false;  ///< the touched surface is that of Proxy::behind
     int tetrahedra = 0;   ///< number of them that the SCP moved through
-    int work = 0;         ///< straight pieces evaluated, of the step budget
+    int work = 0;         ///< of the step budget
     double searched = 0;  ///< [mm] how far from the SCP recovery has looked for free space
     int level = 0;        ///< of detail of the samples at the SCP (reach.hpp)
 };
@@ -138,7 +139,7 @@ using ProxyMethod = ProxyUpdate (*)(Proxy& proxy, const Field& field, const Vec3
 /// G3 no free straight motion of 1e-3 voxel leads closer to the HIP (frictionless; on a cubic field
 ///    by more than 2e-3 of its length);
 /// G4 the distance to the HIP [mm] never grows (frictionless, field and isovalue unchanged);
-/// G5 at most `step_budget` pieces an update, and never NaN.
+/// G5 no more work per update than `step_budget`, and never NaN.
 ProxyUpdate update_exact(Proxy& proxy, const Field& field, const Vec3& hip,
                          const ProxySettings& settings = {}, StepObserver observer = {});
 

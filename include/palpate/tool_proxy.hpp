@@ -19,10 +19,9 @@ struct ToolSettings {
     /// Largest number of rounds per update. Each finds a direction and moves along it. If an update
     /// makes no progress before it is at rest, it also ends as out of budget.
     int most_rounds = 60;
-    /// Largest work per update, in cubes of the lattice that are examined (0.15 microseconds each).
-    /// Other work of the same duration counts as well. In addition, an update may use one for each
-    /// point of the tool, two during recovery. Later updates continue. A thousand points take 0.8
-    /// ms at most. Faster loops need a smaller budget.
+    /// Largest work per update, in the units of ProxySettings::step_budget. In addition, an update
+    /// may use one for each point of the tool, two during recovery. Later updates continue. A
+    /// thousand points take 0.6 ms at most. Faster loops need a smaller budget.
     int work_budget = 4096;
     /// [mm] Replaces the tool's own gyration. 0: the tool's own.
     double gyration = 0;

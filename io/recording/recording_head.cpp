@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <stdexcept>
 
 #include "palpate/names.hpp"
@@ -63,6 +64,7 @@ Json json_of_one(const RecordingHead& head) {
     json["device"] = head.device;
     json["rate"] = head.rate;
     json["method"] = head.method;
+    json["budget"] = "work";
     json["settings"] = to_json(head.settings);
     json["session"] = to_json(head.session);
     return json;
@@ -82,6 +84,11 @@ RecordingHead head_from_json(const Json& json) {
     head.rate = number_from_json(member(json, "rate"), "rate");
     head.method = text_of(json, "method");
     from_json(member(json, "settings"), head.settings);
+    // Before budgets counted work they counted tetrahedra, some of which take more than one unit.
+    if (int& budget = head.settings.proxy.step_budget; !json.contains("budget")) {
+        constexpr int most = 64;
+        budget = most * std::clamp(budget, 0, std::numeric_limits<int>::max() / most);
+    }
     from_json(member(json, "session"), head.session);
     return head;
 }

@@ -47,14 +47,14 @@ class LayersTick {
     }
 
   private:
-    /// Forgets what gave way: the SCP is where it is. A hand that starts inside starts there, but
-    /// in nothing whose surface never gives way.
+    /// Forgets what gave way: the SCP is where it is. A hand that starts or recovers inside is
+    /// there, but in nothing whose surface never gives way.
     void begin() {
         tissues_.begin(0);
         const Proxy& proxy = tissues_.proxy();
         const Vec3& at = proxy.placed ? proxy.scp_physical : input_.hip;
         int inside = at.allFinite() ? tissues_.inside_at(at) : 0;
-        if (!proxy.placed) {
+        if (!proxy.placed || update_.status == UpdateStatus::recovering) {
             const auto holds = [this](int layer) {
                 return !std::isfinite(puncture_force_of(layer));
             };

@@ -21,6 +21,9 @@ struct ConeProjection {
     std::array<int, 2> active{-1, -1};  ///< half-spaces on whose border it was put
 };
 
+/// Of one with four half-spaces, see ProxySettings.
+inline constexpr int work_of_projection = 2;
+
 /// The projection of h. In three dimensions it lies in the interior, on one border, on the line of
 /// two, or at the apex: each candidate is tried, the longest feasible one is the projection (for a
 /// projection p on a cone, |h|^2 = |p|^2 + |h - p|^2).

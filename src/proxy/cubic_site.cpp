@@ -189,6 +189,7 @@ void CubicSite::make_piece() {
     kept.isovalue = isovalue;
     kept.sign = sign;
     kept.tetrahedron = t;
+    ++pieces;
     made = true;
     kept_is_new = true;
 }
@@ -257,6 +258,7 @@ struct CubicCourse : PointCourse {
             site.jump(step, exit.walls());
         }
         progress.tetrahedra += t * exit.t > 0;
+        progress.charge(site.take_work());
         if (t < 1) return t * exit.t;
         return std::nullopt;
     }

@@ -22,6 +22,12 @@ struct CubicSite : BoundPoint {
     int frame = 0;   // another number for each tetrahedron that it comes to
     KeptPiece kept;  // its `most` is that of the point's cube; its piece may be another's
 
+    /// Of a step through a tetrahedron, at most: with its piece, and samples that are gathered.
+    static int work_of_step(const Field& f) { return 2 + f.work_of_samples(); }
+    /// What it has cost beside steps, since this was asked last.
+    int take_work() { return std::exchange(pieces, 0) + take_gathering(); }
+    int take_gathering() { return std::exchange(gathered.work, 0); }
+
     static CubicSite of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
         return {proxy, f, at};
     }
@@ -95,6 +101,7 @@ struct CubicSite : BoundPoint {
     // By how much the lowest sample of the point's cube lies above the level behind.
     double room = std::numeric_limits<double>::infinity();
     Field::Gathered gathered;  // at the cube
+    int pieces = 0;            // made
     bool made = false;         // `kept.piece` is that of the point's tetrahedron
     bool expanded = false;     // `at_point` is that at the point
     bool kept_is_new = false;  // not what the proxy has

@@ -210,6 +210,7 @@ class CubicDescent {
             friction_pending_ = false;
             return apply_friction(c) ? End::target_changed : End::at_rest;
         }
+        progress_.charge(1);
         slide(h, BentContact(c, site_.here().hessian, per_mm()), failures);
         return End::moved;
     }
@@ -275,6 +276,7 @@ class CubicDescent {
     /// a slide crosses walls, only the curvature at its end says where that is. A crest may hide
     /// the foot. Then the motion passes over the crest, and the result is true.
     bool fall_to_foot(double shrink) {
+        progress_.charge(1);
         const Vec3 h = h_mm();
         const cubic::Expansion& here = site_.here();
         const Vec3 slope = here.gradient.cwiseProduct(per_mm());
@@ -315,21 +317,16 @@ class CubicDescent {
     }
 
     /// Where the normal does not show a way: of 49 directions the one in which a small step leads
-    /// closest, and along it as far as a voxel. Takes as much of the budget as it has directions,
-    /// for that is its work.
+    /// closest, and along it as far as a voxel. All of them are tried in one update or none.
     bool look_round() {
         constexpr double step = 1e-3;  // [voxel]
         constexpr int directions = 49;
         static_assert(count_of_directions() == 2 * directions, "half of them lead closer");
-        if (progress_.budget <= directions) {
-            progress_.budget = 0;
-            return true;
-        }
+        progress_.budget -= directions;
         const Vec3 h = h_mm();
         const CubicSite start = site_;
         Vec3 best = Vec3::Zero();
         double least = std::sqrt(dot(h, h)) - 1e-3 * step * shortest_;
-        progress_.budget -= directions;
         Progress unseen{progress_.geometry, {}, progress_.target, progress_.budget};
         for (int i = 0; i < 125; ++i) {
             const Vec3 axes(i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2);
@@ -344,6 +341,8 @@ class CubicDescent {
             best = v;
         }
         site_.return_to(start);
+        progress_.budget = unseen.budget;
+        if (unseen.budget <= 0) return true;
         if (best.isZero(0)) return false;
         go(best, h, site_.slide_level(), progress_);
         progress_.report(StepKind::slide, site_);

@@ -38,8 +38,7 @@ constexpr double least_corner_gain = 1e-12;
 
 /// Puts the SCP, which is on the walls `on`, on all walls within a hair of it, if from there it can
 /// move closer to the target.
-std::optional<Move> move_from_corner(Site& site, unsigned on, const Progress& progress,
-                                     double enough) {
+std::optional<Move> move_from_corner(Site& site, unsigned on, Progress& progress, double enough) {
     unsigned near = 0;
     for (unsigned w = 0; w < wall_count; ++w) {
         near |= unsigned(slack(site.point.folded, w) <= hair) << w;
@@ -49,6 +48,7 @@ std::optional<Move> move_from_corner(Site& site, unsigned on, const Progress& pr
     corner.point.folded = snap(site.point.folded, near);
     const Move move =
         best_move(corner, walls_at(corner.point.folded), true, progress.folded_to_target(corner));
+    progress.charge(move.work);
     if (!(move.gain > enough)) return std::nullopt;
     site.point = corner.point;
     return move;
@@ -71,6 +71,7 @@ Rest descend(Site& site, Progress& progress, const ProxySettings& settings, Prox
         const Move move = from_corner
                               ? *from_corner
                               : best_move(site, on, contact, progress.folded_to_target(site));
+        if (!from_corner) progress.charge(move.work);
         from_corner.reset();
         if (move.straight) {
             if (on != 0) site.enter(move.tetrahedron);

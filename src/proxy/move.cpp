@@ -102,13 +102,16 @@ Move best_of_all(const Site& site, unsigned on, bool contact, const Vec3& h) {
     if (best.straight) return best;
     const Vec3 h_index = unfold(own, h);
     bool first = true;
+    int work = work_of_projection;
     for_each_incident(site.point, [&](const Tetrahedron& t) {
         if (std::exchange(first, false)) return false;  // its own is done
         const Move move =
             move_in(t, site.excess_gradient_in(t), on, contact, fold(t, h_index), site.field);
+        work += work_of_projection;
         if (move.straight || move.gain > best.gain) best = move;
         return best.straight;
     });
+    best.work = work;
     return best;
 }
 

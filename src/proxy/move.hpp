@@ -13,6 +13,7 @@ struct Move {
     unsigned walls = 0;        ///< the SCP stays on these
     double gain = 0;           ///< |step|^2 [mm^2]: by how much the squared distance can fall
     bool straight = false;     ///< the step is h itself
+    int work = 0;              ///< of general projections, see ProxySettings
 };
 
 /// The best move of an SCP that is in contact or on at least one wall.

@@ -16,6 +16,7 @@ struct Descent {
     Vec3 step_mm = Vec3::Zero();
     unsigned walls = 0;
     double slope_squared = 0;
+    int work = 0;
 };
 
 Descent steepest_descent(const Site& site) {
@@ -26,9 +27,10 @@ Descent steepest_descent(const Site& site) {
         WalledCone cone(on, per_mm);
         const Vec3 down = -site.excess_gradient_in(t).cwiseProduct(per_mm);
         const ConeProjection projection = project_on_cone(down, cone.half_spaces);
+        best.work += work_of_projection;
         const double slope_squared = dot(projection.point, projection.point);
         if (slope_squared > best.slope_squared) {
-            best = {t, projection.point, cone.walls_of(projection), slope_squared};
+            best = {t, projection.point, cone.walls_of(projection), slope_squared, best.work};
         }
         return false;
     });
@@ -47,6 +49,7 @@ bool descend_out(Site& site, Progress& progress) {
         const double excess = site.excess();
         if (!(excess > tolerance)) return true;
         const Descent descent = steepest_descent(site);
+        progress.charge(descent.work);
         if (!(descent.slope_squared > flat * flat)) return false;
         site.enter(descent.tetrahedron);
         const Vec3 per_mm = fold_lengths(descent.tetrahedron, site.field.voxels_per_mm());
@@ -78,6 +81,7 @@ bool descend_out(CubicSite& site, Progress& progress) {
         const Vec3 from = site.index();
         const Vec3 down = unfold(t, (gradient * (-1 / slope)).cwiseProduct(per_mm));
         double length = std::min((excess - 0.5 * site.level()) / slope, 0.25 * shortest);
+        bool falls = false;
         do {
             if (--progress.budget <= for_search || !(length > 1e-9 * shortest)) {
                 site.return_to(before);  // not to a trial, which may lie deeper
@@ -85,7 +89,9 @@ bool descend_out(CubicSite& site, Progress& progress) {
             }
             site.move_to(cubic::locate(from + length * down));
             length *= 0.5;
-        } while (!(site.excess() < excess));
+            falls = site.excess() < excess;
+            progress.charge(site.take_work());
+        } while (!falls);
         ++progress.tetrahedra;
         progress.report(StepKind::recover, site);
     }
@@ -93,13 +99,13 @@ bool descend_out(CubicSite& site, Progress& progress) {
 }
 
 constexpr double thickest_shell = 16;      // [voxel] searched along each direction at a time
-constexpr double thinnest_shell = 0.25;    // needs a budget of some 100 pieces
+constexpr double thinnest_shell = 0.25;    // searched in each update, whatever its budget
 constexpr double rounding_of_part = 1e-6;  // of a shell's thickness; far more than rounding is
 
 /// How thick a shell the budget can search along all 26 directions (fewer than 8 walls a voxel, and
 /// two pieces a probe). Without this, every later update would start the same shell and abandon it.
-double shell_within(int budget) {
-    return std::min(thickest_shell, (budget / 26 - 2) / 8.0);
+double shell_within(int budget, int work_of_step) {
+    return std::min(thickest_shell, (budget / (26 * work_of_step) - 2) / 8.0);
 }
 
 /// Searches 26 directions for free space, one shell at a time. If it finds some, it moves there and
@@ -111,9 +117,15 @@ bool search_out(AnySite& site, Progress& progress, double& reach) {
     const Vec3 from = site.index();
     const Vec3& spacing = progress.geometry.spacing;
     const double unit = spacing.minCoeff();
+    constexpr int most = std::numeric_limits<int>::max() / 2;  // a shell ends by its thickness
+    bool searched = false;
     while (reach * unit <= farthest * spacing.maxCoeff()) {
-        const double shell_thickness = shell_within(progress.budget);
-        if (shell_thickness < thinnest_shell) return false;
+        double shell_thickness = shell_within(progress.budget, AnySite::work_of_step(site.field));
+        if (shell_thickness < thinnest_shell) {
+            if (searched) return false;
+            shell_thickness = thinnest_shell;
+        }
+        searched = true;
         LatticePoint nearest;
         double least = std::numeric_limits<double>::infinity();
         for (int direction = 0; direction < 27; ++direction) {
@@ -123,14 +135,15 @@ bool search_out(AnySite& site, Progress& progress, double& reach) {
             const Vec3 start = from + reach * per_unit;
             // The solid is the free side of the field with its sign turned.
             AnySite probe = site.turned_at(start);
-            Progress silent{progress.geometry, {}, start, progress.budget};
+            Progress silent{progress.geometry, {}, start, most};
             // Not past the nearest that another direction has found.
             silent.least_left =
                 1 - (std::sqrt(least) / unit - reach) / shell_thickness - rounding_of_part;
             const bool free_already = probe.excess() >= -site.level();
             const WalkEnd end = free_already ? WalkEnd::surface
                                              : walk_out(probe, per_unit * shell_thickness, silent);
-            progress.budget = silent.budget;
+            silent.charge(1 + probe.take_work());
+            progress.budget -= most - silent.budget;
             if (end != WalkEnd::surface) continue;
             const Vec3 found = (probe.index() - from).cwiseProduct(spacing);
             if (dot(found, found) >= least) continue;

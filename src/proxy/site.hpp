@@ -55,6 +55,9 @@ struct Site : BoundPoint {
     CellSamples samples;
     LinearPiece piece;
 
+    /// Of a step through a tetrahedron, at most.
+    static int work_of_step(const Field&) { return 1; }
+    static int take_work() { return 0; }
     /// The proxy, at a point, and what an update keeps of it for the next one: nothing.
     static Site of(const Proxy& proxy, const Field& f, const LatticePoint& at) {
         Site site{f, proxy.isovalue - f.offset(), f.sign(), at};
@@ -117,12 +120,17 @@ struct Progress {
     const Geometry& geometry;
     StepObserver observer;
     Vec3 target;         ///< index space
-    int budget;          ///< straight pieces left
+    int budget;          ///< work left, see ProxySettings
     int tetrahedra = 0;  ///< pieces of non-zero length so far
     /// A walk may end at the first wall at which less than this part of its displacement is left
     /// (none if below 0). Up to there it is the same to the bit.
     double least_left = -1;
 
+    /// Spends on what a motion needs beside its pieces. The first piece of the motion is left, so
+    /// that every update gets on.
+    void charge(int work) {
+        if (budget > 1) budget = std::max(1, budget - work);
+    }
     /// The vector from the site to the target, index axes [voxel].
     Vec3 to_target(const Site& site) const {
         return unfold(site.point.tetrahedron, folded_to_target(site));

@@ -54,12 +54,13 @@ TEST(Proxy, keeps_its_guarantees_under_small_budgets) {
         for (const int budget : {1, 2, 3, 7, 20}) {
             const TestField test = noise_field();
             Guarantees checked(test.field, method.update, with_budget(budget), method.promises);
-            Hand hand(test.field.geometry(), 32);
+            // With some seeds the paper's proxy sticks for good, and hardly ever needs its budget.
+            Hand hand(test.field.geometry(), 39);
             Proxy proxy;
             ASSERT_TRUE(place(proxy, test.field, hand.next(), test.isovalue));
             for (int i = 0; i < scaled(20000) && !HasFailure(); ++i) {
                 SCOPED_TRACE(method.name + std::string(" budget ") + std::to_string(budget) +
-                             " seed 32 update " + std::to_string(i));
+                             " seed 39 update " + std::to_string(i));
                 checked.update(proxy, hand.next());
             }
             EXPECT_GT(checked.tally().out_of_budget, checked.tally().updates / 200);
@@ -96,6 +97,39 @@ TEST(Proxy, out_of_budget_goes_on_in_later_updates_and_ends_where_a_large_budget
         EXPECT_GT(split, scaled(20000) / 50);
         EXPECT_LE(other_way, 3 + scaled(20000) / 2000) << "budget " << budget;
     }
+}
+
+TEST(Proxy, what_takes_time_beside_steps_counts_as_work) {
+    struct Spent {
+        int pieces = 0, work = 0;
+        std::uint64_t hash = 0;
+    };
+    const auto spent_on = [](const Field& field, double isovalue, const HandStyle& style) {
+        Hand hand(field.geometry(), 38, style);
+        Proxy proxy;
+        proxy.isovalue = isovalue;
+        Spent spent;
+        Hash hash;
+        for (int i = 0; i < scaled(2000); ++i) {
+            const ProxyUpdate r = update_exact(proxy, field, hand.next());
+            spent.pieces += r.tetrahedra;
+            spent.work += r.work;
+            hash.add(r.scp);
+        }
+        spent.hash = hash.value();
+        return spent;
+    };
+    // On the box a hand on the lattice leads from vertex to vertex, where 48 tetrahedra meet.
+    const TestField box = box_field(), noise = noise_field();
+    const HandStyle on_lattice{.slide = 0, .sweep = 0, .jump = 0, .rest = 0, .lattice = 1};
+    const Spent corners = spent_on(box.field, box.isovalue, on_lattice);
+    EXPECT_GT(corners.work, 10 * corners.pieces);
+    const Volume& volume = noise.field.volume();
+    const Spent smooth_ones = spent_on(Field(volume), noise.isovalue, {});
+    EXPECT_GT(smooth_ones.work, 1.5 * smooth_ones.pieces) << "each has a polynomial";
+    const Spent gathered = spent_on(between_alike(volume), noise.isovalue, {});
+    EXPECT_EQ(gathered.hash, smooth_ones.hash);
+    EXPECT_GT(gathered.work, 1.05 * smooth_ones.work) << "their samples are gathered";
 }
 
 TEST(Proxy, changes_nothing_for_a_hip_that_is_not_finite_or_absurdly_far) {

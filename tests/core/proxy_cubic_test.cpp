@@ -99,7 +99,7 @@ TEST(CubicProxy, passes_over_crests_in_few_motions) {
     const Field field(scenes::ball(Index3::Constant(40)), Solid::above, std::nullopt,
                       Interpolation::cubic);
     const double isovalue = value_at(field, {radius, 0, 0});
-    int work = 0;
+    int pieces = 0;
     for (const double from_centre : {0.02, 0.05, 0.1, 0.2}) {
         for (const double angle : {0.3, 1.0, 2.0}) {
             Proxy proxy;
@@ -110,10 +110,10 @@ TEST(CubicProxy, passes_over_crests_in_few_motions) {
             };
             update_exact(proxy, field, hand_at(0.1));
             CubicGuarantees checked(field);
-            work += checked.update(proxy, hand_at(0.1 + angle)).work;
+            pieces += checked.update(proxy, hand_at(0.1 + angle)).tetrahedra;
         }
     }
-    EXPECT_LT(work, 650);  // 924 where each motion ended on the surface
+    EXPECT_LT(pieces, 650);  // 924 where each motion ended on the surface
 }
 
 TEST(CubicProxy, what_an_update_keeps_for_the_next_changes_no_result) {

@@ -368,6 +368,16 @@ TEST(Recording, one_of_format_1_is_read_and_says_that_it_has_no_checksums) {
     EXPECT_EQ(why_refused(fewer), "");
 }
 
+TEST(Recording, of_a_budget_that_counted_tetrahedra_each_of_them_may_take_as_much_work_as_it_did) {
+    const ScratchFolder folder;
+    std::string text = as_format_1(written(random_events(3), folder / "r.csv"));
+    EXPECT_EQ(io::RecordingReader(text, "now.csv").head().settings.proxy.step_budget, 777);
+    const std::string counted = "#  \"budget\": \"work\",\n";
+    ASSERT_TRUE(contains(text, counted));
+    text.erase(text.find(counted), counted.size());
+    EXPECT_EQ(io::RecordingReader(text, "old.csv").head().settings.proxy.step_budget, 64 * 777);
+}
+
 TEST(Recording, never_replaces_a_file) {
     const ScratchFolder folder;
     std::ofstream(folder / "precious.csv") << "data";

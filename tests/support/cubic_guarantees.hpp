@@ -150,6 +150,7 @@ class CubicGuarantees {
         tally_.recovering += r.status == UpdateStatus::recovering;
         ASSERT_TRUE(r.scp.allFinite() && proxy.scp.folded.allFinite() && std::isfinite(r.density));
         ASSERT_LE(r.tetrahedra, settings_.step_budget);
+        ASSERT_LE(r.work, settings_.step_budget);
         // A hand whose first position is deep in the solid; never later, for the field stays.
         const bool recovers = r.status == UpdateStatus::recovering;
         const bool was_free = before.placed && !inside_;

@@ -121,6 +121,14 @@ inline TestField box_field() {
             127.5};
 }
 
+/// The smooth field half way between two frames that are alike: its samples have to be gathered.
+inline Field between_alike(const Volume& volume) {
+    Field field(
+        std::make_shared<const Samples>(std::vector<Frame>{{0, volume, 0}, {1, volume, 1}}));
+    field.set_time(0.5);
+    return field;
+}
+
 inline TestField anisotropic_field(std::uint64_t seed = 3) {
     const Geometry geometry = grid({24, 24, 16}, {0.5, 0.5, 2}, {-100, 50, 700});
     return {"anisotropic", linear_field(noise_volume<std::int16_t>(geometry, seed, -1024, 3072)),

@@ -108,6 +108,7 @@ class Guarantees {
         ASSERT_TRUE(r.scp.allFinite() && proxy.scp.folded.allFinite() && std::isfinite(r.density))
             << "G5: not a number";
         ASSERT_LE(r.tetrahedra, settings_.step_budget) << "G5: more pieces than the budget";
+        ASSERT_LE(r.work, settings_.step_budget) << "G5: more work than the budget";
         ASSERT_EQ(r.scp, proxy.scp_physical);
         ASSERT_EQ(r.mode, proxy.mode);
         const bool recovered = check_path(before, proxy, r);

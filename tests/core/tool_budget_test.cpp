@@ -1,0 +1,61 @@
+// The budget of a tool's update (T5): its work is bounded, and counts everything that takes time.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "palpate/tool_proxy.hpp"
+#include "support/fields.hpp"
+#include "support/hand.hpp"
+
+namespace palpate {
+namespace {
+
+/// T5: whatever an update has to do, its work is bounded, and what it does not do is done later.
+TEST(ToolBudget, does_no_more_work_than_its_budget_in_noise_in_the_solid_and_with_friction) {
+    const Field field = support::smooth(support::noise_field().field);
+    const auto tool = std::make_shared<const Tool>(box_tool({6, 6, 3}, 0.25));
+    const int points = static_cast<int>(tool->points().size());
+    constexpr int most_at_once = 27 * 5 + 32 * 3 + 300;  // bounds of bricks, contacts, half-spaces
+    int most = 0, recovering = 0, out_of_budget = 0;
+    for (const double coefficient : {0.0, 0.5}) {
+        ToolProxy proxy(tool);
+        ToolSettings settings{.friction = {coefficient, coefficient}, .work_budget = 300};
+        support::Hand hand(field.geometry(), 5);
+        for (int i = 0; i < support::scaled(600); ++i) {
+            proxy.isovalue = i / 20 % 2 == 0 ? 170 : 150;
+            const Quaternion turn = turned(Quaternion::Identity(), {0, 0, 0.01 * (i % 300)});
+            const ToolUpdate r = update_tool(proxy, field, {hand.next(), turn}, settings);
+            most = std::max(most, r.work);
+            recovering += r.status == UpdateStatus::recovering;
+            out_of_budget += r.status == UpdateStatus::out_of_budget;
+        }
+    }
+    std::printf("[ evidence ] points %d  most work %d  recovering %d  out of budget %d\n", points,
+                most, recovering, out_of_budget);
+    EXPECT_LE(most, 300 + 2 * points + most_at_once);
+    EXPECT_GT(recovering, 0);
+    EXPECT_GT(out_of_budget, 0);
+}
+
+/// Where a tool can hardly move, its points look about as far as it can go, and not to the end of
+/// the step that it would like to make: that took 4.9 cubes per point and round.
+TEST(ToolBudget, looks_in_noise_no_farther_than_it_can_go) {
+    const Field field = support::smooth(support::noise_field().field);
+    const auto tool = std::make_shared<const Tool>(box_tool({6, 6, 6}, 0.5));
+    ToolProxy proxy(tool);
+    proxy.isovalue = support::noise_field().isovalue;
+    double work = 0, rounds = 0;
+    for (int i = 0; i < 400; ++i) {
+        const double t = 0.02 * i;
+        const Vec3 place(12 + 5 * std::sin(t), 12 + 5 * std::sin(1.6 * t), i < 1 ? 32.0 : 18.0);
+        const Quaternion turn = turned(Quaternion::Identity(), 0.004 * i * Vec3(1, 2, 3));
+        const ToolUpdate r = update_tool(proxy, field, {place, turn});
+        work += r.work;
+        rounds += r.rounds;
+    }
+    EXPECT_GT(rounds, 400) << "it moves";
+    EXPECT_LT(work / rounds, 3 * double(tool->points().size()));
+}
+
+}  // namespace
+}  // namespace palpate
