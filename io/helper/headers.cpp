@@ -72,19 +72,20 @@ std::string extension_of(const std::filesystem::path& path) {
     return last == ".gz" ? lower(path.stem().extension().string()) + last : last;
 }
 
-std::filesystem::path other_half(const std::filesystem::path& path) {
+std::vector<std::filesystem::path> other_halves(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
     const bool is_header = extension == ".hdr" || extension == ".hdr.gz";
     if (!is_header && extension != ".img" && extension != ".img.gz") return {};
     std::string name = path.string();
     name.resize(name.size() - extension.size());
+    std::vector<std::filesystem::path> halves;
     for (const std::string end : {".img", ".IMG", ".img.gz", ".hdr", ".HDR", ".hdr.gz"}) {
         if (lower(end).starts_with(is_header ? ".img" : ".hdr") &&
             std::filesystem::is_regular_file(name + end)) {
-            return name + end;
+            halves.emplace_back(name + end);
         }
     }
-    return {};
+    return halves;
 }
 
 ReadHeader* header_reader(const std::filesystem::path& path) {
@@ -92,7 +93,7 @@ ReadHeader* header_reader(const std::filesystem::path& path) {
     if (extension == ".nrrd" || extension == ".nhdr") return &nrrd_header;
     if (extension == ".mha" || extension == ".mhd") return &meta_image_header;
     if (extension == ".nii" || extension == ".nii.gz") return &nifti_header;
-    if (!other_half(path).empty()) return &nifti_header;
+    if (!other_halves(path).empty()) return &nifti_header;
     return nullptr;
 }
 

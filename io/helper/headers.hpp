@@ -62,9 +62,9 @@ VolumeHeader nifti_header(const Request& request);
 using ReadHeader = VolumeHeader(const Request& request);
 ReadHeader* header_reader(const std::filesystem::path& path);
 
-/// The other file of a pair of NIfTI or Analyze, a.hdr and a.img, which may be packed; empty if
-/// there is none.
-std::filesystem::path other_half(const std::filesystem::path& path);
+/// The other file of a pair of NIfTI or Analyze, a.hdr and a.img, which may be packed. Of several,
+/// the first is taken.
+std::vector<std::filesystem::path> other_halves(const std::filesystem::path& path);
 
 /// In lower case; of a.nii.gz both, which are packed.
 std::string extension_of(const std::filesystem::path& path);

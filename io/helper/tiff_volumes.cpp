@@ -121,6 +121,16 @@ void go_to_slice(TIFF* tiff, const Slice& slice) {
     if (!there) fail_damaged_tiff(slice.file);
 }
 
+/// Of the first file where libtiff guessed.
+void note_guess(const fs::path& file, std::vector<std::string>& notes) {
+    const std::string what =
+        " does not say, or says wrongly, how long the samples of a page are (StripByteCounts): as "
+        "many as the page has were taken from where they begin, do not trust what is felt there";
+    const auto is_said = [&](const std::string& note) { return note.ends_with(what); };
+    if (!guessed_tiff_lengths() || std::ranges::any_of(notes, is_said)) return;
+    notes.push_back(quoted(file) + what);
+}
+
 /// `layout`: what the file, or the first of a folder, says of spacing and values.
 Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
                    const Request& request) {
@@ -148,6 +158,7 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
                 shared_samples(checked_bytes(sizes, size_of(result.type), UINT64_MAX, request));
             page_samples.resize(std::size_t{page.width} * page.height * size_of(page.stored));
         }
+        note_guess(slice.file, result.notes);
         if (!(page == first)) {
             throw Failure("its slice " + std::to_string(i) + " is " + text_of(page) +
                           ", the first " + text_of(first) + "; put slices of one kind together");
