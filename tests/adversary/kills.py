@@ -1,5 +1,5 @@
 """Attack with kills: `palpate convert`, and edits that are saved over earlier ones, end at a random moment of
-their run. What is there afterwards is the data of before or the new data, whole, and the next run completes it."""
+their run. Afterwards the data of before or the new data is there, whole, and the next run completes it."""
 
 import random as random_module
 import signal
