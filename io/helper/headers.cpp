@@ -173,6 +173,22 @@ std::vector<std::filesystem::path> data_files(const std::string& name, const Hea
     return files;
 }
 
+std::vector<DataPlace> places_in(const std::vector<std::filesystem::path>& files,
+                                 const DataPlace& like) {
+    std::vector<DataPlace> places(files.size(), like);
+    for (std::size_t i = 0; i < files.size(); ++i) places[i].file = files[i];
+    return places;
+}
+
+void put_at_end(DataPlace& place, std::uint64_t bytes, const std::string& field) {
+    if (place.encoding != DataPlace::Encoding::raw) {
+        throw Failure("its " + field + " of -1 is for raw samples only; correct the header");
+    }
+    std::error_code error;
+    const std::uint64_t size = std::filesystem::file_size(place.file, error);
+    if (!error && size >= bytes + place.offset) place.offset = size - bytes;
+}
+
 std::uint64_t file_bytes(const VolumeHeader& header) {
     std::uint64_t slices = 1, bytes = 0;
     for (std::size_t a = 2; a < header.sizes.size(); ++a) {

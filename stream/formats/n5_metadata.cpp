@@ -7,6 +7,7 @@
 #include <bit>
 
 #include "io/chunked_image.hpp"
+#include "io/words.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/formats/metadata_files.hpp"
 #include "stream/formats/zarr_metadata.hpp"
@@ -178,10 +179,6 @@ std::vector<ImageAxis> n5_axes(std::span<const Json> groups, const Json& finest,
     return axes;
 }
 
-void note_once(std::vector<std::string>& notes, const char* note) {
-    if (std::ranges::find(notes, note) == notes.end()) notes.emplace_back(note);
-}
-
 }  // namespace
 
 ChunkedArray n5_array(const Json& attributes, const std::string& folder) {
@@ -215,7 +212,7 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
     auto offset = along_axes(attribute(groups, "offset"), axes, 0);  // Paintera's, in the same unit
     if (!offset) offset = along_axes(attribute(levels.first(1), "offset"), axes, 0);
     if (!attribute(groups, "affineTransform").is_null()) {
-        note_once(notes, "its affineTransform is not applied");
+        io::add_note(notes, "its affineTransform is not applied");
     }
     for (const ChunkedArray& array : arrays) {
         if (array.axes() != axes) throw BadMetadata("its levels have different axes");
@@ -232,8 +229,8 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
         auto factors = factors_of(groups, levels[i], i, axes);
         if (!factors) {
             factors = factors_by_size(arrays, i);
-            note_once(notes,
-                      "it does not tell the scales of its levels: their sizes were compared");
+            io::add_note(notes,
+                         "it does not tell the scales of its levels: their sizes were compared");
         }
         for (std::size_t a = 0; a < axes; ++a) {
             const double spacing = placed       ? image.levels[0].scale[a]
@@ -247,7 +244,7 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
             if (!placed) image.axes[a].unit = resolution ? resolution->units[a] : "millimeter";
         }
         image.measured = placed || resolution;
-        if (!image.measured) note_once(notes, "it does not tell its spacing: 1 mm was taken");
+        if (!image.measured) io::add_note(notes, "it does not tell its spacing: 1 mm was taken");
         image.levels.push_back(level);
     }
     return image;

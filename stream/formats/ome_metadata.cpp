@@ -1,9 +1,8 @@
 // Metadata of OME-Zarr images, versions 0.1 to 0.5: https://ngff.openmicroscopy.org.
-#include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
+#include "io/words.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/formats/metadata_files.hpp"
 #include "stream/formats/zarr_metadata.hpp"
@@ -142,9 +141,7 @@ void take_direction(const Json& attributes, Image& image) {
 }  // namespace
 
 std::string axis_name(const Json& name) {
-    std::string text = name.is_string() ? name.get<std::string>() : "";
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return io::one_line(text.substr(0, 40));
+    return name.is_string() ? io::one_line(io::lower(name.get<std::string>().substr(0, 40))) : "";
 }
 
 std::optional<Image> ome_image(const Json& given) {
