@@ -105,9 +105,9 @@ std::uint64_t inflate_checked(const std::filesystem::path& file, const StreamPla
     return inflater.finish();
 }
 
-std::uint64_t inflate_checked(std::span<const std::byte> stream, std::uint64_t at_most) {
-    const ByteSink nobody;
-    Inflater inflater(nobody, at_most);
+std::uint64_t inflate_checked(std::span<const std::byte> stream, std::uint64_t at_most,
+                              const ByteSink& sink) {
+    Inflater inflater(sink, at_most);
     for (std::size_t at = 0; at < stream.size(); at += inflated_at_once) {
         inflater.feed(stream.subspan(at, std::min(inflated_at_once, stream.size() - at)));
     }

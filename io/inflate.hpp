@@ -38,8 +38,9 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 std::uint64_t inflate_checked(const std::filesystem::path& file, const StreamPlace& place,
                               const ByteSink& sink);
 
-/// The same for a stream in memory, of at most so many unpacked bytes; it only checks.
-std::uint64_t inflate_checked(std::span<const std::byte> stream, std::uint64_t at_most);
+/// The same for a stream in memory, of at most so many unpacked bytes.
+std::uint64_t inflate_checked(std::span<const std::byte> stream, std::uint64_t at_most,
+                              const ByteSink& sink = {});
 
 /// The first `bytes` of what is unpacked, or all if there are fewer. Throws DamagedStream.
 std::vector<std::byte> inflate_start(const std::filesystem::path& file, std::size_t bytes);

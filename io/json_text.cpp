@@ -23,8 +23,8 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
     return std::min(at + 1, text.size());
 }
 
-/// Why a document is not parsed; empty: it is.
-std::string flaw_in(std::string_view text, bool with_comments) {
+/// Why a document is not parsed; empty: it is, and `room` is less.
+std::string flaw_in(std::string_view text, bool with_comments, std::size_t& room) {
     int depth = 0;
     std::size_t bytes = 0;
     for (std::size_t at = 0; at < text.size();) {
@@ -40,24 +40,31 @@ std::string flaw_in(std::string_view text, bool with_comments) {
         if (depth > deepest_json) {
             return "it is nested more than " + std::to_string(deepest_json) + " levels deep";
         }
-        if (bytes > most_json_bytes) {
-            return "its values take more than " + std::to_string(most_json_bytes >> 20) + " MiB";
+        if (bytes > room) {
+            return "its values take more than " + std::to_string(room >> 20) + " MiB";
         }
         at = c == '"' ? end_of_string(text, at) : at + 1;
     }
+    room -= bytes;
     return "";
 }
 
 }  // namespace
 
-json parsed_json(std::string_view text, bool with_comments) {
-    const std::string flaw = flaw_in(text, with_comments);
+json parsed_json_within(std::size_t& room, std::string_view text, bool with_comments) {
+    const std::string flaw = flaw_in(text, with_comments, room);
     if (!flaw.empty()) throw json::other_error::create(501, flaw, nullptr);
     return json::parse(text, nullptr, true, with_comments);
 }
 
+json parsed_json(std::string_view text, bool with_comments) {
+    std::size_t room = most_json_bytes;
+    return parsed_json_within(room, text, with_comments);
+}
+
 json parsed_or_discarded(std::string_view text) {
-    if (!flaw_in(text, false).empty()) return json(json::value_t::discarded);
+    std::size_t room = most_json_bytes;
+    if (!flaw_in(text, false, room).empty()) return json(json::value_t::discarded);
     return json::parse(text, nullptr, false);
 }
 

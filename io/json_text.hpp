@@ -18,6 +18,11 @@ inline constexpr std::size_t most_json_bytes = std::size_t{64} << 20;
 /// `with_comments`: as in C++ they are left out.
 nlohmann::json parsed_json(std::string_view text, bool with_comments = false);
 
+/// The same with `room` instead of most_json_bytes, less what the values take afterwards: for
+/// several documents that are held together.
+nlohmann::json parsed_json_within(std::size_t& room, std::string_view text,
+                                  bool with_comments = false);
+
 /// The same; discarded (nlohmann::json::is_discarded) instead of an exception.
 nlohmann::json parsed_or_discarded(std::string_view text);
 

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "io/helper/protocol.hpp"
 #include "io/inflate.hpp"
 #include "io/process/helper_process.hpp"
 #include "io/process/io_helper.hpp"
 #include "io/raw_file.hpp"
+#include "io/words.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::io {
@@ -21,8 +21,7 @@ namespace fs = std::filesystem;
 
 /// Formats whose samples may lie in a file as they are.
 bool is_plain_name(const fs::path& path) {
-    std::string name = path.filename().string();
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string name = lower(path.filename().string());
     return std::ranges::any_of(std::array{".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz"},
                                [&](const char* end) { return name.ends_with(end); });
 }

@@ -15,14 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(double number) {
+std::string exact_text(double number) {
     std::string text;
     append_number(text, number);
     return text;
 }
 
 std::string text_of(const Vec3& v) {
-    return text_of(v[0]) + ", " + text_of(v[1]) + ", " + text_of(v[2]);
+    return exact_text(v[0]) + ", " + exact_text(v[1]) + ", " + exact_text(v[2]);
 }
 
 std::string text_of(const Index3& size) {
@@ -31,7 +31,7 @@ std::string text_of(const Index3& size) {
 
 void check_interval(double interval) {
     if (!(std::isfinite(interval) && interval > 0 && interval <= 1e6)) {
-        throw std::invalid_argument("an interval of " + text_of(interval) +
+        throw std::invalid_argument("an interval of " + exact_text(interval) +
                                     " s between frames makes no sense; give seconds above 0");
     }
 }
@@ -162,7 +162,7 @@ double interval_of(double asked, const VolumeFile& file, std::vector<std::string
     if (asked > 0) return asked;
     if (file.frame_interval >= 1e-6 && file.frame_interval <= 1e6) return file.frame_interval;
     notes.push_back("nothing says how much time lies between two frames: " +
-                    text_of(assumed_frame_interval) + " s was taken");
+                    exact_text(assumed_frame_interval) + " s was taken");
     return assumed_frame_interval;
 }
 

@@ -4,21 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
+
+#include "io/words.hpp"
 
 namespace palpate::io {
 namespace {
 
 constexpr std::array<std::string_view, 10> stored_names = {
     "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64"};
-
-std::string short_text(double number) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", number);
-    return text;
-}
 
 /// True where whole numbers are only shifted, and 16 bits hold all that they may become: ImageJ's
 /// signed images.
@@ -84,8 +79,8 @@ SampleType kept_as(Stored stored, const ValueMap& values) {
 
 void note_conversion(Stored stored, const ValueMap& values, std::vector<std::string>& notes) {
     if (values.changes()) {
-        notes.push_back("the file's slope (" + short_text(values.slope) + ") and intercept (" +
-                        short_text(values.intercept) + ") were applied: " + name_of(stored) +
+        notes.push_back("the file's slope (" + text_of(values.slope) + ") and intercept (" +
+                        text_of(values.intercept) + ") were applied: " + name_of(stored) +
                         " became " + std::string(name_of(kept_as(stored, values))));
         return;
     }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -37,13 +36,6 @@ class TiffBytes {
 };
 
 }  // namespace
-
-bool is_tiff_name(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return std::tolower(c); });
-    return extension == ".tif" || extension == ".tiff";
-}
 
 std::optional<TiffPeek> peek_tiff(const std::filesystem::path& path) {
     std::error_code error;

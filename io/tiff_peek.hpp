@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <istream>
 #include <optional>
+#include <string>
+
+#include "io/words.hpp"
 
 namespace palpate::io {
 
@@ -14,7 +17,10 @@ struct TiffPeek {
 };
 
 /// .tif or .tiff.
-bool is_tiff_name(const std::filesystem::path& path);
+inline bool is_tiff_name(const std::filesystem::path& path) {
+    const std::string extension = lower(path.extension().string());
+    return extension == ".tif" || extension == ".tiff";
+}
 
 /// Nothing if the name does not end in .tif or .tiff or the file does not begin as such a file
 /// does.

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "io/words.hpp"
+
 namespace palpate::io {
 namespace {
 
@@ -32,19 +34,14 @@ using Named = std::pair<std::string_view, double>;
 
 /// Small letters without blanks around them; every way to write the letter for "micro" is a u.
 std::string plain(std::string text) {
-    for (char& c : text) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
+    text = lower(std::move(text));
     // The sign and the Greek letter as UTF-8, as Java escapes it, and as Latin 1.
     for (const std::string_view micro : {"\xc2\xb5", "\xce\xbc", "\\u00b5", "\\u03bc", "\xb5"}) {
         if (const auto at = text.find(micro); at != std::string::npos) {
             text.replace(at, micro.size(), "u");
         }
     }
-    constexpr std::string_view blank = " \t\r\n";
-    const auto begin = text.find_first_not_of(blank);
-    if (begin == std::string::npos) return "";
-    return text.substr(begin, text.find_last_not_of(blank) - begin + 1);
+    return trimmed(text);
 }
 
 /// `exponent`: that of the unit without a prefix.

@@ -100,11 +100,12 @@ io::RecordingHead recording_head(const Session& session, const DeviceInfo& devic
     return head;
 }
 
-Run::Run(std::shared_ptr<Data> data, const Setup& setup)
+Run::Run(std::shared_ptr<Data> data, const Setup& setup, const OnProgress& progress)
     : data_(std::move(data)),
       setup_(setup),
       field_(make_field(data_->start(), setup.field, setup.render.method.method)) {
-    const double isovalue = isovalue_of(data_->loaded(), setup);
+    const double isovalue = isovalue_of(data_->loaded(), setup, progress);
+    if (progress) progress(1);
     auto device = open_for(field_, isovalue, setup, this);
     take(make_session(field_, isovalue, device->info(), setup));
     hold(std::move(device));
@@ -288,14 +289,15 @@ void Run::close_device() {
     device_.reset();
 }
 
-void Run::use_device(const devices::DeviceChoice& device) {
+void Run::use_device(const devices::DeviceChoice& device, const OnProgress& progress) {
     started_servo();  // throws before anything has changed
     Setup setup = setup_;
     setup.device = device;
     const DeviceInfo old = device_->info();
     // A simulated hand goes for the surface that is felt now.
     const double isovalue =
-        std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_);
+        std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_, progress);
+    if (progress) progress(1);
     try {
         auto opened = open_for(field_, isovalue, setup, this, [this] { close_device(); });
         const bool is_the_same = !device_ || device == setup_.device;

@@ -7,6 +7,8 @@
 #include <chrono>
 #include <thread>
 
+#include "apps/palpate/commands.hpp"
+
 namespace palpate::app {
 
 std::int64_t LiveHand::left_over(double time) const {
@@ -19,7 +21,7 @@ std::vector<LiveHand> open_hands(const std::shared_ptr<run::Data>& data,
                                  const std::vector<run::Setup>& setups) {
     std::vector<LiveHand> hands;
     for (const run::Setup& setup : setups) {
-        auto run = std::make_unique<run::Run>(data, setup);
+        auto run = std::make_unique<run::Run>(data, setup, [](double) { stop_if_interrupted(); });
         const DeviceInfo device = run->device();
         LiveCommands commands(run->field(), run->isovalue(), run->settings());
         std::string name = "device " + device.name;

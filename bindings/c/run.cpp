@@ -90,7 +90,8 @@ extern "C" PALPATE_API palpate_status palpate_run_create(palpate_data* data,
         const auto asked = taken_or_default(options, "options");
         auto made = std::make_unique<palpate_run>();
         made->data = given(data, "data").data;
-        made->run = std::make_unique<run::Run>(made->data, setup_from(asked));
+        made->run = std::make_unique<run::Run>(made->data, setup_from(asked),
+                                               progress_of(asked, "the run was cancelled"));
         if (asked.recording) made->run->record(asked.recording);
         *out = made.release();
     });

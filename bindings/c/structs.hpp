@@ -10,6 +10,7 @@
 
 #include "bindings/c/status.hpp"
 #include "palpate/names.hpp"
+#include "palpate/progress.hpp"
 #include "palpate/renderer.hpp"
 #include "palpate/run/setup.hpp"
 
@@ -26,6 +27,15 @@ std::uint32_t size_of(const T& theirs, const char* name) {
                                     ": declare it with PALPATE_STRUCT");
     }
     return size;
+}
+
+/// Calls the caller's progress function, if there is one. Throws Cancelled when it says so.
+template <class Options>
+OnProgress progress_of(const Options& asked, const char* cancelled) {
+    if (!asked.progress) return {};
+    return [progress = asked.progress, context = asked.context, cancelled](double fraction) {
+        if (progress(fraction, context) == 0) throw Cancelled(cancelled);
+    };
 }
 
 /// One of ours with its size, else 0.

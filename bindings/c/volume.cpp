@@ -87,15 +87,7 @@ extern "C" PALPATE_API palpate_status palpate_volume_load(const char* name,
             if (!file) throw std::invalid_argument("series is for files");
             file->series = asked.series;
         }
-        io::Progress progress;
-        if (asked.progress) {
-            progress = [&](double fraction) {
-                if (asked.progress(fraction, asked.context) == 0) {
-                    throw Cancelled("loading was cancelled");
-                }
-            };
-        }
-        *out = new palpate_volume{run::load(source, progress)};
+        *out = new palpate_volume{run::load(source, progress_of(asked, "loading was cancelled"))};
     });
 }
 

@@ -77,7 +77,7 @@ void bind_setup(py::module_& module) {
 
 struct LiveRun : run::Run {
     LiveRun(std::shared_ptr<run::Data> data, const run::Setup& setup, PythonDevice* its_device)
-        : Run(std::move(data), setup), python_device(its_device) {}
+        : Run(std::move(data), setup, ctrl_c()), python_device(its_device) {}
 
     /// False if the device's thread goes on for good (PythonDevice::finish()). A recording ends in
     /// any case.

@@ -456,6 +456,10 @@ typedef struct palpate_run_options {
     const char *recording;                /* a new file to record into from the start; null: none */
     int32_t no_real_time;                 /* not 0: do not ask for real-time priority */
     int32_t deadman_button;               /* from 1: no force unless it is held; 0: none */
+    /* Called from this thread with 0 to 1 while an isovalue is looked for, and before the device is
+     * opened. Returns 0 to cancel. Since 0.3. */
+    int32_t (*progress)(double fraction, void *context);
+    void *context;
 } palpate_run_options;
 
 typedef struct palpate_snapshot {

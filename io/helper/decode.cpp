@@ -1,10 +1,7 @@
 // Shared by the readers in the helper program. See the header.
 #include "io/helper/decode.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 
@@ -124,10 +121,6 @@ FrameTimes frame_times(double interval, double first, const std::string& unit,
     return {interval * *second, std::isfinite(first) ? first * *second : 0};
 }
 
-void add_note(std::vector<std::string>& notes, const std::string& note) {
-    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
-}
-
 double length_unit(const std::string& unit, std::vector<std::string>& notes) {
     if (unit.empty()) return 1;
     const auto length = millimetres_in(unit);
@@ -154,25 +147,6 @@ std::string quoted(const std::filesystem::path& file) {
     text += file.filename().string();
     text += '\'';
     return text;
-}
-
-std::string text_of(double number) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", number);
-    return text;
-}
-
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return text;
-}
-
-std::string trimmed(const std::string& text) {
-    const char* const blank = " \t\r\n";
-    const auto begin = text.find_first_not_of(blank);
-    if (begin == std::string::npos) return {};
-    return text.substr(begin, text.find_last_not_of(blank) - begin + 1);
 }
 
 }  // namespace palpate::io

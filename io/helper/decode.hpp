@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/stored.hpp"
+#include "io/words.hpp"
 #include "palpate/io/orientation.hpp"
 #include "palpate/io/series.hpp"
 #include "palpate/io/value_info.hpp"
@@ -59,9 +60,6 @@ struct FrameTimes {
 /// interval that is not finite or not above 0 counts as unknown.
 FrameTimes frame_times(double interval, double first, const std::string& unit,
                        std::vector<std::string>& notes);
-
-/// Appends a note unless it is there.
-void add_note(std::vector<std::string>& notes, const std::string& note);
 
 /// The length of a unit [mm], with a note unless it is mm: lengths are converted, those of unknown
 /// units taken as mm. No unit is mm.
@@ -134,10 +132,5 @@ void say_doing(const std::string& what);
 std::string text_of(std::span<const std::int64_t> sizes);
 /// A file's name without its folder, in quotes.
 std::string quoted(const std::filesystem::path& file);
-/// A number as people write it.
-std::string text_of(double number);
-/// Lower case, and without spaces around it.
-std::string lower(std::string text);
-std::string trimmed(const std::string& text);
 
 }  // namespace palpate::io

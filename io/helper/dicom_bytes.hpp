@@ -24,7 +24,6 @@ class DicomBytes {
     /// From here on, numbers are big-endian.
     void set_swapped() { swapped_ = true; }
     bool swapped() const { return swapped_; }
-    std::uint64_t mapped_size() const { return mapped_.size(); }
 
     /// Whether there are bytes up to `end`. Throws DamagedStream, also where more than is allowed
     /// would have to be unpacked to know.

@@ -72,19 +72,20 @@ std::string extension_of(const std::filesystem::path& path) {
     return last == ".gz" ? lower(path.stem().extension().string()) + last : last;
 }
 
-std::filesystem::path other_half(const std::filesystem::path& path) {
+std::vector<std::filesystem::path> other_halves(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
     const bool is_header = extension == ".hdr" || extension == ".hdr.gz";
     if (!is_header && extension != ".img" && extension != ".img.gz") return {};
     std::string name = path.string();
     name.resize(name.size() - extension.size());
+    std::vector<std::filesystem::path> halves;
     for (const std::string end : {".img", ".IMG", ".img.gz", ".hdr", ".HDR", ".hdr.gz"}) {
         if (lower(end).starts_with(is_header ? ".img" : ".hdr") &&
             std::filesystem::is_regular_file(name + end)) {
-            return name + end;
+            halves.emplace_back(name + end);
         }
     }
-    return {};
+    return halves;
 }
 
 ReadHeader* header_reader(const std::filesystem::path& path) {
@@ -92,7 +93,7 @@ ReadHeader* header_reader(const std::filesystem::path& path) {
     if (extension == ".nrrd" || extension == ".nhdr") return &nrrd_header;
     if (extension == ".mha" || extension == ".mhd") return &meta_image_header;
     if (extension == ".nii" || extension == ".nii.gz") return &nifti_header;
-    if (!other_half(path).empty()) return &nifti_header;
+    if (!other_halves(path).empty()) return &nifti_header;
     return nullptr;
 }
 
@@ -170,6 +171,22 @@ std::vector<std::filesystem::path> data_files(const std::string& name, const Hea
     }
     if (files.empty()) throw Failure("its list of data files is empty; correct the header");
     return files;
+}
+
+std::vector<DataPlace> places_in(const std::vector<std::filesystem::path>& files,
+                                 const DataPlace& like) {
+    std::vector<DataPlace> places(files.size(), like);
+    for (std::size_t i = 0; i < files.size(); ++i) places[i].file = files[i];
+    return places;
+}
+
+void put_at_end(DataPlace& place, std::uint64_t bytes, const std::string& field) {
+    if (place.encoding != DataPlace::Encoding::raw) {
+        throw Failure("its " + field + " of -1 is for raw samples only; correct the header");
+    }
+    std::error_code error;
+    const std::uint64_t size = std::filesystem::file_size(place.file, error);
+    if (!error && size >= bytes + place.offset) place.offset = size - bytes;
 }
 
 std::uint64_t file_bytes(const VolumeHeader& header) {

@@ -62,9 +62,9 @@ VolumeHeader nifti_header(const Request& request);
 using ReadHeader = VolumeHeader(const Request& request);
 ReadHeader* header_reader(const std::filesystem::path& path);
 
-/// The other file of a pair of NIfTI or Analyze, a.hdr and a.img, which may be packed; empty if
-/// there is none.
-std::filesystem::path other_half(const std::filesystem::path& path);
+/// The other file of a pair of NIfTI or Analyze, a.hdr and a.img, which may be packed. Of several,
+/// the first is taken.
+std::vector<std::filesystem::path> other_halves(const std::filesystem::path& path);
 
 /// In lower case; of a.nii.gz both, which are packed.
 std::string extension_of(const std::filesystem::path& path);
@@ -92,6 +92,12 @@ bool is_list(const std::string& name);
 /// "LIST" those of the lines in the header from `fields.data_offset` on.
 std::vector<std::filesystem::path> data_files(const std::string& name, const HeaderFields& fields,
                                               const std::filesystem::path& header);
+/// A place like this one in each file.
+std::vector<DataPlace> places_in(const std::vector<std::filesystem::path>& files,
+                                 const DataPlace& like);
+/// For headers whose `field` is -1: the samples of a file are its last bytes, behind the header.
+/// Throws Failure for samples that are not raw.
+void put_at_end(DataPlace& place, std::uint64_t bytes, const std::string& field);
 /// The bytes of all data files; a missing one has none, which reading them says. Throws Failure
 /// unless each may have as many slices.
 std::uint64_t file_bytes(const VolumeHeader& header);

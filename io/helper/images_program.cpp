@@ -1,12 +1,13 @@
 // palpate-io-images: reads and writes TIFF, reads images in chunks of HDF5.
 #include "io/helper/images.hpp"
 #include "io/helper/jobs.hpp"
+#include "io/tiff_peek.hpp"
 
 namespace palpate::io {
 namespace {
 
 nlohmann::json explore(const std::filesystem::path& path, const nlohmann::json& question) {
-    const bool tiff = looks_like_tiff(path);
+    const bool tiff = is_tiff_name(path);
     if (!question.contains("array")) {
         const int channel = question.at("channel").get<int>(),
                   time = question.at("time").get<int>();

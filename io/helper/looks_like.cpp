@@ -76,9 +76,4 @@ bool begins_as_tiff(const fs::path& file) {
     return false;
 }
 
-bool looks_like_tiff(const fs::path& file) {
-    const std::string extension = lower(file.extension().string());
-    return extension == ".tif" || extension == ".tiff";
-}
-
 }  // namespace palpate::io

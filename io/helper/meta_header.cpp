@@ -89,12 +89,7 @@ std::vector<DataPlace> places_of(const HeaderFields& fields, const std::filesyst
     }
     const bool is_big = is_true(element) || is_true(data);
     place.swapped = is_big != (std::endian::native == std::endian::big);
-    std::vector<DataPlace> places;
-    for (const auto& file : is_local ? std::vector{path} : data_files(name, fields, path)) {
-        places.push_back(place);
-        places.back().file = file;
-    }
-    return places;
+    return places_in(is_local ? std::vector{path} : data_files(name, fields, path), place);
 }
 
 /// The first of these fields that is there, with `count` numbers; empty if none is. A note says it
@@ -186,14 +181,7 @@ VolumeHeader meta_image_header(const Request& request) {
     const bool at_end = fields.has("headersize") &&
                         whole_number_in(fields.value("headersize"), "HeaderSize", -1) == -1;
     for (DataPlace& place : header.places) {
-        if (at_end && place.encoding != DataPlace::Encoding::raw) {
-            throw Failure("its HeaderSize of -1 is for raw samples only; correct the header");
-        }
-        std::error_code error;
-        const std::uint64_t size = std::filesystem::file_size(place.file, error);
-        if (at_end && !error && size >= header.bytes_each() + place.offset) {
-            place.offset = size - header.bytes_each();
-        }
+        if (at_end) put_at_end(place, header.bytes_each(), "HeaderSize");
     }
     for (std::size_t a = 3; a < header.sizes.size(); ++a) header.steps *= header.sizes[a];
     header.together = static_cast<std::int64_t>(header.samples()) / header.steps;

@@ -395,7 +395,8 @@ DataPlace place_of(const Header& header, const std::filesystem::path& path, std:
 }  // namespace
 
 VolumeHeader nifti_header(const Request& request) {
-    const std::filesystem::path other = other_half(request.path);
+    const auto halves = other_halves(request.path);
+    const std::filesystem::path other = halves.empty() ? "" : halves.front();
     const bool is_image = !other.empty() && extension_of(request.path).starts_with(".img");
     const std::filesystem::path& file = is_image ? other : request.path;
     Header bytes = read_header(file);
@@ -403,6 +404,10 @@ VolumeHeader nifti_header(const Request& request) {
     const std::filesystem::path& samples = !bytes.is_pair ? file : is_image ? request.path : other;
     VolumeHeader header;
     header.format = bytes.is_analyze ? "Analyze" : "NIfTI";
+    if (bytes.is_pair && halves.size() > 1) {
+        header.notes.push_back("both " + quoted(other) + " and " + quoted(halves[1]) +
+                               " are beside it: " + quoted(other) + " was taken");
+    }
     header.stored = stored_from(bytes.type(datatype));
     const int bits = bytes.type(bitpix);  // some programs leave it out
     if (bits != 0 && bits != static_cast<int>(8 * size_of(header.stored))) {

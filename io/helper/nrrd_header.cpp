@@ -126,14 +126,8 @@ std::vector<DataPlace> places_of(const HeaderFields& fields, const std::filesyst
         throw Failure("its encoding '" + encoding +
                       "' is not read; save it with gzip or raw (unu save -e gzip)");
     }
-    std::vector<DataPlace> places;
-    for (const auto& file : fields.has("data file")
-                                ? data_files(fields.value("data file"), fields, path)
-                                : std::vector{path}) {
-        places.push_back(place);
-        places.back().file = file;
-    }
-    return places;
+    if (!fields.has("data file")) return places_in({path}, place);
+    return places_in(data_files(fields.value("data file"), fields, path), place);
 }
 
 /// "line skip" and "byte skip"; a byte skip of -1 means that the samples are the file's end.
@@ -159,13 +153,7 @@ void apply_skips(const HeaderFields& fields, std::uint64_t bytes, DataPlace& pla
         place.offset = static_cast<std::uint64_t>(in.tellg());
     }
     if (skip > 0) place.skip = static_cast<std::uint64_t>(skip);
-    if (skip == -1 && place.encoding != DataPlace::Encoding::raw) {
-        throw Failure("its byte skip of -1 is for raw samples only; correct the header");
-    }
-    if (skip == -1) {
-        const std::uint64_t size = std::filesystem::file_size(place.file, error);
-        if (!error && size >= bytes) place.offset = size - bytes;
-    }
+    if (skip == -1) put_at_end(place, bytes, "byte skip");
 }
 
 /// Samples of more than one byte must say their order, but for text.

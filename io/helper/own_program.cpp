@@ -10,6 +10,7 @@
 
 #include "io/helper/jobs.hpp"
 #include "io/helper/report.hpp"
+#include "io/tiff_peek.hpp"
 
 namespace palpate::io {
 namespace {
@@ -56,7 +57,7 @@ const char* program_for_folder(const fs::path& folder) {
         if (names_a_volume(entry.path())) volumes.push_back(entry.path().filename().string());
         // Not every one of ten thousand has to be looked into.
         dicoms += dicoms < 2 && looks_like_dicom(entry.path());
-        tiffs += dicoms == 0 && tiffs < 2 && looks_like_tiff(entry.path());
+        tiffs += dicoms == 0 && tiffs < 2 && is_tiff_name(entry.path());
     }
     if (!volumes.empty() && dicoms + tiffs <= 1) {
         throw Failure(std::string("is a folder of volumes") +

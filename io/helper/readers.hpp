@@ -32,7 +32,6 @@ bool looks_like_dicom(const std::filesystem::path& file);
 bool has_dicom_name(const std::filesystem::path& file);
 /// Whether a folder is a disc's: its slices are in folders of folders.
 bool has_dicom_index(const std::filesystem::path& folder);
-bool looks_like_tiff(const std::filesystem::path& file);
 /// TIFF's first four bytes, whatever the name (.lsm, .btf, .tf8, ...).
 bool begins_as_tiff(const std::filesystem::path& file);
 

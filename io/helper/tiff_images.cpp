@@ -92,7 +92,7 @@ const Explored& explored(const fs::path& path) {
 void go_to(TIFF* tiff, const fs::path& file, const TiffLayout& layout, std::uint32_t page,
            std::size_t level) {
     if (level > 0 && !layout.reduced.empty()) page = layout.reduced.at(level - 1);
-    if (TIFFSetDirectory(tiff, page) == 0) fail_damaged_tiff(file);
+    if (TIFFSetSubDirectory(tiff, layout.directories.at(page)) == 0) fail_damaged_tiff(file);
     if (level == 0 || !layout.reduced.empty()) return;
     const auto offsets = coarser_levels(tiff);
     if (level > offsets.size()) {

@@ -122,6 +122,7 @@ TiffPages pages_of(TIFF* tiff, const fs::path& file) {
         } else if ((kind & FILETYPE_MASK) == 0) {
             pages.whole.push_back(page);
         }
+        pages.directories.push_back(TIFFCurrentDirOffset(tiff));
         if (!first_tiff_error().empty()) fail_damaged_tiff(file);
         if (TIFFReadDirectory(tiff) == 0) break;
     }
@@ -131,9 +132,10 @@ TiffPages pages_of(TIFF* tiff, const fs::path& file) {
 
 TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
     const std::string description = description_of(tiff);
-    const TiffPages pages = pages_of(tiff, file);
+    TiffPages pages = pages_of(tiff, file);
     TIFFSetDirectory(tiff, 0);
     TiffLayout layout;
+    layout.directories = std::move(pages.directories);
     std::vector<std::string> of_page;  // said again when it is read
     const TiffPage first = page_of(tiff, file, of_page);
     if (is_ome_xml(description)) {

@@ -18,6 +18,8 @@ constexpr std::size_t most_tiff_levels = 64;
 struct TiffLayout {
     OmeImage image;
     ValueMap values;
+    /// Where each page's directory lies: libtiff finds a page by its number from the first one on.
+    std::vector<std::uint64_t> directories = {};
     /// Pages of coarser levels, of a file of one plane with such pages instead of SubIFDs.
     std::vector<std::uint32_t> reduced = {};
     /// Where planes follow each other behind the only page, numbered by image.pages; 0: by pages.
@@ -28,9 +30,11 @@ struct TiffLayout {
 TiffLayout layout_of(TIFF* tiff, const std::filesystem::path& file,
                      std::vector<std::string>& notes);
 
-/// Every page in the file's list but masks, and which of them are reduced ones.
+/// Every page in the file's list but masks, and which of them are reduced ones; where the
+/// directories of all lie.
 struct TiffPages {
     std::vector<std::uint32_t> whole, reduced;
+    std::vector<std::uint64_t> directories;
 };
 TiffPages pages_of(TIFF* tiff, const std::filesystem::path& file);
 

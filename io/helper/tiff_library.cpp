@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
 
 #include "io/helper/far_file.hpp"
 
@@ -11,12 +12,18 @@ namespace palpate::io {
 namespace {
 
 std::string first_error;
+bool guessed_lengths = false;
 
 extern "C" void keep_error(const char*, const char* format, va_list arguments) {
     if (!first_error.empty()) return;
     char text[200];
     std::vsnprintf(text, sizeof text, format, arguments);
     first_error = text;
+}
+
+/// Most warnings are about tags that nobody knows.
+extern "C" void keep_warning(const char*, const char* format, va_list) {
+    guessed_lengths = guessed_lengths || std::strstr(format, "StripByteCounts") != nullptr;
 }
 
 /// Where libtiff reads next.
@@ -61,14 +68,19 @@ Tiff open_far(const std::filesystem::path& file, const char* mode) {
 
 Tiff open_tiff(const std::filesystem::path& file, const char* mode) {
     first_error.clear();
+    guessed_lengths = false;
     TIFFSetErrorHandler(keep_error);
-    TIFFSetWarningHandler(nullptr);
+    TIFFSetWarningHandler(keep_warning);
     if (is_far()) return open_far(file, mode);
     return {TIFFOpen(file.c_str(), mode), &TIFFClose};
 }
 
 const std::string& first_tiff_error() {
     return first_error;
+}
+
+bool guessed_tiff_lengths() {
+    return guessed_lengths;
 }
 
 }  // namespace palpate::io

@@ -17,4 +17,8 @@ Tiff open_tiff(const std::filesystem::path& file, const char* mode);
 /// libtiff's first error since open_tiff(); empty if there was none.
 const std::string& first_tiff_error();
 
+/// Whether since then a page did not say how long its samples are, or something impossible: libtiff
+/// goes by the size of the page and takes what lies there.
+bool guessed_tiff_lengths();
+
 }  // namespace palpate::io

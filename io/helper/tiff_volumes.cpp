@@ -11,6 +11,7 @@
 #include "io/helper/tiff_layout.hpp"
 #include "io/helper/tiff_page.hpp"
 #include "io/inflate.hpp"
+#include "io/tiff_peek.hpp"
 
 namespace palpate::io {
 namespace {
@@ -38,39 +39,36 @@ void check_deflate(TIFF* tiff, const fs::path& file, std::uint32_t piece, bool t
     }
 }
 
-void read_strips(TIFF* tiff, const fs::path& file, const TiffPage& page, std::byte* to) {
-    const std::size_t row = page.bytes_of(page.width);
-    std::uint32_t rows = page.height;
-    TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &rows);
-    rows = std::clamp<std::uint32_t>(rows, 1, page.height);
-    for (std::uint32_t strip = 0, y = 0; y < page.height; ++strip, y += rows) {
-        check_deflate(tiff, file, strip, false);
-        const auto bytes = static_cast<tmsize_t>(std::min(rows, page.height - y) * row);
-        if (TIFFReadEncodedStrip(tiff, strip, to + y * row, bytes) != bytes)
-            fail_damaged_tiff(file);
+/// Strips are tiles as wide as the page, the last of which has the rows that are left.
+void read_pieces(TIFF* tiff, const fs::path& file, const TiffPage& page, std::byte* to,
+                 const Request& request) {
+    const bool tiled = TIFFIsTiled(tiff) != 0;
+    std::uint32_t width = page.width, height = page.height;
+    if (tiled) {
+        TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
+        TIFFGetField(tiff, TIFFTAG_TILELENGTH, &height);
+    } else {
+        TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &height);
+        height = std::clamp<std::uint32_t>(height, 1, page.height);
     }
-}
-
-void read_tiles(TIFF* tiff, const fs::path& file, const TiffPage& page, std::byte* to,
-                const Request& request) {
-    std::uint32_t width = 0, height = 0;
-    TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
-    TIFFGetField(tiff, TIFFTAG_TILELENGTH, &height);
     const std::int64_t sizes[] = {width, height};
-    std::vector<std::byte> tile(checked_bytes(sizes, size_of(page.stored), UINT64_MAX, request));
-    const std::size_t row = page.bytes_of(page.width), tile_row = page.bytes_of(width);
-    const auto bytes = static_cast<tmsize_t>(height * tile_row);
-    if (TIFFTileSize(tiff) != bytes) fail_damaged_tiff(file);
+    std::vector<std::byte> piece(checked_bytes(sizes, size_of(page.stored), UINT64_MAX, request));
+    const std::size_t row = page.bytes_of(page.width), piece_row = page.bytes_of(width);
+    if (tiled && TIFFTileSize(tiff) != static_cast<tmsize_t>(height * piece_row)) {
+        fail_damaged_tiff(file);
+    }
     for (std::uint32_t y = 0; y < page.height; y += height) {
+        const std::uint32_t rows = std::min(height, page.height - y);
         for (std::uint32_t x = 0; x < page.width; x += width) {
-            const std::uint32_t number = TIFFComputeTile(tiff, x, y, 0, 0);
-            check_deflate(tiff, file, number, true);
-            if (TIFFReadEncodedTile(tiff, number, tile.data(), bytes) != bytes)
-                fail_damaged_tiff(file);
+            const std::uint32_t number = tiled ? TIFFComputeTile(tiff, x, y, 0, 0) : y / height;
+            check_deflate(tiff, file, number, tiled);
+            const auto bytes = static_cast<tmsize_t>((tiled ? height : rows) * piece_row);
+            const auto read = tiled ? TIFFReadEncodedTile : TIFFReadEncodedStrip;
+            if (read(tiff, number, piece.data(), bytes) != bytes) fail_damaged_tiff(file);
             const std::size_t columns = std::min(width, page.width - x);
-            for (std::uint32_t r = 0; r < std::min(height, page.height - y); ++r) {
+            for (std::uint32_t r = 0; r < rows; ++r) {
                 std::memcpy(to + (y + r) * row + std::size_t{x} * page.bits / 8,
-                            tile.data() + r * tile_row, page.bytes_of(columns));
+                            piece.data() + r * piece_row, page.bytes_of(columns));
             }
         }
     }
@@ -121,6 +119,16 @@ void go_to_slice(TIFF* tiff, const Slice& slice) {
     if (!there) fail_damaged_tiff(slice.file);
 }
 
+/// Of the first file where libtiff guessed.
+void note_guess(const fs::path& file, std::vector<std::string>& notes) {
+    const std::string what =
+        " does not say, or says wrongly, how long the samples of a page are (StripByteCounts): as "
+        "many as the page has were taken from where they begin, do not trust what is felt there";
+    const auto is_said = [&](const std::string& note) { return note.ends_with(what); };
+    if (!guessed_tiff_lengths() || std::ranges::any_of(notes, is_said)) return;
+    notes.push_back(quoted(file) + what);
+}
+
 /// `layout`: what the file, or the first of a folder, says of spacing and values.
 Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
                    const Request& request) {
@@ -148,6 +156,7 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
                 shared_samples(checked_bytes(sizes, size_of(result.type), UINT64_MAX, request));
             page_samples.resize(std::size_t{page.width} * page.height * size_of(page.stored));
         }
+        note_guess(slice.file, result.notes);
         if (!(page == first)) {
             throw Failure("its slice " + std::to_string(i) + " is " + text_of(page) +
                           ", the first " + text_of(first) + "; put slices of one kind together");
@@ -155,10 +164,8 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
         if (layout.plain_from > 0) {
             read_plain(tiff.get(), slice.file, layout.plain_from + slice.page * page_samples.size(),
                        size_of(page.stored), page_samples);
-        } else if (TIFFIsTiled(tiff.get()) != 0) {
-            read_tiles(tiff.get(), slice.file, page, page_samples.data(), request);
         } else {
-            read_strips(tiff.get(), slice.file, page, page_samples.data());
+            read_pieces(tiff.get(), slice.file, page, page_samples.data(), request);
         }
         if (!first_tiff_error().empty()) fail_damaged_tiff(slice.file);
         if (page.is_packed()) unpack_bits(page, page_samples);
@@ -228,7 +235,7 @@ Result read_file(const Request& request) {
 Result read_folder(const Request& request) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(request.path)) {
-        if (is_shown_file(entry) && looks_like_tiff(entry.path())) files.push_back(entry.path());
+        if (is_shown_file(entry) && is_tiff_name(entry.path())) files.push_back(entry.path());
     }
     const NumberedSlices numbered = numbered_slices(std::move(files));
     const auto times = static_cast<std::int64_t>(numbered.times.size());

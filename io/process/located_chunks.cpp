@@ -3,12 +3,11 @@
 
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "io/helper/protocol.hpp"
 #include "io/process/io_helper.hpp"
+#include "io/words.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::io {
@@ -36,9 +35,7 @@ std::vector<ChunkPlace> places_from(const nlohmann::json& numbers, std::size_t c
 }  // namespace
 
 bool is_hdf5_name(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return std::tolower(c); });
+    const std::string extension = lower(path.extension().string());
     return extension == ".ims" || extension == ".h5" || extension == ".hdf5";
 }
 

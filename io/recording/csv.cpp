@@ -9,7 +9,7 @@
 namespace palpate::io {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
     constexpr std::string_view blank = " \t\r";
     const auto first = text.find_first_not_of(blank);
     if (first == std::string_view::npos) return {};
@@ -20,7 +20,7 @@ void split(std::string_view line, std::vector<std::string_view>& cells) {
     cells.clear();
     for (;;) {
         const auto comma = line.find(',');
-        cells.push_back(trimmed(line.substr(0, comma)));
+        cells.push_back(without_blanks(line.substr(0, comma)));
         if (comma == std::string_view::npos) return;
         line.remove_prefix(comma + 1);
     }
@@ -52,7 +52,7 @@ CsvReader::CsvReader(std::string_view text, std::string name, CommentSink commen
 bool CsvReader::next_line() {
     while (!rest_.empty()) {
         const auto end = rest_.find('\n');
-        const auto text = trimmed(rest_.substr(0, end));
+        const auto text = without_blanks(rest_.substr(0, end));
         rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
         ++line_;
         if (text.empty()) continue;

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "io/byte_order.hpp"
+#include "io/inflate.hpp"
 #include "stream/formats/undo_codecs.hpp"
 
 namespace palpate::stream {
@@ -22,39 +23,18 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-/// The end of a zlib stream, however it is left.
-struct Inflating {
-    z_stream stream{};
-    Inflating() {
-        constexpr int either_header = 15 + 32;
-        if (inflateInit2(&stream, either_header) != Z_OK) throw std::bad_alloc();
-    }
-    ~Inflating() { inflateEnd(&stream); }
-    Inflating(const Inflating&) = delete;
-    Inflating& operator=(const Inflating&) = delete;
-};
-
 Bytes gunzip(std::span<const std::byte> packed, std::size_t most) {
-    Bytes out(most + 1);  // one more, to see that there is more
-    Inflating job;
-    z_stream& z = job.stream;
-    z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(packed.data()));
-    z.avail_in = static_cast<uInt>(packed.size());
-    z.next_out = reinterpret_cast<Bytef*>(out.data());
-    z.avail_out = static_cast<uInt>(out.size());
-    while (true) {
-        const int status = inflate(&z, Z_FINISH);
-        if (status == Z_STREAM_END && z.avail_in > 0 && z.avail_out > 0) {  // another member
-            if (inflateReset(&z) != Z_OK) throw DamagedChunk("is no gzip stream");
-            continue;
-        }
-        if (status == Z_STREAM_END) break;
-        if (z.avail_out == 0) unpacks_too_long(most);
-        throw DamagedChunk(z.avail_in == 0 ? "ends within its gzip stream"
-                                           : "is a damaged gzip stream");
+    Bytes out;
+    out.reserve(most);
+    try {
+        io::inflate_checked(packed, most, [&](std::span<const std::byte> part) {
+            out.insert(out.end(), part.begin(), part.end());
+        });
+    } catch (const io::OversizedStream&) {
+        unpacks_too_long(most);
+    } catch (const io::DamagedStream& e) {
+        throw DamagedChunk(std::string("is a damaged gzip stream (") + e.what() + ")");
     }
-    if (z.avail_out == 0) unpacks_too_long(most);
-    out.resize(out.size() - z.avail_out);
     return out;
 }
 

@@ -10,6 +10,7 @@
 
 #include "io/chunked_image.hpp"
 #include "io/units.hpp"
+#include "io/words.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/orientation.hpp"
 #include "stream/formats/stores.hpp"
@@ -69,7 +70,7 @@ double millimetres_of(const ImageAxis& axis, std::vector<std::string>& notes) {
                                  ? "its metadata give no unit of length: mm were taken"
                                  : "its unit of length '" + io::one_line(axis.unit.substr(0, 40)) +
                                        "' is not known: mm were taken";
-    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+    io::add_note(notes, note);
     return 1;
 }
 

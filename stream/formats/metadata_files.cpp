@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "io/json_text.hpp"
+#include "stream/formats/unpacking_room.hpp"
 
 namespace palpate::stream {
 
@@ -37,12 +38,17 @@ Wanted metadata_file(const std::string& folder, const std::string& name) {
     return {key_below(folder, name), std::nullopt, most_bytes, false, false, true};
 }
 
-Json parsed(const std::optional<Bytes>& bytes, const std::string& name) {
+std::size_t room_for_metadata(const StoreOptions& options) {
+    return std::min<std::uint64_t>(io::most_json_bytes,
+                                   UnpackingRoom(options.unpacking).most() / 4);
+}
+
+Json parsed(std::optional<Bytes> bytes, const std::string& name, std::size_t& room) {
     if (!bytes) return nullptr;
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     try {
         const bool is_plain = text.find("NaN") == text.npos && text.find("Infinity") == text.npos;
-        return io::parsed_json(is_plain ? text : with_quoted_numbers(text));
+        return io::parsed_json_within(room, is_plain ? text : with_quoted_numbers(text));
     } catch (const Json::other_error& error) {
         const std::string flaw = error.what();
         throw io::InputError(name + ": is not read: " + flaw.substr(flaw.find("] ") + 2));
@@ -56,6 +62,29 @@ Json parsed(const std::optional<Bytes>& bytes, const std::string& name) {
         }
         throw io::InputError(name + ": is not JSON; the metadata are damaged: copy them again");
     }
+}
+
+std::vector<Json> metadata_in(const Objects& objects, const std::vector<std::string>& folders,
+                              const std::string& name, std::size_t& room) {
+    std::vector<Wanted> wanted;
+    for (const std::string& folder : folders) wanted.push_back(metadata_file(folder, name));
+    auto all = objects.get_all(wanted, {});
+    std::vector<Json> found;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        found.push_back(parsed(std::move(all[i]), objects.name_of(wanted[i].key), room));
+    }
+    return found;
+}
+
+const Json& member(const Json& object, const char* name) {
+    static const Json none;
+    const auto found = object.find(name);  // of what is no object, the end
+    return found == object.end() ? none : *found;
+}
+
+std::string text_member(const Json& object, const char* name, const char* otherwise) {
+    const Json& text = member(object, name);
+    return text.is_null() ? otherwise : text.get<std::string>();
 }
 
 std::vector<std::int64_t> sizes_of(const Json& list, const char* member) {

@@ -7,6 +7,7 @@
 #include <bit>
 
 #include "io/chunked_image.hpp"
+#include "io/words.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/formats/metadata_files.hpp"
 #include "stream/formats/zarr_metadata.hpp"
@@ -43,11 +44,10 @@ std::vector<Codec> n5_codecs(const std::string& compression) {
 
 /// The innermost attribute of a name; null if there is none.
 const Json& attribute(std::span<const Json> groups, const char* name) {
-    static const Json none;
     for (const Json& group : groups) {
-        if (group.is_object() && group.contains(name)) return group[name];
+        if (group.contains(name)) return group[name];
     }
-    return none;
+    return member({}, name);
 }
 
 /// A number for each axis, the slowest first. Lists of three numbers are of x, y and z, whatever
@@ -74,10 +74,9 @@ std::optional<Resolution> resolution_of(std::span<const Json> groups, std::size_
     for (const char* name : {"pixelResolution", "resolution"}) {
         const Json& given = attribute(groups, name);
         const auto spacing =
-            along_axes(given.is_object() ? given.value("dimensions", Json()) : given, axes, 1);
+            along_axes(given.is_object() ? member(given, "dimensions") : given, axes, 1);
         if (!spacing) continue;
-        const Json unit =
-            given.is_object() ? given.value("unit", Json()) : attribute(groups, "unit");
+        const Json& unit = given.is_object() ? member(given, "unit") : attribute(groups, "unit");
         std::vector<std::string> units(axes, unit.is_string() ? unit.get<std::string>() : "");
         const Json& all = attribute(groups, "units");
         for (std::size_t i = 0; !unit.is_string() && all.is_array() && i < axes; ++i) {
@@ -112,10 +111,9 @@ struct NamedPlace {
 /// Janelia's: {"axes": ["z", "y", "x"], "scale": [..], "translate": [..], "units": [..]}, in any
 /// order of the axes.
 std::optional<NamedPlace> transform_of(const Json& object) {
-    const Json transform = object.is_object() ? object.value("transform", Json()) : Json();
-    if (!transform.is_object() || !transform.contains("axes")) return std::nullopt;
-    const Json translate = transform.value("translate", Json::array()),
-               units = transform.value("units", Json::array());
+    const Json& transform = member(object, "transform");
+    if (!transform.contains("axes")) return std::nullopt;
+    const Json &translate = member(transform, "translate"), &units = member(transform, "units");
     NamedPlace place;
     for (const Json& name : transform["axes"]) {
         const std::size_t i = place.axes.size();
@@ -130,18 +128,21 @@ std::optional<NamedPlace> transform_of(const Json& object) {
 /// What the `multiscales` of a group say of a level in this folder: Janelia's transform, or the
 /// transformations of OME-NGFF.
 std::optional<NamedPlace> multiscale_of(std::span<const Json> groups, const std::string& folder) {
-    const Json& all = attribute(groups, "multiscales");
-    if (!all.is_array() || all.empty() || !all[0].is_object()) return std::nullopt;
-    const Json datasets = all[0].value("datasets", Json::array());
+    const auto group =
+        std::ranges::find_if(groups, [](const Json& one) { return one.contains("multiscales"); });
+    if (group == groups.end()) return std::nullopt;
+    const Json& all = (*group)["multiscales"];
+    if (!all.is_array() || all.empty()) return std::nullopt;
+    const Json& datasets = member(all[0], "datasets");
     const auto last_name = [](const std::string& path) {
         return path.substr(path.find_last_of('/') + 1);
     };
     for (std::size_t i = 0; datasets.is_array() && i < datasets.size(); ++i) {
-        const Json path = datasets[i].is_object() ? datasets[i].value("path", Json()) : Json();
+        const Json& path = member(datasets[i], "path");
         if (!path.is_string() || last_name(path.get<std::string>()) != last_name(folder)) continue;
         if (auto place = transform_of(datasets[i])) return place;
-        if (!all[0].contains("axes")) return std::nullopt;
-        const auto image = ome_image(Json{{"multiscales", all}});
+        if (!all[0].contains("axes") || group->contains("ome")) return std::nullopt;
+        const auto image = ome_image(*group);
         return NamedPlace{image->axes, image->levels[i].scale, image->levels[i].translation};
     }
     return std::nullopt;
@@ -178,10 +179,6 @@ std::vector<ImageAxis> n5_axes(std::span<const Json> groups, const Json& finest,
     return axes;
 }
 
-void note_once(std::vector<std::string>& notes, const char* note) {
-    if (std::ranges::find(notes, note) == notes.end()) notes.emplace_back(note);
-}
-
 }  // namespace
 
 ChunkedArray n5_array(const Json& attributes, const std::string& folder) {
@@ -215,7 +212,7 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
     auto offset = along_axes(attribute(groups, "offset"), axes, 0);  // Paintera's, in the same unit
     if (!offset) offset = along_axes(attribute(levels.first(1), "offset"), axes, 0);
     if (!attribute(groups, "affineTransform").is_null()) {
-        note_once(notes, "its affineTransform is not applied");
+        io::add_note(notes, "its affineTransform is not applied");
     }
     for (const ChunkedArray& array : arrays) {
         if (array.axes() != axes) throw BadMetadata("its levels have different axes");
@@ -232,8 +229,8 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
         auto factors = factors_of(groups, levels[i], i, axes);
         if (!factors) {
             factors = factors_by_size(arrays, i);
-            note_once(notes,
-                      "it does not tell the scales of its levels: their sizes were compared");
+            io::add_note(notes,
+                         "it does not tell the scales of its levels: their sizes were compared");
         }
         for (std::size_t a = 0; a < axes; ++a) {
             const double spacing = placed       ? image.levels[0].scale[a]
@@ -247,7 +244,7 @@ Image n5_image(std::span<const Json> groups, std::span<const Json> levels,
             if (!placed) image.axes[a].unit = resolution ? resolution->units[a] : "millimeter";
         }
         image.measured = placed || resolution;
-        if (!image.measured) note_once(notes, "it does not tell its spacing: 1 mm was taken");
+        if (!image.measured) io::add_note(notes, "it does not tell its spacing: 1 mm was taken");
         image.levels.push_back(level);
     }
     return image;

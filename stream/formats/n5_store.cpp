@@ -20,29 +20,32 @@ bool is_dataset(const Json& attributes) {
 class N5Opening {
   public:
     N5Opening(const Objects& objects, const StoreOptions& options)
-        : objects_(objects), options_(options) {}
+        : objects_(objects), options_(options), room_(room_for_metadata(options)) {}
 
     /// Nothing if there is no N5.
     std::optional<ChunkedVolume> volume(const std::string& address) {
         volume_.info.address = address;
         volume_.info.format = "N5";
-        const auto first = attributes_of({"", "s0", "c0/s0", "setup0", "timepoint0/s0"});
+        std::vector<Json> first = attributes_of({"", "s0", "c0/s0", "setup0", "timepoint0/s0"});
         const bool is_n5 =
-            std::ranges::any_of(first, [](const Json& one) { return one != Json(); });
+            std::ranges::any_of(first, [](const Json& one) { return !one.is_null(); });
+        const bool has_levels = is_dataset(first[1]), has_channels = is_dataset(first[2]);
         if (is_dataset(first[0])) {
-            take_levels({}, {first[0]}, {""});
-        } else if (is_dataset(first[1])) {
-            take_group("", {first[0]});
-        } else if (is_dataset(first[2])) {
-            const std::string channel = chosen_channel("c", numbers_of("c", "/s0"), "channel ");
-            take_group(channel, {attributes_of({channel})[0], first[0]});
+            take_levels({first.data(), 1}, {""});
+            return std::move(volume_);
+        }
+        groups_.push_back(std::move(first[0]));
+        first.clear();
+        if (has_levels) {
+            take_group("");
+        } else if (has_channels) {
+            take_group(entered(chosen_channel("c", numbers_of("c", "/s0"), "channel ")));
         } else if (!is_n5) {
             return std::nullopt;
         } else if (const auto setups = numbers_of("setup", ""); !setups.empty()) {
-            const std::string setup = chosen_channel("setup", setups, "setup ");
-            take_moment(setup, {attributes_of({setup})[0], first[0]});
+            take_moment(entered(chosen_channel("setup", setups, "setup ")));
         } else if (!numbers_of("timepoint", "/s0").empty()) {
-            take_moment("", {first[0]});
+            take_moment("");
         } else {
             throw BadMetadata(
                 "is a group of N5 without samples of its own; give the folder of a dataset or of "
@@ -53,17 +56,14 @@ class N5Opening {
 
   private:
     /// Of several folders at once; null where there are none.
-    std::vector<Json> attributes_of(const std::vector<std::string>& folders) const {
-        std::vector<Wanted> wanted;
-        for (const std::string& folder : folders) {
-            wanted.push_back(metadata_file(folder, "attributes.json"));
-        }
-        const auto all = objects_.get_all(wanted, {});
-        std::vector<Json> attributes;
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            attributes.push_back(parsed(all[i], objects_.name_of(wanted[i].key)));
-        }
-        return attributes;
+    std::vector<Json> attributes_of(const std::vector<std::string>& folders) {
+        return metadata_in(objects_, folders, "attributes.json", room_);
+    }
+
+    /// A folder within the groups so far, which becomes the innermost of them.
+    std::string entered(const std::string& group) {
+        groups_.insert(groups_.begin(), std::move(attributes_of({group})[0]));
+        return group;
     }
 
     /// The numbers N of the folders PREFIXN that have attributes in PREFIXNSUFFIX: asks for a few,
@@ -102,7 +102,7 @@ class N5Opening {
     }
 
     /// The time that is asked for, of a setup of BigDataViewer.
-    void take_moment(const std::string& setup, std::vector<Json> groups) {
+    void take_moment(const std::string& setup) {
         const std::string prefix = key_below(setup, "timepoint");
         const std::vector<int> numbers = numbers_of(prefix, "/s0");
         if (numbers.empty()) {
@@ -113,12 +113,10 @@ class N5Opening {
         volume_.info.times = static_cast<int>(numbers.size());
         check_choice(volume_.info, options_);
         const int number = io::number_of_time(options_.time, numbers, volume_.info.notes);
-        const std::string folder = prefix + std::to_string(number);
-        groups.insert(groups.begin(), attributes_of({folder})[0]);
-        take_group(folder, groups);
+        take_group(entered(prefix + std::to_string(number)));
     }
 
-    void take_group(const std::string& group, const std::vector<Json>& groups) {
+    void take_group(const std::string& group) {
         std::vector<std::string> folders;
         for (std::size_t i = 0; i < most_n5_levels; ++i) {
             folders.push_back(key_below(group, "s" + std::to_string(i)));
@@ -130,20 +128,21 @@ class N5Opening {
             throw BadMetadata("its level '" + folders[0] + "' is not there; copy it again");
         }
         folders.resize(levels.size());
-        take_levels(groups, levels, folders);
+        take_levels(levels, folders);
     }
 
-    void take_levels(const std::vector<Json>& groups, const std::vector<Json>& levels,
-                     const std::vector<std::string>& folders) {
+    void take_levels(std::span<const Json> levels, const std::vector<std::string>& folders) {
         for (std::size_t i = 0; i < levels.size(); ++i) {
             volume_.arrays.push_back(n5_array(levels[i], folders[i]));
         }
-        const Image image = n5_image(groups, levels, volume_.arrays, volume_.info.notes);
+        const Image image = n5_image(groups_, levels, volume_.arrays, volume_.info.notes);
         volume_ = volume_of(image, std::move(volume_), options_);
     }
 
     const Objects& objects_;
     const StoreOptions& options_;
+    std::size_t room_;          ///< [bytes] for more metadata
+    std::vector<Json> groups_;  ///< around the levels, the innermost first
     ChunkedVolume volume_;
 };
 

@@ -1,10 +1,10 @@
 // Metadata of OME-Zarr images, versions 0.1 to 0.5: https://ngff.openmicroscopy.org.
-#include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
+#include "io/words.hpp"
 #include "palpate/io/error.hpp"
+#include "stream/formats/metadata_files.hpp"
 #include "stream/formats/zarr_metadata.hpp"
 
 namespace palpate::stream {
@@ -37,7 +37,7 @@ std::vector<double> numbers_of(const Json& list, std::size_t axes, const char* w
 /// At most one scale, then at most one translation.
 Placement placement_of(const Json& object, std::size_t axes) {
     Placement place{std::vector<double>(axes, 1), std::vector<double>(axes, 0)};
-    const Json list = object.value("coordinateTransformations", Json());
+    const Json& list = member(object, "coordinateTransformations");
     if (list.is_null()) return place;
     if (!list.is_array() || list.size() > 8)
         throw BadMetadata("its transformations are not sensible");
@@ -64,7 +64,8 @@ Placement placement_of(const Json& object, std::size_t axes) {
 /// Version 0.4 and later give objects, earlier ones names or nothing (then t, c, z, y, x).
 std::vector<ImageAxis> axes_of(const Json& image) {
     std::vector<ImageAxis> axes;
-    const Json list = image.value("axes", Json({"t", "c", "z", "y", "x"}));
+    static const Json usual = {"t", "c", "z", "y", "x"};
+    const Json& list = image.contains("axes") ? image["axes"] : usual;
     if (!list.is_array() || list.empty() || list.size() > 8) {
         throw BadMetadata("its axes are not sensible");
     }
@@ -73,10 +74,10 @@ std::vector<ImageAxis> axes_of(const Json& image) {
             axes.push_back({axis_name(axis), ""});
             continue;
         }
-        const Json unit = axis.value("unit", Json(""));
+        const Json& unit = member(axis, "unit");
         std::string name = axis_name(axis.at("name"));
-        if (axis.value("type", Json()) == "time") name = "t";
-        if (axis.value("type", Json()) == "channel") name = "c";
+        if (member(axis, "type") == "time") name = "t";
+        if (member(axis, "type") == "channel") name = "c";
         axes.push_back({name, unit.is_string() ? unit.get<std::string>() : ""});
     }
     return axes;
@@ -84,12 +85,11 @@ std::vector<ImageAxis> axes_of(const Json& image) {
 
 std::vector<std::string> channel_names(const Json& attributes) {
     std::vector<std::string> names;
-    const Json omero = attributes.value("omero", Json::object());
-    if (!omero.is_object() || !omero.contains("channels") || !omero["channels"].is_array())
-        return names;
-    for (const Json& channel : omero["channels"]) {
+    const Json& channels = member(member(attributes, "omero"), "channels");
+    if (!channels.is_array()) return names;
+    for (const Json& channel : channels) {
         if (names.size() == most_channels) break;
-        const Json label = channel.is_object() ? channel.value("label", Json("")) : Json("");
+        const Json& label = member(channel, "label");
         names.push_back(label.is_string() ? io::one_line(label.get<std::string>().substr(0, 64))
                                           : "");
     }
@@ -99,8 +99,8 @@ std::vector<std::string> channel_names(const Json& attributes) {
 /// Versions after 0.5, and images that are not read.
 std::vector<std::string> notes_on(const Json& attributes, const Json& images) {
     std::vector<std::string> notes;
-    Json version = attributes.value("version", Json());
-    if (version.is_null()) version = images[0].value("version", Json());
+    const Json& own = member(attributes, "version");
+    const Json& version = own.is_null() ? member(images[0], "version") : own;
     const std::string text = version.is_string() ? version.get<std::string>() : version.dump();
     const char* const end = text.data() + text.size();
     int major = 0, minor = 0;
@@ -118,29 +118,30 @@ std::vector<std::string> notes_on(const Json& attributes, const Json& images) {
 }
 
 std::optional<Range> range_of(const Json& attributes) {
-    const Json ours = attributes.value("palpate", Json::object());
-    if (!ours.is_object() || !ours.contains("range")) return std::nullopt;
-    const std::vector<double> range = numbers_of(ours["range"], 2, "range");
+    const Json& given = member(member(attributes, "palpate"), "range");
+    if (given.is_null()) return std::nullopt;
+    const std::vector<double> range = numbers_of(given, 2, "range");
     if (range[0] > range[1]) return std::nullopt;
     return Range{range[0], range[1]};
 }
 
 /// What OME-Zarr has no place for.
 void take_direction(const Json& attributes, Image& image) {
-    const Json ours = attributes.value("palpate", Json::object());
-    if (!ours.is_object()) return;
-    image.measured = ours.value("measured", Json(true)) == true;
-    if (!ours.contains("direction")) return;
+    const Json& ours = member(attributes, "palpate");
+    const auto holds = [&](const char* name) {
+        return member(ours, name).is_null() || member(ours, name) == true;
+    };
+    image.measured = holds("measured");
+    if (member(ours, "direction").is_null()) return;
     const std::vector<double> columns = numbers_of(ours["direction"], 9, "direction");
     image.direction = Mat3(Eigen::Map<const Mat3>(columns.data()));
-    image.oriented = ours.value("oriented", Json(true)) == true;
+    image.oriented = holds("oriented");
 }
 
 }  // namespace
 
 std::string axis_name(const Json& name) {
-    std::string text = name.is_string() ? name.get<std::string>() : "";
-    std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string text = name.is_string() ? io::lower(name.get<std::string>()) : "";
     if (text == "time" || text == "channel") return text.substr(0, 1);
     return io::one_line(text.substr(0, 40));
 }

@@ -56,6 +56,10 @@ class PlainFile : public Store {
                 to += samples.size();
             }
         }
+        if (io::identity_of(file_.number()) != identity_) {
+            throw io::InputError(info_.address +
+                                 ": was written anew since it was opened; open it again");
+        }
     }
 
   private:
@@ -74,6 +78,7 @@ class PlainFile : public Store {
         if (file_.number() < 0) {
             throw io::InputError(path + ": " + io::reason(errno) + "; check its permissions");
         }
+        identity_ = io::identity_of(file_.number());
         bytes_ = {plain.stored, plain.swapped, plain.value_map, 0};
         info_.address = path;
         info_.format = plain.format;
@@ -138,6 +143,7 @@ class PlainFile : public Store {
     }
 
     io::Descriptor file_;
+    std::string identity_;  ///< of the file when it was opened: samples of two files never mix
     StoreInfo info_;
     SampleBytes bytes_;
     std::uint64_t first_ = 0;             ///< [bytes] of the first sample of the chosen time

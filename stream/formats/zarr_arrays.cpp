@@ -104,18 +104,18 @@ ChunkedArray zarr2_array(const Json& zarray, const std::string& folder) {
     array.shape = sizes_of(zarray.at("shape"), "shape");
     array.chunk = sizes_of(zarray.at("chunks"), "chunks");
     take_dtype(zarray.at("dtype"), array.bytes);
-    array.bytes.fill = fill_of(zarray.value("fill_value", Json()), array.bytes, true);
-    array.separator = separator_of(zarray.value("dimension_separator", std::string(".")));
-    const std::string order = zarray.value("order", std::string("C"));
+    array.bytes.fill = fill_of(member(zarray, "fill_value"), array.bytes, true);
+    array.separator = separator_of(text_member(zarray, "dimension_separator", "."));
+    const std::string order = text_member(zarray, "order", "C");
     if (order != "C" && order != "F")
         throw BadMetadata("its order is '" + order + "'; it is C or F");
     array.stored_axes = axes_in_order(array);
     if (order == "F") std::ranges::reverse(array.stored_axes);
-    const Json filters = zarray.value("filters", Json());
+    const Json& filters = member(zarray, "filters");
     if (filters.is_array() && !filters.empty()) {
         refuse_codec(filters[0].at("id").get<std::string>());
     }
-    const Json compressor = zarray.value("compressor", Json());
+    const Json& compressor = member(zarray, "compressor");
     if (!compressor.is_null()) {
         const std::string name = compressor.at("id").get<std::string>();
         const auto codec = codec_named(name);
@@ -130,9 +130,9 @@ namespace {
 
 /// `each`: bytes of a number; the order of one has no name.
 bool is_little(const Json& codec, std::size_t each) {
-    const Json configuration = codec.value("configuration", Json::object());
+    const Json& configuration = member(codec, "configuration");
     if (each == 1 && !configuration.contains("endian")) return true;
-    const std::string endian = configuration.value("endian", std::string("(not given)"));
+    const std::string endian = text_member(configuration, "endian", "(not given)");
     if (endian != "little" && endian != "big") {
         throw BadMetadata("its byte order is '" + endian + "'; it is little or big");
     }
@@ -140,7 +140,7 @@ bool is_little(const Json& codec, std::size_t each) {
 }
 
 void transpose(const Json& codec, ChunkedArray& array) {
-    const Json order = codec.at("configuration").at("order");
+    const Json& order = codec.at("configuration").at("order");
     const std::vector<int> in_order = axes_in_order(array);
     std::vector<std::int64_t> axes(in_order.begin(), in_order.end());
     if (order == "F") std::ranges::reverse(axes);
@@ -156,20 +156,15 @@ void transpose(const Json& codec, ChunkedArray& array) {
 }
 
 /// What needs no configuration may be given by its name alone (Zarr 3.1).
-Json extension(const Json& json) {
-    return json.is_string() ? Json{{"name", json}} : json;
-}
-
 std::string name_of(const Json& json) {
-    return extension(json).at("name").get<std::string>();
+    return (json.is_string() ? json : json.at("name")).get<std::string>();
 }
 
 /// Takes the codecs of an array, or those within its shards.
 void take_codecs(const Json& codecs, ChunkedArray& array);
 
 void take_index_codecs(const Json& codecs, Shards& shards) {
-    for (const Json& given : codecs) {
-        const Json codec = extension(given);
+    for (const Json& codec : codecs) {
         const std::string name = name_of(codec);
         if (name == "crc32c") {
             shards.index_codecs.insert(shards.index_codecs.begin(), Codec::crc32c);
@@ -192,7 +187,7 @@ void take_shards(const Json& configuration, ChunkedArray& array) {
         }
         shards.chunks.push_back(shard[a] / array.chunk[a]);
     }
-    const std::string place = configuration.value("index_location", std::string("end"));
+    const std::string place = text_member(configuration, "index_location", "end");
     if (place != "start" && place != "end") {
         throw BadMetadata("the index of its shards lies at '" + place + "'; it is start or end");
     }
@@ -206,8 +201,7 @@ void take_codecs(const Json& codecs, ChunkedArray& array) {
     bool as_bytes = false;
     if (!codecs.is_array() || codecs.size() > 16)
         throw BadMetadata("its list of codecs is not sensible");
-    for (const Json& given : codecs) {
-        const Json codec = extension(given);
+    for (const Json& codec : codecs) {
         const std::string name = name_of(codec);
         if (name == "transpose" && !as_bytes) {
             transpose(codec, array);
@@ -232,15 +226,14 @@ void take_codecs(const Json& codecs, ChunkedArray& array) {
     if (!as_bytes) throw BadMetadata("its codecs have no 'bytes'; its metadata are damaged");
 }
 
-void take_key_encoding(const Json& given, ChunkedArray& array) {
-    const Json encoding = extension(given);
+void take_key_encoding(const Json& encoding, ChunkedArray& array) {
     const std::string name = name_of(encoding);
-    const Json configuration = encoding.value("configuration", Json::object());
+    const Json& configuration = member(encoding, "configuration");
     if (name == "default") {
-        array.separator = separator_of(configuration.value("separator", std::string("/")));
+        array.separator = separator_of(text_member(configuration, "separator", "/"));
         array.prefix = std::string("c") + array.separator;
     } else if (name == "v2") {
-        array.separator = separator_of(configuration.value("separator", std::string(".")));
+        array.separator = separator_of(text_member(configuration, "separator", "."));
     } else {
         throw BadMetadata("the names of its chunks follow '" + name + "', which is not known");
     }
@@ -263,8 +256,7 @@ void check_members(const Json& zarr) {
                                   "consolidated_metadata"};
     for (const auto& [name, value] : zarr.items()) {
         if (std::ranges::find(known, name) != known.end()) continue;
-        const Json must = value.is_object() ? value.value("must_understand", Json()) : Json();
-        if (must == false) continue;
+        if (member(value, "must_understand") == false) continue;
         throw BadMetadata(
             "its member '" + io::one_line(name.substr(0, 40)) +
             "' of Zarr 3 is not known, and has to be understood; store it without it");
@@ -288,10 +280,10 @@ ChunkedArray zarr3_array(const Json& zarr, const std::string& folder) {
     const auto stored = io::stored_named(name == "bool" ? "uint8" : name);
     if (!stored) refuse_type(name);
     array.bytes.stored = *stored;
-    array.bytes.fill = fill_of(zarr.value("fill_value", Json()), array.bytes, false);
+    array.bytes.fill = fill_of(member(zarr, "fill_value"), array.bytes, false);
     array.stored_axes = axes_in_order(array);
     take_key_encoding(zarr.at("chunk_key_encoding"), array);
-    for (const Json& transformer : zarr.value("storage_transformers", Json::array())) {
+    for (const Json& transformer : member(zarr, "storage_transformers")) {
         refuse_codec(name_of(transformer));
     }
     take_codecs(zarr.at("codecs"), array);

@@ -1,6 +1,7 @@
 // Finds out whether the chunks of a Zarr array lie as its metadata say. See the header.
 #include <algorithm>
 
+#include "io/words.hpp"
 #include "stream/formats/metadata_files.hpp"
 #include "stream/formats/zarr_metadata.hpp"
 
@@ -44,10 +45,6 @@ std::string first_name(ChunkedArray array) {
     return key_of(array, std::vector<std::int64_t>(array.axes(), 0));
 }
 
-void add_once(std::vector<std::string>& notes, const std::string& note) {
-    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
-}
-
 }  // namespace
 
 void take_stored_layout(const Objects& objects, ChunkedArray& array,
@@ -73,8 +70,8 @@ void take_stored_layout(const Objects& objects, ChunkedArray& array,
         notes.push_back(level + " has no chunk at all: all of it is the fill value");
         return;
     }
-    add_once(notes, "its chunks are named " + first_name(stored[0]) + ", not " + first_name(array) +
-                        " as its metadata say: they were read");
+    io::add_note(notes, "its chunks are named " + first_name(stored[0]) + ", not " +
+                            first_name(array) + " as its metadata say: they were read");
     array = stored[0];
 }
 

@@ -24,24 +24,25 @@ struct Node {
 };
 
 /// Looks into several folders at once.
-std::vector<Node> nodes_in(const Objects& objects, std::span<const std::string> folders) {
+std::vector<Node> nodes_in(const Objects& objects, std::span<const std::string> folders,
+                           std::size_t& room) {
     std::vector<Wanted> wanted;
     constexpr std::array names = {"zarr.json", ".zattrs", ".zarray", ".zgroup"};
     for (const std::string& folder : folders) {
         for (const char* name : names) wanted.push_back(metadata_file(folder, name));
     }
-    const auto all = objects.get_all(wanted, {});
+    auto all = objects.get_all(wanted, {});
     std::vector<Node> nodes;
     for (std::size_t i = 0; i < folders.size(); ++i) {
         const auto json = [&](std::size_t n) {
             const std::size_t at = i * names.size() + n;
-            return parsed(all[at], objects.name_of(wanted[at].key));
+            return parsed(std::move(all[at]), objects.name_of(wanted[at].key), room);
         };
         Node node;
         if (Json zarr = json(0); zarr.is_object()) {
             node.version = 3;
-            node.attributes = zarr.value("attributes", Json());
-            node.is_array = zarr.value("node_type", Json()) == "array";
+            if (zarr.contains("attributes")) node.attributes = std::move(zarr["attributes"]);
+            node.is_array = member(zarr, "node_type") == "array";
             node.metadata = std::move(zarr);
         } else if (Json attributes = json(1), array = json(2);
                    !attributes.is_null() || !array.is_null() || all[i * names.size() + 3]) {
@@ -60,12 +61,15 @@ ChunkedArray array_from(const Json& array, int version, const std::string& folde
 class Opening {
   public:
     Opening(const Objects& objects, std::string folder, const StoreOptions& options)
-        : objects_(objects), folder_(std::move(folder)), options_(options) {}
+        : objects_(objects),
+          folder_(std::move(folder)),
+          options_(options),
+          room_(room_for_metadata(options)) {}
 
     /// Nothing if there is no Zarr.
     std::optional<ChunkedVolume> volume(const std::string& address) {
         volume_.info.address = address;
-        Node root = nodes_in(objects_, std::array{folder_})[0];
+        Node root = std::move(nodes_in(objects_, std::array{folder_}, room_)[0]);
         if (root.version == 0) return std::nullopt;
         if (root.is_array) return of_array(root);
         auto image = ome_image(root.attributes);
@@ -93,7 +97,7 @@ class Opening {
         take_names(root, image.axes);
         for (ImageAxis& axis : image.axes) axis.unit = "millimeter";
         for (const char* name : {"scale_factor", "add_offset"}) {
-            if (!root.attributes.is_object() || !root.attributes.contains(name)) continue;
+            if (!root.attributes.contains(name)) continue;
             volume_.info.notes.push_back("its attribute '" + std::string(name) +
                                          "' was not applied: the samples are as they are stored");
         }
@@ -106,10 +110,8 @@ class Opening {
 
     /// The names of its dimensions: Zarr 3 has a place for them, xarray an attribute.
     void take_names(const Node& root, std::vector<ImageAxis>& axes) {
-        Json names = root.metadata.value("dimension_names", Json());
-        if (!names.is_array() && root.attributes.is_object()) {
-            names = root.attributes.value("_ARRAY_DIMENSIONS", Json());
-        }
+        const Json& own = member(root.metadata, "dimension_names");
+        const Json& names = own.is_array() ? own : member(root.attributes, "_ARRAY_DIMENSIONS");
         if (!names.is_array() || names.size() != axes.size()) return;
         std::vector<ImageAxis> named;
         std::string text;
@@ -131,7 +133,7 @@ class Opening {
         std::vector<std::string> folders;
         for (std::size_t i = 0; i < most_series; ++i)
             folders.push_back(key_below(folder_, std::to_string(i)));
-        const auto nodes = nodes_in(objects_, folders);
+        auto nodes = nodes_in(objects_, folders, room_);
         if (!ome_image(nodes[0].attributes)) return {};
         std::string others;
         for (std::size_t i = 1; i < nodes.size(); ++i) {
@@ -142,26 +144,24 @@ class Opening {
                                          ": give the folder of one to choose it");
         }
         folder_ = folders[0];
-        return nodes[0];
+        return std::move(nodes[0]);
     }
 
     void take_levels(Image& image, int version) {
         volume_.info.format = version == 3 ? "OME-Zarr 0.5" : "OME-Zarr 0.4";
         // Over a network each file that is asked for in vain costs as much as one that is there.
-        std::vector<Wanted> wanted;
+        std::vector<std::string> folders;
         for (const ImageLevel& level : image.levels) {
-            wanted.push_back(metadata_file(key_below(folder_, level.path),
-                                           version == 3 ? "zarr.json" : ".zarray"));
+            folders.push_back(key_below(folder_, level.path));
         }
-        const auto all = objects_.get_all(wanted, {});
+        const auto all =
+            metadata_in(objects_, folders, version == 3 ? "zarr.json" : ".zarray", room_);
         for (std::size_t i = 0; i < all.size(); ++i) {
-            const Json array = parsed(all[i], objects_.name_of(wanted[i].key));
-            const std::string folder = key_below(folder_, image.levels[i].path);
             const bool is_array =
-                array.is_object() && (version == 2 || array.value("node_type", Json()) == "array");
+                all[i].is_object() && (version == 2 || member(all[i], "node_type") == "array");
             if (!is_array)
-                throw BadMetadata("its level '" + folder + "' is not there; copy it again");
-            volume_.arrays.push_back(array_from(array, version, folder));
+                throw BadMetadata("its level '" + folders[i] + "' is not there; copy it again");
+            volume_.arrays.push_back(array_from(all[i], version, folders[i]));
             take_stored_layout(objects_, volume_.arrays.back(), volume_.info.notes);
         }
         sort_levels(image);
@@ -209,6 +209,7 @@ class Opening {
     const Objects& objects_;
     std::string folder_;
     const StoreOptions& options_;
+    std::size_t room_;  ///< [bytes] for more metadata
     ChunkedVolume volume_;
 };
 

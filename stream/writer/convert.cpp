@@ -17,8 +17,8 @@
 #include "stream/box_bytes.hpp"
 #include "stream/formats/content.hpp"
 #include "stream/formats/edited_store.hpp"
+#include "stream/objects/objects.hpp"
 #include "stream/while_telling.hpp"
-#include "stream/writer/zarr_writer.hpp"
 
 namespace palpate::stream {
 namespace {

@@ -9,12 +9,13 @@
 #include "io/system/growing_folder.hpp"
 #include "io/system/own_names.hpp"
 #include "palpate/io/output.hpp"
+#include "palpate/stream/growing_image.hpp"
 #include "stream/box_bytes.hpp"
 #include "stream/formats/content.hpp"
 #include "stream/formats/edited_store.hpp"
 #include "stream/formats/stores.hpp"
 #include "stream/while_telling.hpp"
-#include "stream/writer/zarr_writer.hpp"
+#include "stream/writer/pyramid.hpp"
 
 namespace palpate::stream {
 namespace {
@@ -72,13 +73,13 @@ class Saving {
           edits_(edits),
           folder_(std::move(folder)),
           note_(std::move(note)),
-          writer_(folder_, from.info().type, levels_from(from.info(), level),
-                  {.chunk = note_.chunk, .progress = {}}),
+          levels_(levels_from(from.info(), level)),
+          image_(folder_, from.info().type, levels_, {.chunk = note_.chunk, .progress = {}}),
           made_(made),
           stop_(std::move(stop)) {}
 
     EditsNote run() {
-        writer_.write_metadata(Range{edits_.minimum(), edits_.maximum()});
+        image_.write_metadata(Range{edits_.minimum(), edits_.maximum()});
         written_ = open_zarr(folder_objects(folder_), folder_.string(), {});
         std::vector<SampleBox> changed;
         edits_.bricks()->for_each([&](const Index3& brick, const Brick&) {
@@ -87,7 +88,7 @@ class Saving {
                                         .cwiseMin(edits_.geometry().size - Index3::Ones())});
         });
         for (std::size_t l = 0; l < note_.chunks.size(); ++l) {
-            const CoarserGrid& grid = writer_.levels()[l];
+            const CoarserGrid& grid = levels_[l];
             if (l > 0 && grid.factor.minCoeff() == 0) changed.clear();  // stays as it was
             if (l > 0) {
                 for (SampleBox& box : changed) box = coarser_box(box, grid);
@@ -109,7 +110,7 @@ class Saving {
         }
         std::size_t done = 0;
         for (const auto& [chunk, boxes] : parts) {
-            const SampleBox box = writer_.box_of(static_cast<int>(level), chunk);
+            const SampleBox box = image_.box(static_cast<int>(level), chunk);
             Bytes samples(bytes_of(box, type()));
             const bool is_whole = boxes.size() == 1 && boxes[0] == box;
             if (!is_whole) from_.read(level_ + static_cast<int>(level), box, samples, stop_);
@@ -117,7 +118,7 @@ class Saving {
                 const Bytes now = level == 0 ? edited(part) : means(level, part);
                 copy_box(part, now.data(), box, samples.data(), size_of(type()));
             }
-            writer_.write_chunk(static_cast<int>(level), chunk, samples);
+            image_.write(static_cast<int>(level), chunk, samples);
             note_.chunks[level].insert(chunk);
             ++done;
             if (level == 0) made_ = double(done) / double(parts.size());
@@ -140,8 +141,8 @@ class Saving {
 
     /// Of the finer level, of which all that changed is written.
     Bytes means(std::size_t level, const SampleBox& box) const {
-        const CoarserGrid& grid = writer_.levels()[level];
-        const Geometry& finer = writer_.levels()[level - 1].geometry;
+        const CoarserGrid& grid = levels_[level];
+        const Geometry& finer = levels_[level - 1].geometry;
         const SampleBox wanted = finer_box(box, grid.factor, finer);
         Bytes below(bytes_of(wanted, type()));
         const int fine = static_cast<int>(level) - 1;
@@ -165,7 +166,8 @@ class Saving {
     const Samples& edits_;
     fs::path folder_;
     EditsNote note_;
-    ZarrWriter writer_;
+    std::vector<CoarserGrid> levels_;
+    GrowingImage image_;
     std::shared_ptr<const Store> written_;
     std::atomic<double>& made_;  // of the finest level
     const std::stop_token stop_;

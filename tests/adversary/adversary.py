@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from program import Finding, Program  # noqa: E402
 
 ATTACKS = ("proxies", "lives", "readers", "texts", "recordings", "services", "signals", "outputs",
-           "sessions")
+           "sessions", "kills")
 
 
 def one_round(name, program, seed, keep):

@@ -40,6 +40,10 @@ FAULTS = {
         "time.sleep(60); p.kill(); sys.exit(0)",
     ("outputs", "a temporary file stays", "left behind|took away"):
         "s = real(words)\nopen('.palpate-1-0.part', 'w').close()\nsys.exit(s)",
+    ("kills", "a sample is another one", "other samples|neither"):
+        "if 'now.raw' not in words: os.execv(%(program)r, [%(program)r, *words])\n"
+        "s = real(words)\nb = bytearray(open('now.raw', 'rb').read())\nb[0] ^= 255\n"
+        "open('now.raw', 'wb').write(b)\nsys.exit(s)",
 }
 
 

@@ -134,6 +134,11 @@ TEST(nrrd, a_byte_skip_from_the_end_is_for_raw_samples_only) {
     put_bytes(folder / "plain", "header" + samples);
     put_bytes(folder / "a.nhdr", head + "encoding: raw\ndata file: plain\n");
     EXPECT_EQ(read_volume(folder / "a.nhdr").volume.sample({1, 0, 0}), 1);
+    // A file that is cut off has no samples in its header.
+    put_bytes(folder / "a.nrrd", head + "encoding: raw\n\n" + samples);
+    EXPECT_EQ(read_volume(folder / "a.nrrd").volume.sample({1, 0, 0}), 1);
+    put_bytes(folder / "a.nrrd", head + "encoding: raw\n\n" + samples.substr(5));
+    EXPECT_TRUE(contains(refusal(folder / "a.nrrd"), "cut off")) << refusal(folder / "a.nrrd");
 }
 
 TEST(meta_image, units_scale_spacing_and_origin) {

@@ -107,6 +107,17 @@ TEST(nifti, samples_come_from_the_file_itself_whatever_lies_beside_it) {
     EXPECT_EQ(read_volume(folder / "a.nii.gz").volume.maximum(), 69);
 }
 
+TEST(nifti, of_two_files_of_samples_beside_a_header_it_is_said_which_was_taken) {
+    const ScratchFolder folder;
+    const std::string bytes = nifti([](std::string& h) { put_at(h, 344, "ni1"); });
+    put_bytes(folder / "a.hdr", bytes.substr(0, 348));
+    put_bytes(folder / "a.img", bytes);
+    EXPECT_FALSE(contains(all_notes(read_volume(folder / "a.hdr")), "beside it"));
+    put_gzip(folder / "a.img.gz", bytes);
+    EXPECT_TRUE(contains(all_notes(read_volume(folder / "a.hdr")),
+                         "both 'a.img' and 'a.img.gz' are beside it: 'a.img' was taken"));
+}
+
 TEST(nifti, whether_it_is_packed_is_seen_from_its_bytes_and_not_from_its_name) {
     const ScratchFolder folder;
     put_gzip(folder / "packed.nii", nifti([](std::string&) {}));

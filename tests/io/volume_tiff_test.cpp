@@ -27,6 +27,23 @@ TEST(tiff, pages_become_slices_plain_and_packed) {
     }
 }
 
+TEST(tiff, a_strip_that_is_shorter_than_its_page_is_said_with_the_name_of_the_file) {
+    const ScratchFolder folder;
+    std::string bytes = tiff_bytes({counting_page(0)});
+    const std::string entry =
+        little<std::uint16_t>(279) + little<std::uint16_t>(4) + little<std::uint32_t>(1);
+    const std::size_t at = bytes.find(entry);
+    ASSERT_NE(at, bytes.npos);
+    for (const std::uint32_t length : {12U, 6U, 0U}) {
+        bytes.replace(at + entry.size(), 4, little(length));
+        put_bytes(folder / "a.tif", bytes);
+        const VolumeFile file = read_volume(folder / "a.tif");
+        EXPECT_EQ(contains(all_notes(file), "'a.tif' does not say, or says wrongly, how long"),
+                  length < 12)
+            << all_notes(file);
+    }
+}
+
 TEST(tiff, types_are_kept_and_the_spacing_option_is_taken) {
     const ScratchFolder folder;
     const auto read = [&](int bits, int format, const std::string& samples) {

@@ -286,6 +286,16 @@ TEST(Run, another_device_goes_on_with_what_was_asked_for) {
     EXPECT_TRUE(ticks_go_on(s.live));
 }
 
+TEST(Run, who_stops_the_change_to_another_device_keeps_the_one_there_is) {
+    struct Stopped {};
+    const OnProgress stop = [](double) { throw Stopped{}; };
+    BallRun s("mouse");
+    EXPECT_THROW(s.live.use_device(devices::parse_device("simulated"), stop), Stopped);
+    EXPECT_NE(s.live.mouse(), nullptr);
+    EXPECT_TRUE(ticks_go_on(s.live));
+    EXPECT_THROW(run::Run(s.live.shared_data(), s.live.setup(), stop), Stopped);
+}
+
 TEST(Run, a_force_limit_that_was_lowered_stays_low_with_another_device) {
     BallRun s("mouse");
     ForceSettings force = s.live.settings().force;

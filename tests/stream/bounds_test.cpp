@@ -213,6 +213,52 @@ TEST(Bounds, json_with_more_values_than_memory_can_hold_is_refused_before_it_is_
     }
 }
 
+TEST(Bounds, metadata_take_no_more_memory_than_may_be_used_and_are_held_once) {
+    const ScratchFolder folder;
+    const auto members = [](int count) {
+        std::string text = R"("a":0)";
+        for (int i = 0; i < count; ++i) text += ",\"" + std::to_string(i) + "\":1";
+        return text;
+    };
+    const std::string array =
+        R"("shape":[2,4,4],"data_type":"uint8","chunk_grid":{"name":"regular","configuration":)"
+        R"({"chunk_shape":[2,4,4]}},"chunk_key_encoding":{"name":"default"},"fill_value":0,)"
+        R"("codecs":["bytes"])";
+    const auto put = [&](const std::string& name, int count) {
+        fs::create_directories(folder / name);
+        put_bytes(folder / name / "zarr.json", R"({"zarr_format":3,"node_type":"array",)" + array +
+                                                   R"(,"attributes":{)" + members(count) + "}}");
+        fs::create_directories(folder / (name + ".n5"));
+        put_bytes(folder / (name + ".n5") / "attributes.json",
+                  R"({"dimensions":[4,4,2],"blockSize":[4,4,2],"dataType":"uint8",)"
+                  R"("compression":{"type":"raw"},"unknown":{)" +
+                      members(count) + "}}");
+    };
+    put("large", 600'000);
+    put("fits", 300'000);
+    StoreOptions options;
+    options.unpacking = 128 * megabyte;
+    const auto work = [&] {
+        rusage before{}, after{};
+        ::getrusage(RUSAGE_SELF, &before);
+        for (const std::string name : {"fits", "fits.n5"}) {
+            (void)open_store(folder / name, options);
+        }
+        ::getrusage(RUSAGE_SELF, &after);
+        const auto taken = static_cast<std::uint64_t>(after.ru_maxrss - before.ru_maxrss) * 1024;
+        if (taken > 50 * megabyte) throw std::runtime_error(std::to_string(taken));
+    };
+    if (!support::is_slow_build) {  // sanitizers need memory of their own
+        EXPECT_EQ(support::end_of(support::start_process(work)), 0);
+    }
+    for (const std::string name : {"large", "large.n5"}) {
+        const std::string message =
+            message_of<io::InputError>([&] { (void)open_store(folder / name, options); });
+        EXPECT_TRUE(contains(message, "its values take more than 30 MiB")) << message;
+        EXPECT_NO_THROW((void)open_store(folder / name)) << name;
+    }
+}
+
 TEST(Bounds, json_that_is_nested_too_deeply_is_refused_before_it_is_parsed) {
     EXPECT_NO_THROW((void)io::parsed_json(nested(io::deepest_json)));
     EXPECT_THROW((void)io::parsed_json(nested(io::deepest_json + 1)), nlohmann::json::exception);

@@ -203,10 +203,15 @@ TEST(Convert, keeps_complete_chunks_of_the_same_work_only) {
 TEST(Convert, a_source_that_changes_meanwhile_gives_no_result) {
     const ScratchFolder folder;
     const Volume old_volume = some_volume(SampleType::uint8, 8);
-    io::write_volume(some_volume(SampleType::uint8, 9), folder / "new.nrrd");
-    const auto convert = [&](const fs::path& out, const std::function<void(double)>& progress) {
-        io::write_volume(old_volume, folder / "v.nrrd");
-        const auto store = open_store(folder / "v.nrrd");
+    const auto put = [&](const char* name, const Volume& volume) {
+        fs::remove_all(folder / name);
+        if (fs::path(name).extension() == ".nrrd") return io::write_volume(volume, folder / name);
+        (void)convert_to_zarr(*store_of(volume, "v"), 0, folder / name, {});
+    };
+    const auto convert = [&](const char* source, const fs::path& out,
+                             const std::function<void(double)>& progress) {
+        put(source, old_volume);
+        const auto store = open_store(folder / source);
         ConvertOptions options;
         options.chunk = 8;
         options.progress = progress;
@@ -214,19 +219,32 @@ TEST(Convert, a_source_that_changes_meanwhile_gives_no_result) {
         write_plain(*store, 0, out, {false, progress, {}, 0});
         return std::string();
     };
-    for (const char* name : {"a.zarr", "a.nrrd"}) {
-        const std::string message = message_of<io::InputError>([&] {
-            bool is_new = false;
-            (void)convert(folder / name, [&](double part) {
-                if (part < 1 || std::exchange(is_new, true)) return;
-                put_bytes(folder / "v.nrrd", bytes_of(folder / "new.nrrd"));
+    // In the same file; a folder is looked into by names.
+    const auto write_anew = [&](const std::string& source) {
+        put("new.nrrd", some_volume(SampleType::uint8, 9));
+        if (source == "v.zarr") return put("v.zarr", some_volume(SampleType::uint8, 9));
+        put_bytes(folder / source, bytes_of(folder / "new.nrrd"));
+        fs::last_write_time(folder / source,
+                            fs::last_write_time(folder / source) + std::chrono::seconds(1));
+    };
+    for (const char* source : {"v.zarr", "v.nrrd"}) {
+        for (const char* name : {"a.zarr", "a.nrrd"}) {
+            const std::string message = message_of<io::InputError>([&] {
+                bool is_new = false;
+                (void)convert(source, folder / name, [&](double part) {
+                    if (part == 1 && !std::exchange(is_new, true)) write_anew(source);
+                });
             });
-        });
-        EXPECT_TRUE(contains(message, "v.nrrd: changed while it was converted")) << message;
-        EXPECT_FALSE(fs::exists(folder / name));
+            const bool reads_again = fs::path(name).extension() == ".zarr";
+            const std::string what = reads_again && source == std::string("v.nrrd")
+                                         ? "was written anew since it was opened"
+                                         : "changed while it was converted";
+            EXPECT_TRUE(contains(message, source + (": " + what))) << message;
+            EXPECT_FALSE(fs::exists(folder / name));
+        }
     }
-    const std::string note = convert(folder / "b.zarr", [&](double part) {
-        if (part == 1) fs::last_write_time(folder / "v.nrrd", {});
+    const std::string note = convert("v.zarr", folder / "b.zarr", [&](double part) {
+        if (part == 1) fs::last_write_time(folder / "v.zarr/zarr.json", {});
     });
     EXPECT_TRUE(contains(note, "was touched")) << note;
     expect_same_boxes(*open_store(folder / "b.zarr"), old_volume, 3);

@@ -1,6 +1,7 @@
 // Plain files read by the box: the same samples as reading them whole, whatever their size.
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
 
 #include "io/real_volumes.hpp"
@@ -97,6 +98,26 @@ TEST(PlainFile, wider_types_become_those_of_a_volume_and_slope_and_intercept_are
         put_bytes(folder / "d.nii", nifti);
         expect_as_whole(folder / "d.nii");
     }
+}
+
+TEST(PlainFile, a_file_that_is_written_anew_in_its_place_is_refused_as_those_of_chunks_are) {
+    const ScratchFolder folder;
+    const std::filesystem::path file = folder / "v.raw";
+    StoreOptions options;
+    options.raw = {{4, 4, 4}, SampleType::uint8, {1, 1, 1}, 0, false};
+    put_bytes(file, std::string(64, 'a'));
+    const auto store = open_store(file, options);
+    const SampleBox box{{0, 0, 0}, {3, 3, 1}};
+    EXPECT_EQ(read_box(*store, 0, box)[0], std::byte{'a'});
+    const auto before = std::filesystem::last_write_time(file);
+    std::fstream(file, std::ios::in | std::ios::out | std::ios::binary) << std::string(64, 'b');
+    std::filesystem::last_write_time(file, before + std::chrono::seconds(1));
+    const std::string message = message_of<io::InputError>([&] { read_box(*store, 0, box); });
+    EXPECT_TRUE(contains(message, "v.raw: was written anew since it was opened")) << message;
+    // Another file of that name is not this one.
+    put_bytes(folder / "w.raw", std::string(64, 'c'));
+    std::filesystem::rename(folder / "w.raw", file);
+    EXPECT_EQ(read_box(*open_store(file, options), 0, box)[0], std::byte{'c'});
 }
 
 TEST(PlainFile, each_time_of_a_file_with_several_is_read) {

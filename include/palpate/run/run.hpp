@@ -42,8 +42,9 @@ class Run {
   public:
     /// Opens the device and fits its workspace to the data. Nothing moves before start(). Throws
     /// std::invalid_argument for an impossible setup, io::InputError for a file that the device
-    /// cannot read, devices::DeviceError.
-    Run(std::shared_ptr<Data> data, const Setup& setup);
+    /// cannot read, devices::DeviceError. `progress`, while an isovalue is looked for and before
+    /// the device is opened, may throw to stop.
+    Run(std::shared_ptr<Data> data, const Setup& setup, const OnProgress& progress = {});
     /// stop(), and finishes a recording silently.
     ~Run();
     Run(const Run&) = delete;
@@ -104,7 +105,7 @@ class Run {
     /// recording is finished first. The same physical device is closed first and then opened with
     /// the new options. If that fails, it is opened as it was, and if that fails, too, it counts as
     /// lost. Throws WrongState before start(), as does use_field().
-    void use_device(const devices::DeviceChoice& device);
+    void use_device(const devices::DeviceChoice& device, const OnProgress& progress = {});
     /// Continues with this solid side, this interpolation, and this background outside the grid.
     /// The session starts anew with all settings requested so far, except penetrability and, if the
     /// solid side changes, layers. A recording is finished first; if that fails, io::OutputError

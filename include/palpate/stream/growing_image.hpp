@@ -14,12 +14,20 @@
 
 namespace palpate::stream {
 
+struct CoarserGrid;
+
+/// Version and size of chunks. Throws std::invalid_argument.
+void check_format(const ConvertOptions& options);
+
 class GrowingImage {
   public:
     /// Touches no file. Uses the options of the format only. `temporary`: how names of files
     /// end while they are written. Processes that may write the same chunk at the same time (one of
     /// them taken for dead) need different ones. Throws std::invalid_argument for options.
     GrowingImage(std::filesystem::path folder, SampleType type, const Geometry& finest,
+                 const ConvertOptions& options, std::string temporary = ".part");
+    /// The same with levels of one's own, the finest first.
+    GrowingImage(std::filesystem::path folder, SampleType type, std::vector<CoarserGrid> levels,
                  const ConvertOptions& options, std::string temporary = ".part");
     ~GrowingImage();
     GrowingImage(const GrowingImage&) = delete;

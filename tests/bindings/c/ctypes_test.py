@@ -53,7 +53,7 @@ class RunOptions(ctypes.Structure):
     _fields_ = [("size_of", c_uint32), ("facing", c_int32), ("field", c_void_p),
                 ("render", POINTER(RenderOptions)), ("device", c_char_p),
                 ("own", POINTER(OwnDevice)), ("recording", c_char_p), ("no_real_time", c_int32),
-                ("deadman_button", c_int32)]
+                ("deadman_button", c_int32), ("progress", c_void_p), ("context", c_void_p)]
 
 
 class Felt(ctypes.Structure):

@@ -329,6 +329,17 @@ TEST_F(CRun, a_recording_is_written_and_an_existing_file_is_left_alone) {
     EXPECT_EQ(palpate_run_record(run_, path.c_str()), PALPATE_OUTPUT);
 }
 
+TEST_F(CRun, whose_program_cancels_it_is_not_made) {
+    PALPATE_STRUCT(palpate_run_options, options);
+    options.device = "mouse";
+    int calls = 0;
+    options.progress = [](double, void* counted) { return ++*static_cast<int*>(counted) * 0; };
+    options.context = &calls;
+    EXPECT_EQ(palpate_run_create(data_, &options, &run_), PALPATE_CANCELLED);
+    EXPECT_EQ(calls, 1);
+    EXPECT_EQ(run_, nullptr);
+}
+
 TEST_F(CRun, two_on_the_same_data_are_recorded_together_and_one_goes_on_without_the_other) {
     const support::ScratchFolder folder;
     const std::string path = (folder.path() / "both.csv").string();
