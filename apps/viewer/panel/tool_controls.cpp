@@ -141,7 +141,7 @@ void ToolControls::show_tool() {
         shown_ = {};
     } else if (tool != shown_.tool) {
         const std::vector<Vec3> points(tool->points().begin(), tool->points().end());
-        const QString name = tr("As given");
+        const QString name = tr("This session's tool");
         if (choices_.size() > built_in_ && choices_.back().name == name) choices_.pop_back();
         choices_.push_back({name, io::PointsSpec{points, tool->turns(), tool->shape()}});
         shown_ = {static_cast<int>(choices_.size()) - 1, 1, tool, 0};

@@ -3312,8 +3312,8 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
         <translation>Ein Werkzeug aus einer Datei: ein Netz (STL, PLY, OBJ, VTP) oder Punkte (CSV: x, y, z), in mm von dem Punkt aus, der gehalten wird</translation>
     </message>
     <message>
-        <source>As given</source>
-        <translation>Wie gegeben</translation>
+        <source>This session&apos;s tool</source>
+        <translation>Werkzeug dieser Sitzung</translation>
     </message>
     <message>
         <source>Ball</source>

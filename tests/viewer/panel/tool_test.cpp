@@ -78,7 +78,7 @@ TEST_F(PanelTool, that_a_session_brings_is_shown_and_keeps_its_points) {
     const ToolShape shape{{{0, 0, 0}, {1, 0, 0}, {0, 0, 7}}, {{0, 1, 2}}};
     settings.tool = std::make_shared<const Tool>(points, 3, false, shape);
     set_smooth(settings);
-    EXPECT_EQ(find<QComboBox>("tool")->currentText(), "As given");
+    EXPECT_EQ(find<QComboBox>("tool")->currentText(), "This session's tool");
     EXPECT_TRUE(find<QLabel>("tool_about")->text().contains("2 points"));
     commands.clear();
     find<NumberBox>("tool_scale_box")->setValue(0.5);

@@ -101,7 +101,7 @@ TEST_F(ToolInWindow, comes_from_a_mesh_that_is_dropped_and_goes_with_the_session
     wait_until([&] { return window_->live() && tool() != nullptr; });
     EXPECT_EQ(tool()->points().size(), points);
     EXPECT_EQ(tool()->shape().triangles.size(), 4U);
-    EXPECT_EQ(part<QComboBox>("tool").currentText(), "As given");
+    EXPECT_EQ(part<QComboBox>("tool").currentText(), "This session's tool");
 }
 
 TEST_F(ToolInWindow, drills_with_its_own_shape) {
