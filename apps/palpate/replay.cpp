@@ -30,7 +30,7 @@ struct ReplayOptions {
     run::FieldSetup field;
     RenderOptions render;
     std::string trajectory, output, path, poses;
-    bool json = false, validate = false, live = false;
+    bool json = false, validate = false, live = false, wait = false;
     std::string recorded_volume;
 };
 
@@ -147,6 +147,9 @@ void replay(const ReplayOptions& options) {
     }
     if (options.trajectory.empty()) throw std::invalid_argument("--trajectory is required");
     if (options.output.empty()) throw std::invalid_argument("--output is required");
+    if (options.live && options.wait) {
+        throw std::invalid_argument("--live and --wait cannot be given together");
+    }
     check_outputs({options.source.name(), options.trajectory},
                   {options.output, options.path, options.poses});
     const bool table_on_standard_output = is_standard_output(options.output) ||
@@ -222,13 +225,11 @@ void add_replay(CLI::App& app) {
     table("--poses", options->poses, "Poses of a tool's proxy to write");
     add_field_options(*command, options->field);
     options->render.add_to(*command);
-    CLI::Option* const live = command->add_flag(
-        "--live", options->live,
-        "Render in real time and, where samples of a store are missing, hold the proxy");
-    command
-        ->add_flag_function(
-            "--wait", [](std::int64_t) {}, "Wait for all samples before each tick, the default")
-        ->excludes(live);
+    command->add_flag("--live", options->live,
+                      "Render in real time and, where samples of a store are missing, hold the "
+                      "proxy");
+    command->add_flag("--wait", options->wait,
+                      "Wait for all samples before each tick, the default");
     command->add_flag("--validate", options->validate,
                       "Render the recording that is given as VOLUME again and compare every tick");
     command
