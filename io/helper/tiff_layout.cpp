@@ -159,19 +159,10 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
     image.sizes = {static_cast<std::int64_t>(image.pages.size()) / moments.count, 1, moments.count};
     image.frame_interval = moments.times.interval;
     if (pages.whole.size() == 1 && coarser_levels(tiff).empty()) layout.reduced = pages.reduced;
-    if (const auto spacing = image_j_spacing(tiff, description)) {
-        const bool has_distance = std::isfinite((*spacing)[2]) && (*spacing)[2] > 0;
-        image.spacing = {(*spacing)[has_distance ? 2 : 0], (*spacing)[1], (*spacing)[0]};
-        if (!has_distance) {
-            image.spacing_note =
-                "its description does not tell the distance between slices: that of pixels was "
-                "taken";
-        }
-    } else {
+    if (!set_image_j_spacing(image, tiff, description)) {
         image.spacing_note =
             "it does not tell its spacing (as ImageJ and OME-XML would): 1 mm was taken along "
-            "every "
-            "axis; give the spacing";
+            "every axis; give the spacing";
     }
     return layout;
 }
