@@ -83,11 +83,12 @@ std::size_t planes_behind(TIFF* tiff, const fs::path& file, const TiffPage& page
     TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
     if (compression != COMPRESSION_NONE || TIFFIsTiled(tiff) != 0 || page.is_packed()) return 1;
     std::uint64_t end = TIFFGetStrileOffset(tiff, 0);
-    if (end < TIFFCurrentDirOffset(tiff)) return 1;  // the directory would be taken for planes
+    const auto begin = static_cast<double>(end),
+               directory = static_cast<double>(TIFFCurrentDirOffset(tiff));
     const double bytes =
         told * page.width * page.height * static_cast<double>(size_of(page.stored));
-    const bool is_there =
-        static_cast<double>(end) + bytes <= static_cast<double>(fs::file_size(file));
+    if (begin < directory && directory < begin + bytes) return 1;  // it is no plane
+    const bool is_there = begin + bytes <= static_cast<double>(fs::file_size(file));
     if (!(told > 1 && told <= 1 << 20 && told == std::floor(told) && is_there)) return 1;
     for (std::uint32_t strip = 0; strip < TIFFNumberOfStrips(tiff); ++strip) {
         if (TIFFGetStrileOffset(tiff, strip) != end) return 1;

@@ -106,6 +106,21 @@ TEST(tiff, the_ratio_of_spacings_whose_unit_is_no_length_is_kept) {
     expect(ome(size + " SizeZ=\"2\" DimensionOrder=\"XYZCT\""), "its OME-XML has the unit 'pixel'");
 }
 
+TEST(tiff, planes_of_image_j_may_lie_before_the_directory_of_their_page) {
+    const ScratchFolder folder;
+    TestPage page = counting_page(0);
+    page.samples += counting_page(12).samples + counting_page(24).samples;
+    page.description = "ImageJ=1.53t\nimages=3\nslices=3\nunit=mm\n";
+    std::string bytes = tiff_bytes({page});
+    const std::string entry =
+        little<std::uint16_t>(279) + little<std::uint16_t>(4) + little<std::uint32_t>(1);
+    bytes.replace(bytes.find(entry) + entry.size(), 4, little<std::uint32_t>(12));
+    put_bytes(folder / "a.tif", bytes);
+    const VolumeFile file = read_volume(folder / "a.tif");
+    ASSERT_EQ(file.volume.geometry().size, Index3(4, 3, 3));
+    for (int z = 0; z < 3; ++z) EXPECT_EQ(file.volume.sample({3, 2, z}), 12 * z + 11);
+}
+
 TEST(tiff, every_axis_may_have_a_unit_of_its_own_in_image_j) {
     const ScratchFolder folder;
     struct Unit {
