@@ -273,7 +273,8 @@ class Walk {
         pixels_.element = element;
         pixels_.at = at;
         extent_.is_real = is_real;
-        if (bytes_.swapped() && e.vr != "OB") {
+        // Bytes have no order, but some writers call words so; other readers take them as words.
+        if (bytes_.swapped() && (e.vr != "OB" || extent_.bits > 8)) {
             extent_.swapped_bytes =
                 static_cast<std::size_t>(std::max<std::int64_t>(2, extent_.bits / 8));
         }
