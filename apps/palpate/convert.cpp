@@ -149,8 +149,7 @@ void to_file(const ConvertWords& words, const Taken& taken) {
 }
 
 void convert(const CLI::App& command, const ConvertWords& words) {
-    const std::string flaw = flaw_in_volume_name(words.output);
-    if (!flaw.empty()) throw io::OutputError(flaw);
+    check_volume_name(words.output);
     check_outputs({words.source.name()}, {words.output});
     const bool zarr = io::without_slash(words.output).extension() == ".zarr";
     if (zarr) {

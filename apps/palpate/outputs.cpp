@@ -41,13 +41,13 @@ bool is_stream(const std::string& name) {
            (fs::exists(name, error) && !fs::is_regular_file(name, error));
 }
 
-std::string flaw_in_volume_name(const std::string& name) {
-    if (name.empty() || is_zarr(name) || !io::written_extension_of(name).empty()) return {};
+void check_volume_name(const std::string& name) {
+    if (name.empty() || is_zarr(name) || !io::written_extension_of(name).empty()) return;
     const auto written = io::written_extensions();
     std::vector<std::string> all(written.begin(), written.end());
     all.emplace_back(".zarr");
-    return name + ": its extension names no format of volumes: " +
-           use_one_of(all, fs::path(name).extension().string());
+    throw std::invalid_argument(name + ": its extension names no format of volumes: " +
+                                use_one_of(all, fs::path(name).extension().string()));
 }
 
 void print_json(const nlohmann::ordered_json& json) {

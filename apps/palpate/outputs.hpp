@@ -13,9 +13,9 @@ bool is_standard_output(const std::string& name);
 /// True for what is written directly, as it comes: standard output, a pipe, a device.
 bool is_stream(const std::string& name);
 
-/// Why no volume can be written under this name: its extension is that of no format, with all that
-/// there are. Empty if one can, and for an empty name.
-std::string flaw_in_volume_name(const std::string& name);
+/// Throws std::invalid_argument, which names all formats, if the extension is that of no format of
+/// volumes that is written. An empty name is skipped.
+void check_volume_name(const std::string& name);
 
 /// Prints JSON, indented. What is not UTF-8, as the name of a file may be, is replaced.
 void print_json(const nlohmann::ordered_json& json);

@@ -242,8 +242,7 @@ void check_saving(run::Data& data, const TouchOptions& options) {
 
 void touch(const CLI::App& command, const TouchOptions& options) {
     const std::vector<run::Setup> setups = options.setups();
-    const std::string flaw = flaw_in_volume_name(options.save);
-    if (!flaw.empty()) throw std::invalid_argument(flaw);
+    check_volume_name(options.save);
     check_outputs({options.source.name(), options.commands, options.render.labels},
                   {options.record, options.save});
     for (const run::Setup& setup : setups) require_no_mouse(setup);

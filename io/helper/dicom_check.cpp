@@ -6,6 +6,7 @@
 #include <charconv>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "io/helper/dicom_bytes.hpp"
 #include "io/helper/dicom_pixels.hpp"
@@ -89,7 +90,9 @@ class Walk {
     /// files have no such group, and some not the 128 bytes and four letters before it (PS3.10).
     std::string meta_information() {
         if (!bytes_.reaches(140)) fail("is too short for a DICOM file");
-        std::uint64_t at = number<std::uint32_t>(128) == 0x4d434944 ? 132 : 0;  // "DICM"
+        constexpr std::uint32_t letters = 0x4d434944;  // "DICM"
+        if (number<std::uint32_t>(0) == letters) start_ = sizeof letters;
+        std::uint64_t at = number<std::uint32_t>(128) == letters ? 132 : start_;
         std::string syntax;
         while (bytes_.reaches(at + 8) && number<std::uint16_t>(at) == 0x0002) {
             const Element e = element(at, true);
@@ -143,23 +146,75 @@ class Walk {
         e.vr = {number<char>(at), number<char>(at + 1)};
         const auto is_no_letter = [](unsigned char c) { return std::isalpha(c) == 0; };
         if (e.tag != 0 && std::ranges::any_of(e.vr, is_no_letter)) {
+            if (takes_empty_type(at, e)) return e;
             e.vr.clear();  // some writers leave it out here and there, or everywhere
             lacks_types_ = true;
             e.length = number<std::uint32_t>(at);
             at += 4;
             return e;
         }
-        static const std::set<std::string> long_ones = {"OB", "OW", "OF", "OD", "OL", "OV", "SQ",
-                                                        "UC", "UR", "UT", "UN", "SV", "UV"};
-        static const std::set<std::string> short_ones = {"AE", "AS", "AT", "CS", "DA", "DS", "DT",
-                                                         "FD", "FL", "IS", "LO", "LT", "PN", "SH",
-                                                         "SL", "SS", "ST", "TM", "UI", "UL", "US"};
-        const bool is_long = long_ones.count(e.vr) > 0;
-        if (!is_long && short_ones.count(e.vr) == 0)
+        if (!is_long_type(e.vr) && !is_short_type(e.vr))
             fail("is damaged (an element of no known type)");
+        take_length(at, e, is_long_type(e.vr));
+        return e;
+    }
+
+    static bool is_long_type(const std::string& vr) {
+        static const std::set<std::string> all = {"OB", "OW", "OF", "OD", "OL", "OV", "SQ",
+                                                  "UC", "UR", "UT", "UN", "SV", "UV"};
+        return all.contains(vr);
+    }
+
+    static bool is_short_type(const std::string& vr) {
+        static const std::set<std::string> all = {"AE", "AS", "AT", "CS", "DA", "DS", "DT",
+                                                  "FD", "FL", "IS", "LO", "LT", "PN", "SH",
+                                                  "SL", "SS", "ST", "TM", "UI", "UL", "US"};
+        return all.contains(vr);
+    }
+
+    /// Moves `at` from the type to the value.
+    void take_length(std::uint64_t& at, Element& e, bool is_long) {
         e.length = is_long ? number<std::uint32_t>(at + 4) : number<std::uint16_t>(at + 2);
         at += is_long ? 8 : 4;
-        return e;
+    }
+
+    /// Some writers put "??" or zeros in the place of a type. Its length is short or long: the one
+    /// behind which the data set goes on. Libraries get to see a type of such a length.
+    bool takes_empty_type(std::uint64_t& at, Element& e) {
+        const bool is_marked = e.vr == "??";
+        if (!is_marked && e.vr != std::string(2, '\0')) return false;
+        for (const bool is_long : {false, true}) {
+            if (!goes_on(at, e, is_long)) continue;
+            e.vr = is_long ? "UN" : "LO";
+            given_types_[at] = e.vr;
+            take_length(at, e, is_long);
+            return true;
+        }
+        if (is_marked) fail("has an element of the type '?\?', whose length is not sure");
+        return false;
+    }
+
+    /// Whether a known element, the end of an item or that of the file comes after elements like
+    /// `e`, whose type is at `at`.
+    bool goes_on(std::uint64_t at, Element e, bool is_long) {
+        constexpr int most = 100;
+        const std::string type = e.vr;
+        for (int i = 0; i < most; ++i) {
+            if (!bytes_.reaches(at + 8) || (is_long && number<std::uint16_t>(at + 2) != 0)) {
+                return false;
+            }
+            take_length(at, e, is_long);
+            at += e.length;
+            if (!bytes_.reaches(at + 8)) return bytes_.reaches(at) && !bytes_.reaches(at + 1);
+            const std::uint32_t before = std::exchange(e.tag, tag_at(at));
+            if (e.tag >> 16 == 0xfffe) return true;
+            e.vr = {number<char>(at + 4), number<char>(at + 5)};
+            const bool is_known = is_long_type(e.vr) || is_short_type(e.vr);
+            if (e.tag <= before || !(is_known || e.vr == type)) return false;
+            if (is_known) return true;
+            at += 4;
+        }
+        return true;
     }
 
     std::string text(std::uint64_t at, const Element& e) {
@@ -207,7 +262,7 @@ class Walk {
     std::uint64_t walk(std::uint64_t at, std::uint64_t end, bool is_explicit, int depth) {
         if (depth > deepest) fail("is damaged (nested too deep)");
         while (at < end && (depth > 0 || bytes_.reaches(at + 1))) {
-            if (depth == 0 && only_zeros_from(at)) return at;
+            if (depth == 0 && only_padding_from(at)) return at;
             if (!bytes_.reaches(at + 8)) fail("is cut off");
             const std::uint64_t start = at;
             const Element e = element(at, is_explicit);
@@ -236,15 +291,18 @@ class Walk {
     }
 
     /// Padding to the blocks of a medium, after the last element.
-    bool only_zeros_from(std::uint64_t at) {
+    bool only_padding_from(std::uint64_t at) {
         // Elements may be zeros, too: every byte is looked at once.
-        if (at < zeros_end_) return false;
-        std::uint64_t& end = zeros_end_;
+        if (at < padding_end_) return false;
+        const auto first = number<std::uint8_t>(at);
+        if (first != 0 && first != 0xff) return false;
+        std::uint64_t& end = padding_end_;
         for (end = at; bytes_.reaches(end + 1); ++end) {
-            if (number<char>(end) != 0) return false;
+            if (number<std::uint8_t>(end) != first) return false;
         }
         extent_.notes.push_back("there are " + std::to_string(end - at) +
-                                " zero bytes after its last element: they were ignored");
+                                (first == 0 ? " zero bytes" : " bytes of 255") +
+                                " after its last element: they were ignored");
         return true;
     }
 
@@ -253,6 +311,9 @@ class Walk {
         if (!pixels_.found) return;
         const auto bytes = bytes_.view(0, pixels_.element);
         extent_.header.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        for (const auto& [at, type] : given_types_) {
+            if (at < pixels_.element) extent_.header.replace(at, type.size(), type);
+        }
         // GDCM looks a few bytes beyond an element without a type: an element that is not used
         // follows.
         constexpr std::size_t ahead = 64;
@@ -265,6 +326,7 @@ class Walk {
         if (syntax == deflated_syntax || syntax == "1.2.840.10008.1.2.1.98") {
             extent_.header.replace(syntax_at_ + 19, 3, 3, '\0');
         }
+        extent_.header.erase(0, start_);
     }
 
     void begin_pixels(std::uint64_t element, std::uint64_t at, const Element& e, bool is_real) {
@@ -273,7 +335,8 @@ class Walk {
         pixels_.element = element;
         pixels_.at = at;
         extent_.is_real = is_real;
-        if (bytes_.swapped() && e.vr != "OB") {
+        // Bytes have no order, but some writers call words so; other readers take them as words.
+        if (bytes_.swapped() && (e.vr != "OB" || extent_.bits > 8)) {
             extent_.swapped_bytes =
                 static_cast<std::size_t>(std::max<std::int64_t>(2, extent_.bits / 8));
         }
@@ -324,7 +387,9 @@ class Walk {
     std::uint32_t last_tag_ = 0;
     int repeated_ = 0;
     std::uint64_t syntax_at_ = 0, data_set_ = 0;
-    std::uint64_t zeros_end_ = 0;  // where the last run of zeros that was looked at ends
+    std::uint64_t padding_end_ = 0;  // where the last run of one byte that was looked at ends
+    std::uint64_t start_ = 0;        // behind the letters DICM, if these are the first
+    std::map<std::uint64_t, std::string> given_types_;  // by their places
 };
 
 }  // namespace

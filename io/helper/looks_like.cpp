@@ -43,7 +43,9 @@ bool begins_as_dicom(const fs::path& file) {
     in.read(start, sizeof start);
     const auto size = static_cast<std::size_t>(in.gcount());
     if (size >= 132 && std::memcmp(start + 128, "DICM", 4) == 0) return true;
-    return size == sizeof start && begins_with_elements(start);
+    const bool has_letters = std::memcmp(start, "DICM", 4) == 0;  // without what precedes them
+    return size == sizeof start &&
+           begins_with_elements(std::span(start).subspan(has_letters ? 4 : 0));
 }
 
 bool looks_like_dicom(const fs::path& file) {

@@ -1,23 +1,26 @@
-// Reads the triangles of meshes: OBJ and PLY by parsers of our own, other formats by VTK.
+// Reads the triangles of meshes: VTP by VTK, other formats by parsers of our own.
 #include <vtkCellArray.h>
+#include <vtkMergePoints.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
-#include <vtkSTLReader.h>
 #include <vtkTriangleFilter.h>
 #include <vtkXMLPolyDataReader.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <new>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/byte_order.hpp"
 #include "io/helper/ply_mesh.hpp"
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
@@ -28,31 +31,10 @@
 namespace palpate::io {
 namespace {
 
-/// A binary STL says how many triangles it has; VTK takes as many as there are.
-void check_length_of_stl(const std::filesystem::path& path) {
-    constexpr std::uintmax_t head_bytes = 84, triangle_bytes = 50;
-    std::ifstream in(path, std::ios::binary);
-    char head[head_bytes] = {};
-    in.read(head, head_bytes);
-    const std::string text(head, static_cast<std::size_t>(in.gcount()));
-    // A text begins with this word, perhaps behind blanks, and so does the free header of some
-    // binary files, which have bytes in it that no text has.
-    const std::size_t word = std::min(text.find_first_not_of(" \t\r\n\xef\xbb\xbf"), text.size());
-    if (lower(text.substr(word, 5)) == "solid" && text.find('\0') == std::string::npos) return;
-    if (text.size() < head_bytes) throw Failure("is too short for an STL file; copy it again");
-    std::uint32_t count = 0;
-    std::memcpy(&count, head + 80, sizeof count);
-    if (std::filesystem::file_size(path) < head_bytes + triangle_bytes * count) {
-        throw Failure("it is cut off: its " + std::to_string(count) +
-                      " triangles need more bytes; copy it again");
-    }
-}
-
-template <class Reader>
-vtkSmartPointer<vtkPolyData> read_with(const std::filesystem::path& path) {
+vtkSmartPointer<vtkPolyData> read_vtp(const std::filesystem::path& path) {
     const vtkNew<ErrorKeeper> errors;
     vtkOutputWindow::SetInstance(errors);
-    const vtkNew<Reader> reader;
+    const vtkNew<vtkXMLPolyDataReader> reader;
     reader->SetFileName(path.c_str());
     reader->Update();
     vtkOutputWindow::SetInstance(nullptr);
@@ -61,6 +43,24 @@ vtkSmartPointer<vtkPolyData> read_with(const std::filesystem::path& path) {
                       "); export it again");
     }
     return reader->GetOutput();
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Without a byte order mark, every line with a line feed at its end.
+std::string plain_text(const std::string& bytes) {
+    std::string text;
+    for (std::size_t i = bytes.starts_with("\xef\xbb\xbf") ? 3 : 0; i < bytes.size(); ++i) {
+        if (bytes[i] != '\r') {
+            text += bytes[i];
+        } else if (i + 1 == bytes.size() || bytes[i + 1] != '\n') {
+            text += '\n';
+        }
+    }
+    return text;
 }
 
 /// The vertex that a corner of an OBJ face names ("3", "3/1/2", from 1, or backwards from -1).
@@ -73,17 +73,16 @@ vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::stri
                   "' names a vertex that is not there; export it again");
 }
 
-/// The next line of an OBJ file without its comment and a byte order mark. False at the end.
+/// The next line without its comment. False at the end.
 bool next_line(std::istream& in, std::string& line) {
     if (!std::getline(in, line)) return false;
-    if (line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
-    line.resize(std::min(line.find_first_of("#\r"), line.size()));
+    line.resize(std::min(line.find('#'), line.size()));
     return true;
 }
 
 /// Vertices and faces. Not by VTK, whose reader loses faces that count their vertices backwards.
 vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
-    std::ifstream in(path);
+    std::istringstream in(plain_text(bytes_of(path)));
     const vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
     const vtkNew<vtkCellArray> faces;
@@ -138,15 +137,121 @@ vtkSmartPointer<vtkPolyData> read_ply(const std::filesystem::path& path) {
     return data;
 }
 
+/// Behind the line of a text that begins with "solid", after comments; the size of the text if none
+/// does.
+std::size_t begin_of_solid(const std::string& text) {
+    std::size_t at = 0;
+    while (at < text.size()) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const bool found = lower(trimmed(text.substr(at, end - at))).starts_with("solid");
+        at = end + 1;
+        if (found) break;
+    }
+    return std::min(at, text.size());
+}
+
+[[noreturn]] void fail_stl(const std::string& what) {
+    throw Failure("is damaged or not what its name says (" + what + "); export it again");
+}
+
+using Corner = std::array<double, 3>;
+
+/// Three corners for each triangle of a text, from behind its first line on.
+std::vector<Corner> corners_in_text(const std::string& text, std::size_t begin) {
+    std::istringstream in(text.substr(begin));
+    std::vector<Corner> corners;
+    bool is_open = true;
+    for (std::string line; next_line(in, line);) {
+        std::istringstream words(lower(line));
+        for (std::string word; words >> word;) {
+            if (word == "solid" || word == "endsolid") {
+                is_open = word == "solid";
+                break;  // its name follows
+            }
+            if (word == "normal") {
+                words >> word >> word >> word;  // it follows from the corners
+            } else if (word == "vertex") {
+                Corner& corner = corners.emplace_back();
+                for (double& coordinate : corner) {
+                    word.clear();
+                    words >> word;
+                    const auto number = number_from<double>(word);
+                    if (!number) fail_stl("'" + word.substr(0, 40) + "' is not a number");
+                    coordinate = *number;
+                }
+            } else if (word == "endloop") {
+                if (corners.size() % 3 != 0) fail_stl("a facet has not three corners");
+            } else if (word != "facet" && word != "outer" && word != "loop" && word != "endfacet") {
+                fail_stl("'" + one_line(word.substr(0, 40)) + "' is no word of STL");
+            }
+        }
+    }
+    if (is_open || corners.size() % 3 != 0) fail_stl("it is cut off");
+    return corners;
+}
+
+/// The same of a binary file, which says how many triangles it has.
+std::vector<Corner> corners_in_binary(const std::string& bytes) {
+    constexpr std::size_t head = 84, triangle = 50, normal = 12;
+    if (bytes.size() < head) throw Failure("is too short for an STL file; copy it again");
+    const auto raw = std::as_bytes(std::span(bytes));
+    const auto count = little_endian<std::uint32_t>(raw.subspan(head - 4));
+    if (bytes.size() < head + triangle * count) {
+        throw Failure("it is cut off: its " + std::to_string(count) +
+                      " triangles need more bytes; copy it again");
+    }
+    std::vector<Corner> corners(std::size_t{3} * count);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::size_t at = head + i / 3 * triangle + normal + (i % 3 * 3 + a) * 4;
+            corners[i][a] = little_endian<float>(raw.subspan(at));
+        }
+    }
+    return corners;
+}
+
+/// Not by VTK, whose reader stops at marks, comments and line ends of other systems. Corners at one
+/// place become one vertex; triangles without an area are left out where two of theirs do.
+vtkSmartPointer<vtkPolyData> read_stl(const std::filesystem::path& path) {
+    const std::string bytes = bytes_of(path);
+    // The free header of some binary files begins with "solid", too.
+    const bool may_be_text = bytes.find('\0') >= std::min<std::size_t>(bytes.size(), 84);
+    const std::string text = may_be_text ? plain_text(bytes) : "";
+    const std::size_t begin = begin_of_solid(text);
+    const auto corners =
+        begin < text.size() ? corners_in_text(text, begin) : corners_in_binary(bytes);
+    const vtkNew<vtkPoints> all, points;
+    all->SetDataTypeToDouble();
+    points->SetDataTypeToDouble();
+    for (const Corner& corner : corners) {
+        if (!std::isfinite(corner[0] + corner[1] + corner[2])) {
+            throw Failure("vertex " + std::to_string(all->GetNumberOfPoints()) +
+                          " is not finite; export it again");
+        }
+        all->InsertNextPoint(corner.data());
+    }
+    const vtkNew<vtkMergePoints> merged;
+    merged->InitPointInsertion(points, all->GetBounds(), all->GetNumberOfPoints());
+    const vtkNew<vtkCellArray> faces;
+    for (std::size_t i = 0; i < corners.size(); i += 3) {
+        vtkIdType ids[3];
+        for (std::size_t c = 0; c < 3; ++c) {
+            merged->InsertUniquePoint(corners[i + c].data(), ids[c]);
+        }
+        if (ids[0] != ids[1] && ids[1] != ids[2] && ids[2] != ids[0]) faces->InsertNextCell(3, ids);
+    }
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->SetPolys(faces);
+    return data;
+}
+
 vtkSmartPointer<vtkPolyData> read_poly_data(const std::filesystem::path& path,
                                             const std::string& extension) {
-    if (extension == ".stl") {
-        check_length_of_stl(path);
-        return read_with<vtkSTLReader>(path);
-    }
+    if (extension == ".stl") return read_stl(path);
     if (extension == ".ply") return read_ply(path);
     if (extension == ".obj") return read_obj(path);
-    if (extension == ".vtp") return read_with<vtkXMLPolyDataReader>(path);
+    if (extension == ".vtp") return read_vtp(path);
     throw Failure("has no extension of a known mesh format (stl, ply, obj, vtp)");
 }
 

@@ -164,14 +164,21 @@ Transform in_lps(Transform ras, double unit) {
     return unit * ras;
 }
 
-/// pixdim [mm]. No distance is measured along an axis of one sample, which may have no spacing.
-Vec3 spacings_of(const Header& header, double unit) {
+/// pixdim [mm], where nibabel corrects signs and zeros. No distance is measured along an axis of
+/// one sample, which may have no spacing.
+Vec3 spacings_of(const Header& header, double unit, std::vector<std::string>& notes) {
     Vec3 spacings;
     for (std::size_t a = 0; a < 3; ++a) {
-        const double given = header.real(pixdim, a + 1);
+        const double stored = header.real(pixdim, a + 1);
+        const double given = stored == 0 ? 1 : std::abs(stored);
         const bool measures = size_of_axis(header, a) > 1;
         if (measures) check_spacing(given * unit, "header field 'pixdim'");
-        if (!(std::abs(given) <= greatest_length)) {
+        if (measures && stored <= 0) {
+            notes.push_back("its header field 'pixdim' gives the spacing " + text_of(stored) +
+                            " along axis " + std::to_string(a + 1) + ": " + text_of(given * unit) +
+                            " mm was taken");
+        }
+        if (!(given <= greatest_length)) {
             throw Failure("its header field 'pixdim' has the number " + text_of(given) +
                           "; correct the header");
         }
@@ -182,7 +189,7 @@ Vec3 spacings_of(const Header& header, double unit) {
 }
 
 /// Method 2 of the format: a quaternion, pixdim and an offset.
-Transform qform_of(const Header& header, double unit) {
+Transform qform_of(const Header& header, double unit, std::vector<std::string>& notes) {
     const Vec3 vector(header.real(quatern, 0), header.real(quatern, 1), header.real(quatern, 2));
     const double square = vector.squaredNorm();
     if (!(square <= 1.002)) {
@@ -199,7 +206,8 @@ Transform qform_of(const Header& header, double unit) {
         ras(static_cast<Eigen::Index>(a), 3) = offset;
     }
     Transform lps = in_lps(ras, unit);
-    lps.leftCols<3>() = in_lps(ras, 1).leftCols<3>() * spacings_of(header, unit).asDiagonal();
+    lps.leftCols<3>() =
+        in_lps(ras, 1).leftCols<3>() * spacings_of(header, unit, notes).asDiagonal();
     return lps;
 }
 
@@ -249,7 +257,8 @@ double distance_between(const Transform& a, const Transform& b, const Header& he
 void note_disagreement(const Transform& taken, const Header& header, double unit,
                        std::vector<std::string>& notes) {
     try {
-        const double distance = distance_between(taken, qform_of(header, unit), header);
+        std::vector<std::string> of_qform;
+        const double distance = distance_between(taken, qform_of(header, unit, of_qform), header);
         if (distance <= 0.1 * taken.leftCols<3>().colwise().norm().minCoeff()) return;
         notes.push_back("its sform and qform place it differently (" + text_of(distance) +
                         " mm apart): the sform was taken");
@@ -296,10 +305,10 @@ Transform transform_of(const Header& header, std::vector<std::string>& notes) {
             "its header says nothing of its orientation in the body (no sform, no "
             "qform): its axes were taken as those of LPS");
         Transform plain = Transform::Zero();
-        plain.leftCols<3>() = spacings_of(header, unit).asDiagonal();
+        plain.leftCols<3>() = spacings_of(header, unit, notes).asDiagonal();
         return plain;
     }
-    if (!has_sform) return qform_of(header, unit);
+    if (!has_sform) return qform_of(header, unit, notes);
     const Transform sform = sform_of(header, unit);
     if (!is_sheared(sform)) {
         note_spacings(sform, header, unit, notes);
@@ -314,7 +323,7 @@ Transform transform_of(const Header& header, std::vector<std::string>& notes) {
     notes.push_back(
         "its sform is sheared (its axes are not at right angles), which a grid cannot be: its "
         "qform was taken");
-    return qform_of(header, unit);
+    return qform_of(header, unit, notes);
 }
 
 Geometry geometry_of(const Header& header, std::vector<std::string>& notes) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "io/helper/decode.hpp"
@@ -31,28 +30,17 @@ std::int64_t whole(const XmlElement& element, const char* name, std::int64_t oth
     return *number;
 }
 
-/// [mm]; nothing if it does not say.
-std::optional<double> length_of(const XmlElement& pixels, const std::string& name) {
-    const auto length = number_from<double>(trimmed(pixels.attribute(name)));
-    if (!length || !std::isfinite(*length) || *length <= 0) return std::nullopt;
-    const std::string unit = pixels.attribute(name + "Unit");
-    const auto millimetres = millimetres_in(unit.empty() ? "um" : unit);
-    return millimetres ? std::optional(*length * *millimetres) : std::nullopt;
-}
-
 void take_spacing(const XmlElement& pixels, OmeImage& image) {
-    const auto x = length_of(pixels, "PhysicalSizeX"), y = length_of(pixels, "PhysicalSizeY"),
-               z = length_of(pixels, "PhysicalSizeZ");
-    if (!x || !y) {
-        image.spacing_note =
-            "its OME-XML does not tell its spacing: 1 mm was taken along every axis";
-        return;
+    Vec3 spacings;
+    std::array<std::string, 3> units;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const std::string name = std::string("PhysicalSize") + "XYZ"[a];
+        spacings[static_cast<Eigen::Index>(a)] =
+            number_from<double>(trimmed(pixels.attribute(name))).value_or(std::nan(""));
+        units[a] = pixels.attribute(name + "Unit");
+        if (units[a].empty()) units[a] = "um";
     }
-    image.spacing = {z.value_or(*x), *y, *x};
-    if (!z && image.sizes[0] > 1) {
-        image.spacing_note =
-            "its OME-XML does not tell the distance between slices: that of pixels was taken";
-    }
+    set_spacing(image, spacings, units, "its OME-XML");
 }
 
 /// Which plane has which number, along z, channels and times, in an order such as "XYZCT".
@@ -152,6 +140,34 @@ void take_pages(const XmlElement& pixels, const std::string& own, OmeImage& imag
 }
 
 }  // namespace
+
+void set_spacing(OmeImage& image, const Vec3& spacings, const std::array<std::string, 3>& units,
+                 const std::string& source) {
+    const auto x = millimetres_in(units[0]), y = millimetres_in(units[1]),
+               z = millimetres_in(units[2]);
+    const auto is_length = [](double length) { return std::isfinite(length) && length > 0; };
+    const bool has_distance = is_length(spacings[2]);
+    const bool measured = x && y && (z || !has_distance);
+    const bool alike = units[0] == units[1] && (units[0] == units[2] || !has_distance);
+    if (!is_length(spacings[0]) || !is_length(spacings[1]) || (!measured && (x || !alike))) {
+        image.spacing_note = source + " does not tell its spacing: 1 mm was taken along every axis";
+        return;
+    }
+    Vec3 taken = spacings / spacings[0];
+    if (measured) taken = spacings.cwiseProduct(Vec3(*x, *y, z.value_or(1)));
+    if (!has_distance) taken[2] = taken[0];
+    image.spacing = {taken[2], taken[1], taken[0]};
+    if (!measured) {
+        image.spacing_note = source +
+                             (units[0].empty() ? " gives no unit of length"
+                                               : " has the unit '" + units[0].substr(0, 40) +
+                                                     "', which is no length") +
+                             ": 1 mm was taken along x, and along the other axes in proportion";
+    } else if (!has_distance && image.sizes[0] > 1) {
+        image.spacing_note =
+            source + " does not tell the distance between slices: that of pixels was taken";
+    }
+}
 
 bool is_ome_xml(const std::string& description) {
     constexpr std::size_t byte_order_mark = 3;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "palpate/volume.hpp"
+
 namespace palpate::io {
 
 struct OmeImage {
@@ -24,6 +26,11 @@ struct OmeImage {
         return static_cast<std::size_t>((time * sizes[1] + channel) * sizes[0] + z);
     }
 };
+
+/// Enters spacings along x, y and z, each in its unit; those that are not given are NaN. Where no
+/// unit is a known length, their ratio is kept. `source` of them: "its OME-XML".
+void set_spacing(OmeImage& image, const Vec3& spacings, const std::array<std::string, 3>& units,
+                 const std::string& source);
 
 bool is_ome_xml(const std::string& description);
 

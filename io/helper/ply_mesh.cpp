@@ -56,13 +56,15 @@ Stored type_named(const std::string& name) {
     return found->second;
 }
 
-/// Leaves `in` behind the header's last line.
+/// Leaves `in` behind the header's last line. All lines end as the first one does.
 PlyHeader header_in(std::istream& in) {
     PlyHeader header;
     std::string line;
-    std::getline(in, line);
+    char end = 0;
+    while (line.size() < 100 && in.get(end) && end != '\n' && end != '\r') line += end;
+    if (end == '\r' && in.peek() == '\n') in.get(end);
     if (trimmed(line) != "ply") fail("it does not begin with ply");
-    for (int lines = 0; std::getline(in, line); ++lines) {
+    for (int lines = 0; std::getline(in, line, end); ++lines) {
         if (lines > 10000 || line.size() > 100000) fail("its header has no end");
         std::istringstream words(line);
         std::string word, type, name, count;

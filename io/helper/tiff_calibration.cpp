@@ -4,6 +4,7 @@
 #include "io/helper/tiff_calibration.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -104,10 +105,17 @@ double count_in(const Description& description, const char* name) {
     return number_in(description, name).value_or(1);
 }
 
-/// How long the unit of an axis is [mm]: its own, or that of all.
-std::optional<double> unit_in(const Description& description, const char* own) {
+/// The unit of an axis: its own, or that of all.
+std::string unit_in(const Description& description, const char* own) {
     const auto found = description.find(description.contains(own) ? own : "unit");
-    return found == description.end() ? std::nullopt : millimetres_in(found->second);
+    return found == description.end() ? "" : found->second;
+}
+
+/// ImageJ leaves out a resolution of 1 pixel.
+double resolution_of(TIFF* tiff, std::uint32_t tag, const std::string& unit) {
+    float resolution = 0;
+    const bool given = TIFFGetField(tiff, tag, &resolution) != 0;
+    return given || millimetres_in(unit) ? double(resolution) : 1;
 }
 
 }  // namespace
@@ -149,23 +157,21 @@ Moments image_j_moments(const std::string& text, std::size_t pages,
     return moments;
 }
 
-std::optional<Vec3> image_j_spacing(TIFF* tiff, const std::string& text) {
+bool set_image_j_spacing(OmeImage& image, TIFF* tiff, const std::string& text) {
     const Description description = fields_of(text);
-    const auto along_x = unit_in(description, "unit"), along_y = unit_in(description, "yunit"),
-               along_z = unit_in(description, "zunit");
-    const double distance = slice_distance(description);
-    float x = 0, y = 0;
+    if (description.empty()) return false;
+    const std::array units = {unit_in(description, "unit"), unit_in(description, "yunit"),
+                              unit_in(description, "zunit")};
+    Vec3 spacings(0, 0, slice_distance(description));
     if (description.contains("SCIFIO")) {  // its resolution is that of ResolutionUnit
-        x = static_cast<float>(1 / number_in(description, "xscale").value_or(0));
-        y = static_cast<float>(1 / number_in(description, "yscale").value_or(0));
+        spacings[0] = number_in(description, "xscale").value_or(0);
+        spacings[1] = number_in(description, "yscale").value_or(0);
     } else {
-        TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x);
-        TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y);
+        spacings[0] = 1 / resolution_of(tiff, TIFFTAG_XRESOLUTION, units[0]);
+        spacings[1] = 1 / resolution_of(tiff, TIFFTAG_YRESOLUTION, units[1]);
     }
-    if (!along_x || !along_y || !along_z || !(x > 0) || !(y > 0)) return std::nullopt;
-    const Vec3 spacing(*along_x / double(x), *along_y / double(y), *along_z * distance);
-    const bool possible = std::isfinite(spacing[0]) && spacing.head<2>().minCoeff() > 0;
-    return possible ? std::optional(spacing) : std::nullopt;
+    set_spacing(image, spacings, units, "its description");
+    return true;
 }
 
 ValueMap image_j_values(const std::string& text, Stored stored, std::vector<std::string>& notes) {
@@ -185,7 +191,7 @@ ValueMap image_j_values(const std::string& text, Stored stored, std::vector<std:
     return {};
 }
 
-void set_image_j_spacing(TIFF* tiff, const Vec3& spacing, int slices) {
+void write_image_j_spacing(TIFF* tiff, const Vec3& spacing, int slices) {
     std::string text = "ImageJ=1.54f\nimages=" + std::to_string(slices) +
                        "\nslices=" + std::to_string(slices) + "\nunit=mm\nspacing=";
     append_number(text, spacing.z());

@@ -3,18 +3,18 @@
 // and Fiji write them.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "io/helper/decode.hpp"
+#include "io/helper/ome_xml.hpp"
 #include "io/helper/tiff_library.hpp"
 #include "palpate/volume.hpp"
 
 namespace palpate::io {
 
-/// The spacing of the current page [mm]; nothing unless ImageJ's description gives all three
-/// lengths. An axis may have a unit of its own.
-std::optional<Vec3> image_j_spacing(TIFF* tiff, const std::string& description);
+/// Enters the spacing of the current page. False unless ImageJ wrote its description. An axis may
+/// have a unit of its own.
+bool set_image_j_spacing(OmeImage& image, TIFF* tiff, const std::string& description);
 
 /// What a stored number means. ImageJ keeps signed 16-bit images as unsigned samples with such a
 /// calibration. Notes a calibration that is not a straight line, which is ignored.
@@ -34,7 +34,7 @@ Moments image_j_moments(const std::string& description, std::size_t pages,
                         std::vector<std::string>& notes);
 
 /// Writes the spacing [mm] of a stack into its first page, which is the current one.
-void set_image_j_spacing(TIFF* tiff, const Vec3& spacing, int slices);
+void write_image_j_spacing(TIFF* tiff, const Vec3& spacing, int slices);
 
 /// Writes the part of the spacing that lies in the page's plane; for every page.
 void set_resolution(TIFF* tiff, const Vec3& spacing);

@@ -83,11 +83,12 @@ std::size_t planes_behind(TIFF* tiff, const fs::path& file, const TiffPage& page
     TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
     if (compression != COMPRESSION_NONE || TIFFIsTiled(tiff) != 0 || page.is_packed()) return 1;
     std::uint64_t end = TIFFGetStrileOffset(tiff, 0);
-    if (end < TIFFCurrentDirOffset(tiff)) return 1;  // the directory would be taken for planes
+    const auto begin = static_cast<double>(end),
+               directory = static_cast<double>(TIFFCurrentDirOffset(tiff));
     const double bytes =
         told * page.width * page.height * static_cast<double>(size_of(page.stored));
-    const bool is_there =
-        static_cast<double>(end) + bytes <= static_cast<double>(fs::file_size(file));
+    if (begin < directory && directory < begin + bytes) return 1;  // it is no plane
+    const bool is_there = begin + bytes <= static_cast<double>(fs::file_size(file));
     if (!(told > 1 && told <= 1 << 20 && told == std::floor(told) && is_there)) return 1;
     for (std::uint32_t strip = 0; strip < TIFFNumberOfStrips(tiff); ++strip) {
         if (TIFFGetStrileOffset(tiff, strip) != end) return 1;
@@ -161,19 +162,10 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
     image.sizes = {static_cast<std::int64_t>(image.pages.size()) / moments.count, 1, moments.count};
     image.frame_interval = moments.times.interval;
     if (pages.whole.size() == 1 && coarser_levels(tiff).empty()) layout.reduced = pages.reduced;
-    if (const auto spacing = image_j_spacing(tiff, description)) {
-        const bool has_distance = std::isfinite((*spacing)[2]) && (*spacing)[2] > 0;
-        image.spacing = {(*spacing)[has_distance ? 2 : 0], (*spacing)[1], (*spacing)[0]};
-        if (!has_distance) {
-            image.spacing_note =
-                "its description does not tell the distance between slices: that of pixels was "
-                "taken";
-        }
-    } else {
+    if (!set_image_j_spacing(image, tiff, description)) {
         image.spacing_note =
             "it does not tell its spacing (as ImageJ and OME-XML would): 1 mm was taken along "
-            "every "
-            "axis; give the spacing";
+            "every axis; give the spacing";
     }
     return layout;
 }

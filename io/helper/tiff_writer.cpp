@@ -48,7 +48,7 @@ void write_page(TIFF* tiff, const Geometry& geometry, SampleType type, int z, bo
     // Without it ImageJ takes the samples of all pages as one piece after the first page's.
     TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
     set_resolution(tiff, geometry.spacing);
-    if (z == 0) set_image_j_spacing(tiff, geometry.spacing, geometry.size.z());
+    if (z == 0) write_image_j_spacing(tiff, geometry.spacing, geometry.size.z());
     for (std::uint32_t strip = 0, y = 0; y < height; ++strip, y += rows) {
         const auto bytes = static_cast<tmsize_t>(std::min(rows, height - y) * row);
         if (TIFFWriteEncodedStrip(tiff, strip, samples + y * row, bytes) != bytes) {

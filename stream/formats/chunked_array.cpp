@@ -114,6 +114,8 @@ auto ChunkReader::unpacked(Wanted wanted, const std::string& part, const std::st
         if (!bytes) return std::optional<Unpacked>();
         try {
             return std::optional<Unpacked>(unpack(*std::move(bytes)));
+        } catch (const UnreadChunk& e) {
+            throw io::InputError(objects_->name_of(wanted.key) + ": " + part + e.what());
         } catch (const DamagedChunk& e) {
             if (attempt < attempts_at_damage) continue;
             throw io::InputError(objects_->name_of(wanted.key) + ": " + part + e.what() + "; the " +
@@ -191,7 +193,8 @@ std::optional<ChunkReader::Place> ChunkReader::place_in_shard(std::span<const st
                                                               const std::stop_token& stop) const {
     std::vector<std::int64_t> shard(index.begin(), index.end());
     std::size_t inside = 0;
-    for (std::size_t a = 0; a < shard.size(); ++a) {
+    for (const int axis : array_.shards->axes) {
+        const auto a = static_cast<std::size_t>(axis);
         const std::int64_t count = array_.shards->chunks[a];
         inside =
             inside * static_cast<std::size_t>(count) + static_cast<std::size_t>(index[a] % count);

@@ -20,8 +20,9 @@ namespace palpate::stream {
 
 /// Several chunks in one object, with an index of where each lies in it.
 struct Shards {
-    std::vector<std::int64_t> chunks;  ///< along each axis of a shard
-    std::vector<Codec> index_codecs;   ///< in the order of decoding
+    std::vector<std::int64_t> chunks;  ///< along each axis of the array, in a shard
+    std::vector<int> axes;            ///< in the order in which the index counts, the slowest first
+    std::vector<Codec> index_codecs;  ///< in the order of decoding
     bool index_at_start = false;
 };
 

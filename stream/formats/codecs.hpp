@@ -45,6 +45,12 @@ class DamagedChunk : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// A chunk of a kind that is not read; what() says so and what to do.
+class UnreadChunk : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
 /// Throws DamagedChunk: a chunk unpacks to more than `most` bytes.
 [[noreturn]] void unpacks_too_long(std::size_t most);
 

@@ -19,10 +19,13 @@ N5Header header_of(const ChunkedArray& array, std::span<const std::byte> block) 
     N5Header header{4 + 4 * axes, std::vector<std::int64_t>(axes)};
     if (block.size() < header.bytes) throw DamagedChunk("is too short for the header of a block");
     const auto mode = io::big_endian<std::uint16_t>(block);
-    if (mode != 0) {
-        throw DamagedChunk("has a block of mode " + std::to_string(mode) +
-                           " instead of 0: of varying length or of objects");
+    if (mode == 1 || mode == 2) {
+        throw UnreadChunk(std::string("is a block of ") +
+                          (mode == 1 ? "varying length" : "objects") + " (N5's mode " +
+                          std::to_string(mode) +
+                          "), which is not read; write it with blocks of mode 0");
     }
+    if (mode != 0) throw DamagedChunk("has a block of mode " + std::to_string(mode));
     if (io::big_endian<std::uint16_t>(block.subspan(2)) != axes) {
         throw DamagedChunk("has a block with another number of axes than its array");
     }

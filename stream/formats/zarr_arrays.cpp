@@ -178,14 +178,17 @@ void take_index_codecs(const Json& codecs, Shards& shards) {
 void take_shards(const Json& configuration, ChunkedArray& array) {
     if (array.shards) throw BadMetadata("it has shards within shards; store it with one kind");
     Shards shards;
-    const std::vector<std::int64_t> shard = array.chunk;
-    array.chunk = sizes_of(configuration.at("chunk_shape"), "chunk_shape");
-    for (std::size_t a = 0; a < shard.size(); ++a) {
-        if (array.chunk.size() != shard.size() || array.chunk[a] < 1 ||
-            shard[a] % array.chunk[a] != 0) {
+    shards.chunks.resize(array.axes());
+    shards.axes = array.stored_axes;  // which a transposition before it may have turned
+    const auto inner = sizes_of(configuration.at("chunk_shape"), "chunk_shape");
+    for (std::size_t i = 0; i < array.chunk.size(); ++i) {
+        const auto a = static_cast<std::size_t>(array.stored_axes[i]);
+        const std::int64_t shard = array.chunk[a];
+        if (inner.size() != array.axes() || inner[i] < 1 || shard % inner[i] != 0) {
             throw BadMetadata("its shards are no whole number of chunks");
         }
-        shards.chunks.push_back(shard[a] / array.chunk[a]);
+        array.chunk[a] = inner[i];
+        shards.chunks[a] = shard / inner[i];
     }
     const std::string place = text_member(configuration, "index_location", "end");
     if (place != "start" && place != "end") {
@@ -211,9 +214,11 @@ void take_codecs(const Json& codecs, ChunkedArray& array) {
                                   array.bytes.size() > 1;
             as_bytes = true;
         } else if (name == "sharding_indexed" && !as_bytes) {
-            if (codecs.size() > 1) {
-                throw BadMetadata(
-                    "its shards are packed as a whole; store them with codecs inside");
+            if (&given != &codecs.back()) {
+                throw BadMetadata("its shards are packed once more as a whole (codec '" +
+                                  name_of(codecs.back()) +
+                                  "'), so that no part can be read alone; store it with codecs "
+                                  "within the shards");
             }
             take_shards(codec.at("configuration"), array);
             as_bytes = true;

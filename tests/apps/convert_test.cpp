@@ -204,7 +204,7 @@ TEST(Convert, wrong_use_bad_input_and_outputs_that_cannot_be_leave_nothing_behin
                                {"a.zarr out.zarr --time-step 2", 3, "no time 2"},
                                {"absent.nrrd out.zarr", 3, "does not exist"},
                                {"empty.zarr out.zarr", 3, "no metadata of Zarr"},
-                               {"a.zarr out.xyz", 5, ".raw, .zarr"},
+                               {"a.zarr out.xyz", 2, ".raw, .zarr"},
                                {"a.zarr none/out.zarr", 5, "choose another folder"},
                                {"a.zarr none/out.nrrd", 5, "create it first"},
                                {"a.zarr file.zarr", 5, "is there already"},

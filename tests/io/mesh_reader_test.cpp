@@ -247,5 +247,37 @@ TEST(MeshReader, an_stl_text_in_capitals_is_read) {
     EXPECT_EQ(read_mesh(folder / "a.stl").triangles.size(), 4U);
 }
 
+TEST(MeshReader, texts_may_have_any_line_ends_a_byte_order_mark_and_comments_first) {
+    const support::ScratchFolder folder;
+    const std::string stl =
+        "solid a vertex\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+        "vertex 0 1 0\nendloop\nendfacet\nendsolid a\n";
+    const std::string ply =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+        "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 \\\n3\n";
+    const auto reads = [&](const char* name, const std::string& text) {
+        for (const std::string end : {"\n", "\r", "\r\n"}) {
+            std::string bytes;
+            for (const char c : text) bytes += c == '\n' ? end : std::string(1, c);
+            put_bytes(folder / name, bytes);
+            EXPECT_EQ(refusal_of_mesh(folder / name), "") << name << " " << end.size();
+        }
+    };
+    reads("a.stl", stl);
+    reads("a.stl", "\xef\xbb\xbf" + stl);
+    reads("a.stl",
+          "# made by hand, with a remark that is longer than the header of a binary file "
+          "of STL has bytes\n\n" +
+              stl);
+    reads("a.ply", ply);
+    reads("a.obj", obj);
+    for (const std::size_t end : {20U, 60U, 90U, 105U}) {
+        put_bytes(folder / "cut.stl", stl.substr(0, end));
+        EXPECT_TRUE(contains(refusal_of_mesh(folder / "cut.stl"), "not what its name says"));
+    }
+}
+
 }  // namespace
 }  // namespace palpate::io::test

@@ -168,6 +168,12 @@ TEST(dicom, padding_after_the_last_element_is_passed_over) {
         expect_usual(file);
         EXPECT_TRUE(contains(all_notes(file), "zero bytes after its last element"));
     }
+    const ScratchFolder filled;
+    const VolumeFile file = read_changed(filled, [&](const TestSlice& slice) {
+        return dicom_bytes(slice) + std::string(13, '\xff');
+    });
+    expect_usual(file);
+    EXPECT_TRUE(contains(all_notes(file), "13 bytes of 255 after its last element"));
     const ScratchFolder folder;
     put_bytes(folder / "1.dcm", dicom_bytes(slice_at(1)) + std::string(64, '\0') + "x");
     EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "damaged"));
@@ -175,6 +181,40 @@ TEST(dicom, padding_after_the_last_element_is_passed_over) {
     put_bytes(folder / "1.dcm",
               dicom_start(slice_at(1), "1.2.840.10008.1.2") + std::string(8 << 20, '\0') + "x");
     EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "cut off"));
+}
+
+TEST(dicom, elements_whose_type_is_question_marks_or_zeros_are_read) {
+    for (const std::string& type : {std::string("??"), std::string(2, '\0')}) {
+        // One, several in a row, a number that is needed, a long length, the samples themselves.
+        for (int which = 0; which < 4; ++which) {
+            const ScratchFolder folder;
+            const VolumeFile file = read_changed(folder, [&](const TestSlice& slice) {
+                std::string data = dicom_data_set(slice);
+                const auto put = [&](std::uint16_t group, std::uint16_t element) {
+                    data.replace(data.find(tag_bytes(group, element)) + 4, 2, type);
+                };
+                if (which == 0) put(0x20, 0x32);
+                if (which == 1) {
+                    put(0x28, 0x1052);
+                    put(0x28, 0x1053);
+                }
+                if (which == 2) {
+                    data = with(data, 0x20, 0x32,
+                                long_element(0x20, 0x31, "UN", std::string(70000, 'x')));
+                    put(0x20, 0x31);
+                }
+                if (which == 3) put(0x7fe0, 0x10);
+                return file_of(slice, data);
+            });
+            SCOPED_TRACE(testing::Message() << which);
+            expect_usual(file);
+        }
+    }
+    const ScratchFolder folder;
+    std::string data = dicom_data_set(slice_at(1));
+    data.replace(data.find(tag_bytes(0x20, 0x32)) + 4, 4, "??\7\7");
+    put_bytes(folder / "1.dcm", file_of(slice_at(1), data));
+    EXPECT_TRUE(contains(refusal(folder / "1.dcm"), "whose length is not sure"));
 }
 
 TEST(dicom, overlays_in_unused_bits_are_no_part_of_the_values) {
@@ -208,6 +248,9 @@ TEST(dicom, files_without_preamble_or_meta_information_are_read) {
     const VolumeFile no_preamble =
         read_changed(folder, [](const TestSlice& slice) { return dicom_bytes(slice).substr(132); });
     expect_usual(no_preamble);
+    const VolumeFile only_letters =
+        read_changed(folder, [](const TestSlice& slice) { return dicom_bytes(slice).substr(128); });
+    expect_usual(only_letters);
     const VolumeFile no_meta =
         read_changed(folder, [](const TestSlice& slice) { return dicom_data_set(slice); });
     expect_usual(no_meta);

@@ -29,6 +29,19 @@ void put_offset(std::string& header, float x, float y, float z) {
     put_at(header, 268, little(x) + little(y) + little(z));
 }
 
+TEST(nifti, a_spacing_of_0_or_below_is_corrected_and_said) {
+    for (const std::int16_t qform : {0, 1}) {
+        const ScratchFolder folder;
+        const VolumeFile file = read_nifti(folder, nifti([&](std::string& h) {
+                                               put_pixdim(h, 2, 0, -3);
+                                               put_codes(h, qform, 0);
+                                           }));
+        EXPECT_EQ(file.volume.geometry().spacing, Vec3(2, 1, 3));
+        EXPECT_TRUE(contains(all_notes(file), "spacing 0 along axis 2: 1 mm was taken"));
+        EXPECT_TRUE(contains(all_notes(file), "spacing -3 along axis 3: 3 mm was taken"));
+    }
+}
+
 TEST(nifti, units_scale_the_spacing_and_the_origin_of_every_transform) {
     const ScratchFolder folder;
     // Unknown units and codes that the format does not have are taken as mm, and said.

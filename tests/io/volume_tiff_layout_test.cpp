@@ -85,6 +85,42 @@ TEST(tiff, planes_of_an_ome_tiff_lie_where_its_tiff_data_say) {
     EXPECT_TRUE(contains(all_notes(read_volume(folder / "a.tif")), "1 mm was taken"));
 }
 
+TEST(tiff, the_ratio_of_spacings_whose_unit_is_no_length_is_kept) {
+    const ScratchFolder folder;
+    const auto expect = [&](const std::string& description, const std::string& note) {
+        put_pages(folder, 2, description);
+        const VolumeFile file = read_volume(folder / "a.tif");
+        EXPECT_EQ(file.volume.geometry().spacing, Vec3(1, 1, 6)) << description;
+        EXPECT_FALSE(file.volume.geometry().measured);
+        EXPECT_TRUE(contains(all_notes(file), note)) << all_notes(file);
+    };
+    const std::string head = "ImageJ=1.53t\nimages=2\nslices=2\nspacing=3\n";
+    const std::string along_x = "1 mm was taken along x, and along the other axes in proportion";
+    expect(head + "unit=pixel\n", "has the unit 'pixel', which is no length: " + along_x);
+    expect(head, "gives no unit of length: " + along_x);
+    std::string size;
+    for (const std::string axis : {"X", "Y", "Z"}) {
+        size += " PhysicalSize" + axis + "=\"" + (axis == "Z" ? "3" : "0.5") + "\" PhysicalSize" +
+                axis + "Unit=\"pixel\"";
+    }
+    expect(ome(size + " SizeZ=\"2\" DimensionOrder=\"XYZCT\""), "its OME-XML has the unit 'pixel'");
+}
+
+TEST(tiff, planes_of_image_j_may_lie_before_the_directory_of_their_page) {
+    const ScratchFolder folder;
+    TestPage page = counting_page(0);
+    page.samples += counting_page(12).samples + counting_page(24).samples;
+    page.description = "ImageJ=1.53t\nimages=3\nslices=3\nunit=mm\n";
+    std::string bytes = tiff_bytes({page});
+    const std::string entry =
+        little<std::uint16_t>(279) + little<std::uint16_t>(4) + little<std::uint32_t>(1);
+    bytes.replace(bytes.find(entry) + entry.size(), 4, little<std::uint32_t>(12));
+    put_bytes(folder / "a.tif", bytes);
+    const VolumeFile file = read_volume(folder / "a.tif");
+    ASSERT_EQ(file.volume.geometry().size, Index3(4, 3, 3));
+    for (int z = 0; z < 3; ++z) EXPECT_EQ(file.volume.sample({3, 2, z}), 12 * z + 11);
+}
+
 TEST(tiff, every_axis_may_have_a_unit_of_its_own_in_image_j) {
     const ScratchFolder folder;
     struct Unit {

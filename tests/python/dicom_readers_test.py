@@ -13,7 +13,7 @@ from pydicom.encaps import encapsulate
 from pydicom.dataset import Dataset, FileDataset, FileMetaDataset
 from pydicom.fileset import FileSet
 
-from readers_test import SYNTAXES, noted, ramp, refused, save, slice_of, stack
+from readers_test import SYNTAXES, expect_pydicoms, noted, ramp, refused, save, slice_of, stack
 
 
 def items(**values):
@@ -474,6 +474,14 @@ def test_single_bits_in_big_endian_words_are_refused(tmp_path):
     for data in slices:
         data.add_new((0x7fe0, 0x0010), "OW", bytes(32))
     refused(save(tmp_path / "a", slices, "big"), "little-endian")
+
+
+def test_big_endian_words_are_read_also_where_they_are_called_bytes(tmp_path):
+    array = ramp("u2")
+    slices = stack(array)
+    for data, plane in zip(slices, array):
+        data.add_new((0x7fe0, 0x0010), "OB", plane.tobytes())
+    expect_pydicoms(save(tmp_path / "a", slices, "big"))
 
 
 def test_real_numbers_are_not_looked_up_in_a_table(tmp_path):

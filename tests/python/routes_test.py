@@ -126,6 +126,16 @@ def write_nifti(path, array, unit=2, forms=(AFFINE, None), slope=NAN, intercept=
     return path
 
 
+@pytest.mark.filterwarnings("ignore:the image's header says nothing")
+@pytest.mark.parametrize("form", ("none", "qform"))
+@pytest.mark.parametrize("unit", (2, 3))
+def test_nifti_spacings_of_0_and_below_are_nibabels(tmp_path, unit, form):
+    path = write_nifti(tmp_path / "a.nii", samples("i2"), unit, FORMS[form])
+    data = path.read_bytes()
+    path.write_bytes(data[:80] + numpy.array([2, 0, -3], "<f4").tobytes() + data[92:])
+    expect_same(palpate.as_volume(nibabel.load(path)), palpate.load(path).volume)
+
+
 def expect_nibabels(path, unit, frame=None):
     """The value and the place of every sample."""
     whole = palpate.load(path, frame=frame).volume

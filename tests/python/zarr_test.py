@@ -266,8 +266,10 @@ def test_members_that_have_to_be_understood_are_refused(tmp_path, member, ignore
 @pytest.mark.parametrize("codecs, words", (
     ([{"name": "bytes"}], "byte order"), ([{"name": "bytes", "configuration": {}}], "byte order"), ([], "bytes"),
     ([{"name": "sharding_indexed", "configuration": {"chunk_shape": (3, 5, 8), "codecs": [LITTLE],
-                                                     "index_codecs": [{"name": "bytes"}]}}], "byte order")))
-def test_codecs_that_leave_the_bytes_open_are_refused(tmp_path, codecs, words):
+                                                     "index_codecs": [{"name": "bytes"}]}}], "byte order"),
+    ([{"name": "sharding_indexed", "configuration": {"chunk_shape": (3, 5, 8), "codecs": [LITTLE], "index_codecs": [LITTLE]}},
+      {"name": "gzip", "configuration": {"level": 5}}], "once more as a whole (codec 'gzip')")))
+def test_codecs_that_are_not_read_are_refused_with_the_reason(tmp_path, codecs, words):
     put(tmp_path / "zarr.json", metadata3(ramp(), codecs=codecs))
     refused(tmp_path, words)
 

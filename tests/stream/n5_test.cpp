@@ -177,15 +177,16 @@ TEST(N5, blocks_that_are_not_possible_are_refused_with_what_is_wrong) {
         const char* what;
     };
     const std::string samples(8, 'x');
-    for (const Wrong& wrong :
-         std::vector<Wrong>{{header(1, {2, 2, 2}) + samples, "mode 1 instead of 0"},
-                            {header(2, {2, 2, 2}) + samples, "mode 2 instead of 0"},
-                            {header(0, {2, 2}) + samples, "another number of axes"},
-                            {header(0, {2, 2, 3}) + samples, "size that is not possible"},
-                            {header(0, {2, 0, 2}) + samples, "size that is not possible"},
-                            {header(0, {2, 2, 0xFFFFFFFF}) + samples, "size that is not possible"},
-                            {header(0, {2, 2, 1}) + samples, "8 bytes instead of the 4"},
-                            {std::string("\0\0\0\3", 4), "too short for the header"}}) {
+    for (const Wrong& wrong : std::vector<Wrong>{
+             {header(1, {2, 2, 2}) + samples, "varying length (N5's mode 1), which is not read"},
+             {header(2, {2, 2, 2}) + samples, "objects (N5's mode 2), which is not"},
+             {header(3, {2, 2, 2}) + samples, "mode 3; the chunk is damaged"},
+             {header(0, {2, 2}) + samples, "another number of axes"},
+             {header(0, {2, 2, 3}) + samples, "size that is not possible"},
+             {header(0, {2, 0, 2}) + samples, "size that is not possible"},
+             {header(0, {2, 2, 0xFFFFFFFF}) + samples, "size that is not possible"},
+             {header(0, {2, 2, 1}) + samples, "8 bytes instead of the 4"},
+             {std::string("\0\0\0\3", 4), "too short for the header"}}) {
         const ScratchFolder folder;
         put_dataset(folder / "a.n5", wrong.block);
         const auto store = open_store(folder / "a.n5");

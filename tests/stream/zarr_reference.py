@@ -197,6 +197,10 @@ def write_v3(folder):
         data = samples("i2", seed=number)
         write_v3_array(f"{folder}/{name}", data, [8, 10, 12], [codec], -3)
         expect(folder, name, missing_in_shards(data, [8, 10, 12], [4, 5, 6], -3))
+    name = "v3-shards-turned.zarr"
+    codec = shards([turned, big, gzip], chunk_shape=[6, 4, 5])
+    write_v3_array(f"{folder}/{name}", data, [8, 10, 12], [turned, codec], -3)
+    expect(folder, name, missing_in_shards(data.transpose(2, 0, 1), [12, 8, 10], [6, 4, 5], -3).transpose(1, 2, 0))
 
 
 def write_ome(folder):
