@@ -138,10 +138,8 @@ io::TraceExtras extras_of(const RendererSettings& settings, bool streamed) {
     return extras;
 }
 
-void replay(const ReplayOptions& options) {
-    if (options.validate) {
-        return validate(options.source.name(), options.recorded_volume, options.source.quiet);
-    }
+/// Throws std::invalid_argument, saying what is missing or does not go together.
+void check(const ReplayOptions& options) {
     if (!options.recorded_volume.empty()) {
         throw std::invalid_argument("--volume is for --validate");
     }
@@ -150,6 +148,13 @@ void replay(const ReplayOptions& options) {
     if (options.live && options.wait) {
         throw std::invalid_argument("--live and --wait cannot be given together");
     }
+}
+
+void replay(const ReplayOptions& options) {
+    if (options.validate) {
+        return validate(options.source.name(), options.recorded_volume, options.source.quiet);
+    }
+    check(options);
     check_outputs({options.source.name(), options.trajectory},
                   {options.output, options.path, options.poses});
     const bool table_on_standard_output = is_standard_output(options.output) ||
