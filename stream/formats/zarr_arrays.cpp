@@ -181,10 +181,13 @@ void take_shards(const Json& configuration, ChunkedArray& array) {
     shards.chunks.resize(array.axes());
     shards.axes = array.stored_axes;  // which a transposition before it may have turned
     const auto inner = sizes_of(configuration.at("chunk_shape"), "chunk_shape");
-    for (std::size_t i = 0; i < array.chunk.size(); ++i) {
+    if (array.chunk.size() != array.axes() || inner.size() != array.axes()) {
+        throw BadMetadata("its shards or their chunks have another number of axes than the array");
+    }
+    for (std::size_t i = 0; i < inner.size(); ++i) {
         const auto a = static_cast<std::size_t>(array.stored_axes[i]);
         const std::int64_t shard = array.chunk[a];
-        if (inner.size() != array.axes() || inner[i] < 1 || shard % inner[i] != 0) {
+        if (inner[i] < 1 || shard % inner[i] != 0) {
             throw BadMetadata("its shards are no whole number of chunks");
         }
         array.chunk[a] = inner[i];
@@ -214,7 +217,7 @@ void take_codecs(const Json& codecs, ChunkedArray& array) {
                                   array.bytes.size() > 1;
             as_bytes = true;
         } else if (name == "sharding_indexed" && !as_bytes) {
-            if (&given != &codecs.back()) {
+            if (&codec != &codecs.back()) {
                 throw BadMetadata("its shards are packed once more as a whole (codec '" +
                                   name_of(codecs.back()) +
                                   "'), so that no part can be read alone; store it with codecs "
