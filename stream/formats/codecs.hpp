@@ -45,10 +45,10 @@ class DamagedChunk : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// A chunk of a kind that is not read; what() says so and what to do.
-class UnreadChunk : public std::runtime_error {
+/// A chunk of a kind that is not read, which another copy would be, too. what() says what to do.
+class UnreadChunk : public DamagedChunk {
   public:
-    using std::runtime_error::runtime_error;
+    using DamagedChunk::DamagedChunk;
 };
 
 /// Throws DamagedChunk: a chunk unpacks to more than `most` bytes.
