@@ -50,8 +50,8 @@ Range range_of(std::span<const T> samples, const OnProgress& progress) {
         range.add(some.data() + i, some.size() - i);
         if (progress) progress(1);
     }
-    const T low = *std::ranges::min_element(range.low);
-    const T high = *std::ranges::max_element(range.high);
+    const T low = *std::min_element(range.low.begin(), range.low.end());
+    const T high = *std::max_element(range.high.begin(), range.high.end());
     const bool finite = std::ranges::all_of(range.nought, [](T n) { return n == 0; });
     if (!finite) {
         throw std::invalid_argument(

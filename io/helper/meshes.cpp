@@ -8,22 +8,21 @@
 #include <vtkXMLPolyDataReader.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <limits>
 #include <new>
-#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "io/byte_order.hpp"
 #include "io/helper/ply_mesh.hpp"
 #include "io/helper/protocol.hpp"
 #include "io/helper/readers.hpp"
+#include "io/helper/stl_mesh.hpp"
+#include "io/helper/text_lines.hpp"
 #include "io/helper/vtk_errors.hpp"
 #include "io/system/number.hpp"
 #include "palpate/io/error.hpp"
@@ -50,19 +49,6 @@ std::string bytes_of(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Without a byte order mark, every line with a line feed at its end.
-std::string plain_text(const std::string& bytes) {
-    std::string text;
-    for (std::size_t i = bytes.starts_with("\xef\xbb\xbf") ? 3 : 0; i < bytes.size(); ++i) {
-        if (bytes[i] != '\r') {
-            text += bytes[i];
-        } else if (i + 1 == bytes.size() || bytes[i + 1] != '\n') {
-            text += '\n';
-        }
-    }
-    return text;
-}
-
 /// The vertex that a corner of an OBJ face names ("3", "3/1/2", from 1, or backwards from -1).
 vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::string& line) {
     const auto number = number_from<std::int64_t>(corner.substr(0, corner.find('/')));
@@ -71,13 +57,6 @@ vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::stri
     if (index < 0 && index >= -vertices) return vertices + index;
     throw Failure("'" + one_line(line.substr(0, 60)) +
                   "' names a vertex that is not there; export it again");
-}
-
-/// The next line without its comment. False at the end.
-bool next_line(std::istream& in, std::string& line) {
-    if (!std::getline(in, line)) return false;
-    line.resize(std::min(line.find('#'), line.size()));
-    return true;
 }
 
 /// Vertices and faces. Not by VTK, whose reader loses faces that count their vertices backwards.
@@ -137,93 +116,13 @@ vtkSmartPointer<vtkPolyData> read_ply(const std::filesystem::path& path) {
     return data;
 }
 
-/// Behind the line of a text that begins with "solid", after comments; the size of the text if none
-/// does.
-std::size_t begin_of_solid(const std::string& text) {
-    std::size_t at = 0;
-    while (at < text.size()) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        const bool found = lower(trimmed(text.substr(at, end - at))).starts_with("solid");
-        at = end + 1;
-        if (found) break;
-    }
-    return std::min(at, text.size());
-}
-
-[[noreturn]] void fail_stl(const std::string& what) {
-    throw Failure("is damaged or not what its name says (" + what + "); export it again");
-}
-
-using Corner = std::array<double, 3>;
-
-/// Three corners for each triangle of a text, from behind its first line on.
-std::vector<Corner> corners_in_text(const std::string& text, std::size_t begin) {
-    std::istringstream in(text.substr(begin));
-    std::vector<Corner> corners;
-    bool is_open = true;
-    for (std::string line; next_line(in, line);) {
-        std::istringstream words(lower(line));
-        for (std::string word; words >> word;) {
-            if (word == "solid" || word == "endsolid") {
-                is_open = word == "solid";
-                break;  // its name follows
-            }
-            if (word == "normal") {
-                words >> word >> word >> word;  // it follows from the corners
-            } else if (word == "vertex") {
-                Corner& corner = corners.emplace_back();
-                for (double& coordinate : corner) {
-                    word.clear();
-                    words >> word;
-                    const auto number = number_from<double>(word);
-                    if (!number) fail_stl("'" + word.substr(0, 40) + "' is not a number");
-                    coordinate = *number;
-                }
-            } else if (word == "endloop") {
-                if (corners.size() % 3 != 0) fail_stl("a facet has not three corners");
-            } else if (word != "facet" && word != "outer" && word != "loop" && word != "endfacet") {
-                fail_stl("'" + one_line(word.substr(0, 40)) + "' is no word of STL");
-            }
-        }
-    }
-    if (is_open || corners.size() % 3 != 0) fail_stl("it is cut off");
-    return corners;
-}
-
-/// The same of a binary file, which says how many triangles it has.
-std::vector<Corner> corners_in_binary(const std::string& bytes) {
-    constexpr std::size_t head = 84, triangle = 50, normal = 12;
-    if (bytes.size() < head) throw Failure("is too short for an STL file; copy it again");
-    const auto raw = std::as_bytes(std::span(bytes));
-    const auto count = little_endian<std::uint32_t>(raw.subspan(head - 4));
-    if (bytes.size() < head + triangle * count) {
-        throw Failure("it is cut off: its " + std::to_string(count) +
-                      " triangles need more bytes; copy it again");
-    }
-    std::vector<Corner> corners(std::size_t{3} * count);
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        for (std::size_t a = 0; a < 3; ++a) {
-            const std::size_t at = head + i / 3 * triangle + normal + (i % 3 * 3 + a) * 4;
-            corners[i][a] = little_endian<float>(raw.subspan(at));
-        }
-    }
-    return corners;
-}
-
-/// Not by VTK, whose reader stops at marks, comments and line ends of other systems. Corners at one
-/// place become one vertex; triangles without an area are left out where two of theirs do.
+/// Corners at one place become one vertex. Triangles of which two do are left out.
 vtkSmartPointer<vtkPolyData> read_stl(const std::filesystem::path& path) {
-    const std::string bytes = bytes_of(path);
-    // The free header of some binary files begins with "solid", too.
-    const bool may_be_text = bytes.find('\0') >= std::min<std::size_t>(bytes.size(), 84);
-    const std::string text = may_be_text ? plain_text(bytes) : "";
-    const std::size_t begin = begin_of_solid(text);
-    const auto corners =
-        begin < text.size() ? corners_in_text(text, begin) : corners_in_binary(bytes);
+    const auto corners = stl_corners(bytes_of(path));
     const vtkNew<vtkPoints> all, points;
     all->SetDataTypeToDouble();
     points->SetDataTypeToDouble();
-    for (const Corner& corner : corners) {
+    for (const auto& corner : corners) {
         if (!std::isfinite(corner[0] + corner[1] + corner[2])) {
             throw Failure("vertex " + std::to_string(all->GetNumberOfPoints()) +
                           " is not finite; export it again");

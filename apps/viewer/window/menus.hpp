@@ -29,12 +29,12 @@ struct ActionRow {
     /// With or without the state that a switch is switched to.
     struct Act : std::function<void(bool)> {
         template <class Function>
-        Act(Function act)
-            : function([act = std::move(act)](bool on) {
+        Act(Function call)
+            : function([call = std::move(call)](bool switched_on) {
                   if constexpr (std::is_invocable_v<Function, bool>) {
-                      act(on);
+                      call(switched_on);
                   } else {
-                      act();
+                      call();
                   }
               }) {}
     };
