@@ -5,7 +5,6 @@
 #include <QComboBox>
 #include <QLabel>
 #include <QRadioButton>
-#include <QTabWidget>
 #include <QToolButton>
 
 #include "palpate/io/mesh_file.hpp"
@@ -35,17 +34,6 @@ class DrawnAfternoon : public InWindow {
     void open(const QString& path) {
         type_in_dialog(Qt::Key_O, path);
         wait_until([&] { return !window_->files().loading(); });
-    }
-    /// The page of the panel with this widget.
-    template <class Widget>
-    Widget& on_page(const char* name) {
-        auto& widget = part<Widget>(name);
-        auto& tabs = part<QTabWidget>("tabs");
-        for (int i = 0; i < tabs.count(); ++i) {
-            if (tabs.widget(i)->isAncestorOf(&widget)) tabs.setCurrentIndex(i);
-        }
-        QApplication::processEvents();
-        return widget;
     }
     void touch(const QPoint& from_middle) {
         Scene& scene = window_->views().scene();

@@ -10,7 +10,6 @@
 #include <QMenu>
 #include <QPushButton>
 #include <QSettings>
-#include <QTabWidget>
 
 #include <map>
 
@@ -23,17 +22,6 @@ namespace {
 
 class Looking : public InWindow {
   protected:
-    /// The page of the panel with this widget, as a person would open it.
-    template <class Widget>
-    Widget& on_page(const char* name) {
-        auto& widget = part<Widget>(name);
-        auto& tabs = part<QTabWidget>("tabs");
-        for (int i = 0; i < tabs.count(); ++i) {
-            if (tabs.widget(i)->isAncestorOf(&widget)) tabs.setCurrentIndex(i);
-        }
-        QApplication::processEvents();
-        return widget;
-    }
     const Look& look() { return window_->panel().look_controls().look(); }
     QPoint middle(QWidget& widget) { return widget.rect().center(); }
 };

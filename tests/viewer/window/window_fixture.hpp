@@ -9,6 +9,7 @@
 #include <QLineEdit>
 #include <QMessageBox>
 #include <QSettings>
+#include <QTabWidget>
 #include <QTimer>
 #include <QWheelEvent>
 #include <QtTest>
@@ -184,6 +185,17 @@ class InWindow : public testing::Test {
         ASSERT_TRUE(press_until([&] { return force() > 0.3; }));
     }
 
+    /// A widget of the panel, with its page in front, as a person would open it.
+    template <class Widget>
+    Widget& on_page(const char* name) {
+        auto& widget = part<Widget>(name);
+        auto& tabs = part<QTabWidget>("tabs");
+        for (int i = 0; i < tabs.count(); ++i) {
+            if (tabs.widget(i)->isAncestorOf(&widget)) tabs.setCurrentIndex(i);
+        }
+        QApplication::processEvents();
+        return widget;
+    }
     /// Does what opens a file dialog, and gives a name there. The dialog has an event loop of its
     /// own: the name comes from within, again where it came before it was ready. It comes at once,
     /// because after each key Qt looks for completions in the whole folder.
