@@ -34,7 +34,7 @@ struct RunningRange {
             const T s = samples[i];
             low[i] = s < low[i] ? s : low[i];
             high[i] = s > high[i] ? s : high[i];
-            if constexpr (std::is_floating_point_v<T>) nought[i] += s - s;
+            if constexpr (std::is_floating_point_v<T>) nought[i] += T{} * s;
         }
     }
 };
