@@ -3,24 +3,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "devices/haply/protocol.hpp"
+#include "fuzz/require.hpp"
 
 namespace {
 
 using namespace palpate;
 using namespace palpate::devices::haply;
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
-
-bool one_line(std::string_view text) {
-    return text.find_first_of("\n\r\x1b") == std::string_view::npos;
-}
 
 void check(const ServiceState& state) {
     if (state.position) {
@@ -29,7 +21,8 @@ void check(const ServiceState& state) {
     const Mat3& turn = state.grip.orientation;
     require((turn * turn.transpose() - Mat3::Identity()).norm() < 1e-9);
     require(state.grip.buttons < 8);
-    require(one_line(state.model) && one_line(state.attached) && one_line(problem_of(state)));
+    require(is_one_line(state.model) && is_one_line(state.attached));
+    require(is_one_line(problem_of(state)));
     if (status_of(state) == DeviceStatus::ready) {
         require(state.position && state.calibrated.value() && state.ready.value() &&
                 state.started.value());

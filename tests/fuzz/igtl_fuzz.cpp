@@ -2,18 +2,14 @@
 // than its message, any STRING a printable line. The first byte chooses the meaning of the others.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
 #include "bridge/wire.hpp"
+#include "fuzz/require.hpp"
 
 namespace {
 
 using namespace palpate::bridge;
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 void take(const Received& received) {
     try {

@@ -5,22 +5,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
+#include "fuzz/require.hpp"
 #include "palpate/io/live_file.hpp"
 
 namespace {
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
-
-void require_one_line(std::string_view message) {
-    require(message.size() < 1000);
-    for (const char c : message) require(c >= ' ' && c <= '~');
-}
 
 /// All that a reader does with such a file.
 void read_frames(const std::string& path) {

@@ -4,18 +4,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <stdexcept>
 #include <string_view>
 
+#include "fuzz/require.hpp"
 #include "palpate/io/level.hpp"
 #include "palpate/io/raw_options.hpp"
 
 namespace {
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 std::array<std::string_view, 4> lines_of(std::string_view text) {
     std::array<std::string_view, 4> lines;

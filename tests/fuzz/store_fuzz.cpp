@@ -5,11 +5,11 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
+#include "fuzz/require.hpp"
 #include "io/chunked_image.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/formats/located_file.hpp"
@@ -21,15 +21,6 @@ using namespace palpate::stream;
 using Json = nlohmann::json;
 
 constexpr std::uint64_t most_bytes = 1 << 20;  // that an object may have; longer ones are not there
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
-
-void require_one_line(std::string_view message) {
-    require(!message.empty() && message.size() < 1000);
-    require(message.find('\n') == std::string_view::npos);
-}
 
 unsigned digit(char c) {
     const auto byte = static_cast<unsigned char>(c);

@@ -2,24 +2,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
+#include "fuzz/require.hpp"
 #include "palpate/io/trace.hpp"
 #include "palpate/io/trajectory.hpp"
-
-namespace {
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
-
-void require_one_line(std::string_view message) {
-    require(message.starts_with("text") && message.size() < 1000);
-    for (const char c : message) require(c >= ' ' && c <= '~');
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
@@ -32,12 +19,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             require(i == 0 || trajectory.time[i] > trajectory.time[i - 1]);
         }
     } catch (const palpate::io::InputError& error) {
-        require_one_line(error.what());
+        require_one_line(error.what(), "text");
     }
     try {
         for (const auto& row : palpate::io::parse_trace(text, "text")) require(row.tetrahedra >= 0);
     } catch (const palpate::io::InputError& error) {
-        require_one_line(error.what());
+        require_one_line(error.what(), "text");
     }
     return 0;
 }

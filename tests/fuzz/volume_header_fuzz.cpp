@@ -5,10 +5,10 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
+#include "fuzz/require.hpp"
 #include "io/helper/dicom_check.hpp"
 #include "io/helper/headers.hpp"
 
@@ -17,10 +17,6 @@ namespace {
 using namespace palpate::io;
 
 constexpr std::uint64_t memory_limit = 1 << 24;  // [bytes] a volume may have
-
-void require(bool promise) {
-    if (!promise) std::abort();
-}
 
 /// Reads the header and, as far as our own code does it, the samples.
 void read_volume(char format, const std::string& path) {
