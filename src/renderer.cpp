@@ -70,7 +70,7 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     input.enabled = settings.forces_on && device.armed;
     input.released = device.released;
     input.valid = counts(at.status);
-    input.constrained = (layers ? layers->pulls : at.mode == Mode::constrained) && !waits;
+    input.constrained = (layers ? layers->pulls : pulls(at)) && !waits;
     input.hand = device.position;
     if (settings.tool) {
         input.rotational_stiffness = settings.tool->turns() ? turning_of(settings) : 0;
@@ -449,7 +449,7 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
         apply_penetrability(penetrability, renderer.field, 1 / settings.transform.scale,
                             renderer.proxy, tick.proxy, observer);
         if (layers) {
-            layers->pulls = tick.proxy.mode == Mode::constrained;
+            layers->pulls = pulls(tick.proxy);
             layers->pull = (tick.proxy.scp - tick.proxy.hip) / settings.transform.scale;
         }
     }
