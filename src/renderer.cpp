@@ -280,10 +280,6 @@ Vec3 device_from_physical(const DeviceTransform& t, const Vec3& physical) {
     return t.rotation.transpose() * (physical - t.translation) / t.scale;
 }
 
-double scale_for_voxels_per_mm(const Geometry& geometry, double voxels) {
-    return voxels * geometry.spacing.minCoeff();
-}
-
 static void check_with_tool(const RendererSettings& s) {
     const char* wrong = s.layers                         ? "layers"
                         : s.penetrability.on             ? "penetrability"

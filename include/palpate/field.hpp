@@ -254,9 +254,6 @@ Field linear_field(Data&& data, Solid solid = Solid::above,
 double value_at(const Field& field, const Vec3& physical);
 /// Gradient there, in physical axes [data units / mm].
 Vec3 gradient_at(const Field& field, const Vec3& physical);
-/// Second derivatives there, in physical axes [data units / mm^2]; 0 for a linear field. On a wall
-/// of the lattice they are those of one of the tetrahedra that meet there.
-Mat3 hessian_at(const Field& field, const Vec3& physical);
 /// True if all samples within `radius` [mm] of a point [mm, physical], and those that the field
 /// needs between them, are in memory.
 bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept;
