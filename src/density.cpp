@@ -49,20 +49,4 @@ Vec3 gradient_at(const Field& field, const Vec3& physical) {
                                    gradient.cwiseQuotient(field.geometry().spacing));
 }
 
-Mat3 hessian_at(const Field& field, const Vec3& physical) {
-    const Vec3 index = index_from_physical(field.geometry(), physical);
-    if (is_far(index) || field.interpolation() == Interpolation::linear) return Mat3::Zero();
-    const auto [t, folded] = cubic::locate(index);
-    const cubic::Symmetric h = cubic::piece_of(t, field.around(t.cell)).at(folded).hessian;
-    // Column by column: the derivative of the gradient along each physical axis.
-    Mat3 hessian;
-    for (int a = 0; a < 3; ++a) {
-        const Vec3 along = grid_axes_from_physical(field.geometry(), Vec3::Unit(a));
-        const Vec3 change = h * fold(t, along.cwiseProduct(field.voxels_per_mm())) / cubic::scale;
-        hessian.col(a) = physical_from_grid_axes(
-            field.geometry(), unfold(t, change).cwiseProduct(field.voxels_per_mm()));
-    }
-    return hessian;
-}
-
 }  // namespace palpate

@@ -43,11 +43,6 @@ Vec3 index_of(const LatticePoint& point) {
     return index;
 }
 
-Vec3 difference(const LatticePoint& to, const LatticePoint& from) {
-    return (to.tetrahedron.cell - from.tetrahedron.cell).cast<double>() +
-           (unfold(to.tetrahedron, to.folded) - unfold(from.tetrahedron, from.folded));
-}
-
 Incident incident_tetrahedra(const LatticePoint& point) {
     Incident found;
     found.tetrahedra[found.count++] = point.tetrahedron;

@@ -70,7 +70,7 @@ ForceInput force_input(const Renderer& renderer, const DeviceState& device, cons
     input.enabled = settings.forces_on && device.armed;
     input.released = device.released;
     input.valid = counts(at.status);
-    input.constrained = (layers ? layers->pulls : at.mode == Mode::constrained) && !waits;
+    input.constrained = (layers ? layers->pulls : pulls(at)) && !waits;
     input.hand = device.position;
     if (settings.tool) {
         input.rotational_stiffness = settings.tool->turns() ? turning_of(settings) : 0;
@@ -280,10 +280,6 @@ Vec3 device_from_physical(const DeviceTransform& t, const Vec3& physical) {
     return t.rotation.transpose() * (physical - t.translation) / t.scale;
 }
 
-double scale_for_voxels_per_mm(const Geometry& geometry, double voxels) {
-    return voxels * geometry.spacing.minCoeff();
-}
-
 static void check_with_tool(const RendererSettings& s) {
     const char* wrong = s.layers                         ? "layers"
                         : s.penetrability.on             ? "penetrability"
@@ -449,7 +445,7 @@ Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer
         apply_penetrability(penetrability, renderer.field, 1 / settings.transform.scale,
                             renderer.proxy, tick.proxy, observer);
         if (layers) {
-            layers->pulls = tick.proxy.mode == Mode::constrained;
+            layers->pulls = pulls(tick.proxy);
             layers->pull = (tick.proxy.scp - tick.proxy.hip) / settings.transform.scale;
         }
     }

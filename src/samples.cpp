@@ -65,9 +65,6 @@ Samples::Samples(Volume volume) : minimum_(volume.minimum()), maximum_(volume.ma
     geometry_ = this->volume().geometry();
 }
 
-Samples::Samples(Volume volume, Bricks bricks, double minimum, double maximum)
-    : Samples(Samples(std::move(volume)).with(std::move(bricks), minimum, maximum)) {}
-
 Samples Samples::with(Bricks bricks, double minimum, double maximum) const {
     if (bricks.count() != Bricks(geometry().size).count()) {
         throw std::invalid_argument("the bricks do not fit the grid");

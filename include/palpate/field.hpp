@@ -104,10 +104,18 @@ class Field {
         Gathered gathered;
         return visit_around(at, visit, gathered);
     }
-    /// The same for a caller that reads one place several times: its samples are gathered once.
+    /// Samples that lie in one array: the first of them, and how far apart neighbours in y and z
+    /// are. Null: they do not.
+    struct Run {
+        const void* first = nullptr;
+        std::ptrdiff_t row = 0, slice = 0;
+        bool in_frame = false;  ///< of the moment, not in a brick
+    };
+    /// The same for a caller that reads one place several times: its samples are found once.
     struct Gathered {
         bool done = false;  ///< the caller resets it for another place
         int work = 0;       ///< of the slow reads so far (ProxySettings::step_budget)
+        Run run;            ///< where they lie, or null: they are gathered
         Neighbours samples;
     };
     template <class Visit>
@@ -135,13 +143,6 @@ class Field {
 
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
-    /// Samples that lie in one array: the first of them, and how far apart neighbours in y and z
-    /// are. Null: they do not.
-    struct Run {
-        const void* first = nullptr;
-        std::ptrdiff_t row = 0, slice = 0;
-        bool in_frame = false;  ///< of the moment, not in a brick
-    };
     /// For a block of count^3 samples, 2 or 3 along each axis: as they are stored, or null unless
     /// they are felt like that.
     template <int count>
@@ -227,16 +228,19 @@ inline auto Field::visit_around(const Index3& at, Visit&& visit, Gathered& kept)
             return visit(static_cast<const decltype(zero)*>(data_) + offset, row_, slice_);
         });
     }
-    const Index3 low(at[0] - 1, at[1] - 1, at[2] - 1);
-    if (!kept.done) kept.work += work_of_samples();
-    if (const Run run = kept.done ? Run{} : run_of<3>(low); run.first) {
+    if (!kept.done) {
+        const Index3 low(at[0] - 1, at[1] - 1, at[2] - 1);
+        kept.done = true;
+        kept.work += work_of_samples();
+        kept.run = run_of<3>(low);
+        if (!kept.run.first) kept.samples = gathered<3>(low);
+    }
+    if (const Run& run = kept.run; run.first) {
         return with_type(type_, [&](auto zero) {
             const auto* first = static_cast<const decltype(zero)*>(run.first);
             return visit(first + 1 + run.row + run.slice, run.row, run.slice);
         });
     }
-    if (!kept.done) kept.samples = gathered<3>(low);
-    kept.done = true;
     return visit(static_cast<const double*>(kept.samples.data()) + 13, std::ptrdiff_t{3},
                  std::ptrdiff_t{9});
 }
@@ -254,9 +258,6 @@ Field linear_field(Data&& data, Solid solid = Solid::above,
 double value_at(const Field& field, const Vec3& physical);
 /// Gradient there, in physical axes [data units / mm].
 Vec3 gradient_at(const Field& field, const Vec3& physical);
-/// Second derivatives there, in physical axes [data units / mm^2]; 0 for a linear field. On a wall
-/// of the lattice they are those of one of the tetrahedra that meet there.
-Mat3 hessian_at(const Field& field, const Vec3& physical);
 /// True if all samples within `radius` [mm] of a point [mm, physical], and those that the field
 /// needs between them, are in memory.
 bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept;

@@ -73,8 +73,6 @@ inline constexpr double farthest_index = 1e9;
 LatticePoint locate(const Vec3& index);
 /// The point in index space.
 Vec3 index_of(const LatticePoint& point);
-/// to - from in voxels, without the loss of digits that large coordinates cause.
-Vec3 difference(const LatticePoint& to, const LatticePoint& from);
 
 /// A vector from index axes into the frame's order and signs, and back.
 Vec3 fold(const Tetrahedron& tetrahedron, const Vec3& vector);

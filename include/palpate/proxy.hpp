@@ -127,6 +127,13 @@ struct ProxyUpdate {
     int level = 0;        ///< of detail of the samples at the SCP (reach.hpp)
 };
 
+/// True if the spring between SCP and HIP acts: at a surface, and wherever the budget has ended. If
+/// it acted at surfaces only, a hand could move away from a free SCP without work, and the spring
+/// would return that work at the next surface.
+inline bool pulls(const ProxyUpdate& update) {
+    return update.mode == Mode::constrained || update.status == UpdateStatus::out_of_budget;
+}
+
 /// A proxy method moves the proxy for one HIP [mm, physical]. All methods have this form, so a
 /// renderer can use any of them.
 using ProxyMethod = ProxyUpdate (*)(Proxy& proxy, const Field& field, const Vec3& hip,

@@ -19,8 +19,6 @@ struct DeviceTransform {
 };
 Vec3 physical_from_device(const DeviceTransform& transform, const Vec3& device);
 Vec3 device_from_physical(const DeviceTransform& transform, const Vec3& physical);
-/// Scale at which 1 mm of hand is `voxels` voxels (of the smallest spacing).
-double scale_for_voxels_per_mm(const Geometry& geometry, double voxels);
 
 /// The device's input to a tick.
 struct DeviceState {

@@ -156,9 +156,6 @@ class Samples {
   public:
     /// A volume without edits.
     explicit Samples(Volume volume);
-    /// A volume with edits; `minimum` and `maximum` [data units] bound the bricks' samples. Throws
-    /// std::invalid_argument if the bricks do not fit the grid.
-    Samples(Volume volume, Bricks bricks, double minimum, double maximum);
     /// A sequence, or the part of one that is in memory. With a `period` [s] it repeats: the last
     /// frame is followed by the first, a period after the first frame's own time.
     /// Throws std::invalid_argument unless there is a frame, all have the same geometry and sample

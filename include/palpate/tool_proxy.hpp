@@ -16,12 +16,10 @@ struct ToolSettings {
     /// A contact does not slip until the tangential pull exceeds the static coefficient times its
     /// pressure. Then it follows the hand with the dynamic one.
     Friction friction = {};
-    /// Largest number of rounds per update. Each finds a direction and moves along it. If an update
-    /// makes no progress before it is at rest, it also ends as out of budget.
-    int most_rounds = 60;
     /// Largest work per update, in the units of ProxySettings::step_budget. In addition, an update
-    /// may use one for each point of the tool, two during recovery. Later updates continue. A
-    /// thousand points take 0.6 ms at most. Faster loops need a smaller budget.
+    /// may look once at each point of the tool, twice during recovery, and gather the samples that
+    /// this needs. Later updates continue. A thousand points take 0.6 ms at most. Faster loops need
+    /// a smaller budget.
     int work_budget = 4096;
     /// [mm] Replaces the tool's own gyration. 0: the tool's own.
     double gyration = 0;
@@ -42,8 +40,8 @@ struct ToolUpdate {
     Pose hand;         ///< that of the device
     Pose proxy;        ///< the same bit for bit if it was reached
     int contacts = 0;  ///< how many points hold the proxy
-    int rounds = 0;
-    int work = 0;  ///< of the work budget
+    int rounds = 0;    ///< each finds a direction and moves along it
+    int work = 0;      ///< of the work budget
     /// [mm] How far from its pose recovery has searched for free space for the reference point.
     double searched = 0;
 };

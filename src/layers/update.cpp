@@ -147,7 +147,8 @@ class LayersTick {
         settings.step_budget -= before.work;
         if (before.work > 0 && settings.step_budget < 1) {
             update_.status = UpdateStatus::out_of_budget;
-            return;
+            update_.hip = target_of(hand);
+            return stretch();
         }
         update_ = method(tissues_.proxy(), tissues_.field(), target_of(hand), settings, observer_);
         update_.tetrahedra += before.tetrahedra;
@@ -157,9 +158,13 @@ class LayersTick {
         tissues_.look(update_);
         state_.touched = tissues_.touched(update_);
         if (came_to_channel() && tissues_.open(update_, update_.scp)) return move_to(hand);
-        const bool touching = update_.mode == Mode::constrained;
-        state_.spring.touching &= touching;
-        if (!touching) return;
+        stretch();
+    }
+
+    /// The spring, now that SCP and HIP are where they are.
+    void stretch() {
+        state_.spring.touching &= pulls(update_);
+        if (!pulls(update_)) return;
         distance_ = (update_.scp - update_.hip).norm() * input_.device_per_volume;
         spring_force_ = state_.spring.move(distance_, force().stiffness);
     }
@@ -242,9 +247,9 @@ class LayersTick {
         r.felt = felt_;
         if (!moved()) return r;
         r.force = force();
-        const bool touching = update_.mode == Mode::constrained, needle = state_.needle.inserted;
+        const bool pulled = pulls(update_), needle = state_.needle.inserted;
         Vec3 force = Vec3::Zero();
-        if (touching && distance_ > 0) {
+        if (pulled && distance_ > 0) {
             const Vec3 pull = (update_.scp - target_of(input_.hip)) * input_.device_per_volume;
             force = pull * (spring_force_ / distance_);
         }
@@ -259,7 +264,7 @@ class LayersTick {
             const double limit = std::min(input_.force.limit, input_.limits.maximum_force);
             force = needle_force(force, limit * stiffness / r.force.stiffness);
         }
-        r.pulls = touching || needle;
+        r.pulls = pulled || needle;
         if (stiffness > 0) r.pull = force / stiffness;
         state_.moved = true;
         state_.hip = input_.hip;

@@ -26,7 +26,8 @@ constexpr std::ptrdiff_t block_size = brick_size + 2;
 constexpr std::array<std::ptrdiff_t, 3> block_stride{1, block_size, block_size* block_size};
 using Block = std::array<double, std::size_t{block_size * block_size * block_size}>;
 
-Block block_of(const Field& field, const Index3& brick) {
+/// Counts in `gathered` what its samples cost.
+Block block_of(const Field& field, const Index3& brick, Field::Gathered& gathered) {
     Block block;
     for (int i = 0; i < 8; ++i) {
         // 27 samples each.
@@ -34,7 +35,7 @@ Block block_of(const Field& field, const Index3& brick) {
         const Index3 at = brick * brick_size + corner;
         double* to =
             block.data() + corner[0] + block_stride[1] * corner[1] + block_stride[2] * corner[2];
-        field.visit_around(at, [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
+        const auto copy = [&](const auto* centre, std::ptrdiff_t row, std::ptrdiff_t slice) {
             for (std::ptrdiff_t z = 0; z < 3; ++z) {
                 for (std::ptrdiff_t y = 0; y < 3; ++y) {
                     const auto* from = centre + (z - 1) * slice + (y - 1) * row - 1;
@@ -42,7 +43,9 @@ Block block_of(const Field& field, const Index3& brick) {
                     for (int x = 0; x < 3; ++x) line[x] = from[x];
                 }
             }
-        });
+        };
+        gathered.done = false;
+        field.visit_around(at, copy, gathered);
     }
     return block;
 }
@@ -86,19 +89,21 @@ bool renew(Surroundings& known, const Field& field) {
     return true;
 }
 
-Around::Around(const Field& field, double isovalue, Surroundings& surroundings, int work)
+Around::Around(const Field& field, double isovalue, Surroundings& surroundings, int work, int looks)
     : field_(field),
       level_(field.within_reach(isovalue - field.offset())),
       known_(surroundings),
-      work_(work),
+      work_(work + looks),
+      looks_(looks),
       shortest_(field.geometry().spacing.minCoeff()),
       origin_(field.geometry().origin),
       to_index_(field.voxels_per_mm().asDiagonal() * field.geometry().direction.transpose()) {}
 
 Around::Expansion Around::expand(const Vec3& physical) {
-    work_ -= 2;
     CubicSite at = site(index(physical));
     const cubic::Expansion& here = at.here();
+    work_ -= 2;
+    gather(at.take_gathering());
     const Tetrahedron& t = at.point.tetrahedron;
     // Columns: how folded axes lie in physical space.
     Mat3 fold_to_physical;
@@ -116,8 +121,11 @@ Around::Expansion Around::expand(const Vec3& physical) {
 }
 
 double Around::excess(const Vec3& physical) {
+    CubicSite at = site(index(physical));
+    const double excess = at.excess() / cubic::scale;
     --work_;
-    return site(index(physical)).excess() / cubic::scale;
+    gather(at.take_gathering());
+    return excess;
 }
 
 double Around::free_part(const Vec3& from, const Vec3& to, double level) {
@@ -144,8 +152,18 @@ struct Around::Course {
         if (t < 1) return t * exit.t;
         return std::nullopt;
     }
-    static void crossed(CubicSite& at, unsigned wall) { at.cross(wall); }
+    void crossed(CubicSite& at, unsigned wall) {
+        at.cross(wall);
+        around.gather(at.take_gathering());
+    }
 };
+
+/// Counts what the samples of a cube have cost beside.
+void Around::gather(int work) {
+    const int of_looks = std::min(work, looks_);
+    looks_ -= of_looks;
+    work_ -= work - of_looks;
+}
 
 /// Which part of a way is free.
 double Around::walk(CubicSite& at, const Vec3& displacement, double level_in_ranges) {
@@ -156,7 +174,9 @@ double Around::walk(CubicSite& at, const Vec3& displacement, double level_in_ran
     }
     walked_ = Index3::Constant(std::numeric_limits<int>::min());
     const Vec3 direction = fold(at.point.tetrahedron, displacement);
-    return 1 - walk_straight(at, direction, Course{*this, level}).left;
+    const double left = walk_straight(at, direction, Course{*this, level}).left;
+    gather(at.take_gathering());
+    return 1 - left;
 }
 
 /// Which part of a way, of which a part is left, lies outside the grid or in a brick where nothing
@@ -187,11 +207,13 @@ double Around::empty_part(const CubicSite& at, const Vec3& direction, double lef
 Surroundings::Brick& Around::brick_at(const Index3& at) {
     Surroundings::Brick& brick = known_.bricks[place_of(at, Surroundings::brick_count)];
     if (brick.epoch == known_.epoch && brick.at == at) return brick;
-    work_ -= 5;
     brick.at = at;
     brick.epoch = known_.epoch;
     brick.knows_wide = false;
-    brick.own = bounds_of(block_of(field_, at), field_.sign());
+    Field::Gathered gathered;
+    brick.own = bounds_of(block_of(field_, at, gathered), field_.sign());
+    work_ -= 5;
+    gather(gathered.work);
     brick.own.slope = brick.own.slope.cwiseProduct(field_.voxels_per_mm());
     return brick;
 }
@@ -232,8 +254,9 @@ Around::Probe Around::probe(const Vec3& from, const Vec3& to) {
     CubicSite here = site(at);
     double clearance = border;
     if (!is_empty) {
-        --work_;
         const double room = blocked * range() - here.excess() / cubic::scale;
+        --work_;
+        gather(here.take_gathering());
         const double steepest = std::sqrt(dot(bounds.slope, bounds.slope));
         clearance = room > 0 ? std::min(border, room / steepest * (1 - 1e-9)) : 0;
         if (squared < clearance * clearance) return {1, clearance};

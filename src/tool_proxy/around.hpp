@@ -10,7 +10,9 @@ namespace palpate::tool {
 /// The field as a tool meets it: levels, units, and the work that is left.
 class Around {
   public:
-    Around(const Field& field, double isovalue, Surroundings& surroundings, int work);
+    /// `work` that it may do, besides so many looks at points, whatever their samples cost.
+    Around(const Field& field, double isovalue, Surroundings& surroundings, int work,
+           int looks = 0);
 
     /// Levels of the excess in parts of the range: where supports are held, where a chord counts as
     /// blocked, what a pose is verified against, and what counts as inside.
@@ -56,11 +58,13 @@ class Around {
     Surroundings::Brick& brick_at(const Index3& at);
     Surroundings::Bounds wide_bounds(const Index3& at);
     double walk(CubicSite& at, const Vec3& displacement, double level_in_ranges);
+    void gather(int work);
 
     const Field& field_;
     double level_;  // less the field's offset
     Surroundings& known_;
     int work_;
+    int looks_;  ///< whose samples are not counted
     double shortest_;
     Vec3 origin_;
     Mat3 to_index_;

@@ -23,6 +23,7 @@ constexpr double sagitta = 1e-3;
 /// Evaluations without pressure after which a contact is forgotten.
 constexpr int most_idle = 12;
 constexpr int most_failures = 8;
+constexpr int most_rounds = 60;
 /// Of a motion with nothing near [voxel].
 constexpr double longest_stride = 64;
 /// Slope of the field [range / voxel] below which its normal says nothing.
@@ -64,7 +65,8 @@ class Rounds {
           voxel_(around.shortest()),
           most_angle_(std::min(3.0, std::sqrt(8 * sagitta * voxel_ / reach_))) {}
 
-    UpdateStatus run(int most_rounds, int& rounds) {
+    /// Also ends as out of budget if it makes no progress before it is at rest.
+    UpdateStatus run(int& rounds) {
         int failures = 0;
         for (rounds = 0; rounds < most_rounds && !around_.is_exhausted(); ++rounds) {
             look();
@@ -439,8 +441,7 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
     // Each point is looked at once; where it is pushed out, before and after.
     const int looks =
         (others || kept.inside ? 2 : 1) * static_cast<int>(proxy.tool().points().size());
-    const int budget = settings.work_budget + looks;
-    tool::Around around(field, proxy.isovalue, kept.surroundings, budget);
+    tool::Around around(field, proxy.isovalue, kept.surroundings, settings.work_budget, looks);
     if (others) kept.recovery = {};
     if (!proxy.placed) {
         proxy.pose = result.hand;
@@ -462,14 +463,14 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
     proxy.placed = true;
     if (!kept.inside) {
         tool::Rounds rounds(proxy, around, result.hand, settings, observer);
-        result.status = rounds.run(settings.most_rounds, result.rounds);
+        result.status = rounds.run(result.rounds);
     } else {
         proxy.mode = Mode::constrained;
         result.status = UpdateStatus::recovering;
     }
     result.mode = proxy.mode;
     result.proxy = proxy.pose;
-    result.work = budget - around.work_left();
+    result.work = settings.work_budget + looks - around.work_left();
     for (int i = 0; i < proxy.contact_count; ++i) {
         result.contacts += proxy.contacts[i].pressure > 0;
     }

@@ -67,22 +67,12 @@ TEST(Renderer, transform_goes_there_and_back) {
     }
 }
 
-TEST(Renderer, a_millimetre_of_the_hand_is_as_many_voxels_as_asked_for) {
-    const Geometry geometry = anisotropic_field().field.geometry();
-    for (const double voxels : {0.5, 3.0, 0.01}) {
-        const DeviceTransform transform = oblique(scale_for_voxels_per_mm(geometry, voxels));
-        const Vec3 a = physical_from_device(transform, Vec3(10, 20, 30));
-        const Vec3 b = physical_from_device(transform, Vec3(10, 21, 30));
-        EXPECT_NEAR((a - b).norm() / geometry.spacing.minCoeff(), voxels, 1e-9);
-    }
-}
-
 TEST(Renderer, force_is_equation_4_in_device_millimetres_and_device_axes) {
     const Field field = ramp_field();
     for (const double voxels : {0.5, 1.0, 3.0, 0.4}) {
         RendererSettings settings = at_once();
         settings.force.stiffness = 0.7;
-        settings.transform = oblique(scale_for_voxels_per_mm(field.geometry(), voxels));
+        settings.transform = oblique(voxels * field.geometry().spacing.minCoeff());
         Renderer renderer = make_renderer(field, 30, settings);
         const auto at = [&](double t, double z) {
             const Vec3 device = device_from_physical(settings.transform, at_depth(z));

@@ -162,8 +162,8 @@ TEST(Samples, flattened_without_edits_is_the_volume_itself) {
 
 TEST(Samples, bricks_that_do_not_fit_the_grid_are_refused) {
     const Volume volume = noise_volume<std::uint8_t>(grid(cube(33)), 1, 0, 256);
-    EXPECT_NO_THROW(Samples(volume, Bricks(volume.geometry().size), 0, 255));
-    EXPECT_THROW(Samples(volume, Bricks(cube(32)), 0, 255), std::invalid_argument);
+    EXPECT_NO_THROW((void)Samples(volume).with(Bricks(volume.geometry().size), 0, 255));
+    EXPECT_THROW((void)Samples(volume).with(Bricks(cube(32)), 0, 255), std::invalid_argument);
     const Bricks::Change beyond{{3, 0, 0}, {}};
     EXPECT_THROW((void)Bricks(cube(33)).with({&beyond, 1}), std::out_of_range);
 }

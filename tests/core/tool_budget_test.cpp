@@ -57,5 +57,47 @@ TEST(ToolBudget, looks_in_noise_no_farther_than_it_can_go) {
     EXPECT_LT(work / rounds, 3 * double(tool->points().size()));
 }
 
+TEST(ToolBudget, counts_the_samples_that_it_gathers) {
+    const Volume volume = support::noise_field().field.volume();
+    const auto tool = std::make_shared<const Tool>(box_tool({4, 3, 2}, 1));
+    const auto run = [&](const Field& field) {
+        ToolProxy proxy(tool);
+        proxy.isovalue = 170;
+        support::Hand hand(field.geometry(), 6);
+        std::pair<double, Vec3> result{0, Vec3::Zero()};
+        for (int i = 0; i < support::scaled(400); ++i) {
+            const Quaternion turn = turned(Quaternion::Identity(), {0, 0, 0.01 * (i % 300)});
+            const ToolUpdate r =
+                update_tool(proxy, field, {hand.next(), turn}, {.work_budget = 1'000'000});
+            result.first += r.work;
+            result.second += r.proxy.position;
+        }
+        return result;
+    };
+    const auto plain = run(Field(volume)), gathered = run(support::between_alike(volume));
+    EXPECT_EQ(plain.second, gathered.second) << "the same samples";
+    EXPECT_GT(gathered.first, 1.2 * plain.first);
+}
+
+/// Each update may look at every point, whatever its samples cost: otherwise a tool of many points
+/// could never tell whether it is out.
+TEST(ToolBudget, lets_a_tool_of_many_points_out_of_the_solid_where_samples_are_gathered) {
+    const Volume slope = support::volume_of<float>(support::grid(support::cube(24)),
+                                                   [](const Index3& i) { return 12 - i[2]; });
+    const Field field = support::between_alike(slope);
+    const auto tool = std::make_shared<const Tool>(box_tool({6, 6, 3}, 0.25));
+    ASSERT_GT(tool->points().size(), 2000U);
+    ToolProxy proxy(tool);
+    ToolUpdate r;
+    int recovering = 0;
+    for (int i = 0; i < 40; ++i) {
+        r = update_tool(proxy, field, {{12, 12, 11}, Quaternion::Identity()}, {.work_budget = 400});
+        recovering += r.status == UpdateStatus::recovering;
+    }
+    EXPECT_GT(recovering, 0);
+    EXPECT_NE(r.status, UpdateStatus::recovering);
+    EXPECT_NEAR(r.proxy.position[2], 13.5, 1e-4);
+}
+
 }  // namespace
 }  // namespace palpate
