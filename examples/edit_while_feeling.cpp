@@ -25,13 +25,12 @@ class RestingHand : public Device {
     void stop() noexcept override {}
 };
 
+/// The force once nothing holds it back: the ramp after a start or a pause, the rate limit.
 double force_after(const Servo& servo, std::uint64_t version) {
     for (;;) {
         const auto now = servo.snapshot();
-        // The ramp at the start takes a quarter of a second; later changes keep the rate limit.
-        if (now && now->session.version == version && now->session.tick.time > 0.4) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-            return servo.snapshot()->session.tick.force.norm();
+        if (now && now->session.version == version && now->session.tick.force_flags == 0) {
+            return now->session.tick.force.norm();
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "io/helper/in_process.hpp"
 #include "io/helper/readers.hpp"
 #include "io/process/io_helper.hpp"
 #include "io/raw_file.hpp"
@@ -13,33 +14,15 @@
 namespace palpate::io {
 namespace {
 
-/// What the readers share with their caller; elsewhere a process lies between the two.
-struct Reading {
-    std::shared_ptr<std::byte> samples;
-    Progress progress;
-};
-thread_local Reading reading;
-
-Result read_with_header(const std::filesystem::path& path, const Request& request) {
-    const bool is_nifti = header_reader(path) == &nifti_header;
-    if (header_reader(path) && !is_nifti) return read_by_header(request);
+Result read_with_header(const Request& request) {
+    ReadHeader* const reader = header_reader(request.path);
+    if (reader && reader != &nifti_header) return read_by_header(request);
     throw Failure(
         "Palpate for Windows reads NRRD, MetaImage and raw volumes; convert it to one of them, for "
         "example with `palpate convert` on Linux");
 }
 
 }  // namespace
-
-std::span<std::byte> shared_samples(std::uint64_t bytes) {
-    reading.samples = fresh_memory(bytes);
-    return {reading.samples.get(), bytes};
-}
-
-void say_progress(double fraction) {
-    if (reading.progress) reading.progress(fraction);
-}
-
-void say_doing(const std::string&) {}
 
 VolumeFile read_volume(const std::filesystem::path& path, const ReadOptions& options) {
     check_readable(path);
@@ -56,27 +39,7 @@ VolumeFile read_volume(const std::filesystem::path& path, const ReadOptions& opt
     request.time_step = options.time_step;
     request.memory_limit = limited.memory_limit_bytes;
     request.grid = {options.spacing, options.orientation};
-    reading = {nullptr, options.progress};
-    try {
-        Result result = read_with_header(path, request);
-        const auto bytes =
-            static_cast<std::size_t>(sample_count(result.geometry)) * size_of(result.type);
-        const Reading done = std::move(reading);
-        reading = {};
-        return {Volume(result.geometry, result.type, done.samples, bytes),
-                result.format,
-                result.time_steps,
-                std::move(result.notes),
-                result.times.interval,
-                result.times.first,
-                result.values};
-    } catch (const Failure& e) {
-        reading = {};
-        throw InputError(path.string() + ": " + e.what());
-    } catch (const std::bad_alloc&) {
-        reading = {};
-        throw InputError(path.string() + ": not enough memory; crop or downsample the volume");
-    }
+    return read_in_process(request, options.progress, &read_with_header);
 }
 
 void write_volume(const Volume& volume, const std::filesystem::path& path,

@@ -76,9 +76,7 @@ void RenderOptions::add_to(CLI::App& command) {
         ->check(above_zero());
     add_force_to(command);
     command
-        .add_option("--rate", given.rate,
-                    "Rate of the loop [Hz] (default: 1000, or 250 in live sessions with a device "
-                    "that renders no force)")
+        .add_option("--rate", given.rate, "Updates of proxy and force per second (default: 1000)")
         ->type_name("FLOAT");
     command.add_option("--scale", given.scale, "Millimetres of volume per millimetre of hand")
         ->default_str("1");

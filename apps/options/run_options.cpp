@@ -46,6 +46,9 @@ void RunOptions::add_to(CLI::App& command, For purpose) {
     add_field_options(command, given.field);
     render.given.force.start_below = run::live_start_below;
     render.add_to(command);
+    command.get_option("--rate")->description(
+        "Updates of proxy and force per second (default: 1000, or 250 with a device that renders "
+        "no force)");
     command.get_option("--scale")->default_str("fits the device");
     command.get_option("--force-limit")->default_str("the device's");
     command.get_option("--stiffness")->default_str("0.5, or what the device is rated for");

@@ -18,6 +18,8 @@ export interface Ready extends Required<Geometry> {
 
 /** Called with the messages of the worker. */
 export interface Hearing {
+  /** The first one: what load() takes in this page. */
+  module?(compiled: WebAssembly.Module): void;
   ready?(made: Ready): void;
   /** Around 60 times a second. */
   snapshot?(now: Snapshot): void;

@@ -6,7 +6,7 @@ export const endedBy = (why, remedy) => `the session has ended, and there is no 
 export const withoutForce = (snapshot) => ({ ...snapshot, force: [0, 0, 0], constrained: false });
 
 export class Hand {
-  /** `hear` has a function for each message of the worker: ready, snapshot, surface, edited, recording,
+  /** `hear` has a function for each message of the worker: module, ready, snapshot, surface, edited, recording,
    * report, error. */
   constructor(hear) {
     this.worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "bindings/web/page_channel.hpp"
+#include "bindings/web/reading.hpp"
 #include "bindings/web/session.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "palpate/surface.hpp"
 
@@ -86,6 +88,37 @@ val scene(const std::string& spec) {
         result.set("description", made.description);
         result.set("volume", std::make_shared<WebVolume>(std::move(made.volume)));
         return result;
+    });
+}
+
+val about_packed(const Packed& packed) {
+    val part = val::object(), result = val::object();
+    part.set("file", packed.file);
+    part.set("offset", static_cast<double>(packed.offset));
+    part.set("length", static_cast<double>(packed.length));
+    part.set("unpacked", packed.unpacked);
+    result.set("packed", part);
+    return result;
+}
+
+val about_read(io::VolumeFile made) {
+    val result = val::object(), notes = val::array();
+    for (const std::string& note : made.notes) notes.call<void>("push", io::one_line(note));
+    result.set("notes", notes);
+    result.set("format", made.format);
+    result.set("oriented", made.volume.geometry().oriented);
+    result.set("volume", std::make_shared<WebVolume>(std::move(made.volume)));
+    return result;
+}
+
+/// The volume of a file, or `packed`: a part that has to be unpacked before.
+val read_file(const std::string& file) {
+    return guarded([&] {
+        try {
+            return about_read(read(file));
+        } catch (const Packed& packed) {
+            return about_packed(packed);
+        }
     });
 }
 
@@ -215,6 +248,7 @@ EMSCRIPTEN_BINDINGS(palpate) {
         .function("description", &description_of);
     emscripten::function("newVolume", &new_volume);
     emscripten::function("scene", &scene);
+    emscripten::function("read", &read_file);
     emscripten::class_<WebSurface>("Surface")
         .smart_ptr<std::shared_ptr<WebSurface>>("shared_ptr<Surface>")
         .function("next", &next_part)

@@ -155,7 +155,24 @@ export interface LineOfDevice {
   close(): void;
 }
 
+/** A file and its name, or its path in a folder. */
+export interface GivenFile { path: string; bytes: Uint8Array }
+export interface ReadVolume {
+  volume: Volume;
+  /** "NRRD", "MetaImage", "NIfTI" or "Analyze". */
+  format: string;
+  /** False if the file does not say how its axes lie in the body. */
+  oriented: boolean;
+  /** What was chosen, assumed and converted, one sentence each. */
+  notes: string[];
+}
+
 export interface Palpate {
+  /** For load() in another page or Worker of the same origin. */
+  readonly module: WebAssembly.Module;
+  /** Reads NRRD, MetaImage or NIfTI with the native readers. `files` are all that the format takes: for example a header
+   * and its samples, of which `path` names the header. The first one if it is left out. */
+  read(files: GivenFile[], path?: string): Promise<ReadVolume>;
   volume(samples: Samples, geometry: Geometry): Volume;
   /** A synthetic volume, for example "sphere:64x64x64". */
   scene(specification: string): { volume: Volume; isovalue: number; description: string };
@@ -165,4 +182,4 @@ export interface Palpate {
 
 export function joined(parts: Surface[]): Surface;
 
-export function load(wasm?: ArrayBuffer | Uint8Array): Promise<Palpate>;
+export function load(wasm?: ArrayBuffer | Uint8Array | WebAssembly.Module): Promise<Palpate>;

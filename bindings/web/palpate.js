@@ -1,4 +1,5 @@
 // Palpate for the browser and for Node: volumes, and sessions that feel them. Types: palpate.d.ts.
+import { inflated } from "./inflated.js";
 import createCore from "./palpate_core.js";
 
 const snapshotNames = [
@@ -167,9 +168,27 @@ export function joined(parts) {
   return result;
 }
 
+/** Of gzip or zlib, with their checksums. */
+function unpackedPart(bytes, name) {
+  return inflated(bytes, bytes[0] === 0x1f ? "gzip" : "deflate").catch(({ message }) => {
+    throw new Error(`${name}: ${message}`);
+  });
+}
+
 class Palpate {
-  constructor(core) {
-    this.core = core;
+  constructor(core, module) {
+    Object.assign(this, { core, module });
+  }
+  /** The core reads files in one go, or says what has to be unpacked before. */
+  async read(files, path = files[0].path) {
+    const all = new Map(files.map(({ path: at, bytes }) => [at, bytes]));
+    for (;;) {
+      this.core.givenFiles.all = all;
+      const { packed, volume, ...about } = this.core.read(path);
+      if (!packed) return { volume: new Volume(volume), ...about };
+      const bytes = all.get(packed.file).subarray(packed.offset, packed.offset + packed.length);
+      all.set(packed.unpacked, await unpackedPart(bytes, packed.file));
+    }
   }
   volume(samples, { size, spacing = [1, 1, 1], origin = [0, 0, 0], direction = [1, 0, 0, 0, 1, 0, 0, 0, 1] }) {
     const type = sampleTypes.get(samples.constructor);
@@ -186,7 +205,15 @@ class Palpate {
   }
 }
 
-/** Loads the module; `wasm` are its bytes, if they are not beside this file. */
+/** Loads the module; `wasm` are its bytes, if they are not beside this file, or the `module` of another Palpate. */
 export async function load(wasm) {
-  return new Palpate(await createCore({ wasmBinary: wasm ?? (await readCore()) }));
+  const module = wasm instanceof WebAssembly.Module ? wasm : await WebAssembly.compile(wasm ?? (await readCore()));
+  const core = await new Promise((done, fail) => {
+    const instantiateWasm = (imports, use) => {
+      WebAssembly.instantiate(module, imports).then(use).catch(fail);
+      return {};
+    };
+    createCore({ instantiateWasm }).then(done, fail);
+  });
+  return new Palpate(core, module);
 }

@@ -13,6 +13,7 @@ const sleeper = globalThis.crossOriginIsolated ? new Int32Array(new SharedArrayB
 const turns = new MessageChannel();
 
 const loaded = load();
+loaded.then(({ module }) => post("module", module), ({ message }) => post("error", message)); // the page reads files with it
 let session;
 let line = null; // to the session's device
 let newest = null; // snapshot

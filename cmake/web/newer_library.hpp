@@ -98,6 +98,10 @@ auto find(Range&& range, const Value& value) {
     return std::find(std::begin(range), std::end(range), value);
 }
 
+template <class Range, class Test>
+auto find_if(Range&& range, Test test) {
+    return std::find_if(std::begin(range), std::end(range), test);
+}
 template <class Range, class Value, class Key>
 auto find(Range&& range, const Value& value, Key key) {
     return std::find_if(std::begin(range), std::end(range),

@@ -35,7 +35,7 @@ MAY_SEE = {
     "devices": ("include", "io", "scenes"),
     "run": ("include", "io", "baselines", "scenes", "filters", "stream", "devices"),
     "bindings/c": ("include", "io", "devices", "run"),
-    "bindings/web": ("include", "io", "scenes", "devices"),
+    "bindings/web": ("include", "io", "io/helper", "scenes", "devices"),
     "pictures": ("include", "io", "io/helper"),
     "pictures/vtk": ("include",),
     "pictures/helper": ("include", "io", "io/helper", "pictures", "pictures/vtk"),

@@ -156,6 +156,9 @@ def test_other_work_that_looks_the_same_is_not_continued(client, tmp_path):
 
 
 def test_what_is_there_and_what_cannot_be_is_refused_in_a_line(client, tmp_path):
+    def started():
+        pytest.fail("a cluster was started for what cannot be written")
+
     source, out = ball(tmp_path), tmp_path / "out.zarr"
     with pytest.raises(ValueError, match="multiple of chunk"):
         convert(client, source, str(out), chunk=16, block=40)
@@ -166,11 +169,11 @@ def test_what_is_there_and_what_cannot_be_is_refused_in_a_line(client, tmp_path)
     with pytest.raises(palpate.InputError, match="does not exist"):
         convert(client, str(tmp_path / "gone.nrrd"), str(out))
     with pytest.raises(palpate.OutputError, match="choose another folder"):
-        convert(client, source, str(tmp_path / "no" / "out.zarr"))
+        convert(started, source, str(tmp_path / "no" / "out.zarr"))
     assert [p.name for p in tmp_path.iterdir()] == ["ball.nrrd"]
     out.mkdir()
     with pytest.raises(palpate.OutputError, match="is there already"):
-        convert(client, source, str(out))
+        convert(started, source, str(out))
 
 
 def test_a_worker_of_another_version_is_refused(client, tmp_path):

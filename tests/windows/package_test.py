@@ -48,8 +48,8 @@ def main(folder):
     # Static: MinGW's own libraries are not on Windows either.
     run(CC, "-std=c99", "-static", "-I", top / "include", top / "examples/game_loop.c",
         top / "lib/libpalpate-c.dll.a", "-o", binaries / "game_loop.exe", cwd=folder)
-    expect(r"force (0\.[1-9]|[1-9])", run(WINE, "game_loop.exe", "synthetic:torus",
-                                          "simulated:touchx,hand=hold,depth=4", "2", cwd=binaries))
+    expect(r"felt for 30 of", run(WINE, "game_loop.exe", "synthetic:torus",
+                                  "simulated:touchx,hand=hold,depth=4,seconds=600", "30", cwd=binaries))
 
     palpate = [WINE, "palpate.exe"]
     expect("openhaptics", run(*palpate, "devices", cwd=binaries))

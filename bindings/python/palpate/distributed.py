@@ -377,8 +377,8 @@ def convert(client: Union["Client", Callable[[], "Client"]], source: str, out: s
     """Writes a level of a store as multiscale OME-Zarr, on the workers of a Dask client: the files of
     `palpate convert` with the same options, byte for byte.
 
-    client: may be a function that starts one, which is called when source and settings were found
-    good. source: what open_store() opens, with `options` for it (raw, spacing, channel, time).
+    client: may be a function that starts one, which is called when source, settings and output were
+    found good. source: what open_store() opens, with `options` for it (raw, spacing, channel, time).
     dequantize: rounds (40; 0: none), smooth: passes, prefilter: sharpened(); in this order. block:
     samples of a piece of work along each axis, a multiple of chunk; a task takes about 12 bytes for
     each of (block + 64)^3 samples. progress(stage, done, all) may raise to stop; the next call with the same
@@ -399,6 +399,7 @@ def convert(client: Union["Client", Callable[[], "Client"]], source: str, out: s
     job = _Job(source, pickle.dumps(options or {}), f"{seen(source)} {content}", level, _result(out), _work(out), kind,
                smooth, prefilter, chunk, compression, ome_version)
     job.image("level-0")  # refuses a wrong format before anything is made
+    _palpate._check_new_folder(out)
     client = client() if callable(client) else client
     check_workers(client)
     with _growing(out, json.dumps([__version__, repr(job), dequantize, block])):

@@ -1,5 +1,6 @@
 // Unpacks the chunks of Zarr arrays: gzip, zlib, lz4, zstd and blosc. Bytes in, bytes out, `most` of them.
-import { inflated, refuse } from "./files.js";
+import { inflated } from "../inflated.js";
+import { refuse } from "./files.js";
 
 const damaged = (what) => refuse(what, "copy or download it again");
 const bounded = (size, most) => (size <= most ? size : damaged(`a chunk unpacks to ${size} bytes, more than its array has in one`));

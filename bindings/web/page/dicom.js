@@ -1,6 +1,7 @@
 // Reads the slices of a DICOM series, or a file of several frames, into samples and a geometry in LPS. What is not
 // known to be read as the native program reads it is refused; so are compressed pixels, which browsers cannot unpack.
-import { countOf, geometryOf, inflated, isDicom, refuse } from "./files.js";
+import { inflated } from "../inflated.js";
+import { countOf, geometryOf, isDicom, refuse } from "./files.js";
 
 const syntaxes = {
   "1.2.840.10008.1.2": {}, "1.2.840.10008.1.2.1": { explicit: true }, "1.2.840.10008.1.2.2": { explicit: true, big: true },
@@ -14,17 +15,18 @@ const tags = {
   storage: "00080016", imageType: "00080008", modality: "00080060", description: "0008103e", seriesNumber: "00200011", series: "0020000e",
   echoTime: "00180081", echo: "00180086", bValue: "00189087", between: "00180088", thickness: "00180050", position: "00200032", orientation: "00200037",
   samples: "00280002", colours: "00280004", frames: "00280008", rows: "00280010", columns: "00280011", spacing: "00280030", allocated: "00280100",
-  stored: "00280101", highBit: "00280102", signed: "00280103", intercept: "00281052", slope: "00281053", pixels: "7fe00010",
+  aspect: "00280034", stack: "00209056", frameType: "00089007", frameEcho: "00189082", stored: "00280101", highBit: "00280102", signed: "00280103", intercept: "00281052", slope: "00281053", pixels: "7fe00010",
   shared: "52009229", each: "52009230",
 };
 /** Functional groups of frames, and what of them is taken. */
 const macros = {
   "00289110": [tags.spacing, tags.between, tags.thickness], "00209113": [tags.position], "00209116": [tags.orientation],
-  "00289145": [tags.intercept, tags.slope],
+  "00289145": [tags.intercept, tags.slope], "00209111": [tags.stack], "00189114": [tags.frameEcho], "00189117": [tags.bValue],
+  "00189226": [tags.frameType], "00189329": [tags.frameType], "00189732": [tags.frameType], "00189504": [tags.frameType], "00409092": [tags.frameType], "00189806": [tags.frameType],
 };
 const unread = {
   "00283000": "a table of values (Modality LUT)", "3004000e": "a DoseGridScaling", "7fe00008": "samples of float32", "7fe00009": "samples of float64",
-  "00620002": "segments",
+  "00620002": "segments", "00480006": "an image of tiles",
 };
 /** Storage classes without an image: reports, plans, structures, presentations, raw data, the index of a folder. */
 const withoutImage = /^((?!1\.2\.840\.10008\.5\.1\.4\.1\.1\.)\d|1\.2\.840\.10008\.5\.1\.4\.1\.1\.(9\.|11\.|66|67|88\.|104\.|481\.))/;
@@ -223,8 +225,12 @@ function framesOf({ header, pixelKind }) {
       orientation: unitVectors(one.numbers(tags.orientation, 6)), thickness: between > 0 ? between : one.numbers(tags.thickness, 1)?.[0],
       slope: one.numbers(tags.slope, 1)?.[0], intercept: one.numbers(tags.intercept, 1)?.[0] ?? 0, modality: one.text(tags.modality),
       isRescaled: one.has(tags.slope) && one.has(tags.intercept),
+      aspect: one.numbers(tags.aspect, 2), isInverse: one.text(tags.colours) === "MONOCHROME1",
       label: one.text(tags.description) || one.text(tags.seriesNumber) || one.text(tags.series),
-      key: [...["series", "imageType", "echoTime", "echo", "modality"].map((name) => one.text(tags[name])), String(one.set.get(tags.bValue)), format.rows, format.columns].join("|"),
+      key: [
+        ...["series", "imageType", "echoTime", "echo", "modality", "stack", "frameType"].map((name) => one.text(tags[name])),
+        String(one.set.get(tags.bValue)), String(one.set.get(tags.frameEcho)), format.rows, format.columns,
+      ].join("|"),
     };
   });
 }
@@ -241,11 +247,17 @@ function oneSeries(frames) {
   refuse(`there are ${groups.size} series in it (${list.slice(0, 8).join("; ")})`, "choose the files of one");
 }
 
+/** Between rows and between columns [mm]. */
+const spacingOf = ({ spacing, aspect: [high, wide] = [1, 1] }) => spacing ?? [high / wide, 1];
+
 /** The frames in the order of their places, and the columns of the grid's directions. */
 function stacked(frames, notes) {
   const [first] = frames;
   const note = (text, is) => is && notes.push(text);
-  note("it gives no pixel spacing: 1 mm was taken", !first.spacing);
+  if (first.aspect?.some((x) => !(x > 0))) refuse("its PixelAspectRatio is not possible", "correct its header");
+  note("it gives no pixel spacing: 1 mm was taken", !first.spacing && !first.aspect);
+  note("it gives only the shape of its pixels: they were taken as 1 mm wide", !first.spacing && first.aspect);
+  note("its MONOCHROME1 says that greater values are shown darker: values were taken as they are stored", frames.some(({ isInverse }) => isInverse));
   const lacking = frames.filter(({ isRescaled }) => !isRescaled).length;
   note(`${lacking} of its ${frames.length} slices give no slope or no intercept, and others do: do not trust what is felt there`,
     lacking > 0 && frames.some(({ isRescaled, slope, intercept }) => isRescaled && (slope !== 1 || intercept !== 0)));
@@ -267,11 +279,12 @@ function stacked(frames, notes) {
   const gaps = slices.slice(1).map(({ height }, i) => height - slices[i].height);
   const middle = [...gaps].sort((a, b) => a - b)[gaps.length >> 1];
   const tolerance = Math.max(Math.min(0.01, 0.1 * middle), 0.02 * middle);
-  if (!gaps.every((one) => one > 0 && Math.abs(one - middle) <= tolerance)) refuse("the slices of this series are not evenly spaced: some are missing, or there are several at one place");
-  const [dx, dy] = first.spacing ?? [1, 1];
+  const [dy, dx] = spacingOf(first);
+  const samePlace = 0.05 * Math.min(1, first.spacing ? Math.min(dx, dy) : 0.1); // [mm] nearer slices are moments of one
+  if (!gaps.every((one) => one > samePlace && Math.abs(one - middle) <= tolerance)) refuse("the slices of this series are not evenly spaced: some are missing, or there are several at one place");
   const isShifted = ({ position }) => {
     const from = position.map((x, i) => x - slices[0].position[i]);
-    return Math.abs(dot(across, from)) > 0.05 * dy || Math.abs(dot(down, from)) > 0.05 * dx;
+    return Math.abs(dot(across, from)) > 0.05 * dx || Math.abs(dot(down, from)) > 0.05 * dy;
   };
   if (slices.some(isShifted)) refuse("the slices of this series are shifted against each other (gantry tilt)");
   return { slices, directions: [across, down, normal], gap };
@@ -287,25 +300,34 @@ function valuesOf({ pixels, bits, stored, signed, little, slope, intercept }, ou
   }
 }
 
-/** The smallest type of the core that has all values. */
-function narrowed(values) {
-  let [least, most, whole] = [Infinity, -Infinity, true];
-  for (const v of values) {
-    least = Math.min(least, v);
-    most = Math.max(most, v);
-    whole &&= Number.isInteger(v);
-  }
-  if (!whole) return values;
-  if (least >= 0 && most <= 255) return Uint8Array.from(values);
-  if (least >= -32768 && most <= 32767) return Int16Array.from(values);
-  return least >= 0 && most <= 65535 ? Uint16Array.from(values) : values;
+/** The samples in the type that the native program takes. */
+function typed(values, slices) {
+  const [{ bits, signed }] = slices;
+  const isStored = slices.every((one) => (one.slope || 1) === 1 && one.intercept === 0 && one.bits === bits && one.signed === signed);
+  if (isStored) return (signed ? Int16Array : bits === 8 ? Uint8Array : Uint16Array).from(values);
+  const lies = (least, most) => values.every((v) => Number.isInteger(v) && v >= least && v <= most);
+  return lies(-32768, 32767) ? Int16Array.from(values) : lies(0, 65535) ? Uint16Array.from(values) : values;
 }
 
-/** `files` have a name and bytes each. Returns samples, geometry, marks, whether it is of a body, and notes. */
+/** A file that is no DICOM, though slices have such names: to pass over it would hide a gap. */
+function checkOthers(files) {
+  const numberless = (path) => path.replaceAll(/\d+(?=[^/]*$)/g, "#");
+  const isBare = (path) => /(^|\/)[^/.]*\d[^/.]*$/.test(path);
+  const slices = files.filter(({ bytes }) => isDicom(bytes)).map(({ path }) => path);
+  const names = new Set(slices.filter((path) => !/(^|\/)DICOMDIR$/.test(path)).map(numberless));
+  for (const { path, bytes } of files) {
+    const isLost = names.has(numberless(path)) || (bytes.length === 0 && isBare(path) && slices.some((one) => !one.split("/").at(-1).includes(".")));
+    if (!isDicom(bytes) && isLost) refuse(`${path} is ${bytes.length === 0 ? "empty" : "no DICOM file"}, though slices have such names`, "copy it again, or take it away");
+  }
+}
+
+/** `files` have a path and bytes each. Returns samples, geometry, marks, whether it is of a body, and notes. */
 export async function readDicom(files) {
   const frames = [];
   const notes = [];
-  for (const { name, bytes } of files) {
+  checkOthers(files);
+  for (const { path, bytes } of files) {
+    const name = path.split("/").at(-1);
     if (!isDicom(bytes)) {
       notes.push(`${name} is no DICOM and was passed over`);
       continue;
@@ -316,16 +338,17 @@ export async function readDicom(files) {
       throw new Error(`${name}: ${error instanceof RangeError ? `it is cut off or damaged: ${again}` : error.message}`);
     }
   }
-  if (frames.length === 0) refuse("none of these files is NRRD, NIfTI-1, or DICOM with pixels");
+  if (frames.length === 0) refuse("none of these files is NRRD, MetaImage, NIfTI, or DICOM with pixels");
   oneSeries(frames);
   const { slices, directions, gap } = stacked(frames, notes);
-  const { rows, columns, spacing = [1, 1], orientation, position: place, modality, label } = slices[0];
+  const { rows, columns, orientation, position: place, modality, label } = slices[0];
+  const spacing = spacingOf(slices[0]);
   if (label) notes.push(`series '${label}'`);
   const values = new Float32Array(countOf([columns, rows, slices.length]));
   slices.forEach((slice, i) => valuesOf(slice, values.subarray(i * rows * columns, (i + 1) * rows * columns)));
   const axes = [spacing[1], spacing[0], gap].map((step, a) => directions[a].map((x) => x * step));
   return {
-    samples: narrowed(values), geometry: geometryOf([columns, rows, slices.length], axes, (orientation && place) ?? [0, 0, 0]), oriented: orientation !== undefined, notes,
+    samples: typed(values, slices), geometry: geometryOf([columns, rows, slices.length], axes, (orientation && place) ?? [0, 0, 0]), oriented: orientation !== undefined, notes,
     marks: modality === "CT" ? { skin: -300, bone: 250 } : undefined, // [HU] docs/isovalue.md
   };
 }

@@ -1,15 +1,23 @@
-// Opens files that were chosen or dropped, a folder, or an address, and finds out which format it is. Readers that the
-// first touch does not need are loaded later.
-import { isDicom, readVolume, refuse } from "./files.js";
+// Opens files that were chosen or dropped, a folder, or an address, and finds out which format it is. `load` gives a
+// Palpate, whose readers are the native ones. Readers that the first touch does not need are loaded later.
+import { isDicom, refuse } from "./files.js";
 
 const readDicom = async (files) => (await import("./dicom.js")).readDicom(files);
 const readZarr = async (get) => (await import("./zarr.js")).readZarr(get);
 
 const bytesOf = async (file) => new Uint8Array(await file.arrayBuffer());
 const isHidden = /(^|\/)(\.[^/]*|Thumbs\.db|desktop\.ini)$/i; // left by systems
-const isVolume = /\.(nrrd|nii|nii\.gz)$/i;
+const isVolume = /\.(nrrd|nhdr|mha|mhd|(nii|hdr)(\.gz)?)$/i;
 /** Named as DICOM is, or beginning with its groups, without a preamble. */
 const isBare = (name, bytes) => /\.(dcm|ima)$/i.test(name) || ([2, 8].includes(bytes[0]) && bytes[1] === 0 && bytes[3] === 0 && /^[A-Z]{2}$/.test(String.fromCharCode(bytes[4], bytes[5])));
+
+/** With a Palpate of its own, whose memory goes with it. */
+async function readVolume(load, files, path) {
+  const { volume, ...about } = await (await load()).read(files, path);
+  const { size, spacing, origin, direction } = volume;
+  return { samples: volume.samples(), geometry: { size, spacing, origin, direction }, ...about };
+}
+
 const isZarr = /(^|\/)(zarr\.json|\.zattrs|\.zarray)$/;
 
 /** Calls `use` or `fail` with what a function reads. Of several that read at the same time, the last one that began counts. */
@@ -27,7 +35,7 @@ export function lastAsked(use, fail) {
 }
 
 /** `files` have a path and a file each. Returns samples, geometry, a name, and marks if levels are known. */
-export async function readFiles(files) {
+export async function readFiles(files, load) {
   if (files.length === 0) refuse("there is no file in it", "choose another");
   const root = files.map(({ path }) => path).filter((path) => isZarr.test(path)).sort((a, b) => a.length - b.length)[0];
   const name = files[0].path.split("/")[0];
@@ -37,13 +45,13 @@ export async function readFiles(files) {
     const get = async (path) => (byPath.has(folder + path) ? bytesOf(byPath.get(folder + path)) : null);
     return { name, ...(await readZarr(get)) };
   }
-  const all = await Promise.all(files.filter(({ path }) => !isHidden.test(path)).map(async ({ path, file }) => ({ name: path.split("/").at(-1), bytes: await bytesOf(file) })));
-  for (const { name: one, bytes } of all) if (!isDicom(bytes) && isBare(one, bytes)) refuse(`${one} has not the letters DICM of a DICOM file`);
-  const volumes = all.filter((one) => isVolume.test(one.name) && !isDicom(one.bytes));
-  const others = all.filter(({ bytes }) => isDicom(bytes));
-  if (volumes.length > 1 || (volumes.length === 1 && others.length > 0)) refuse(`there are several volumes in it: ${[...volumes, ...others].slice(0, 8).map((one) => one.name).join(", ")}`, "choose one");
-  const single = volumes[0] ?? (all.length === 1 && others.length === 0 ? all[0] : null);
-  return { name, ...(single ? await readVolume(single.bytes) : await readDicom(all)) };
+  const all = await Promise.all(files.filter(({ path }) => !isHidden.test(path)).map(async ({ path, file }) => ({ path, bytes: await bytesOf(file) })));
+  for (const { path, bytes } of all) if (!isDicom(bytes) && isBare(path, bytes)) refuse(`${path} has not the letters DICM of a DICOM file`);
+  const dicoms = all.filter(({ bytes }) => isDicom(bytes));
+  const volumes = all.filter((one) => isVolume.test(one.path) && !dicoms.includes(one));
+  if (volumes.length > 1 || (volumes.length === 1 && dicoms.length > 0)) refuse(`there are several volumes in it: ${[...volumes, ...dicoms].slice(0, 8).map((one) => one.path).join(", ")}`, "choose one");
+  const single = volumes[0] ?? (all.length === 1 && dicoms.length === 0 ? all[0] : null);
+  return { name, ...(single ? await readVolume(load, all, single.path) : await readDicom(all)) };
 }
 
 /** Everything in what was dropped, with its path. */
@@ -79,17 +87,18 @@ async function fetched(url, absent) {
 }
 
 /** An OME-Zarr, or a file, on a server. */
-export async function readAddress(address) {
+export async function readAddress(address, load) {
   const url = new URL(address, location.href);
   if (url.username || url.password) refuse("an address with a user or password is not opened", "download it, and open the file");
   const path = url.pathname.replace(/\/(zarr\.json|\.zattrs|\.zarray)?$/, "");
   const name = path.split("/").at(-1);
-  if (!/\.(nrrd|nii|nii\.gz|dcm)$/i.test(path)) {
+  if (!isVolume.test(path) && !/\.dcm$/i.test(path)) {
     // Stores answer 403 for metadata that are not there; a chunk that is forbidden is not empty.
     const get = (object, isMetadata) => fetched(new URL(`${path}/${object}${url.search}`, url), isMetadata ? [403, 404] : [404]);
     return { name, ...(await readZarr(get)) };
   }
   const bytes = await fetched(url, [404]);
   if (!bytes) throw new Error(`${shownOf(url)}: there is no such file`);
-  return { name, ...(isDicom(bytes) ? await readDicom([{ name, bytes }]) : await readVolume(bytes)) };
+  const files = [{ path: name, bytes }];
+  return { name, ...(isDicom(bytes) ? await readDicom(files) : await readVolume(load, files, name)) };
 }

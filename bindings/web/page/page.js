@@ -1,6 +1,7 @@
 // The page: a mouse or finger moves the hand; pressing pushes it against the surface until the spring is as long
 // as asked for. What it does goes through Hand, what it shows comes from there.
 import { Hand } from "../hand.js";
+import { load } from "../palpate.js";
 import { drawHistogram, drawSlices, histogramOf, rangeOf } from "./charts.js";
 import { chooseSpaceMouse, far, forceText, idleText, isService, isSimulated, sessionWith, transformFor } from "./devices.js";
 import { Sound, contactOf, shake } from "./feedback.js";
@@ -45,6 +46,10 @@ function write(id, text) {
   if ($(id).textContent !== text) $(id).textContent = text;
 }
 
+let useModule = null;
+const module = new Promise((compiled) => (useModule = compiled)); // by the worker
+const loadCore = async () => load(await module);
+
 let toldUntil = 0;
 /** Shows a state, which stays for `least` ms or until the next action. */
 function tell(text, least = 0) {
@@ -74,6 +79,7 @@ function complain(error) {
 }
 
 const to = new Hand({
+  module: (compiled) => useModule(compiled),
   ready({ about, ...made }) {
     if (connecting) toldUntil = 0;
     if (about.device === device) say(`${about.name} is open`);
@@ -227,7 +233,7 @@ function open(read) {
   beginLast(read);
 }
 
-const openHead = () => open(async () => ({ ...(await readAddress(headAddress)), marks: headMarks, layers: headLayers, listed: "head" }));
+const openHead = () => open(async () => ({ ...(await readAddress(headAddress, loadCore)), marks: headMarks, layers: headLayers, listed: "head" }));
 
 // The hand. It is moved and read by a timer: frames come late where pictures take long to draw.
 let then = performance.now();
@@ -317,16 +323,16 @@ function moveByKeys(dt) {
 
 // The panel.
 $("volume").onchange = ({ target: { value } }) => (value === "head" ? openHead() : open(async () => ({ scene: value, name: value, listed: value })));
-for (const id of ["file", "folder"]) $(id).onchange = ({ target }) => target.files.length > 0 && open(() => readFiles(chosenFiles(target.files)));
+for (const id of ["file", "folder"]) $(id).onchange = ({ target }) => target.files.length > 0 && open(() => readFiles(chosenFiles(target.files), loadCore));
 $("remote").onsubmit = (event) => {
   event.preventDefault();
-  open(() => readAddress($("address").value));
+  open(() => readAddress($("address").value, loadCore));
 };
 document.ondragover = (event) => event.preventDefault();
 document.ondrop = (event) => {
   event.preventDefault();
   const files = droppedFiles(event.dataTransfer.items);
-  open(async () => readFiles(await files));
+  open(async () => readFiles(await files, loadCore));
 };
 $("haply").onsubmit = (event) => {
   event.preventDefault();
@@ -372,7 +378,7 @@ requestAnimationFrame(frame);
 const address = new URLSearchParams(location.search).get("volume");
 if (address) {
   $("address").value = address;
-  open(() => readAddress(address));
+  open(() => readAddress(address, loadCore));
 } else {
   openHead();
 }

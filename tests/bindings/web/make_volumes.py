@@ -4,9 +4,11 @@
 usage: make_volumes.py FOLDER
 """
 
+import gzip
 import json
 import struct
 import sys
+import zlib
 from pathlib import Path
 
 import numcodecs
@@ -178,27 +180,32 @@ def array2(attributes=None, **changes):
     return {".zarray": {**array, **changes}, ".zattrs": attributes or {}, "0.0.0": EIGHT}
 
 
+def meta(data=EIGHT, samples="LOCAL", **changes):
+    base = {"NDims": 3, "DimSize": "2 2 2", "ElementType": "MET_SHORT", "ElementSpacing": "1 2 3", "Offset": "4 5 6", **changes, "ElementDataFile": samples}
+    return "".join(f"{name} = {value}\n" for name, value in base.items()).encode() + data
+
+
 def nrrd(*fields, data=EIGHT, **changes):
     base = {"type": "short", "dimension": 3, "sizes": "2 2 2", "endian": "little", "encoding": "raw", **changes}
     lines = [f"{name}: {value}" for name, value in base.items() if value] + list(fields)
     return "\n".join(["NRRD0004", *lines, "", ""]).encode() + data
 
 
-def nifti(kind=4, steps=(1, 1, 2, 3), offset=352, sform=None, qform=None, data=EIGHT):
+def nifti(kind=4, steps=(1, 1, 2, 3), offset=352, sform=None, qform=None, data=EIGHT, moments=1, scale=(1, 0), unit=2, magic=b"n+1"):
     head = bytearray(352)
 
     def put(form, at, *values):
         struct.pack_into("<" + form, head, at, *values)
     put("i", 0, 348)
-    put("8h", 40, 3, 2, 2, 2, 1, 1, 1, 1)
+    put("8h", 40, 3 if moments == 1 else 4, 2, 2, 2, moments, 1, 1, 1)
     put("2h", 70, kind, {4: 16, 16: 32}[kind])
     put("4f", 76, *steps)
-    put("3f", 108, offset, 1, 0)
-    put("B", 123, 2)
+    put("3f", 108, offset, *scale)
+    put("B", 123, unit)
     put("2h", 252, int(qform is not None), int(sform is not None))
     put("6f", 256, *(qform or [0] * 6))
     put("12f", 280, *(sform or [0] * 12))
-    put("4s", 344, b"n+1")
+    put("4s", 344, magic)
     return bytes(head) + data
 
 
@@ -225,12 +232,28 @@ SAME_ZARR = {
     "holes": array3(data_type="float32", fill_value="NaN", shape=[2, 2, 2]) | {"c/0/0/0": HOLES},
     "checked": array3(codecs=[BYTES, {"name": "crc32c"}]) | {"c/0/0/0": EIGHT + crc32c(EIGHT)},
 }
-SAME_FILES = {
+# Read, or refused in the same words, as by the native program. What is in a folder is opened with all beside it.
+FILES = {
     "plain.nrrd": nrrd(), "longer.nrrd": nrrd(data=EIGHT + EIGHT[:4]), "magic.nrrd": nrrd(data=b"\x1f\x8b" + EIGHT[2:]), "uint.nrrd": nrrd(type="uint", data=2 * EIGHT),
     "ras.nrrd": nrrd("space: RAS", LPS[1], "space origin: (1,2,3)"), "las.nrrd": nrrd("space: left-anterior-superior", LPS[1]),
     "dimension.nrrd": nrrd("space dimension: 3", LPS[1], 'space units: "m" "m" "m"'), "key.nrrd": nrrd("type:=none"),
     "holes.nrrd": nrrd(type="float", data=HOLES), "holes.nii": nifti(16, data=HOLES), "plain.nii": nifti(),
     "sform.nii": nifti(sform=[-1, 0, 0, 5, 0, 2, 0, 6, 0, 0, 3, 7]), "qform.nii": nifti(qform=[0, 0, 1, 5, 6, 7], steps=[-1, 1, 2, 3]),
+    "rpi.nrrd": nrrd("space: RPI", LPS[1]), "scanner.nrrd": nrrd("space: scanner-xyz", LPS[1]), "spaceless.nrrd": nrrd(LPS[1]),
+    "mins.nrrd": nrrd("spacings: 1 2 3", "axis mins: 5 6 7"), "none.nrrd": nrrd(LPS[0], "space directions: none (0,2,0) (0,0,3)"),
+    "doubled.nrrd": nrrd(data=2 * EIGHT), "endian.nrrd": nrrd(endian=None), "nan.nrrd": nrrd("spacings: NaN 2 3"), "twice.nrrd": nrrd("sizes: 2 2 1"),
+    "time.nrrd": nrrd("kinds: domain domain time"), "units.nrrd": nrrd("spacings: 1 2 3", 'units: "m" "m" "m"'), "both.nrrd": nrrd(*LPS, "spacings: 1 2 3"),
+    "sheared.nrrd": nrrd(LPS[0], "space directions: (1,0,0) (1,2,0) (0,0,3)"), "huge.nrrd": nrrd(sizes="9999 9999 9999"),
+    "offset.nii": nifti(offset=0), "steps.nii": nifti(steps=[1, -1, 2, 3]), "sheared.nii": nifti(sform=[1, 0.5, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0]),
+    "flat.nii": nifti(sform=[0] * 12),
+    "rows.nii": nifti(sform=[0] * 12, qform=[0, 0, 1, 5, 6, 7]), "both.nii": nifti(sform=[1, 0.5, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0], qform=[0, 0, 1, 5, 6, 7]),
+    "moments.nii": nifti(moments=2, data=2 * EIGHT), "scaled.nii": nifti(scale=(2, 1)), "unscaled.nii": nifti(scale=(float("nan"), 5)), "no_intercept.nii": nifti(scale=(2, float("nan"))),
+    "metres.nii": nifti(unit=1, sform=[1, 0, 0, 5, 0, 2, 0, 6, 0, 0, 3, 7]), "cut.nii": nifti(data=EIGHT[:6]), "packed.nii.gz": gzip.compress(nifti()), "twice.nii.gz": gzip.compress(nifti()[:360]) + gzip.compress(nifti()[360:]),
+    "packed.nrrd": nrrd(*LPS, encoding="gzip", data=gzip.compress(EIGHT)), "text.nrrd": nrrd(*LPS, encoding="text", data=b"1 2 3 4 5 6 7 8"), "skip.nrrd": nrrd(*LPS, "byte skip: 4", data=b"skip" + EIGHT),
+    "end.nrrd": nrrd(*LPS, "byte skip: -1", data=b"skip" + EIGHT), "cut.nrrd": nrrd(data=EIGHT[:6]), "colours.nrrd": nrrd("kinds: vector domain domain"),
+    "plain.mha": meta(), "packed.mha": meta(zlib.compress(EIGHT), CompressedData=True, CompressedDataSize=len(zlib.compress(EIGHT))), "turned.mha": meta(TransformMatrix="0 1 0 1 0 0 0 0 -1"),
+    "detached/head.nhdr": nrrd(*LPS, "data file: head.raw", data=b""), "detached/head.raw": EIGHT, "parts/head.mhd": meta(b"", "slice%d.raw 1 2 1"), "parts/slice1.raw": EIGHT[:8], "parts/slice2.raw": EIGHT[8:],
+    "pair/head.hdr": nifti(offset=0, magic=b"ni1")[:348], "pair/head.img": EIGHT, "alone/head.nhdr": nrrd(*LPS, "data file: head.raw", data=b""),
 }
 REFUSED_ZARR = {
     "index_big": ("index", shards([{"name": "bytes", "configuration": {"endian": "big"}}])),
@@ -256,16 +279,6 @@ REFUSED_ZARR = {
     "types": ("different types", pyramid(("whole", FINE, [SCALE]), ("half", COARSE, HALF), half={"data_type": "uint16"})),
     "no_level": ("is missing", {path: content for path, content in pyramid(("whole", FINE, [SCALE]), ("half", COARSE, HALF)).items() if not path.startswith("half")}),
 }
-REFUSED_FILES = {
-    "rpi.nrrd": ("RPI", nrrd("space: RPI", LPS[1])), "scanner.nrrd": ("scanner-xyz", nrrd("space: scanner-xyz", LPS[1])), "spaceless.nrrd": ("no space", nrrd(LPS[1])),
-    "mins.nrrd": ("axismins", nrrd("spacings: 1 2 3", "axis mins: 5 6 7")), "none.nrrd": ("space directions", nrrd(LPS[0], "space directions: none (0,2,0) (0,0,3)")),
-    "doubled.nrrd": ("asks for 16 bytes", nrrd(data=2 * EIGHT)), "endian.nrrd": ("endian", nrrd(endian=None)), "nan.nrrd": ("spacings", nrrd("spacings: NaN 2 3")), "twice.nrrd": ("twice", nrrd("sizes: 2 2 1")),
-    "time.nrrd": ("time", nrrd("kinds: domain domain time")), "units.nrrd": ("units", nrrd("spacings: 1 2 3", 'units: "m" "m" "m"')), "both.nrrd": ("both", nrrd(*LPS, "spacings: 1 2 3")),
-    "sheared.nrrd": ("right angles", nrrd(LPS[0], "space directions: (1,0,0) (1,2,0) (0,0,3)")), "huge.nrrd": ("million samples", nrrd(sizes="9999 9999 9999")),
-    "offset.nii": ("vox_offset", nifti(offset=0)), "steps.nii": ("pixdim", nifti(steps=[1, -1, 2, 3])), "sheared.nii": ("right angles", nifti(sform=[1, 0.5, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0])),
-    "flat.nii": ("spacing", nifti(sform=[0] * 12)),
-}
-
 
 def slices(folder, count=1, each=None, cut=False, values=VALUES, syntax=ExplicitVRLittleEndian, **attributes):
     """Slices of one series. `each` gives attributes of slice k; None stands for an empty element, "absent" for none."""
@@ -301,18 +314,31 @@ def sequence(**members):
     return Sequence([inside])
 
 
-def grouped(folder, count=4, private=False):
-    """Frames with functional groups, of which a private one has another slope (Philips)."""
+def grouped(folder, count=4, private=False, stacks=None, echoes=None):
+    """Frames with functional groups, of which a private one has another slope (Philips). `stacks` and `echoes`: of each."""
     groups = []
     for k in range(count):
         group = Dataset()
         group.PlanePositionSequence = sequence(ImagePositionPatient=[-10, 20 + 4 * k, 30])
         group.PixelValueTransformationSequence = sequence(RescaleSlope=10, RescaleIntercept=0)
+        if stacks:
+            group.FrameContentSequence = sequence(StackID=stacks[k])
+        if echoes:
+            group.MREchoSequence = sequence(EffectiveEchoTime=float(echoes[k]))
         if private:
             group.add_new((0x2005, 0x0010), "LO", "Philips MR Imaging DD 005")
             group.add_new((0x2005, 0x140f), "SQ", sequence(RescaleSlope=1))
         groups.append(group)
     slices(folder, NumberOfFrames=4, PixelData=pixels(VALUES), PerFrameFunctionalGroupsSequence=Sequence(groups), ImagePositionPatient="absent")
+
+
+def beside(folder, name, content, bare=False):
+    """Slices, and another file of such a name."""
+    slices(folder, 3)
+    if bare:
+        for path in list(folder.iterdir()):
+            path.rename(path.with_suffix(""))
+    (folder / name).write_bytes(content)
 
 
 def damaged(folder, change):
@@ -351,7 +377,9 @@ SAME_DICOM = {
     "even": lambda at: slices(at, 4, apart(0.015)), "unknown": lambda at: damaged(at, unknown_sequence), "padded": lambda at: damaged(at, lambda data: data + b"\0" * 64),
     "negative": lambda at: slices(at, PixelRepresentation=1, values=VALUES - 100), "inverse": lambda at: slices(at, PhotometricInterpretation="MONOCHROME1"),
     "unplaced": lambda at: slices(at, ImagePositionPatient=None), "reported": reported,
-    "lacking": lambda at: slices(at, 4, lambda k: {"RescaleSlope": 2, **({} if k == 1 else {"RescaleIntercept": -5})}),
+    "aspect": lambda at: slices(at, 3, PixelSpacing="absent", PixelAspectRatio=[3, 2]), "bytes": lambda at: slices(at, BitsAllocated=8, BitsStored=8, HighBit=7, PixelData=bytes(range(30))),
+    "wide": lambda at: slices(at, BitsStored=16, HighBit=15, values=VALUES * 200), "small": lambda at: slices(at, 3, RescaleSlope=1, RescaleIntercept=1),
+    "stack": lambda at: grouped(at, stacks="1111"), "lacking": lambda at: slices(at, 4, lambda k: {"RescaleSlope": 2, **({} if k == 1 else {"RescaleIntercept": -5})}),
 }
 REFUSED_DICOM = {
     "cut": ("no pixels", lambda at: damaged(at, cut)), "pixels_twice": ("twice", lambda at: damaged(at, twice)), "bare": ("DICM", lambda at: damaged(at, lambda data: data[132:])),
@@ -361,13 +389,16 @@ REFUSED_DICOM = {
     "moments": ("where they lie", lambda at: slices(at, FrameIncrementPointer=0x00181063, FrameTime=40, **TIMES)), "vector": ("where they lie", lambda at: slices(at, FrameIncrementPointer=0x00540080, SliceVector=[2, 1, 3, 4], **TIMES)),
     "mosaic": ("MOSAIC", lambda at: slices(at, ImageType=["ORIGINAL", "PRIMARY", "M", "MOSAIC"])), "palette": ("PALETTE", lambda at: slices(at, PhotometricInterpretation="PALETTE COLOR")),
     "two_series": ("2 series", lambda at: slices(at, 2, lambda k: {"SeriesInstanceUID": f"1.2.{k + 3}"})), "localizer": ("LOCALIZER", lambda at: slices(at, 3, lambda k: {"ImageType": ["ORIGINAL", "PRIMARY", "AXIAL" if k else "LOCALIZER"]})),
+    "stacks": ("2 series", lambda at: grouped(at, stacks="1122")), "frame_echoes": ("2 series", lambda at: grouped(at, echoes="1122")),
+    "one_place": ("several at one place", lambda at: slices(at, 3, lambda k: {"ImagePositionPatient": [-10, 20 + 0.01 * k, 30]})), "tiles": ("tiles", lambda at: slices(at, TotalPixelMatrixColumns=600)),
+    "lost": ("such names", lambda at: beside(at, "7", b"", bare=True)), "text": ("such names", lambda at: beside(at, "7", b"no slice", bare=True)),
     "echoes": ("2 series", lambda at: slices(at, 4, lambda k: {"EchoTime": 10 + k % 2})), "frames_x": ("'0' frames", lambda at: slices(at, NumberOfFrames=0)),
     "more_bytes": ("bytes of pixels", lambda at: slices(at, PixelData=pixels(VALUES[:2]))), "words": ("big-endian", lambda at: slices(at, BitsAllocated=8, BitsStored=8, HighBit=7, PixelData=bytes(30), syntax=ExplicitVRBigEndian)),
     "detector": ("ImagerPixelSpacing", lambda at: slices(at, PixelSpacing="absent", ImagerPixelSpacing=[0.2, 0.3])), "tilt": ("gantry tilt", lambda at: slices(at, 4, shifted)),
     "regions": ("of ultrasound", lambda at: slices(at, PixelSpacing="absent", SequenceOfUltrasoundRegions=sequence(PhysicalDeltaX=0.02))),
     "uneven": ("not evenly", lambda at: slices(at, 4, apart(0.03))), "nowhere": ("where they lie", lambda at: slices(at, 3, ImagePositionPatient="absent")),
     "oblique": ("right angles", lambda at: slices(at, ImageOrientationPatient=[1, 0, 0, 0.5, 0.866, 0])), "mixed": ("several volumes", lambda at: (slices(at), write(at / "a.nii", nifti()))),
-    "two_files": ("a.nii, b.nii", lambda at: [write(at / name, nifti()) for name in ("a.nii", "b.nii")]),
+    "two_files": ("two_files/a.nii, two_files/b.nii", lambda at: [write(at / name, nifti()) for name in ("a.nii", "b.nii")]),
 }
 
 
@@ -380,7 +411,7 @@ def cases(out):
     for name, objects in [*SAME_ZARR.items(), *((name, objects) for name, (_, objects) in refused.items())]:
         for path, content in objects.items():
             write(out / f"{name}.zarr" / path, content)
-    for name, content in [*SAME_FILES.items(), *((name, content) for name, (_, content) in REFUSED_FILES.items())]:
+    for name, content in FILES.items():
         write(out / name, content)
     for name, make in [*SAME_DICOM.items(), *((name, make) for name, (_, make) in REFUSED_DICOM.items())]:
         make(out / name)
@@ -388,8 +419,9 @@ def cases(out):
         write(out / "large.zarr" / path, content)
     write(out / "left" / "volume.nii", nifti())
     write(out / "left" / ".DS_Store", b"\0")
-    words = {name: word for name, (word, _) in REFUSED_DICOM.items()} | {f"{name}.zarr": word for name, (word, _) in refused.items()} | {name: word for name, (word, _) in REFUSED_FILES.items()}
-    write(out / "cases.json", {"same": [*(f"{name}.zarr" for name in SAME_ZARR), *SAME_FILES, *SAME_DICOM], "refused": words})
+    words = {name: word for name, (word, _) in REFUSED_DICOM.items()} | {f"{name}.zarr": word for name, (word, _) in refused.items()}
+    files = [name for name in FILES if not name.endswith((".raw", ".img"))]
+    write(out / "cases.json", {"same": [*(f"{name}.zarr" for name in SAME_ZARR), *SAME_DICOM], "files": files, "refused": words})
 
 
 def main(out):

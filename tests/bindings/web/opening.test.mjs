@@ -1,6 +1,6 @@
 // Volumes that other programs have written are opened: DICOM and Zarr as the native program reads them.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawnSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, readdirSync, statSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
@@ -8,8 +8,11 @@ import { join, relative } from "node:path";
 import test from "node:test";
 
 const page = join(process.env.PALPATE_WEB, "page");
-const { lastAsked, readAddress, readFiles } = await import(join(page, "open.js"));
-const { readVolume } = await import(join(page, "files.js"));
+const { lastAsked, readAddress: openAddress, readFiles: openFiles } = await import(join(page, "open.js"));
+const { load } = await import(join(process.env.PALPATE_WEB, "palpate.js"));
+const { module } = await load();
+const readFiles = (files) => openFiles(files, () => load(module));
+const readAddress = (address) => openAddress(address, () => load(module));
 globalThis.location = { href: "http://localhost/" };
 
 const folder = mkdtempSync(join(tmpdir(), "palpate-web-"));
@@ -28,7 +31,8 @@ const raw = (name) => {
 };
 
 const sameVolume = (one, other, name = "") => {
-  assert.deepEqual(Float32Array.from(one.samples), Float32Array.from(other.samples), name);
+  assert.equal(one.samples.constructor.name, other.samples.constructor.name, name);
+  assert.deepEqual(one.samples, other.samples, name);
   assert.deepEqual(one.geometry.size, other.geometry.size, name);
   for (const part of ["spacing", "origin", "direction"]) {
     one.geometry[part].forEach((x, i) => assert.ok(Math.abs(x - other.geometry[part][i]) < 1e-6, `${name} ${part}: ${one.geometry[part]} is not ${other.geometry[part]}`));
@@ -49,7 +53,7 @@ test("DICOM series in every order of bytes and frames of one file are one volume
 test("DICOM with a missing slice, compressed pixels or none is refused with the reason", async () => {
   await assert.rejects(open("incomplete"), /not evenly spaced/);
   await assert.rejects(open("compressed.dcm"), /1\.2\.840\.10008\.1\.2\.4\.70 is not read in the browser: convert/);
-  await assert.rejects(readFiles([...dropped("implicit/notes.txt"), ...dropped("none.zarr").slice(-1)]), /none of these files is NRRD, NIfTI-1, or DICOM with pixels: convert/);
+  await assert.rejects(readFiles([...dropped("implicit/notes.txt"), ...dropped("none.zarr").slice(-1)]), /none of these files is NRRD, MetaImage, NIfTI, or DICOM with pixels: convert/);
   const [{ path, file }] = dropped("implicit");
   const bytes = await file.arrayBuffer();
   for (let end = 132; end < bytes.byteLength; end += 1) {
@@ -101,7 +105,7 @@ test("a Zarr and files are opened by their address", async (t) => {
   for (const end of ["", "/", "/.zattrs"]) sameVolume(await readAddress(`${at}/gzip.zarr${end}`), await open("gzip.zarr"));
   sameVolume(await readAddress(`${at}/frames.dcm`), await open("frames.dcm"));
   await assert.rejects(readAddress(`${at}/nothing.nrrd`), /there is no such file/);
-  await assert.rejects(readAddress(`${at}/nothing.mhd`), /no Zarr array.* or a file named \.nrrd/);
+  await assert.rejects(readAddress(`${at}/nothing.tif`), /no Zarr array.* or a file named \.nrrd/);
 });
 
 test("a forbidden chunk is no empty one, forbidden metadata are no metadata, and errors show no secrets", async (t) => {
@@ -219,16 +223,37 @@ test("what the page would read otherwise than the native program is refused with
   }
 });
 
+/** What the native program reads, as the page opens it, or why it does not. */
+function native(name) {
+  const result = spawnSync(process.env.PALPATE, ["convert", join(folder, name), join(folder, "native.nrrd")], { encoding: "utf8" });
+  return result.status === 0 ? { volume: open("native.nrrd") } : { refused: result.stderr };
+}
+
 test("the native program reads and writes the same", { skip: !process.env.PALPATE }, async () => {
-  const convert = (from, to) => execFileSync(process.env.PALPATE, ["convert", join(folder, from), join(folder, to)], { stdio: "pipe" });
-  const nrrd = async (name) => readVolume(new Uint8Array(readFileSync(join(folder, name))).buffer);
   for (const from of ["implicit", "explicit", "frames.dcm", "blosc_lz4.zarr", ...cases.same.filter(isReadable)]) {
-    convert(from, "native.nrrd");
-    sameVolume(await open(from), await nrrd("native.nrrd"), from);
+    sameVolume(await open(from), await native(from).volume, from);
   }
   if (!zstdIsThere) return;
-  convert("blosc_lz4.zarr", "native.zarr"); // OME-Zarr 0.5, zstd
+  execFileSync(process.env.PALPATE, ["convert", join(folder, "blosc_lz4.zarr"), join(folder, "native.zarr")]); // OME-Zarr 0.5, zstd
   sameVolume(await open("native.zarr"), await open("blosc_lz4.zarr"));
+});
+
+test("NRRD, MetaImage and NIfTI are read, or refused in the same words, as by the native program", { skip: !process.env.PALPATE }, async () => {
+  const counts = { read: 0, refused: 0 };
+  for (const name of cases.files) {
+    const { volume, refused } = native(name);
+    const opened = open(name.split("/")[0]);
+    if (refused) {
+      await assert.rejects(opened, ({ message }) => {
+        assert.ok(refused.includes(message.slice(message.indexOf(": ") + 2)), `${name}: ${message}, not ${refused}`);
+        return true;
+      }, name);
+    } else {
+      sameVolume(await opened, await volume, name);
+    }
+    counts[refused ? "refused" : "read"] += 1;
+  }
+  assert.ok(counts.read > 20 && counts.refused > 15, JSON.stringify(counts));
 });
 
 test("of several that are read at the same time, the last one that was asked for is used", async () => {

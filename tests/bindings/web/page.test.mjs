@@ -120,6 +120,9 @@ test("DICOM that is chosen and OME-Zarr at an address are opened, and what canno
     const name = () => page.$eval("#volume", ({ selectedOptions: [one] }) => one.textContent);
     assert.equal(await name(), "0.dcm");
     await picture(page, "dicom");
+    await surface(async () => (await page.$("#file")).uploadFile(join(volumes, "pair", "head.hdr"), join(volumes, "pair", "head.img")));
+    assert.equal(await page.$eval("#isovalue", ({ max }) => Number(max)), 7);
+    assert.match(await page.$eval("#notes", ({ textContent }) => textContent), /says nothing of its orientation/);
     await page.type("#address", "/volumes/blosc_lz4.zarr");
     await surface(() => page.click("#remote button"));
     assert.equal(await page.$eval("#isovalue", ({ max }) => Number(max)), 499);

@@ -1,5 +1,8 @@
 // The worker's loop, in Node's own thread: an error ends the session, and the next one begins.
 import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { cpSync, mkdtempSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import test from "node:test";
 
@@ -105,4 +108,17 @@ test("a setting that is refused is told, and the settings in use come back", { t
   await send("set", ["force.stiffness", -1]);
   assert.deepEqual(messages("settings").map(stiffness), [value, value]);
   assert.match(messages("error")[0], /^stiffness .* = -1: must be/);
+});
+
+test("a module that cannot be loaded is told before anything is asked for", () => {
+  const bare = mkdtempSync(join(tmpdir(), "palpate-web-"));
+  cpSync(process.env.PALPATE_WEB, bare, { recursive: true, filter: (path) => !path.endsWith(".wasm.gz") });
+  const program = `globalThis.onmessage = null;
+  globalThis.postMessage = (message) => {
+    console.log(JSON.stringify(message));
+    process.exit();
+  };
+  await import(${JSON.stringify(join(bare, "worker.js"))});`;
+  const { stdout } = spawnSync(process.execPath, ["--input-type=module", "--eval", program], { encoding: "utf8", timeout: 60000 });
+  assert.match(stdout, /^\{"error":".*palpate_core\.wasm\.gz/);
 });

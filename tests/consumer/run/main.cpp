@@ -29,7 +29,7 @@ std::int64_t feel(const fs::path& volume, const fs::path& recording) {
     run.record(recording);
     run.start();
     double greatest = 0;
-    for (int i = 0; i < 2000; ++i) {
+    while (true) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
         const auto now = run.snapshot();
         if (!now) continue;

@@ -50,7 +50,7 @@ long long feel(const Field& field, const fs::path& recording) {
     Servo servo(std::move(session), *device, {.real_time = false, .recorder = &writer.queue()});
     servo.start();
     double greatest = 0;
-    for (int i = 0; i < 2000; ++i) {
+    while (true) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
         const auto now = servo.snapshot();
         if (!now) continue;
