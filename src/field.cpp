@@ -95,13 +95,17 @@ namespace {
 bool meets_other_level(const ResidentBricks& resident, const Brick& own, const Index3& low,
                        const Index3& high) {
     const Index3 first = ResidentBricks::brick_of(low), last = ResidentBricks::brick_of(high);
-    if (first == last) return false;
     for (int i = 0; i < 8; ++i) {
         const Brick* brick = resident.at(
             {i & 1 ? last[0] : first[0], i & 2 ? last[1] : first[1], i & 4 ? last[2] : first[2]});
         if (brick && brick->level != own.level) return true;
     }
     return false;
+}
+
+/// Whether two samples lie in one resident brick.
+bool are_in_one(const Index3& a, const Index3& b) {
+    return ((a[0] ^ b[0]) | (a[1] ^ b[1]) | (a[2] ^ b[2])) / ResidentBricks::edge == 0;
 }
 
 }  // namespace
@@ -133,7 +137,9 @@ Field::Run Field::stored_run(const Index3& low) const {
     }
     if (resident) {
         constexpr std::ptrdiff_t row = ResidentBricks::row, slice = ResidentBricks::slice;
-        if (meets_other_level(*resident_, *resident, low, high)) return {};
+        if (!are_in_one(low, high) && meets_other_level(*resident_, *resident, low, high)) {
+            return {};
+        }
         const std::ptrdiff_t back = count == 3 ? 1 + row + slice : 0;
         return in(*resident, ResidentBricks::place_of(owner) - back, row);
     }

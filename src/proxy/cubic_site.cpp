@@ -42,10 +42,6 @@ double rising_root(const Bernstein& b, double tolerance) {
 }  // namespace
 
 double certified_part(const Bernstein& bernstein, double tolerance) {
-    // Mostly there is one root and nothing to halve.
-    if (bernstein[0] <= 0 && bernstein[3] > 0 && rises(bernstein)) {
-        return rising_root(bernstein, tolerance);
-    }
     constexpr int deepest = 48;
     struct Part {
         Bernstein b;
@@ -194,8 +190,7 @@ void CubicSite::make_piece() {
     kept_is_new = true;
 }
 
-[[gnu::always_inline]] inline double CubicSite::advance_inlined(const Vec3& step, double level,
-                                                                unsigned walls) {
+double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
     cubic::Expansion& from = at_point;
     if (!expanded) expand();
     // Along the step the Hessian changes by the third derivatives, which are the same everywhere.
@@ -232,10 +227,6 @@ void CubicSite::make_piece() {
     return t;
 }
 
-double CubicSite::advance(const Vec3& step, double level, unsigned walls) {
-    return advance_inlined(step, level, walls);
-}
-
 /// On the smooth field, for a point.
 struct CubicCourse : PointCourse {
     double level;
@@ -253,7 +244,7 @@ struct CubicCourse : PointCourse {
         const Vec3 step = exit.t * direction;
         double t = 1;
         if (site.reaches(level) || site.reaches_behind()) {
-            t = site.advance_inlined(step, level, exit.walls());
+            t = site.advance(step, level, exit.walls());
         } else {
             site.jump(step, exit.walls());
         }

@@ -84,9 +84,6 @@ struct CubicSite : BoundPoint {
     void cross(unsigned wall);
 
   private:
-    friend struct CubicCourse;
-    /// advance(), for the one caller that spends its time there.
-    double advance_inlined(const Vec3& step, double level, unsigned walls);
     template <class Visit>
     auto visit_cube(Visit&& visit) {
         return field.visit_around(point.tetrahedron.cell, visit, gathered);
