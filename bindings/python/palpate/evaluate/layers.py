@@ -34,18 +34,9 @@ def curve_rows(cells, rows, depth, force, wanted):
 
 # Straight insertions.
 
-def gives_way_at(before, way, time, low, high):
-    """Where between two depths a surface gives way, found with copies of the renderer as it was at the first."""
-    for _ in range(ROUNDS):
-        depth = low + (high - low) * numpy.arange(PARTS + 1) / PARTS
-        gone = before.follow(numpy.full(PARTS - 1, time), way.at(depth[1:-1]), alternatives=True)["punctured"] > 0
-        part = int(numpy.append(gone, True).argmax())
-        low, high = depth[part], depth[part + 1]
-    return high
-
-
 def punctures_of(start, way, depth, trace, force):
-    """(tissue, force extended along the spring to where it gave way, the last force that was sampled)."""
+    """(tissue, force extended along the spring to where it gave way, the last force that was sampled). Where it gave way is found with
+    copies of the renderer as it was before."""
     done, time = 0, times(len(depth))
     for tick in numpy.flatnonzero(trace["punctured"] > 0):
         tissue = trace["layer"][tick - 1]
@@ -53,9 +44,14 @@ def punctures_of(start, way, depth, trace, force):
         done = tick
         if tick < 2 or tissue < 0 or trace["layer"][tick - 2] != tissue:
             continue
-        at = gives_way_at(start, way, time[tick], depth[tick - 1], depth[tick])
+        low, high = depth[tick - 1], depth[tick]
+        for _ in range(ROUNDS):
+            places = low + (high - low) * numpy.arange(PARTS + 1) / PARTS
+            gone = start.follow(numpy.full(PARTS - 1, time[tick]), way.at(places[1:-1]), alternatives=True)["punctured"] > 0
+            part = int(numpy.append(gone, True).argmax())
+            low, high = places[part], places[part + 1]
         slope = (force[tick - 1] - force[tick - 2]) / (depth[tick - 1] - depth[tick - 2])
-        yield tissue, force[tick - 1] + slope * (at - depth[tick - 1]), force[tick - 1]
+        yield tissue, force[tick - 1] + slope * (high - depth[tick - 1]), force[tick - 1]
 
 
 def insert(fresh, way, start, speed):
@@ -65,12 +61,6 @@ def insert(fresh, way, start, speed):
     trace, force = pushed(fresh, way, depth)
     off = numpy.linalg.norm(trace["force"] + spring(depth)[:, None] * way.inward, axis=1)
     return depth, force, off, list(punctures_of(fresh.copy(), way, depth, trace, force))
-
-
-def lines_at(speed, quick):
-    """More at a speed at which each has fewer ticks: one tick on the other side of a surface that gives way is off by
-    the whole force."""
-    return int((1 if quick else 50) * (speed / SPEEDS[0])**0.75)
 
 
 def puncture_rows(where, found):
@@ -84,7 +74,9 @@ def puncture_rows(where, found):
 def insertions(body, interpolation, options):
     fresh = renderer(body.felt(interpolation), layers())
     for speed in SPEEDS:
-        count, where = lines_at(speed, options.quick), {"body": body.name, "field": interpolation, "speed_mm_s": speed}
+        # More lines where each has fewer ticks: one tick on the other side of a surface that gives way is off by the whole force.
+        count = int((1 if options.quick else 50) * (speed / SPEEDS[0])**0.75)
+        where = {"body": body.name, "field": interpolation, "speed_mm_s": speed}
         randoms = [numpy.random.default_rng([options.seed, part]) for part in range(options.seeds)]
         lines = itertools.islice(itertools.cycle(randoms), count)
         runs = [insert(fresh, body.way(random), random.uniform(5, 6), speed) for random in lines]
@@ -152,10 +144,6 @@ def loop_bodies():
     yield ("head", palpate.load(palpate.sample_volume()).volume, palpate.SAMPLE_SKIN + 0.5 * between, between, 12)
 
 
-def loop_layers(isovalue, spread, gives_way):
-    return layered("", [(f"layer {i + 1}", isovalue + spread * (i / 3 - 0.5), stiffness, gives_way)
-                        for i, stiffness in enumerate((0.4, 1.5, 0.3, 0.8))])
-
 
 def loops_of(field, reach, ticks, random, most):
     """Closed paths around random places, each a sum of four waves, (ticks + 1, 3)."""
@@ -181,7 +169,8 @@ def gained(made, path):
 def energy_row(number, name, field, isovalue, spread, reach, gives_way, options):
     """Loops far from every surface say nothing and do not count. number: of the case, so that each draws other loops."""
     wanted, ticks = (3, 4000) if options.quick else (200, 16000)
-    start, found = renderer(field, loop_layers(isovalue, spread, gives_way)), []
+    start, found = renderer(field, layered("", [(f"layer {i + 1}", isovalue + spread * (i / 3 - 0.5), stiffness, gives_way)
+                                                for i, stiffness in enumerate((0.4, 1.5, 0.3, 0.8))])), []
     for part in range(options.seeds):
         random, done = numpy.random.default_rng([options.seed, part, number]), len(found)
         for begin, path in loops_of(field, reach, ticks, random, 50 * wanted):
@@ -231,8 +220,7 @@ def cost_rows(body, options):
                    "of_one_surface_high": high}
 
 
-def measured(options, heads):
-    """All rows."""
+def rows_of(options, heads):
     bodies = (flat(), balls())
     for body, field in options.each(itertools.product(bodies, FIELDS), 0, 0.3):
         yield from insertions(body, field, options)
@@ -342,6 +330,6 @@ def text_of(table):
 
 def run(options):
     heads = heads_of(options)
-    table = Table(measured(options, heads))
+    table = Table(rows_of(options, heads))
     return Result(table, [insertion_figure(table), puncture_figure(table), needle_figure(table), figure_of_heads(table, heads)],
                   claims_of(table), text_of(table), summary_of(table))

@@ -1,6 +1,5 @@
 """notice: what would a person notice? Forces of slow strokes over smooth bodies, beside published thresholds."""
 
-import dataclasses
 import functools
 import itertools
 
@@ -38,7 +37,7 @@ def steady(subject):
         hands = ring.hand(parts)
         return scipy.signal.sosfiltfilt(low, hands, axis=0) if len(hands) > 100 else hands
 
-    return dataclasses.replace(ring, hand=hand, samples="as scanned")
+    return ring._replace(hand=hand, samples="as scanned")
 
 
 def bodies_of(options):

@@ -61,11 +61,8 @@ class Outside:
         index = subject.index(points) + 1  # of the padded samples
         cell = numpy.floor(index).astype(int)
         held = ((cell < 0) | (cell > numpy.array(self._excess.shape) - 2)).any(axis=1)
-        held[~held] = self._within(cell[~held], (index - cell - 0.5)[~held])
-        return held
-
-    def _within(self, cell, u):
-        """The same for places `u` in cells, from their centres."""
+        inner = ~held
+        cell, u = cell[inner], (index - cell - 0.5)[inner]  # places in cells, from their centres
         eight = numpy.array(list(itertools.product((0, 1), repeat=3)))
         x, y, z = (cell[:, None, :] + eight).transpose(2, 0, 1)
         excess, reached = self._excess[x, y, z], self._reached[x, y, z]
@@ -81,4 +78,5 @@ class Outside:
         of_corner = numpy.stack([excess.argmin(axis=1), numpy.where(face, excess, numpy.inf).argmin(axis=1),
                                  lowest_of_edge], axis=1)
         lowest = means.argmin(axis=1)
-        return reached[rows, of_corner[rows, lowest]] & (means[rows, lowest] <= 0)
+        held[inner] = reached[rows, of_corner[rows, lowest]] & (means[rows, lowest] <= 0)
+        return held

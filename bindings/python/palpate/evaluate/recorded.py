@@ -1,5 +1,6 @@
 """recorded: does a hand feel what it felt on a real surface? (Ruffaldi, Morris et al. 2006)"""
 
+import collections
 import dataclasses
 import itertools
 from pathlib import Path
@@ -27,14 +28,7 @@ NEIGHBOURS = 16  # triangles that are looked at for a point
 COLUMNS = ("t", "x", "y", "z", "fx", "fy", "fz")
 
 
-@dataclasses.dataclass
-class Recording:
-    """Of a probe: time [s], position [mm], and the force on the hand [N]."""
-
-    name: str
-    time: numpy.ndarray
-    position: numpy.ndarray
-    force: numpy.ndarray
+Recording = collections.namedtuple("Recording", "name time position force")  # of a probe [s, mm], and the force on the hand [N]
 
 
 def read(path):
@@ -148,16 +142,13 @@ def rows_of(recording, surface, samples, voxel):
     volume, level = volume_of(surface, hands, voxel, SAMPLES[samples])
     subject = linear(recording.name, volume, level)
     start, strength = hands[0] + (BAND + 1) * voxel * surface.nearest(hands[:1])[1][0], numpy.linalg.norm(normal_force, axis=1)
-
-    def row(contestant):
+    for contestant in CONTESTANTS.values():
         trace = contestant.proxy(subject, start).follow(hands)
         force = numpy.where(trace.constrained[:, None], STIFFNESS * (trace.scp - hands), 0)
-        return {"recording": recording.name, "surface": surface.name, "samples": samples, "voxel_mm": voxel, "method": contestant.name,
-                "ticks": len(hands), "contact_share": (strength > 0).mean(), "mean_force_n": strength.mean(),
-                **metrics("force_n", normal_force, force), **metrics("with_friction_n", recording.force, force),
-                **metrics("position_mm", out, trace.scp)}, force
-
-    return [row(contestant) for contestant in CONTESTANTS.values()]
+        yield {"recording": recording.name, "surface": surface.name, "samples": samples, "voxel_mm": voxel, "method": contestant.name,
+               "ticks": len(hands), "contact_share": (strength > 0).mean(), "mean_force_n": strength.mean(),
+               **metrics("force_n", normal_force, force), **metrics("with_friction_n", recording.force, force),
+               **metrics("position_mm", out, trace.scp)}, force
 
 
 def recordings_of(options):

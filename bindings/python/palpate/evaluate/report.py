@@ -1,8 +1,8 @@
 """Writes results as files: NAME.csv, NAME.md and figures, and several experiments as one HTML page and one PDF."""
 
 import base64
+import collections
 import csv
-import dataclasses
 import functools
 import html
 import importlib.util
@@ -12,15 +12,10 @@ import string
 from pathlib import Path
 
 from . import figures
-from .experiment import Result, Table
+from .experiment import Table
 
 
-@dataclasses.dataclass
-class Report:
-    name: str
-    title: str
-    result: Result
-    circumstances: str
+Report = collections.namedtuple("Report", "name title result circumstances")
 
 
 def number(cell, digits=12):
@@ -106,18 +101,16 @@ def section(report, folder, whole):
     return "".join([*parts, html_table(claims_of(report.result)), numbers, *map(small, data_of(report.result))])
 
 
-def circumstances_of(reports):
-    """A paragraph for all of them, or one for those that share a machine, a moment and a build."""
-    shared = {text: [r.name for r in reports if r.circumstances == text] for text in (r.circumstances for r in reports)}
-    return [small(text if len(shared) == 1 else f"{', '.join(names)}: {text}") for text, names in shared.items()]
-
 
 def page_of(reports, folder, whole=True):
     """HTML of all reports; `folder` holds the figures, which are embedded. whole: with the tables of all numbers."""
     page = string.Template((Path(__file__).parent / "pages" / "report.html").read_text(encoding="utf-8"))
     held = [claim.held for report in reports for claim in report.result.claims]
+    # A paragraph for all of them, or one for those that share a machine, a moment and a build.
+    shared = {text: [r.name for r in reports if r.circumstances == text] for text in (r.circumstances for r in reports)}
+    circumstances = [small(text if len(shared) == 1 else f"{', '.join(names)}: {text}") for text, names in shared.items()]
     return page.substitute(sections="".join(section(report, folder, whole) for report in reports), held=sum(held), claims=len(held),
-                           circumstances="".join(circumstances_of(reports)), entries="".join(
+                           circumstances="".join(circumstances), entries="".join(
         f'<li><a href="#{r.name}">{r.name}</a>: {html.escape(r.title)} '
         f"({sum(c.held for c in r.result.claims)} of {len(r.result.claims)} claims hold)</li>\n" for r in reports))
 

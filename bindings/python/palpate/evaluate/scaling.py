@@ -1,5 +1,6 @@
 """scaling: what does the cost grow with, and what does the explicit approach cost?"""
 
+import collections
 import dataclasses
 import itertools
 
@@ -21,19 +22,10 @@ SEGMENTS, REPEATS = 4000, 3  # at most so many; the fastest repeat of the explic
 TILT, TURNING = 0.9, 0.02  # [rad] of the circles around a ball, and turn of their plane per angle along them
 
 
-@dataclasses.dataclass
-class Plan:
-    ticks: int
-    passes: int
-    speeds: tuple = (5, 10, 20, 50, 100, 200, 500, 1000, 2000)
-    voxels: tuple = (0.25, 0.5, 1, 2, 3, 4, 6, 8)
-    sizes: tuple = (64, 128, 256, 512, 768, 1024)  # samples along an edge
-    noises: tuple = (0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)  # of the density's range
-    explicit_sizes: tuple = (64, 128, 256, 512, 1024)
-
-
+Plan = collections.namedtuple("Plan", "ticks passes speeds voxels sizes noises explicit_sizes")  # edges [samples], parts of the range
 QUICK = Plan(1500, 3, (20, 100, 500), (0.5, 2), (64, 80, 128), (0, 0.1, 1), (32, 64))
-FULL = Plan(20000, 5)
+FULL = Plan(20000, 5, (5, 10, 20, 50, 100, 200, 500, 1000, 2000), (0.25, 0.5, 1, 2, 3, 4, 6, 8), (64, 128, 256, 512, 768, 1024),
+            (0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1), (64, 128, 256, 512, 1024))
 
 
 @dataclasses.dataclass
@@ -186,8 +178,7 @@ def explicit_numbers(subject, segments, options):
     ours, _ = palpate.cast_rays(subject.field, subject.isovalue, starts, ends)
     theirs = starts + found["hits"][:, None] * (ends - starts)
     apart = numpy.linalg.norm(theirs - ours, axis=1) / subject.voxel
-    ready, kept = found["extraction_s"] + found["tree_s"], found["mesh_bytes"] + found["tree_bytes"]
-    found = {**found, "ready_s": ready, "kept_bytes": kept}
+    found = {**found, "ready_s": found["extraction_s"] + found["tree_s"], "kept_bytes": found["mesh_bytes"] + found["tree_bytes"]}
     return {**{f"explicit_{name}": found[name] for name in ("triangles", "extraction_s", "tree_s", "ready_s", "cpu_s", "mesh_bytes",
                                                             "tree_bytes", "kept_bytes", "peak_bytes", "segment_ns")},
             "one_sided_hits_share": (numpy.isnan(theirs[:, 0]) != numpy.isnan(ours[:, 0])).mean(),

@@ -133,10 +133,6 @@ def cases_of(subject, plan):
     return [(make, (subject, *loop, rate, strength)) for make, loop, rate, strength in cases]
 
 
-def measured(cases, options):
-    return Table(row for part in options.each(itertools.zip_longest(*[iter(cases)] * 64))
-                 for row in in_parallel(lambda case: case[0](*case[1]), filter(None, part)))
-
 
 def largest_stable(rows, rate, steps=2):
     """The largest stiffness up to which every one tried moves by so many encoder steps at most, which is at rest for two; 0 if none
@@ -266,7 +262,8 @@ def text_of(table, plan, subject):
 def run(options):
     plan = QUICK if options.quick else FULL
     subject = options.subjects[0] if options.subjects else synthetic("sphere")
-    table = measured(cases_of(subject, plan), options)
+    parts = options.each(itertools.zip_longest(*[iter(cases_of(subject, plan))] * 64))
+    table = Table(row for part in parts for row in in_parallel(lambda case: case[0](*case[1]), filter(None, part)))
     return Result(table, [map_figure(table, plan), profile_figure(table, plan), rotation_figure(table, plan)],
                   [*claims_of_rest(table, plan), *claims_of_rotation(table)], text_of(table, plan, subject),
                   summary_of(table, plan))

@@ -42,7 +42,7 @@ def summary_of(table, plan):
                   for row in table.where(levels=levels, latency_ms=latency)}}
 
 
-def lines(panels, table, plan, column, factor, label):
+def lines(panels, table, column, factor, label):
     """A line for each latency, against the hand's speed; a panel for each kind of levels."""
     for axes, levels in zip(panels, LEVELS):
         for (latency, rows), colour in zip(table.where(levels=levels).by("latency_ms"), COLOURS):
@@ -51,26 +51,23 @@ def lines(panels, table, plan, column, factor, label):
     panels[0].set_ylabel(label)
 
 
-def waiting_figure(table, plan):
+def figures_of(table):
     drawn, panels = figures.panels(columns=2, height=2.6, sharey=True, title="Coarser levels spare a fast hand most of its waiting")
-    lines(panels, table, plan, "waiting_share", 100, "ticks that wait [%]")
+    lines(panels, table, "waiting_share", 100, "ticks that wait [%]")
     for axes in panels:
         axes.set(xlabel="speed of the hand [voxel/s]", ylim=(-3, 103))
     figures.label_ends(panels[1])
-    return PAGE.figure(drawn)
-
-
-def traffic_figure(table, plan):
-    drawn, panels = figures.panels(2, 2, height=4.2, sharex=True, sharey="row",
-                                   title="The memory stays below its bound, whatever the hand does")
-    lines(panels[0], table, plan, "read_mb", 1e-3, "read in a stroke [GB]")
-    lines(panels[1], table, plan, "most_mb", 1, "memory [MB]")
-    for axes in panels[1]:
+    yield PAGE.figure(drawn)
+    drawn, (above, below) = figures.panels(2, 2, height=4.2, sharex=True, sharey="row",
+                                           title="The memory stays below its bound, whatever the hand does")
+    lines(above, table, "read_mb", 1e-3, "read in a stroke [GB]")
+    lines(below, table, "most_mb", 1, "memory [MB]")
+    for axes in below:
         axes.set(title="", xlabel="speed of the hand [voxel/s]", ylim=(0, 1.25 * MEMORY))
         figures.limit(axes, MEMORY, "bound", ":")
-    panels[0, 0].set_ylim(0, None)
-    figures.label_ends(panels[0, 1])
-    return PAGE.figure(drawn, "traffic")
+    above[0].set_ylim(0, None)
+    figures.label_ends(above[1])
+    yield PAGE.figure(drawn, "traffic")
 
 
 def claims_of(table):
@@ -92,5 +89,4 @@ def run(options):
     plan = QUICK if options.quick else FULL
     cases = options.each(itertools.product(LEVELS, plan.latencies, plan.speeds))
     table = Table(row_of(plan, *case, options.seed) for case in cases)
-    return Result(table, [waiting_figure(table, plan), traffic_figure(table, plan)], claims_of(table), text_of(table, plan),
-                  summary_of(table, plan))
+    return Result(table, figures_of(table), claims_of(table), text_of(table, plan), summary_of(table, plan))
