@@ -38,7 +38,7 @@ def go_round(subject, ring, contestant, speed, rate, turns):
 def summary_of(last):
     for name, rows in last.by("method"):
         worst = rows["worst_deviation_of_range"]
-        yield {"method": name, "largest deviation": f"{largest(worst):.2g}",
+        yield {"method": name, "largest deviation [part of the range]": f"{largest(worst):.2g}",
                "median of the runs [95 % interval]": sampling.in_words(worst, "{:.2g}"), "runs": len(rows),
                "updates": f"{sum(rows['updates']):,.0f}"}
 

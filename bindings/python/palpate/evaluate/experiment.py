@@ -114,7 +114,7 @@ def known(name):
 
     with (Path(__file__).parent / "tables" / f"{name}.csv").open(encoding="utf-8", newline="") as file:
         next(file)
-        return Table({column: cell(text) for column, text in row.items()} for row in csv.DictReader(file))
+        return Table({column: cell(text) for column, text in row.items() if text} for row in csv.DictReader(file))
 
 
 @dataclasses.dataclass

@@ -92,19 +92,19 @@ def row_of(group, contestant, speed, rate, seed):
 
 
 def share_in_words(table, column, of="crossings"):
-    """'12.3 % [12.1, 12.5]', exact binomial interval."""
+    """'12.3 [12.1, 12.5]' percent, exact binomial interval."""
     counts = table["crossings"] * (table["pressed_share"] if of == "pressed" else 1)
     successes = numpy.nansum(table[column] * counts)
     interval = scipy.stats.binomtest(int(round(successes)), int(round(counts.sum()))).proportion_ci(method="exact")
-    return f"{successes / counts.sum():.3%} [{interval.low:.3%}, {interval.high:.3%}]"
+    return "{:.3g} [{:.3g}, {:.3g}]".format(*(100 * share for share in (successes / counts.sum(), interval.low, interval.high)))
 
 
 def summary_of(table):
     for name, rows in table.by("method"):
         yield {"method": name, "crossings": f"{rows['crossings'].sum():,.0f}",
-               "ends inside [95 % interval]": share_in_words(rows, "inside_share"),
-               "inside while the hand is in the wall": share_in_words(rows, "inside_while_pressed_share", "pressed"),
-               "wall not felt at all": share_in_words(rows, "unfelt_share")}
+               "ends inside [%, 95 % interval]": share_in_words(rows, "inside_share"),
+               "inside while the hand is in the wall [%, 95 % interval]": share_in_words(rows, "inside_while_pressed_share", "pressed"),
+               "wall not felt at all [%, 95 % interval]": share_in_words(rows, "unfelt_share")}
 
 
 def is_a_users(table):
@@ -140,7 +140,7 @@ def map_of(table):
     share = [[100 * rows.where(**{column: wall, "step_mm": step})["unfelt_share"].mean() for step in steps] for wall in walls]
     drawn, axes = figures.panels(width=figures.PAGE, height=0.9 + 0.27 * len(walls))
     figures.number_map(axes, share, walls, [f"{step:g}" for step in steps], 140)
-    title = f"{name}: how often a wall is not felt" if users else f"{name}: the faster the hand and the thinner the wall, the less is felt"
+    title = f"{name}: walls that are not felt [%]" + ("" if users else ", more of them the faster the hand and the thinner the wall")
     axes.set(title=title, xlabel="hand per tick [mm]", ylabel="volume" if users else "wall [voxel]")
     axes.tick_params(axis="x", rotation=45, labelsize=6.5)
     return PAGE.figure(drawn, "unfelt", method=name)
@@ -169,6 +169,7 @@ def run(options):
     for cell, (group, speed, rate) in enumerate(options.each(itertools.product(groups, speeds, rates)), 1):
         table.extend(row_of(group, contestant, speed, rate, [options.seed, cell])
                      for contestant in CONTESTANTS.values() if contestant.interpolation in group.walls)
+    lines = count * len(groups)
     text = PAGE.text("walls of a user" if options.subjects else "own walls", "method", slowest=speeds[0], fastest=speeds[-1],
-                     least=rates[0], most=rates[-1], count=count, seeds=options.seeds)
+                     least=rates[0], most=rates[-1], count=count, seeds=options.seeds, lines=lines, bound=sampling.bound_of_none(lines))
     return Result(table, [figure_of(table), map_of(table)], claims_of(table, groups, not options.subjects), text, summary_of(table))

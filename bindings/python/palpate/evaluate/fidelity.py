@@ -102,7 +102,8 @@ def other_rows(body, count):
         yield row_of(body, NEAREST, count, *errors_of(body, numpy.array(list(nearest_points(mesh, hands))), hands))
     for peer in PEERS.where(samples=body.samples, grid=body.grid):
         yield {"body": "ball", "trajectory": "circle", "grid": body.grid, "samples": body.samples, "method": peer["method"], "steps": 20000,
-               "depth_voxel": 0.03 * body.grid, **{f"{angle}_{what}_deg": peer[what] for angle in ANGLES for what in ("mean", "p99")}}
+               "depth_voxel": 0.03 * body.grid,
+               **{f"{angle}_{what}_deg": peer[what] for angle in ANGLES for what in ("mean", "p99") if what in peer}}
 
 
 def bodies_of(options):
@@ -120,20 +121,26 @@ def ball_rows(table, samples, method="exact"):
 
 
 def summary_of(table):
-    for method, samples in dict.fromkeys(line[:2] for line in (*BALL, *SOURCES)):
-        for row in ball_rows(table, samples, method):
-            yield {"samples": samples, "method": method, "grid": row["grid"], "mean angle [deg]": row["off_ideal_mean_deg"],
-                   "p99 [deg]": row["off_ideal_p99_deg"], "turn per tick, largest [deg]": row.get("turn_max_deg", numpy.nan)}
+    """A row for each method on each kind of samples."""
+    for samples, method in itertools.product(SAMPLES, (*CONTESTANTS, *PEERS.distinct("method"))):
+        rows = ball_rows(table, samples, method)
+        if rows:
+            yield {"samples": samples, "method": method, **{
+                f"grid {row['grid']:g}: mean / p99 [deg]": " / ".join(
+                    f"{angle:.3g}" for angle in (row["off_ideal_mean_deg"], row.get("off_ideal_p99_deg", numpy.nan)) if angle < numpy.inf)
+                for row in rows}}
 
 
 # Lines of a figure: method, samples, label, colour, marker.
 BALL = ((RIVAL, "uint8", "CHAI3D voxel object", figures.BLACK, "s"), (SHADED, "uint8", "CHAI3D shaded mesh", figures.GREY, "s"),
-        (EMBREE, "uint8", "Embree", figures.GREEN, "x"), ("exact", "uint8", "exact", figures.BLUE, "o"),
-        ("smooth", "uint8", "smooth", figures.PURPLE, "D"))
+        (EMBREE, "uint8", "Embree god object", figures.GREEN, "x"), ("exact", "uint8", "exact", *figures.LOOKS["exact"]),
+        ("gradient-improved", "uint8", "gradient-improved", *figures.LOOKS["gradient-improved"]),
+        ("smooth", "uint8", "smooth", *figures.LOOKS["smooth"]))
 SOURCES = (("exact", "uint8", "exact, 8 bit", figures.BLUE, "o"), ("exact", "uint8 smoothed", "exact, smoothed", figures.SKY, "v"),
            ("exact", "float32", "exact, not rounded", figures.GREEN, "^"),
            ("smooth", "uint8 dequantized", "smooth, dequantized", figures.ORANGE, "s"),
            ("smooth", "float32", "smooth, not rounded", figures.PURPLE, "D"))
+DEQUANTIZED = (SHADED, "uint8 dequantized", "CHAI3D, dequantized", figures.GREY, "s")
 
 
 def draw_lines(axes, rows, lines, column, title, label="mean angle [degrees]"):
@@ -147,8 +154,9 @@ def draw_lines(axes, rows, lines, column, title, label="mean angle [degrees]"):
 def figure_of_ball(table):
     drawn, (left, right) = figures.panels(columns=2, height=2.9)
     rows = table.where(body="ball", trajectory="circle")
-    draw_lines(left, rows, BALL, "off_ideal_mean_deg", "no method is good on raw 8-bit samples")
-    draw_lines(right, rows, SOURCES, "off_ideal_mean_deg", "the smooth field is, if dequantized")
+    draw_lines(left, rows, BALL, "off_ideal_mean_deg", "raw 8-bit samples mislead every method")
+    draw_lines(right, rows, (*SOURCES, DEQUANTIZED), "off_ideal_mean_deg", "dequantized, the smooth field is accurate")
+    figures.ticks(left.yaxis, (3, 5, 10, 20, 40))
     figures.label_ends(left, right)
     return PAGE.figure(drawn)
 
@@ -164,9 +172,10 @@ def figure_of_turn(grid):
         left.plot(arc * (1 + numpy.arange(len(turns))) / steps, turns, color=colour, lw=0.8)
         right.plot(numpy.sort(turns), 100 * (1 + numpy.arange(len(turns))) / len(turns), color=colour, label=label)
     left.axhline(arc / steps, color=figures.BLACK, ls="--", lw=0.8)
-    left.set(title="the force turns at facets only on the linear field", xlabel="hand along the circle [degrees]", yscale="log",
+    left.set(title="on the linear field,\nthe force jumps at facets", xlabel="hand along the circle [degrees]", yscale="log",
              ylabel="turn per tick [degrees]")
-    right.set(xlabel="turn per tick [degrees]", ylabel="ticks with no larger turn [%]", xscale="log")
+    right.set(title="on the smooth field,\nit turns evenly", xlabel="turn per tick [degrees]", ylabel="ticks with no larger turn [%]",
+              xscale="log")
     figures.label_ends(right)
     return PAGE.figure(drawn, "turn", arc=arc, grid=grid, step=arc / steps)
 
@@ -181,16 +190,16 @@ def figure_of_losses(table):
         points = numpy.stack([7 - 0.5 * (samples - 1) + at, 0 * at + 7, 0 * at + 7], axis=1)
         for interpolation, dashes in (("linear", "--"), ("cubic", "-")):
             left.plot(at, palpate.Field(palpate.Volume(wall), interpolation=interpolation).value(points), dashes, color=colour)
-        left.text(0.5 * samples + 0.25, 0.3 + 0.2 * samples, f"{samples} thick", color=colour, fontsize=7)
-    left.set(title="a wall of one sample loses a quarter", xlabel="across the wall [voxel]", ylabel="density")
+        left.text(3, 0.55 + 0.12 * samples, f"{samples} thick", color=colour, fontsize=7, ha="right")
+    left.set(title="a wall of one sample\nloses a quarter of its height", xlabel="across the wall [voxel]", ylabel="density")
     draw_lines(right, table.where(body="ball", trajectory="circle"), SOURCES[2::2], "surface_error_mean_voxel",
-               "curved surfaces move a little", "distance from the true surface [voxel]")
+               "the surface of a ball moves by\nthousandths of a voxel", "distance from the true one [voxel]")
     figures.label_ends(right)
     return PAGE.figure(drawn, "losses")
 
 
 def figure_of_shapes(table):
-    drawn, panels = figures.panels(columns=2, height=2.7)
+    drawn, panels = figures.panels(columns=2, height=2.9, title="Where nothing is rounded, finer grids give more accurate forces")
     for axes, body in zip(panels, ("torus", "marschner-lobb")):
         draw_lines(axes, table.where(body=body), SOURCES, "angle_mean_deg", body)
     figures.label_ends(*panels)

@@ -14,7 +14,7 @@ from .tissues import (BALL_RADIUS, DEEPEST, DRAG, LEVEL, PUNCTURE, RATE, STIFFNE
                       pushed, renderer, spring, thinned, times)
 
 PAGE = Page(__name__)
-FIELDS = ("linear", "cubic")
+FIELDS = {"linear": "linear", "cubic": "smooth"}  # interpolation, and what the field is called
 SPEEDS = (5, 50, 250, 1000)  # [mm/s] of insertions
 NEEDLE_SPEEDS = (10, 100)
 PHASES = ("insertion", "rest", "withdrawal")
@@ -54,14 +54,6 @@ def punctures_of(start, way, depth, trace, force):
         yield tissue, force[tick - 1] + slope * (high - depth[tick - 1]), force[tick - 1]
 
 
-def insert(fresh, way, start, speed):
-    """(depths, forces, errors [N], punctures) of a hand that goes straight in, by copies of a renderer."""
-    step = speed / RATE
-    depth = start + step * numpy.arange(int(numpy.ceil((DEEPEST - start) / step)))
-    trace, force = pushed(fresh, way, depth)
-    off = numpy.linalg.norm(trace["force"] + spring(depth)[:, None] * way.inward, axis=1)
-    return depth, force, off, list(punctures_of(fresh.copy(), way, depth, trace, force))
-
 
 def puncture_rows(where, found):
     for tissue, (name, wanted) in enumerate(zip(TISSUES, PUNCTURE[numpy.isfinite(PUNCTURE)])):
@@ -78,19 +70,22 @@ def insertions(body, interpolation, options):
         count = int((1 if options.quick else 50) * (speed / SPEEDS[0])**0.75)
         where = {"body": body.name, "field": interpolation, "speed_mm_s": speed}
         randoms = [numpy.random.default_rng([options.seed, part]) for part in range(options.seeds)]
-        lines = itertools.islice(itertools.cycle(randoms), count)
-        runs = [insert(fresh, body.way(random), random.uniform(5, 6), speed) for random in lines]
-        if interpolation == "linear" and speed in (SPEEDS[0], SPEEDS[-1]):
-            depth, force = runs[0][:2]
-            rows = thinned(depth, lambda one, last: one >= last + RESOLUTION)
-            yield from curve_rows({"part": "insertion curve", **where}, rows, depth, force, spring(depth))
-        offs = [off for _, _, off, _ in runs]
+        step, offs, punctures = speed / RATE, [], []
+        for random in itertools.islice(itertools.cycle(randoms), count):
+            way, start = body.way(random), random.uniform(5, 6)
+            depth = start + step * numpy.arange(int(numpy.ceil((DEEPEST - start) / step)))
+            trace, force = pushed(fresh, way, depth)
+            if interpolation == "linear" and speed in (SPEEDS[0], SPEEDS[-1]) and not offs:
+                rows = thinned(depth, lambda one, last: one >= last + RESOLUTION)
+                yield from curve_rows({"part": "insertion curve", **where}, rows, depth, force, spring(depth))
+            offs.append(numpy.linalg.norm(trace["force"] + spring(depth)[:, None] * way.inward, axis=1))
+            punctures += punctures_of(fresh.copy(), way, depth, trace, force)
         ticks = sum(map(len, offs))
         _, low, high = numpy.sqrt(sampling.bootstrap([(off**2).mean() for off in offs], numpy.mean))
         yield {"part": "insertion", **where, "runs": count, "ticks": ticks,
                "rms_n": numpy.sqrt(sum((off**2).sum() for off in offs) / ticks), "worst_n": max(off.max() for off in offs),
                "rms_low_n": low, "rms_high_n": high}
-        yield from puncture_rows(where, [puncture for *_, punctures in runs for puncture in punctures])
+        yield from puncture_rows(where, punctures)
 
 
 # A needle goes in, rests half a second and is withdrawn.
@@ -237,7 +232,7 @@ def summary_of(table):
     for run in table.where(part="insertion"):
         punctures = table.where(part="puncture", **{name: run[name] for name in ("body", "field", "speed_mm_s")})
         share = 100 * punctures["greatest_sampled_mean_n"] / punctures["puncture_force_n"]
-        yield {"body": run["body"], "field": run["field"], "speed [mm/s]": run["speed_mm_s"],
+        yield {"body": run["body"], "field": FIELDS[run["field"]], "speed [mm/s]": run["speed_mm_s"],
                "RMS error [N], 95 % interval over lines": "{rms_n:.2g} [{rms_low_n:.2g}, {rms_high_n:.2g}]".format(**run),
                "puncture force, worst error [%]": largest(punctures["extrapolated_off_percent"]),
                "greatest force sampled, mean [% of the puncture force]": f"{share.min():.0f} to {share.max():.0f}"}
@@ -304,8 +299,8 @@ def claims_of_energy(table):
     most, least = rows["most_gained_j"].max(), numpy.fmin.reduce(rows["least_lost_with_puncture_j"])
     loops, punctured = int(rows["runs"].sum()), int(rows["loops_with_punctures"].sum())
     kept, lost = rows["runs"].all() and most <= MOST_GAINED, least > 0
-    yield PAGE.claim("gain", kept, most=most, loops=f", and more in {sampling.none_of(loops, 'loops')}" if kept else f" in {loops:,} loops")
-    yield PAGE.claim("loss", lost, least=least, loops=f", and less than nothing in {sampling.none_of(punctured, 'loops')}" if lost
+    yield PAGE.claim("gain", kept, most=most, loops=f". Exceeded in {sampling.none_of(loops, 'loops')}" if kept else f" in {loops:,} loops")
+    yield PAGE.claim("loss", lost, least=least, loops=f". Nothing was lost in {sampling.none_of(punctured, 'loops')}" if lost
                      else f" in {punctured:,} loops")
 
 
@@ -322,8 +317,9 @@ def claims_of(table):
 def text_of(table):
     fast = table.where(part="puncture", speed_mm_s=SPEEDS[-1])
     share = 100 * fast["greatest_sampled_mean_n"] / fast["puncture_force_n"]
-    costs = " ".join("The hand {hand}, {field} field: {tick_ns:.0f} ns ({of_one_surface:.2f} [{of_one_surface_low:.2f}, "
-                     "{of_one_surface_high:.2f}]).".format(**row) for row in table.where(part="cost", surfaces=FEELS[2]))
+    costs = " ".join("The hand {hand}, {smooth} field: {tick_ns:.0f} ns ({of_one_surface:.2f} [{of_one_surface_low:.2f}, "
+                     "{of_one_surface_high:.2f}]).".format(**row, smooth=FIELDS[row["field"]])
+                     for row in table.where(part="cost", surfaces=FEELS[2]))
     return PAGE.text(least=share.min(), least_of=fast[int(share.argmin())]["layer"], heads=" ".join(text_of_heads(table)), costs=costs,
                      off=[largest(table.where(part="needle", phase=phase)["rms_n"]) for phase in PHASES])
 

@@ -43,7 +43,7 @@ class Outside:
             one = numpy.broadcast_to(around.max(axis=1, keepdims=True), around.shape)
             joined = (around > 0) & (around != one)
             pairs.append(numpy.stack([one[joined], around[joined]], axis=1))
-        pairs = numpy.unique(numpy.concatenate(pairs), axis=0)
+        pairs = numpy.concatenate(pairs)
         graph = scipy.sparse.coo_matrix((numpy.ones(len(pairs)), pairs.T), shape=(count + 1, count + 1))
         _, component = scipy.sparse.csgraph.connected_components(graph, directed=False)
         self._reached = (component[labels] == component[labels[0, 0, 0]]) & (labels > 0)
@@ -58,7 +58,8 @@ class Outside:
                 gradient = subject.sign * subject.field.gradient(points)
                 length = numpy.linalg.norm(gradient, axis=1, keepdims=True)
                 points -= 0.1 * subject.voxel * gradient / numpy.where(length > 0, length, 1)
-        index = subject.index(points) + 1  # of the padded samples
+        geometry = subject.field.geometry
+        index = (points - geometry.origin) @ numpy.asarray(geometry.direction) / geometry.spacing + 1  # of the padded samples
         cell = numpy.floor(index).astype(int)
         held = ((cell < 0) | (cell > numpy.array(self._excess.shape) - 2)).any(axis=1)
         inner = ~held

@@ -1,4 +1,4 @@
-"""recorded: does a hand feel what it felt on a real surface? (Ruffaldi, Morris et al. 2006)"""
+"""recorded: is the force of a recorded stroke rendered again? (Ruffaldi, Morris et al. 2006)"""
 
 import collections
 import dataclasses
@@ -165,10 +165,10 @@ def summary_of(table):
     for samples in SAMPLES:
         for name in CONTESTANTS:
             rows = table.where(samples=samples, method=name)
-            yield {"samples": samples, "method": name, "force, RMS error [N]": sampling.in_words(rows["force_n_rms"], "{:.2g}"),
-                   "force, greatest error [N]": largest(rows["force_n_max"]),
-                   "position, RMS error [mm]": sampling.in_words(rows["position_mm_rms"], "{:.2g}"),
-                   "force with friction, RMS error [N]": sampling.in_words(rows["with_friction_n_rms"], "{:.2g}")}
+            rms = {f"{what}, median [95 % interval]": sampling.in_words(rows[column], "{:.2g}") for what, column in (
+                ("RMS error of the force [N]", "force_n_rms"), ("of the position [mm]", "position_mm_rms"),
+                ("of the force with friction [N]", "with_friction_n_rms"))}
+            yield {"samples": samples, "method": name, **rms, "greatest error of the force [N]": largest(rows["force_n_max"])}
 
 
 def figure_of(recording, surface, forces, table):

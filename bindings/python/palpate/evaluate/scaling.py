@@ -236,7 +236,7 @@ def edges_of(rows):
 def growth_figure(table):
     """Times above, tetrahedra below. Of several volumes the first."""
     parts = [part for part in GROWTH if table.where(part=part)]
-    title = "An update costs the tetrahedra that the proxy passes" + (", whatever the size of the volume" if "size" in parts else "")
+    title = "The cost of an update grows with the hand's path" + (" and with noise, not with the volume's size" if "size" in parts else "")
     drawn, panels = figures.panels(2, len(parts), height=3.8, title=title, sharex="col", sharey="row", squeeze=False,
                                    gridspec_kw={"height_ratios": [3, 1.4]})
     for (above, below), part in zip(panels.T, parts):
@@ -318,15 +318,15 @@ def span(values):
     return f"{values.min():.0f} to {values.max():.0f} ns" if len(values) else "not measured"
 
 
-def text_of(table, own_volumes):
+def text_of(table, own_volumes, passes):
     rows, sections = table.where(part="explicit"), ["", *(["growth"] if own_volumes else []), "explicit"]
-    values = {"state": rows[0]["state_bytes"], "mean": {f"{part} {method}": span(table.where(part=part, method=method)["mean_ns"])
-                                                        for part, method in itertools.product(GROWTH, METHODS)}}
+    cases = itertools.product(GROWTH, METHODS)
+    values = {"state": rows[0]["state_bytes"], "passes": passes,
+              "mean": {f"{part} {method}": span(table.where(part=part, method=method)["mean_ns"]) for part, method in cases}}
     if own_volumes:
         found, edges = crossings(table), table.where(part="size").distinct("size")
         moved = table.where(part="noise", method="exact")["tetrahedra_per_update"]
-        values.update(fewest=found.min(), most=found.max(), small=edges[0], large=edges[-1], calm=moved.max(),
-                      noisy=moved.min())
+        values.update(fewest=found.min(), most=found.max(), small=edges[0], large=edges[-1], calm=moved[0], noisy=moved.min())
     if not numpy.isnan(rows["explicit_segment_ns"]).all():
         sections.append("segments")
         values.update(segment=span(rows["explicit_segment_ns"]), update=span(rows["mean_ns"]))
@@ -339,5 +339,5 @@ def run(options):
         options.note("a given volume has one size and its own noise: those parts are left out")
     parts = by_hand(plan, options), by_body(plan, options) if own_volumes else (), by_approach(plan, options)
     table = Table(row for rows in options.each(itertools.chain(*parts)) for row in rows)
-    return Result(table, [growth_figure(table), explicit_figure(table)], claims_of(table, own_volumes), text_of(table, own_volumes),
-                  summary_of(table))
+    return Result(table, [growth_figure(table), explicit_figure(table)], claims_of(table, own_volumes),
+                  text_of(table, own_volumes, plan.passes), summary_of(table))

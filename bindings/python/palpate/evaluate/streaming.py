@@ -52,7 +52,8 @@ def lines(panels, table, column, factor, label):
 
 
 def figures_of(table):
-    drawn, panels = figures.panels(columns=2, height=2.6, sharey=True, title="Coarser levels spare a fast hand most of its waiting")
+    drawn, panels = figures.panels(columns=2, height=2.6, sharey=True,
+                                   title="With latency, coarser levels spare a hand half of its waiting or more")
     lines(panels, table, "waiting_share", 100, "ticks that wait [%]")
     for axes in panels:
         axes.set(xlabel="speed of the hand [voxel/s]", ylim=(-3, 103))
@@ -71,8 +72,10 @@ def figures_of(table):
 
 
 def claims_of(table):
-    beyond = numpy.nanmax(table["beyond_allowed_voxel"])
-    yield PAGE.claim("path", beyond <= 0, beyond=beyond, ticks=table["ticks"].sum())
+    judged = table.only(lambda row: row.get("beyond_allowed_voxel", numpy.nan) < numpy.inf)  # not NaN
+    beyond, moved = judged["beyond_allowed_voxel"].max(), (judged["ticks"] * (1 - judged["waiting_share"])).sum()
+    left = PAGE.text("not judged", left=len(table) - len(judged)) if len(judged) < len(table) else [""]
+    yield PAGE.claim("path", beyond <= 0, room=-beyond, judged=len(judged), strokes=len(table), moved=moved, left=left[0])
     yield PAGE.at_most(MEMORY, table["most_mb"], "memory")
 
 
@@ -80,7 +83,7 @@ def text_of(table, plan):
     latency, slow, fast = plan.latencies[-1], plan.speeds[0], plan.speeds[-1]
     waits = [100 * table.where(levels=levels, latency_ms=latency, speed_voxel_s=speed)[0]["waiting_share"]
              for speed, levels in itertools.product((slow, fast), LEVELS)]
-    return PAGE.text(failures=100 * FAILURES, rate=plan.rate, latency=latency, slow=slow, fast=fast, waits=waits,
+    return PAGE.text(failures=100 * FAILURES, rate=plan.rate, seconds=plan.seconds, latency=latency, slow=slow, fast=fast, waits=waits,
                      contact=largest(table.where(latency_ms=latency, speed_voxel_s=fast)["first_contact_s"]))
 
 

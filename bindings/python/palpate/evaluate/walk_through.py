@@ -1,5 +1,6 @@
 """walk-through: how does a proxy move in an update, step by step? (Corenthy et al. 2012, Fig. 5 and 6)"""
 
+import collections
 import dataclasses
 import itertools
 
@@ -8,29 +9,14 @@ import palpate
 
 from . import figures
 from .experiment import GRANTED, Figure, Page, Result, Table
-from .subjects import CONTESTANTS, GUARDED, Subject, linear
+from .subjects import CONTESTANTS, GUARDED, linear
 
 PAGE = Page(__name__)
 SLICES = 3  # the middle one is shown
 CROSS, GOAL = (palpate.STEP_KINDS.index(kind) for kind in ("cross", "goal"))  # the other kinds move the SCP
 
 
-@dataclasses.dataclass
-class Cut:
-    """z [mm] of the plane; low, high: its samples that are shown; points of the hand [mm]."""
-
-    subject: Subject
-    z: float
-    low: tuple
-    high: tuple
-    start: numpy.ndarray
-    hip_before: numpy.ndarray
-    hip: numpy.ndarray
-
-    @property
-    def samples(self):
-        """Indices (i, j) of those that are shown."""
-        return itertools.product(*(range(self.low[axis], self.high[axis] + 1) for axis in (0, 1)))
+Cut = collections.namedtuple("Cut", "subject z low high start hip_before hip")  # its plane [mm], samples that are shown, hands [mm]
 
 
 def extruded(samples, dx, dy):
@@ -122,7 +108,8 @@ def draw_field(axes, cut, felt):
     begin = -0.5 if smooth else 0  # of a square, from its first sample
     # Around each square and along both its diagonals, in one line, which NaN breaks before the next square.
     corners = numpy.array([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0), (1, 1), (numpy.nan, 0), (1, 0), (0, 1), (numpy.nan, 0)])
-    squares = [(i, j) for i, j in cut.samples if smooth or (i < cut.high[0] and j < cut.high[1])]
+    samples = list(itertools.product(*(range(cut.low[axis], cut.high[axis] + 1) for axis in (0, 1))))
+    squares = [(i, j) for i, j in samples if smooth or (i < cut.high[0] and j < cut.high[1])]
     lattice = ((numpy.array(squares)[:, None] + begin + corners) * (dx, dy)).reshape(-1, 2)
     axes.plot(*lattice.T, color="#d0d0d0", lw=0.5)
     # Sixteen points per sample; the linear field's kinks are on them, the smooth field bends little between.
@@ -131,7 +118,7 @@ def draw_field(axes, cut, felt):
     excess = felt.excess_at(grid.reshape(-1, 3)).reshape(len(y), len(x))
     axes.contourf(x, y, excess, [0, numpy.inf], colors=["#dbe9f6"])
     axes.contour(x, y, excess, [0], colors=[figures.BLUE], linewidths=1.8)
-    at = numpy.array([(i * dx, j * dy, cut.z) for i, j in cut.samples])
+    at = numpy.array([(i * dx, j * dy, cut.z) for i, j in samples])
     axes.plot(at[:, 0], at[:, 1], ".", color=figures.GREY, ms=2)
     for place, density in zip(at, felt.field.value(at)):
         axes.annotate(f"{density:.3g}", place[:2], (2, -6), textcoords="offset points", fontsize=5, color=figures.GREY)

@@ -69,8 +69,8 @@ def lines_through(subject, outside, anywhere, count, random):
 
 def usable(subject, outside, anywhere, places, along):
     """Of lines through places: entry, direction, way in the wall and way of the hand of those that can be used."""
-    field, isovalue, voxel = subject.field, subject.isovalue, subject.voxel
-    through, far = subject.physical(places), 2 * subject.diagonal * along
+    field, isovalue, voxel, geometry = subject.field, subject.isovalue, subject.voxel, subject.field.geometry
+    through, far = geometry.origin + (places * geometry.spacing) @ numpy.asarray(geometry.direction).T, 2 * subject.diagonal * along
     entry, normal = palpate.cast_rays(field, isovalue, through - far, through + far)
     steep = -(normal * along).sum(axis=1) >= FLATTEST  # false for NaN
     entry, along = entry[steep], along[steep]
