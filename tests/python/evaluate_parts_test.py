@@ -14,7 +14,8 @@ import numpy
 import palpate
 import pytest
 
-from palpate.evaluate import bodies, figures, heads, human, layers, needle, performance, recorded, scaling, stability, tissues, tools
+from palpate.evaluate import bodies, figures, heads, human, layers, needle, notice, performance, recorded, scaling, stability, streaming
+from palpate.evaluate import tissues, tools
 from palpate.evaluate.experiment import GRANTED, Options, Table
 from palpate.evaluate.subjects import Subject, of_text
 
@@ -166,6 +167,34 @@ def test_a_tool_that_gets_through_the_shell_or_never_touches_it_breaks_the_claim
     claims = list(tools.claims_of(Table(rows)))
     assert [claim.held for claim in claims] == [True, True, True, not broken, True]
     assert not any("confidence" in claim.measured for claim in claims) and "of 600 ticks" in claims[3].measured
+
+
+def test_the_claim_of_streaming_is_about_the_strokes_that_were_judged():
+    judged = {"ticks": 1000, "waiting_share": 0.25, "beyond_allowed_voxel": -1.5, "most_mb": 1}
+    for others, left in (([], ""), ([{**judged, "beyond_allowed_voxel": numpy.nan}, {"ticks": 1000, "waiting_share": 1}], "In the other 2")):
+        claim = next(streaming.claims_of(Table([judged, judged, *others])))
+        assert claim.held and f"1.50 voxel less deep than allowed, in 2 of {2 + len(others)} strokes, with 1,500 ticks" in claim.measured
+        assert (left in claim.measured) and ("In the other" in claim.measured) == bool(others)
+    assert not next(streaming.claims_of(Table([judged, {**judged, "beyond_allowed_voxel": 0.1}]))).held
+
+
+def test_the_page_of_scaling_names_the_calm_and_the_calmest_noise():
+    rows = [{"part": "noise", "method": "exact", "tetrahedra_per_update": moved} for moved in (1.9, 0.04, 0.1)]
+    rows += [{"part": "speed", "method": "exact", "tetrahedra": 7, "updates": 1, "path_voxel": 1, "mean_ns": 1},
+             {"part": "size", "size": "8x8x8"}, {"part": "explicit", "state_bytes": 1, "explicit_segment_ns": numpy.nan}]
+    text = " ".join(scaling.text_of(Table(rows), True, 5))
+    assert "1.9 tetrahedra per update, and with noise through as few as 0.04." in text and "median of 5 passes" in text
+
+
+def test_a_vibration_is_that_of_the_mean_force_in_contact():
+    ball = bodies.ball_by("circle", 48, "float32")
+    lifts = ball._replace(hand=lambda parts: ball.hand(parts) * numpy.where(numpy.asarray(parts) % 0.5 < 0.25, 1, 2)[:, None])
+    row = notice.row_of(lifts, "smooth")
+    assert 0.3 < row["contact_share"] < 0.7
+    trace, hands, pull = notice.stroke(lifts, notice.CONTESTANTS["smooth"], row["ticks"] + notice.RATE // 10)
+    strength = numpy.linalg.norm(pull[notice.RATE // 10:], axis=1)
+    jump = numpy.linalg.norm(numpy.diff(pull[notice.RATE // 10:], axis=0), axis=1)
+    assert row["change_rms_percent"] == pytest.approx(100 * numpy.sqrt((jump**2).mean()) / strength[strength > 0].mean())
 
 
 def test_loops_that_gain_energy_or_none_at_all_break_claims_that_give_no_bound():

@@ -107,9 +107,3 @@ def save(figure, path):
     figure.savefig(path.with_name(path.name + ".pdf"), metadata={"CreationDate": None})
     matplotlib.pyplot.close(figure)
 
-
-def pixels(figure):
-    """As PNG, for paper."""
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png")
-    return drawn.getvalue()

@@ -55,13 +55,6 @@ def punctures_of(start, way, depth, trace, force):
 
 
 
-def puncture_rows(where, found):
-    for tissue, (name, wanted) in enumerate(zip(TISSUES, PUNCTURE[numpy.isfinite(PUNCTURE)])):
-        extended, sampled = numpy.array([both for number, *both in found if number == tissue]).reshape(-1, 2).T
-        forces = {"extrapolated_mean_n": extended.mean(), "extrapolated_off_percent": 100 * abs(extended - wanted).max() / wanted,
-                  "greatest_sampled_n": sampled.max(), "greatest_sampled_mean_n": sampled.mean()} if len(extended) else {}
-        yield {"part": "puncture", **where, "layer": name, "punctures": len(extended), "puncture_force_n": wanted, **forces}
-
 
 def insertions(body, interpolation, options):
     fresh = renderer(body.felt(interpolation), layers())
@@ -85,7 +78,11 @@ def insertions(body, interpolation, options):
         yield {"part": "insertion", **where, "runs": count, "ticks": ticks,
                "rms_n": numpy.sqrt(sum((off**2).sum() for off in offs) / ticks), "worst_n": max(off.max() for off in offs),
                "rms_low_n": low, "rms_high_n": high}
-        yield from puncture_rows(where, punctures)
+        for tissue, (name, wanted) in enumerate(zip(TISSUES, PUNCTURE[numpy.isfinite(PUNCTURE)])):
+            extended, sampled = numpy.array([both for number, *both in punctures if number == tissue]).reshape(-1, 2).T
+            forces = {"extrapolated_mean_n": extended.mean(), "extrapolated_off_percent": 100 * abs(extended - wanted).max() / wanted,
+                      "greatest_sampled_n": sampled.max(), "greatest_sampled_mean_n": sampled.mean()} if len(extended) else {}
+            yield {"part": "puncture", **where, "layer": name, "punctures": len(extended), "puncture_force_n": wanted, **forces}
 
 
 # A needle goes in, rests half a second and is withdrawn.

@@ -95,7 +95,7 @@ def summary_of(table):
 
 def figure_of(table):
     cases = list(dict.fromkeys((row["body"], row["grid"], row["samples"]) for row in table))
-    title = ("On a ball with unrounded or dequantized samples, the smooth field stays below what people notice" if table.where(body="ball")
+    title = ("On an unrounded or dequantized ball, the smooth field stays below what people notice" if table.where(body="ball")
              else "Strokes beside what people notice")
     drawn, panels = figures.panels(columns=3, height=0.6 + 0.27 * len(cases), title=title, sharey=True)
     for axes, (column, limit, _, title, _, label) in zip(panels, NOTICED):

@@ -6,6 +6,7 @@ import csv
 import functools
 import html
 import importlib.util
+import io
 import math
 import re
 import string
@@ -89,8 +90,10 @@ def section(report, folder, whole):
              *(f"<p>{html.escape(text)}</p>\n" for text in report.result.paragraphs),
              html_table(report.result.summary)]
     for figure, (file, caption) in zip(report.result.figures, files_of(report)):
-        # WeasyPrint 57 sets the text of such SVG in wrong sizes, so paper gets pixels.
-        kind, data = ("svg+xml", (folder / file).read_bytes()) if whole else ("png", figures.pixels(figure.drawn))
+        kind, data = "svg+xml", (folder / file).read_bytes()
+        if not whole:  # WeasyPrint 57 sets the text of such SVG in wrong sizes, so paper gets pixels
+            figure.drawn.savefig(pixels := io.BytesIO(), format="png")
+            kind, data = "png", pixels.getvalue()
         alt = html.escape(in_place_of_a_picture(caption))
         parts.append(f'<figure><img style="width:{figure.drawn.get_figwidth():g}in" alt="{alt}" '
                      f'src="data:image/{kind};base64,{base64.b64encode(data).decode()}">'
