@@ -1,4 +1,4 @@
-"""The experiment recorded: its files, the modelled hand, and what scanned surfaces and planes give."""
+"""The experiment recorded: its files, the modelled hand, scanned surfaces and planes."""
 
 import dataclasses
 

@@ -138,11 +138,13 @@ def in_short(table):
                              smooth_raw=most("smooth", "uint8"), exact_raw=most("exact", "uint8"))
     for name in scans.distinct("body"):
         exact, smooth = (scans.where(body=name, method=method)[0] for method in METHODS[:2])
-        yield from PAGE.text("scan", name=name, exact=exact, smooth=smooth)
+        contact = [100 * row["contact_share"] for row in (smooth, exact)]
+        yield from PAGE.text("scan", name=name, exact=exact, smooth=smooth, contact=contact)
 
 
 def run(options):
     table = Table(row_of(body, name) for make in options.each(bodies_of(options)) for body in [make()] for name in METHODS)
     whole = table if options.subjects else Table([*table, *({**PEER_CASE, **row} for row in PEERS)])
-    text = PAGE.text(in_short=" ".join(in_short(table)), grams=1000 * MASS)
+    bodies, = PAGE.text("volumes of a user" if options.subjects else "own bodies")
+    text = PAGE.text("", *([] if options.subjects else ["peers"]), in_short=" ".join(in_short(table)), grams=1000 * MASS, bodies=bodies)
     return Result(whole, [figure_of(table)], claims_of(table), text, summary_of(whole))
