@@ -165,9 +165,8 @@ def summary_of(table):
     for samples in SAMPLES:
         for name in CONTESTANTS:
             rows = table.where(samples=samples, method=name)
-            rms = {f"{what}, median [95 % interval]": sampling.in_words(rows[column], "{:.2g}") for what, column in (
-                ("RMS error of the force [N]", "force_n_rms"), ("of the position [mm]", "position_mm_rms"),
-                ("of the force with friction [N]", "with_friction_n_rms"))}
+            rms = {f"RMS error of the {what}, median [95 % interval]": sampling.in_words(rows[column], "{:.2g}") for what, column in (
+                ("force [N]", "force_n_rms"), ("position [mm]", "position_mm_rms"), ("force with friction [N]", "with_friction_n_rms"))}
             yield {"samples": samples, "method": name, **rms, "greatest error of the force [N]": largest(rows["force_n_max"])}
 
 

@@ -73,9 +73,9 @@ def figures_of(table):
 
 def claims_of(table):
     judged = table.only(lambda row: row.get("beyond_allowed_voxel", numpy.nan) < numpy.inf)  # not NaN
-    beyond, moved = judged["beyond_allowed_voxel"].max(), (judged["ticks"] * (1 - judged["waiting_share"])).sum()
+    beyond, moved = judged["beyond_allowed_voxel"].max(initial=-numpy.inf), (judged["ticks"] * (1 - judged["waiting_share"])).sum()
     left = PAGE.text("not judged", left=len(table) - len(judged)) if len(judged) < len(table) else [""]
-    yield PAGE.claim("path", beyond <= 0, room=-beyond, judged=len(judged), strokes=len(table), moved=moved, left=left[0])
+    yield PAGE.claim("path", judged and beyond <= 0, room=-beyond, judged=len(judged), strokes=len(table), moved=moved, left=left[0])
     yield PAGE.at_most(MEMORY, table["most_mb"], "memory")
 
 
