@@ -82,7 +82,7 @@ set yrange [1:*]
 set title 'Lateness of ticks (the machine), each 10 s'
 plot for [i=0:3] '$folder/soak.csv' every ::1 using (\$1/60):(column(9+i)/1000) with lines lw 2 \\
      title word('p50 p99 p99.9 max', i+1)
-set title 'CPU time of the servo thread a tick, sleeping and waking included, each 10 s'
+set title 'CPU time of the servo thread per tick, with sleeping and waking, each 10 s'
 plot for [i=0:3] '$folder/soak.csv' every ::1 using (\$1/60):(column(13+i)/1000) with lines lw 2 \\
      title word('p50 p99 p99.9 max', i+1), \\
      '$folder/soak.csv' every ::1 using (\$1/60):(\$19/1000) with lines lw 2 dt 2 lc rgb 'black' \\

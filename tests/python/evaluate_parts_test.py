@@ -1,7 +1,6 @@
-"""The parts of the experiments layers, tools, stability, performance, scaling, recorded and needle, and long calls that stop."""
+"""The parts of the experiments layers, tools, streaming, notice, stability, performance, scaling and needle, and long calls that stop."""
 
 import _thread
-import dataclasses
 import functools
 import itertools
 import operator
@@ -14,16 +13,16 @@ import numpy
 import palpate
 import pytest
 
-from palpate.evaluate import bodies, figures, heads, human, layers, needle, performance, recorded, scaling, stability, tissues, tools
+from palpate.evaluate import bodies, figures, heads, layers, needle, notice, performance, scaling, stability, streaming, tissues, tools
 from palpate.evaluate.experiment import GRANTED, Options, Table
 from palpate.evaluate.subjects import Subject, of_text
 
 
-def test_an_svg_keeps_its_words_and_its_lines_to_a_tenth_of_a_point():
-    lines = "".join(f'   <path d="M {x}.123456 1 \nL {x}.2 2.004 \nL {x}.21 2.01 \nL 9 9 \n" style="fill: none"/>\n' for x in (1, 2))
+def test_an_svg_keeps_its_words_and_its_lines_to_a_hundredth_of_a_point():
+    line = '   <path d="M 1.123456 1 \nL 1.2 2.004 \nL 9 9 \n" style="fill: none"/>\n'
     text = ' <text x="0.123456" style="stroke-width: 0.125" transform="translate(0.001 -0.001) rotate(0.125)">0.123456</text>'
-    assert figures.compact("<svg>\n" + lines + text) == (
-        '<svg>\n<path d="M 1.12 1 L 1.2 2 L 9 9 M 2.12 1 L 2.2 2 L 9 9" style="fill: none"/>\n'
+    assert figures.compact("<svg>\n" + line + text) == (
+        '<svg>\n<path d="M 1.12 1 L 1.2 2 L 9 9 " style="fill: none"/>\n'
         '<text x="0.12" style="stroke-width: 0.125" transform="translate(0 0) rotate(0.125)">0.123456</text>')
 
 
@@ -168,6 +167,35 @@ def test_a_tool_that_gets_through_the_shell_or_never_touches_it_breaks_the_claim
     assert not any("confidence" in claim.measured for claim in claims) and "of 600 ticks" in claims[3].measured
 
 
+def test_the_claim_of_streaming_is_about_the_strokes_that_were_judged():
+    judged = {"ticks": 1000, "waiting_share": 0.25, "beyond_allowed_voxel": -1.5, "most_mb": 1}
+    for others, left in (([], ""), ([{**judged, "beyond_allowed_voxel": numpy.nan}, {"ticks": 1000, "waiting_share": 1}], "In the other 2")):
+        claim = next(streaming.claims_of(Table([judged, judged, *others])))
+        assert claim.held and f"1.50 voxel less deep than allowed, in 2 of {2 + len(others)} strokes, with 1,500 ticks" in claim.measured
+        assert (left in claim.measured) and ("In the other" in claim.measured) == bool(others)
+    for rows in ([judged, {**judged, "beyond_allowed_voxel": 0.1}], [{"ticks": 1000, "waiting_share": 1, "most_mb": 1}]):
+        assert not next(streaming.claims_of(Table(rows))).held
+
+
+def test_the_page_of_scaling_names_the_calm_and_the_calmest_noise():
+    rows = [{"part": "noise", "method": "exact", "tetrahedra_per_update": moved} for moved in (1.9, 0.04, 0.1)]
+    rows += [{"part": "speed", "method": "exact", "tetrahedra": 7, "updates": 1, "path_voxel": 1, "mean_ns": 1},
+             {"part": "size", "size": "8x8x8"}, {"part": "explicit", "state_bytes": 1, "explicit_segment_ns": numpy.nan}]
+    text = " ".join(scaling.text_of(Table(rows), True, 5))
+    assert "1.9 tetrahedra per update, and with noise through as few as 0.04." in text and "median of 5 passes" in text
+
+
+def test_a_vibration_is_that_of_the_mean_force_in_contact():
+    ball = bodies.ball_by("circle", 48, "float32")
+    lifts = ball._replace(hand=lambda parts: ball.hand(parts) * numpy.where(numpy.asarray(parts) % 0.5 < 0.25, 1, 2)[:, None])
+    row = notice.row_of(lifts, "smooth")
+    assert 0.3 < row["contact_share"] < 0.7
+    trace, hands, pull = notice.stroke(lifts, notice.CONTESTANTS["smooth"], row["ticks"] + notice.RATE // 10)
+    strength = numpy.linalg.norm(pull[notice.RATE // 10:], axis=1)
+    jump = numpy.linalg.norm(numpy.diff(pull[notice.RATE // 10:], axis=0), axis=1)
+    assert row["change_rms_percent"] == pytest.approx(100 * numpy.sqrt((jump**2).mean()) / strength[strength > 0].mean())
+
+
 def test_loops_that_gain_energy_or_none_at_all_break_claims_that_give_no_bound():
     kept = {"part": "energy", "most_gained_j": 1e-9, "least_lost_with_puncture_j": 0.1, "runs": 3, "loops_with_punctures": 2}
     none = {"most_gained_j": -numpy.inf, "least_lost_with_puncture_j": numpy.nan, "runs": 0, "loops_with_punctures": 0}
@@ -278,8 +306,8 @@ def oblique_sphere(kind):
 
 @pytest.mark.parametrize("kind", ["uint8", "int16", "uint16", "float32"])
 def test_the_whole_surface_is_the_one_that_is_felt_on_every_type_and_an_oblique_grid(kind):
-    sphere, plan = oblique_sphere(kind), scaling.Plan(1000, 1)
-    starts, ends = scaling.segments_of(sphere, scaling.over(sphere, scaling.SPEED, scaling.VOXELS, plan.ticks, 1))
+    sphere = oblique_sphere(kind)
+    starts, ends = scaling.segments_of(sphere, scaling.over(sphere, scaling.SPEED, scaling.VOXELS, 1000, 1))
     # A hand that has only just touched may end between the two triangulations.
     deep = numpy.linalg.norm(ends - starts, axis=1) > 0.6
     assert deep.sum() > 500
@@ -356,93 +384,6 @@ def test_a_long_call_ends_when_its_progress_raises_and_at_ctrl_c(name):
     with pytest.raises(KeyboardInterrupt):
         call(progress=functools.partial(next, map(_thread.interrupt_main, signals)))
     assert operator.length_hint(signals) == 9
-
-
-def write(recording, path):
-    rows = numpy.column_stack([recording.time, recording.position, recording.force])
-    numpy.savetxt(path, rows, fmt=["%.3f"] + 6 * ["%.4f"], header=" ".join(recorded.COLUMNS), comments="# ")
-
-
-def test_a_recording_reads_back_as_it_was_written_and_damage_is_named(tmp_path):
-    made = recorded.modelled(1, 1)
-    write(made, tmp_path / "hand.traj")
-    again = recorded.read(tmp_path / "hand.traj")
-    assert again.name == "hand" and abs(again.position - made.position).max() < 1e-4 and abs(again.force - made.force).max() < 1e-4
-    (tmp_path / "other.traj").write_text("% fx fy fz t x y z extra\n1, 2, 3, 0.5, 7, 8, 9, 0\n1 2 3 0.6 7 8 9 0\n")
-    other = recorded.read(tmp_path / "other.traj")
-    assert (other.force == [1, 2, 3]).all() and (other.position == [7, 8, 9]).all() and list(other.time) == [0.5, 0.6]
-    for text, said in (("0 1 2 3 4 5 6\n1 2 3\n", "line 2"), ("0 1 2 3 4 5 six\n", "line 1"), ("0 1 2 3 4 5 6\n", "two samples"),
-                       ("0 1 2 3 4 5 6\n0 1 2 3 4 5 6\n", "rise"), ("0 1 2 3 4 5 6\n1 1 2 3 4 5 nan\n", "finite")):
-        (tmp_path / "bad.traj").write_text(text)
-        with pytest.raises(ValueError, match=said):
-            recorded.read(tmp_path / "bad.traj")
-
-
-def test_a_modelled_hand_trembles_reacts_late_and_presses_as_wanted():
-    person, random = human.Human(), numpy.random.default_rng(3)
-    shaking = human.trembling(person, random, 8000)
-    frequency = numpy.fft.rfftfreq(8000, 1 / human.RATE)
-    power = (abs(numpy.fft.rfft(shaking, axis=0))**2).sum(axis=1)
-    assert power[(frequency > 6) & (frequency < 15)].sum() > 0.9 * power.sum()
-    tip, force = human.press(person, random, 6, 1.5, 10, 0.2)
-    pressed = force[:, 2] > 0
-    assert (tip[pressed, 2] <= 0).all() and (force[~pressed] == 0).all() and 0.4 < pressed.mean() < 0.95
-    assert (numpy.linalg.norm(force[:, :2], axis=1) <= 0.2 * force[:, 2] + 1e-12).all()
-    assert force[int(5.5 * human.RATE):, 2].mean() == pytest.approx(1.5, rel=0.15)
-    # A hand that does not react does the same until the reaction to the first touch.
-    numb, alive = (human.press(dataclasses.replace(person, gain=gain), numpy.random.default_rng(3), 2, 1.5, 10, 0.2) for gain in (0, 2))
-    touched, differs = (numpy.flatnonzero(changed)[0] / human.RATE for changed in (
-        alive[1][:, 2] > 0, abs(alive[0] - numb[0]).max(axis=1) > 0))
-    assert differs - touched == pytest.approx(person.delay, abs=2e-3)
-
-
-def test_a_free_hand_trembles_as_much_as_people_do():
-    person = human.Human(gain=0)
-    free, calm = (human.press(dataclasses.replace(person, tremor=tremor), numpy.random.default_rng(3), 12, 1.5, 1e-9, 0)[0][human.RATE:, :2]
-                  for tremor in (person.tremor, 0))
-    wide = human.in_band(free - calm, (4, 24), "bandpass")
-    assert numpy.sqrt((wide**2).mean(axis=0)) == pytest.approx(person.tremor, rel=0.15)
-    assert numpy.sqrt(((free - calm - wide)**2).mean()) < 0.25 * person.tremor
-
-
-def test_a_scanned_ball_is_felt_as_it_was_recorded(tmp_path):
-    angle = numpy.linspace(0, 6, 500)
-    out = bodies.around(angle, 0.3 * numpy.sin(3 * angle))
-    out /= numpy.linalg.norm(out, axis=1, keepdims=True)
-    pressure = 1 + 0.5 * numpy.sin(5 * angle)
-    ball = of_text("synthetic:sphere:48x48x48")
-    mesh = palpate.extract(ball.field, ball.isovalue)
-    radius = numpy.linalg.norm(mesh.vertices, axis=1).mean()
-    folder = tmp_path / "ball"
-    folder.mkdir()
-    write(recorded.Recording("ball", angle, radius * out, pressure[:, None] * out), folder / "probe.traj")
-    mesh.write(folder / "ball.obj")
-    recording, surface = list(recorded.recordings_of(Options(quick=True, seeds=0, data=tmp_path)))[-1]
-    assert recording.name == "ball" and surface.name == "scanned"
-    on, normal = surface.nearest(1.2 * radius * out)
-    assert abs(numpy.linalg.norm(on, axis=1) - radius).max() < 0.1 and (normal * out).sum(axis=1).min() > 0.98
-    assert (surface.height(0.8 * radius * out) < 0).all() and (surface.height(1.2 * radius * out) > 0).all()
-    rows = Table(row for row, _ in recorded.rows_of(recording, surface, "float32", 1.5))
-    exact = rows.where(method="exact")[0]
-    assert exact["contact_share"] == 1 and exact["mean_force_n"] == pytest.approx(1, abs=0.1)
-    assert exact["force_n_rms"] < 0.1 and exact["position_mm_rms"] < 0.3
-    with pytest.raises(ValueError, match="ball: only 0 of 500 samples .* outwards"):  # it would have nothing to render
-        recorded.device_of(dataclasses.replace(recording, force=-recording.force), surface)
-
-
-def test_a_shifted_surface_is_an_error_of_its_spring_in_the_metrics_of_recordings():
-    made = recorded.modelled(2, 2)
-    off = recorded.metrics("off", made.force, made.force + [0, 3, 4])
-    assert off == pytest.approx({"off_mean": 5, "off_rms": 5, "off_max": 5})
-    plane = recorded.plane_through(made)
-    out, hands, force = recorded.device_of(made, plane)
-    sunk = numpy.linalg.norm(out - hands, axis=1)
-    assert abs(sunk - numpy.linalg.norm(force, axis=1) / recorded.STIFFNESS).max() < 1e-9 and sunk.max() > 1
-    with pytest.raises(ValueError, match="hardly touches"):
-        recorded.plane_through(dataclasses.replace(made, force=0 * made.force))
-    pulled = dataclasses.replace(made, force=-made.force)  # the force on the surface, which is not that on the hand
-    with pytest.raises(ValueError, match="outwards"):
-        recorded.device_of(pulled, recorded.plane_through(pulled))
 
 
 def test_a_needle_in_the_wrong_tissue_is_counted_as_an_error():

@@ -338,8 +338,8 @@ def test_every_section_of_a_page_is_used_by_its_module(name):
 
 def test_a_page_is_filled_with_constants_of_its_module_and_values_that_are_given():
     page = performance.PAGE
-    assert page.text("cold", cold=1.26) == ["Caches are warm, since the updates follow one another. After something else has used all "
-                                            "caches, the median update of exact takes up to 1.3 µs."]
+    assert page.text("cold", cold="1.3 µs (exact)") == ["Caches are warm, since the updates follow one another. After something else has "
+                                                     "used all caches, the median update takes up to 1.3 µs (exact)."]
     claim = page.at_most(2, [numpy.nan, 3.0], "finished", method="exact")
     assert claim == Claim("every update of exact is finished within its tick", False, "3 were not")
     assert len(fall_through.PAGE.text("own walls")) == 1 and "50 ticks behind the wall" in fall_through.PAGE.text("own walls")[0]

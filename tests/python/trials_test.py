@@ -200,7 +200,8 @@ def test_a_person_at_the_keys_touches_answers_and_is_analysed(tmp_path):
 
     run = (f"{palpate.sample_volume()}@34.5", "p.csv", "--standard", "0.2", "--differences", "0.5", "--repeats", "2",
            "--seconds", "0.2")
-    assert start(*run, keys="x\n1\n2\n").returncode == 0
+    whole = start(*run, keys="x\n1\n2\n")
+    assert whole.returncode == 0 and whole.stderr.endswith("complete: 2 trials. To fit a threshold: palpate study --analyse p.csv\n")
     rows = read(tmp_path / "p.csv")
     assert [row["answer"] for row in rows] == [1, 2] and {rows[0]["first"], rows[0]["second"]} == {0.2, 0.2 * 1.5}
     touches = sorted((tmp_path / "p.touches").iterdir())
@@ -218,9 +219,9 @@ def test_a_person_at_the_keys_touches_answers_and_is_analysed(tmp_path):
     assert stiff.returncode == 2 and "stiffness [N/mm] = 4: must be at most 3.6" in stiff.stderr and "touch 1" not in stiff.stderr
     lost = start("lost.nrrd@35", *run[1:], keys="")
     assert lost.returncode == 3 and lost.stderr.startswith("palpate: lost.nrrd: does not exist")
-    few = start("--analyse", "p.csv")
-    assert few.returncode == 2 and "10 trials" in few.stderr
     session(tmp_path / "q.csv", Plan(0.3), Observer(0.1))
+    few = start("--analyse", "q.csv", "p.csv")
+    assert few.returncode == 3 and few.stderr.startswith("palpate: p.csv: 10 trials") and few.stdout == ""
     line = start("--analyse", "q.csv").stdout.splitlines()[1].split(",")
     assert line[0] == "q.csv" and float(line[3]) <= float(line[2]) <= float(line[4])
 

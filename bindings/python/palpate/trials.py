@@ -281,16 +281,21 @@ def _ask(chosen: Any) -> None:
     volume, at, level = chosen.volume.rpartition("@")
     plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed, chosen.most)
     largest = plan.standard * (1 + (max(plan.differences) if plan.differences else plan.most))
-    session(chosen.file, plan, touching(volume if at else level, level if at else None, chosen.device, chosen.setting, chosen.seconds,
-                                        Path(chosen.file).with_suffix(".touches"), largest),
-            f"{chosen.setting} of {chosen.volume} for {chosen.seconds:g} s")
+    rows = session(chosen.file, plan, touching(volume if at else level, level if at else None, chosen.device, chosen.setting,
+                                               chosen.seconds, Path(chosen.file).with_suffix(".touches"), largest),
+                   f"{chosen.setting} of {chosen.volume} for {chosen.seconds:g} s")
+    remark(f"The session is complete: {len(rows)} trials. To fit a threshold: palpate study --analyse {chosen.file}")
 
 
 def _analyse(files: Sequence[str]) -> None:
-    sessions = [(file, read(file)) for file in files]
-    say("file,trials,threshold,low,high,slope")
-    for file, rows in sessions:
-        say(",".join((file, str(len(rows)), *(f"{value:.4g}" for value in fit(rows)))))
+    lines = ["file,trials,threshold,low,high,slope"]
+    for file in files:
+        rows = read(file)
+        try:
+            lines.append(",".join((file, str(len(rows)), *(f"{value:.4g}" for value in fit(rows)))))
+        except ValueError as error:
+            raise InputError(f"{file}: {error}") from error
+    say("\n".join(lines))
 
 
 def main(words: Sequence[str]) -> int:

@@ -24,7 +24,7 @@ CLAIMS_BROKEN, BAD_OUTPUT = 1, 5  # exit status, docs/command_line.md
 
 
 def interval(text):
-    """A pair of functions of a volume, from 'LOW:HIGH'."""
+    """A function that gives the range in a volume, from 'LOW:HIGH'."""
     ends = text.split(":")
     try:
         low, high = (float(end.removesuffix("%")) for end in ends)
@@ -33,9 +33,8 @@ def interval(text):
     except ValueError as error:
         raise ValueError(f"'{text}' is no range such as 12%:20% or 300:900") from error
     if not text.endswith("%"):
-        return (lambda volume: low), (lambda volume: high)
-    return tuple((lambda volume, part=part: volume.minimum + part / 100 * (volume.maximum - volume.minimum))
-                 for part in (low, high))
+        return lambda volume: (low, high)
+    return lambda volume: tuple(volume.minimum + part / 100 * (volume.maximum - volume.minimum) for part in (low, high))
 
 
 PARSER = Parser("evaluate", "Run experiments, each with a table, figures and checked claims", (
@@ -98,10 +97,6 @@ def unfinished(path):
             path.rmdir()
 
 
-def complete(part):
-    for file in sorted(part.iterdir()):
-        file.replace(part.parent / file.name)
-
 
 def options_of(chosen, name):
     from palpate.evaluate.experiment import Options
@@ -120,10 +115,6 @@ def options_of(chosen, name):
                    data=Path(chosen.data) if chosen.data else None)
 
 
-def command_of(words):
-    """Without the folders of this machine."""
-    return shlex.join(["palpate", "evaluate", *(Path(word).name if word.startswith("/") else word for word in words)])
-
 
 def module_of(name):
     return importlib.import_module(f"palpate.evaluate.{name.replace('-', '_')}")
@@ -136,7 +127,8 @@ def run(name, chosen, folder, words):
     result = module.run(options)
     result.data = options.used
     options.progress(1)
-    made = report.Report(name, module.PAGE.title, result, f"{machine.described(command_of(words))} Seed {chosen.seed}, " + (
+    typed = shlex.join(["palpate", "evaluate", *(Path(word).name if word.startswith("/") else word for word in words)])
+    made = report.Report(name, module.PAGE.title, result, f"{machine.described(typed)} Seed {chosen.seed}, " + (
         "quick mode (too short for the times to mean anything)." if chosen.quick else "full run."))
     report.write_files(made, folder)
     return made
@@ -148,11 +140,6 @@ def shown(made):
     return "\n".join(lines) + "\n"
 
 
-def as_json(reports):
-    return json.dumps([{"experiment": r.name, "paragraph": " ".join(r.result.paragraphs), "claims": [
-        {"statement": c.statement, "holds": c.held, "measured": c.measured} for c in r.result.claims],
-        "circumstances": r.circumstances} for r in reports], indent=2)
-
 
 def evaluate(chosen, words):
     from palpate.evaluate import report
@@ -160,6 +147,11 @@ def evaluate(chosen, words):
     options_of(chosen, chosen.experiment)  # refuses volumes before any work
     warn_of_no_effect(chosen, names)
     path, reports = Path(chosen.output), []
+
+    def complete():
+        for file in sorted(part.iterdir()):
+            file.replace(path / file.name)
+
     with unfinished(path) as part:
         for name in names:
             try:
@@ -169,15 +161,17 @@ def evaluate(chosen, words):
                     raise
                 tell(f"note: {name} is left out: {error}")
                 continue
-            complete(part)
+            complete()
             if not (chosen.quiet or chosen.json):
                 say(shown(reports[-1]), last=len(names) == 1)
         if chosen.experiment == "all":
             if not report.write_pages(reports, path, part):
                 tell("note: without report.pdf: it needs WeasyPrint (apt install weasyprint)")
-            complete(part)
+            complete()
     if chosen.json:
-        say(as_json(reports), last=True)
+        say(json.dumps([{"experiment": r.name, "paragraph": " ".join(r.result.paragraphs), "claims": [
+            {"statement": c.statement, "holds": c.held, "measured": c.measured} for c in r.result.claims],
+            "circumstances": r.circumstances} for r in reports], indent=2), last=True)
     elif not chosen.quiet:
         say(f"Results: {chosen.output}{' (open report.html)' if chosen.experiment == 'all' else ''}", last=True)
     broken = sum(not claim.held for made in reports for claim in made.result.claims)

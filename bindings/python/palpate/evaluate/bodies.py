@@ -1,34 +1,25 @@
 """Bodies with a known true surface, and trajectories of a hand just below it."""
 
+import collections
 import dataclasses
-from typing import Callable, Optional
 
 import numpy
 import palpate
 
 from .hands import Ring
-from .subjects import Subject, cube, synthetic
+from .subjects import cube, synthetic
 
 RADIUS, SLOPE = 0.35, 1.4  # of the ball, in a unit box
 DEPTH = 0.03  # of the hand, in the same unit
 TURNS = 20
 FILTERS = {"uint8 smoothed": palpate.smoothed, "uint8 dequantized": palpate.dequantized}
-SAMPLES = ("uint8", *FILTERS, "float32")  # 8 bits as they are, smoothed in one pass, dequantized, and not rounded at all
+STORED = {"uint8": "uint8", **dict.fromkeys(FILTERS, "uint8"), "float32": "float32"}
+SAMPLES = tuple(STORED)  # 8 bits as they are, smoothed in one pass, dequantized, and not rounded at all
 
 
-@dataclasses.dataclass
-class Body:
-    """grid: samples along the longest axis; depth [mm] of the hand below the true surface, where that is constant; start: a free place
-    [mm]; hand(parts): from 0 to 1, points [mm], (n, 3); ideal(hands): unit vectors of a perfect force, where they are known."""
-
-    subject: Subject
-    trajectory: str
-    samples: str
-    grid: int
-    depth: float
-    start: numpy.ndarray
-    hand: Callable
-    ideal: Optional[Callable] = None
+# grid: samples along the longest axis; depth [mm] of the hand below the true surface, where that is constant; start: a free place [mm];
+# hand(parts): from 0 to 1, points [mm], (n, 3); ideal(hands): unit vectors of a perfect force, None where they are not known.
+Body = collections.namedtuple("Body", "subject trajectory samples grid depth start hand ideal", defaults=[None])
 
 
 def unit(vectors):
@@ -45,9 +36,6 @@ def with_samples(subject, samples):
     return dataclasses.replace(subject, field=palpate.Field(FILTERS[samples](subject.field.volume), interpolation="linear"))
 
 
-def stored(samples):
-    return "float32" if samples == "float32" else "uint8"
-
 
 def ball(grid, samples):
     """The ball of the protocol, density 1/2 + 1.4 (0.35 - r), by slices."""
@@ -58,7 +46,7 @@ def ball(grid, samples):
 
     at = numpy.arange(grid) - 0.5 * (grid - 1)
     flat = at[:, None]**2 + at[None, :]**2
-    array = numpy.empty([grid] * 3, dtype=stored(samples))
+    array = numpy.empty([grid] * 3, dtype=STORED[samples])
     for k, z in enumerate(at):
         values = density(numpy.sqrt(flat + z * z))
         array[k] = values if full == 1 else numpy.floor(values + 0.5)
@@ -89,7 +77,7 @@ def ball_by(trajectory, grid, samples):
 
 def torus_by_helix(grid, samples):
     """Once around the ring and 20 times around its tube. docs/scenes.md: a ring of 0.3 of the box, and at level 0.4 a tube of 0.12."""
-    subject = with_samples(synthetic(f"torus:{grid}x{grid}x{grid // 2}", type=stored(samples)), samples)
+    subject = with_samples(synthetic(f"torus:{grid}x{grid}x{grid // 2}", type=STORED[samples]), samples)
     ring, tube = 0.3 * grid, 0.12 * grid
 
     def at(parts, from_ring):
@@ -104,7 +92,7 @@ def torus_by_helix(grid, samples):
 def ripples_by_spiral(grid, samples):
     """In a plane below the deepest trough of the Marschner-Lobb signal, a spiral of 20 turns over its ripples. On the level, sin(pi z /
     2) is a quarter of the ripple: troughs are at -0.161 of half the box."""
-    subject = with_samples(synthetic(f"marschner-lobb:{grid}x{grid}x{grid}", type=stored(samples)), samples)
+    subject = with_samples(synthetic(f"marschner-lobb:{grid}x{grid}x{grid}", type=STORED[samples]), samples)
     half, trough = 0.5 * (grid - 1), -2 / numpy.pi * numpy.arcsin(0.25)
 
     def hand(parts):

@@ -13,10 +13,6 @@ PAGE = Page(__name__)
 SHOWN_SPEED, SHOWN_RATE = 200, 1000  # of the hand in the figure
 
 
-def subjects_of(options):
-    names = ("sphere:40x40x40",) if options.quick else ("sphere", "torus", "marschner-lobb")
-    return options.subjects or [synthetic("cylinder", 0.53), *map(synthetic, names), *reals(["lobster"], options)]
-
 
 def go_round(subject, ring, contestant, speed, rate, turns):
     """A row of the table for each turn of one proxy. The hand comes from outside, so that every method starts in contact from
@@ -42,7 +38,7 @@ def go_round(subject, ring, contestant, speed, rate, turns):
 def summary_of(last):
     for name, rows in last.by("method"):
         worst = rows["worst_deviation_of_range"]
-        yield {"method": name, "largest deviation": f"{largest(worst):.2g}",
+        yield {"method": name, "largest deviation [part of the range]": f"{largest(worst):.2g}",
                "median of the runs [95 % interval]": sampling.in_words(worst, "{:.2g}"), "runs": len(rows),
                "updates": f"{sum(rows['updates']):,.0f}"}
 
@@ -81,10 +77,11 @@ def claims_of(last, own_volumes):
 
 
 def run(options):
-    turns = 20 if options.quick else 200
-    speeds, rates = ((200, 1000), (100, 1000)) if options.quick else ((50, 200, 1000), (100, 1000, 10000))
+    turns, speeds, rates, names = (20, (200, 1000), (100, 1000), ("sphere:40x40x40",)) if options.quick else (
+        200, (50, 200, 1000), (100, 1000, 10000), ("sphere", "torus", "marschner-lobb"))
     table, last = Table(), Table()
-    bodies = [(subject, Ring(subject, 2 * subject.voxel)) for subject in subjects_of(options)]
+    subjects = options.subjects or [synthetic("cylinder", 0.53), *map(synthetic, names), *reals(["lobster"], options)]
+    bodies = [(subject, Ring(subject, 2 * subject.voxel)) for subject in subjects]
     for body, speed, rate, contestant in options.each(itertools.product(bodies, speeds, rates, CONTESTANTS.values())):
         shown = speed == SHOWN_SPEED and rate == SHOWN_RATE
         rows = list(go_round(*body, contestant, speed, rate, turns))

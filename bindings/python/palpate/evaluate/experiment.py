@@ -1,5 +1,6 @@
 """The interface of an experiment: from options it makes a table, figures and checked claims."""
 
+import collections
 import concurrent.futures
 import csv
 import dataclasses
@@ -24,7 +25,7 @@ class Options:
     seeds: int = 3  # how many are used where lines or hands are drawn at random, from `seed` on
     method: str = "exact"  # for an experiment that shows one
     subjects: tuple = ()  # instead of the experiment's own volumes
-    ranges: tuple = ()  # (low, high) of interest, for penetration
+    ranges: tuple = ()  # of interest, for penetration: functions that give (low, high) in a volume
     data: Optional[Path] = None  # folder of the real volumes
     used: list = dataclasses.field(default_factory=list)  # of them: (file, SHA-256, where to get it)
     progress: Callable[[float], Any] = lambda part: None
@@ -42,22 +43,8 @@ class Options:
             yield case
 
 
-@dataclasses.dataclass
-class Claim:
-    """A statement that the run checks. It never depends on how fast the machine is."""
-
-    statement: str
-    held: bool
-    measured: str
-
-
-@dataclasses.dataclass
-class Figure:
-    """suffix: its file is EXPERIMENT-SUFFIX. drawn: of Matplotlib."""
-
-    suffix: str
-    caption: str
-    drawn: Any
+Claim = collections.namedtuple("Claim", "statement held measured")  # which the run checks; never how fast the machine is
+Figure = collections.namedtuple("Figure", "suffix caption drawn")  # its file is EXPERIMENT-SUFFIX; drawn by Matplotlib
 
 
 class Page:
@@ -127,7 +114,7 @@ def known(name):
 
     with (Path(__file__).parent / "tables" / f"{name}.csv").open(encoding="utf-8", newline="") as file:
         next(file)
-        return Table({column: cell(text) for column, text in row.items()} for row in csv.DictReader(file))
+        return Table({column: cell(text) for column, text in row.items() if text} for row in csv.DictReader(file))
 
 
 @dataclasses.dataclass
@@ -140,7 +127,7 @@ class Result:
     data: list = dataclasses.field(default_factory=list)  # (file, SHA-256, where to get it)
 
     def __post_init__(self):
-        self.claims, self.summary = list(self.claims), Table(self.summary)
+        self.figures, self.claims, self.summary = list(self.figures), list(self.claims), Table(self.summary)
 
 
 def in_parallel(function, items):

@@ -1,7 +1,6 @@
 """fall-through: does a fast hand fall through a thin wall?"""
 
 import collections
-import dataclasses
 import itertools
 
 import numpy
@@ -11,7 +10,7 @@ import scipy.stats
 from . import figures, sampling
 from .experiment import GRANTED, Page, Result, Table, largest
 from .outside import Outside
-from .subjects import CONTESTANTS, GUARDED, Subject
+from .subjects import CONTESTANTS, GUARDED
 from .walls import closed_shell, lines_through
 
 PAGE = Page(__name__)
@@ -20,21 +19,8 @@ STEPS_BEHIND = 50  # the hand stops so many ticks behind the wall, at the latest
 ROWS_AT_ONCE = 1_000_000
 
 
-@dataclasses.dataclass
-class Wall:
-    """A subject, what can be reached in it, and the lines through it, which all contestants share."""
-
-    subject: Subject
-    outside: Outside
-    lines: numpy.recarray
-
-    @property
-    def median_path(self):
-        """[voxel] in the solid; NaN where most lines end in it."""
-        median = sampling.quantile(self.lines.wall, 0.5)
-        return median / self.subject.voxel if numpy.isfinite(median) else numpy.nan
-
-
+# A subject, what can be reached in it from outside, and the lines through it, which all contestants share.
+Wall = collections.namedtuple("Wall", "subject outside lines")
 Group = collections.namedtuple("Group", "name thickness walls")  # of one row of the table; walls by interpolation, equally thick
 
 
@@ -48,13 +34,9 @@ def walls_of(subject, anywhere, count, options):
 def groups_of(options, thicknesses, count):
     if options.subjects:
         return [Group(subject.name, numpy.nan, {"linear": walls_of(subject, True, count, options)}) for subject in options.subjects]
-
-    def shells(thickness, field):
-        return [wall for shape in ("box", "ball")
-                for wall in walls_of(closed_shell(shape, thickness, field), False, count // 2, options)]
-
-    return [Group("box and ball", thickness, {field: shells(thickness, field) for field in ("linear", "cubic")})
-            for thickness in thicknesses]
+    return [Group("box and ball", thickness, {field: [
+        wall for shape in ("box", "ball") for wall in walls_of(closed_shell(shape, thickness, field), False, count // 2, options)]
+        for field in ("linear", "cubic")}) for thickness in thicknesses]
 
 
 def ways(lines, step, phase):
@@ -83,31 +65,26 @@ def cross(wall, contestant, lines, step, phase):
     moving[last] = moving[last - 1] = False
     in_solid = numpy.add.reduceat((moving & (along < numpy.minimum(lines.wall, end)[hand])).astype(int), first)
 
-    def inside(rows):
-        return (excess[rows] > COUNTS_AS_INSIDE) | ~wall.outside.holds(trace.scp[rows])
-
-    return {"inside": inside(last), "pressed": in_solid > 0, "inside_pressed": (in_solid > 0) & inside(first + in_solid),
+    inside, inside_pressed = ((excess[rows] > COUNTS_AS_INSIDE) | ~wall.outside.holds(trace.scp[rows]) for rows in (last, first + in_solid))
+    return {"inside": inside, "pressed": in_solid > 0, "inside_pressed": (in_solid > 0) & inside_pressed,
             "unfelt": ~numpy.logical_or.reduceat(trace.constrained, first), "worst": numpy.maximum.reduceat(excess, first),
             "ticks": last - first}
 
 
-def crossings_of(wall, contestant, step, random):
-    """cross() in parts that fit into memory."""
-    lines, phase = wall.lines, 1 - random.random(len(wall.lines.wall))
-    rows = numpy.ceil(numpy.minimum(lines.end, lines.wall + STEPS_BEHIND * step) / step) + 4
-    part = (numpy.cumsum(rows) // ROWS_AT_ONCE).astype(int)
-    return [cross(wall, contestant, lines[part == p], step, phase[part == p]) for p in numpy.unique(part)]
-
-
 def row_of(group, contestant, speed, rate, seed):
     random = numpy.random.default_rng(seed)  # all contestants meet the same phases
-    walls = group.walls[contestant.interpolation]
-    found = [part for wall in walls for part in crossings_of(wall, contestant, speed / rate, random)]
+    walls, step, found = group.walls[contestant.interpolation], speed / rate, []
+    for wall in walls:  # in parts that fit into memory
+        lines, phase = wall.lines, 1 - random.random(len(wall.lines.wall))
+        rows = numpy.ceil(numpy.minimum(lines.end, lines.wall + STEPS_BEHIND * step) / step) + 4
+        part = (numpy.cumsum(rows) // ROWS_AT_ONCE).astype(int)
+        found += [cross(wall, contestant, lines[part == p], step, phase[part == p]) for p in numpy.unique(part)]
     found = {name: numpy.concatenate([part[name] for part in found]) for name in found[0]}
     pressed = int(found["pressed"].sum())
+    medians = [sampling.quantile(wall.lines.wall, 0.5) / wall.subject.voxel for wall in walls]  # infinite where most lines end in the solid
     return {"wall": group.name, "thickness_voxel": group.thickness,
-            "median_path_in_wall_voxel": numpy.mean([wall.median_path for wall in walls]), "method": contestant.name,
-            "speed_mm_s": speed, "rate_hz": rate, "step_mm": speed / rate, "crossings": len(found["inside"]),
+            "median_path_in_wall_voxel": numpy.mean(medians) if numpy.isfinite(medians).all() else numpy.nan,
+            "method": contestant.name, "speed_mm_s": speed, "rate_hz": rate, "step_mm": step, "crossings": len(found["inside"]),
             "inside_share": found["inside"].mean(), "pressed_share": found["pressed"].mean(),
             "inside_while_pressed_share": found["inside_pressed"].sum() / pressed if pressed else numpy.nan,
             "unfelt_share": found["unfelt"].mean(), "worst_excess_of_range": found["worst"].max(initial=0),
@@ -115,19 +92,19 @@ def row_of(group, contestant, speed, rate, seed):
 
 
 def share_in_words(table, column, of="crossings"):
-    """'12.3 % [12.1, 12.5]', exact binomial interval."""
+    """'12.3 [12.1, 12.5]' percent, exact binomial interval."""
     counts = table["crossings"] * (table["pressed_share"] if of == "pressed" else 1)
     successes = numpy.nansum(table[column] * counts)
     interval = scipy.stats.binomtest(int(round(successes)), int(round(counts.sum()))).proportion_ci(method="exact")
-    return f"{successes / counts.sum():.3%} [{interval.low:.3%}, {interval.high:.3%}]"
+    return "{:.3g} [{:.3g}, {:.3g}]".format(*(100 * share for share in (successes / counts.sum(), interval.low, interval.high)))
 
 
 def summary_of(table):
     for name, rows in table.by("method"):
         yield {"method": name, "crossings": f"{rows['crossings'].sum():,.0f}",
-               "ends inside [95 % interval]": share_in_words(rows, "inside_share"),
-               "inside while the hand is in the wall": share_in_words(rows, "inside_while_pressed_share", "pressed"),
-               "wall not felt at all": share_in_words(rows, "unfelt_share")}
+               "ends inside [%, 95 % interval]": share_in_words(rows, "inside_share"),
+               "inside while the hand is in the wall [%, 95 % interval]": share_in_words(rows, "inside_while_pressed_share", "pressed"),
+               "wall not felt at all [%, 95 % interval]": share_in_words(rows, "unfelt_share")}
 
 
 def is_a_users(table):
@@ -163,7 +140,7 @@ def map_of(table):
     share = [[100 * rows.where(**{column: wall, "step_mm": step})["unfelt_share"].mean() for step in steps] for wall in walls]
     drawn, axes = figures.panels(width=figures.PAGE, height=0.9 + 0.27 * len(walls))
     figures.number_map(axes, share, walls, [f"{step:g}" for step in steps], 140)
-    title = f"{name}: how often a wall is not felt" if users else f"{name}: the faster the hand and the thinner the wall, the less is felt"
+    title = f"{name}: walls that are not felt [%]" + ("" if users else ", more of them the faster the hand and the thinner the wall")
     axes.set(title=title, xlabel="hand per tick [mm]", ylabel="volume" if users else "wall [voxel]")
     axes.tick_params(axis="x", rotation=45, labelsize=6.5)
     return PAGE.figure(drawn, "unfelt", method=name)
@@ -192,6 +169,7 @@ def run(options):
     for cell, (group, speed, rate) in enumerate(options.each(itertools.product(groups, speeds, rates)), 1):
         table.extend(row_of(group, contestant, speed, rate, [options.seed, cell])
                      for contestant in CONTESTANTS.values() if contestant.interpolation in group.walls)
+    lines = count * len(groups)
     text = PAGE.text("walls of a user" if options.subjects else "own walls", "method", slowest=speeds[0], fastest=speeds[-1],
-                     least=rates[0], most=rates[-1], count=count, seeds=options.seeds)
+                     least=rates[0], most=rates[-1], count=count, seeds=options.seeds, lines=lines, bound=sampling.bound_of_none(lines))
     return Result(table, [figure_of(table), map_of(table)], claims_of(table, groups, not options.subjects), text, summary_of(table))

@@ -94,16 +94,16 @@ def measured(body, contestant, steps):
             "worst_deviation_of_range": largest(abs(body.subject.excess(trace.density[trace.constrained])))}
 
 
-def nearest_row(body, count):
-    hands = body.hand((numpy.arange(count) + 0.5) / count)
-    mesh = palpate.extract(body.subject.field, body.subject.isovalue)
-    return row_of(body, NEAREST, count, *errors_of(body, numpy.array(list(nearest_points(mesh, hands))), hands))
-
-
-def peer_rows(body):
+def other_rows(body, count):
+    """Of the ball on the circle: the nearest points to so many hands, and the peers."""
+    if body.samples == "uint8":
+        hands = body.hand((numpy.arange(count) + 0.5) / count)
+        mesh = palpate.extract(body.subject.field, body.subject.isovalue)
+        yield row_of(body, NEAREST, count, *errors_of(body, numpy.array(list(nearest_points(mesh, hands))), hands))
     for peer in PEERS.where(samples=body.samples, grid=body.grid):
         yield {"body": "ball", "trajectory": "circle", "grid": body.grid, "samples": body.samples, "method": peer["method"], "steps": 20000,
-               "depth_voxel": 0.03 * body.grid, **{f"{angle}_{what}_deg": peer[what] for angle in ANGLES for what in ("mean", "p99")}}
+               "depth_voxel": 0.03 * body.grid,
+               **{f"{angle}_{what}_deg": peer[what] for angle in ANGLES for what in ("mean", "p99") if what in peer}}
 
 
 def bodies_of(options):
@@ -116,25 +116,31 @@ def bodies_of(options):
     return [functools.partial(make, grid, samples) for make, grids in plan.items() for grid, samples in itertools.product(grids, SAMPLES)]
 
 
-def ball_rows(table, samples, method="exact", trajectory="circle"):
-    return table.where(body="ball", trajectory=trajectory, samples=samples, method=method)
+def ball_rows(table, samples, method="exact"):
+    return table.where(body="ball", trajectory="circle", samples=samples, method=method)
 
 
 def summary_of(table):
-    for method, samples in dict.fromkeys(line[:2] for line in (*BALL, *SOURCES)):
-        for row in ball_rows(table, samples, method):
-            yield {"samples": samples, "method": method, "grid": row["grid"], "mean angle [deg]": row["off_ideal_mean_deg"],
-                   "p99 [deg]": row["off_ideal_p99_deg"], "turn per tick, largest [deg]": row.get("turn_max_deg", numpy.nan)}
+    """A row for each method on each kind of samples."""
+    for samples, method in itertools.product(SAMPLES, (*CONTESTANTS, *PEERS.distinct("method"))):
+        rows = ball_rows(table, samples, method)
+        if rows:
+            yield {"samples": samples, "method": method, **{
+                f"grid {row['grid']:g}: mean / p99 [deg]": " / ".join(
+                    f"{angle:.3g}" for angle in (row["off_ideal_mean_deg"], row.get("off_ideal_p99_deg", numpy.nan)) if angle < numpy.inf)
+                for row in rows}}
 
 
 # Lines of a figure: method, samples, label, colour, marker.
 BALL = ((RIVAL, "uint8", "CHAI3D voxel object", figures.BLACK, "s"), (SHADED, "uint8", "CHAI3D shaded mesh", figures.GREY, "s"),
-        (EMBREE, "uint8", "Embree", figures.GREEN, "x"), ("exact", "uint8", "exact", figures.BLUE, "o"),
-        ("smooth", "uint8", "smooth", figures.PURPLE, "D"))
+        (EMBREE, "uint8", "Embree god object", figures.GREEN, "x"), ("exact", "uint8", "exact", *figures.LOOKS["exact"]),
+        ("gradient-improved", "uint8", "gradient-improved", *figures.LOOKS["gradient-improved"]),
+        ("smooth", "uint8", "smooth", *figures.LOOKS["smooth"]))
 SOURCES = (("exact", "uint8", "exact, 8 bit", figures.BLUE, "o"), ("exact", "uint8 smoothed", "exact, smoothed", figures.SKY, "v"),
            ("exact", "float32", "exact, not rounded", figures.GREEN, "^"),
            ("smooth", "uint8 dequantized", "smooth, dequantized", figures.ORANGE, "s"),
            ("smooth", "float32", "smooth, not rounded", figures.PURPLE, "D"))
+DEQUANTIZED = (SHADED, "uint8 dequantized", "CHAI3D, dequantized", figures.GREY, "s")
 
 
 def draw_lines(axes, rows, lines, column, title, label="mean angle [degrees]"):
@@ -148,8 +154,9 @@ def draw_lines(axes, rows, lines, column, title, label="mean angle [degrees]"):
 def figure_of_ball(table):
     drawn, (left, right) = figures.panels(columns=2, height=2.9)
     rows = table.where(body="ball", trajectory="circle")
-    draw_lines(left, rows, BALL, "off_ideal_mean_deg", "no method is good on raw 8-bit samples")
-    draw_lines(right, rows, SOURCES, "off_ideal_mean_deg", "the smooth field is, if dequantized")
+    draw_lines(left, rows, BALL, "off_ideal_mean_deg", "raw 8-bit samples mislead every method")
+    draw_lines(right, rows, (*SOURCES, DEQUANTIZED), "off_ideal_mean_deg", "dequantized, the smooth field is accurate")
+    figures.ticks(left.yaxis, (3, 5, 10, 20, 40))
     figures.label_ends(left, right)
     return PAGE.figure(drawn)
 
@@ -165,9 +172,10 @@ def figure_of_turn(grid):
         left.plot(arc * (1 + numpy.arange(len(turns))) / steps, turns, color=colour, lw=0.8)
         right.plot(numpy.sort(turns), 100 * (1 + numpy.arange(len(turns))) / len(turns), color=colour, label=label)
     left.axhline(arc / steps, color=figures.BLACK, ls="--", lw=0.8)
-    left.set(title="the force turns at facets only on the linear field", xlabel="hand along the circle [degrees]", yscale="log",
+    left.set(title="on the linear field,\nthe force jumps at facets", xlabel="hand along the circle [degrees]", yscale="log",
              ylabel="turn per tick [degrees]")
-    right.set(xlabel="turn per tick [degrees]", ylabel="ticks with no larger turn [%]", xscale="log")
+    right.set(title="on the smooth field,\nit turns evenly", xlabel="turn per tick [degrees]", ylabel="ticks with no larger turn [%]",
+              xscale="log")
     figures.label_ends(right)
     return PAGE.figure(drawn, "turn", arc=arc, grid=grid, step=arc / steps)
 
@@ -182,16 +190,16 @@ def figure_of_losses(table):
         points = numpy.stack([7 - 0.5 * (samples - 1) + at, 0 * at + 7, 0 * at + 7], axis=1)
         for interpolation, dashes in (("linear", "--"), ("cubic", "-")):
             left.plot(at, palpate.Field(palpate.Volume(wall), interpolation=interpolation).value(points), dashes, color=colour)
-        left.text(0.5 * samples + 0.25, 0.3 + 0.2 * samples, f"{samples} thick", color=colour, fontsize=7)
-    left.set(title="a wall of one sample loses a quarter", xlabel="across the wall [voxel]", ylabel="density")
+        left.text(3, 0.55 + 0.12 * samples, f"{samples} thick", color=colour, fontsize=7, ha="right")
+    left.set(title="a wall of one sample\nloses a quarter of its height", xlabel="across the wall [voxel]", ylabel="density")
     draw_lines(right, table.where(body="ball", trajectory="circle"), SOURCES[2::2], "surface_error_mean_voxel",
-               "curved surfaces move a little", "distance from the true surface [voxel]")
+               "the surface of a ball moves by\nthousandths of a voxel", "distance from the true one [voxel]")
     figures.label_ends(right)
     return PAGE.figure(drawn, "losses")
 
 
 def figure_of_shapes(table):
-    drawn, panels = figures.panels(columns=2, height=2.7)
+    drawn, panels = figures.panels(columns=2, height=2.9, title="Where nothing is rounded, finer grids give more accurate forces")
     for axes, body in zip(panels, ("torus", "marschner-lobb")):
         draw_lines(axes, table.where(body=body), SOURCES, "angle_mean_deg", body)
     figures.label_ends(*panels)
@@ -209,38 +217,29 @@ def figure_of_users(table):
     return Figure("", *PAGE.text("turn of a user"), drawn)
 
 
-def rival(grid):
-    return PEERS.where(method=RIVAL, samples="uint8", grid=grid)[0]
-
-
-def is_below(table, samples, grid):
-    """Whether exact is below the rival in mean and p99, by both angles, on every trajectory."""
-    rows = [row for trajectory in ("circle", "spiral") for row in ball_rows(table, samples, trajectory=trajectory).where(grid=grid)]
-    return all(row[f"{angle}_{what}_deg"] < rival(grid)[what] for row in rows for angle in ANGLES for what in ("mean", "p99"))
-
-
-def comparison(table, samples, grids):
-    """'128 (4.3 against 15, p99 16 against 40), 256 (...)'."""
-    return ", ".join("{grid} ({off_ideal_mean_deg:.2g} against {mean:g}, p99 {off_ideal_p99_deg:.2g} against {p99:g})".format(
-        **{**ball_rows(table, samples).where(grid=grid)[0], **rival(grid), "grid": grid}) for grid in grids)
-
-
-def converges(table, body):
-    """Twice the grid, half the angle: the facets of linear pieces, where nothing is rounded."""
-    angles = table.where(body=body, samples="float32", method="exact").only(lambda row: row["trajectory"] != "spiral")["angle_mean_deg"]
-    factors = angles[:-1] / angles[1:]
-    return PAGE.claim("converges", (factors >= 1.7).all(), body=body, least=factors.min(), doublings=len(factors))
+def beside_rival(table, name, samples, grids):
+    """The Claim that exact is below the rival on raw samples in mean and p99, by both angles, on every trajectory; with
+    '128 (4.3 against 15, p99 16 against 40), 256 (...)'."""
+    held, measured = True, []
+    for grid in grids:
+        rival = PEERS.where(method=RIVAL, samples="uint8", grid=grid)[0]
+        rows = table.where(body="ball", samples=samples, method="exact", grid=grid)
+        held &= all(row[f"{angle}_{what}_deg"] < rival[what] for row in rows for angle in ANGLES for what in ("mean", "p99"))
+        measured.append("{grid:g} ({off_ideal_mean_deg:.2g} against {mean:g}, p99 {off_ideal_p99_deg:.2g} against {p99:g})".format(
+            **{**rows.where(trajectory="circle")[0], **rival}))
+    return PAGE.claim(name, held, measured=", ".join(measured))
 
 
 def claims_of(table, own_bodies, steps):
     yield PAGE.at_most(GRANTED, [largest(table.where(method=name)["worst_deviation_of_range"]) for name in GUARDED], "stays")
     if not own_bodies:
         return
-    yield converges(table, "ball")
-    yield converges(table, "torus")
-    grids = [grid for grid in (128, 256, 512) if ball_rows(table, "uint8").where(grid=grid)]
-    for name, samples, of in (("raw", "uint8", [128]), ("smoothed", "uint8 smoothed", grids)):
-        yield PAGE.claim(name, all(is_below(table, samples, grid) for grid in of), measured=comparison(table, samples, of))
+    for body in ("ball", "torus"):  # twice the grid, half the angle: the facets of linear pieces, where nothing is rounded
+        angles = table.where(body=body, samples="float32", method="exact").only(lambda row: row["trajectory"] != "spiral")["angle_mean_deg"]
+        factors = angles[:-1] / angles[1:]
+        yield PAGE.claim("converges", (factors >= 1.7).all(), body=body, least=factors.min(), doublings=len(factors))
+    yield beside_rival(table, "raw", "uint8", [128])
+    yield beside_rival(table, "smoothed", "uint8 smoothed", ball_rows(table, "uint8").only(lambda row: row["grid"] >= 128).distinct("grid"))
     for what, samples, column, most in (
             ("the mean angle", "float32", "off_ideal_mean_deg", 0.005),
             ("the mean angle", "uint8 dequantized", "off_ideal_mean_deg", 0.03),
@@ -256,9 +255,7 @@ def run(options):
         body = make()
         table.extend(measured(body, contestant, steps) for contestant in CONTESTANTS.values())
         if not options.subjects and (body.subject.name, body.trajectory) == ("ball", "circle"):
-            if body.samples == "uint8":
-                table.append(nearest_row(body, 20 if options.quick else 100))
-            table.extend(peer_rows(body))
+            table.extend(other_rows(body, 20 if options.quick else 100))
     claims = claims_of(table, not options.subjects, steps)
     if options.subjects:
         return Result(table, [figure_of_users(table)], claims, PAGE.text("volumes of a user"))

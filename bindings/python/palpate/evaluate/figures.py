@@ -2,7 +2,6 @@
 with labels at the curves. The same numbers give the same file."""
 
 import io
-import math
 import re
 
 import matplotlib
@@ -12,7 +11,6 @@ import matplotlib.pyplot  # noqa: E402
 import numpy  # noqa: E402
 
 COLUMN, PAGE = 3.5, 7.1  # widths [inch]
-NEAR = 0.1  # [point] apart, two points of a line in an SVG are as good as one
 BLUE, VERMILION, GREEN = "#0072B2", "#D55E00", "#009E73"
 PURPLE, ORANGE, SKY, BLACK, GREY = "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#707070"
 # A method looks the same in all figures: colour and marker.
@@ -79,52 +77,26 @@ def label_ends(*panels, apart=0.075):
     for axes in panels:
         ends = []
         for line in axes.get_lines():
-            x, y = (numpy.asarray(values, dtype=float) for values in line.get_data())
-            shown = numpy.isfinite(x) & numpy.isfinite(y)
-            if line.get_label().startswith("_") or not shown.any():
-                continue
-            at = axes.transAxes.inverted().transform(
-                axes.transData.transform((x[shown][-1], y[shown][-1])))
-            ends.append([at[1], at, line])
-        ends.sort(key=lambda end: end[0])
-        for lower, upper in zip(ends, ends[1:]):
-            upper[0] = max(upper[0], lower[0] + apart)
-        over = max(0.0, ends[-1][0] - 1) if ends else 0
-        for below, (height, at, line) in enumerate(ends):
-            moved = max(height - over, below * apart)
-            axes.annotate(line.get_label(), xy=at, xytext=(1.05, moved), xycoords="axes fraction",
-                          textcoords="axes fraction", va="center", color=line.get_color(), fontsize=7.5,
-                          annotation_clip=False,
-                          arrowprops={"arrowstyle": "-", "color": line.get_color(), "lw": 0.5,
-                                      "shrinkA": 0, "shrinkB": 2, "relpos": (0, 0.5)})
-
-
-def _thinned(polyline):
-    """Without points that are nearer than NEAR to one that stays."""
-    kept = []
-    for point in re.findall(r"L (\S+) (\S+)", polyline[0]):
-        last = tuple(map(float, point))
-        if not kept or math.dist(last, kept[-1]) >= NEAR:
-            kept.append(last)
-    kept[-1] = last
-    return " ".join(f"L {x:g} {y:g}" for x, y in kept)
-
-
-def _shorter(places):
-    rounded = re.sub(r"-?\d+\.\d+", lambda number: f"{round(float(number[0]), 2) + 0:.10g}", places[0].replace("\n", ""))
-    return re.sub(r"L \S+ \S+( L \S+ \S+)+", _thinned, rounded)
-
-
-def _joined(paths):
-    parts = [part.strip() for part in re.findall(r' d="(.*?)"', paths[0])]
-    return f'<path d="{" ".join(parts)}" {paths[1]}'
+            shown = line.get_xydata()[numpy.isfinite(line.get_xydata()).all(axis=1)]
+            if len(shown) and not line.get_label().startswith("_"):
+                ends.append(((axes.transData - axes.transAxes).transform(shown[-1]), line))
+        ends.sort(key=lambda end: end[0][1])
+        below = apart * numpy.arange(len(ends))
+        heights = numpy.maximum.accumulate([height for (_, height), _ in ends] - below) + below
+        heights = numpy.maximum(heights - max(0, heights.max(initial=0) - 1), below)
+        for (at, line), height in zip(ends, heights):
+            axes.annotate(line.get_label(), at, (1.05, height), xycoords="axes fraction", textcoords="axes fraction", va="center",
+                          color=line.get_color(), fontsize=7.5, annotation_clip=False,
+                          arrowprops={"arrowstyle": "-", "color": line.get_color(), "lw": 0.5, "shrinkA": 0, "shrinkB": 2,
+                                      "relpos": (0, 0.5)})
 
 
 def compact(svg):
-    """Matplotlib's SVG in two thirds of its bytes: places to a hundredth of a point, lines without points that lie together, and lines
-    that follow one another and look the same as one path, all without indents."""
-    svg = re.sub(r' (d|x|y)="[^"]*"|translate\([^)]*\)', _shorter, re.sub(r"\n +", "\n", svg))
-    return re.sub(r'<path d="[^"]*" ([^>]*fill: none[^>]*>)(\n<path d="[^"]*" \1)+', _joined, svg)
+    """Matplotlib's SVG in fewer bytes: places to a hundredth of a point, and no indents."""
+    def rounded(places):
+        return re.sub(r"-?\d+\.\d+", lambda number: f"{round(float(number[0]), 2) + 0:.10g}", places[0].replace("\n", ""))
+
+    return re.sub(r' (d|x|y)="[^"]*"|translate\([^)]*\)', rounded, re.sub(r"\n +", "\n", svg))
 
 
 def save(figure, path):
@@ -135,9 +107,3 @@ def save(figure, path):
     figure.savefig(path.with_name(path.name + ".pdf"), metadata={"CreationDate": None})
     matplotlib.pyplot.close(figure)
 
-
-def pixels(figure):
-    """As PNG, for paper."""
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png")
-    return drawn.getvalue()

@@ -31,14 +31,11 @@ class Head:
         return layered(name, [("skin", self.subject.isovalue, 0.4, 0.8), ("bone", self.bone, 1.5, SETS[name])])
 
 
-def of_a_user(subject):
-    innermost = subject.field.volume.maximum if subject.sign > 0 else subject.field.volume.minimum
-    return Head(subject, subject.isovalue + 0.5 * (innermost - subject.isovalue), *way_from_a_side(subject))
-
-
 def heads_of(options):
-    if options.subjects:
-        return [of_a_user(subject) for subject in options.subjects]
+    if options.subjects:  # half way to the innermost density is bone
+        innermost = [subject.field.volume.maximum if subject.sign > 0 else subject.field.volume.minimum for subject in options.subjects]
+        return [Head(subject, 0.5 * (subject.isovalue + density), *way_from_a_side(subject))
+                for subject, density in zip(options.subjects, innermost)]
     sample = palpate.SAMPLE_SKIN, palpate.SAMPLE_BONE
     levels = {"sample head": sample, "ct-head": (500, 1200), "visible-human": sample}
     scans = [linear("sample head", palpate.load(palpate.sample_volume()).volume, palpate.SAMPLE_SKIN),
@@ -88,23 +85,6 @@ def press_into(head, name, resolution):
            "order": "; ".join(f"{event['order']} {event['depth_mm']:.1f}" for event in events)}
 
 
-def draw_head(density, force, head, table):
-    subject, curves = head.subject, {name: table.where(part="head curve", body=head.subject.name, surfaces=name) for name in SETS}
-    drill = curves["drilling"]
-    density.fill_between(drill["depth_mm"], drill["density_at_hand"], subject.field.volume.minimum, color="#dcdcdc", lw=0)
-    for name, level, colour in (("skin", subject.isovalue, figures.ORANGE), ("bone", head.bone, figures.PURPLE)):
-        density.axhline(level, color=colour, ls="--", lw=1)
-        density.text(0.99, level, name, color=colour, fontsize=7, va="bottom", ha="right", transform=density.get_yaxis_transform())
-    for name, colour, width in (("skin, bone", figures.VERMILION, 3), ("drilling", figures.BLUE, 1.2)):
-        force.plot(curves[name]["depth_mm"], curves[name]["force_n"], color=colour, lw=width)
-    for event in table.where(part="head event", body=subject.name, surfaces="drilling"):
-        way, _, what = event["order"].partition(" ")
-        if way == "through":
-            force.annotate(what, (event["depth_mm"], event["force_n"]), xytext=(2, 3), textcoords="offset points", fontsize=6.5,
-                           color=figures.GREY)
-    density.set_title(subject.name)
-    force.set(xlabel="depth of the hand [mm]", ylim=(0, 5.4))
-
 
 def figure_of_heads(table, heads):
     shown = heads[:3]
@@ -112,7 +92,21 @@ def figure_of_heads(table, heads):
     drawn, panels = figures.panels(2, len(shown), height=4.4, width=figures.PAGE if len(shown) > 1 else 4.2, title=title, sharex="col",
                                    squeeze=False)
     for (density, force), head in zip(panels.T, shown):
-        draw_head(density, force, head, table)
+        subject, curves = head.subject, dict(table.where(part="head curve", body=head.subject.name).by("surfaces"))
+        drill = curves["drilling"]
+        density.fill_between(drill["depth_mm"], drill["density_at_hand"], subject.field.volume.minimum, color="#dcdcdc", lw=0)
+        for name, level, colour in (("skin", subject.isovalue, figures.ORANGE), ("bone", head.bone, figures.PURPLE)):
+            density.axhline(level, color=colour, ls="--", lw=1)
+            density.text(0.99, level, name, color=colour, fontsize=7, va="bottom", ha="right", transform=density.get_yaxis_transform())
+        for name, colour, width in (("skin, bone", figures.VERMILION, 3), ("drilling", figures.BLUE, 1.2)):
+            force.plot(curves[name]["depth_mm"], curves[name]["force_n"], color=colour, lw=width)
+        for event in table.where(part="head event", body=subject.name, surfaces="drilling"):
+            way, _, what = event["order"].partition(" ")
+            if way == "through":
+                force.annotate(what, (event["depth_mm"], event["force_n"]), xytext=(2, 3), textcoords="offset points", fontsize=6.5,
+                               color=figures.GREY)
+        density.set_title(subject.name)
+        force.set(xlabel="depth of the hand [mm]", ylim=(0, 5.4))
     panels[0, 0].set_ylabel("density at the hand\n[data units]")
     panels[1, 0].set_ylabel("force [N]")
     figures.names(panels[1, -1], (("bone holds", figures.VERMILION), ("drilling", figures.BLUE)), 0.98, 0.97, 0.09, ha="right")

@@ -14,7 +14,7 @@ from .tissues import (BALL_RADIUS, DEEPEST, DRAG, LEVEL, PUNCTURE, RATE, STIFFNE
                       pushed, renderer, spring, thinned, times)
 
 PAGE = Page(__name__)
-FIELDS = ("linear", "cubic")
+FIELDS = {"linear": "linear", "cubic": "smooth"}  # interpolation, and what the field is called
 SPEEDS = (5, 50, 250, 1000)  # [mm/s] of insertions
 NEEDLE_SPEEDS = (10, 100)
 PHASES = ("insertion", "rest", "withdrawal")
@@ -34,18 +34,9 @@ def curve_rows(cells, rows, depth, force, wanted):
 
 # Straight insertions.
 
-def gives_way_at(before, way, time, low, high):
-    """Where between two depths a surface gives way, found with copies of the renderer as it was at the first."""
-    for _ in range(ROUNDS):
-        depth = low + (high - low) * numpy.arange(PARTS + 1) / PARTS
-        gone = before.follow(numpy.full(PARTS - 1, time), way.at(depth[1:-1]), alternatives=True)["punctured"] > 0
-        part = int(numpy.append(gone, True).argmax())
-        low, high = depth[part], depth[part + 1]
-    return high
-
-
 def punctures_of(start, way, depth, trace, force):
-    """(tissue, force extended along the spring to where it gave way, the last force that was sampled)."""
+    """(tissue, force extended along the spring to where it gave way, the last force that was sampled). Where it gave way is found with
+    copies of the renderer as it was before."""
     done, time = 0, times(len(depth))
     for tick in numpy.flatnonzero(trace["punctured"] > 0):
         tissue = trace["layer"][tick - 1]
@@ -53,52 +44,45 @@ def punctures_of(start, way, depth, trace, force):
         done = tick
         if tick < 2 or tissue < 0 or trace["layer"][tick - 2] != tissue:
             continue
-        at = gives_way_at(start, way, time[tick], depth[tick - 1], depth[tick])
+        low, high = depth[tick - 1], depth[tick]
+        for _ in range(ROUNDS):
+            places = low + (high - low) * numpy.arange(PARTS + 1) / PARTS
+            gone = start.follow(numpy.full(PARTS - 1, time[tick]), way.at(places[1:-1]), alternatives=True)["punctured"] > 0
+            part = int(numpy.append(gone, True).argmax())
+            low, high = places[part], places[part + 1]
         slope = (force[tick - 1] - force[tick - 2]) / (depth[tick - 1] - depth[tick - 2])
-        yield tissue, force[tick - 1] + slope * (at - depth[tick - 1]), force[tick - 1]
+        yield tissue, force[tick - 1] + slope * (high - depth[tick - 1]), force[tick - 1]
 
 
-def insert(fresh, way, start, speed):
-    """(depths, forces, errors [N], punctures) of a hand that goes straight in, by copies of a renderer."""
-    step = speed / RATE
-    depth = start + step * numpy.arange(int(numpy.ceil((DEEPEST - start) / step)))
-    trace, force = pushed(fresh, way, depth)
-    off = numpy.linalg.norm(trace["force"] + spring(depth)[:, None] * way.inward, axis=1)
-    return depth, force, off, list(punctures_of(fresh.copy(), way, depth, trace, force))
-
-
-def lines_at(speed, quick):
-    """More at a speed at which each has fewer ticks: one tick on the other side of a surface that gives way is off by
-    the whole force."""
-    return int((1 if quick else 50) * (speed / SPEEDS[0])**0.75)
-
-
-def puncture_rows(where, found):
-    for tissue, (name, wanted) in enumerate(zip(TISSUES, PUNCTURE[numpy.isfinite(PUNCTURE)])):
-        extended, sampled = numpy.array([both for number, *both in found if number == tissue]).reshape(-1, 2).T
-        forces = {"extrapolated_mean_n": extended.mean(), "extrapolated_off_percent": 100 * abs(extended - wanted).max() / wanted,
-                  "greatest_sampled_n": sampled.max(), "greatest_sampled_mean_n": sampled.mean()} if len(extended) else {}
-        yield {"part": "puncture", **where, "layer": name, "punctures": len(extended), "puncture_force_n": wanted, **forces}
 
 
 def insertions(body, interpolation, options):
     fresh = renderer(body.felt(interpolation), layers())
     for speed in SPEEDS:
-        count, where = lines_at(speed, options.quick), {"body": body.name, "field": interpolation, "speed_mm_s": speed}
+        # More lines where each has fewer ticks: one tick on the other side of a surface that gives way is off by the whole force.
+        count = int((1 if options.quick else 50) * (speed / SPEEDS[0])**0.75)
+        where = {"body": body.name, "field": interpolation, "speed_mm_s": speed}
         randoms = [numpy.random.default_rng([options.seed, part]) for part in range(options.seeds)]
-        lines = itertools.islice(itertools.cycle(randoms), count)
-        runs = [insert(fresh, body.way(random), random.uniform(5, 6), speed) for random in lines]
-        if interpolation == "linear" and speed in (SPEEDS[0], SPEEDS[-1]):
-            depth, force = runs[0][:2]
-            rows = thinned(depth, lambda one, last: one >= last + RESOLUTION)
-            yield from curve_rows({"part": "insertion curve", **where}, rows, depth, force, spring(depth))
-        offs = [off for _, _, off, _ in runs]
+        step, offs, punctures = speed / RATE, [], []
+        for random in itertools.islice(itertools.cycle(randoms), count):
+            way, start = body.way(random), random.uniform(5, 6)
+            depth = start + step * numpy.arange(int(numpy.ceil((DEEPEST - start) / step)))
+            trace, force = pushed(fresh, way, depth)
+            if interpolation == "linear" and speed in (SPEEDS[0], SPEEDS[-1]) and not offs:
+                rows = thinned(depth, lambda one, last: one >= last + RESOLUTION)
+                yield from curve_rows({"part": "insertion curve", **where}, rows, depth, force, spring(depth))
+            offs.append(numpy.linalg.norm(trace["force"] + spring(depth)[:, None] * way.inward, axis=1))
+            punctures += punctures_of(fresh.copy(), way, depth, trace, force)
         ticks = sum(map(len, offs))
         _, low, high = numpy.sqrt(sampling.bootstrap([(off**2).mean() for off in offs], numpy.mean))
         yield {"part": "insertion", **where, "runs": count, "ticks": ticks,
                "rms_n": numpy.sqrt(sum((off**2).sum() for off in offs) / ticks), "worst_n": max(off.max() for off in offs),
                "rms_low_n": low, "rms_high_n": high}
-        yield from puncture_rows(where, [puncture for *_, punctures in runs for puncture in punctures])
+        for tissue, (name, wanted) in enumerate(zip(TISSUES, PUNCTURE[numpy.isfinite(PUNCTURE)])):
+            extended, sampled = numpy.array([both for number, *both in punctures if number == tissue]).reshape(-1, 2).T
+            forces = {"extrapolated_mean_n": extended.mean(), "extrapolated_off_percent": 100 * abs(extended - wanted).max() / wanted,
+                      "greatest_sampled_n": sampled.max(), "greatest_sampled_mean_n": sampled.mean()} if len(extended) else {}
+            yield {"part": "puncture", **where, "layer": name, "punctures": len(extended), "puncture_force_n": wanted, **forces}
 
 
 # A needle goes in, rests half a second and is withdrawn.
@@ -152,10 +136,6 @@ def loop_bodies():
     yield ("head", palpate.load(palpate.sample_volume()).volume, palpate.SAMPLE_SKIN + 0.5 * between, between, 12)
 
 
-def loop_layers(isovalue, spread, gives_way):
-    return layered("", [(f"layer {i + 1}", isovalue + spread * (i / 3 - 0.5), stiffness, gives_way)
-                        for i, stiffness in enumerate((0.4, 1.5, 0.3, 0.8))])
-
 
 def loops_of(field, reach, ticks, random, most):
     """Closed paths around random places, each a sum of four waves, (ticks + 1, 3)."""
@@ -181,7 +161,8 @@ def gained(made, path):
 def energy_row(number, name, field, isovalue, spread, reach, gives_way, options):
     """Loops far from every surface say nothing and do not count. number: of the case, so that each draws other loops."""
     wanted, ticks = (3, 4000) if options.quick else (200, 16000)
-    start, found = renderer(field, loop_layers(isovalue, spread, gives_way)), []
+    start, found = renderer(field, layered("", [(f"layer {i + 1}", isovalue + spread * (i / 3 - 0.5), stiffness, gives_way)
+                                                for i, stiffness in enumerate((0.4, 1.5, 0.3, 0.8))])), []
     for part in range(options.seeds):
         random, done = numpy.random.default_rng([options.seed, part, number]), len(found)
         for begin, path in loops_of(field, reach, ticks, random, 50 * wanted):
@@ -231,8 +212,7 @@ def cost_rows(body, options):
                    "of_one_surface_high": high}
 
 
-def measured(options, heads):
-    """All rows."""
+def rows_of(options, heads):
     bodies = (flat(), balls())
     for body, field in options.each(itertools.product(bodies, FIELDS), 0, 0.3):
         yield from insertions(body, field, options)
@@ -249,7 +229,7 @@ def summary_of(table):
     for run in table.where(part="insertion"):
         punctures = table.where(part="puncture", **{name: run[name] for name in ("body", "field", "speed_mm_s")})
         share = 100 * punctures["greatest_sampled_mean_n"] / punctures["puncture_force_n"]
-        yield {"body": run["body"], "field": run["field"], "speed [mm/s]": run["speed_mm_s"],
+        yield {"body": run["body"], "field": FIELDS[run["field"]], "speed [mm/s]": run["speed_mm_s"],
                "RMS error [N], 95 % interval over lines": "{rms_n:.2g} [{rms_low_n:.2g}, {rms_high_n:.2g}]".format(**run),
                "puncture force, worst error [%]": largest(punctures["extrapolated_off_percent"]),
                "greatest force sampled, mean [% of the puncture force]": f"{share.min():.0f} to {share.max():.0f}"}
@@ -316,8 +296,8 @@ def claims_of_energy(table):
     most, least = rows["most_gained_j"].max(), numpy.fmin.reduce(rows["least_lost_with_puncture_j"])
     loops, punctured = int(rows["runs"].sum()), int(rows["loops_with_punctures"].sum())
     kept, lost = rows["runs"].all() and most <= MOST_GAINED, least > 0
-    yield PAGE.claim("gain", kept, most=most, loops=f", and more in {sampling.none_of(loops, 'loops')}" if kept else f" in {loops:,} loops")
-    yield PAGE.claim("loss", lost, least=least, loops=f", and less than nothing in {sampling.none_of(punctured, 'loops')}" if lost
+    yield PAGE.claim("gain", kept, most=most, loops=f". Exceeded in {sampling.none_of(loops, 'loops')}" if kept else f" in {loops:,} loops")
+    yield PAGE.claim("loss", lost, least=least, loops=f". Nothing was lost in {sampling.none_of(punctured, 'loops')}" if lost
                      else f" in {punctured:,} loops")
 
 
@@ -334,14 +314,15 @@ def claims_of(table):
 def text_of(table):
     fast = table.where(part="puncture", speed_mm_s=SPEEDS[-1])
     share = 100 * fast["greatest_sampled_mean_n"] / fast["puncture_force_n"]
-    costs = " ".join("The hand {hand}, {field} field: {tick_ns:.0f} ns ({of_one_surface:.2f} [{of_one_surface_low:.2f}, "
-                     "{of_one_surface_high:.2f}]).".format(**row) for row in table.where(part="cost", surfaces=FEELS[2]))
+    costs = " ".join("The hand {hand}, {smooth} field: {tick_ns:.0f} ns ({of_one_surface:.2f} [{of_one_surface_low:.2f}, "
+                     "{of_one_surface_high:.2f}]).".format(**row, smooth=FIELDS[row["field"]])
+                     for row in table.where(part="cost", surfaces=FEELS[2]))
     return PAGE.text(least=share.min(), least_of=fast[int(share.argmin())]["layer"], heads=" ".join(text_of_heads(table)), costs=costs,
                      off=[largest(table.where(part="needle", phase=phase)["rms_n"]) for phase in PHASES])
 
 
 def run(options):
     heads = heads_of(options)
-    table = Table(measured(options, heads))
+    table = Table(rows_of(options, heads))
     return Result(table, [insertion_figure(table), puncture_figure(table), needle_figure(table), figure_of_heads(table, heads)],
                   claims_of(table), text_of(table), summary_of(table))

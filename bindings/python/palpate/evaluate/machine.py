@@ -23,12 +23,6 @@ def first(path, pattern, otherwise="unknown"):
 LOAD = first("/proc/loadavg", r"^(\S+)")  # of other programs, as this is read when the command begins
 
 
-def processor():
-    model = first("/proc/cpuinfo", r"^model name\s*:\s*(.*)$")
-    clock = first("/proc/cpuinfo", r"^cpu MHz\s*:\s*(\d+)")
-    governor = first("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", r"(\w+)", "not visible")
-    return f"{model} ({os.cpu_count()} processors, {clock} MHz at the time, frequency governor {governor}, load {LOAD} at the begin)"
-
 
 def build():
     """How the module was built, as far as its build tree tells."""
@@ -55,6 +49,10 @@ def output(*command):
 
 def described(command):
     """Sentences for the end of a page of results."""
+    model = first("/proc/cpuinfo", r"^model name\s*:\s*(.*)$")
+    clock = first("/proc/cpuinfo", r"^cpu MHz\s*:\s*(\d+)")
+    governor = first("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", r"(\w+)", "not visible")
     system = first("/etc/os-release", r'^PRETTY_NAME="?([^"\n]*)')
-    return (f"Measured on {time.strftime('%Y-%m-%d', time.gmtime())} on an {processor()}, {system}, Linux "
-            f"{platform.release()}. {build()}. Command: `{command}`.")
+    return (f"Measured on {time.strftime('%Y-%m-%d', time.gmtime())} on an {model} ({os.cpu_count()} processors, {clock} MHz at the time, "
+            f"frequency governor {governor}, load {LOAD} at the begin), {system}, Linux {platform.release()}. {build()}. "
+            f"Command: `{command}`.")

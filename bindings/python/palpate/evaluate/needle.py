@@ -22,6 +22,7 @@ MASTMEYER = {"mean_rms_n": 0.12, "most_n": 1.6, "affected_percent": 12, "paths":
 # stiffness [N/mm] and puncture force [N], and the drag behind it [N per mm of needle]. Each one lies in the one before it.
 TISSUES = (("skin", -100, (70, 50, 45), (0, 0, 0), -550, 0.4, 1.2, 0.01), ("muscle", 55, (60, 40, 37), (0, 0, 0), -25, 0.4, 0.8, 0.015),
            ("liver", 110, (38, 26, 24), (-14, 3, 0), 82, 0.3, 0.6, 0.01), ("vessel", 175, (25, 6, 6), (-14, 3, 0), 142, 0.3, 0.4, 0.005))
+LAYERS = layered("abdomen", [(name, *of) for name, _, _, _, *of in TISSUES], needle=True)
 
 
 def inside(tissue, points):
@@ -70,9 +71,6 @@ def scans(made, random):
             SMOOTHED: palpate.smoothed(palpate.Volume(scan)).array, RAW: scan}
 
 
-def layers():
-    return layered("abdomen", [(name, *of) for name, _, _, _, *of in TISSUES], needle=True)
-
 
 def path(random):
     """(way, length [mm]) from before the skin of the front to a place in the vessel."""
@@ -94,21 +92,16 @@ def forces_on(fresh, way, length):
     return depth, force, numpy.bincount(gone, minlength=len(TISSUES))
 
 
-def rows_on(number, way, fresh):
-    """A row for each scan."""
-    made = {name: forces_on(renderer, *way) for name, renderer in fresh.items()}
-    _, wanted, punctured = made[TRUTH]
-    for name, (depth, force, punctures) in made.items():
-        off, extra = abs(force - wanted), punctures - punctured
-        yield {"path": number, "scan": name, "ticks": len(depth), "punctures": punctures.sum(), "extra": extra.clip(0).sum(),
-               "missed": (-extra).clip(0).sum(), "greatest_n": wanted.max(), "rms_n": numpy.sqrt((off**2).mean()), "most_n": off.max(),
-               "affected_percent": 100 * (off > AFFECTED).mean()}
-
-
 def rows_of(paths, fields):
     """A row for each path and scan. paths: (number, way and length)."""
-    fresh = {name: renderer(field, layers()) for name, field in fields.items()}
-    return [row for rows in in_parallel(lambda of: list(rows_on(*of, fresh)), paths) for row in rows]
+    fresh = {name: renderer(field, LAYERS) for name, field in fields.items()}
+    for (number, _), made in zip(paths, in_parallel(lambda of: {name: forces_on(one, *of[1]) for name, one in fresh.items()}, paths)):
+        _, wanted, punctured = made[TRUTH]
+        for name, (depth, force, punctures) in made.items():
+            off, extra = abs(force - wanted), punctures - punctured
+            yield {"path": number, "scan": name, "ticks": len(depth), "punctures": punctures.sum(), "extra": extra.clip(0).sum(),
+                   "missed": (-extra).clip(0).sum(), "greatest_n": wanted.max(), "rms_n": numpy.sqrt((off**2).mean()),
+                   "most_n": off.max(), "affected_percent": 100 * (off > AFFECTED).mean()}
 
 
 def summary_of(table):
@@ -127,7 +120,7 @@ def figure_of(table, paths, fields):
     drawn, (left, right) = figures.panels(columns=2, height=2.6, title="Labels and smoothing both lower the error of a needle's force")
     looks = {TRUTH: ("#c0c0c0", 4), RAW: (figures.VERMILION, 0.8), PARTLY: (figures.BLUE, 1.2)}
     for name, (colour, width) in looks.items():
-        depth, force, _ = forces_on(renderer(fields[name], layers()), *paths[0])
+        depth, force, _ = forces_on(renderer(fields[name], LAYERS), *paths[0])
         left.plot(depth - BEFORE, force, color=colour, lw=width)
     figures.names(left, [(name, figures.GREY if name == TRUTH else colour) for name, (colour, _) in looks.items()], 0.02)
     left.set(title="one path", xlabel="depth of the hand past the skin [mm]", ylabel="force on the needle [N]",

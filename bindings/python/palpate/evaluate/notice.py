@@ -1,6 +1,5 @@
 """notice: what would a person notice? Forces of slow strokes over smooth bodies, beside published thresholds."""
 
-import dataclasses
 import functools
 import itertools
 
@@ -38,7 +37,7 @@ def steady(subject):
         hands = ring.hand(parts)
         return scipy.signal.sosfiltfilt(low, hands, axis=0) if len(hands) > 100 else hands
 
-    return dataclasses.replace(ring, hand=hand, samples="as scanned")
+    return ring._replace(hand=hand, samples="as scanned")
 
 
 def bodies_of(options):
@@ -71,7 +70,7 @@ def row_of(body, name):
     trace, hands, pull = stroke(body, CONTESTANTS[name], round(RATE * way / (SPEED * body.subject.voxel)))
     hands, pull = hands[RATE // 10:], pull[RATE // 10:]
     strength = numpy.linalg.norm(pull, axis=1)
-    force = PRESS / strength.mean() * pull
+    force = PRESS / strength[strength > 0].mean() * pull
     change = numpy.linalg.norm(numpy.diff(force, axis=0), axis=1)
     row = {"body": body.subject.name, "grid": body.grid, "samples": body.samples, "method": name, "ticks": len(force),
            "contact_share": trace.constrained.mean(), "change_rms_percent": 100 / PRESS * numpy.sqrt((change**2).mean()),
@@ -88,14 +87,15 @@ def summary_of(table):
     for row in table:
         noticed = ", ".join(what for column, limit, _, what, *_ in NOTICED if row.get(column, 0) > limit)
         yield {"body": f"{row['body']} {row['grid']}", "samples": row["samples"], "method": row["method"],
-               "change per tick, rms [%]": row["change_rms_percent"], "above 20 Hz, rms [%]": row["above_20_hz_percent"],
+               "contact [%]": 100 * row.get("contact_share", numpy.nan), "change per tick, rms [%]": row["change_rms_percent"],
+               "above 20 Hz, rms [%]": row["above_20_hz_percent"],
                "motion [µm]": row.get("motion_um", numpy.nan), "direction off, p99 [degrees]": row.get("off_ideal_p99_deg", numpy.nan),
                "noticed": (noticed or "nothing") if "motion_um" in row else ""}
 
 
 def figure_of(table):
     cases = list(dict.fromkeys((row["body"], row["grid"], row["samples"]) for row in table))
-    title = ("With unrounded or dequantized samples, the smooth field stays below what people notice" if table.where(body="ball")
+    title = ("On an unrounded or dequantized ball, the smooth field stays below what people notice" if table.where(body="ball")
              else "Strokes beside what people notice")
     drawn, panels = figures.panels(columns=3, height=0.6 + 0.27 * len(cases), title=title, sharey=True)
     for axes, (column, limit, _, title, _, label) in zip(panels, NOTICED):
@@ -137,12 +137,14 @@ def in_short(table):
         yield from PAGE.text("balls", smooth_fine=most("smooth", *SAMPLES[:2]), exact_fine=most("exact", *SAMPLES[:2]),
                              smooth_raw=most("smooth", "uint8"), exact_raw=most("exact", "uint8"))
     for name in scans.distinct("body"):
-        exact, smooth = (scans.where(body=name, method=method)[0]["motion_um"] for method in METHODS[:2])
-        yield from PAGE.text("scan", name=name, exact=exact, smooth=smooth)
+        exact, smooth = (scans.where(body=name, method=method)[0] for method in METHODS[:2])
+        contact = [100 * row["contact_share"] for row in (smooth, exact)]
+        yield from PAGE.text("scan", name=name, exact=exact, smooth=smooth, contact=contact)
 
 
 def run(options):
     table = Table(row_of(body, name) for make in options.each(bodies_of(options)) for body in [make()] for name in METHODS)
     whole = table if options.subjects else Table([*table, *({**PEER_CASE, **row} for row in PEERS)])
-    text = PAGE.text(in_short=" ".join(in_short(table)), grams=1000 * MASS)
+    bodies, = PAGE.text("volumes of a user" if options.subjects else "own bodies")
+    text = PAGE.text("", *([] if options.subjects else ["peers"]), in_short=" ".join(in_short(table)), grams=1000 * MASS, bodies=bodies)
     return Result(whole, [figure_of(table)], claims_of(table), text, summary_of(whole))

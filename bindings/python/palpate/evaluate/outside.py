@@ -43,7 +43,7 @@ class Outside:
             one = numpy.broadcast_to(around.max(axis=1, keepdims=True), around.shape)
             joined = (around > 0) & (around != one)
             pairs.append(numpy.stack([one[joined], around[joined]], axis=1))
-        pairs = numpy.unique(numpy.concatenate(pairs), axis=0)
+        pairs = numpy.concatenate(pairs)
         graph = scipy.sparse.coo_matrix((numpy.ones(len(pairs)), pairs.T), shape=(count + 1, count + 1))
         _, component = scipy.sparse.csgraph.connected_components(graph, directed=False)
         self._reached = (component[labels] == component[labels[0, 0, 0]]) & (labels > 0)
@@ -58,14 +58,12 @@ class Outside:
                 gradient = subject.sign * subject.field.gradient(points)
                 length = numpy.linalg.norm(gradient, axis=1, keepdims=True)
                 points -= 0.1 * subject.voxel * gradient / numpy.where(length > 0, length, 1)
-        index = subject.index(points) + 1  # of the padded samples
+        geometry = subject.field.geometry
+        index = (points - geometry.origin) @ numpy.asarray(geometry.direction) / geometry.spacing + 1  # of the padded samples
         cell = numpy.floor(index).astype(int)
         held = ((cell < 0) | (cell > numpy.array(self._excess.shape) - 2)).any(axis=1)
-        held[~held] = self._within(cell[~held], (index - cell - 0.5)[~held])
-        return held
-
-    def _within(self, cell, u):
-        """The same for places `u` in cells, from their centres."""
+        inner = ~held
+        cell, u = cell[inner], (index - cell - 0.5)[inner]  # places in cells, from their centres
         eight = numpy.array(list(itertools.product((0, 1), repeat=3)))
         x, y, z = (cell[:, None, :] + eight).transpose(2, 0, 1)
         excess, reached = self._excess[x, y, z], self._reached[x, y, z]
@@ -81,4 +79,5 @@ class Outside:
         of_corner = numpy.stack([excess.argmin(axis=1), numpy.where(face, excess, numpy.inf).argmin(axis=1),
                                  lowest_of_edge], axis=1)
         lowest = means.argmin(axis=1)
-        return reached[rows, of_corner[rows, lowest]] & (means[rows, lowest] <= 0)
+        held[inner] = reached[rows, of_corner[rows, lowest]] & (means[rows, lowest] <= 0)
+        return held

@@ -1,14 +1,14 @@
 """penetration: which surfaces does a press meet from the skin into the brain? (Corenthy et al. 2012, section 5, Fig. 8)"""
 
-import dataclasses
+import collections
 
 import numpy
 import palpate
 
 from . import figures
 from .experiment import GRANTED, Page, Result, Table, largest
-from .hands import Way, way_from_a_side, way_in, way_into_head
-from .subjects import Subject, reals, synthetic
+from .hands import way_from_a_side, way_in, way_into_head
+from .subjects import reals, synthetic
 
 PAGE = Page(__name__)
 STIFFNESS = 0.5  # k [N/mm]
@@ -19,28 +19,8 @@ ROUNDING = 1e-9  # of k PT [N]
 FUNCTIONS = {"off": figures.GREY, "threshold": figures.BLUE, "ranges": figures.VERMILION}
 
 
-@dataclasses.dataclass
-class Line:
-    """A way into a body from where it first meets the level of the subject; depth [mm]: how far the hand goes; ranges of interest;
-    levels: what lies at them."""
-
-    subject: Subject
-    way: Way
-    depth: float
-    ranges: list
-    levels: dict
-
-
-def ct_head(subject):
-    # Muscle and brain lie between the ranges.
-    return Line(subject, way_into_head(subject), 30, [(500, 900), (1200, numpy.inf)], {500: "skin", 1200: "skull"})
-
-
-def shepp_logan(quick):
-    subject = synthetic("shepp-logan:48x48x48" if quick else "shepp-logan")
-    way = way_in(subject, 0.5 * subject.field.geometry.size[0] * numpy.array([0, 0.02, 0.05]), numpy.array([-1.0, 0, 0]))
-    # Up to soft tissue; neither the inside of the skin (60 HU), nor brain (40), nor ventricles (8).
-    return Line(subject, way, float(way.origin[0]), [(subject.isovalue, 0), (500, numpy.inf)], {subject.isovalue: "skin", 530: "skull"})
+# A way into a body from where it first meets the level of the subject; how far the hand goes [mm]; ranges of interest; what lies at levels.
+Line = collections.namedtuple("Line", "subject way depth ranges levels")
 
 
 def of_a_user(subject):
@@ -49,12 +29,20 @@ def of_a_user(subject):
     return Line(subject, *way_from_a_side(subject), ranges, {least: "minimum"})
 
 
+def own_lines(options):
+    for head in reals(["ct-head"], options):  # muscle and brain lie between the ranges
+        yield Line(head, way_into_head(head), 30, [(500, 900), (1200, numpy.inf)], {500: "skin", 1200: "skull"})
+    head = synthetic("shepp-logan:48x48x48" if options.quick else "shepp-logan")
+    way = way_in(head, 0.5 * head.field.geometry.size[0] * numpy.array([0, 0.02, 0.05]), numpy.array([-1.0, 0, 0]))
+    # Up to soft tissue; neither the inside of the skin (60 HU), nor brain (40), nor ventricles (8).
+    yield Line(head, way, float(way.origin[0]), [(head.isovalue, 0), (500, numpy.inf)], {head.isovalue: "skin", 530: "skull"})
+
+
 def lines_of(options):
-    lines = [*map(of_a_user, options.subjects)] or [*map(ct_head, reals(["ct-head"], options)), shepp_logan(options.quick)]
-    for line in lines if options.ranges else ():
-        line.ranges = [tuple(end(line.subject.field.volume) for end in ends) for ends in options.ranges]
-        line.levels = {line.subject.isovalue: "minimum", **{low: "range" for low, _ in line.ranges}}
-    return lines
+    for line in [*map(of_a_user, options.subjects)] or own_lines(options):
+        ranges = [range_in(line.subject.field.volume) for range_in in options.ranges]
+        levels = {line.subject.isovalue: "minimum", **{low: "range" for low, _ in ranges}}
+        yield line._replace(ranges=ranges, levels=levels) if ranges else line
 
 
 class Press:
@@ -77,11 +65,6 @@ class Press:
         self.density_at_hand = subject.field.value(hips)
         self.felt = self.trace.isovalue[self.trace.constrained]  # levels, in contact
 
-    def out_of_ranges(self):
-        return int(numpy.count_nonzero(~numpy.any([(low <= self.felt) & (self.felt <= high) for low, high in self.line.ranges], axis=0)))
-
-    def below_minimum(self):
-        return int(numpy.count_nonzero(self.line.subject.excess(self.felt) < 0))
 
     def rows(self, each):
         for i in range(0, len(self.depth), each):
@@ -157,22 +140,20 @@ def claims_of(presses):
     most = STIFFNESS * THRESHOLD
     for name, own in (("threshold", threshold), ("ranges", ranges)):
         yield PAGE.at_most(most + ROUNDING, [press.force.max() for press in own], "force", function=name, strongest=most)
-    for name, own, wrong in (("minimum", threshold, Press.below_minimum), ("ranges", ranges, Press.out_of_ranges)):
-        count = sum(map(wrong, own))
-        yield PAGE.claim(name, count == 0, wrong=count, ticks=sum(len(press.felt) for press in own))
+    below = [press.line.subject.excess(press.felt) < 0 for press in threshold]
+    out = [~numpy.any([(low <= press.felt) & (press.felt <= high) for low, high in press.line.ranges], axis=0) for press in ranges]
+    for name, wrong in (("minimum", numpy.concatenate(below)), ("ranges", numpy.concatenate(out))):
+        yield PAGE.claim(name, not wrong.any(), wrong=wrong.sum(), ticks=len(wrong))
     yield PAGE.at_most(0, [numpy.ptp(press.trace.isovalue) for press in off], "off")
     yield PAGE.at_most(GRANTED, [largest(press.line.subject.excess(press.trace.density)) for press in off], "outside")
 
 
-def ranges_of(line):
-    ranges = ", and ".join(f"{low:g} to {high:g}" if numpy.isfinite(high) else f"{low:g} and more" for low, high in line.ranges)
-    return f"The ranges of {line.subject.name} are {ranges}."
-
-
 def run(options):
-    table, presses, lines = Table(), [], lines_of(options)
+    table, presses, lines = Table(), [], list(lines_of(options))
     for line, function in options.each((line, function) for line in lines for function in FUNCTIONS):
         presses.append(Press(line, function))
         table.extend(presses[-1].rows(20 if options.quick else 10))
-    text = PAGE.text(ranges=" ".join(map(ranges_of, lines)))
+    ranges = {line.subject.name: ", and ".join(f"{low:g} to {high:g}" if numpy.isfinite(high) else f"{low:g} and more"
+                                               for low, high in line.ranges) for line in lines}
+    text = PAGE.text(ranges=" ".join(f"The ranges of {name} are {words}." for name, words in ranges.items()))
     return Result(table, [figure_of(lines, presses)], claims_of(presses), text, summary_of(presses))

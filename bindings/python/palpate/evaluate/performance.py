@@ -109,12 +109,12 @@ def summary_of(table):
         paper, smooth = (same.where(method=name)[0] for name in ("paper", "smooth"))
         volume, row = exact["volume"], exact["paper_row"]
         yield {"volume": volume if volume == row else f"{volume} for {row}", "resolution": exact["resolution"],
-               "size in the paper": PAPER.where(volume=row)[0]["size"], "size here": exact["size"],
-               "hand in the paper [cm/s]": exact["target_speed_mm_s"] / 10, "hand here [cm/s]": exact["speed_mm_s"] / 10,
-               "contact in the paper [%]": 100 * exact["target_constrained_share"], "contact here [%]": 100 * exact["constrained_share"],
+               "size, in the paper / here": f"{PAPER.where(volume=row)[0]['size']} / {exact['size']}",
+               "hand, in the paper / here [cm/s]": f"{exact['target_speed_mm_s'] / 10:.4g} / {exact['speed_mm_s'] / 10:.4g}",
+               "contact, in the paper / here [%]": f"{100 * exact['target_constrained_share']:.4g} / {100 * exact['constrained_share']:.4g}",
                "haptic loop in the paper, mean [µs]": exact["paper_mean_us"],
-               "update by exact, mean [µs]": exact["mean_ns"] / 1000, "update by exact, p99.9 [µs]": exact["p999_ns"] / 1000,
-               **{f"update by {what}, mean over that of exact [95 %]":
+               "update by exact, mean [µs]": exact["mean_ns"] / 1000, "p99.9 [µs]": exact["p999_ns"] / 1000,
+               **{f"{what}, mean over that of exact [95 % interval]":
                   "{over_exact:.2f} [{over_exact_low:.2f}, {over_exact_high:.2f}]".format(**of)
                   for what, of in (("the paper's method here", paper), ("exact on the smooth field", smooth))}}
 
@@ -149,13 +149,13 @@ def claims_of(table, options):
 
 
 def text_of(table, effort):
-    def most(column, unit=1000, form=".1f"):
-        return ", ".join(f"{largest(table.where(method=name)[column]) / unit:{form}}" for name in METHODS)
+    def most(column, unit=1000, form="{:.1f} µs"):
+        *others, last = [f"{form.format(largest(table.where(method=name)[column]) / unit)} ({title})" for name, title in METHODS.items()]
+        return f"{', '.join(others)} and {last}"
 
     return PAGE.text("", *(["cold"] if effort.cold else []), own_share=100 * OURS["constrained_share"], passes=effort.passes,
-                     means=most("mean_ns", 1, ".0f"), p999s=most("p999_ns"), longest=most("max_ns"),
-                     interrupted=largest(table["interrupted_max_ns"]) / 1000,
-                     cold=largest(table.where(method="exact")["cold_p50_ns"]) / 1000)
+                     means=most("mean_ns", 1, "{:.0f} ns"), p999s=most("p999_ns"), longest=most("max_ns"),
+                     interrupted=largest(table["interrupted_max_ns"]) / 1000, cold=most("cold_p50_ns"))
 
 
 def run(options):

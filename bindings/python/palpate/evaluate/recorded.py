@@ -1,5 +1,6 @@
-"""recorded: does a hand feel what it felt on a real surface? (Ruffaldi, Morris et al. 2006)"""
+"""recorded: is the force of a recorded stroke rendered again? (Ruffaldi, Morris et al. 2006)"""
 
+import collections
 import dataclasses
 import itertools
 from pathlib import Path
@@ -27,14 +28,7 @@ NEIGHBOURS = 16  # triangles that are looked at for a point
 COLUMNS = ("t", "x", "y", "z", "fx", "fy", "fz")
 
 
-@dataclasses.dataclass
-class Recording:
-    """Of a probe: time [s], position [mm], and the force on the hand [N]."""
-
-    name: str
-    time: numpy.ndarray
-    position: numpy.ndarray
-    force: numpy.ndarray
+Recording = collections.namedtuple("Recording", "name time position force")  # of a probe [s, mm], and the force on the hand [N]
 
 
 def read(path):
@@ -148,16 +142,13 @@ def rows_of(recording, surface, samples, voxel):
     volume, level = volume_of(surface, hands, voxel, SAMPLES[samples])
     subject = linear(recording.name, volume, level)
     start, strength = hands[0] + (BAND + 1) * voxel * surface.nearest(hands[:1])[1][0], numpy.linalg.norm(normal_force, axis=1)
-
-    def row(contestant):
+    for contestant in CONTESTANTS.values():
         trace = contestant.proxy(subject, start).follow(hands)
         force = numpy.where(trace.constrained[:, None], STIFFNESS * (trace.scp - hands), 0)
-        return {"recording": recording.name, "surface": surface.name, "samples": samples, "voxel_mm": voxel, "method": contestant.name,
-                "ticks": len(hands), "contact_share": (strength > 0).mean(), "mean_force_n": strength.mean(),
-                **metrics("force_n", normal_force, force), **metrics("with_friction_n", recording.force, force),
-                **metrics("position_mm", out, trace.scp)}, force
-
-    return [row(contestant) for contestant in CONTESTANTS.values()]
+        yield {"recording": recording.name, "surface": surface.name, "samples": samples, "voxel_mm": voxel, "method": contestant.name,
+               "ticks": len(hands), "contact_share": (strength > 0).mean(), "mean_force_n": strength.mean(),
+               **metrics("force_n", normal_force, force), **metrics("with_friction_n", recording.force, force),
+               **metrics("position_mm", out, trace.scp)}, force
 
 
 def recordings_of(options):
@@ -174,10 +165,9 @@ def summary_of(table):
     for samples in SAMPLES:
         for name in CONTESTANTS:
             rows = table.where(samples=samples, method=name)
-            yield {"samples": samples, "method": name, "force, RMS error [N]": sampling.in_words(rows["force_n_rms"], "{:.2g}"),
-                   "force, greatest error [N]": largest(rows["force_n_max"]),
-                   "position, RMS error [mm]": sampling.in_words(rows["position_mm_rms"], "{:.2g}"),
-                   "force with friction, RMS error [N]": sampling.in_words(rows["with_friction_n_rms"], "{:.2g}")}
+            rms = {f"RMS error of the {what}, median [95 % interval]": sampling.in_words(rows[column], "{:.2g}") for what, column in (
+                ("force [N]", "force_n_rms"), ("position [mm]", "position_mm_rms"), ("force with friction [N]", "with_friction_n_rms"))}
+            yield {"samples": samples, "method": name, **rms, "greatest error of the force [N]": largest(rows["force_n_max"])}
 
 
 def figure_of(recording, surface, forces, table):

@@ -1,26 +1,22 @@
 """Writes results as files: NAME.csv, NAME.md and figures, and several experiments as one HTML page and one PDF."""
 
 import base64
+import collections
 import csv
-import dataclasses
 import functools
 import html
 import importlib.util
+import io
 import math
 import re
 import string
 from pathlib import Path
 
 from . import figures
-from .experiment import Result, Table
+from .experiment import Table
 
 
-@dataclasses.dataclass
-class Report:
-    name: str
-    title: str
-    result: Result
-    circumstances: str
+Report = collections.namedtuple("Report", "name title result circumstances")
 
 
 def number(cell, digits=12):
@@ -94,8 +90,10 @@ def section(report, folder, whole):
              *(f"<p>{html.escape(text)}</p>\n" for text in report.result.paragraphs),
              html_table(report.result.summary)]
     for figure, (file, caption) in zip(report.result.figures, files_of(report)):
-        # WeasyPrint 57 sets the text of such SVG in wrong sizes, so paper gets pixels.
-        kind, data = ("svg+xml", (folder / file).read_bytes()) if whole else ("png", figures.pixels(figure.drawn))
+        kind, data = "svg+xml", (folder / file).read_bytes()
+        if not whole:  # WeasyPrint 57 sets the text of such SVG in wrong sizes, so paper gets pixels
+            figure.drawn.savefig(pixels := io.BytesIO(), format="png")
+            kind, data = "png", pixels.getvalue()
         alt = html.escape(in_place_of_a_picture(caption))
         parts.append(f'<figure><img style="width:{figure.drawn.get_figwidth():g}in" alt="{alt}" '
                      f'src="data:image/{kind};base64,{base64.b64encode(data).decode()}">'
@@ -106,18 +104,16 @@ def section(report, folder, whole):
     return "".join([*parts, html_table(claims_of(report.result)), numbers, *map(small, data_of(report.result))])
 
 
-def circumstances_of(reports):
-    """A paragraph for all of them, or one for those that share a machine, a moment and a build."""
-    shared = {text: [r.name for r in reports if r.circumstances == text] for text in (r.circumstances for r in reports)}
-    return [small(text if len(shared) == 1 else f"{', '.join(names)}: {text}") for text, names in shared.items()]
-
 
 def page_of(reports, folder, whole=True):
     """HTML of all reports; `folder` holds the figures, which are embedded. whole: with the tables of all numbers."""
     page = string.Template((Path(__file__).parent / "pages" / "report.html").read_text(encoding="utf-8"))
     held = [claim.held for report in reports for claim in report.result.claims]
+    # A paragraph for all of them, or one for those that share a machine, a moment and a build.
+    shared = {text: [r.name for r in reports if r.circumstances == text] for text in (r.circumstances for r in reports)}
+    circumstances = [small(text if len(shared) == 1 else f"{', '.join(names)}: {text}") for text, names in shared.items()]
     return page.substitute(sections="".join(section(report, folder, whole) for report in reports), held=sum(held), claims=len(held),
-                           circumstances="".join(circumstances_of(reports)), entries="".join(
+                           circumstances="".join(circumstances), entries="".join(
         f'<li><a href="#{r.name}">{r.name}</a>: {html.escape(r.title)} '
         f"({sum(c.held for c in r.result.claims)} of {len(r.result.claims)} claims hold)</li>\n" for r in reports))
 

@@ -1,5 +1,6 @@
 """scaling: what does the cost grow with, and what does the explicit approach cost?"""
 
+import collections
 import dataclasses
 import itertools
 
@@ -21,19 +22,10 @@ SEGMENTS, REPEATS = 4000, 3  # at most so many; the fastest repeat of the explic
 TILT, TURNING = 0.9, 0.02  # [rad] of the circles around a ball, and turn of their plane per angle along them
 
 
-@dataclasses.dataclass
-class Plan:
-    ticks: int
-    passes: int
-    speeds: tuple = (5, 10, 20, 50, 100, 200, 500, 1000, 2000)
-    voxels: tuple = (0.25, 0.5, 1, 2, 3, 4, 6, 8)
-    sizes: tuple = (64, 128, 256, 512, 768, 1024)  # samples along an edge
-    noises: tuple = (0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1)  # of the density's range
-    explicit_sizes: tuple = (64, 128, 256, 512, 1024)
-
-
+Plan = collections.namedtuple("Plan", "ticks passes speeds voxels sizes noises explicit_sizes")  # edges [samples], parts of the range
 QUICK = Plan(1500, 3, (20, 100, 500), (0.5, 2), (64, 80, 128), (0, 0.1, 1), (32, 64))
-FULL = Plan(20000, 5)
+FULL = Plan(20000, 5, (5, 10, 20, 50, 100, 200, 500, 1000, 2000), (0.25, 0.5, 1, 2, 3, 4, 6, 8), (64, 128, 256, 512, 768, 1024),
+            (0, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1), (64, 128, 256, 512, 1024))
 
 
 @dataclasses.dataclass
@@ -186,8 +178,7 @@ def explicit_numbers(subject, segments, options):
     ours, _ = palpate.cast_rays(subject.field, subject.isovalue, starts, ends)
     theirs = starts + found["hits"][:, None] * (ends - starts)
     apart = numpy.linalg.norm(theirs - ours, axis=1) / subject.voxel
-    ready, kept = found["extraction_s"] + found["tree_s"], found["mesh_bytes"] + found["tree_bytes"]
-    found = {**found, "ready_s": ready, "kept_bytes": kept}
+    found = {**found, "ready_s": found["extraction_s"] + found["tree_s"], "kept_bytes": found["mesh_bytes"] + found["tree_bytes"]}
     return {**{f"explicit_{name}": found[name] for name in ("triangles", "extraction_s", "tree_s", "ready_s", "cpu_s", "mesh_bytes",
                                                             "tree_bytes", "kept_bytes", "peak_bytes", "segment_ns")},
             "one_sided_hits_share": (numpy.isnan(theirs[:, 0]) != numpy.isnan(ours[:, 0])).mean(),
@@ -245,7 +236,7 @@ def edges_of(rows):
 def growth_figure(table):
     """Times above, tetrahedra below. Of several volumes the first."""
     parts = [part for part in GROWTH if table.where(part=part)]
-    title = "An update costs the tetrahedra that the proxy passes" + (", whatever the size of the volume" if "size" in parts else "")
+    title = "The cost of an update grows with the hand's path" + (" and with noise, not with the volume's size" if "size" in parts else "")
     drawn, panels = figures.panels(2, len(parts), height=3.8, title=title, sharex="col", sharey="row", squeeze=False,
                                    gridspec_kw={"height_ratios": [3, 1.4]})
     for (above, below), part in zip(panels.T, parts):
@@ -327,15 +318,15 @@ def span(values):
     return f"{values.min():.0f} to {values.max():.0f} ns" if len(values) else "not measured"
 
 
-def text_of(table, own_volumes):
+def text_of(table, own_volumes, passes):
     rows, sections = table.where(part="explicit"), ["", *(["growth"] if own_volumes else []), "explicit"]
-    values = {"state": rows[0]["state_bytes"], "mean": {f"{part} {method}": span(table.where(part=part, method=method)["mean_ns"])
-                                                        for part, method in itertools.product(GROWTH, METHODS)}}
+    cases = itertools.product(GROWTH, METHODS)
+    values = {"state": rows[0]["state_bytes"], "passes": passes,
+              "mean": {f"{part} {method}": span(table.where(part=part, method=method)["mean_ns"]) for part, method in cases}}
     if own_volumes:
         found, edges = crossings(table), table.where(part="size").distinct("size")
         moved = table.where(part="noise", method="exact")["tetrahedra_per_update"]
-        values.update(fewest=found.min(), most=found.max(), small=edges[0], large=edges[-1], calm=moved.max(),
-                      noisy=moved.min())
+        values.update(fewest=found.min(), most=found.max(), small=edges[0], large=edges[-1], calm=moved[0], noisy=moved.min())
     if not numpy.isnan(rows["explicit_segment_ns"]).all():
         sections.append("segments")
         values.update(segment=span(rows["explicit_segment_ns"]), update=span(rows["mean_ns"]))
@@ -348,5 +339,5 @@ def run(options):
         options.note("a given volume has one size and its own noise: those parts are left out")
     parts = by_hand(plan, options), by_body(plan, options) if own_volumes else (), by_approach(plan, options)
     table = Table(row for rows in options.each(itertools.chain(*parts)) for row in rows)
-    return Result(table, [growth_figure(table), explicit_figure(table)], claims_of(table, own_volumes), text_of(table, own_volumes),
-                  summary_of(table))
+    return Result(table, [growth_figure(table), explicit_figure(table)], claims_of(table, own_volumes),
+                  text_of(table, own_volumes, plan.passes), summary_of(table))

@@ -133,10 +133,6 @@ def cases_of(subject, plan):
     return [(make, (subject, *loop, rate, strength)) for make, loop, rate, strength in cases]
 
 
-def measured(cases, options):
-    return Table(row for part in options.each(itertools.zip_longest(*[iter(cases)] * 64))
-                 for row in in_parallel(lambda case: case[0](*case[1]), filter(None, part)))
-
 
 def largest_stable(rows, rate, steps=2):
     """The largest stiffness up to which every one tried moves by so many encoder steps at most, which is at rest for two; 0 if none
@@ -176,7 +172,7 @@ def summary_of(table, plan):
 def map_figure(table, plan):
     """Stiffness over rate, the colour the movement at rest; a line where it ends."""
     drawn, panels = figures.panels(columns=len(plan.encoders), height=2.7, sharey=True,
-                                   title="Faster loops and finer encoders carry stiffer walls")
+                                   title="Faster loops carry stiffer walls, and encoder steps hardly matter")
     norm = figures.matplotlib.colors.LogNorm(1e-3, 10)
     edges = [0, *(0.5 * numpy.add(plan.stiffnesses[1:], plan.stiffnesses[:-1])), LARGEST + 0.05]
     for axes, encoder in zip(panels, plan.encoders):
@@ -194,7 +190,7 @@ def map_figure(table, plan):
 
 
 def profile_figure(table, plan):
-    drawn, panels = figures.panels(columns=4, height=2.9, sharey=True, title="Friction of the mechanics stills what would buzz")
+    drawn, panels = figures.panels(columns=4, height=2.9, sharey=True, title="Friction of the mechanics stills nearly all that would buzz")
     for axes, (part, (title, *_)) in zip(panels, PARTS.items()):
         stable = [[largest_stable(table.where(part=part, profile=name), rate) for rate in plan.rates] for name in PROFILES]
         figures.number_map(axes, stable, PROFILES, [f"{rate / 1000:g}" for rate in plan.rates], 1.6 * LARGEST, "{:.1f}", 6)
@@ -230,7 +226,8 @@ def claims_of_rest(table, plan):
     more, same, less = counted(found)
     losses = ", ".join(f"{name} at {rate:g} Hz ({smooth:.1f} against {linear:.1f} N/mm)" for name, rate, linear, smooth in found
                        if smooth < linear)
-    yield PAGE.claim("smooth", less == 0, same=same, more=more, less=f"{less}: {losses}" if less else "0")
+    limited = sum(linear == smooth == LARGEST for *_, linear, smooth in found)
+    yield PAGE.claim("smooth", less == 0, same=same, limited=limited, more=more, less=f"{less}: {losses}" if less else "0")
     corner = table.where(part="map", rate_hz=250, stiffness_N_mm=LARGEST, encoder_step_mm=0)[0]  # the map can tell
     yield PAGE.claim("buzz", corner["at_rest"] == "no", moved=corner["position_peak_to_peak_mm"])
 
@@ -258,15 +255,17 @@ def text_of(table, plan, subject):
     slow, fast = (largest_stable(table.where(part=part, encoder_step_mm=plan.encoders[0]), rate)
                   for part, rate in (("map", plan.rates[0]), ("fastest", FASTEST)))
     rests, moves = (compared(table, plan, *list(PARTS)[2:], steps) for steps in (2, 10))
+    tremor = [largest(table.where(part="trembling", rate_hz=rate)["above_20_hz_percent"]) for rate in plan.rates]
     return PAGE.text(volume=subject.name, slow=slow, fast=fast, slowest=plan.rates[0], cases=len(rests), rest=counted(rests),
                      wide=counted(moves), most=max(0, *(linear - smooth for *_, linear, smooth in moves)),
-                     tremor=largest(table.where(part="trembling")["above_20_hz_percent"]))
+                     tremor=tremor[0], faster=max(tremor[1:]))
 
 
 def run(options):
     plan = QUICK if options.quick else FULL
     subject = options.subjects[0] if options.subjects else synthetic("sphere")
-    table = measured(cases_of(subject, plan), options)
+    parts = options.each(itertools.zip_longest(*[iter(cases_of(subject, plan))] * 64))
+    table = Table(row for part in parts for row in in_parallel(lambda case: case[0](*case[1]), filter(None, part)))
     return Result(table, [map_figure(table, plan), profile_figure(table, plan), rotation_figure(table, plan)],
                   [*claims_of_rest(table, plan), *claims_of_rotation(table)], text_of(table, plan, subject),
                   summary_of(table, plan))

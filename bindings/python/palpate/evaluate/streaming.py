@@ -42,7 +42,7 @@ def summary_of(table, plan):
                   for row in table.where(levels=levels, latency_ms=latency)}}
 
 
-def lines(panels, table, plan, column, factor, label):
+def lines(panels, table, column, factor, label):
     """A line for each latency, against the hand's speed; a panel for each kind of levels."""
     for axes, levels in zip(panels, LEVELS):
         for (latency, rows), colour in zip(table.where(levels=levels).by("latency_ms"), COLOURS):
@@ -51,31 +51,31 @@ def lines(panels, table, plan, column, factor, label):
     panels[0].set_ylabel(label)
 
 
-def waiting_figure(table, plan):
-    drawn, panels = figures.panels(columns=2, height=2.6, sharey=True, title="Coarser levels spare a fast hand most of its waiting")
-    lines(panels, table, plan, "waiting_share", 100, "ticks that wait [%]")
+def figures_of(table):
+    drawn, panels = figures.panels(columns=2, height=2.6, sharey=True,
+                                   title="With latency, coarser levels spare a hand half of its waiting or more")
+    lines(panels, table, "waiting_share", 100, "ticks that wait [%]")
     for axes in panels:
         axes.set(xlabel="speed of the hand [voxel/s]", ylim=(-3, 103))
     figures.label_ends(panels[1])
-    return PAGE.figure(drawn)
-
-
-def traffic_figure(table, plan):
-    drawn, panels = figures.panels(2, 2, height=4.2, sharex=True, sharey="row",
-                                   title="The memory stays below its bound, whatever the hand does")
-    lines(panels[0], table, plan, "read_mb", 1e-3, "read in a stroke [GB]")
-    lines(panels[1], table, plan, "most_mb", 1, "memory [MB]")
-    for axes in panels[1]:
+    yield PAGE.figure(drawn)
+    drawn, (above, below) = figures.panels(2, 2, height=4.2, sharex=True, sharey="row",
+                                           title="The memory stays below its bound, whatever the hand does")
+    lines(above, table, "read_mb", 1e-3, "read in a stroke [GB]")
+    lines(below, table, "most_mb", 1, "memory [MB]")
+    for axes in below:
         axes.set(title="", xlabel="speed of the hand [voxel/s]", ylim=(0, 1.25 * MEMORY))
         figures.limit(axes, MEMORY, "bound", ":")
-    panels[0, 0].set_ylim(0, None)
-    figures.label_ends(panels[0, 1])
-    return PAGE.figure(drawn, "traffic")
+    above[0].set_ylim(0, None)
+    figures.label_ends(above[1])
+    yield PAGE.figure(drawn, "traffic")
 
 
 def claims_of(table):
-    beyond = numpy.nanmax(table["beyond_allowed_voxel"])
-    yield PAGE.claim("path", beyond <= 0, beyond=beyond, ticks=table["ticks"].sum())
+    judged = table.only(lambda row: row.get("beyond_allowed_voxel", numpy.nan) < numpy.inf)  # not NaN
+    beyond, moved = judged["beyond_allowed_voxel"].max(initial=-numpy.inf), (judged["ticks"] * (1 - judged["waiting_share"])).sum()
+    left = PAGE.text("not judged", left=len(table) - len(judged)) if len(judged) < len(table) else [""]
+    yield PAGE.claim("path", judged and beyond <= 0, room=-beyond, judged=len(judged), strokes=len(table), moved=moved, left=left[0])
     yield PAGE.at_most(MEMORY, table["most_mb"], "memory")
 
 
@@ -83,7 +83,7 @@ def text_of(table, plan):
     latency, slow, fast = plan.latencies[-1], plan.speeds[0], plan.speeds[-1]
     waits = [100 * table.where(levels=levels, latency_ms=latency, speed_voxel_s=speed)[0]["waiting_share"]
              for speed, levels in itertools.product((slow, fast), LEVELS)]
-    return PAGE.text(failures=100 * FAILURES, rate=plan.rate, latency=latency, slow=slow, fast=fast, waits=waits,
+    return PAGE.text(failures=100 * FAILURES, rate=plan.rate, seconds=plan.seconds, latency=latency, slow=slow, fast=fast, waits=waits,
                      contact=largest(table.where(latency_ms=latency, speed_voxel_s=fast)["first_contact_s"]))
 
 
@@ -92,5 +92,4 @@ def run(options):
     plan = QUICK if options.quick else FULL
     cases = options.each(itertools.product(LEVELS, plan.latencies, plan.speeds))
     table = Table(row_of(plan, *case, options.seed) for case in cases)
-    return Result(table, [waiting_figure(table, plan), traffic_figure(table, plan)], claims_of(table), text_of(table, plan),
-                  summary_of(table, plan))
+    return Result(table, figures_of(table), claims_of(table), text_of(table, plan), summary_of(table, plan))

@@ -34,14 +34,6 @@ class Subject:
         geometry = self.field.geometry
         return float(numpy.linalg.norm(geometry.size * geometry.spacing))
 
-    def physical(self, index):
-        """Points [mm] of places [index], (n, 3)."""
-        geometry = self.field.geometry
-        return geometry.origin + (index * geometry.spacing) @ numpy.asarray(geometry.direction).T
-
-    def index(self, physical):
-        geometry = self.field.geometry
-        return (physical - geometry.origin) @ numpy.asarray(geometry.direction) / geometry.spacing
 
     def excess(self, density):
         """How far densities are in the solid, as a part of the data's range."""

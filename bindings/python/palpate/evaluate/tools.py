@@ -10,7 +10,7 @@ import scipy.optimize
 from scipy.spatial.transform import Rotation
 
 from . import figures
-from .bodies import unit
+from .bodies import around, unit
 from .experiment import GRANTED, Page, Result, Table, in_parallel, largest
 from .subjects import cube
 
@@ -38,10 +38,6 @@ def hostile_scenes(seed):
     yield sampled("shell", 40, lambda x, y, z: 1.5 - abs(numpy.sqrt(x * x + y * y + z * z) - WALL), 0.75)
 
 
-def is_closed(scene):
-    """Whether the tool starts inside a shell, and stays there."""
-    return scene.name == "shell"
-
 
 def tools_of():
     """(name, tool): points half a voxel apart. A cube with n points along its edges has 6 (n - 1)^2 + 2."""
@@ -55,10 +51,6 @@ def tools_of():
 
 # Tools at rest: stiffness 1 N/mm, rotational stiffness the gyration squared, so that the force is the way from hand to proxy, and the
 # torque the rotation between them times the gyration squared.
-
-def plane():
-    return sampled("plane", 40, lambda x, y, z: -z, 0)
-
 
 def at_rest(name, parameter, scene, tool, position, turn, force, torque):
     """A row: force [N] and torque [N mm] of a tool that is pressed down, until it rests, beside those of the closed form."""
@@ -79,7 +71,7 @@ def at_rest(name, parameter, scene, tool, position, turn, force, torque):
             "torque_off_share": off / size(torque) if size(torque) > 0 else off}
 
 
-def boxes():
+def boxes(plane):
     """A box pressed onto a plane, tilted and twisted: it lies flat, the rest of the rotation is felt. Flat orientations turn about z; the
     nearest has the same twist."""
     box = palpate.Tool.named("box:6,4,2", 0.5)
@@ -87,18 +79,18 @@ def boxes():
         turn = Rotation.from_rotvec([0, 0, 8 * tilt]) * Rotation.from_rotvec([tilt, -0.7 * tilt, 0])
         _, _, z, w = turn.as_quat()
         level = Rotation.from_rotvec([0, 0, 2 * numpy.arctan2(z, w)])
-        yield at_rest("box on a plane", tilt, plane(), box, [0, 0, -1.0], turn, numpy.array([0, 0, 2.0]),
+        yield at_rest("box on a plane", tilt, plane, box, [0, 0, -1.0], turn, numpy.array([0, 0, 2.0]),
                       box.gyration**2 * (level * turn.inv()).as_rotvec())
 
 
-def levers():
+def levers(plane):
     """A rod whose one end is on the plane, its middle pressed down and turned: k h = N, h = l / 2 sin(a), and
     k_r (turn - a) = N l / 2 cos(a)."""
     half, gyration = 4.0, 4.0
     rod = palpate.Tool(half * numpy.outer(numpy.arange(-16, 17) / 16, [1, 0, 0]), gyration)
     for turn in 0.1 * numpy.arange(1, 9):
         angle = scipy.optimize.brentq(lambda a: half**2 * numpy.sin(a) * numpy.cos(a) - gyration**2 * (turn - a), 0, turn, xtol=1e-16)
-        yield at_rest("rod on its end", turn, plane(), rod, [0, 0, 0], Rotation.from_rotvec([0, turn, 0]),
+        yield at_rest("rod on its end", turn, plane, rod, [0, 0, 0], Rotation.from_rotvec([0, turn, 0]),
                       numpy.array([0, 0, half * numpy.sin(angle)]), gyration**2 * numpy.array([0, angle - turn, 0]))
 
 
@@ -159,10 +151,8 @@ def chords_of(tool, path, poses, step):
     before = [numpy.where(first[:, None], path[name][tick[row] - 1], path[f"pose_{name}"][row - 1])
               for name in ("position", "orientation_xyzw")]
 
-    def places(position, orientation):
-        return position + Rotation.from_quat(orientation).apply(points[which])
-
-    return places(*before), places(path["pose_position"][row], path["pose_orientation_xyzw"][row])
+    return tuple(position + Rotation.from_quat(orientation).apply(points[which])
+                 for position, orientation in (before, (path["pose_position"][row], path["pose_orientation_xyzw"][row])))
 
 
 def judge(scene, tool, path):
@@ -182,12 +172,10 @@ def judge(scene, tool, path):
 
 def growth(tool, path, hands, turns):
     """[mm] How much farther each hand is from the proxy than it was from the proxy before."""
-    def distance(position, orientation):
-        turn = (turns[1:] * Rotation.from_quat(orientation).inv()).magnitude() if tool.turns else 0
-        return numpy.hypot(numpy.linalg.norm(hands[1:] - position, axis=1), tool.gyration * turn)
-
-    places = path["position"], path["orientation_xyzw"]
-    return distance(*(place[1:] for place in places)) - distance(*(place[:-1] for place in places))
+    before, after = (numpy.hypot(numpy.linalg.norm(hands[1:] - path["position"][part], axis=1), tool.gyration * (
+        (turns[1:] * Rotation.from_quat(path["orientation_xyzw"][part]).inv()).magnitude() if tool.turns else 0))
+        for part in (slice(-1), slice(1, None)))
+    return after - before
 
 
 def followed(scene, tool, hands, turns, method="exact"):
@@ -209,18 +197,13 @@ def judged(scene, tool, hands, turns):
 
 # A peg with a quarter of a voxel around it goes into its hole, is wiggled there, and comes out.
 
-def peg(radius, length):
-    """Rings of points half a voxel apart."""
-    count = int(numpy.ceil(2 * numpy.pi * radius / 0.5))
-    angle, z = 2 * numpy.pi * numpy.arange(count) / count, numpy.arange(-0.5 * length, 0.5 * length + 1e-9, 0.5)
-    ring = radius * numpy.stack([numpy.cos(angle), numpy.sin(angle)], axis=1)
-    return palpate.Tool(numpy.column_stack([numpy.tile(ring, (len(z), 1)), numpy.repeat(z, count)]))
-
-
 def fit(quick):
-    """The hole is along z, of 5 mm radius, up to z = 8."""
+    """The hole is along z, of 5 mm radius, up to z = 8. The peg has rings of points half a voxel apart."""
     scene = sampled("hole", 48, lambda x, y, z: numpy.minimum(numpy.hypot(x, y) - 5, 8 - z), 0)
-    tool, ticks = peg(4.75, 10), 150 if quick else 3000
+    radius, z = 4.75, numpy.arange(-5, 5 + 1e-9, 0.5)
+    count, ticks = int(numpy.ceil(2 * numpy.pi * radius / 0.5)), 150 if quick else 3000
+    ring = radius * around(2 * numpy.pi * numpy.arange(count) / count)
+    tool = palpate.Tool(numpy.column_stack([numpy.tile(ring, (len(z), 1)), numpy.repeat(z, count)]))
     i = numpy.arange(3 * ticks + 1)
     t, phase = i / ticks, 0.02 * i
     depth = numpy.where(t < 1, t, numpy.where(t < 2, 1, 3 - t))
@@ -240,38 +223,30 @@ def fit(quick):
 def direction(random):
     z, angle = random.uniform(-1, 1), random.uniform(0, 2 * math.pi)
     across = math.sqrt(1 - z * z)
-    return across * math.cos(angle), across * math.sin(angle), z
-
-
-def moved(vector, by, size):
-    """A unit vector, turned a little."""
-    x, y, z = (v + size * d for v, d in zip(vector, by))
-    length = math.sqrt(x * x + y * y + z * z)
-    return x / length, y / length, z / length
+    return numpy.array([across * math.cos(angle), across * math.sin(angle), z])
 
 
 def wild_hand(random, ticks, radius, start):
     """(positions, turns), from a place in free space."""
-    place, way, spin = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)
-    left, positions, turns = 0, [start], [STRAIGHT]
-    x, y, z, w = 0.0, 0.0, 0.0, 1.0  # of the turn
+    place, way, spin = numpy.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 1]])
+    x, y, z, w = turn = STRAIGHT.as_quat()
+    left, positions, turns = 0, [start], [turn]
     for _ in range(ticks):
         left -= 1
         if left <= 0:
             left = 20 + int(100 * random.uniform())
             speed = 3 if random.uniform() < 0.3 else 0.3 * random.uniform()
             turning = 0.02 if random.uniform() < 0.3 else 0.004 * random.uniform()
-        way, spin = moved(way, direction(random), 0.2), moved(spin, direction(random), 0.3)
-        far = math.sqrt(sum(p * p for p in place))
-        if far > radius:
-            way = tuple(-p / far for p in place)
-        place = tuple(p + speed * v for p, v in zip(place, way))
-        (a, b, c), d = (math.sin(0.5 * turning) * v for v in spin), math.cos(0.5 * turning)
+        way, spin = unit(way + 0.2 * direction(random)), unit(spin + 0.3 * direction(random))
+        if numpy.linalg.norm(place) > radius:
+            way = -unit(place)
+        place = place + speed * way
+        (a, b, c), d = math.sin(0.5 * turning) * spin, math.cos(0.5 * turning)
         x, y, z, w = (d * x + a * w + b * z - c * y, d * y - a * z + b * w + c * x, d * z + a * y - b * x + c * w,
                       d * w - a * x - b * y - c * z)
         positions.append(place)
         turns.append((x, y, z, w))
-    return numpy.array(positions), Rotation.from_quat([STRAIGHT.as_quat(), *turns[1:]])
+    return numpy.array(positions), Rotation.from_quat(turns)
 
 
 def points_at(tool, path, ticks):
@@ -281,32 +256,25 @@ def points_at(tool, path, ticks):
         yield numpy.einsum("tij,pj->tpi", turn, tool.points) + path["position"][part][:, None]
 
 
-def farthest(tool, path, ticks):
-    """[mm] Of all points of a tool in some ticks, the farthest from the middle."""
-    return numpy.concatenate([numpy.linalg.norm(points, axis=2).max(axis=1) for points in points_at(tool, path, ticks)])
-
-
-def deepest(scene, tool, path, ticks):
-    """[voxel] How deep the deepest point is, by the field's slope, at most as deep as its excess could be; in the shell, beyond its inner
-    side."""
-    if is_closed(scene):
-        return max(0.0, farthest(tool, path, ticks).max() - (WALL - 0.75))
-    most = 0.0
-    for points in points_at(tool, path, ticks):
-        flat = points.reshape(-1, 3)
-        excess = scene.field.value(flat) - scene.isovalue
-        flat, excess = flat[excess > 0], excess[excess > 0]
-        slope = numpy.linalg.norm(scene.field.gradient(flat), axis=1) if len(flat) else excess
-        most = max(most, numpy.minimum(excess / numpy.maximum(slope, 1e-9), 10).max(initial=0))
-    return most
+def deepest_of(scene, points):
+    """[voxel] How deep the deepest point is, by the field's slope, at most 10."""
+    excess = scene.field.value(points) - scene.isovalue
+    points, excess = points[excess > 0], excess[excess > 0]
+    slope = numpy.linalg.norm(scene.field.gradient(points), axis=1) if len(points) else excess
+    return numpy.minimum(excess / numpy.maximum(slope, 1e-9), 10).max(initial=0)
 
 
 def verdict_of(scene, method, tool, hand, turn):
-    """On one hand. through: with a point beyond the wall."""
+    """On one hand. through: with a point beyond the wall of the shell, whose depths are those beyond its inner side."""
     path, found = judged(scene, tool, hand, turn) if method == "exact" else followed(scene, tool, hand, turn, method)
-    through = farthest(tool, path, numpy.arange(1, len(hand))) > WALL if is_closed(scene) else numpy.array([False])
-    return {"ticks": len(hand) - 1, "touching_share": (path["contacts"][1:] > 0).mean(), "through_share": through.mean(),
-            "deepest_voxel": deepest(scene, tool, path, numpy.arange(1, len(hand), 64 if method == "exact" else 1)), **found}
+    ticks, every = numpy.arange(1, len(hand)), 64 if method == "exact" else 1  # whose depths are looked at
+    if scene.name == "shell":
+        far = numpy.concatenate([numpy.linalg.norm(points, axis=2).max(axis=1) for points in points_at(tool, path, ticks)])
+        through, deepest = (far > WALL).mean(), max(0.0, far[::every].max() - (WALL - 0.75))
+    else:
+        through, deepest = 0.0, max(deepest_of(scene, points.reshape(-1, 3)) for points in points_at(tool, path, ticks[::every]))
+    return {"ticks": len(ticks), "touching_share": (path["contacts"][1:] > 0).mean(), "through_share": through, "deepest_voxel": deepest,
+            **found}
 
 
 def hostile_row(scene, method, name, tool, hands, counts):
@@ -327,7 +295,7 @@ def hostile_row(scene, method, name, tool, hands, counts):
 def counts_of(scene, ticks, seeds):
     """Ticks of each hand. A hand without ticks is left out."""
     counts = [len(range(part, ticks, seeds)) for part in range(seeds)]
-    return [max(LEAST, count) for count in counts] if is_closed(scene) else [count for count in counts if count]
+    return [max(LEAST, count) for count in counts] if scene.name == "shell" else [count for count in counts if count]
 
 
 def hostile(options):
@@ -335,7 +303,7 @@ def hostile(options):
     hands = {}
     for scene, (name, tool) in options.each(itertools.product(hostile_scenes(options.seed), tools_of()), 0.05):
         if scene.name not in hands:
-            start, radius = ((0.0, 0, 0), 2 * WALL) if is_closed(scene) else ((0.0, 0, 40), 24)
+            start, radius = ((0.0, 0, 0), 2 * WALL) if scene.name == "shell" else ((0.0, 0, 40), 24)  # the shell is around the tool
             hands[scene.name] = [wild_hand(numpy.random.default_rng([options.seed, 2 + part]), count, radius, start)
                                  for part, count in enumerate(counts_of(scene, ticks, options.seeds))]
         for method, wanted in (("exact", ticks), ("penalty", penalty_ticks)):
@@ -401,5 +369,6 @@ def text_of(table, seeds):
 
 def run(options):
     options.refuse_volumes("tools has scenes")
-    table = Table([*boxes(), *levers(), *spheres(), fit(options.quick), *hostile(options)])
+    plane = sampled("plane", 40, lambda x, y, z: -z, 0)
+    table = Table([*boxes(plane), *levers(plane), *spheres(), fit(options.quick), *hostile(options)])
     return Result(table, [hostile_figure(table), lever_figure(table)], claims_of(table), text_of(table, options.seeds), summary_of(table))

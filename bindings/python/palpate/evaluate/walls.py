@@ -28,11 +28,6 @@ def full_samples(body, layers):
     return full
 
 
-def across_layers(layers, x):
-    """A smooth field across a flat wall of full layers, `x` [voxel] from its middle: a quadratic spline."""
-    off = abs(x - (numpy.arange(layers) - 0.5 * (layers - 1)))
-    return float(numpy.where(off <= 0.5, 0.75 - off**2, 0.5 * numpy.maximum(0, 1.5 - off)**2).sum())
-
 
 def closed_shell(shape, thickness, interpolation):
     """A wall around a hollow 'box' (flat, with corners) or 'ball' of voxels (stepped), `thickness` [voxel] on every flat face; spacing 1
@@ -49,7 +44,10 @@ def closed_shell(shape, thickness, interpolation):
     centre = numpy.indices([SAMPLES - 1] * 3) + 0.5 - 0.5 * (SAMPLES - 1)
     size = abs(centre).max(axis=0) if shape == "box" else numpy.sqrt((centre**2).sum(axis=0))
     full = full_samples(size <= HALF_WIDTH, layers).transpose(2, 1, 0)
-    level = across_layers(layers, 0.5 * thickness) if smooth else 1 - 0.5 * (thickness - layers + 1)
+    level = 1 - 0.5 * (thickness - layers + 1)
+    if smooth:  # a quadratic spline across the wall, from its middle to each layer
+        off = abs(0.5 * thickness - (numpy.arange(layers) - 0.5 * (layers - 1)))
+        level = float(numpy.where(off <= 0.5, 0.75 - off**2, 0.5 * numpy.maximum(0, 1.5 - off)**2).sum())
     return cube(shape, numpy.ascontiguousarray(full * numpy.uint8(FULL)), FULL * level, interpolation)
 
 
@@ -71,8 +69,8 @@ def lines_through(subject, outside, anywhere, count, random):
 
 def usable(subject, outside, anywhere, places, along):
     """Of lines through places: entry, direction, way in the wall and way of the hand of those that can be used."""
-    field, isovalue, voxel = subject.field, subject.isovalue, subject.voxel
-    through, far = subject.physical(places), 2 * subject.diagonal * along
+    field, isovalue, voxel, geometry = subject.field, subject.isovalue, subject.voxel, subject.field.geometry
+    through, far = geometry.origin + (places * geometry.spacing) @ numpy.asarray(geometry.direction).T, 2 * subject.diagonal * along
     entry, normal = palpate.cast_rays(field, isovalue, through - far, through + far)
     steep = -(normal * along).sum(axis=1) >= FLATTEST  # false for NaN
     entry, along = entry[steep], along[steep]
