@@ -202,8 +202,9 @@ void Field::look() noexcept {
     range_ = high > low ? high - low : 1.0;
     // Samples far from zero (a float volume of 1e6 +- 1) lose digits in every sum of eight.
     double largest = std::max(std::abs(low), std::abs(high));
-    offset_ = largest > most_ranges_from_zero * range_ ? low : 0;
-    if (offset_ != 0) largest = high - low;
+    const bool is_far = largest > most_ranges_from_zero * range_;
+    offset_ = is_far ? (sign_ > 0 ? low : high) : 0;  // so inverted data gives the same bits
+    if (is_far) largest = high - low;
     // Edited, interpolated or shifted samples take the slow path, so that plain ones have no extra
     // cost.
     const bool changing = bricks_ || moment_.weight > 0 || offset_ != 0 || resident_;

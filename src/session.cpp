@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "layers/needle.hpp"
 #include "session/session_point.hpp"
 
 namespace palpate {
@@ -50,7 +51,15 @@ void scale_about_scp(Renderer& renderer, double scale) {
     const bool tool = renderer.settings.tool != nullptr;
     if (tool ? renderer.tool_proxy->placed : renderer.proxy.placed) {
         const Vec3& scp = tool ? renderer.tool_proxy->pose.position : renderer.proxy.scp_physical;
-        transform.translation = scp + scale / transform.scale * (transform.translation - scp);
+        const double factor = scale / transform.scale;
+        transform.translation = scp + factor * (transform.translation - scp);
+        // The hand is farther from the SCP in the volume, and so is what holds a needle's shaft.
+        LayerState& layers = renderer.layers;
+        NeedleState& needle = layers.needle;
+        const double tip = along_line(needle, scp);
+        needle.hand = tip + factor * (needle.hand - tip);
+        needle.anchor = tip + factor * (needle.anchor - tip);
+        layers.hip = scp + factor * (layers.hip - scp);
     }
     transform.scale = scale;
 }

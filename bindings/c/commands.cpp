@@ -17,7 +17,7 @@ namespace {
 template <class Make>
 palpate_status send(palpate_run* run, Make&& make) noexcept {
     return guarded([&] {
-        const std::scoped_lock lock(given(run, "run").mutex);
+        const auto lock = locked(run);
         run->run->send(make(*run->run));
     });
 }
@@ -79,7 +79,7 @@ extern "C" PALPATE_API palpate_status palpate_run_set_transform(palpate_run* run
 extern "C" PALPATE_API palpate_status palpate_run_get(const palpate_run* run, const char* name,
                                                       double* value) {
     return guarded([&] {
-        const std::scoped_lock lock(given(run, "run").mutex);
+        const auto lock = locked(run);
         given(value, "value") = value_of(run->run->settings(), &given(name, "name"));
     });
 }

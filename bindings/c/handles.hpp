@@ -5,6 +5,7 @@
 #include <mutex>
 #include <vector>
 
+#include "bindings/c/status.hpp"
 #include "palpate-c/palpate.h"
 #include "palpate/devices/devices.hpp"
 #include "palpate/run/run.hpp"
@@ -35,3 +36,20 @@ struct palpate_run {
     std::shared_ptr<palpate::run::Data> data;
     std::unique_ptr<palpate::run::Run> run;
 };
+
+namespace palpate::c {
+
+/// This thread calls the callbacks of an own device.
+inline thread_local bool calls_back = false;
+
+/// The run for this call alone. A callback does not wait for it: a call that holds the run may be
+/// waiting for the callback.
+inline std::unique_lock<std::mutex> locked(const palpate_run* run) {
+    std::mutex& mutex = given(run, "run").mutex;
+    if (!calls_back) return std::unique_lock(mutex);
+    std::unique_lock lock(mutex, std::try_to_lock);
+    if (!lock) throw WrongState("another call uses the run, and a callback does not wait for it");
+    return lock;
+}
+
+}  // namespace palpate::c

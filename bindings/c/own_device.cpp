@@ -2,6 +2,7 @@
 // meets the newest reading and the newest force.
 #include "bindings/c/own_device.hpp"
 
+#include "bindings/c/handles.hpp"
 #include "bindings/c/runtimes.hpp"
 #include "bindings/c/structs.hpp"
 
@@ -76,6 +77,7 @@ std::string OwnDevice::problem() const {
 void OwnDevice::run() noexcept {
     devices::prepare_device_thread();
     let_runtimes_stop_this_thread();
+    calls_back = true;
     const auto period = static_cast<std::int64_t>(1e9 / callbacks_.rate);  // [ns]
     std::int64_t next = devices::monotonic_ns();
     // Asked before the exchange: the last one comes after the stop, so it sends the zero.

@@ -99,14 +99,14 @@ extern "C" PALPATE_API palpate_status palpate_run_create(palpate_data* data,
 
 extern "C" PALPATE_API palpate_status palpate_run_start(palpate_run* run) {
     return guarded([&] {
-        const std::scoped_lock lock(given(run, "run").mutex);
+        const auto lock = locked(run);
         run->run->start();
     });
 }
 
 extern "C" PALPATE_API palpate_status palpate_run_stop(palpate_run* run) {
     return guarded([&] {
-        const std::scoped_lock lock(given(run, "run").mutex);
+        const auto lock = locked(run);
         run->run->stop();
     });
 }
@@ -121,7 +121,7 @@ extern "C" PALPATE_API palpate_status palpate_run_snapshot(const palpate_run* ru
         size_of(given(out, "out"), "out");
         std::optional<Snapshot> snapshot;
         {
-            const std::scoped_lock lock(given(run, "run").mutex);
+            const auto lock = locked(run);
             snapshot = run->run->snapshot();
         }
         if (!snapshot) throw NothingYet("there was no tick yet");
@@ -132,7 +132,7 @@ extern "C" PALPATE_API palpate_status palpate_run_snapshot(const palpate_run* ru
 extern "C" PALPATE_API palpate_status palpate_run_report(const palpate_run* run,
                                                          palpate_report* out) {
     return guarded([&] {
-        const std::scoped_lock lock(given(run, "run").mutex);
+        const auto lock = locked(run);
         const ServoReport from = run->run->report();
         auto to = sized<palpate_report>();
         to.device_failed = static_cast<std::int32_t>(run->run->device_failure());
@@ -153,7 +153,7 @@ extern "C" PALPATE_API palpate_status palpate_run_report(const palpate_run* run,
 extern "C" PALPATE_API palpate_status palpate_run_text(const palpate_run* run, int32_t which,
                                                        char* buffer, size_t size, size_t* needed) {
     return guarded([&] {
-        const std::scoped_lock lock(given(run, "run").mutex);
+        const auto lock = locked(run);
         const std::string text = text_of(*run->run, which);
         if (size > 0) {
             const std::size_t length = std::min(text.size(), size - 1);
@@ -166,14 +166,15 @@ extern "C" PALPATE_API palpate_status palpate_run_text(const palpate_run* run, i
 
 extern "C" PALPATE_API palpate_status palpate_run_use_device(palpate_run* run, const char* device) {
     return guarded([&] {
-        const std::scoped_lock lock(given(run, "run").mutex);
+        if (calls_back) throw WrongState("a callback cannot change the device: use another thread");
+        const auto lock = locked(run);
         run->run->use_device(devices::parse_device(&given(device, "device")));
     });
 }
 
 extern "C" PALPATE_API palpate_status palpate_run_record(palpate_run* run, const char* path) {
     return guarded([&] {
-        const std::scoped_lock lock(given(run, "run").mutex);
+        const auto lock = locked(run);
         run->run->record(&given(path, "path"));
     });
 }
@@ -192,14 +193,14 @@ extern "C" PALPATE_API palpate_status palpate_run_record_together(palpate_run* c
             throw std::invalid_argument("runs: one is there twice");
         }
         std::vector<std::unique_lock<std::mutex>> locks;
-        for (palpate_run* const one : all) locks.emplace_back(one->mutex);
+        for (palpate_run* const one : all) locks.push_back(locked(one));
         run::Run::record_together(hands, &given(path, "path"));
     });
 }
 
 extern "C" PALPATE_API palpate_status palpate_run_stop_recording(palpate_run* run, int64_t* ticks) {
     return guarded([&] {
-        const std::scoped_lock lock(given(run, "run").mutex);
+        const auto lock = locked(run);
         const std::int64_t recorded = run->run->stop_recording();
         if (ticks) *ticks = recorded;
     });
@@ -207,7 +208,7 @@ extern "C" PALPATE_API palpate_status palpate_run_stop_recording(palpate_run* ru
 
 extern "C" PALPATE_API palpate_status palpate_run_aim(palpate_run* run, const double position[3]) {
     return guarded([&] {
-        const std::scoped_lock lock(given(run, "run").mutex);
+        const auto lock = locked(run);
         if (!run->run->mouse()) throw WrongState("the device is not the mouse");
         run->run->mouse()->aim(vec3(&given(position, "position")));
     });

@@ -29,7 +29,8 @@ std::string tried(const std::string& function, Work&& work) {
         return {};
     } catch (const py::error_already_set& error) {
         const std::string text = error.what();  // with a traceback
-        return "the device's " + function + " raised " + text.substr(0, text.find('\n'));
+        const auto end = std::min(text.find('\n'), text.find(": <EMPTY MESSAGE>"));
+        return "the device's " + function + " raised " + text.substr(0, end);
     } catch (const std::exception& error) {
         return "the device's " + function + ": " + error.what();
     }

@@ -175,6 +175,10 @@ void bind_render_setup(py::module_& module) {
         .property(
             "tool", [](const S& s) { return s.asked_tool; },
             [](S& s, const ToolChoice& tool) {
+                const auto* made = std::get_if<std::shared_ptr<Tool>>(&tool);
+                if (made && !*made) {  // pybind11 takes None for any pointer
+                    throw py::type_error("RenderSetup.tool must be text or Tool, not None");
+                }
                 S changed = s;
                 changed.asked_tool = tool;
                 setup_of(changed);  // says now what is wrong

@@ -19,8 +19,9 @@
  * never waits for the servo, but for another call on the run: starting, changing the device and
  * recording may take seconds. One renderer is for one thread at a time. Destroy a handle when no other
  * call uses it. Handles made from it keep what they need. The servo has a thread of its own, at
- * real-time priority if the system grants it. It calls no function of yours. Callbacks may not call
- * the run that they belong to.
+ * real-time priority if the system grants it. It calls no function of yours. A callback may not
+ * start, stop or destroy the run that it belongs to. Other calls from a callback are PALPATE_WRONG_STATE
+ * where they would have to wait for the run.
  */
 #ifndef PALPATE_H
 #define PALPATE_H

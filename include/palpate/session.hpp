@@ -170,7 +170,7 @@ struct SessionPoint {
     int contact_count = 0;
     double trust = 1, stride = 64;  ///< longest steps [voxel], in contact and with nothing near
 };
-/// Writes the state of a session to `point`. A tool first drops results that only save time.
+/// Writes the state of a session to `point`. The proxy first drops results that only save time.
 /// Neither throws nor allocates.
 void halt(Session& session, SessionPoint& point) noexcept;
 

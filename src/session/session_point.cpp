@@ -158,6 +158,7 @@ void halt(Session& session, SessionPoint& point) noexcept {
     point.frozen = session.frozen;
     point.clutched = session.clutched;
     point.past = session.past;
+    renderer.proxy.kept_samples = {};  // a recording does not have them, and budgets count them
     point.proxy = renderer.proxy;
     point.isovalue_without_layers = renderer.isovalue_without_layers;
     point.force = renderer.force;

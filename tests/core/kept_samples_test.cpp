@@ -5,7 +5,10 @@
 #include <random>
 #include <vector>
 
+#include "palpate/session.hpp"
 #include "proxy/kept_samples.hpp"
+#include "support/fields.hpp"
+#include "support/random.hpp"
 
 namespace palpate::cubic {
 namespace {
@@ -64,6 +67,33 @@ TEST(KeptSamples, of_one_type_are_not_those_of_another) {
     KeptSamples kept;
     Kept::keep(kept, samples.data() + 13, 3, 9);
     EXPECT_FALSE(Kept::are(kept, others.data() + 13, 3, 9));
+}
+
+TEST(KeptSamples, a_session_goes_on_like_one_that_a_recording_brings_back) {
+    const Field field(
+        support::noise_volume<std::uint8_t>(support::grid(support::cube(10)), 1, 0, 256));
+    RendererSettings settings;
+    settings.proxy.step_budget = 12;  // ends many updates, and counts what they compute anew
+    Session session{make_renderer(field, 128, settings), {}};
+    support::Random random(1);
+    Vec3 hand = Vec3::Zero();
+    int cut = 0;
+    for (int i = 0; i < 2000; ++i) {
+        auto point = std::make_shared<SessionPoint>();
+        halt(session, *point);
+        point->proxy.kept = {};
+        point->proxy.kept_samples = {};
+        Session other{make_renderer(field, 128, settings), {}};
+        apply(other, command::Resume{point});
+        if (random.chance(0.1)) hand = random.point(0, 9);
+        const DeviceReading reading{.position = hand, .status = DeviceStatus::ready};
+        const SessionTick a = advance(session, 0.001 * (i + 1), reading);
+        const SessionTick b = advance(other, 0.001 * (i + 1), reading);
+        ASSERT_EQ(a.tick.proxy.scp, b.tick.proxy.scp) << i;
+        ASSERT_EQ(a.tick.force, b.tick.force) << i;
+        cut += a.tick.proxy.status == UpdateStatus::out_of_budget;
+    }
+    EXPECT_GT(cut, 100);
 }
 
 }  // namespace

@@ -51,6 +51,23 @@ TEST(LayersSession, layers_are_felt_from_the_next_tick_on) {
     EXPECT_NEAR(tick.force[2], -1, 1e-6);
 }
 
+TEST(LayersSession, another_scale_does_not_change_the_force_of_a_needle) {
+    for (const double scale : {0.3, 3.0}) {
+        LayeredSession live;
+        const auto layers = sent_layers({20}, 0.5);
+        layers->layers[0][drag] = 0.1;
+        layers->needle = Needle{};
+        live.use(layers);
+        for (double z = 15; z < 30; z += 0.01) live.at(z);
+        for (int i = 0; i < 10; ++i) live.at(30);
+        const Vec3 before = live.at(29.5).force;
+        EXPECT_EQ(live.at(29.5).force, before) << "the shaft sticks";
+        EXPECT_GT(before.norm(), 0.1);
+        apply(live.session, command::Scale{scale});
+        for (int i = 0; i < 3; ++i) EXPECT_LT((live.at(29.5).force - before).norm(), 1e-9) << scale;
+    }
+}
+
 TEST(LayersSession, layers_that_are_none_are_refused_and_change_nothing) {
     LayeredSession live;
     const auto good = sent_layers({20, 40});

@@ -206,4 +206,26 @@ TEST(ProxyDomain, an_offset_is_seen_by_nobody_who_asks_for_densities) {
     }
 }
 
+TEST(ProxyDomain, inverted_data_far_from_zero_give_the_same_bits) {
+    const Volume data = noise_volume<float>(grid(cube(24)), 5, 9999997, 10000003);
+    const Volume inverted =
+        volume_of<float>(grid(cube(24)), [&](const Index3& i) { return -data.sample(i); });
+    for (const Interpolation how : {Interpolation::linear, Interpolation::cubic}) {
+        const Field above(data, Solid::above, std::nullopt, how);
+        const Field below(inverted, Solid::below, std::nullopt, how);
+        ASSERT_NE(above.offset(), 0);
+        Proxy one, other;
+        one.isovalue = 10000000.137;
+        other.isovalue = -one.isovalue;
+        Hand hand(data.geometry(), 10);
+        for (int i = 0; i < scaled(5000); ++i) {
+            const Vec3 hip = hand.next();
+            const ProxyUpdate a = update_exact(one, above, hip),
+                              b = update_exact(other, below, hip);
+            ASSERT_EQ(a.scp, b.scp) << i;
+            ASSERT_EQ(a.density, -b.density) << i;
+        }
+    }
+}
+
 }  // namespace

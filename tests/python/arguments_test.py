@@ -75,6 +75,15 @@ def test_a_wrong_value_of_a_setting_is_named_in_one_line(kind, name):
     assert name in text and "\n" not in text
 
 
+@pytest.mark.parametrize("kind, name", SETTERS, ids=[f"{k.__name__}.{n}" for k, n in SETTERS])
+def test_none_is_a_value_of_a_setting_or_refused_in_one_line(kind, name):
+    try:
+        setattr(kind(), name, None)
+    except (TypeError, ValueError) as refused:
+        text = str(refused)
+        assert name in text and " must be " in text and text.endswith(", not None"), text
+
+
 def volume():
     return palpate.Volume(numpy.zeros((2, 2, 2), "f4"))
 

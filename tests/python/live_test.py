@@ -129,7 +129,11 @@ def raising(reading):
     raise RuntimeError("cable pulled")
 
 
-WRONG = {"raised RuntimeError: cable pulled": raising, "DeviceReading, not None": lambda reading: None,
+def raising_without_a_word(reading):
+    raise TimeoutError
+
+
+WRONG = {"raised RuntimeError: cable pulled": raising, "raised TimeoutError$": raising_without_a_word, "DeviceReading, not None": lambda reading: None,
          r"DeviceReading, not \(1, 2, 3\)": lambda reading: (1, 2, 3),
          r"position is not finite: \[0\.0, nan, 0\.0\]": lambda reading: palpate.DeviceReading(position=(0, numpy.nan, 0), status="ready")}
 

@@ -231,8 +231,7 @@ run::Source source_from(const Json& json, const std::string& member,
 std::string name_from(const std::string& volume, const std::filesystem::path& folder) {
     if (volume.starts_with(synthetic_prefix) || io::is_web_address(volume)) return volume;
     const auto whole = std::filesystem::absolute(volume).lexically_normal();
-    const auto below =
-        whole.lexically_relative(std::filesystem::absolute(folder).lexically_normal());
+    const auto below = whole.lexically_relative(folder.lexically_normal());
     const bool outside = below.empty() || *below.begin() == "..";
     return (outside ? whole : below).string();
 }
@@ -360,10 +359,11 @@ SessionFile read_session(const std::filesystem::path& path) {
 }
 
 void write_session(const std::filesystem::path& path, const SessionFile& session) {
+    const auto folder = std::filesystem::absolute(path).parent_path();
     const auto names = [&](const run::Source& source) {
         if (name_of(source).empty()) wrong("volume", "must have a name");
         auto names = run::to_names(source);
-        names["volume"] = name_from(names["volume"], path.parent_path());
+        names["volume"] = name_from(names["volume"], folder);
         return names;
     };
     io::JsonWriter writer;
@@ -373,16 +373,16 @@ void write_session(const std::filesystem::path& path, const SessionFile& session
     if (session.overlay) writer.json["overlay"] = names(*session.overlay);
     writer("solid", session.solid);
     writer("field", session.interpolation);
-    write_hand(writer, session, path.parent_path());
+    write_hand(writer, session, folder);
     for (const SessionHand& hand : session.others) {
         io::JsonWriter other;
-        write_hand(other, hand, path.parent_path());
+        write_hand(other, hand, folder);
         writer.json["hands"].push_back(other.json);
     }
     writer("background", session.background);
     writer("method", std::string(session.method.name));
     members(writer, session);
-    (void)session_from(writer.json, path.parent_path());  // what cannot be read is not written
+    (void)session_from(writer.json, folder);  // what cannot be read is not written
     std::string text;
     try {
         text = writer.json.dump(1) + "\n";

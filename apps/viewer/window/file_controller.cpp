@@ -350,6 +350,11 @@ void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionF
     setup.device = request.device.value_or(session.device);
     setup.render.method = session.method;
     setup.render.layers.reset();  // the session's are in its settings
+    // The usual one is smaller for a fast device.
+    const int budget = session.settings.value_or(RendererSettings{}).proxy.step_budget;
+    if (!setup.render.step_budget && budget != ProxySettings{}.step_budget) {
+        setup.render.step_budget = budget;
+    }
     try {
         feel(opened, request);
         run_.set_devices(request);

@@ -28,6 +28,8 @@ struct Hand {
     std::atomic<int> reads{0}, closes{0};
     std::atomic<bool> lost{false};
     std::atomic<std::thread::id> thread;
+    std::atomic<palpate_run*> asked{nullptr};  ///< by read(), until it is refused
+    std::atomic<bool> refused{false};
 };
 
 int32_t read_hand(palpate_reading* reading, void* context) {
@@ -42,6 +44,10 @@ int32_t read_hand(palpate_reading* reading, void* context) {
     reading->position[2] = now;
     reading->opening = 0.25;
     ++hand.reads;
+    for (palpate_run* run = hand.asked; run && hand.asked && !hand.refused;) {
+        PALPATE_STRUCT(palpate_snapshot, snapshot);
+        hand.refused = palpate_run_snapshot(run, &snapshot) == PALPATE_WRONG_STATE;
+    }
     return hand.lost;
 }
 
@@ -149,6 +155,18 @@ TEST_F(CRun, stopping_returns_when_a_slow_device_has_the_zero) {
     ASSERT_EQ(palpate_run_stop(run_), PALPATE_OK);
     EXPECT_EQ(hand_.force, 0);
     EXPECT_EQ(palpate_run_stop(run_), PALPATE_OK);
+}
+
+TEST_F(CRun, stopping_waits_for_no_callback_that_asks_for_the_run) {
+    const palpate_own_device own = device_of(hand_);
+    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    EXPECT_TRUE(comes_true([&] { return hand_.force > 0.5; }));
+    hand_.asked = run_;
+    ASSERT_EQ(palpate_run_stop(run_), PALPATE_OK);
+    hand_.asked = nullptr;
+    EXPECT_TRUE(hand_.refused) << "it would wait for the stop, which waits for it";
+    EXPECT_EQ(hand_.force, 0);
 }
 
 TEST_F(CRun, what_is_set_by_any_name_is_what_the_run_has_and_renders) {

@@ -180,6 +180,17 @@ TEST(SessionFile, a_volume_below_its_folder_moves_with_it_and_others_stay_where_
     EXPECT_EQ(volume_of("elsewhere.nrrd"), std::filesystem::absolute("elsewhere.nrrd"));
 }
 
+TEST(SessionFile, may_be_named_without_a_folder) {
+    const ScratchFolder folder;
+    const auto before = std::filesystem::current_path();
+    std::filesystem::current_path(folder.path());
+    SessionFile s = some_session();
+    s.source = run::source_named("head.nrrd");
+    EXPECT_NO_THROW(write_session("s.json", s));
+    std::filesystem::current_path(before);
+    EXPECT_EQ(name_of(read_session(folder / "s.json").source), folder / "head.nrrd");
+}
+
 TEST(SessionFile, an_error_is_one_line_with_file_and_member) {
     const ScratchFolder folder;
     write_session(folder / "good.json", some_session());

@@ -338,6 +338,19 @@ TEST_F(Files, measurements_are_not_lost_without_a_question) {
     EXPECT_TRUE(window_->close()) << "they are in the session";
 }
 
+TEST_F(Files, a_session_brings_back_its_step_budget) {
+    feel("synthetic:sphere:48x48x48");
+    window_->files().save_session(scratch("day.json"));
+    SessionFile session = read_session(scratch("day.json").toStdString());
+    session.settings->proxy.step_budget = 777;
+    write_session(scratch("day.json").toStdString(), session);
+    feel("synthetic:torus:32x32x16");
+    window_->files().open_path(scratch("day.json"));
+    wait_until(
+        [&] { return window_->live() && window_->live()->field().geometry().size[0] == 48; });
+    EXPECT_EQ(window_->live()->settings().proxy.step_budget, 777);
+}
+
 TEST_F(Files, nobody_is_asked_where_nobody_is_there) {
     for (int i = 0; i < 6; ++i) {
         io::test::TestSlice slice;

@@ -81,6 +81,13 @@ TEST_F(Grid, without_a_spacing_says_so_and_takes_one) {
     write("c.nrrd", "");
     feel(scratch("c.nrrd").toStdString());
     EXPECT_EQ(badge().text(), "No orientation and no spacing in the file");
+    window_->resize(800, 560);
+    press(Qt::Key_Space);
+    auto& hint = part<QLabel>("hint");
+    wait_until([&] { return hint.isVisible(); });
+    const QPoint corner = hint.mapTo(&window_->views(), QPoint());
+    EXPECT_FALSE(QRect(corner, hint.size()).intersects(badge().geometry())) << "both can be read";
+    press(Qt::Key_Space);
     SlicePane& pane = window_->views().slice(2);
     const auto measure = [&] {
         press(Qt::Key_M);
