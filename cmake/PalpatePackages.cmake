@@ -77,7 +77,7 @@ and the CMake package."
   ${components} palpate-c-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libpalpate-c0 (= ${version}), libblosc-dev, libcurl4-openssl-dev, libeigen3-dev, liblz4-dev, \
-libtbb-dev, libzstd-dev, zlib1g-dev")
+libzstd-dev, zlib1g-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "palpate-io-helper (= ${version})")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 

@@ -12,7 +12,6 @@
 
 #include "filters/parallel.hpp"
 #include "filters/pyramid.hpp"
-#include "filters/sites.hpp"
 #include "palpate/filters/dequantize_parts.hpp"
 
 namespace palpate::filters {
@@ -22,7 +21,6 @@ namespace {
 constexpr int usual_coarsest = 16, mask_step = 4;
 /// A step is chosen if it bends half of the surfaces by no more than this [levels].
 constexpr double chosen_bend = 0.5, enough = 0.5;
-constexpr double most_sites = 3e4;
 
 /// Is a good part of the surfaces straight to within the rounding?
 bool straight_over(std::span<const SurfaceSite> sites, double level) {
@@ -164,18 +162,6 @@ Volume as_float32(const Volume& volume) {
 
 }  // namespace
 
-std::vector<SurfaceSite> sites_of(const VolumePart& part, const SampleBox& core, int step) {
-    std::vector<SurfaceSite> sites;
-    for_sites(part.whole, most_sites, core, [&](const Index3& at) {
-        const Index3 inside = at - part.low;
-        const double slope = slope_at(part.samples, inside);
-        if (slope == 0) return;
-        const Smooth smooth = smooth_at(part.samples, inside, step);
-        sites.push_back({at, slope, std::abs(smooth.mean - smooth.twice)});
-    });
-    return sites;
-}
-
 DequantizePlan plan_of(double level, double minimum, double maximum,
                        const DequantizeOptions& options,
                        const std::function<std::vector<SurfaceSite>(int)>& sites) {
@@ -215,8 +201,7 @@ void run_rounds(const VolumePart& part, std::span<std::int16_t> moved, const Deq
         }
     });
     const Parallel parallel = in_parallel(threads);
-    Pyramid pyramid(samples, plan, terraced_bricks(samples, scale_of(plan), plan.mask, parallel),
-                    parallel);
+    Pyramid pyramid(samples, plan, terraced_bricks(samples, plan, parallel), parallel);
     for (const auto& some : rounds) pyramid.run(some, [](double) {});
     pyramid.go_to(1);
 }
@@ -246,7 +231,7 @@ Volume dequantized(Volume volume, const DequantizeOptions& options) {
     const VolumePart all_of_it{volume, Index3::Zero(), volume.geometry().size};
     const DequantizePlan plan =
         plan_of(*level, volume.minimum(), volume.maximum(), options,
-                [&](int step) { return sites_of(all_of_it, whole_of(volume), step); });
+                [&](int step) { return sites_of(all_of_it, whole_box(volume.geometry()), step); });
     double all = volume.type() == SampleType::float32 ? 2 : 3, done = 0;  // sweeps of all samples
     const auto cost = [](int step) { return 1.0 / (step * step * step); };
     for (const auto& rounds : plan.rounds) {
@@ -270,8 +255,7 @@ Volume dequantized(Volume volume, const DequantizeOptions& options) {
     };
     Workspace workspace(std::move(volume), told);
     const MovedSamples samples = workspace.samples();
-    Pyramid pyramid(samples, plan, terraced_bricks(samples, scale_of(plan), plan.mask, told),
-                    parallel);
+    Pyramid pyramid(samples, plan, terraced_bricks(samples, plan, told), parallel);
     for (const auto& rounds : plan.rounds) {
         pyramid.run(rounds, [&](double part) { swept(part * cost(rounds.step)); });
     }

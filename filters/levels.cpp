@@ -9,8 +9,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "filters/sites.hpp"
-#include "palpate/filters/dequantize_parts.hpp"
+#include "filters/terraced_bricks.hpp"
 
 namespace palpate::filters {
 namespace {
@@ -62,6 +61,62 @@ bool on_levels(std::span<const double> values, double smallest) {
     return true;
 }
 
+constexpr double most_sites = 3e4;  ///< for the choice of the coarsest step
+
+/// Calls work for up to about `most` samples of a grid, at even distances, none on the border; only
+/// for those in `core`.
+template <class Work>
+void for_sites(const Index3& size, double most, const SampleBox& core, const Work& work) {
+    const double apart = std::cbrt(double(size.cast<std::int64_t>().prod()) / most);
+    const int stride = std::max(1, int(std::ceil(apart)));
+    // The first of 1, 1 + stride, ... in the core, and the last sample before its end or the
+    // border.
+    const Index3 first =
+        Index3::Ones() + (core.low.cwiseMax(1).array() - 1 + stride - 1).matrix() / stride * stride;
+    const Index3 last = core.high.cwiseMin(size - 2 * Index3::Ones());
+    for (int k = first[2]; k <= last[2]; k += stride) {
+        for (int j = first[1]; j <= last[1]; j += stride) {
+            for (int i = first[0]; i <= last[0]; i += stride) work({i, j, k});
+        }
+    }
+}
+
+double near_sample(const Volume& volume, const Index3& at) {
+    const Index3 last = volume.geometry().size - Index3::Ones();
+    return volume.sample(at.cwiseMax(0).cwiseMin(last));
+}
+
+/// Slope over four samples, so that a terrace or two is no plateau [data units a sample].
+double slope_at(const Volume& volume, const Index3& at) {
+    Vec3 slope;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Index3 two = 2 * Index3::Unit(axis);
+        slope[axis] = (near_sample(volume, at + two) - near_sample(volume, at - two)) / 4;
+    }
+    return slope.norm();
+}
+
+struct Smooth {
+    double mean;   ///< b, the binomial mean of the 27 neighbours `step` apart [data units]
+    double twice;  ///< Bb
+};
+/// As dequantized() has them. Samples beyond the border count as those on it.
+Smooth smooth_at(const Volume& volume, const Index3& at, int step) {
+    constexpr double once[5] = {0, 0.25, 0.5, 0.25, 0};
+    constexpr double twice[5] = {0.0625, 0.25, 0.375, 0.25, 0.0625};
+    Smooth smooth{0, 0};
+    for (int k = 0; k < 5; ++k) {
+        for (int j = 0; j < 5; ++j) {
+            for (int i = 0; i < 5; ++i) {
+                const double s = near_sample(volume, at + step * Index3(i - 2, j - 2, k - 2));
+                smooth.mean += once[i] * once[j] * once[k] * s;
+                smooth.twice += twice[i] * twice[j] * twice[k] * s;
+            }
+        }
+    }
+    return smooth;
+}
+
 /// Mean tilt of normals by rounding where a sample is one level above its neighbour [degrees].
 constexpr double tilt_at_slope_1 = 12.6;
 /// Where a sample is so many levels above its neighbour, rounding tilts by two degrees: not felt.
@@ -91,6 +146,18 @@ std::optional<double> level_of(const Volume& volume, const OnProgress& progress)
     return level_of(values_of(volume, progress), volume.type() != SampleType::float32);
 }
 
+std::vector<SurfaceSite> sites_of(const VolumePart& part, const SampleBox& core, int step) {
+    std::vector<SurfaceSite> sites;
+    for_sites(part.whole, most_sites, core, [&](const Index3& at) {
+        const Index3 inside = at - part.low;
+        const double slope = slope_at(part.samples, inside);
+        if (slope == 0) return;
+        const Smooth smooth = smooth_at(part.samples, inside, step);
+        sites.push_back({at, slope, std::abs(smooth.mean - smooth.twice)});
+    });
+    return sites;
+}
+
 std::optional<Terraces> terraces_of(const Volume& volume, const OnProgress& progress) {
     const std::optional<double> level = level_of(volume, progress);
     if (!level) return std::nullopt;
@@ -99,7 +166,7 @@ std::optional<Terraces> terraces_of(const Volume& volume, const OnProgress& prog
     terraces.mask = is_mask(volume.minimum(), volume.maximum(), *level);
     if (terraces.mask) return terraces;
     double all = 0, stepped = 0, tilt = 0;
-    for_sites(volume.geometry().size, 2e5, whole_of(volume), [&](const Index3& at) {
+    for_sites(volume.geometry().size, 2e5, whole_box(volume.geometry()), [&](const Index3& at) {
         const double slope = slope_at(volume, at) / *level;
         all += slope;
         if (slope == 0 || slope > steepest) return;

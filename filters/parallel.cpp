@@ -1,29 +1,37 @@
-// Pieces of work on several threads, by oneTBB.
+// Pieces of work on several threads: each thread takes the next piece that nobody has taken.
 #include "filters/parallel.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
-#include <memory>
+#include <atomic>
+#include <exception>
+#include <thread>
+#include <vector>
 
 namespace palpate::filters {
 
 Parallel in_parallel(int threads) {
-    const int cores = tbb::info::default_concurrency();  // of more, oneTBB would complain
-    const auto arena =
-        std::make_shared<tbb::task_arena>(threads == 0 ? cores : std::min(threads, cores));
-    return [arena](int count, const std::function<void(int)>& work) {
-        arena->execute([&] {
-            tbb::parallel_for(
-                tbb::blocked_range<int>(0, count),
-                [&](const tbb::blocked_range<int>& range) {
-                    for (int i = range.begin(); i < range.end(); ++i) work(i);
-                },
-                tbb::simple_partitioner());
-        });
+    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    const int most = threads == 0 ? cores : std::min(threads, cores);
+    return [most](int count, const std::function<void(int)>& work) {
+        std::atomic<int> next{0};
+        const auto team = static_cast<std::size_t>(std::max(1, std::min(most, count)));
+        std::vector<std::exception_ptr> thrown(team);
+        const auto take_pieces = [&](std::size_t number) {
+            try {
+                for (int i = next++; i < count; i = next++) work(i);
+            } catch (...) {
+                thrown[number] = std::current_exception();
+                next = count;
+            }
+        };
+        {
+            std::vector<std::jthread> others;
+            for (std::size_t i = 1; i < team; ++i) others.emplace_back(take_pieces, i);
+            take_pieces(0);
+        }
+        for (const auto& one : thrown) {
+            if (one) std::rethrow_exception(one);
+        }
     };
 }
 

@@ -3,31 +3,10 @@
 
 #include <algorithm>
 
-#include "filters/refine.hpp"
+#include "filters/round.hpp"
 #include "filters/sweep.hpp"
 
 namespace palpate::filters {
-namespace {
-
-/// A hair less than half a level: samples on both sides of a mask's surface must not meet in it.
-constexpr double half_level = 511.0 / 1024, half_level_of_mask = 127.0 / 256;
-/// From this bend on a coarse step moves a sample less, from twice of it on not at all [levels].
-constexpr double most_bend = 0.55, most_bend_of_mask = 0.05;
-
-}  // namespace
-
-LevelScale scale_of(const DequantizePlan& plan) {
-    return {float(plan.minimum), float(1 / plan.level),
-            float((plan.maximum - plan.minimum) / plan.level)};
-}
-
-RoundSettings Pyramid::settings_of(int step) const {
-    RoundSettings settings;
-    settings.half = float(plan_.mask ? half_level_of_mask : half_level);
-    if (step > 1) settings.straight = float(plan_.mask ? most_bend_of_mask : most_bend);
-    return settings;
-}
-
 Pyramid::Grid::Grid(const MovedSamples& every_second, const Parallel& parallel)
     : samples(every_second) {
     const Index3& size = samples.size;
@@ -72,18 +51,15 @@ void Pyramid::run(const DequantizePlan::Rounds& rounds, const std::function<void
     go_to(rounds.step);
     const double slices = top().size[2];
     const auto at_slab = [&](int count) { done(count / slices); };
-    const RoundSettings settings = settings_of(rounds.step);
     if (rounds.way == Way::down) {
         Grid next(every_second(top()), parallel_);
-        run_round(top(), scale_, settings, bricks_, parallel_, at_slab, &next.samples);
+        run_round(top(), levels_, bricks_, parallel_, at_slab, &next.samples);
         coarse_.push_back(std::move(next));
         return;
     }
-    if (rounds.way == Way::up) {
-        refine(top(), scale_, settings_of(2 * rounds.step), bricks_, parallel_, at_slab);
-    }
+    if (rounds.way == Way::up) refine(top(), levels_, bricks_, parallel_, at_slab);
     for (int round = 0; round < rounds.count; ++round) {
-        run_round(top(), scale_, settings, bricks_, parallel_, at_slab);
+        run_round(top(), levels_, bricks_, parallel_, at_slab);
     }
 }
 

@@ -5,23 +5,16 @@
 #include <utility>
 #include <vector>
 
-#include "filters/round.hpp"
-#include "palpate/filters/dequantize_parts.hpp"
+#include "filters/terraced_bricks.hpp"
 
 namespace palpate::filters {
-
-LevelScale scale_of(const DequantizePlan& plan);
 
 /// Takes samples through the rounds of a plan.
 class Pyramid {
   public:
     Pyramid(const MovedSamples& all, const DequantizePlan& plan, TerracedBricks bricks,
             Parallel parallel)
-        : all_(all),
-          plan_(plan),
-          scale_(scale_of(plan)),
-          bricks_(std::move(bricks)),
-          parallel_(std::move(parallel)) {}
+        : all_(all), levels_(plan), bricks_(std::move(bricks)), parallel_(std::move(parallel)) {}
 
     /// The result is in all samples after go_to(1). `done` is called from the calling thread with
     /// the part of a round's work that was done since the last call.
@@ -40,11 +33,9 @@ class Pyramid {
     };
 
     const MovedSamples& top() const { return coarse_.empty() ? all_ : coarse_.back().samples; }
-    RoundSettings settings_of(int step) const;
 
     MovedSamples all_;
-    DequantizePlan plan_;
-    LevelScale scale_;
+    Levels levels_;
     TerracedBricks bricks_;
     Parallel parallel_;
     std::vector<Grid> coarse_;  ///< the finest first

@@ -1,47 +1,42 @@
 // Interpolation of a finer grid from a coarser one, row by row.
-#include "filters/refine.hpp"
-
 #include <algorithm>
 #include <vector>
 
+#include "filters/round.hpp"
 #include "filters/sweep.hpp"
 
 namespace palpate::filters {
 namespace {
 
-/// Some slices of a coarser grid: how much its samples are to be believed, 0 to 65535. Less where
-/// the data bend.
-struct Weights {
-    int begin_z, end_z;
-    std::vector<std::uint16_t> values;
+/// floor(i / 2)
+constexpr int half_of(int i) {
+    return i >> 1;
+}
 
-    Weights(const MovedSamples& samples, const LevelScale& scale, float straight, int begin,
-            int end, const Parallel& parallel)
-        : begin_z(std::max(begin, 0)),
-          end_z(std::min(end, samples.size[2])),
-          values(std::size_t(end_z - begin_z) * std::size_t(samples.size[0]) *
-                 std::size_t(samples.size[1])) {
-        constexpr int rows = 16;
-        const Index3& size = samples.size;
-        parallel((size[1] + rows - 1) / rows, [&](int i) {
-            const Strip strip{0,       size[0], i * rows, std::min((i + 1) * rows, size[1]),
-                              begin_z, end_z};
-            with_own_type(samples, [&](auto zero) {
-                using T = decltype(zero);
-                const auto weigh = [&](const SweptRow& row) PALPATE_INLINE_LAMBDA {
-                    std::uint16_t* __restrict out = at(size, row.y, row.z);
-                    for (int x = 0; x < size[0]; ++x) {
-                        const float part = part_of(row.bend(x), 1 / straight);
-                        out[x] = static_cast<std::uint16_t>(static_cast<int>(65535 * part));
-                    }
-                };
-                vectorized([&]() PALPATE_INLINE_LAMBDA { sweep<T>(samples, scale, strip, weigh); });
-            });
+/// Some slices of a coarser grid: how much its samples are to be believed, 0 to 65535, where bricks
+/// are near. Less where the data bend.
+struct Weights {
+    Index3 size;
+    int begin_z, end_z;
+    std::vector<std::uint16_t> values = std::vector<std::uint16_t>(
+        std::size_t(end_z - begin_z) * std::size_t(size[0]) * std::size_t(size[1]));
+
+    void compute(const MovedSamples& coarse, const Levels& levels, const Strip& strip) {
+        with_own_type(coarse, [&](auto zero) {
+            using T = decltype(zero);
+            const auto weigh = [&](const SweptRow& row) PALPATE_INLINE_LAMBDA {
+                std::uint16_t* __restrict out = at(row.y, row.z);
+                for (int x = 0; x < size[0]; ++x) {
+                    const float part = part_of(row.bend(x), levels);
+                    out[x] = static_cast<std::uint16_t>(static_cast<int>(65535 * part));
+                }
+            };
+            vectorized([&]() PALPATE_INLINE_LAMBDA { sweep<T>(coarse, levels, strip, weigh); });
         });
     }
 
     /// A row, or the nearest one.
-    std::uint16_t* at(const Index3& size, int y, int z) {
+    std::uint16_t* at(int y, int z) {
         const std::ptrdiff_t slice = std::clamp(z, begin_z, end_z - 1) - begin_z;
         return values.data() + (slice * size[1] + std::clamp(y, 0, size[1] - 1)) * size[0];
     }
@@ -50,10 +45,6 @@ struct Weights {
 PALPATE_INLINE float cubic(float a, float b, float c, float d) {
     return (9 * (b + c) - (a + d)) * 0.0625F;
 }
-/// floor(i / 2)
-constexpr int half_of(int i) {
-    return i >> 1;
-}
 
 /// Some rows of a finer grid, interpolated from a coarser one: along y, z and x. A row of the
 /// coarser grid has 2 samples more at both ends, and then as many weights.
@@ -61,8 +52,7 @@ template <class T>
 struct RefinedRows {
     const MovedSamples& coarse;
     const MovedSamples& fine;
-    const LevelScale& scale;
-    Limits limits;
+    const Levels& levels;
     const TerracedBricks& bricks;
     Weights& weights;
     int begin_y, end_y, begin_z, end_z;
@@ -109,8 +99,8 @@ struct RefinedRows {
 
     PALPATE_INLINE void load_with_weights(int y, int z, float* __restrict out) {
         const int width = coarse.size[0];
-        load<T>(coarse, scale, y, z, -2, width + 2, out, scratch());
-        const std::uint16_t* const from = weights.at(coarse.size, y, z);
+        load<T>(coarse, levels, y, z, -2, width + 2, out, scratch());
+        const std::uint16_t* const from = weights.at(y, z);
         float* const to = out + row / 2 + 2;
         for (int x = 0; x < width; ++x) to[x] = static_cast<float>(from[x]) * (1.0F / 65535);
         to[-2] = to[-1] = to[0];
@@ -143,9 +133,9 @@ struct RefinedRows {
         const T* own = own_row<T>(fine, y, z);
         std::int16_t* const moved = moved_row(fine, y, z);
         const auto move = [&](int x) PALPATE_INLINE_LAMBDA {
-            const float sample = in_levels(own[x], scale);
+            const float sample = in_levels(own[x], levels);
             const float before = static_cast<float>(moved[x]) * moved_unit;
-            moved[x] = limits.moved(before + parts[x] * (values[x] - sample - before), sample);
+            moved[x] = moved_to(before + parts[x] * (values[x] - sample - before), sample, levels);
         };
         if (is_coarser(fine, 1, y) && is_coarser(fine, 2, z)) {  // others read every second one
             for (int x = 1 - first_coarser(fine, 0); x < fine.size[0]; x += 2) move(x);
@@ -157,29 +147,38 @@ struct RefinedRows {
 
 }  // namespace
 
-void refine(const MovedSamples& samples, const LevelScale& scale, const RoundSettings& coarse,
-            const TerracedBricks& bricks, const Parallel& parallel,
-            const std::function<void(int)>& at_slab) {
+void refine(const MovedSamples& samples, const Levels& levels, const TerracedBricks& bricks,
+            const Parallel& parallel, const std::function<void(int)>& at_slab) {
     const Index3& size = samples.size;
-    const MovedSamples every = every_second(samples);
-    if (every.size.minCoeff() == 0) return at_slab(size[2]);
-    const Limits limits{coarse.half, scale.top};
-    constexpr int most_slices = 32, most_rows = 16;
+    const MovedSamples coarse = every_second(samples);
+    if (coarse.size.minCoeff() == 0) return at_slab(size[2]);
+    constexpr int most_slices = 32, rows = 16;
     for (int begin_z = 0; begin_z < size[2]; begin_z += most_slices) {
-        const int end_z = std::min(begin_z + most_slices, size[2]),
-                  first_z = first_coarser(samples, 2);
-        Weights weights(every, scale, coarse.straight, half_of(begin_z - first_z),
-                        half_of(end_z - 1 - first_z) + 2, parallel);
-        parallel((size[1] + most_rows - 1) / most_rows, [&](int i) {
-            const int begin_y = i * most_rows, end_y = std::min(begin_y + most_rows, size[1]);
-            bool any = false;
-            bricks.for_runs(samples, {0, begin_y, begin_z}, {size[0], end_y, end_z}, size[0],
-                            [&](int, int) { any = true; });
-            if (!any) return;
+        const int end_z = std::min(begin_z + most_slices, size[2]);
+        const int first_z = first_coarser(samples, 2);
+        // Calls work(begin_y, end_y) for the rows of a grid whose samples are `apart`, where bricks
+        // are so near that interpolation needs them.
+        const auto for_rows = [&](int apart, int height, const auto& work) {
+            parallel((height + rows - 1) / rows, [&](int i) {
+                const int begin = i * rows, end = std::min(begin + rows, height);
+                const int near = 4 * (apart - 1);
+                const bool any = bricks.for_runs(samples, std::max(apart * begin - near, 0),
+                                                 std::min(apart * end + near, size[1]), begin_z,
+                                                 end_z, size[0], [](int, int) {});
+                if (any) work(begin, end);
+            });
+        };
+        Weights weights{coarse.size, std::max(half_of(begin_z - first_z), 0),
+                        std::min(half_of(end_z - 1 - first_z) + 2, coarse.size[2])};
+        for_rows(2, coarse.size[1], [&](int begin, int end) {
+            weights.compute(coarse, levels,
+                            {0, coarse.size[0], begin, end, weights.begin_z, weights.end_z});
+        });
+        for_rows(1, size[1], [&](int begin, int end) {
             with_own_type(samples, [&](auto zero) {
-                RefinedRows<decltype(zero)> rows{every,   samples, scale, limits,  bricks,
-                                                 weights, begin_y, end_y, begin_z, end_z};
-                vectorized([&]() PALPATE_INLINE_LAMBDA { rows.run(); });
+                RefinedRows<decltype(zero)> refined{coarse, samples, levels,  bricks, weights,
+                                                    begin,  end,     begin_z, end_z};
+                vectorized([&]() PALPATE_INLINE_LAMBDA { refined.run(); });
             });
         });
         at_slab(end_z - begin_z);

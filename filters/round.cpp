@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <type_traits>
 #include <vector>
 
 #include "filters/sweep.hpp"
@@ -16,156 +16,116 @@ namespace {
 constexpr int most_rows = 32, most_bricks = 16;
 constexpr int most_slices = 32, fewest_slices = 8;
 
-using Result = std::vector<std::int16_t>;
+struct Slab {
+    std::vector<Strip> strips;
+    std::vector<std::int16_t> result;
+};
 
-/// u = 2b - Bb, kept within half a level of the volume's sample and inside its range.
-template <class T, bool is_coarse>
-struct MoveRow {
+struct Round {
     const MovedSamples& samples;
-    const LevelScale& scale;
-    const RoundSettings& settings;
+    const Levels& levels;
     const TerracedBricks& bricks;
-    const Strip& strip;
-    Result& result;
-    bool every_second;  ///< row of every second slice
+    const MovedSamples* coarser;
 
-    PALPATE_INLINE void operator()(const SweptRow& row) const {
-        if (every_second && !(is_coarser(samples, 1, row.y) && is_coarser(samples, 2, row.z))) {
-            return;
+    /// The strips of a slab that have some of the bricks in them.
+    std::vector<Strip> strips_of(int begin_z, int end_z) const {
+        std::vector<Strip> strips;
+        const int height = samples.size[1];
+        for (int begin = 0; begin < height; begin += most_rows) {
+            const int end = std::min(begin + most_rows, height);
+            bricks.for_runs(samples, begin, end, begin_z, end_z, most_bricks * samples.step,
+                            [&](int from, int to) {
+                                strips.push_back({from, to, begin, end, begin_z, end_z});
+                            });
         }
-        const int count = strip.end_x - strip.begin_x;
+        return strips;
+    }
+
+    void move(const Strip& strip, Slab& slab) const {
+        with_own_type(samples, [&](auto zero) {
+            using T = decltype(zero);
+            const auto run = [&](auto is_coarse) {
+                constexpr bool coarse = decltype(is_coarse)::value;
+                const auto to_row = [&](const SweptRow& row) PALPATE_INLINE_LAMBDA {
+                    move_row<T, coarse>(row, strip, row_of(slab, strip, row.y, row.z));
+                };
+                vectorized([&]()
+                               PALPATE_INLINE_LAMBDA { sweep<T>(samples, levels, strip, to_row); });
+            };
+            samples.step > 1 ? run(std::true_type()) : run(std::false_type());
+        });
+    }
+
+    /// u = 2b - Bb, kept within half a level of the volume's sample and inside its range.
+    template <class T, bool is_coarse>
+    PALPATE_INLINE void move_row(const SweptRow& row, const Strip& strip,
+                                 std::int16_t* __restrict out) const {
+        if (coarser && !(is_coarser(samples, 1, row.y) && is_coarser(samples, 2, row.z))) return;
         const T* own = own_row<T>(samples, row.y, row.z) + strip.begin_x;
         const std::int16_t* moved = moved_row(samples, row.y, row.z) + strip.begin_x;
-        std::int16_t* __restrict out = result.data() + place(row.y, row.z) + strip.begin_x;
-        const Limits limits{settings.half, scale.top};
-        const float per_straight = 1 / settings.straight;
-        for (int i = 0; i < count; ++i) {
-            const float sample = in_levels(own[i], scale), bend = row.bend(i);
+        for (int i = 0; i < strip.end_x - strip.begin_x; ++i) {
+            const float sample = in_levels(own[i], levels), bend = row.bend(i);
             float to = row.mean[i] + bend - sample;
             if constexpr (is_coarse) {
                 const float from = static_cast<float>(moved[i]) * moved_unit;
-                to = from + part_of(bend, per_straight) * (to - from);
+                to = from + part_of(bend, levels) * (to - from);
             }
-            out[i] = limits.moved(to, sample);
+            out[i] = moved_to(to, sample, levels);
         }
         bricks.for_others(samples, row.y, row.z, strip.begin_x, strip.end_x, [&](int from, int to) {
             std::fill(out + (from - strip.begin_x), out + (to - strip.begin_x), std::int16_t{0});
         });
     }
 
-    std::ptrdiff_t place(int y, int z) const {
-        return (std::ptrdiff_t{z - strip.begin_z} * samples.size[1] + y) * samples.size[0];
-    }
-};
-
-class Round {
-  public:
-    Round(const MovedSamples& samples, const LevelScale& scale, const RoundSettings& settings,
-          const TerracedBricks& bricks, const Parallel& parallel, const MovedSamples* coarser)
-        : samples_(samples),
-          scale_(scale),
-          settings_(settings),
-          bricks_(bricks),
-          parallel_(parallel),
-          coarser_(coarser) {}
-
-    void run(const std::function<void(int)>& at_slab) {
-        const Index3& size = samples_.size;
-        const int slices = std::min(size[2], std::clamp(size[2] / 8, fewest_slices, most_slices));
-        for (Slab& slab : slabs_) {
-            slab.result.resize(std::size_t(slices) * std::size_t(size[0]) * std::size_t(size[1]));
-        }
-        for (int begin = 0; begin < size[2]; begin += slices) {
-            const int end = std::min(begin + slices, size[2]);
-            std::swap(slabs_[0], slabs_[1]);
-            slabs_[0].strips = strips_of(begin, end);
-            for_strips(slabs_[0], [&](const Strip& strip) { move(strip, slabs_[0].result); });
-            for_strips(slabs_[1], [&](const Strip& strip) { put(strip, slabs_[1].result); });
-            at_slab(end - begin);
-        }
-        for_strips(slabs_[0], [&](const Strip& strip) { put(strip, slabs_[0].result); });
-    }
-
-  private:
-    struct Slab {
-        std::vector<Strip> strips;
-        Result result;
-    };
-
-    template <class Work>
-    void for_strips(const Slab& slab, const Work& work) const {
-        parallel_(int(slab.strips.size()),
-                  [&](int i) { work(slab.strips[static_cast<std::size_t>(i)]); });
-    }
-
-    /// The strips of a slab that have terraced bricks in them.
-    std::vector<Strip> strips_of(int begin_z, int end_z) const {
-        std::vector<Strip> strips;
-        const int height = samples_.size[1];
-        for (int begin = 0; begin < height; begin += most_rows) {
-            const int end = std::min(begin + most_rows, height);
-            bricks_.for_runs(samples_, {0, begin, begin_z}, {samples_.size[0], end, end_z},
-                             most_bricks * samples_.step, [&](int from, int to) {
-                                 strips.push_back({from, to, begin, end, begin_z, end_z});
-                             });
-        }
-        return strips;
-    }
-
-    void move(const Strip& strip, Result& result) const {
-        with_own_type(samples_, [&](auto zero) {
-            using T = decltype(zero);
-            const auto run = [&](const auto& row) {
-                vectorized([&]() PALPATE_INLINE_LAMBDA { sweep<T>(samples_, scale_, strip, row); });
-            };
-            if (samples_.step > 1) {
-                run(MoveRow<T, true>{samples_, scale_, settings_, bricks_, strip, result,
-                                     coarser_ != nullptr});
-            } else {
-                run(MoveRow<T, false>{samples_, scale_, settings_, bricks_, strip, result,
-                                      coarser_ != nullptr});
-            }
-        });
-    }
-
-    void put(const Strip& strip, const Result& result) const {
+    void put(const Strip& strip, Slab& slab) const {
         for (int z = strip.begin_z; z < strip.end_z; ++z) {
             for (int y = strip.begin_y; y < strip.end_y; ++y) {
-                const std::int16_t* const from =
-                    result.data() +
-                    (std::ptrdiff_t{z - strip.begin_z} * samples_.size[1] + y) * samples_.size[0];
-                if (coarser_) {
-                    put_every_second(from, strip, y, z);
-                } else {
-                    std::copy(from + strip.begin_x, from + strip.end_x,
-                              moved_row(samples_, y, z) + strip.begin_x);
+                const std::int16_t* const from = row_of(slab, strip, y, z);
+                if (!coarser) {
+                    std::copy(from, from + (strip.end_x - strip.begin_x),
+                              moved_row(samples, y, z) + strip.begin_x);
+                } else if (is_coarser(samples, 1, y) && is_coarser(samples, 2, z)) {
+                    std::int16_t* const to = moved_row(*coarser, y / 2, z / 2);
+                    for (int x = strip.begin_x; x < strip.end_x; ++x) {
+                        if (is_coarser(samples, 0, x)) to[x / 2] = from[x - strip.begin_x];
+                    }
                 }
             }
         }
     }
-    void put_every_second(const std::int16_t* from, const Strip& strip, int y, int z) const {
-        if (!is_coarser(samples_, 1, y) || !is_coarser(samples_, 2, z)) return;
-        std::int16_t* const to = moved_row(*coarser_, y / 2, z / 2);
-        for (int x = strip.begin_x; x < strip.end_x; ++x) {
-            if (is_coarser(samples_, 0, x)) to[x / 2] = from[x];
-        }
-    }
 
-    const MovedSamples& samples_;
-    const LevelScale& scale_;
-    const RoundSettings& settings_;
-    const TerracedBricks& bricks_;
-    const Parallel& parallel_;
-    const MovedSamples* coarser_;
-    std::array<Slab, 2> slabs_;  ///< the one that is computed, and the one before
+    /// Where the result of a strip's row waits.
+    std::int16_t* row_of(Slab& slab, const Strip& strip, int y, int z) const {
+        const std::ptrdiff_t row = std::ptrdiff_t{z - strip.begin_z} * samples.size[1] + y;
+        return slab.result.data() + row * samples.size[0] + strip.begin_x;
+    }
 };
 
 }  // namespace
 
-void run_round(const MovedSamples& samples, const LevelScale& scale, const RoundSettings& settings,
-               const TerracedBricks& bricks, const Parallel& parallel,
-               const std::function<void(int)>& at_slab, const MovedSamples* coarser) {
-    Round(samples, scale, settings, bricks, parallel, coarser).run(at_slab);
+void run_round(const MovedSamples& samples, const Levels& levels, const TerracedBricks& bricks,
+               const Parallel& parallel, const std::function<void(int)>& at_slab,
+               const MovedSamples* coarser) {
+    const Round round{samples, levels, bricks, coarser};
+    const Index3& size = samples.size;
+    const int slices = std::min(size[2], std::clamp(size[2] / 8, fewest_slices, most_slices));
+    std::array<Slab, 2> slabs;  // the one that is computed, and the one before
+    for (Slab& slab : slabs) {
+        slab.result.resize(std::size_t(slices) * std::size_t(size[0]) * std::size_t(size[1]));
+    }
+    const auto for_strips = [&](Slab& slab, const auto& work) {
+        parallel(int(slab.strips.size()),
+                 [&](int i) { (round.*work)(slab.strips[static_cast<std::size_t>(i)], slab); });
+    };
+    for (int begin = 0; begin < size[2]; begin += slices) {
+        const int end = std::min(begin + slices, size[2]);
+        std::swap(slabs[0], slabs[1]);
+        slabs[0].strips = round.strips_of(begin, end);
+        for_strips(slabs[0], &Round::move);
+        for_strips(slabs[1], &Round::put);
+        at_slab(end - begin);
+    }
+    for_strips(slabs[0], &Round::put);
 }
 
 }  // namespace palpate::filters

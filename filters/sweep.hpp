@@ -9,7 +9,7 @@
 #include <memory>
 #include <type_traits>
 
-#include "filters/round.hpp"
+#include "filters/terraced_bricks.hpp"
 
 // Loops over rows are compiled twice, the second time for processors with AVX2 (without FMA, so
 // both have the same bits). What is called in them has to be part of them. MinGW does not align
@@ -42,10 +42,10 @@ void vectorized(const Work& work) {
     work();
 }
 
-/// Calls work(zero) with a zero of the type of the own samples.
+/// Returns work(zero) with a zero of the type of the own samples.
 template <class Work>
-void with_own_type(const MovedSamples& samples, const Work& work) {
-    samples.floats ? work(float{}) : work(std::uint16_t{});
+auto with_own_type(const MovedSamples& samples, const Work& work) {
+    return samples.floats ? work(float{}) : work(std::uint16_t{});
 }
 
 /// What is swept: the samples begin_x to end_x - 1 of rows begin_y to end_y - 1 of slices begin_z
@@ -79,33 +79,30 @@ struct SweptRow {
 };
 
 /// How far a sample lies above the least one [levels].
-PALPATE_INLINE float in_levels(float own, const LevelScale& scale) {
-    return (own - scale.least) * scale.per_level;
+PALPATE_INLINE float in_levels(float own, const Levels& levels) {
+    return (own - levels.least) * levels.per_level;
 }
-PALPATE_INLINE float in_levels(std::uint16_t own, const LevelScale& scale) {
-    return static_cast<float>(own) * scale.per_level;
+PALPATE_INLINE float in_levels(std::uint16_t own, const Levels& levels) {
+    return static_cast<float>(own) * levels.per_level;
 }
 /// What `moved` of 1 means [levels].
 inline constexpr float moved_unit = 1.0F / 65536;
 
 /// How much a sample moves at a coarse step, 0 to 1.
-PALPATE_INLINE float part_of(float bend, float per_straight) {
-    return std::min(std::max(2 - std::abs(bend) * per_straight, 0.0F), 1.0F);
+PALPATE_INLINE float part_of(float bend, const Levels& levels) {
+    return std::min(std::max(2 - std::abs(bend) * (1 / levels.straight), 0.0F), 1.0F);
 }
 
-/// How far a sample may move.
-struct Limits {
-    float half, top;  ///< as in RoundSettings and LevelScale
-
-    /// `to` is the distance from the volume's sample [levels].
-    PALPATE_INLINE std::int16_t moved(float to, float sample) const {
-        const float low = std::max(-half, -sample), high = std::min(half, top - sample);
-        const float units = std::min(std::max(to, low), high) * (1 / moved_unit);
-        // Adding and taking this rounds to the nearest whole number.
-        constexpr float round = 3 << 22;
-        return static_cast<std::int16_t>(static_cast<int>(units + round - round));
-    }
-};
+/// How far a sample moves that is to be `to` away from the volume's own, which is `sample`
+/// [levels].
+PALPATE_INLINE std::int16_t moved_to(float to, float sample, const Levels& levels) {
+    const float low = std::max(-levels.half, -sample);
+    const float high = std::min(levels.half, levels.top - sample);
+    const float units = std::min(std::max(to, low), high) * (1 / moved_unit);
+    // Adding and taking this rounds to the nearest whole number.
+    constexpr float round = 3 << 22;
+    return static_cast<std::int16_t>(static_cast<int>(units + round - round));
+}
 
 template <class T>
 const T* own_row(const MovedSamples& samples, int y, int z) {
@@ -122,14 +119,14 @@ inline std::int16_t* moved_row(const MovedSamples& samples, int y, int z) {
 /// The samples begin to end - 1 of a row, as they are moved [levels]. Beyond its ends it goes on as
 /// a straight line would: v(-k) = 2 v(0) - v(k).
 template <class T>
-PALPATE_INLINE void load_row(const MovedSamples& samples, const LevelScale& scale, int y, int z,
+PALPATE_INLINE void load_row(const MovedSamples& samples, const Levels& levels, int y, int z,
                              int begin, int end, float* __restrict out) {
     const T* own = own_row<T>(samples, y, z);
     const std::int16_t* moved = samples.moved ? moved_row(samples, y, z) : nullptr;
     const int size = samples.size[0], from = std::max(begin, 0), to = std::min(end, size);
     const auto load = [&](auto apart) PALPATE_INLINE_LAMBDA {
         const auto value = [&](int x) PALPATE_INLINE_LAMBDA {
-            const float sample = in_levels(own[x * apart], scale);
+            const float sample = in_levels(own[x * apart], levels);
             return moved ? sample + static_cast<float>(moved[x * apart]) * moved_unit : sample;
         };
         const auto beyond = [&](int x) {
@@ -146,17 +143,17 @@ PALPATE_INLINE void load_row(const MovedSamples& samples, const LevelScale& scal
 
 /// The samples begin to end - 1 of a row that may lie beyond the first and the last along y and z.
 template <class T>
-PALPATE_INLINE void load(const MovedSamples& samples, const LevelScale& scale, int y, int z,
-                         int begin, int end, float* __restrict out, float* __restrict scratch) {
+PALPATE_INLINE void load(const MovedSamples& samples, const Levels& levels, int y, int z, int begin,
+                         int end, float* __restrict out, float* __restrict scratch) {
     // out = (2 at the end - mirrored) along y of the same along z
     const int end_y = std::clamp(y, 0, samples.size[1] - 1),
               end_z = std::clamp(z, 0, samples.size[2] - 1);
-    load_row<T>(samples, scale, end_y, end_z, begin, end, out);
+    load_row<T>(samples, levels, end_y, end_z, begin, end, out);
     if (end_y == y && end_z == z) return;
     const auto add = [&](int at_y, int at_z, float weight) {
         at_y = std::clamp(at_y, 0, samples.size[1] - 1);
         at_z = std::clamp(at_z, 0, samples.size[2] - 1);
-        load_row<T>(samples, scale, at_y, at_z, begin, end, scratch);
+        load_row<T>(samples, levels, at_y, at_z, begin, end, scratch);
         for (int i = 0; i < end - begin; ++i) out[i] += weight * scratch[i];
     };
     const int mirrored_y = 2 * end_y - y, mirrored_z = 2 * end_z - z;
@@ -195,7 +192,7 @@ struct SweepBuffers {
 
 /// Calls each(SweptRow) for the rows of a strip, slice by slice.
 template <class T, class Each>
-PALPATE_INLINE void sweep(const MovedSamples& samples, const LevelScale& scale, const Strip& strip,
+PALPATE_INLINE void sweep(const MovedSamples& samples, const Levels& levels, const Strip& strip,
                           const Each& each) {
     const int width = strip.end_x - strip.begin_x;
     SweepBuffers buffers(strip);
@@ -204,7 +201,7 @@ PALPATE_INLINE void sweep(const MovedSamples& samples, const LevelScale& scale, 
     for (int z = strip.begin_z - 2; z < strip.end_z + 2; ++z) {
         float* const scratch = buffers.scratch();
         for (int y = -2; y < rows + 2; ++y) {
-            load<T>(samples, scale, strip.begin_y + y, z, strip.begin_x - 2, strip.end_x + 2,
+            load<T>(samples, levels, strip.begin_y + y, z, strip.begin_x - 2, strip.end_x + 2,
                     buffers.loaded(y), scratch);
         }
         const bool has_mean = z >= strip.begin_z;  // of the slice before

@@ -1,4 +1,4 @@
-// Which bricks have terraces.
+// Which bricks have terraces, and how wide these are.
 #include "filters/terraced_bricks.hpp"
 
 #include <algorithm>
@@ -9,44 +9,55 @@
 namespace palpate::filters {
 namespace {
 
+/// A hair less than half a level: samples on both sides of a mask's surface must not meet in it.
+constexpr double half_level = 511.0 / 1024, half_level_of_mask = 127.0 / 256;
+/// From this bend on a coarse step moves a sample less, from twice of it on not at all [levels].
+constexpr double most_bend = 0.55, most_bend_of_mask = 0.05;
+
 /// What is in a brick: weights of its samples, which are their slopes. Whole numbers, so that parts
 /// of a volume have the same.
 struct BrickSums {
     std::int32_t all = 0, stepped = 0;
 };
 
-/// Adds up a row of bricks.
+/// Those of a row of bricks.
 template <class T>
-struct WeighRow {
-    const MovedSamples& samples;
-    const LevelScale& scale;
-    const TerracedBricks& bricks;
-    const Strip& strip;
-    BrickSums* sums;
-
-    PALPATE_INLINE void operator()(const SweptRow& row) const {
+std::vector<BrickSums> sums_of(const MovedSamples& samples, const Levels& levels,
+                               const TerracedBricks& bricks, int brick_y, int brick_z) {
+    const auto begin = [&](int axis, int brick) {
+        return std::clamp(bricks.first_of(axis, samples, brick), 0, samples.size[axis]);
+    };
+    std::vector<BrickSums> sums(static_cast<std::size_t>(bricks.count()[0]));
+    const Strip strip{0,
+                      samples.size[0],
+                      begin(1, brick_y),
+                      begin(1, brick_y + 1),
+                      begin(2, brick_z),
+                      begin(2, brick_z + 1)};
+    const auto add = [&](const SweptRow& row) PALPATE_INLINE_LAMBDA {
         const T* own = own_row<T>(samples, row.y, row.z);
         const float* const above = row.mean + row.mean_row;
         const float* const below = row.mean - row.mean_row;
         for (int brick = 0; brick < bricks.count()[0]; ++brick) {
-            const int from = std::max(bricks.first_of(0, samples, brick), 0);
-            const int to = std::min(bricks.first_of(0, samples, brick + 1), strip.end_x);
+            const int from = begin(0, brick), to = begin(0, brick + 1);
             std::int32_t all = 0, stepped = 0;
             for (int i = from; i < to; ++i) {
                 const float x = row.mean[i + 1] - row.mean[i - 1], y = above[i] - below[i];
                 const float z = row.after[i] - row.before[i];
                 const float slope = 0.5F * std::sqrt(x * x + y * y + z * z);
                 const float twice = binomial(row.before[i], row.here[i], row.after[i]);
-                const float off = in_levels(own[i], scale) - (2 * row.mean[i] - twice);
+                const float off = in_levels(own[i], levels) - (2 * row.mean[i] - twice);
                 const auto weight = static_cast<std::int32_t>(16 * std::min(slope, 4096.0F));
                 all += weight;
                 stepped += std::abs(off) <= 0.5F ? weight : 0;
             }
-            sums[brick].all += all;
-            sums[brick].stepped += stepped;
+            sums[std::size_t(brick)].all += all;
+            sums[std::size_t(brick)].stepped += stepped;
         }
-    }
-};
+    };
+    vectorized([&]() PALPATE_INLINE_LAMBDA { sweep<T>(samples, levels, strip, add); });
+    return sums;
+}
 
 }  // namespace
 
@@ -55,9 +66,8 @@ MovedSamples every_second(const MovedSamples& samples) {
     const Index3 first(first_coarser(samples, 0), first_coarser(samples, 1),
                        first_coarser(samples, 2));
     const std::ptrdiff_t row = first[1] * samples.row + first[0];
-    const std::ptrdiff_t own = first[2] * samples.own_slice + row;
-    if (samples.floats) some.floats += own;
-    if (samples.whole) some.whole += own;
+    if (samples.floats) some.floats += first[2] * samples.own_slice + row;
+    if (samples.whole) some.whole += first[2] * samples.own_slice + row;
     some.moved += first[2] * samples.moved_slice + row;
     some.own_slice *= 2;
     some.moved_slice *= 2;
@@ -69,42 +79,41 @@ MovedSamples every_second(const MovedSamples& samples) {
     return some;
 }
 
-TerracedBricks terraced_bricks(const MovedSamples& samples, const LevelScale& scale, bool mask,
+Levels::Levels(const DequantizePlan& plan)
+    : least(float(plan.minimum)),
+      per_level(float(1 / plan.level)),
+      top(float((plan.maximum - plan.minimum) / plan.level)),
+      half(float(plan.mask ? half_level_of_mask : half_level)),
+      straight(float(plan.mask ? most_bend_of_mask : most_bend)) {}
+
+TerracedBricks terraced_bricks(const MovedSamples& samples, const DequantizePlan& plan,
                                const Parallel& parallel) {
+    const Levels levels(plan);
     MovedSamples own = samples;
     own.moved = nullptr;
     TerracedBricks bricks(samples.size, samples.low), flat = bricks;
     const Index3 count = bricks.count();
     parallel(count[1] * count[2], [&](int i) {
         const int y = i % count[1], z = i / count[1];
-        const auto begin = [&](int axis, int brick) {
-            return std::clamp(bricks.first_of(axis, own, brick), 0, own.size[axis]);
-        };
-        const Strip strip{0,           own.size[0],    begin(1, y), begin(1, y + 1),
-                          begin(2, z), begin(2, z + 1)};
-        std::vector<BrickSums> sums(static_cast<std::size_t>(count[0]));
-        with_own_type(own, [&](auto zero) {
-            using T = decltype(zero);
-            const WeighRow<T> weigh{own, scale, bricks, strip, sums.data()};
-            vectorized([&]() PALPATE_INLINE_LAMBDA { sweep<T>(own, scale, strip, weigh); });
-        });
+        const std::vector<BrickSums> sums = with_own_type(
+            own, [&](auto zero) { return sums_of<decltype(zero)>(own, levels, bricks, y, z); });
         for (int x = 0; x < count[0]; ++x) {
             const BrickSums& sum = sums[static_cast<std::size_t>(x)];
             flat.row(y, z)[x] = sum.all == 0;
-            bricks.row(y, z)[x] = sum.all > 0 && (mask || 2 * sum.stepped >= sum.all);
+            bricks.row(y, z)[x] = sum.all > 0 && (plan.mask || 2 * sum.stepped >= sum.all);
         }
     });
     bricks.grow_into(flat);
     return bricks;
 }
 
-void TerracedBricks::for_runs(const MovedSamples& samples, const Index3& low, const Index3& high,
-                              int most, const std::function<void(int, int)>& work) const {
+bool TerracedBricks::for_runs(const MovedSamples& samples, int begin_y, int end_y, int begin_z,
+                              int end_z, int most,
+                              const std::function<void(int, int)>& work) const {
     std::vector<std::uint8_t> any(static_cast<std::size_t>(count_[0]));
-    const int last_y = brick_of(1, samples, high[1] - 1),
-              last_z = brick_of(2, samples, high[2] - 1);
-    for (int z = brick_of(2, samples, low[2]); z <= last_z; ++z) {
-        for (int y = brick_of(1, samples, low[1]); y <= last_y; ++y) {
+    const int last_y = brick_of(1, samples, end_y - 1), last_z = brick_of(2, samples, end_z - 1);
+    for (int z = brick_of(2, samples, begin_z); z <= last_z; ++z) {
+        for (int y = brick_of(1, samples, begin_y); y <= last_y; ++y) {
             for (std::size_t i = 0; i < any.size(); ++i) any[i] |= row(y, z)[i];
         }
     }
@@ -115,10 +124,11 @@ void TerracedBricks::for_runs(const MovedSamples& samples, const Index3& low, co
         for (int i = end; i < std::min({end + gap, brick + most, count_[0]}); ++i) {
             if (any[std::size_t(i)]) end = i + 1;
         }
-        const int from = std::max(first_of(0, samples, brick), low[0]);
-        const int to = std::min(first_of(0, samples, end), high[0]);
+        const int from = std::max(first_of(0, samples, brick), 0);
+        const int to = std::min(first_of(0, samples, end), samples.size[0]);
         if (from < to) work(from, to);
     }
+    return std::ranges::count(any, 0) < count_[0];
 }
 
 void TerracedBricks::grow_into(const TerracedBricks& others) {

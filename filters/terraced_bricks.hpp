@@ -7,7 +7,8 @@
 #include <functional>
 #include <vector>
 
-#include "palpate/volume.hpp"
+#include "filters/parallel.hpp"
+#include "palpate/filters/dequantize_parts.hpp"
 
 namespace palpate::filters {
 
@@ -36,8 +37,28 @@ inline int first_coarser(const MovedSamples& samples, int axis) {
 inline bool is_coarser(const MovedSamples& samples, int axis, int at) {
     return (samples.low[axis] + at) % 2 == 0;
 }
-/// Those of a coarser grid, every second one along each axis of compact samples.
+/// Those of the next coarser grid, every second one along each axis of compact samples.
 MovedSamples every_second(const MovedSamples& samples);
+
+/// True for samples of two values only, `level` apart.
+inline bool is_mask(double minimum, double maximum, double level) {
+    return maximum - minimum <= 1.5 * level;
+}
+
+/// How samples become numbers that rounds compute with (levels above the least one), and how far
+/// they may move.
+struct Levels {
+    explicit Levels(const DequantizePlan& plan);
+
+    float least;      ///< the volume's least sample [data units]
+    float per_level;  ///< 1 / the distance between levels
+    float top;        ///< the greatest sample [levels]
+    float half;       ///< how far a sample may be from the volume's own [levels]
+    /// On coarse grids, a sample moves less where one smoothing more would change it by more than
+    /// this [levels], and not at all from twice of it on: there the data are not straight over the
+    /// samples' distance.
+    float straight;
+};
 
 /// Which bricks of 16 x 16 x 16 samples are dequantized.
 class TerracedBricks {
@@ -77,10 +98,11 @@ class TerracedBricks {
                  std::min(first_of(0, samples, brick + 1), end));
         }
     }
-    /// Calls work(from, to) for samples along x between which these bricks lie, of all rows of a
-    /// box from `low` to before `high`: up to `most` bricks at a time, without long gaps.
-    void for_runs(const MovedSamples& samples, const Index3& low, const Index3& high, int most,
-                  const std::function<void(int from, int to)>& work) const;
+    /// Calls work(from, to) for samples along x between which these bricks lie, of all rows from
+    /// begin_y to end_y - 1 of slices from begin_z to end_z - 1: up to `most` bricks at a time,
+    /// without long gaps. Returns whether there are any.
+    bool for_runs(const MovedSamples& samples, int begin_y, int end_y, int begin_z, int end_z,
+                  int most, const std::function<void(int from, int to)>& work) const;
 
     /// Adds those of `others` that touch one of these.
     void grow_into(const TerracedBricks& others);
@@ -93,5 +115,13 @@ class TerracedBricks {
     Index3 first_, count_;
     std::vector<std::uint8_t> is_;
 };
+
+/// The bricks of a part of a volume that have terraces: on at least half of the surfaces in them,
+/// rounding alone explains how far the samples (not yet moved) are from smooth ones. In a mask all
+/// bricks that are not constant have terraces. Constant bricks belong to terraces that touch them.
+/// Right for bricks that lie in the part with two samples around them, or end at the volume's
+/// border.
+TerracedBricks terraced_bricks(const MovedSamples& samples, const DequantizePlan& plan,
+                               const Parallel& parallel);
 
 }  // namespace palpate::filters

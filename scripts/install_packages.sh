@@ -14,7 +14,7 @@ are left as they are; when nothing is missing, apt is not run.
 groups (default: all)
   core     compiler, CMake, Eigen, GoogleTest, Google Benchmark; Python and Git for the rule checks
   program  core, and what reads and writes files and reaches devices: ITK, VTK, CLI11, fmt, JSON,
-           EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, oneTBB, codecs of
+           EGL and Mesa for pictures without a display, PNG, zlib, gnuplot, Boost, codecs of
            chunks, libcurl
   io       program; for the Python module pybind11, NumPy, SciPy, Matplotlib, WeasyPrint, Dask, pip, nibabel; for tests zarr, h5py, pydicom, tifffile, teem
            and OpenIGTLink
@@ -36,7 +36,7 @@ python=(python3-dev pybind11-dev python3-numpy python3-pytest python3-nibabel py
         python3-pip python3-venv python3-dask python3-distributed python3-scipy python3-matplotlib weasyprint mypy)
 program=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
     libgdcm-dev libhdf5-dev libtiff-dev libexpat1-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
-    libgl1-mesa-dri libembree-dev libtbb-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev)
+    libgl1-mesa-dri libembree-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev)
 io=("${program[@]}" libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)
 package=(dpkg-dev file)

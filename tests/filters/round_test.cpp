@@ -20,9 +20,7 @@ void backwards(int count, const std::function<void(int)>& work) {
 
 /// The samples of a volume, not moved yet.
 struct Moved {
-    Moved(const Volume& volume, double level)
-        : scale{float(volume.minimum()), float(1 / level), float(volume.range() / level)},
-          moved(std::size_t(sample_count(volume.geometry()))) {
+    explicit Moved(const Volume& volume) : moved(std::size_t(sample_count(volume.geometry()))) {
         const Index3& size = volume.geometry().size;
         const std::ptrdiff_t slice = std::ptrdiff_t{size[0]} * size[1];
         samples = {size, nullptr, nullptr, moved.data(), slice, slice, size[0]};
@@ -35,7 +33,6 @@ struct Moved {
         samples.whole = whole.data();
     }
 
-    LevelScale scale;
     std::vector<std::uint16_t> whole;
     std::vector<std::int16_t> moved;
     MovedSamples samples{};
@@ -59,7 +56,7 @@ using Way = DequantizePlan::Rounds::Way;
 /// Of a box whose first sample is `low`. Whether the samples of some bricks move and others do not.
 void expect_rounds(const Volume& volume, double level, bool mask, const Rounds& rounds,
                    const Index3& low = Index3::Zero()) {
-    Moved fast(volume, level);
+    Moved fast(volume);
     fast.samples.low = low;
     const Index3& size = volume.geometry().size;
     const TerracedBricks bricks = some_bricks(size, low, 5);
@@ -143,8 +140,9 @@ Volume ramp_and_noise() {
 
 TEST(TerracedBricks, are_those_of_gentle_slopes_and_of_what_is_constant_beside_them) {
     const Volume volume = ramp_and_noise();
-    Moved given(volume, 1);
-    const auto bricks = terraced_bricks(given.samples, given.scale, false, &backwards);
+    const Moved given(volume);
+    const DequantizePlan plan{1, volume.minimum(), volume.maximum(), false, {}};
+    const auto bricks = terraced_bricks(given.samples, plan, &backwards);
     for (int z = 0; z < 3; ++z) {
         for (int y = 0; y < 3; ++y) {
             const std::vector<int> row(bricks.row(y, z), bricks.row(y, z) + 9);
@@ -155,8 +153,9 @@ TEST(TerracedBricks, are_those_of_gentle_slopes_and_of_what_is_constant_beside_t
 
 TEST(TerracedBricks, are_all_that_a_masks_surface_crosses) {
     const Volume volume = scenes::box({48, 48, 80}, {20, 20, 20}, {27, 27, 27});
-    Moved given(volume, 255);
-    const auto bricks = terraced_bricks(given.samples, given.scale, true, &backwards);
+    const Moved given(volume);
+    const DequantizePlan plan{255, volume.minimum(), volume.maximum(), true, {}};
+    const auto bricks = terraced_bricks(given.samples, plan, &backwards);
     for (int z = 0; z < 5; ++z) {
         for (int y = 0; y < 3; ++y) {
             for (int x = 0; x < 3; ++x) EXPECT_EQ(bricks.row(y, z)[x], z < 3) << y << " " << z;

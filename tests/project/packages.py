@@ -41,7 +41,7 @@ def check_what_is_linked(root, package):
     linked = set()
     for listed in re.findall(r'INTERFACE_LINK_LIBRARIES "([^"]*)"', text):
         linked |= set(re.sub(r"\\\$<LINK_ONLY:([^>]*)>", r"\1", listed).split(";"))
-    names = {"CURL::libcurl": "curl", "TBB::tbb": "tbb", "ZLIB::ZLIB": "z"}
+    names = {"CURL::libcurl": "curl", "ZLIB::ZLIB": "z"}
     of_system = {"", "dl", "Threads::Threads", "Eigen3::Eigen"}  # Eigen is headers alone
     needed = {names.get(one, one) for one in linked - of_system if not one.startswith("palpate::")}
     if not {"curl", "zstd"} <= needed:

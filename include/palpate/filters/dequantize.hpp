@@ -1,5 +1,5 @@
 // Dequantization: removes the terraces that rounding makes in integer data and masks. Uses the
-// core, and oneTBB to work in parallel. See docs/dequantize.md.
+// core, on several threads. See docs/dequantize.md.
 #pragma once
 
 #include <optional>
