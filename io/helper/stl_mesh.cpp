@@ -79,7 +79,9 @@ std::vector<Corner> corners_in_binary(const std::string& bytes) {
         throw Failure("it is cut off: its " + std::to_string(count) +
                       " triangles need more bytes; copy it again");
     }
-    if ((bytes.size() - head) % triangle == 0) count = (bytes.size() - head) / triangle;
+    const bool is_padded = bytes.find_first_not_of('\0', head + triangle * count) == bytes.npos;
+    const std::size_t behind = bytes.size() - head;
+    if (!is_padded && behind % triangle == 0) count = behind / triangle;
     std::vector<Corner> corners(3 * count);
     for (std::size_t i = 0; i < corners.size(); ++i) {
         for (std::size_t a = 0; a < 3; ++a) {

@@ -93,8 +93,11 @@ TEST(MeshReader, reads_faces_before_their_vertices_and_all_triangles_of_a_wrong_
         put_bytes(folder / "a.stl", bytes);
         EXPECT_EQ(corners_of(read_mesh(folder / "a.stl")), corners_of(wedge()));
     }
-    put_bytes(folder / "a.stl", whole + "a comment behind the triangles");
-    EXPECT_EQ(corners_of(read_mesh(folder / "a.stl")), corners_of(wedge()));
+    for (const std::string& end : {std::string("a comment"), std::string(50, '\0')}) {
+        put_bytes(folder / "a.stl", whole + end);
+        EXPECT_EQ(corners_of(read_mesh(folder / "a.stl")), corners_of(wedge()));
+        EXPECT_EQ(read_mesh(folder / "a.stl").vertices.size(), 4U);
+    }
 }
 
 TEST(MeshReader, says_what_is_wrong) {

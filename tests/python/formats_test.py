@@ -417,6 +417,42 @@ def test_dimensions_of_zarr_may_have_no_names(tmp_path, names, order):
     assert ("taken by their order" in told) == (order is not None)
 
 
+# Outputs over inputs ------------------------------------------------------------------------------------
+
+
+def test_no_output_replaces_a_file_that_is_read(tmp_path):
+    slices = folder(tmp_path / "slices", ["a1", "a2", "a3"])
+    for number in range(2):
+        nibabel.save(nibabel.Nifti1Image(ramp("i2"), numpy.eye(4)), tmp_path / f"beat_{number}.nii")
+    (tmp_path / "hand.csv").write_text("t,x,y,z\n0,0,0,0\n")
+    (tmp_path / "set.json").write_text('{"palpate_layers": 1, "layers": [{"name": "a", "level": 100}]}')
+    (tmp_path / "points.csv").write_text("x,y,z\n0,0,1\n")
+    replay = ("replay", "synthetic:sphere:16x16x16", "--trajectory", tmp_path / "hand.csv")
+    layers, tool = ("--layers", tmp_path / "set.json"), ("--isovalue", "50%", "--tool", tmp_path / "points.csv")
+    for output, *words in ((slices / "a2.tif", "convert", slices, slices / "a2.tif"),
+                           (tmp_path / "beat_1.nii", "convert", tmp_path / "beat_%d.nii", tmp_path / "beat_1.nii"),
+                           (tmp_path / "set.json", *replay, *layers, "--output", tmp_path / "set.json"),
+                           (tmp_path / "points.csv", *replay, *tool, "--output", tmp_path / "points.csv")):
+        before = output.read_bytes()
+        assert "is an input and would be replaced" in program(*words)
+        assert output.read_bytes() == before
+    for _ in range(2):  # other files of these folders may be written, also again
+        for words in (("convert", slices, slices / "a.nrrd"), ("convert", tmp_path / "beat_%d.nii", tmp_path / "beat.nii"),
+                      (*replay, *layers, "--output", tmp_path / "out.csv")):
+            assert "would be replaced" not in program(*words)
+            assert words[-1].exists()
+
+
+def test_an_output_that_cannot_be_written_is_refused_before_the_work(tmp_path):
+    (tmp_path / "hand.csv").write_text("t,x,y,z\n0,0,0,0\n")
+    replay = ("replay", "synthetic:sphere:16x16x16", "-i", "50%", "--trajectory", tmp_path / "none.csv", "--output")
+    assert "cannot be written: File name too long" in program(*replay, tmp_path / ("a" * 300))
+    in_no_folder = 'mkdir gone && cd gone && rmdir ../gone && exec "$@"'
+    done = subprocess.run(["sh", "-c", in_no_folder, "sh", os.environ["PALPATE"], *map(str, replay[:5]), "../hand.csv", "--output", "a"],
+                          cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 5 and done.stderr.startswith("palpate: a: cannot be written"), done.stderr
+
+
 # What to do instead -----------------------------------------------------------------------------------------
 
 
