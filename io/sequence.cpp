@@ -2,6 +2,7 @@
 #include "palpate/io/sequence.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <optional>
@@ -9,6 +10,8 @@
 #include <system_error>
 
 #include "io/system/number.hpp"
+#include "io/words.hpp"
+#include "palpate/io/output.hpp"
 
 namespace palpate::io {
 namespace {
@@ -316,6 +319,26 @@ void check(const Sequence& sequence) {
         throw std::invalid_argument("the period does not end after the last frame");
     }
     check(sequence.geometry);
+}
+
+bool is_read_from(const fs::path& path, const fs::path& source) {
+    static constexpr std::array of_slices = {".tif", ".tiff", ".dcm", ".dicom", ".ima", ""};
+    if (is_same_file(path, source)) return true;
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) return false;
+    const fs::path file = fs::weakly_canonical(path, error);  // through links
+    if (fs::is_directory(source, error)) {
+        return fs::equivalent(file.parent_path(), source, error) &&
+               std::ranges::count(of_slices, lower(file.extension().string())) > 0;
+    }
+    try {
+        const auto pattern = pattern_of(source);
+        return pattern && !fs::exists(source, error) &&
+               number_in(file.filename().string(), *pattern) &&
+               fs::equivalent(file.parent_path(), fs::absolute(source, error).parent_path(), error);
+    } catch (const InputError&) {
+        return false;  // it cannot be read
+    }
 }
 
 }  // namespace palpate::io

@@ -9,6 +9,7 @@
 #include "palpate/io/error.hpp"
 #include "palpate/io/output.hpp"
 #include "palpate/io/raw_options.hpp"
+#include "palpate/io/sequence.hpp"
 #include "palpate/io/written_formats.hpp"
 #include "palpate/stream/convert.hpp"
 #include "palpate/stream/edits.hpp"
@@ -29,19 +30,6 @@ std::vector<std::filesystem::path> places_of_rescue() {
     if (const char* home = std::getenv("HOME")) places.emplace_back(home);
     places.emplace_back(".");
     return places;
-}
-
-/// Writing `path` would change `used`: the same file, one in that folder, or of a numbered series
-/// any file of its folder. (io::why_not_written() knows whose samples a .raw file has.)
-bool changes(const std::filesystem::path& path, const std::filesystem::path& used) {
-    namespace fs = std::filesystem;
-    if (io::is_same_file(path, used)) return true;
-    std::error_code error;
-    if (!fs::exists(path, error)) return false;
-    const fs::path folder = fs::weakly_canonical(path, error).parent_path();  // through links
-    if (fs::is_directory(used, error)) return fs::equivalent(folder, used, error);
-    return used.filename().string().find('%') != std::string::npos && !fs::exists(used, error) &&
-           fs::equivalent(folder, fs::absolute(used).parent_path(), error);
 }
 
 /// For nobody else: in a folder of temporary files, others could put links in our way.
@@ -156,7 +144,9 @@ void Data::release(const std::filesystem::path& path) {
 void Data::require_unused(const std::filesystem::path& path) const {
     const std::filesystem::path own = place_of(loaded_.source);
     const std::lock_guard lock(mutex_);
-    const auto is_used = [&](const auto& used) { return !used.empty() && changes(path, used); };
+    const auto is_used = [&](const auto& used) {
+        return !used.empty() && io::is_read_from(path, used);
+    };
     if (!is_used(own) && std::none_of(kept_.begin(), kept_.end(), is_used)) return;
     throw io::OutputError(path.string() +
                           " is in use and would be replaced: choose another output");

@@ -56,7 +56,8 @@ void RenderOptions::add_to(CLI::App& command) {
     add_penetrability_to(command);
     command
         .add_option_function<std::string>(
-            "--layers", [this](const std::string& text) { given.layers = io::layers_named(text); },
+            "--layers",
+            [this](const std::string& text) { given.layers = io::layers_named(layers_ = text); },
             "Several surfaces, each with its own feel: a file, or the name of a built-in set")
         ->type_name(fmt::format("{{{}}}|FILE.json", fmt::join(io::layers_names(), ",")));
     command
@@ -65,7 +66,8 @@ void RenderOptions::add_to(CLI::App& command) {
         ->type_name("VOLUME");
     command
         .add_option_function<std::string>(
-            "--tool", [this](const std::string& text) { given.tool = io::tool_spec_from(text); },
+            "--tool",
+            [this](const std::string& text) { given.tool = io::tool_spec_from(tool_ = text); },
             "Touch with a rigid tool: sphere:R, rod:L, needle[:L,R], burr:R, box:X,Y,Z, fingertip "
             "[mm], or a file with points (.csv) or a mesh (.stl, .ply, .obj, .vtp)")
         ->type_name("{point,sphere:,rod:,needle,burr:,box:,fingertip}|FILE.{csv,stl,ply,obj,vtp}")

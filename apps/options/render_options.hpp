@@ -20,6 +20,8 @@ struct RenderOptions {
     std::string labels;  ///< the name of a label volume
 
     void add_to(CLI::App& command);
+    /// What it reads: layers, labels and a tool, each a file, a name, or empty.
+    std::vector<std::string> inputs() const { return {layers_, labels, tool_}; }
     /// Once the command line has been read; reads the label volume. Throws std::invalid_argument
     /// for an option that makes no sense without another, io::InputError for a volume that cannot
     /// be read. Warns on standard error of options that do nothing.
@@ -31,6 +33,7 @@ struct RenderOptions {
     void add_force_to(CLI::App& command);
 
     const CLI::App* command_ = nullptr;
+    std::string layers_, tool_;
 };
 
 /// "0.5,0.3" as static and dynamic coefficient; "0.5": both. Throws std::invalid_argument, naming

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "palpate/io/output.hpp"
+#include "palpate/io/sequence.hpp"
 #include "palpate/io/written_formats.hpp"
 #include "palpate/names.hpp"
 
@@ -60,7 +61,8 @@ void check_outputs(const std::vector<std::string>& inputs,
         if (outputs[i].empty()) continue;
         if (!is_zarr(outputs[i])) io::check_output(outputs[i]);
         for (const std::string& input : inputs) {
-            if (input.empty() || !same_file(outputs[i], input)) continue;
+            if (input.empty()) continue;
+            if (!same_file(outputs[i], input) && !io::is_read_from(outputs[i], input)) continue;
             throw std::invalid_argument(
                 outputs[i] + " is an input and would be replaced: choose another output");
         }

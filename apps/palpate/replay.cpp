@@ -155,8 +155,9 @@ void replay(const ReplayOptions& options) {
         return validate(options.source.name(), options.recorded_volume, options.source.quiet);
     }
     check(options);
-    check_outputs({options.source.name(), options.trajectory},
-                  {options.output, options.path, options.poses});
+    std::vector<std::string> inputs = options.render.inputs();
+    inputs.insert(inputs.end(), {options.source.name(), options.trajectory});
+    check_outputs(inputs, {options.output, options.path, options.poses});
     const bool table_on_standard_output = is_standard_output(options.output) ||
                                           is_standard_output(options.path) ||
                                           is_standard_output(options.poses);

@@ -236,15 +236,16 @@ std::string feel(std::vector<LiveHand>& hands, const RunOptions& options, Remote
 /// What this command reads stays as it is.
 void check_saving(run::Data& data, const TouchOptions& options) {
     data.keep(options.commands);
-    data.keep(options.render.labels);
+    for (const std::string& input : options.render.inputs()) data.keep(input);
     if (!options.save.empty()) data.check_save_name(options.save);
 }
 
 void touch(const CLI::App& command, const TouchOptions& options) {
     const std::vector<run::Setup> setups = options.setups();
     check_volume_name(options.save);
-    check_outputs({options.source.name(), options.commands, options.render.labels},
-                  {options.record, options.save});
+    std::vector<std::string> inputs = options.render.inputs();
+    inputs.insert(inputs.end(), {options.source.name(), options.commands});
+    check_outputs(inputs, {options.record, options.save});
     for (const run::Setup& setup : setups) require_no_mouse(setup);
     check_hands(options, setups);
     require_own_time(options, setups);

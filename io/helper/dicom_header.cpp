@@ -109,7 +109,7 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
         check_spacing(s.aspect, "DICOM tag PixelAspectRatio");
     }
     const double between = measures.number(between_tag, 0);
-    if (between > 0) s.thickness = between;
+    if (between > 0) s.between = s.thickness = between;
     if (!(s.thickness > 0)) s.thickness = measures.number(thickness_tag, 0);
 }
 
@@ -409,7 +409,9 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
                  "values were taken as they are stored");
     }
     note_overlays(s, data);
-    s.has_colours = !colours.empty() && lower(colours).find("monochrome") != 0;
+    // Segmentations of labels may bring colours for them.
+    const bool are_labels = s.values.modality == "SEG" && colours == "PALETTE COLOR";
+    s.has_colours = !colours.empty() && lower(colours).find("monochrome") != 0 && !are_labels;
     constexpr DicomTag location_tag{0x0020, 0x1041};
     if (!s.position || !s.row || !s.column) {
         for (const double at : data.numbers(location_tag)) {
@@ -422,6 +424,11 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
         s.slope = data.number(dose, 1);
         s.has_rescale = true;
         s.values.units = data.text({0x3004, 0x0002});  // GY
+    }
+    // Segmentations may have fractions of a greatest value (PS3.3 C.8.20.2.3).
+    const auto most = data.counts({0x0062, 0x000e});
+    if (data.text({0x0062, 0x0001}) == "FRACTIONAL" && most.size() == 1 && most[0] > 0) {
+        s.slope = 1.0 / most[0];
     }
     return s;
 }

@@ -101,43 +101,52 @@ void choose_time_step(const DicomSeries& series, SliceGroups groups, const Reque
 struct Steps {
     double spacing = 1;
     std::size_t count = 1;
-    double tolerance = 0;  ///< [mm] a slice this near to a grid slice is taken as it is
+    double tolerance = 0;    ///< [mm] a slice this near to a grid slice is taken as it is
+    bool are_empty = false;  ///< the slices that are missing
 };
 
-Steps steps_of(Stack& stack) {
+/// `one`: of the slices.
+Steps steps_of(Stack& stack, const DicomSlice& one) {
     std::vector<double> gaps;
     for (std::size_t i = 1; i < stack.slices.size(); ++i) {
         gaps.push_back(stack.slices[i].along - stack.slices[i - 1].along);
     }
     std::vector<double> sorted = gaps;
     std::sort(sorted.begin(), sorted.end());
-    const double median = sorted[(sorted.size() - 1) / 2];  // the lower one: fewer slices lost
+    // Segmentations leave out the slices that have nothing of a segment.
+    const bool are_empty = one.values.modality == "SEG";
+    const bool is_told = one.between > 0 && one.between < 1.1 * sorted.front();
+    const double usual = !are_empty ? sorted[(sorted.size() - 1) / 2]  // fewer slices lost
+                         : is_told  ? one.between
+                                    : sorted.front();
     const double total = stack.slices.back().along;
-    const double rounding = std::min(0.01, 0.1 * median);  // [mm] in the files' decimals
-    const double tolerance = std::max(rounding, even_part * median);
-    if (sorted.back() - median <= tolerance && median - sorted.front() <= tolerance) {
-        return {total / static_cast<double>(gaps.size()), gaps.size() + 1, 0.5 * median};
+    const double rounding = std::min(0.01, 0.1 * usual);  // [mm] in the files' decimals
+    const double tolerance = std::max(rounding, even_part * usual);
+    if (sorted.back() - usual <= tolerance && usual - sorted.front() <= tolerance) {
+        return {total / static_cast<double>(gaps.size()), gaps.size() + 1, 0.5 * usual};
     }
     double steps = 0;
     bool multiples = true;
     for (const double gap : gaps) {
-        const double k = std::max(1.0, std::round(gap / median));
-        multiples = multiples && std::abs(gap - k * median) <= 0.1 * median;
+        const double k = std::max(1.0, std::round(gap / usual));
+        multiples = multiples && std::abs(gap - k * usual) <= 0.1 * usual;
         steps += k;
     }
-    if (!multiples) steps = std::max(1.0, std::round(total / median));
-    if (steps > 4.0 * static_cast<double>(stack.slices.size())) {
+    if (!multiples) steps = std::max(1.0, std::round(total / usual));
+    const double most = multiples && are_empty ? 1 << 16 : 4.0 * std::ssize(stack.slices);
+    if (steps > most) {
         throw Failure("its " + std::to_string(stack.slices.size()) + " slices are spread over " +
                       text_of(total) + " mm, mostly gaps; give a complete series");
     }
     const auto count = static_cast<std::size_t>(steps) + 1;
     const double spacing = total / steps;
     if (multiples) {
-        stack.notes.push_back(std::to_string(count - stack.slices.size()) + " of " +
-                              std::to_string(count) +
-                              " slices are missing: filled by interpolation between their "
-                              "neighbours, do not trust what is felt there");
-        return {spacing, count, 0.2 * spacing};
+        stack.notes.push_back(
+            std::to_string(count - stack.slices.size()) + " of " + std::to_string(count) +
+            (are_empty ? " slices are not in the segmentation: they are empty (0)"
+                       : " slices are missing: filled by interpolation between their "
+                         "neighbours, do not trust what is felt there"));
+        return {spacing, count, 0.2 * spacing, are_empty};
     }
     stack.notes.push_back("its slices are not evenly spaced (" + text_of(sorted.front()) + " to " +
                           text_of(sorted.back()) + " mm): interpolated every " + text_of(spacing) +
@@ -153,11 +162,12 @@ void fill_grid(const Steps& steps, Stack& stack) {
         const std::size_t above = std::min(below + 1, stack.slices.size() - 1);
         const double before = at - stack.slices[below].along;
         const double after = stack.slices[above].along - at;
-        GridSlice slice{below, above, 0};
+        GridSlice slice{below, above};
         if (after < before && std::abs(after) <= steps.tolerance) {
-            slice = {above, above, 0};
+            slice = {above, above};
         } else if (std::abs(before) > steps.tolerance && above != below) {
             slice.weight = before / (before + after);
+            slice.is_empty = steps.are_empty;
         }
         stack.grid.push_back(slice);
     }
@@ -467,7 +477,7 @@ Stack stack_slices(const DicomSeries& series, const Request& request) {
     for (PlacedSlice& p : stack.slices) p.along -= start;
     find_shear(scaled, row, column, stack);
     if (stack.slices.size() > 1) {
-        const Steps steps = steps_of(stack);
+        const Steps steps = steps_of(stack, any);
         fill_grid(steps, stack);
         stack.geometry.spacing[2] = steps.spacing;
     } else {

@@ -49,6 +49,7 @@ struct DicomSlice {
     std::optional<Vec3> row, column;  ///< unit vectors along a row and along a column
     std::optional<Vec3> pixel;        ///< [mm] between columns, between rows, 0
     double aspect = 1;                ///< of a pixel, height : width, if its size is not given
+    double between = 0;               ///< [mm] SpacingBetweenSlices; 0 if not given
     double thickness = 0;             ///< [mm] between slices or of one; 0 if not given
     double slope = 1, intercept = 0;  ///< of the values [units]
     bool has_rescale = false;         ///< it gives both of these, or a table
@@ -84,10 +85,11 @@ struct PlacedSlice {
     double u = 0, v = 0;    ///< shift within the plane against the first slice [pixels]
 };
 
-/// A grid slice: a slice unchanged, or two of them blended (the second with `weight`).
+/// A grid slice: a slice unchanged, two of them blended (the second with `weight`), or zeros.
 struct GridSlice {
     std::size_t first = 0, second = 0;  ///< which of Stack::slices
     double weight = 0;
+    bool is_empty = false;
 };
 
 struct Stack {

@@ -80,6 +80,10 @@ void fill(const Stack& stack, const std::vector<std::vector<std::byte>>& slices,
     const auto plane = static_cast<std::size_t>(stack.geometry.size[0]) *
                        static_cast<std::size_t>(stack.geometry.size[1]);
     for (const GridSlice& g : stack.grid) {
+        if (g.is_empty) {
+            to = std::fill_n(to, plane, T(0));
+            continue;
+        }
         if (g.weight == 0 && !stack.sheared) {
             std::memcpy(to, slices[g.first].data(), plane * sizeof(T));
             to += plane;

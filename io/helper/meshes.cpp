@@ -49,11 +49,12 @@ std::string bytes_of(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The vertex that a corner of an OBJ face names ("3", "3/1/2", from 1, or backwards from -1).
+/// The vertex that a corner of an OBJ face names ("3", "3/1/2", from 1, or backwards from -1). It
+/// may come later in the file.
 vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::string& line) {
     const auto number = number_from<std::int64_t>(corner.substr(0, corner.find('/')));
     const std::int64_t index = number.value_or(0);
-    if (index > 0 && index <= vertices) return index - 1;
+    if (index > 0) return index - 1;
     if (index < 0 && index >= -vertices) return vertices + index;
     throw Failure("'" + one_line(line.substr(0, 60)) +
                   "' names a vertex that is not there; export it again");

@@ -1,4 +1,4 @@
-// Reads MetaImage headers: lines "Key = Value" up to ElementDataFile.
+// Reads MetaImage headers: lines "Key = Value" or "Key: Value" up to ElementDataFile.
 #include <algorithm>
 #include <bit>
 #include <fstream>
@@ -24,7 +24,7 @@ HeaderFields read_fields(const std::filesystem::path& path) {
     // Some programs write several fields for each frame of a recording.
     for (std::size_t bytes = 0; bytes < longest_header && std::getline(in, line);) {
         bytes += line.size() + 1;
-        const auto equals = line.find('=');
+        const auto equals = line.find_first_of("=:");
         if (equals == std::string::npos) {
             if (trimmed(line).empty()) continue;
             break;

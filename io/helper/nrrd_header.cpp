@@ -59,8 +59,8 @@ HeaderFields read_fields(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
     std::string line;
     std::getline(in, line);
-    if (line.rfind("NRRD000", 0) != 0 || line.size() > 20) {
-        throw Failure("is not a NRRD file (it does not begin with NRRD000); check its name");
+    if (!line.starts_with("NRRD00") || line.size() > 20) {
+        throw Failure("is not a NRRD file (it does not begin with NRRD00); check its name");
     }
     HeaderFields fields;
     // A line of blanks does not end it.

@@ -69,17 +69,20 @@ std::vector<Corner> corners_in_text(const std::string& text, std::size_t begin) 
     return corners;
 }
 
-/// The same of a binary file, which says how many triangles it has.
+/// The same of a binary file. It says how many triangles it has, but some programs count too few.
 std::vector<Corner> corners_in_binary(const std::string& bytes) {
     constexpr std::size_t head = 84, triangle = 50, normal = 12;
     if (bytes.size() < head) throw Failure("is too short for an STL file; copy it again");
     const auto raw = std::as_bytes(std::span(bytes));
-    const auto count = little_endian<std::uint32_t>(raw.subspan(head - 4));
+    std::size_t count = little_endian<std::uint32_t>(raw.subspan(head - 4));
     if (bytes.size() < head + triangle * count) {
         throw Failure("it is cut off: its " + std::to_string(count) +
                       " triangles need more bytes; copy it again");
     }
-    std::vector<Corner> corners(std::size_t{3} * count);
+    const bool is_padded = bytes.find_first_not_of('\0', head + triangle * count) == bytes.npos;
+    const std::size_t behind = bytes.size() - head;
+    if (!is_padded && behind % triangle == 0) count = behind / triangle;
+    std::vector<Corner> corners(3 * count);
     for (std::size_t i = 0; i < corners.size(); ++i) {
         for (std::size_t a = 0; a < 3; ++a) {
             const std::size_t at = head + i / 3 * triangle + normal + (i % 3 * 3 + a) * 4;

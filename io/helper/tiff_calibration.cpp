@@ -128,9 +128,15 @@ Moments image_j_moments(const std::string& text, std::size_t pages,
                         std::vector<std::string>& notes) {
     const Description description = fields_of(text);
     if (description.empty()) return {};
-    if (const double channels = count_in(description, "channels"); channels > 1) {
+    const double channels = std::max(count_in(description, "channels"), 1.0);
+    if (channels > 1 && description.contains("SCIFIO")) {  // in an order of its own
         throw Failure("holds " + text_of(channels) +
                       " channels slice by slice; save one of them (ImageJ: Image > Duplicate)");
+    }
+    if (channels > 1 && !(count_in(description, "slices") > 1)) {
+        throw Failure("holds " + text_of(channels) +
+                      " channels of one slice; if they are slices, say so in the file (ImageJ: "
+                      "Image > Properties)");
     }
     if (description.contains("unknown") && count_in(description, "slices") > 1) {
         notes.emplace_back(
@@ -141,14 +147,15 @@ Moments image_j_moments(const std::string& text, std::size_t pages,
         throw Failure("tells of " + text_of(images) + " slices, but has " + std::to_string(pages) +
                       "; it is cut off: copy it again");
     }
-    const double frames = count_in(description, "frames");
-    if (!(frames > 1)) return {};
-    const double slices = static_cast<double>(pages) / frames;
-    if (slices != std::floor(slices)) {
-        throw Failure("tells of " + text_of(frames) + " times, but has " + std::to_string(pages) +
+    const double frames = std::max(count_in(description, "frames"), 1.0);
+    const double slices = static_cast<double>(pages) / frames / channels;
+    if (slices != std::floor(slices) || channels != std::floor(channels)) {
+        throw Failure("tells of " + (channels > 1 ? text_of(channels) + " channels and " : "") +
+                      text_of(frames) + " times, but has " + std::to_string(pages) +
                       " pages; save it again");
     }
-    Moments moments{static_cast<std::int64_t>(frames), {}};
+    Moments moments{static_cast<std::int64_t>(frames), static_cast<std::int64_t>(channels), {}};
+    if (frames == 1) return moments;
     if (const auto interval = description.find("finterval"); interval != description.end()) {
         const auto unit = description.find("tunit");
         moments.times = frame_times(number_from<double>(interval->second).value_or(0), 0,

@@ -24,12 +24,13 @@ ValueMap image_j_values(const std::string& description, Stored stored,
 /// How many planes ImageJ's description tells of; 1 if it does not say.
 double image_j_planes(const std::string& description);
 
-/// Into how many moments, one after the other, ImageJ's description divides the pages.
+/// Into how many moments, one after the other, ImageJ's description divides the pages, and each
+/// slice of them into channels.
 struct Moments {
-    std::int64_t count = 1;
+    std::int64_t count = 1, channels = 1;
     FrameTimes times;
 };
-/// Throws Failure where it has channels, or other counts than there are pages.
+/// Throws Failure where it has channels of a single slice, or other counts than there are pages.
 Moments image_j_moments(const std::string& description, std::size_t pages,
                         std::vector<std::string>& notes);
 

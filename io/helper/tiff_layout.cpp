@@ -97,6 +97,22 @@ std::size_t planes_behind(TIFF* tiff, const fs::path& file, const TiffPage& page
     return static_cast<std::size_t>(told);
 }
 
+/// ImageJ's channels are the pages of a slice.
+void take_channels(const Moments& moments, OmeImage& image) {
+    const auto pages = static_cast<std::int64_t>(image.pages.size());
+    image.sizes = {pages / (moments.count * moments.channels), moments.channels, moments.count};
+    if (moments.channels == 1) return;
+    const std::vector<std::uint32_t> in_file = image.pages;
+    for (std::int64_t i = 0; i < pages; ++i) {
+        const std::int64_t slice = i / moments.channels, channel = i % moments.channels;
+        const std::int64_t z = slice % image.sizes[0], time = slice / image.sizes[0];
+        image.pages[image.plane(z, channel, time)] = in_file[static_cast<std::size_t>(i)];
+    }
+    for (std::int64_t c = 0; c < moments.channels; ++c) {
+        image.channels.push_back("channel " + std::to_string(c));
+    }
+}
+
 }  // namespace
 
 std::string description_of(TIFF* tiff) {
@@ -159,7 +175,7 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
     check_shape(by_tifffile, first, image.pages.size(), notes);
     const Moments moments = image_j_moments(description, image.pages.size(), notes);
     layout.values = image_j_values(description, first.stored, notes);
-    image.sizes = {static_cast<std::int64_t>(image.pages.size()) / moments.count, 1, moments.count};
+    take_channels(moments, image);
     image.frame_interval = moments.times.interval;
     if (pages.whole.size() == 1 && coarser_levels(tiff).empty()) layout.reduced = pages.reduced;
     if (!set_image_j_spacing(image, tiff, description)) {

@@ -30,8 +30,9 @@ void fail_damaged_tiff(const fs::path& file) {
 Tiff open_to_read(const fs::path& file, const std::string& more) {
     Tiff tiff = open_tiff(file, ("rM" + more).c_str());  // M: not mapped, a short file is an error
     if (!tiff) {
-        throw Failure(quoted(file) + " is no TIFF file or is damaged (" + first_tiff_error() +
-                      "); check its name or copy it again");
+        const std::string& why = first_tiff_error();
+        throw Failure(quoted(file) + " is no TIFF file or is damaged" +
+                      (why.empty() ? "" : " (" + why + ")") + "; check its name or copy it again");
     }
     return tiff;
 }

@@ -13,18 +13,23 @@
 #include <vtkXMLImageDataWriter.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <optional>
 
+#include "io/byte_order.hpp"
 #include "io/helper/headers.hpp"
 #include "io/helper/library_words.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_errors.hpp"
 #include "io/helper/vtk_type.hpp"
+#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {
@@ -141,10 +146,34 @@ double samples_of(const std::vector<double>& extent, bool in_cells) {
     return count;
 }
 
-/// Checks numbers that are written as text.
-void check_text(const std::filesystem::path& file) {
+/// Raw arrays end where the one at `last` does. Otherwise bytes were lost or added, by a transfer
+/// as text for example, and VTK takes others for samples. `in`: behind the tag AppendedData.
+void check_raw_end(std::istream& in, const std::string& file_tag, std::uint64_t last) {
+    in.ignore(std::numeric_limits<std::streamsize>::max(), '_');
+    in.seekg(static_cast<std::streamoff>(last), std::ios::cur);
+    const bool is_wide = attribute(file_tag, "header_type") == "UInt64";
+    const bool is_big = attribute(file_tag, "byte_order") == "BigEndian";
+    std::array<std::byte, 8> length{};
+    in.read(reinterpret_cast<char*>(length.data()), is_wide ? 8 : 4);
+    const bool swapped = is_big != (std::endian::native == std::endian::big);
+    const std::uint64_t bytes = is_wide ? number_in<std::uint64_t>(length, swapped)
+                                        : number_in<std::uint32_t>(length, swapped);
+    in.seekg(static_cast<std::streamoff>(bytes), std::ios::cur);
+    std::string rest(256, ' ');
+    in.read(rest.data(), std::ssize(rest));
+    // VTK writes a line's end and blanks before the tag.
+    if (!rest.starts_with(' ') && trimmed(rest).starts_with("</AppendedData")) return;
+    throw Failure(
+        "its arrays do not end where its raw data do: bytes were lost or added, perhaps by a "
+        "transfer as text; copy or export it again");
+}
+
+/// Checks numbers that are written as text, and where raw ones end.
+void check_arrays(const std::filesystem::path& file) {
     constexpr double any = std::numeric_limits<double>::infinity();
     std::ifstream in(file, std::ios::binary);
+    std::string file_tag;
+    std::optional<std::uint64_t> last;  // where the last array lies
     std::vector<double> extent;
     double samples = any;  // that an array may have
     std::string text, tag;
@@ -159,10 +188,16 @@ void check_text(const std::filesystem::path& file) {
                           samples * (components.empty() ? 1 : components[0]));
         }
         if (!std::getline(in, tag, '>')) return;
+        if (tag.starts_with("VTKFile")) file_tag = tag;
+        last = std::max(last, number_from<std::uint64_t>(attribute(tag, "offset")));
         if (tag.starts_with("Piece")) extent = numbers_of(tag, "Extent", 6);
         const bool at_points = tag.starts_with("PointData"), in_cells = tag.starts_with("CellData");
         if (at_points || in_cells) samples = extent.empty() ? any : samples_of(extent, in_cells);
         if (tag.starts_with("/PointData") || tag.starts_with("/CellData")) samples = any;
+    }
+    const bool is_raw = attribute(tag, "encoding") == "raw";
+    if (is_raw && last && attribute(file_tag, "compressor").empty()) {
+        check_raw_end(in, file_tag, *last);
     }
 }
 
@@ -275,7 +310,7 @@ void check_size(vtkXMLImageDataReader& reader, const Request& request) {
 
 Result read_vti(const Request& request) {
     const bool has_spacing = check_ends(request);
-    check_text(request.path);
+    check_arrays(request.path);
     const vtkNew<ErrorKeeper> errors;
     vtkOutputWindow::SetInstance(errors);
     const vtkNew<PieceReader> reader;

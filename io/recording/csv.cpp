@@ -1,4 +1,4 @@
-// Reads CSV tables. No quoting and no escapes: the tables hold numbers and bare words.
+// Reads CSV tables of numbers and bare words. A cell may be in quotes.
 #include "palpate/io/csv.hpp"
 
 #include <algorithm>
@@ -19,8 +19,15 @@ std::string_view without_blanks(std::string_view text) {
 void split(std::string_view line, std::vector<std::string_view>& cells) {
     cells.clear();
     for (;;) {
-        const auto comma = line.find(',');
-        cells.push_back(without_blanks(line.substr(0, comma)));
+        auto comma = line.find(',');
+        if (without_blanks(line).starts_with('"')) {
+            comma = line.find(',', line.find('"', line.find('"') + 1));
+        }
+        std::string_view cell = without_blanks(line.substr(0, comma));
+        if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') {
+            cell = cell.substr(1, cell.size() - 2);
+        }
+        cells.push_back(cell);
         if (comma == std::string_view::npos) return;
         line.remove_prefix(comma + 1);
     }

@@ -78,8 +78,10 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
         return fs::is_regular_file(a, error) && fs::equivalent(a, b, error);
     }
     // Made absolute first: a relative name that does not exist would stay relative.
-    const fs::path whole = fs::weakly_canonical(fs::absolute(followed(a)), error);
-    return !whole.empty() && whole == fs::weakly_canonical(fs::absolute(followed(b)), error);
+    const auto whole = [&](const fs::path& path) {
+        return fs::weakly_canonical(fs::absolute(followed(path), error), error);
+    };
+    return !whole(a).empty() && whole(a) == whole(b);
 }
 
 void check_output(const std::filesystem::path& path) {
@@ -94,6 +96,7 @@ void check_output(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(status) || !target.has_filename()) {
         fail("is a folder: name a file in it");
     }
+    if (error == std::errc::filename_too_long) fail("cannot be written: " + because(error.value()));
     if (std::filesystem::exists(status)) {
         const int problem = why_unwritable(target);
         if (problem != 0) fail("exists and cannot be overwritten: " + because(problem));

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <map>
 
+#include "io/system/leftovers.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/box_bytes.hpp"
@@ -134,6 +135,7 @@ void fail_changed(const Store& store) {
 std::uint64_t files_at(const std::string& address, const std::stop_token& stop) {
     std::map<fs::path, struct stat> files;  // in an order that does not depend on the disk
     const auto add = [&](const fs::path& path) {
+        if (io::is_temporary(path.filename().native())) return;  // of an output beside them
         struct stat about {};
         if (::stat(path.c_str(), &about) == 0 && S_ISREG(about.st_mode)) files[path] = about;
     };

@@ -113,10 +113,11 @@ class Opening {
         const Json& own = member(root.metadata, "dimension_names");
         const Json& names = own.is_array() ? own : member(root.attributes, "_ARRAY_DIMENSIONS");
         if (!names.is_array() || names.size() != axes.size()) return;
+        if (std::ranges::all_of(names, &Json::is_null)) return;
         std::vector<ImageAxis> named;
         std::string text;
         for (const Json& name : names) {
-            named.push_back({axis_name(name), ""});
+            named.push_back({name.is_null() ? "an unnamed axis" : axis_name(name), ""});
             text += (text.empty() ? "" : ", ") + named.back().name.substr(0, 20);
         }
         try {

@@ -81,6 +81,25 @@ TEST(MeshReader, reads_texts_polygons_and_open_meshes) {
     EXPECT_NEAR(tool->radius(), 10, 1e-6);
 }
 
+TEST(MeshReader, reads_faces_before_their_vertices_and_all_triangles_of_a_wrong_count) {
+    const support::ScratchFolder folder;
+    put_bytes(folder / "a.obj", "f 1 2 3\nv 0 0 0\nv 2 0 0\nv 0 3 0\n");
+    EXPECT_EQ(read_mesh(folder / "a.obj").triangles.size(), 1U);
+    write_mesh(wedge(), folder / "a.stl");
+    const std::string whole = support::bytes_of(folder / "a.stl");
+    for (const char count : {'\0', '\1', '\3'}) {
+        std::string bytes = whole;
+        bytes[80] = count;
+        put_bytes(folder / "a.stl", bytes);
+        EXPECT_EQ(corners_of(read_mesh(folder / "a.stl")), corners_of(wedge()));
+    }
+    for (const std::string& end : {std::string("a comment"), std::string(50, '\0')}) {
+        put_bytes(folder / "a.stl", whole + end);
+        EXPECT_EQ(corners_of(read_mesh(folder / "a.stl")), corners_of(wedge()));
+        EXPECT_EQ(read_mesh(folder / "a.stl").vertices.size(), 4U);
+    }
+}
+
 TEST(MeshReader, says_what_is_wrong) {
     const support::ScratchFolder folder;
     const auto says = [&](const std::string& name, const std::string& bytes,

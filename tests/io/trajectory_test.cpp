@@ -47,6 +47,15 @@ TEST(Trajectory, may_have_comments_blank_lines_spaces_crlf_and_a_byte_order_mark
     EXPECT_EQ(read.position, (std::vector<Vec3>{{1.5, 2e-3, -0.5}, {1, 2, 3}}));
 }
 
+TEST(Trajectory, may_have_cells_in_quotes) {
+    const Trajectory read = parse("\"\",\"t\" , \"x\",y,\"z\"\n\"a, b\",\"0\",1,\"2\",3\n");
+    EXPECT_EQ(read.time, (std::vector<double>{0}));
+    EXPECT_EQ(read.position, (std::vector<Vec3>{{1, 2, 3}}));
+    for (const std::string row : {"0,1,2,\"3", "0,1,2,\"", "0,\"1,2\",3", "\"0,1,2,3"}) {
+        expect_refusal("t,x,y,z\n" + row + "\n", "line 2");
+    }
+}
+
 TEST(Trajectory, is_read_from_a_trace_by_its_hip) {
     const Trajectory read = parse("t,hip_x,hip_y,hip_z,scp_x,mode\n0,1,2,3,9,free\n");
     EXPECT_EQ(read.position, (std::vector<Vec3>{{1, 2, 3}}));

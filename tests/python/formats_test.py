@@ -91,6 +91,20 @@ def test_an_origin_that_a_nrrd_header_leaves_open_is_noted(tmp_path):
     assert numpy.array_equal(noted(path, "0 was taken").geometry.origin, (0, 0, 0))
 
 
+def test_a_nrrd_of_the_time_before_versions_is_read(tmp_path):
+    path = nrrd(tmp_path / "a.nrrd", ramp("i2"), *PLACED)
+    path.write_bytes(path.read_bytes().replace(b"NRRD0005", b"NRRD00.01"))
+    assert numpy.array_equal(palpate.load(path).volume.array, ramp("i2"))
+
+
+def test_a_meta_image_may_have_colons_in_place_of_equal_signs(tmp_path):
+    lines = ("ObjectType: Image", "NDims: 3", "DimSize: 6 4 5", "ElementSpacing: 1 2 3", "ElementType: MET_SHORT",
+             "ElementDataFile: LOCAL", "")
+    (tmp_path / "a.mha").write_bytes("\n".join(lines).encode() + ramp("i2").tobytes())
+    volume = palpate.load(tmp_path / "a.mha").volume
+    assert numpy.array_equal(volume.array, ramp("i2")) and numpy.array_equal(volume.geometry.spacing, (1, 2, 3))
+
+
 def test_samples_twice_as_wide_as_the_header_says_are_refused(tmp_path):
     data = ramp("i2")
     path = nrrd(tmp_path / "a.nrrd", data, *PLACED)
@@ -181,6 +195,19 @@ def test_axes_of_scifio_are_those_of_image_j(tmp_path):
     refused(written("Channel,Z", "2,3", "null,2.0", "null,micron"), "holds 2 channels")
     refused(written("Lifetime,Z", "2,3", "null,2.0", "null,micron"), "holds 2 channels")
     refused(written("Time,Z", "2,3", "null,2.0", "null,micron"), "times before its slices")
+
+
+@pytest.mark.parametrize("times", (1, 2))
+def test_the_first_channel_of_image_j_is_taken(tmp_path, times):
+    data = numpy.arange(times * 3 * 2 * 4 * 6, dtype="u2").reshape(times, 3, 2, 4, 6)
+    path = tmp_path / "a.tif"
+    tifffile.imwrite(path, data, imagej=True, metadata={"axes": "TZCYX", "spacing": 2.0, "unit": "mm"})
+    for frame in range(times):
+        loaded = palpate.load(path, frame=frame)
+        assert numpy.array_equal(loaded.volume.array, data[frame, :, 0]) and loaded.time_steps == times
+        assert any("channel 0 (channel 0) of 2 was taken" in note for note in loaded.notes)
+    tifffile.imwrite(path, data[0, :, 0], imagej=True)  # without axes, tifffile counts slices as channels
+    refused(path, "holds 3 channels of one slice; if they are slices")
 
 
 def test_a_channel_of_a_tiff_that_is_read_whole_is_refused(tmp_path):
@@ -357,6 +384,73 @@ def test_pieces_of_a_vti_may_share_samples_and_fill_its_extent_together(tmp_path
     start = VTI.split("<Piece")[0]
     (tmp_path / "a.vti").write_text(start + piece.format("0 2", low) + piece.format("2 4", high) + "</ImageData></VTKFile>")
     assert numpy.array_equal(palpate.load(tmp_path / "a.vti").volume.array, ramp("i2"))
+
+
+@pytest.mark.parametrize("wide", (False, True))
+def test_raw_samples_of_a_vti_that_a_transfer_as_text_changed_are_refused(tmp_path, wide):
+    array = '<DataArray type="Int16" Name="density" format="appended" offset="0"/>'
+    head = VTI.format(active="density", arrays=array).replace("</VTKFile>", '<AppendedData encoding="raw">_').encode()
+    if wide:
+        head = head.replace(b"<VTKFile", b'<VTKFile header_type="UInt64"')
+    data = numpy.full(SHAPE, 0x0a0d, "<i2")
+    data[-1, -1, -1] = 0x4141
+    end = b"\n  </AppendedData>\n</VTKFile>\n"
+    raw = struct.pack("<Q" if wide else "<I", data.nbytes) + data.tobytes()
+    (tmp_path / "a.vti").write_bytes(head + raw + end)
+    assert numpy.array_equal(palpate.load(tmp_path / "a.vti").volume.array, data)
+    for before, after, count in ((b"\r\n", b"\n", 1), (b"\r\n", b"\n", 30), (b"\n", b"\r\n", 1)):
+        (tmp_path / "a.vti").write_bytes(head + raw.replace(before, after, count) + end)
+        refused(tmp_path / "a.vti", "transfer as text")
+
+
+@pytest.mark.parametrize("names, order", (([None] * 3, None), (["x", None, "z"], "an unnamed axis as y")))
+def test_dimensions_of_zarr_may_have_no_names(tmp_path, names, order):
+    folder = tmp_path / "a.zarr"
+    folder.mkdir()
+    (folder / "zarr.json").write_text(json.dumps({
+        "zarr_format": 3, "node_type": "array", "shape": SHAPE, "data_type": "int16", "fill_value": 0,
+        "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": SHAPE}}, "dimension_names": names,
+        "chunk_key_encoding": {"name": "v2"}, "codecs": [{"name": "bytes", "configuration": {"endian": "little"}}]}))
+    (folder / "0.0.0").write_bytes(ramp("i2").tobytes())
+    told = program("info", folder)
+    assert "6 x 4 x 5" in told if order is None else order in told
+    assert ("taken by their order" in told) == (order is not None)
+
+
+# Outputs over inputs ------------------------------------------------------------------------------------
+
+
+def test_no_output_replaces_a_file_that_is_read(tmp_path):
+    slices = folder(tmp_path / "slices", ["a1", "a2", "a3"])
+    for number in range(2):
+        nibabel.save(nibabel.Nifti1Image(ramp("i2"), numpy.eye(4)), tmp_path / f"beat_{number}.nii")
+    (tmp_path / "hand.csv").write_text("t,x,y,z\n0,0,0,0\n")
+    (tmp_path / "set.json").write_text('{"palpate_layers": 1, "layers": [{"name": "a", "level": 100}]}')
+    (tmp_path / "points.csv").write_text("x,y,z\n0,0,1\n")
+    replay = ("replay", "synthetic:sphere:16x16x16", "--trajectory", tmp_path / "hand.csv")
+    layers, tool = ("--layers", tmp_path / "set.json"), ("--isovalue", "50%", "--tool", tmp_path / "points.csv")
+    for output, *words in ((slices / "a2.tif", "convert", slices, slices / "a2.tif"),
+                           (tmp_path / "beat_1.nii", "convert", tmp_path / "beat_%d.nii", tmp_path / "beat_1.nii"),
+                           (tmp_path / "set.json", *replay, *layers, "--output", tmp_path / "set.json"),
+                           (tmp_path / "points.csv", *replay, *tool, "--output", tmp_path / "points.csv")):
+        before = output.read_bytes()
+        assert "is an input and would be replaced" in program(*words)
+        assert output.read_bytes() == before
+    for _ in range(2):  # other files of these folders may be written, also again
+        for words in (("convert", slices, slices / "a.nrrd"), ("convert", tmp_path / "beat_%d.nii", tmp_path / "beat.nii"),
+                      (*replay, *layers, "--output", tmp_path / "out.csv")):
+            assert "would be replaced" not in program(*words)
+            assert words[-1].exists()
+
+
+def test_an_output_that_cannot_be_written_is_refused_before_the_work(tmp_path):
+    (tmp_path / "hand.csv").write_text("t,x,y,z\n0,0,0,0\n")
+    replay = ("replay", "synthetic:sphere:16x16x16", "-i", "50%", "--trajectory", tmp_path / "none.csv", "--output")
+    assert "cannot be written: File name too long" in program(*replay, tmp_path / ("a" * 300))
+    in_no_folder = 'mkdir gone && cd gone && rmdir ../gone && exec "$@"'
+    done = subprocess.run(["sh", "-c", in_no_folder, "sh", os.environ["PALPATE"], *map(str, replay[:5]), "../hand.csv", "--output", "a"],
+                          cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 5 and done.stderr.startswith("palpate: a: cannot be written"), done.stderr
 
 
 # What to do instead -----------------------------------------------------------------------------------------

@@ -53,6 +53,10 @@ inline constexpr double assumed_frame_interval = 0.1;
 /// InputError, std::invalid_argument for an interval that is none.
 SequenceFile open_sequence(const std::filesystem::path& path, const SequenceOptions& options = {});
 
+/// Whether `path` is a file that `source` is read from: this file, one with the name of a slice in
+/// this folder, or one of this series. (why_not_written() knows whose samples a .raw file has.)
+bool is_read_from(const std::filesystem::path& path, const std::filesystem::path& source);
+
 /// Frames made by `make`, `interval` [s] apart from time 0. Makes the first one to learn its grid
 /// and type. Throws std::invalid_argument for a count below 1 or an interval that is not valid.
 Sequence made_sequence(int count, double interval,
