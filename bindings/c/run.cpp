@@ -167,7 +167,7 @@ extern "C" PALPATE_API palpate_status palpate_run_text(const palpate_run* run, i
 extern "C" PALPATE_API palpate_status palpate_run_use_device(palpate_run* run, const char* device) {
     return guarded([&] {
         const std::scoped_lock lock(given(run, "run").mutex);
-        run->run->use_device(devices::parse_device(&given(device, "device")));
+        run->run->use_device(devices::parse_device(&given(device, "device")), progress_of_thread());
     });
 }
 
