@@ -63,9 +63,9 @@ class FolderObjects : public Objects {
         }
         if (range.from_end) range.offset = size - range.length;
         if (range.length > wanted.most) {
-            fail(wanted.key, "has " + std::to_string(range.length) + " bytes, more than " +
-                                 (wanted.probe ? "metadata may take; allow more memory"
-                                               : "its metadata allow; copy it again"));
+            fail(wanted.key, "has " + std::to_string(range.length) +
+                                 " bytes, more than its metadata allow; copy it again" +
+                                 (wanted.probe ? ", or allow more memory" : ""));
         }
         Bytes bytes = read(wanted.key, file.number(), range);
         if (wanted.identity) {

@@ -293,7 +293,8 @@ TEST(Bounds, files_of_metadata_that_are_read_at_once_share_what_may_be_used) {
             return message_of<io::InputError>([&] { (void)open_store(address, options); });
         };
         const std::string here = refused(folder / name), there = refused(server.address(name));
-        EXPECT_TRUE(contains(here, "more than metadata may take; allow more memory")) << here;
+        EXPECT_TRUE(contains(here, "its metadata allow; copy it again, or allow more memory"))
+            << here;
         EXPECT_TRUE(contains(there, "more bytes than the metadata allow")) << there;
     }
 }
