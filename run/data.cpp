@@ -6,6 +6,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/output.hpp"
 #include "palpate/io/raw_options.hpp"
@@ -39,7 +40,7 @@ std::filesystem::path new_folder_in(const std::filesystem::path& place) {
     do {
         folder = place / ("palpate-edits-" + std::to_string(random()));
     } while (!std::filesystem::create_directory(folder));
-    std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
+    (void)io::give_mode(folder, std::filesystem::perms::owner_all);
     return folder;
 }
 

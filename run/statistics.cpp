@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "palpate/field.hpp"
@@ -11,43 +12,50 @@
 namespace palpate::run {
 namespace {
 
-/// Samples between two reports of progress: milliseconds.
-constexpr std::size_t reported_samples = std::size_t{1} << 20;
+/// Calls visit(sample) for all samples, and reports after each million: after milliseconds.
+template <class T, class Visit>
+void for_each_sample(const Volume& volume, const OnProgress& progress, const Visit& visit) {
+    constexpr std::size_t block = std::size_t{1} << 20;
+    std::span<const T> left = volume.samples<T>();
+    ReportedItems reported(progress, left.size(), block);
+    while (!left.empty()) {
+        const auto now = left.first(std::min(block, left.size()));
+        std::ranges::for_each(now, visit);
+        reported.done(now.size());
+        left = left.subspan(now.size());
+    }
+}
 
 /// How many samples have the least value, and the least of the others.
 template <class T>
 std::pair<std::int64_t, double> above_least(const Volume& volume, const OnProgress& progress) {
-    ReportedItems reported(progress, volume.samples<T>().size(), reported_samples);
     const T least = static_cast<T>(volume.minimum());
     std::int64_t count = 0;
     T next = static_cast<T>(volume.maximum());
-    for (const T s : volume.samples<T>()) {
-        reported.done();
+    for_each_sample<T>(volume, progress, [&](const T s) {
         count += s == least;
         if (s > least && s < next) next = s;
-    }
+    });
     return {count, static_cast<double>(next)};
 }
 
 template <class T>
 void count(const Volume& volume, std::optional<double> padding, Histogram& h,
            const OnProgress& progress) {
-    ReportedItems reported(progress, volume.samples<T>().size(), reported_samples);
     const double scale = static_cast<double>(h.counts.size()) / (h.high - h.low);
     const auto last = static_cast<std::int64_t>(h.counts.size()) - 1;
     double sum = 0;
     double squares = 0;
     std::int64_t counted = 0;
-    for (const T s : volume.samples<T>()) {
-        reported.done();
-        if (padding && static_cast<double>(s) == *padding) continue;
+    for_each_sample<T>(volume, progress, [&](const T s) {
+        if (padding && static_cast<double>(s) == *padding) return;
         ++counted;
         const double value = static_cast<double>(s) - h.low;
         const auto bin = std::min(last, static_cast<std::int64_t>(value * scale));
         ++h.counts[static_cast<std::size_t>(bin)];
         sum += value;
         squares += value * value;
-    }
+    });
     const auto n = static_cast<double>(counted);
     h.mean = h.low + sum / n;
     h.deviation = std::sqrt(std::max(0.0, squares / n - (sum / n) * (sum / n)));

@@ -35,7 +35,7 @@ python=(python3-dev pybind11-dev python3-numpy python3-pytest python3-nibabel py
         python3-h5py python3-pydicom python3-tifffile teem-apps python3-setuptools python3-wheel
         python3-pip python3-venv python3-dask python3-distributed python3-scipy python3-matplotlib weasyprint mypy)
 program=("${core[@]}" libinsighttoolkit5-dev libvtk9-dev libcli11-dev libfmt-dev nlohmann-json3-dev
-    libgdcm-dev libhdf5-dev libtiff-dev libexpat1-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
+    libgdcm-dev libhdf5-dev libtiff-dev libpugixml-dev libpng-dev zlib1g-dev gnuplot-nox libboost-dev libegl-dev libegl1
     libgl1-mesa-dri libembree-dev libblosc-dev libzstd-dev liblz4-dev libxxhash-dev libcurl4-openssl-dev)
 io=("${program[@]}" libopenigtlink-dev "${python[@]}")
 viewer=("${io[@]}" libvtk9-qt-dev qtbase5-dev qttools5-dev qttools5-dev-tools qttranslations5-l10n xvfb)

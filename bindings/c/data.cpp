@@ -113,12 +113,12 @@ extern "C" PALPATE_API palpate_status palpate_data_field(const palpate_data* dat
         const run::FieldSetup setup = field_setup(options);
         Field field = run::make_field(from.start(), setup);
         from.update(field);
-        *out = new palpate_field{std::move(field), usual_isovalue(from.loaded(), setup)};
+        *out = new palpate_field{std::move(field), usual_isovalue(from.loaded())};
     });
 }
 
 extern "C" PALPATE_API palpate_status palpate_data_save(palpate_data* data, const char* path) {
-    return guarded([&] { data_of(data).save(&given(path, "path"), {}); });
+    return guarded([&] { data_of(data).save(&given(path, "path"), progress_of_thread()); });
 }
 
 extern "C" PALPATE_API palpate_status palpate_data_play(palpate_data* data, double speed) {

@@ -12,8 +12,7 @@ extern "C" PALPATE_API palpate_status palpate_field_create(const palpate_volume*
         given(out, "out");
         const run::LoadedVolume& loaded = given(volume, "volume").loaded;
         const run::FieldSetup setup = field_setup(options);
-        *out =
-            new palpate_field{run::make_field(loaded.volume, setup), usual_isovalue(loaded, setup)};
+        *out = new palpate_field{run::make_field(loaded.volume, setup), usual_isovalue(loaded)};
     });
 }
 
@@ -64,7 +63,12 @@ extern "C" PALPATE_API palpate_status palpate_mesh_create(const palpate_field* f
                                                           double isovalue, palpate_mesh** out) {
     return guarded([&] {
         given(out, "out");
-        *out = new palpate_mesh{extract_surface(given(field, "field").field, isovalue)};
+        const Field& f = given(field, "field").field;
+        const auto tell = [progress = progress_of_thread()](double fraction) {
+            if (progress) progress(fraction);
+            return true;
+        };
+        *out = new palpate_mesh{extract_surface(f, isovalue, {.progress = tell})};
     });
 }
 

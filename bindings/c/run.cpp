@@ -168,7 +168,7 @@ extern "C" PALPATE_API palpate_status palpate_run_use_device(palpate_run* run, c
     return guarded([&] {
         if (calls_back) throw WrongState("a callback cannot change the device: use another thread");
         const auto lock = locked(run);
-        run->run->use_device(devices::parse_device(&given(device, "device")));
+        run->run->use_device(devices::parse_device(&given(device, "device")), progress_of_thread());
     });
 }
 

@@ -23,7 +23,21 @@ palpate_status keep(palpate_status status, const char* text) noexcept {
     return status;
 }
 
+/// Of palpate_set_progress().
+thread_local OnProgress thread_progress;
+
 }  // namespace
+
+OnProgress progress_by(int32_t (*progress)(double fraction, void* context), void* context,
+                       const char* cancelled) {
+    return [=](double fraction) {
+        if (progress(fraction, context) == 0) throw Cancelled(cancelled);
+    };
+}
+
+OnProgress progress_of_thread() {
+    return thread_progress;
+}
 
 void forget_error() noexcept {
     last_error[0] = '\0';
@@ -63,6 +77,13 @@ palpate_status status_of_exception() noexcept {
 
 extern "C" PALPATE_API const char* palpate_last_error(void) {
     return last_error.data();
+}
+
+extern "C" PALPATE_API void palpate_set_progress(int32_t (*progress)(double fraction,
+                                                                     void* context),
+                                                 void* context) {
+    thread_progress =
+        progress ? progress_by(progress, context, "the call was cancelled") : OnProgress();
 }
 
 extern "C" PALPATE_API const char* palpate_version(void) {

@@ -23,6 +23,12 @@ class Cancelled : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// Calls a caller's progress function; throws Cancelled with this text when it returns 0.
+OnProgress progress_by(int32_t (*progress)(double fraction, void* context), void* context,
+                       const char* cancelled);
+/// Calls what palpate_set_progress() set for this thread.
+OnProgress progress_of_thread();
+
 /// Forgets this thread's last error.
 void forget_error() noexcept;
 /// Keeps the text of the exception that is being handled as this thread's last error, and returns

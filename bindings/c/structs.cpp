@@ -64,10 +64,9 @@ run::FieldSetup field_setup(const palpate_field_options* options) {
     return setup;
 }
 
-std::optional<double> usual_isovalue(const run::LoadedVolume& loaded,
-                                     const run::FieldSetup& setup) {
+std::optional<double> usual_isovalue(const run::LoadedVolume& loaded) {
     if (!(loaded.volume.maximum() > loaded.volume.minimum())) return std::nullopt;
-    return run::isovalue_of(loaded, setup);
+    return run::isovalue_of(loaded, run::FieldSetup{}, progress_of_thread());
 }
 
 std::vector<DensityRange> ranges_from(const double* ranges, std::size_t count) {

@@ -32,10 +32,8 @@ std::uint32_t size_of(const T& theirs, const char* name) {
 /// Calls the caller's progress function, if there is one. Throws Cancelled when it says so.
 template <class Options>
 OnProgress progress_of(const Options& asked, const char* cancelled) {
-    if (!asked.progress) return {};
-    return [progress = asked.progress, context = asked.context, cancelled](double fraction) {
-        if (progress(fraction, context) == 0) throw Cancelled(cancelled);
-    };
+    if (!asked.progress) return progress_of_thread();
+    return progress_by(asked.progress, asked.context, cancelled);
 }
 
 /// One of ours with its size, else 0.
@@ -106,7 +104,7 @@ palpate_geometry geometry_to(const Geometry& geometry);
 /// Null is all defaults, here and below.
 run::FieldSetup field_setup(const palpate_field_options* options);
 /// A level that is worth feeling; nothing for constant data.
-std::optional<double> usual_isovalue(const run::LoadedVolume& loaded, const run::FieldSetup& setup);
+std::optional<double> usual_isovalue(const run::LoadedVolume& loaded);
 /// Pairs of low and high. Throws std::invalid_argument for null or too many.
 std::vector<DensityRange> ranges_from(const double* ranges, std::size_t count);
 /// Reads the files of tool and layers.

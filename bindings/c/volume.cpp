@@ -52,7 +52,7 @@ extern "C" PALPATE_API palpate_status palpate_volume_copy(const palpate_geometry
         }
         const std::shared_ptr<const void> own(copied(samples, bytes),
                                               [](void* p) { ::operator delete(p); });
-        *out = in_memory(Volume(grid, type_from(type), own, bytes));
+        *out = in_memory(Volume(grid, type_from(type), own, bytes, progress_of_thread()));
     });
 }
 
@@ -66,7 +66,8 @@ extern "C" PALPATE_API palpate_status palpate_volume_adopt(const palpate_geometr
         if (!samples) throw std::invalid_argument("samples is null");
         const auto released = std::make_shared<Release>(Release{release, context});
         const std::shared_ptr<const void> shared(released, samples);
-        *out = in_memory(Volume(geometry_from(geometry), type_from(type), shared, bytes));
+        *out = in_memory(
+            Volume(geometry_from(geometry), type_from(type), shared, bytes, progress_of_thread()));
         released->armed = true;
     });
 }
@@ -100,8 +101,7 @@ extern "C" PALPATE_API palpate_status palpate_volume_describe(const palpate_volu
         info.geometry = geometry_to(loaded.volume.geometry());
         info.minimum = loaded.volume.minimum();
         info.maximum = loaded.volume.maximum();
-        info.isovalue =
-            usual_isovalue(loaded, {}).value_or(std::numeric_limits<double>::quiet_NaN());
+        info.isovalue = usual_isovalue(loaded).value_or(std::numeric_limits<double>::quiet_NaN());
         info.frames = static_cast<std::int32_t>(std::max(1, loaded.sequence.count()));
         give(out, "out", info);
     });

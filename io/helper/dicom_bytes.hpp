@@ -37,8 +37,6 @@ class DicomBytes {
     std::span<const std::byte> view(std::uint64_t at, std::uint64_t length) const {
         return {data() + at, length};
     }
-    /// All bytes that reaches() has gone through.
-    std::span<const std::byte> unpacked() const { return unpacked_; }
 
   private:
     struct Inflating;

@@ -182,8 +182,9 @@ std::vector<int> setups_of(const Hdf5File& file) {
 
 /// Whether registrations only stretch the axes, as the voxel size does.
 bool only_stretches(const XmlElement& root) {
-    for (const XmlElement* one : root.all("ViewRegistrations/ViewRegistration/ViewTransform")) {
-        const std::vector<double> rows = numbers_in(one->text_of("affine"), "affine");
+    for (const XmlElement& one :
+         elements_at(root, "ViewRegistrations/ViewRegistration/ViewTransform")) {
+        const std::vector<double> rows = numbers_in(text_at(one, "affine"), "affine");
         for (std::size_t i = 0; i < rows.size(); ++i) {
             if (i % 5 != 0 && rows[i] != 0) return false;
         }
@@ -193,13 +194,13 @@ bool only_stretches(const XmlElement& root) {
 
 std::map<int, BdvSetup> setups_in(const XmlElement& root) {
     std::map<int, BdvSetup> all;
-    for (const XmlElement* setup : root.all("SequenceDescription/ViewSetups/ViewSetup")) {
-        const auto id = number_from<int>(trimmed(setup->text_of("id")));
+    for (const XmlElement& setup : elements_at(root, "SequenceDescription/ViewSetups/ViewSetup")) {
+        const auto id = number_from<int>(trimmed(text_at(setup, "id")));
         if (!id) continue;
         BdvSetup& one = all[*id];
-        one.unit = trimmed(setup->text_of("voxelSize/unit"));
-        one.name = trimmed(setup->text_of("name"));
-        const std::vector<double> size = numbers_in(setup->text_of("voxelSize/size"), "voxelSize");
+        one.unit = trimmed(text_at(setup, "voxelSize/unit"));
+        one.name = trimmed(text_at(setup, "name"));
+        const std::vector<double> size = numbers_in(text_at(setup, "voxelSize/size"), "voxelSize");
         one.has_spacing = size.size() == 3;
         for (std::size_t i = 0; i < 3 && one.has_spacing; ++i) one.spacing[2 - i] = size[i];
     }
@@ -230,7 +231,8 @@ ChunkedImage bdv_image(const Hdf5File& file, const std::filesystem::path& path, 
     xml.replace_extension(".xml");
     std::map<int, BdvSetup> all;
     if (std::filesystem::exists(xml)) {
-        const XmlElement root = read_xml(xml);
+        const pugi::xml_document document = read_xml(xml);
+        const XmlElement root = document.document_element();
         all = setups_in(root);
         if (!only_stretches(root)) {
             image.notes.emplace_back(

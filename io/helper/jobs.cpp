@@ -182,8 +182,10 @@ class Workshop {
         for (const fs::path& file : made) {
             const fs::path to = parent / file.filename();
             std::error_code ignored;  // a new file has the usual mode
-            if (const auto old = fs::status(to, ignored); fs::exists(old)) {
-                fs::permissions(file, old.permissions());
+            const auto old = fs::status(to, ignored);
+            if (fs::exists(old) && !give_mode(file, old.permissions())) {
+                throw Failure("cannot be given the mode of the file it replaces (" + reason(errno) +
+                              ")");
             }
             const int whole = open_to_read(file);
             const bool moved = synchronise(whole) && replace(file, to);

@@ -60,12 +60,27 @@ vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::stri
                   "' names a vertex that is not there; export it again");
 }
 
+/// A mesh of polygons, to be filled.
+struct Polygons {
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> faces;
+
+    Polygons() { points->SetDataTypeToDouble(); }
+    void add_face(const std::vector<vtkIdType>& corners) const {
+        faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
+    }
+    vtkSmartPointer<vtkPolyData> data() const {
+        auto data = vtkSmartPointer<vtkPolyData>::New();
+        data->SetPoints(points);
+        data->SetPolys(faces);
+        return data;
+    }
+};
+
 /// Vertices and faces. Not by VTK, whose reader loses faces that count their vertices backwards.
 vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
     std::istringstream in(plain_text(bytes_of(path)));
-    const vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    const vtkNew<vtkCellArray> faces;
+    const Polygons mesh;
     for (std::string line; next_line(in, line);) {
         for (std::string more; line.ends_with('\\') && next_line(in, more);) {
             line.back() = ' ';
@@ -85,44 +100,32 @@ vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
                 }
                 coordinate = *number;
             }
-            points->InsertNextPoint(at);
+            mesh.points->InsertNextPoint(at);
         } else if (word == "f") {
             std::vector<vtkIdType> corners;
             while (words >> word) {
-                corners.push_back(vertex_of(word, points->GetNumberOfPoints(), line));
+                corners.push_back(vertex_of(word, mesh.points->GetNumberOfPoints(), line));
             }
-            faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
+            mesh.add_face(corners);
         }
     }
-    auto data = vtkSmartPointer<vtkPolyData>::New();
-    data->SetPoints(points);
-    data->SetPolys(faces);
-    return data;
+    return mesh.data();
 }
 
 vtkSmartPointer<vtkPolyData> read_ply(const std::filesystem::path& path) {
-    const PlyMesh mesh = ply_mesh(path);
-    const vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    for (const auto& vertex : mesh.vertices) points->InsertNextPoint(vertex.data());
-    const vtkNew<vtkCellArray> faces;
-    std::vector<vtkIdType> corners;
-    for (const auto& face : mesh.faces) {
-        corners.assign(face.begin(), face.end());
-        faces->InsertNextCell(static_cast<vtkIdType>(corners.size()), corners.data());
-    }
-    auto data = vtkSmartPointer<vtkPolyData>::New();
-    data->SetPoints(points);
-    data->SetPolys(faces);
-    return data;
+    const PlyMesh read = ply_mesh(path);
+    const Polygons mesh;
+    for (const auto& vertex : read.vertices) mesh.points->InsertNextPoint(vertex.data());
+    for (const auto& face : read.faces) mesh.add_face({face.begin(), face.end()});
+    return mesh.data();
 }
 
 /// Corners at one place become one vertex. Triangles of which two do are left out.
 vtkSmartPointer<vtkPolyData> read_stl(const std::filesystem::path& path) {
     const auto corners = stl_corners(bytes_of(path));
-    const vtkNew<vtkPoints> all, points;
+    const Polygons mesh;
+    const vtkNew<vtkPoints> all;
     all->SetDataTypeToDouble();
-    points->SetDataTypeToDouble();
     for (const auto& corner : corners) {
         if (!std::isfinite(corner[0] + corner[1] + corner[2])) {
             throw Failure("vertex " + std::to_string(all->GetNumberOfPoints()) +
@@ -131,19 +134,15 @@ vtkSmartPointer<vtkPolyData> read_stl(const std::filesystem::path& path) {
         all->InsertNextPoint(corner.data());
     }
     const vtkNew<vtkMergePoints> merged;
-    merged->InitPointInsertion(points, all->GetBounds(), all->GetNumberOfPoints());
-    const vtkNew<vtkCellArray> faces;
+    merged->InitPointInsertion(mesh.points, all->GetBounds(), all->GetNumberOfPoints());
+    std::vector<vtkIdType> ids(3);
     for (std::size_t i = 0; i < corners.size(); i += 3) {
-        vtkIdType ids[3];
         for (std::size_t c = 0; c < 3; ++c) {
             merged->InsertUniquePoint(corners[i + c].data(), ids[c]);
         }
-        if (ids[0] != ids[1] && ids[1] != ids[2] && ids[2] != ids[0]) faces->InsertNextCell(3, ids);
+        if (ids[0] != ids[1] && ids[1] != ids[2] && ids[2] != ids[0]) mesh.add_face(ids);
     }
-    auto data = vtkSmartPointer<vtkPolyData>::New();
-    data->SetPoints(points);
-    data->SetPolys(faces);
-    return data;
+    return mesh.data();
 }
 
 vtkSmartPointer<vtkPolyData> read_poly_data(const std::filesystem::path& path,

@@ -20,7 +20,7 @@ constexpr std::uint32_t no_page = UINT32_MAX;
 
 std::int64_t whole(const XmlElement& element, const char* name, std::int64_t otherwise,
                    std::int64_t least = 1) {
-    const std::string text = trimmed(element.attribute(name));
+    const std::string text = trimmed(element.attribute(name).value());
     if (text.empty()) return otherwise;
     const auto number = number_from<std::int64_t>(text);
     if (!number || *number < least || *number > 1 << 30) {
@@ -36,8 +36,9 @@ void take_spacing(const XmlElement& pixels, OmeImage& image) {
     for (std::size_t a = 0; a < 3; ++a) {
         const std::string name = std::string("PhysicalSize") + "XYZ"[a];
         spacings[static_cast<Eigen::Index>(a)] =
-            number_from<double>(trimmed(pixels.attribute(name))).value_or(std::nan(""));
-        units[a] = pixels.attribute(name + "Unit");
+            number_from<double>(trimmed(pixels.attribute(name.c_str()).value()))
+                .value_or(std::nan(""));
+        units[a] = pixels.attribute((name + "Unit").c_str()).value();
         if (units[a].empty()) units[a] = "um";
     }
     set_spacing(image, spacings, units, "its OME-XML");
@@ -87,8 +88,9 @@ class FilesOfPlanes {
     explicit FilesOfPlanes(std::string own) : own_(std::move(own)) {}
 
     void take(const XmlElement& data) {
-        for (const XmlElement* in : data.all("UUID")) {
-            const std::string uuid = trimmed(in->text), name = in->attribute("FileName");
+        for (const XmlElement& in : elements_at(data, "UUID")) {
+            const std::string uuid = trimmed(in.text().get()),
+                              name = in.attribute("FileName").value();
             names_[uuid.empty() ? name : uuid] = name;
         }
         names_.erase("");
@@ -116,22 +118,22 @@ class FilesOfPlanes {
 
 void take_pages(const XmlElement& pixels, const std::string& own, OmeImage& image,
                 std::vector<std::string>& notes) {
-    const PlaneOrder order(pixels.attribute("DimensionOrder"));
+    const PlaneOrder order(pixels.attribute("DimensionOrder").value());
     const std::int64_t planes = image.sizes[0] * image.sizes[1] * image.sizes[2];
     image.pages.assign(static_cast<std::size_t>(planes), no_page);
-    const auto all = pixels.all("TiffData");
+    const auto all = elements_at(pixels, "TiffData");
     if (all.empty()) put_pages(image, order, {0, 0, 0}, 0, planes);
     FilesOfPlanes files(own);
-    for (const XmlElement* data : all) {
-        files.take(*data);
-        const std::int64_t page = whole(*data, "IFD", 0, 0);
-        const bool alone = !data->attribute("IFD").empty();
-        const std::int64_t count = whole(*data, "PlaneCount", alone ? 1 : planes, 0);
+    for (const XmlElement& data : all) {
+        files.take(data);
+        const std::int64_t page = whole(data, "IFD", 0, 0);
+        const bool alone = *data.attribute("IFD").value() != '\0';
+        const std::int64_t count = whole(data, "PlaneCount", alone ? 1 : planes, 0);
         if (count > planes) throw Failure("its OME-XML tells of more planes than it has");
-        put_pages(image, order,
-                  {whole(*data, "FirstZ", 0, 0), whole(*data, "FirstC", 0, 0),
-                   whole(*data, "FirstT", 0, 0)},
-                  page, count);
+        put_pages(
+            image, order,
+            {whole(data, "FirstZ", 0, 0), whole(data, "FirstC", 0, 0), whole(data, "FirstT", 0, 0)},
+            page, count);
     }
     files.note(notes);
     if (std::ranges::find(image.pages, no_page) != image.pages.end()) {
@@ -177,37 +179,38 @@ bool is_ome_xml(const std::string& description) {
 }
 
 OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes) {
-    const XmlElement root = parse_xml(trimmed(xml), "its OME-XML");
-    if (!root.all("BinaryOnly").empty()) {
+    const pugi::xml_document document = parse_xml(xml, "its OME-XML");
+    const XmlElement root = document.document_element();
+    if (!elements_at(root, "BinaryOnly").empty()) {
         throw Failure("keeps its OME-XML in another file; images over several files are not read");
     }
-    const auto images = root.all("Image");
-    const auto pixels = images.empty() ? images : images[0]->all("Pixels");
-    if (pixels.empty()) throw Failure("its OME-XML tells of no image; write it again");
+    const auto images = elements_at(root, "Image");
+    const auto all = images.empty() ? images : elements_at(images[0], "Pixels");
+    if (all.empty()) throw Failure("its OME-XML tells of no image; write it again");
+    const XmlElement& pixels = all[0];
     if (images.size() > 1) {
         notes.push_back("the first of its " + std::to_string(images.size()) + " images was taken");
     }
     OmeImage image;
     image.format = "OME-TIFF";
-    image.sizes = {whole(*pixels[0], "SizeZ", 1), whole(*pixels[0], "SizeC", 1),
-                   whole(*pixels[0], "SizeT", 1)};
-    image.plane_size = {whole(*pixels[0], "SizeX", 0), whole(*pixels[0], "SizeY", 0)};
+    image.sizes = {whole(pixels, "SizeZ", 1), whole(pixels, "SizeC", 1), whole(pixels, "SizeT", 1)};
+    image.plane_size = {whole(pixels, "SizeX", 0), whole(pixels, "SizeY", 0)};
     const double planes = static_cast<double>(image.sizes[0]) *
                           static_cast<double>(image.sizes[1]) * static_cast<double>(image.sizes[2]);
     if (planes > static_cast<double>(most_planes)) throw Failure("it has more than 2^20 planes");
-    take_spacing(*pixels[0], image);
-    const auto interval = number_from<double>(trimmed(pixels[0]->attribute("TimeIncrement")));
+    take_spacing(pixels, image);
+    const auto interval = number_from<double>(trimmed(pixels.attribute("TimeIncrement").value()));
     if (interval && image.sizes[2] > 1) {
-        const std::string unit = pixels[0]->attribute("TimeIncrementUnit");
+        const std::string unit = pixels.attribute("TimeIncrementUnit").value();
         image.frame_interval = frame_times(*interval, 0, unit.empty() ? "s" : unit, notes).interval;
     }
-    const auto channels = pixels[0]->all("Channel");
+    const auto channels = elements_at(pixels, "Channel");
     for (std::size_t c = 0; image.sizes[1] > 1 && c < static_cast<std::size_t>(image.sizes[1]);
          ++c) {
-        const std::string name = c < channels.size() ? channels[c]->attribute("Name") : "";
+        const std::string name = c < channels.size() ? channels[c].attribute("Name").value() : "";
         image.channels.push_back(name.empty() ? "channel " + std::to_string(c) : name);
     }
-    take_pages(*pixels[0], trimmed(root.attribute("UUID")), image, notes);
+    take_pages(pixels, trimmed(root.attribute("UUID").value()), image, notes);
     return image;
 }
 

@@ -22,6 +22,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <pugixml.hpp>
 
 #include "io/byte_order.hpp"
 #include "io/helper/headers.hpp"
@@ -43,23 +44,14 @@ void check_errors(const ErrorKeeper& errors) {
 /// The start tag of the image among the file's first bytes; empty if it is not there.
 std::string image_tag(const std::string& head) {
     const auto at = head.find("<ImageData");
-    return at == std::string::npos ? "" : head.substr(at, head.find('>', at) - at);
+    return at == std::string::npos ? "" : head.substr(at + 1, head.find('>', at) - at - 1);
 }
 
-/// Empty if there is no such attribute.
+/// Of a tag without its brackets. Empty if there is no such attribute.
 std::string attribute(const std::string& tag, const std::string& name) {
-    constexpr const char* blanks = " \t\r\n";
-    for (std::size_t at = 0; (at = tag.find(name, at)) != std::string::npos; at += name.size()) {
-        const auto equals = tag.find_first_not_of(blanks, at + name.size());
-        const bool alone = at > 0 && std::string(blanks).find(tag[at - 1]) != std::string::npos;
-        if (!alone || equals == std::string::npos || tag[equals] != '=') continue;
-        const auto quote = tag.find_first_not_of(blanks, equals + 1);
-        if (quote == std::string::npos) break;
-        const auto end = tag.find(tag[quote], quote + 1);
-        if (end == std::string::npos) break;
-        return tag.substr(quote + 1, end - quote - 1);
-    }
-    return "";
+    pugi::xml_document element;
+    element.load_string(("<" + tag + ">").c_str());  // it has no end, but its attributes
+    return element.first_child().attribute(name.c_str()).value();
 }
 
 /// The numbers of an attribute, as many as belong there; none if there is no such attribute.

@@ -151,9 +151,8 @@ void PendingFile::open_temporary() {
     }
     lock_ = lock_temporary(temporary_);
     if (!std::filesystem::exists(old)) return;
-    std::filesystem::permissions(temporary_, old.permissions(), error);
-    if (error) {
-        fail("cannot be given the mode of the file it replaces: " + because(error.value()));
+    if (!give_mode(temporary_, old.permissions())) {
+        fail("cannot be given the mode of the file it replaces: " + because(errno));
     }
 }
 

@@ -55,6 +55,14 @@ int open_file_in(int folder, const std::string& name, int flags) {
     return -1;
 }
 
+bool give_mode(const std::filesystem::path& file, std::filesystem::perms mode) {
+    constexpr mode_t all = 07777;
+    const auto wanted = static_cast<mode_t>(mode) & all;
+    struct stat about {};
+    return (::stat(file.c_str(), &about) == 0 && (about.st_mode & all) == wanted) ||
+           ::chmod(file.c_str(), wanted) == 0;
+}
+
 bool means_full(int error) noexcept {
     return error == ENOSPC || error == EDQUOT || error == EFBIG;
 }

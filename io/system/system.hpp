@@ -27,6 +27,10 @@ int why_unwritable(const std::filesystem::path& path);
 /// Whether an error of writing says that there is no room: the disk, a quota, a limit.
 bool means_full(int error) noexcept;
 
+/// Gives a file the mode of one that it replaces. A file system without modes refuses that, and is
+/// not asked where both are alike.
+bool give_mode(const std::filesystem::path& file, std::filesystem::perms mode);
+
 // Descriptors; below 0 where one cannot be opened.
 
 /// A regular file. A pipe or a device holds nobody up: errno is EISDIR for a folder, ENXIO for all

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <new>
+#include <system_error>
 
 #include "io/system/system.hpp"
 
@@ -84,6 +85,13 @@ int why_unreadable(const std::filesystem::path& path, bool) {
 int why_unwritable(const std::filesystem::path& path) {
     constexpr int for_writing = 2;
     return ::_waccess(path.c_str(), for_writing) == 0 ? 0 : errno;
+}
+
+bool give_mode(const std::filesystem::path& file, std::filesystem::perms mode) {
+    std::error_code error;
+    std::filesystem::permissions(file, mode, error);
+    errno = error.value();
+    return !error;
 }
 
 bool means_full(int error) noexcept {

@@ -68,7 +68,7 @@ std::vector<Json> metadata_in(const Objects& objects, const std::vector<std::str
                               const std::string& name, std::size_t& room) {
     std::vector<Wanted> wanted;
     for (const std::string& folder : folders) wanted.push_back(metadata_file(folder, name));
-    auto all = objects.get_all(wanted, {});
+    auto all = objects.get_all(wanted, room, {});
     std::vector<Json> found;
     for (std::size_t i = 0; i < all.size(); ++i) {
         found.push_back(parsed(std::move(all[i]), objects.name_of(wanted[i].key), room));

@@ -79,7 +79,7 @@ class N5Opening {
                 const std::string folder = prefix + std::to_string(asked + i) + suffix;
                 wanted.push_back(metadata_file(folder, "attributes.json"));
             }
-            const auto all = objects_.get_all(wanted, {});
+            const auto all = objects_.get_all(wanted, room_, {});
             for (int i = 0; i < batch; ++i) {
                 if (all[static_cast<std::size_t>(i)]) numbers.push_back(asked + i);
             }

@@ -31,7 +31,7 @@ std::vector<Node> nodes_in(const Objects& objects, std::span<const std::string> 
     for (const std::string& folder : folders) {
         for (const char* name : names) wanted.push_back(metadata_file(folder, name));
     }
-    auto all = objects.get_all(wanted, {});
+    auto all = objects.get_all(wanted, room, {});
     std::vector<Node> nodes;
     for (std::size_t i = 0; i < folders.size(); ++i) {
         const auto json = [&](std::size_t n) {

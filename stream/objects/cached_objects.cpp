@@ -46,12 +46,12 @@ class CachedObjects : public Objects {
         return bytes;
     }
 
-    std::vector<std::optional<Bytes>> get_all(std::span<const Wanted> wanted,
+    std::vector<std::optional<Bytes>> get_all(std::span<const Wanted> wanted, std::uint64_t most,
                                               std::stop_token stop) const override {
         for (const Wanted& one : wanted) {
-            if (one.lasting) return Objects::get_all(wanted, std::move(stop));
+            if (one.lasting) return Objects::get_all(wanted, most, std::move(stop));
         }
-        return objects_->get_all(wanted, std::move(stop));
+        return objects_->get_all(wanted, most, std::move(stop));
     }
 
   private:

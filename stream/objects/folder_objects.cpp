@@ -64,7 +64,8 @@ class FolderObjects : public Objects {
         if (range.from_end) range.offset = size - range.length;
         if (range.length > wanted.most) {
             fail(wanted.key, "has " + std::to_string(range.length) +
-                                 " bytes, more than its metadata allow; copy it again");
+                                 " bytes, more than its metadata allow; copy it again" +
+                                 (wanted.probe ? ", or allow more memory" : ""));
         }
         Bytes bytes = read(wanted.key, file.number(), range);
         if (wanted.identity) {
@@ -105,9 +106,13 @@ class FolderObjects : public Objects {
 }  // namespace
 
 std::vector<std::optional<Bytes>> Objects::get_all(std::span<const Wanted> wanted,
-                                                   std::stop_token stop) const {
+                                                   std::uint64_t most, std::stop_token stop) const {
     std::vector<std::optional<Bytes>> all;
-    for (const Wanted& one : wanted) all.push_back(get(one, stop));
+    for (Wanted one : wanted) {
+        one.most = std::min(one.most, most);
+        all.push_back(get(one, stop));
+        if (all.back()) most -= all.back()->size();
+    }
     return all;
 }
 

@@ -23,6 +23,7 @@ using Clock = std::chrono::steady_clock;
 struct Job {
     HttpRequest request;
     HttpAnswer answer;
+    std::shared_ptr<std::uint64_t> left;  // bytes for this answer and those of the same call
     CURL* easy = nullptr;
     int attempts = 0;
     Clock::time_point not_before{};
@@ -99,13 +100,14 @@ std::size_t take_body(char* bytes, std::size_t one, std::size_t count, void* of)
     }
     // A server that ignores the range would send the whole object.
     const bool whole = job.request.range && status_of(job.easy) == 200;
-    if (whole || size > most_of(job.request) - job.answer.body.size()) {
+    if (whole || size > std::min(most_of(job.request) - job.answer.body.size(), *job.left)) {
         job.too_long = true;
         return 0;
     }
     const auto* const begin = reinterpret_cast<const std::byte*>(bytes);
     try {  // libcurl is C: nothing may be thrown through it
         job.answer.body.insert(job.answer.body.end(), begin, begin + size);
+        *job.left -= size;
     } catch (const std::bad_alloc&) {
         job.no_memory = true;
         return 0;
@@ -170,11 +172,14 @@ class HttpClient::Worker {
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
 
-    std::vector<HttpAnswer> get(std::span<const HttpRequest> requests, std::stop_token stop) {
+    std::vector<HttpAnswer> get(std::span<const HttpRequest> requests, std::stop_token stop,
+                                std::uint64_t most) {
         std::vector<std::shared_ptr<Job>> jobs;
+        const auto left = std::make_shared<std::uint64_t>(most);
         for (const HttpRequest& request : requests) {
             jobs.push_back(std::make_shared<Job>());
             jobs.back()->request = request;
+            jobs.back()->left = left;
         }
         {
             const std::lock_guard lock(mutex_);
@@ -264,6 +269,7 @@ class HttpClient::Worker {
         }
         running_.push_back(job);
         ++job->attempts;
+        *job->left += job->answer.body.size();
         job->answer = {};
         job->page_bytes = 0;
         job->too_long = job->no_memory = job->page_was_cut = false;
@@ -423,9 +429,9 @@ HttpClient::HttpClient(const HttpLimits& limits, TrafficCount& traffic)
     : worker_(std::make_unique<Worker>(limits, traffic)) {}
 HttpClient::~HttpClient() = default;
 
-std::vector<HttpAnswer> HttpClient::get(std::span<const HttpRequest> requests,
-                                        std::stop_token stop) {
-    return worker_->get(requests, std::move(stop));
+std::vector<HttpAnswer> HttpClient::get(std::span<const HttpRequest> requests, std::stop_token stop,
+                                        std::uint64_t most) {
+    return worker_->get(requests, std::move(stop), most);
 }
 
 }  // namespace palpate::stream

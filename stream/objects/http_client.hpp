@@ -43,8 +43,10 @@ class HttpClient {
     HttpClient& operator=(const HttpClient&) = delete;
 
     /// Answers in the order of the requests, when all are there. An answer has a body, or a status
-    /// of 400 and above, or an error. Throws Cancelled at once when `stop` is requested.
-    std::vector<HttpAnswer> get(std::span<const HttpRequest> requests, std::stop_token stop);
+    /// of 400 and above, or an error, as where all bodies have more than `most` bytes. Throws
+    /// Cancelled at once when `stop` is requested.
+    std::vector<HttpAnswer> get(std::span<const HttpRequest> requests, std::stop_token stop,
+                                std::uint64_t most = UINT64_MAX);
 
   private:
     class Worker;

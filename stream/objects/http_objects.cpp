@@ -82,10 +82,10 @@ class HttpObjects : public Objects {
     }
 
     std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const override {
-        return std::move(get_all(std::array{wanted}, std::move(stop)).front());
+        return std::move(get_all(std::array{wanted}, UINT64_MAX, std::move(stop)).front());
     }
 
-    std::vector<std::optional<Bytes>> get_all(std::span<const Wanted> wanted,
+    std::vector<std::optional<Bytes>> get_all(std::span<const Wanted> wanted, std::uint64_t most,
                                               std::stop_token stop) const override {
         std::vector<HttpRequest> requests;
         for (const Wanted& one : wanted) {
@@ -93,7 +93,7 @@ class HttpObjects : public Objects {
         }
         if (!stop.stop_possible()) stop = stop_;
         if (knows_no_suffixes_) place_suffixes(requests, stop);
-        std::vector<HttpAnswer> answers = client_.get(requests, stop);
+        std::vector<HttpAnswer> answers = client_.get(requests, stop, most);
         get_suffixes_otherwise(requests, answers, stop);
         std::vector<std::optional<Bytes>> all;
         for (std::size_t i = 0; i < answers.size(); ++i) {

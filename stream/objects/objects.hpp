@@ -46,8 +46,9 @@ class Objects {
     /// Its bytes, or nothing if there is no such object. Throws io::InputError, which names the
     /// object, if it cannot be had, is longer than it may be or shorter than the range; Cancelled.
     virtual std::optional<Bytes> get(const Wanted& wanted, std::stop_token stop) const = 0;
-    /// Several at once, in the same order.
+    /// Several at once, in the same order. All together may have `most` bytes.
     virtual std::vector<std::optional<Bytes>> get_all(std::span<const Wanted> wanted,
+                                                      std::uint64_t most,
                                                       std::stop_token stop) const;
     /// [bytes] of an object; nothing if there is none, or its size cannot be known. Throws as
     /// get().

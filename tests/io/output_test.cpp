@@ -15,7 +15,10 @@
 #include <thread>
 
 #include "io/system/leftovers.hpp"
+#include "palpate/io/volume_file.hpp"
+#include "support/edits.hpp"
 #include "support/eventually.hpp"
+#include "support/fields.hpp"
 #include "support/scratch_folder.hpp"
 #include "support/traced_process.hpp"
 
@@ -75,6 +78,20 @@ TEST(Output, replaces_a_file_and_keeps_its_mode) {
     EXPECT_EQ(bytes_of(folder / "a.csv"), "new");
     EXPECT_EQ(std::filesystem::status(folder / "a.csv").permissions(),
               std::filesystem::perms{0640});
+}
+
+TEST(Output, replaces_a_file_where_there_are_no_modes) {
+    const ScratchFolder folder;
+    const auto write_twice = [&] {
+        deny_modes();
+        const Volume volume = noise_of(SampleType::uint8, grid({4, 4, 4}), 1);
+        for (int i = 0; i < 2; ++i) {
+            write_file(folder / "a.csv", "text");
+            write_volume(volume, folder / "a.nrrd");
+        }
+    };
+    EXPECT_EQ(end_of(start_process(write_twice)), 0);
+    EXPECT_EQ(folder.names(), (Names{"a.csv", "a.nrrd"}));
 }
 
 TEST(Output, has_the_mode_of_any_new_file) {

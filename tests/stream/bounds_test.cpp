@@ -8,6 +8,7 @@
 #include "palpate/stream/loader.hpp"
 #include "stream/formats/unpacking_room.hpp"
 #include "stream/store_support.hpp"
+#include "stream/volume_server.hpp"
 #include "stream/written_files.hpp"
 #include "support/random.hpp"
 #include "support/traced_process.hpp"
@@ -93,6 +94,12 @@ TEST(Bounds, an_xml_document_costs_the_helper_no_more_than_may_be_used) {
     EXPECT_EQ(open_store(folder / "small.tif", options)->info().format, "OME-TIFF");
     if (support::is_slow_build) return;  // sanitizers need memory of their own
     EXPECT_EQ(open_store(folder / "attributes.tif", options)->info().format, "OME-TIFF");
+    std::string element = "<a";
+    for (int i = 0; i < 3'000'000; ++i) element += " a" + std::to_string(i) + "=''";
+    put_tiff(folder / "element.tif", start + "</Image>" + element + "/></OME>");
+    StoreOptions more;
+    more.unpacking = 240 * megabyte;
+    EXPECT_EQ(open_store(folder / "element.tif", more)->info().format, "OME-TIFF");
     const auto work = [&] {
         for (const char* name : {"large.tif", "large.h5"}) {
             const std::string message =
@@ -256,6 +263,39 @@ TEST(Bounds, metadata_take_no_more_memory_than_may_be_used_and_are_held_once) {
             message_of<io::InputError>([&] { (void)open_store(folder / name, options); });
         EXPECT_TRUE(contains(message, "its values take more than 30 MiB")) << message;
         EXPECT_NO_THROW((void)open_store(folder / name)) << name;
+    }
+}
+
+/// Padded with blanks, which take memory only until they are parsed.
+std::string of_size(std::string json, std::size_t bytes) {
+    json.resize(bytes, ' ');
+    return json;
+}
+
+TEST(Bounds, files_of_metadata_that_are_read_at_once_share_what_may_be_used) {
+    const ScratchFolder folder;
+    constexpr std::size_t most_of_one = 8 << 20;
+    for (int i = 0; i < 16; ++i) {
+        const std::string number = std::to_string(i);
+        fs::create_directories(folder / "many.zarr" / number);
+        fs::create_directories(folder / "many.n5" / ("setup" + number));
+        put_bytes(folder / "many.zarr" / number / "zarr.json", of_size("{}", most_of_one));
+        put_bytes(folder / "many.n5" / ("setup" + number) / "attributes.json",
+                  of_size("{}", most_of_one));
+    }
+    put_bytes(folder / "many.zarr/zarr.json", "{}");
+    put_bytes(folder / "many.n5/attributes.json", "{}");
+    const VolumeServer server({"--folder", folder.path().string()});
+    StoreOptions options;
+    options.unpacking = 128 * megabyte;
+    for (const std::string name : {"many.zarr", "many.n5"}) {
+        const auto refused = [&](const std::string& address) {
+            return message_of<io::InputError>([&] { (void)open_store(address, options); });
+        };
+        const std::string here = refused(folder / name), there = refused(server.address(name));
+        EXPECT_TRUE(contains(here, "its metadata allow; copy it again, or allow more memory"))
+            << here;
+        EXPECT_TRUE(contains(there, "more bytes than the metadata allow")) << there;
     }
 }
 

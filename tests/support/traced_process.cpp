@@ -121,6 +121,16 @@ void deny_exchange() {
             BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EINVAL)});
 }
 
+void deny_modes() {
+    std::vector<sock_filter> program;
+    for (const long call : {SYS_chmod, SYS_fchmod, SYS_fchmodat}) {
+        program.push_back(
+            BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call), 0, 1));
+        program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSYS));
+    }
+    filter(program);
+}
+
 int run_traced(const std::function<void()>& work,
                const std::function<Fate(const FileCall&)>& fate) {
 #ifdef __x86_64__

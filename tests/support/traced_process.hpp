@@ -29,5 +29,7 @@ int end_of(int process);
 
 /// From now on this process cannot exchange two names, as on some file systems (EINVAL).
 void deny_exchange();
+/// Nor give a file a mode, as where there are none (ENOSYS); nor can its children.
+void deny_modes();
 
 }  // namespace palpate::support

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <thread>
 
 #include "palpate/renderer.hpp"
 #include "palpate/run/setup.hpp"
+#include "support/scratch_folder.hpp"
 #include "tests/bindings/c/ball.hpp"
 
 namespace palpate::c::test {
@@ -208,6 +210,55 @@ TEST(CRenderer, gives_the_cores_ticks_bit_for_bit) {
     EXPECT_GT(touched, 100);
     palpate_renderer_destroy(renderer);
     palpate_field_destroy(field);
+    palpate_volume_destroy(volume);
+}
+
+TEST(CProgress, of_a_thread_is_told_by_every_long_call_and_can_stop_it) {
+    PALPATE_STRUCT(palpate_geometry, grid);
+    for (std::int32_t& size : grid.size) size = 128;
+    std::vector<unsigned char> samples(std::size_t{128} * 128 * 128);
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = i < samples.size() / 2 ? 9 : 200;
+    palpate_volume* volume = nullptr;
+    palpate_data* data = nullptr;
+    palpate_field* field = nullptr;
+    palpate_mesh* mesh = nullptr;
+    PALPATE_STRUCT(palpate_volume_info, info);
+    const support::ScratchFolder folder;
+    const std::string path = folder / "saved.nrrd";
+    const auto copy = [&] {
+        return palpate_volume_copy(&grid, PALPATE_UINT8, samples.data(), samples.size(), &volume);
+    };
+    ASSERT_EQ(copy(), PALPATE_OK);
+    ASSERT_EQ(palpate_data_create(volume, &data), PALPATE_OK);
+    ASSERT_EQ(palpate_field_create(volume, nullptr, &field), PALPATE_OK);
+    const std::int32_t low[3] = {1, 1, 1}, high[3] = {3, 3, 3};
+    ASSERT_EQ(palpate_data_fill(data, low, high, 77), PALPATE_OK);
+    const palpate_field* const first = field;
+    int calls = 0;
+    const auto stop = [](double, void* context) {
+        ++*static_cast<int*>(context);
+        return 0;
+    };
+    palpate_set_progress(stop, &calls);
+    EXPECT_EQ(copy(), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_volume_load("synthetic:noise:128x128x128", nullptr, &volume),
+              PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_volume_describe(volume, &info), PALPATE_CANCELLED);
+    EXPECT_STREQ(palpate_last_error(), "the call was cancelled");
+    EXPECT_EQ(palpate_field_create(volume, nullptr, &field), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_data_field(data, nullptr, &field), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_mesh_create(field, 100, &mesh), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_data_save(data, path.c_str()), PALPATE_CANCELLED);
+    EXPECT_EQ(calls, 7) << "once each";
+    EXPECT_EQ(field, first);
+    std::thread([&] { EXPECT_EQ(palpate_volume_describe(volume, &info), PALPATE_OK); }).join();
+    palpate_set_progress(nullptr, nullptr);
+    EXPECT_EQ(palpate_volume_describe(volume, &info), PALPATE_OK);
+    EXPECT_EQ(palpate_mesh_create(field, 100, &mesh), PALPATE_OK);
+    EXPECT_EQ(palpate_data_save(data, path.c_str()), PALPATE_OK) << palpate_last_error();
+    palpate_mesh_destroy(mesh);
+    palpate_field_destroy(field);
+    palpate_data_destroy(data);
     palpate_volume_destroy(volume);
 }
 
