@@ -38,11 +38,9 @@ class Scene : public QVTKOpenGLNativeWidget {
     /// finite shows no surface and is a problem().
     void set_field(const Field& field, double isovalue);
     /// Another version of the data that are shown, on the same grid: edited, or at another moment.
-    /// Camera, probe and crosshair stay. `changed`: the samples that edits have changed since the
-    /// version that is shown; without it they are found by the bricks that differ, which is never
-    /// too few and takes microseconds. As often as versions come: the newest is shown. Throws
+    /// Camera, probe and crosshair stay. As often as versions come: the newest is shown. Throws
     /// std::invalid_argument where nothing, or another grid, is shown.
-    void update_field(const Field& field, const std::optional<SampleBox>& changed = {});
+    void update_field(const Field& field);
     /// A finer part of the data, whose surface is drawn in place of theirs; until the next
     /// set_field(). Nothing: none.
     void set_patch(const std::optional<ScenePatch>& patch);

@@ -80,11 +80,7 @@ TEST(DrawnChangingScene, after_edits_surface_volume_and_slices_are_those_of_the_
         for (int i = 0; i < 4; ++i) {
             const Edited after = dab(field, 128, 0.9 * i, 9);
             field.use(after.samples);
-            if (i % 2) {
-                shown.scene.update_field(field, after.changed);
-            } else {
-                shown.scene.update_field(field);
-            }
+            shown.scene.update_field(field);
             shown.next_frame();
         }
         const std::string name = "edited_" + std::to_string(number++);
