@@ -202,7 +202,6 @@ void LevelChart::mousePressEvent(QMouseEvent* event) {
     switch (hold_.part) {
         case Part::tick:
             ask_level(suggested_[static_cast<std::size_t>(hold_.at)]);
-            Q_EMIT level_settled();
             break;
         case Part::mark:
             Q_EMIT mark_chosen(hold_.at);
@@ -274,10 +273,8 @@ void LevelChart::mouseReleaseEvent(QMouseEvent* event) {
     update();
     if (hold.part == Part::knot) {
         if (curve_.colours.empty()) set_curve(line_of(curve_.knots, curve_.least, curve_.unit));
-        Q_EMIT curve_settled();
         if (std::exchange(activates_, false)) Q_EMIT knot_activated(hold.at);
     }
-    if (hold.part == Part::level) Q_EMIT level_settled();
     if (hold.part == Part::band) Q_EMIT bands_settled();
     // A click makes no range.
     if (hold.part == Part::fresh && fresh_.low < fresh_.high) Q_EMIT band_added(fresh_);

@@ -77,13 +77,11 @@ class LevelChart : public QWidget {
 
   Q_SIGNALS:
     void level_moved(double level);
-    void level_settled();  ///< the drag is over
     void bands_moved(const palpate::viewer::Ranges& bands);
-    void bands_settled();
+    void bands_settled();  ///< the drag is over
     void mark_chosen(int mark);
     void mark_moved(int mark, double level);
     void curve_changed(const palpate::viewer::Knots& knots);
-    void curve_settled();  ///< a drag is over
     void knot_held(int knot);
     void knot_activated(int knot);  ///< by a double click or Return
     void band_added(const palpate::DensityRange& range);

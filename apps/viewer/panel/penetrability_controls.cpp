@@ -203,7 +203,7 @@ constexpr ModeText mode_texts[] = {
 }  // namespace
 
 PenetrabilityControls::PenetrabilityControls(Effect& effect, LevelChart& chart)
-    : effect_(effect), chart_(&chart), table_(new RangeTable), limiter_(this) {
+    : effect_(effect), chart_(&chart), table_(new RangeTable) {
     auto* form = new QFormLayout;
     auto* threshold = quantity_in(
         *form,
@@ -283,10 +283,9 @@ void PenetrabilityControls::connect_chart() {
         dragging_ = true;
         shown_ = with_bands(shown_, bands, solid_);
         refresh();
-        limiter_.put([this] { request(); });
+        request();
     });
     connect(chart_, &LevelChart::bands_settled, this, [this] {
-        limiter_.flush();
         if (!std::exchange(dragging_, false)) return;
         change([](PressThrough&) {});  // bands that were drawn over each other become one
     });
@@ -332,7 +331,6 @@ void PenetrabilityControls::request() {
 }
 
 void PenetrabilityControls::change(const std::function<void(PressThrough&)>& how) {
-    limiter_.drop();
     how(shown_);
     refresh();
     request();

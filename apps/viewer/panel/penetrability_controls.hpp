@@ -92,7 +92,6 @@ class PenetrabilityControls : public Form {
     Effect& effect_;
     LevelChart* chart_;
     RangeTable* table_;
-    RateLimiter limiter_;
     PressThrough shown_;
     Solid solid_ = Solid::above;
     bool dragging_ = false;  // a band
