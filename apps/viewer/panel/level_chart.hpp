@@ -61,9 +61,6 @@ class LevelChart : public QWidget {
     /// keys are for the curve.
     void set_level_shown(bool shown);
     const Ranges& bands() const { return bands_; }
-    /// Whether bands can be added, deleted and moved as a whole; else only their ends move.
-    void set_editable(bool editable) { editable_ = editable; }
-    void choose_band(int band);
     /// What an arrow key moves the level by [data units].
     double fine_step() const;
     /// The visible range, and the whole of the data.
@@ -86,7 +83,6 @@ class LevelChart : public QWidget {
     void knot_activated(int knot);  ///< by a double click or Return
     void band_added(const palpate::DensityRange& range);
     void band_deleted(int band);
-    void band_chosen(int band);
 
   protected:
     void paintEvent(QPaintEvent* event) override;
@@ -109,6 +105,7 @@ class LevelChart : public QWidget {
 
     QRectF plot() const;
     double text_height() const;
+    void choose_band(int band);
     void ask_level(double level);
     void step_level(double steps);
     int knot_at(const QPointF& at) const;
@@ -129,7 +126,6 @@ class LevelChart : public QWidget {
     double level_ = 0;
     double felt_ = std::numeric_limits<double>::quiet_NaN();
     Ranges bands_;
-    bool editable_ = true;
     int chosen_ = -1;
 
     std::vector<LevelMark> marks_;

@@ -280,7 +280,7 @@ TEST_F(Isovalue, any_data_can_be_shown_and_stepped_through) {
         QTest::keyClick(chart(), Qt::Key_End);
         QTest::keyClick(chart(), Qt::Key_PageDown);
         drag(chart(), {20, 30}, {200, 30});
-        press("penetrability_ranges");
+        press("penetrability");
         press("add_range");
         chart()->grab();
         for (const double level : levels()) {
