@@ -268,13 +268,12 @@ void MainWindow::use(const Preferences& preferences) {
 }
 
 void MainWindow::ask_preferences() {
-    auto* dialog = new PreferencesDialog(saved_preferences(), this);
-    connect(dialog, &PreferencesDialog::changed, this, [this](const Preferences& preferences) {
+    const auto change = [this](const Preferences& preferences) {
         if (preferences.appearance != last_appearance()) set_appearance(preferences.appearance);
         save_preferences(preferences);
         use(preferences);
-    });
-    messages_.ask(dialog);
+    };
+    messages_.ask(make_preferences_dialog(saved_preferences(), this, change));
 }
 
 void MainWindow::tick() {
