@@ -169,7 +169,7 @@ void measure(const std::string& name, std::optional<double> level) {
     look.transfer.points = {{isovalue - 0.05 * range, {0.5, 0.3, 0.2}, 0},
                             {isovalue + 0.05 * range, {0.9, 0.75, 0.6}, 0.3},
                             {low + 1.01 * range, {1, 1, 0.95}, 0.8}};
-    scene.set_look(look);
+    set(scene, &viewer::Shown::look, look);
     meter.rest("volume, first");
     meter.turn("volume");
     if (const char* folder = std::getenv("PALPATE_FRAMES_PICTURES")) {

@@ -97,7 +97,7 @@ void edits(int edge) {
         field.use(after.samples);
         // Nothing else changes: the next picture is the one with the edit.
         Watch watch(scene);
-        scene.update_field(field, after.changed);
+        scene.update_field(field);
         run_until([&] { return !watch.pictures.empty(); }, 10);
         if (!watch.pictures.empty()) shown.push_back(watch.pictures.front());
         run_until([&] { return scene.settled(); }, 60);
@@ -112,7 +112,7 @@ void edits(int edge) {
     QObject::connect(&hand, &QTimer::timeout, [&] {
         const Edited after = dab(field, towards, 0.02 * ++versions);
         field.use(after.samples);
-        scene.update_field(field, after.changed);
+        scene.update_field(field);
     });
     hand.start(30);
     run_until([] { return false; }, 6);

@@ -99,12 +99,12 @@ ServoReport drawing(const Options& options, double& frame) {
     Look look = window.panel().look_controls().look();
     look.volume = options.volume_rendering;
     look.surface = !options.volume_rendering;
-    window.views().set_look(look, {});
+    set(window.views(), &Shown::look, look);
     run_until([&] { return window.settled(); });
     // The same stretch of the session is compared: from its beginning.
     window.files().open_volume(run::source_named(options.volume));
     run_until([&] { return window.live() && window.settled(); });
-    window.views().set_look(look, {});
+    set(window.views(), &Shown::look, look);
     double azimuth = 0;
     QTimer turn;
     QObject::connect(&turn, &QTimer::timeout, [&] {

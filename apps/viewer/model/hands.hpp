@@ -23,6 +23,7 @@ class PerHand {
     auto begin() const { return values_.begin(); }
     auto end() { return values_.end(); }
     auto end() const { return values_.end(); }
+    bool operator==(const PerHand&) const = default;
 
   private:
     std::array<T, most_hands> values_{};

@@ -114,6 +114,9 @@ bool same_samples(const Field& a, const Field& b) {
            m.weight == n.weight;
 }
 
+namespace {
+
+/// False where more than edits differs: the moment, the volume under them, the side that is solid.
 bool same_but_for_edits(const Field& a, const Field& b) {
     const Moment &m = a.moment(), &n = b.moment();
     const auto data = [](const Field& f, std::size_t frame) {
@@ -125,6 +128,8 @@ bool same_but_for_edits(const Field& a, const Field& b) {
            a.samples().type() == b.samples().type() && m.weight == n.weight &&
            data(a, m.from) == data(b, n.from) && (m.weight == 0 || data(a, m.to) == data(b, n.to));
 }
+
+}  // namespace
 
 SampleBox changed_between(const Field& a, const Field& b) {
     if (!same_but_for_edits(a, b)) return whole_box(b.geometry());

@@ -20,9 +20,6 @@ bool same_samples(const Field& a, const Field& b);
 SampleBox changed_between(const Field& a, const Field& b);
 /// The same for samples of one grid of which only edits differ.
 SampleBox edited_between(const Samples& a, const Samples& b);
-/// False where more than edits differs: the moment, the volume under them, the side that is solid.
-bool same_but_for_edits(const Field& a, const Field& b);
-
 /// How many samples along each axis are left of `size` if there is one for each `every`.
 inline Index3 coarse_size(const Index3& size, int every) {
     return (size.array() - 1) / every + 1;

@@ -125,7 +125,6 @@ QLayout* BrushControls::make_form() {
     auto* as_tool = check({"brush_as_tool", tr("Shape of the tool")},
                           {[this] { return choice_.as_tool; },
                            [this](bool as_tool) {
-                               radius_->drop();
                                change([&](BrushChoice& c) {
                                    c.as_tool = as_tool;
                                    c.radius = as_tool ? beyond_ : ball_;
@@ -159,8 +158,7 @@ QLayout* BrushControls::make_form() {
     each_time(rate, [this](Quantity& one) { one.setEnabled(std::isfinite(choice_.rate)); });
     auto* at_once = check({"brush_at_once", tr("At once")},
                           {[this] { return std::isinf(choice_.rate); },
-                           [this, rate](bool at_once) {
-                               rate->drop();
+                           [this](bool at_once) {
                                const double infinity = std::numeric_limits<double>::infinity();
                                change([&](BrushChoice& c) { c.rate = at_once ? infinity : rate_; });
                            }});
@@ -302,7 +300,6 @@ void BrushControls::set_history(std::size_t undo_steps, std::size_t redo_steps, 
 
 void BrushControls::set_reason(const QString& why) {
     if (why == reason_->text()) return;
-    drop_requests(*this);
     reason_->say(why);
     body_->setEnabled(why.isEmpty());
     refresh();

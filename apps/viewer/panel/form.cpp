@@ -18,8 +18,8 @@ Widget* worded(Widget* widget, const Words& words) {
 
 }  // namespace
 
-Value<double> as_part(Value<double> value) {
-    return {value.get, [set = value.set](double part) { set(std::clamp(part, 0.0, 1.0)); }};
+Value<double> within(double low, double high, Value<double> value) {
+    return {value.get, [=, set = value.set](double to) { set(std::clamp(to, low, high)); }};
 }
 
 void Form::refresh() {

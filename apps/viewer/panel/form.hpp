@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/viewer/panel/colours.hpp"
@@ -31,8 +32,11 @@ struct Value {
     std::function<void(const T&)> set;
 };
 
-/// Changes are brought to 0 to 1.
-Value<double> as_part(Value<double> value);
+/// Changes are brought to `low` to `high`.
+Value<double> within(double low, double high, Value<double> value);
+inline Value<double> as_part(Value<double> value) {
+    return within(0, 1, std::move(value));
+}
 
 /// Of a slider; and the step of its box.
 struct Span {
@@ -54,7 +58,7 @@ class Form : public QWidget {
     /// What was asked for cannot be, and why; empty: all is well again.
     void nonsense(const QString& why);
 
-  protected:
+  public:
     QCheckBox* check(const Words& words, Value<bool> value);
     NumberBox* number(const Words& words, Value<double> value);
     Quantity* quantity(const Words& words, const Span& span, Value<double> value);

@@ -14,42 +14,6 @@
 
 namespace palpate::viewer {
 
-RateLimiter::RateLimiter(QObject* parent, int interval) : QObject(parent), timer_(this) {
-    timer_.setSingleShot(true);
-    timer_.setInterval(interval);
-    timer_.setTimerType(Qt::PreciseTimer);
-    connect(&timer_, &QTimer::timeout, this, &RateLimiter::pass);
-}
-
-void RateLimiter::put(std::function<void()> request) {
-    waiting_ = std::move(request);
-    if (timer_.isActive()) return;
-    if (!since_.isValid() || since_.elapsed() >= timer_.interval()) {
-        pass();
-    } else {
-        timer_.start();
-    }
-}
-
-void RateLimiter::flush() {
-    if (waiting_) pass();
-}
-
-void RateLimiter::drop() {
-    timer_.stop();
-    waiting_ = nullptr;
-}
-
-void RateLimiter::pass() {
-    timer_.stop();
-    since_.start();
-    if (const auto request = std::exchange(waiting_, nullptr)) request();
-}
-
-void drop_requests(const QObject& part) {
-    for (auto* limiter : part.findChildren<RateLimiter*>()) limiter->drop();
-}
-
 namespace {
 
 class WheelFilter : public QObject {
@@ -150,8 +114,7 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
       high_(high),
       scale_(scale),
       slider_(named(new QSlider(Qt::Horizontal), name + "_slider")),
-      box_(named(new NumberBox, name + "_box")),
-      limiter_(this) {
+      box_(named(new NumberBox, name + "_box")) {
     setObjectName(name);
     slider_->setRange(0, slider_places);
     slider_->setSingleStep(slider_places / 100);
@@ -171,12 +134,7 @@ Quantity::Quantity(const QString& name, const QString& unit, double low, double 
     row_in(this, {slider_, box_})->setStretch(0, 1);
     setFocusProxy(box_);
     connect(slider_, &QSlider::valueChanged, this, [this](int place) { ask(value_at(place)); });
-    connect(slider_, &QSlider::sliderReleased, &limiter_, &RateLimiter::flush);
-    connect(box_, qOverload<double>(&NumberBox::valueChanged), this, [this](double value) {
-        set_value(value);
-        limiter_.drop();
-        Q_EMIT wanted(value);
-    });
+    connect(box_, qOverload<double>(&NumberBox::valueChanged), this, &Quantity::ask);
     set_value(low);
 }
 
@@ -226,7 +184,7 @@ void Quantity::place_slider() {
 
 void Quantity::ask(double value) {
     set_value(value);
-    limiter_.put([this, value] { Q_EMIT wanted(value); });
+    Q_EMIT wanted(value);
 }
 
 }  // namespace palpate::viewer

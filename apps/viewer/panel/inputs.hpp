@@ -2,39 +2,14 @@
 #pragma once
 
 #include <QDoubleSpinBox>
-#include <QElapsedTimer>
 #include <QObject>
 #include <QSlider>
-#include <QTimer>
 #include <QWidget>
 
 #include <functional>
 #include <optional>
 
 namespace palpate::viewer {
-
-/// The first request goes through at once; of those that follow within the interval the last goes
-/// through when the interval is over.
-class RateLimiter : public QObject {
-    Q_OBJECT
-
-  public:
-    /// `interval` [ms]: about 60 a second.
-    explicit RateLimiter(QObject* parent, int interval = 16);
-
-    /// Calls `request` now or a little later, unless a newer one comes.
-    void put(std::function<void()> request);
-    /// Lets a waiting request through at once: the drag is over.
-    void flush();
-    void drop();
-
-  private:
-    void pass();
-
-    QTimer timer_;
-    QElapsedTimer since_;
-    std::function<void()> waiting_;
-};
 
 /// Snapshots come thirty times a second and a command takes effect within a tick: after a change up
 /// to three snapshots may still differ from it. A fourth means that it was not carried out.
@@ -84,9 +59,6 @@ class NumberBox : public QDoubleSpinBox {
     bool infinite_ = false;
 };
 
-/// Forgets the requests that wait in a part of the window.
-void drop_requests(const QObject& part);
-
 /// Puts a filter on a widget that leaves the wheel to the scroll area unless it has the focus.
 void let_wheel_pass(QWidget& widget);
 
@@ -112,17 +84,13 @@ class Quantity : public QWidget {
     void set_ends(double low, double high);
     double low() const { return low_; }
     double high() const { return high_; }
-    /// As by the slider: shows a value, and asks for it soon.
+    /// As by the slider: shows a value, and asks for it.
     void ask(double value);
-    /// The drag is over.
-    void flush() { limiter_.flush(); }
-    /// Forgets a request that waits.
-    void drop() { limiter_.drop(); }
     NumberBox& box() { return *box_; }
     void set_accessible_name(const QString& name);
 
   Q_SIGNALS:
-    /// At most 60 a second while the slider moves. From the box any number may come.
+    /// From the box any number may come.
     void wanted(double value);
     /// Whatever it comes from.
     void shown(double value);
@@ -135,7 +103,6 @@ class Quantity : public QWidget {
     Scale scale_;
     QSlider* slider_;
     NumberBox* box_;
-    RateLimiter limiter_;
 };
 
 }  // namespace palpate::viewer

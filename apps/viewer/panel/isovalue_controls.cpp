@@ -38,7 +38,6 @@ IsovalueControls::IsovalueControls(Effect& effect)
                      overruled_})
         ->setSpacing(3);
     connect(chart_, &LevelChart::level_moved, level_, &Quantity::ask);
-    connect(chart_, &LevelChart::level_settled, level_, &Quantity::flush);
     connect(level_, &Quantity::shown, this, &IsovalueControls::show_level);
     connect(&effect_, &Effect::begun, this, &IsovalueControls::begin);
     connect(&effect_, &Effect::ended, this, &IsovalueControls::clear);

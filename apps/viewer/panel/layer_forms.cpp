@@ -76,10 +76,8 @@ void LayersControls::add_property(QFormLayout& form, const PropertyWords& words)
     clear->setAutoRaise(true);
     clear->setFocusPolicy(Qt::TabFocus);
     clear->setAccessibleName(tr("Clear the layer's own value: %1").arg(label));
-    connect(clear, &QToolButton::clicked, this, [this, value, property] {
-        value->drop();
-        change_layer({}, [=](Layer& one) { one[property].reset(); });
-    });
+    connect(clear, &QToolButton::clicked, this,
+            [this, property] { change_layer({}, [=](Layer& one) { one[property].reset(); }); });
     QWidget* both = row_of({value, clear}, 0);
     both->layout()->setSpacing(2);
     both->setFocusProxy(value);

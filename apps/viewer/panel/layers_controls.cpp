@@ -34,8 +34,7 @@ LayersControls::LayersControls(Effect& effect)
                      tr("The layer that is touched, and those that the proxy is in"))),
       list_(named(new QListWidget, "layer_list")),
       factors_(new LevelChart),
-      plot_(new StrokePlot),
-      limiter_(this) {
+      plot_(new StrokePlot) {
     setObjectName("layers_controls");
     factors_->setObjectName("gradient_chart");
     factors_->set_level_shown(false);
@@ -202,9 +201,7 @@ void LayersControls::edit(const SharedLayers& next, const QString& key) {
     history_.keep(layers_, goes_on);
     last_key_ = key;
     since_edit_.start();
-    layers_ = next;
-    show();
-    limiter_.put([this, next] { request(next); });
+    request(next);
 }
 
 void LayersControls::change(const QString& key, const std::function<void(Layers&)>& how) {
@@ -299,10 +296,7 @@ void LayersControls::step(bool back) {
     const auto next = back ? history_.undo(layers_) : history_.redo(layers_);
     if (!next) return show();
     last_key_.clear();
-    layers_ = *next;
     note_->say({});
-    show();
-    limiter_.drop();
     request(*next);
 }
 

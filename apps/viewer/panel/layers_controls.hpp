@@ -164,7 +164,6 @@ class LayersControls : public Form {
     QListWidget* list_;
     LevelChart* factors_;
     StrokePlot* plot_;
-    RateLimiter limiter_;
 };
 
 }  // namespace palpate::viewer

@@ -3,9 +3,11 @@
 
 #include <QAbstractButton>
 #include <QBoxLayout>
+#include <QDialog>
 #include <QEvent>
 #include <QHBoxLayout>
 #include <QKeyEvent>
+#include <QPushButton>
 #include <QVBoxLayout>
 #include <QVariant>
 
@@ -72,6 +74,14 @@ void add_row(QFormLayout& form, const QString& label, QWidget* field, const QStr
     field->setToolTip(tip);
     form.addRow(label, field);  // makes the field the label's buddy
     form.labelForField(field)->setToolTip(tip);
+}
+
+QPushButton* fill(QDialog& dialog, QWidget* content, QDialogButtonBox::StandardButton accept) {
+    auto* buttons = new QDialogButtonBox(accept | QDialogButtonBox::Cancel);
+    QObject::connect(buttons, &QDialogButtonBox::accepted, &dialog, &QDialog::accept);
+    QObject::connect(buttons, &QDialogButtonBox::rejected, &dialog, &QDialog::reject);
+    column_in(&dialog, {content, buttons})->setContentsMargins(9, 9, 9, 9);
+    return buttons->button(accept);
 }
 
 void allow(QWidget& widget, const QString& why) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <QAbstractButton>
+#include <QDialogButtonBox>
 #include <QFormLayout>
 #include <QLabel>
 #include <QRegularExpression>
@@ -13,6 +14,8 @@
 #include <type_traits>
 
 class QBoxLayout;
+class QDialog;
+class QPushButton;
 
 namespace palpate::viewer {
 
@@ -46,6 +49,9 @@ QFormLayout* form_in(QWidget* owner);
 /// A row of a form, whose label has the tip, too, and is the field's name for screen readers.
 void add_row(QFormLayout& form, const QString& label, QWidget* field, const QString& tip);
 
+/// Puts the content into a dialog, over a button that accepts it, which is returned, and one that
+/// cancels.
+QPushButton* fill(QDialog& dialog, QWidget* content, QDialogButtonBox::StandardButton accept);
 /// Empty: it can be used. Else it is grey, and its tip says why instead of what it is for.
 void allow(QWidget& widget, const QString& why);
 void make_bold(QWidget& widget, bool bold = true);

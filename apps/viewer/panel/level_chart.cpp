@@ -171,7 +171,6 @@ LevelChart::Hold LevelChart::hold_at(const QPointF& at) const {
     const QRectF p = plot();
     if (have_bands() && at.y() >= strip().top()) {
         const BandGrip band = band_at(bands_, axis(), at.x(), reach);
-        if (!editable_ && band.grip == Grip::whole) return {Part::band};
         return {Part::band, band.band, band.grip};
     }
     if (const int knot = knot_at(at); knot >= 0) return {Part::knot, knot};
@@ -202,14 +201,12 @@ void LevelChart::mousePressEvent(QMouseEvent* event) {
     switch (hold_.part) {
         case Part::tick:
             ask_level(suggested_[static_cast<std::size_t>(hold_.at)]);
-            Q_EMIT level_settled();
             break;
         case Part::mark:
             Q_EMIT mark_chosen(hold_.at);
             break;
         case Part::band:
             choose_band(hold_.at);
-            Q_EMIT band_chosen(hold_.at);
             if (hold_.at < 0) {
                 hold_ = {};
             } else {
@@ -274,10 +271,8 @@ void LevelChart::mouseReleaseEvent(QMouseEvent* event) {
     update();
     if (hold.part == Part::knot) {
         if (curve_.colours.empty()) set_curve(line_of(curve_.knots, curve_.least, curve_.unit));
-        Q_EMIT curve_settled();
         if (std::exchange(activates_, false)) Q_EMIT knot_activated(hold.at);
     }
-    if (hold.part == Part::level) Q_EMIT level_settled();
     if (hold.part == Part::band) Q_EMIT bands_settled();
     // A click makes no range.
     if (hold.part == Part::fresh && fresh_.low < fresh_.high) Q_EMIT band_added(fresh_);
@@ -297,9 +292,8 @@ void LevelChart::contextMenuEvent(QContextMenuEvent* event) {
     const QPointF at = event->pos();
     if (const int knot = knot_at(at); knot >= 0) return remove_knot(knot);
     const int band = band_at(bands_, axis(), at.x(), reach).band;
-    if (!editable_ || !have_bands() || band < 0) return;
+    if (!have_bands() || band < 0) return;
     choose_band(band);
-    Q_EMIT band_chosen(band);
     auto* menu = new QMenu(this);
     menu->setAttribute(Qt::WA_DeleteOnClose);
     const DensityRange& range = bands_[static_cast<std::size_t>(band)];
@@ -333,7 +327,7 @@ void LevelChart::keyPressEvent(QKeyEvent* event) {
         case Qt::Key_Delete:
         case Qt::Key_Backspace:
             if (held_knot_ >= 0) return remove_knot(held_knot_);
-            if (editable_ && have_bands() && chosen_ >= 0) Q_EMIT band_deleted(chosen_);
+            if (have_bands() && chosen_ >= 0) Q_EMIT band_deleted(chosen_);
             break;
         default:
             QWidget::keyPressEvent(event);

@@ -61,9 +61,6 @@ class LevelChart : public QWidget {
     /// keys are for the curve.
     void set_level_shown(bool shown);
     const Ranges& bands() const { return bands_; }
-    /// Whether bands can be added, deleted and moved as a whole; else only their ends move.
-    void set_editable(bool editable) { editable_ = editable; }
-    void choose_band(int band);
     /// What an arrow key moves the level by [data units].
     double fine_step() const;
     /// The visible range, and the whole of the data.
@@ -77,18 +74,15 @@ class LevelChart : public QWidget {
 
   Q_SIGNALS:
     void level_moved(double level);
-    void level_settled();  ///< the drag is over
     void bands_moved(const palpate::viewer::Ranges& bands);
-    void bands_settled();
+    void bands_settled();  ///< the drag is over
     void mark_chosen(int mark);
     void mark_moved(int mark, double level);
     void curve_changed(const palpate::viewer::Knots& knots);
-    void curve_settled();  ///< a drag is over
     void knot_held(int knot);
     void knot_activated(int knot);  ///< by a double click or Return
     void band_added(const palpate::DensityRange& range);
     void band_deleted(int band);
-    void band_chosen(int band);
 
   protected:
     void paintEvent(QPaintEvent* event) override;
@@ -111,6 +105,7 @@ class LevelChart : public QWidget {
 
     QRectF plot() const;
     double text_height() const;
+    void choose_band(int band);
     void ask_level(double level);
     void step_level(double steps);
     int knot_at(const QPointF& at) const;
@@ -131,7 +126,6 @@ class LevelChart : public QWidget {
     double level_ = 0;
     double felt_ = std::numeric_limits<double>::quiet_NaN();
     Ranges bands_;
-    bool editable_ = true;
     int chosen_ = -1;
 
     std::vector<LevelMark> marks_;

@@ -54,8 +54,7 @@ LookControls::LookControls(Effect& effect)
              "Drag a point; double click adds one, or on a point chooses its colour; right click "
              "or Del deletes.\nPage keys choose a point, arrows move it, Insert adds one, Return "
              "chooses its colour.\nChoose the preset again to undo. Ctrl-wheel zooms, shift-wheel "
-             "moves, Ctrl+0 shows all again."))),
-      limiter_(this) {
+             "moves, Ctrl+0 shows all again."))) {
     editor_->setAccessibleName(tr("Transfer function"));
     editor_->set_level_shown(false);
     auto* felt = row_of(
@@ -83,7 +82,6 @@ LookControls::LookControls(Effect& effect)
     column_in(this, {felt, others, row_of({label_for(tr("Cut away"), cut), cut}, 1), make_volume(),
                      make_rest()});
     connect(editor_, &LevelChart::curve_changed, this, &LookControls::take_transfer);
-    connect(editor_, &LevelChart::curve_settled, &limiter_, &RateLimiter::flush);
     connect(editor_, &LevelChart::knot_held, this, &LookControls::refresh);
     connect(editor_, &LevelChart::knot_activated, findChild<ColourButton*>("point_colour"),
             &ColourButton::choose);
@@ -292,7 +290,6 @@ void LookControls::begin() {
 }
 
 void LookControls::set_look(const Look& look) {
-    drop_requests(*this);
     look_ = look;
     refresh();
     Q_EMIT look_set();
@@ -301,7 +298,7 @@ void LookControls::set_look(const Look& look) {
 void LookControls::change(const std::function<void(Look&)>& how) {
     how(look_);
     refresh();
-    limiter_.put([this] { Q_EMIT look_changed(look_); });
+    Q_EMIT look_changed(look_);
 }
 
 }  // namespace palpate::viewer

@@ -50,7 +50,6 @@ class LookControls : public Form {
     Look look_;
     QComboBox* preset_ = nullptr;
     LevelChart* editor_;
-    RateLimiter limiter_;
 };
 
 }  // namespace palpate::viewer

@@ -69,7 +69,6 @@ Panel::Panel(Effect& effect, QWidget* parent)
     connect(&effect_, &Effect::changed, this, &Panel::show_marks);
     for (const auto over : {&Effect::begun, &Effect::ended}) {
         connect(&effect_, over, this, [this] {
-            drop_requests(*this);
             loop_->clear();
             enable();
         });

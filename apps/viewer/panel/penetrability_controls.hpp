@@ -1,75 +1,19 @@
-// Controls of penetrability: off, past a threshold, or by ranges of interest, which are bands on
-// the level chart and rows of a table.
+// Controls of penetrability: whether surfaces give way, past which threshold, and the ranges of
+// levels that are felt, which are bands on the level chart, too.
 #pragma once
 
-#include <QTableWidget>
+#include <functional>
 
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/form.hpp"
-#include "apps/viewer/panel/level_chart.hpp"
+#include "apps/viewer/panel/level_axis.hpp"
 
 namespace palpate::viewer {
 
-/// What the panel shows; settings of modes that are not in use are kept for later.
-struct PressThrough {
-    enum class Mode { off, threshold, ranges };
+class LevelChart;
 
-    Mode mode = Mode::off;
-    double threshold = 1;  ///< PT [device mm]
-    double minimum = 0;    ///< [data units] least level felt (greatest where below is solid)
-    Ranges ranges;         ///< [data units] in any order
-
-    PenetrabilityFunction function = nullptr;  ///< kept as it came
-    const void* context = nullptr;
-};
-
-/// The core's setting. Throws std::invalid_argument as penetrability_threshold and _ranges do.
-Penetrability penetrability_of(const PressThrough& shown, Solid solid);
-
-/// How a setting is shown; modes that it does not use keep their values from `before`.
-PressThrough shown_from(const Penetrability& penetrability, Solid solid, PressThrough before);
-
-/// The defaults for data of this range [data units]: a minimum at the level, and one range that
-/// begins there and spans a tenth of the data.
-PressThrough first_press_through(double isovalue, double low, double high, Solid solid);
-
-/// The bands on the chart, rising: the ranges, or everything past the minimum; none in mode off.
-Ranges bands_of(const PressThrough& shown, Solid solid);
-/// The inverse: bands that were dragged become ranges or the minimum.
-PressThrough with_bands(PressThrough shown, const Ranges& bands, Solid solid);
-
-/// One row for each range, LOW and HIGH [data units], "inf" and "-inf" included; its colour is the
-/// band's. Del deletes the row.
-class RangeTable : public QTableWidget {
-    Q_OBJECT
-
-  public:
-    RangeTable();
-
-    /// Shows ranges; emits nothing.
-    void set_ranges(const Ranges& ranges);
-    int chosen() const;
-    void choose(int row);
-
-    QSize sizeHint() const override;
-    QSize minimumSizeHint() const override { return sizeHint(); }
-
-  Q_SIGNALS:
-    void edited(int row, const palpate::DensityRange& range);
-    void nonsense(const QString& why);  ///< the text typed is no number; the old one is restored
-    void delete_wanted(int row);
-    void row_chosen(int row);
-
-  protected:
-    void keyPressEvent(QKeyEvent* event) override;
-
-  private:
-    void read(int row, int column);
-    void write(int row);
-
-    Ranges ranges_;
-};
-
+/// Object names: penetrability, threshold, add_range, and of the ranges, from N = 1, range_N_low,
+/// range_N_high, range_N_remove.
 class PenetrabilityControls : public Form {
     Q_OBJECT
 
@@ -78,23 +22,26 @@ class PenetrabilityControls : public Form {
     PenetrabilityControls(Effect& effect, LevelChart& chart);
 
   private:
-    QLayout* make_modes();
+    /// What is shown; while it is off, it is kept for later.
+    struct Pressing {
+        bool on = false;
+        double threshold = 1;  ///< PT [device mm]
+        Ranges ranges;         ///< [data units] in any order
+    };
     QWidget* make_ranges();
+    QWidget* make_range(std::size_t at);
     void connect_chart();
     void begin();
     void show_effect();
     void request();
-    void change(const std::function<void(PressThrough&)>& how);
+    void change(const std::function<void(Pressing&)>& how);
     void add_range(const DensityRange& range);
-    void remove_range(int which);
+    void remove_range(std::size_t which);
     DensityRange room_for_a_range() const;
 
     Effect& effect_;
     LevelChart* chart_;
-    RangeTable* table_;
-    RateLimiter limiter_;
-    PressThrough shown_;
-    Solid solid_ = Solid::above;
+    Pressing shown_;
     bool dragging_ = false;  // a band
 };
 

@@ -295,8 +295,7 @@ Timeline::Timeline(QWidget* parent)
                 tr("The time shown [s] or [minutes:seconds], and the frame there or the length"))),
       speed_(named(new SpeedBox, "timeline_speed", tr("Seconds played in a second, 0.1 to 10"))),
       loop_(
-          named(new QCheckBox(tr("&Loop")), "timeline_loop", tr("After the end it begins again"))),
-      limiter_(this) {
+          named(new QCheckBox(tr("&Loop")), "timeline_loop", tr("After the end it begins again"))) {
     setObjectName("timeline");
     auto* row = row_in(this, {back_, play_, forward_, track_, text_, speed_, loop_});
     row->setContentsMargins(6, 2, 6, 2);
@@ -338,7 +337,6 @@ void Timeline::connect_inputs() {
     });
     connect(track_, &TimelineTrack::chosen, this, &Timeline::ask_moment);
     connect(track_, &TimelineTrack::stepped, this, &Timeline::step);
-    connect(track_, &TimelineTrack::sliderReleased, &limiter_, &RateLimiter::flush);
 }
 
 bool Timeline::dragging() const {
@@ -359,7 +357,6 @@ void Timeline::step(int direction) {
     }
     track_->set_time(*time);
     ask_moment(track_->time());
-    limiter_.flush();
 }
 
 void Timeline::ask_speed(double speed) {
@@ -371,12 +368,11 @@ void Timeline::ask_moment(double time) {
     asked_time_ = time;
     awaited_time_.begin();
     show_text();
-    limiter_.put([this, time] { Q_EMIT moment_asked(time); });
+    Q_EMIT moment_asked(time);
 }
 
 void Timeline::set_view(const TimelineView& view) {
     if (track_->set_view(view)) {
-        limiter_.drop();  // a moment of the former sequence
         awaited_time_.end();
         show_possible();
     }

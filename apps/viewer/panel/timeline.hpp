@@ -88,7 +88,7 @@ class Timeline : public QWidget {
     /// Seconds of the sequence or recording in a second; 0: pause. Emitted by the play button, by
     /// the speed box while it plays, and by a step, which ends playing.
     void speed_asked(double speed);
-    /// [s], between begin and end; at most 60 a second in a drag, and the last always.
+    /// [s], between begin and end.
     void moment_asked(double time);
     void loop_asked(bool loop);
 
@@ -107,7 +107,6 @@ class Timeline : public QWidget {
     QLabel* text_;
     NumberBox* speed_;
     QCheckBox* loop_;
-    RateLimiter limiter_;
     bool playing_ = false;
     double play_speed_ = 1;  // while it plays; below 0: backwards
     double asked_time_ = 0;

@@ -44,6 +44,22 @@ double rounding(const TimelineView& view) {
 
 }  // namespace
 
+void TimelineView::play(double to) {
+    if (speed == 0 && to != 0 && time >= end) time = begin;
+    speed = to;
+}
+
+void TimelineView::advance(double seconds) {
+    time += speed * seconds;
+    if (time < end || speed == 0) return;
+    if (loop && end > begin) {
+        time = begin + std::fmod(time - begin, end - begin);
+    } else {
+        time = end;
+        speed = 0;
+    }
+}
+
 bool empty(const TimelineView& view) {
     return view.frames.empty() && !view.live && !view.overview;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <QString>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -19,6 +21,15 @@ namespace palpate::viewer {
 struct TimelineView : run::PlayState {
     TimelineView() { loop = false; }
     explicit TimelineView(run::PlayState play) : run::PlayState(std::move(play)) {}
+
+    /// Of a recording, a player goes on by itself. Seconds of it in a second; 0: pause. At the end
+    /// it begins again.
+    void play(double to);
+    /// Outside of the recording, to its ends.
+    void seek(double to) { time = std::isnan(to) ? begin : std::clamp(to, begin, end); }
+    void set_loop(bool on) { loop = on; }
+    /// `seconds` have passed. At the end it pauses, unless it loops.
+    void advance(double seconds);
 
     std::shared_ptr<const Overview> overview;  ///< of a recording; else null
 };

@@ -161,12 +161,11 @@ void BackgroundRenderer::set_field(const Field& field, double isovalue) {
     paint();
 }
 
-void BackgroundRenderer::update_field(const Field& field, const std::optional<SampleBox>& changed) {
+void BackgroundRenderer::update_field(const Field& field) {
     if (!request_.field || request_.field->geometry() != field.geometry()) {
         throw std::invalid_argument("the scene shows no other version of these data");
     }
-    const bool edited = same_but_for_edits(*request_.field, field);
-    const SampleBox box = edited && changed ? *changed : changed_between(*request_.field, field);
+    const SampleBox box = changed_between(*request_.field, field);
     request_.field = field;
     if (box.empty()) return;
     felt_.update_field(field, box);

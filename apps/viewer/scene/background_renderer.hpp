@@ -24,7 +24,7 @@ class BackgroundRenderer : public QObject {
 
     void set_field(const Field& field, double isovalue);
     /// As Scene::update_field().
-    void update_field(const Field& field, const std::optional<SampleBox>& changed);
+    void update_field(const Field& field);
     /// As Scene::set_patch().
     void set_patch(const std::optional<ScenePatch>& patch);
     void clear();

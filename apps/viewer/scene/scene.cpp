@@ -87,18 +87,18 @@ ViewSize Scene::view_size() const {
 }
 
 void Scene::set_field(const Field& field, double isovalue) {
+    const auto& before = parts_->background.field();
+    parts_->shown = with_field(parts_->shown, before ? &*before : nullptr, field, isovalue);
     parts_->forget_hands();
-    parts_->pressed.reset();
     parts_->patch_detail.reset();
     parts_->patched_level = std::nan("");
-    parts_->wanted.crosshair = physical_centre(field.geometry());
     parts_->background.set_field(field, isovalue);
     reset_camera();
     changed();
 }
 
-void Scene::update_field(const Field& field, const std::optional<SampleBox>& changed) {
-    parts_->background.update_field(field, changed);
+void Scene::update_field(const Field& field) {
+    parts_->background.update_field(field);
     // The lattice round a proxy is that of the new version.
     if (std::ranges::any_of(parts_->hands, [](const auto& h) { return h.snapshot.has_value(); })) {
         refresh();
@@ -113,23 +113,26 @@ void Scene::clear() {
     changed();
 }
 
-void Scene::set_isovalue(double isovalue) {
-    parts_->background.set_isovalue(isovalue);
+const Shown& Scene::shown() const {
+    return parts_->shown;
 }
 
-void Scene::set_look(const Look& look) {
-    parts_->wanted.look = look;
+void Scene::set_shown(const Shown& shown) {
+    if (!shown.look.slices) parts_->shown.crosshair = shown.crosshair;  // it is not seen
+    if (shown == parts_->shown) return;
+    for (int hand = 1; hand <= most_hands; ++hand) {
+        const auto& tool = shown.tools[hand];
+        if (tool == parts_->hands[hand].tool) continue;
+        parts_->hands[hand].tool = tool;
+        parts_->hands[hand].tool_shape = tool ? shape_of(*tool) : nullptr;
+    }
+    parts_->shown = shown;
+    parts_->look = scene_look(shown.look, shown.layers);
+    parts_->background.set_most_triangles(shown.most_triangles);
+    parts_->background.set_isovalue(shown.isovalue);
+    setCursor(shown.measuring || shown.probe ? Qt::CrossCursor : Qt::ArrowCursor);
     refresh();
     changed();
-}
-
-void Scene::set_pressed(const std::optional<double>& level, int hand) {
-    if (level == parts_->pressed && hand == parts_->pressing) return;
-    parts_->pressing = hand;
-    const bool was = parts_->pressed.has_value();
-    parts_->pressed = level;
-    refresh();
-    if (was != level.has_value()) changed();
 }
 
 void Scene::show_snapshot(const std::optional<Snapshot>& snapshot, int hand) {
@@ -144,49 +147,8 @@ void Scene::show_snapshot(const std::optional<Snapshot>& snapshot, int hand) {
     refresh();
 }
 
-void Scene::set_tool(const std::shared_ptr<const Tool>& tool, int hand) {
-    if (tool == parts_->hands[hand].tool) return;
-    parts_->hands[hand].tool = tool;
-    parts_->hands[hand].tool_shape = tool ? shape_of(*tool) : nullptr;
-    refresh();
-}
-
-void Scene::set_crosshair(const Vec3& physical) {
-    parts_->wanted.crosshair = physical;
-    if (parts_->wanted.look.slices) changed();
-}
-
-void Scene::set_hand(Hand hand) {
-    hand_ = hand;
-    setCursor(hand == Hand::probe ? Qt::CrossCursor : Qt::ArrowCursor);
-}
-
-void Scene::set_measuring(bool measuring) {
-    measuring_ = measuring;
-    setCursor(measuring || hand_ == Hand::probe ? Qt::CrossCursor : Qt::ArrowCursor);
-}
-
-void Scene::set_measurements(const std::vector<Measurement>& measurements) {
-    parts_->measurements = measurements;
-    refresh();
-}
-
-void Scene::set_unit(LengthUnit unit) {
-    parts_->unit = unit;
-    refresh();
-}
-
-void Scene::set_most_triangles(std::size_t triangles) {
-    parts_->background.set_most_triangles(triangles);
-}
-
 void Scene::set_overlay(std::vector<DrawnSurface> surfaces) {
     parts_->background.set_overlay(std::move(surfaces));
-}
-
-void Scene::set_brush(double radius) {
-    parts_->brush = radius;
-    refresh();
 }
 
 void Scene::set_camera(const pictures::Camera& camera) {
@@ -230,12 +192,14 @@ void Scene::show_whole() {
 }
 
 void Scene::changed() {
-    RenderRequest request = parts_->wanted;
+    RenderRequest request;
+    request.look = parts_->look;
+    request.crosshair = parts_->shown.crosshair;
     request.background = background_of(palette());
     request.ink = ink_of(palette());
     request.camera = camera_;
     constexpr double glass = 0.25;
-    if (parts_->pressed) {
+    if (parts_->shown.pressed) {
         request.look.surface_opacity = std::min(request.look.surface_opacity, glass);
     }
     request.pixel_ratio = devicePixelRatioF();
@@ -274,16 +238,17 @@ void Scene::refresh() {
 /// voxel.
 void Scene::show_patch(const Field& field) {
     for (SeenHand& hand : parts_->hands) hand.patch = nullptr;
-    SeenHand& hand = parts_->hands[parts_->pressing];
-    if (!parts_->pressed || !parts_->wanted.look.surface || !is_seen(hand)) return;
+    const std::optional<double>& pressed = parts_->shown.pressed;
+    SeenHand& hand = parts_->hands[parts_->shown.pressing];
+    if (!pressed || !parts_->look.surface || !is_seen(hand)) return;
     const Vec3& scp = hand.snapshot->session.tick.proxy.scp;
     const double unmoved = 0.5 * field.geometry().spacing.minCoeff();
-    if (!((scp - parts_->patched).norm() < unmoved) || parts_->patched_level != *parts_->pressed) {
-        const auto patch = parts_->patch = local_patch(field, scp, *parts_->pressed);
+    if (!((scp - parts_->patched).norm() < unmoved) || parts_->patched_level != *pressed) {
+        const auto patch = parts_->patch = local_patch(field, scp, *pressed);
         parts_->patch_shape =
             patch ? pictures::mesh_of(patch->positions, patch->normals, patch->triangles) : nullptr;
         parts_->patched = scp;
-        parts_->patched_level = *parts_->pressed;
+        parts_->patched_level = *pressed;
     }
     hand.patch = parts_->patch_shape;
     hand.patch_memory = parts_->patch;
@@ -292,7 +257,7 @@ void Scene::show_patch(const Field& field) {
 void Scene::lay_out() {
     const auto& shown = parts_->background.shown();
     const auto& field = parts_->background.field();
-    const Look& look = parts_->wanted.look;
+    const Look& look = parts_->look;
     const double ratio = devicePixelRatioF();
     Annotations::Content written;
     // The camera of the image shown: while that lags, the probe stays in place on the surface.
@@ -314,15 +279,15 @@ void Scene::lay_out() {
         show_patch(*field);
         for (int hand = 1; hand <= most_hands; ++hand) {
             SeenHand& seen = parts_->hands[hand];
-            seen.brush = parts_->brush;
+            seen.brush = parts_->shown.brush;
             if (!is_seen(seen)) continue;
             add_hand(marks, seen, look, finest_at_proxy(hand, *field), view, written.ink,
                      parts_->shapes);
         }
         add_cut(marks, look, geometry, view, held_, parts_->shapes.ball);
-        add_measurements(marks, parts_->measurements, view);
-        written.measurements = parts_->measurements;
-        written.unit = parts_->unit;
+        add_measurements(marks, parts_->shown.measurements, view);
+        written.measurements = parts_->shown.measurements;
+        written.unit = parts_->shown.unit;
         written.orientation = look.orientation;
         written.oriented = geometry.oriented;
         written.scale_bar = look.scale_bar && geometry.measured;

@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "apps/viewer/model/detail_choice.hpp"
-#include "apps/viewer/model/look.hpp"
-#include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/model/shown.hpp"
 #include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/navigation.hpp"
 #include "apps/viewer/scene/render_request.hpp"
@@ -39,11 +38,9 @@ class Scene : public QVTKOpenGLNativeWidget {
     /// finite shows no surface and is a problem().
     void set_field(const Field& field, double isovalue);
     /// Another version of the data that are shown, on the same grid: edited, or at another moment.
-    /// Camera, probe and crosshair stay. `changed`: the samples that edits have changed since the
-    /// version that is shown; without it they are found by the bricks that differ, which is never
-    /// too few and takes microseconds. As often as versions come: the newest is shown. Throws
+    /// Camera, probe and crosshair stay. As often as versions come: the newest is shown. Throws
     /// std::invalid_argument where nothing, or another grid, is shown.
-    void update_field(const Field& field, const std::optional<SampleBox>& changed = {});
+    void update_field(const Field& field);
     /// A finer part of the data, whose surface is drawn in place of theirs; until the next
     /// set_field(). Nothing: none.
     void set_patch(const std::optional<ScenePatch>& patch);
@@ -53,34 +50,14 @@ class Scene : public QVTKOpenGLNativeWidget {
     /// The picture is the fine one of the newest camera and look; a patch may still come.
     bool shows_whole() const;
     void clear();
-    /// The surface is extracted again in the background, coarse first; the newest isovalue wins.
-    void set_isovalue(double isovalue);
-    void set_look(const Look& look);
-    /// The hand has pressed through the surface shown to another `level` [data units]: the surface
-    /// is shown as glass, and a patch of that level round the proxy. Nothing: not so.
-    void set_pressed(const std::optional<double>& level, int hand = 1);
+    /// With another isovalue the surface is extracted again in the background, coarse first; the
+    /// newest one wins.
+    void set_shown(const Shown& shown);
+    const Shown& shown() const;
     /// As often as the screen shows; nothing: no such hand. Hands are numbered from 1.
     void show_snapshot(const std::optional<Snapshot>& snapshot, int hand = 1);
-    /// With which it feels; null: a point.
-    void set_tool(const std::shared_ptr<const Tool>& tool, int hand = 1);
-    /// Where the three slices cut [mm, physical]; to begin with the middle of the grid.
-    void set_crosshair(const Vec3& physical);
-
-    /// What the left mouse button moves. docs/viewer.md has what all buttons do.
-    enum class Hand { camera, probe };
-    void set_hand(Hand hand);
-    /// True: the left button chooses points on what is seen, and moves nothing.
-    void set_measuring(bool measuring);
     /// Surfaces of an overlay, from the middle of the grid. Until clear().
     void set_overlay(std::vector<DrawnSurface> surfaces);
-    void set_measurements(const std::vector<Measurement>& measurements);
-    void set_unit(LengthUnit unit);
-    /// How far a notch of the wheel moves the probe: as a drag of so many pixels.
-    void set_wheel_step(double pixels) { notch_px_ = pixels; }
-    /// Of the surface that is felt, from the next one on.
-    void set_most_triangles(std::size_t triangles);
-    /// [mm] Outlined round the proxy; 0: no brush.
-    void set_brush(double radius);
 
     ViewSize view_size() const;
     pictures::Camera camera() const { return camera_; }
@@ -103,12 +80,12 @@ class Scene : public QVTKOpenGLNativeWidget {
     bool on_hardware() const;
 
   Q_SIGNALS:
-    /// Hand motion asked for with mouse or wheel under Hand::probe [mm, physical].
+    /// Hand motion asked for with mouse or wheel, which are the probe's [mm, physical].
     void probe_dragged(const palpate::Vec3& by);
     /// The tool is to be turned, about its reference point: a rotation vector [radians, physical
     /// axes].
     void tool_turned(const palpate::Vec3& rotation);
-    /// The left button went down under Hand::probe, without Shift: `at` lies under the pointer, in
+    /// The left button went down to move the probe, without Shift: `at` lies under the pointer, in
     /// the plane through the camera's focus [mm, physical].
     void probe_pressed(const palpate::Vec3& at);
     void probe_released();
@@ -153,9 +130,6 @@ class Scene : public QVTKOpenGLNativeWidget {
     QTimer refresh_;
     pictures::Camera camera_;
     bool fitted_ = true;  // the camera shows the whole volume, also after a change of size
-    Hand hand_ = Hand::camera;
-    bool measuring_ = false;
-    double notch_px_ = 15;
     Drag drag_ = Drag::none;
     QPointF drag_from_, drag_start_;
     std::optional<std::size_t> held_;  // the handle of the cut under the pointer

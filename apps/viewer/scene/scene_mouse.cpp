@@ -18,7 +18,7 @@ constexpr double zoom_px = 150;      // dragged so far the scale doubles or halv
 }  // namespace
 
 Scene::Drag Scene::drag_of(const QMouseEvent& event) const {
-    const bool probe = hand_ == Hand::probe;
+    const bool probe = parts_->shown.probe;
     const Qt::KeyboardModifiers keys = event.modifiers();
     switch (event.button()) {
         case Qt::LeftButton:
@@ -40,7 +40,7 @@ std::optional<std::size_t> Scene::handle_at(const QPointF& at) const {
     const auto& field = parts_->background.field();
     if (!field) return std::nullopt;
     const double arm = cut_arm_px * mm_per_pixel(camera_, view_size());
-    const auto handles = handles_of(parts_->wanted.look, field->geometry(), arm);
+    const auto handles = handles_of(parts_->look, field->geometry(), arm);
     std::optional<std::size_t> nearest;
     double least = reach_px;
     for (std::size_t i = 0; i < handles.size(); ++i) {
@@ -62,7 +62,7 @@ void Scene::show_held(std::optional<std::size_t> handle) {
 void Scene::hold_handle() {
     const Geometry& geometry = parts_->background.field()->geometry();
     const double arm = cut_arm_px * mm_per_pixel(camera_, view_size());
-    held_from_ = handles_of(parts_->wanted.look, geometry, arm).at(held_.value());
+    held_from_ = handles_of(parts_->look, geometry, arm).at(held_.value());
     held_to_ = held_from_.at;
     drag_ = Drag::handle;
 }
@@ -84,8 +84,9 @@ void Scene::move_handle(const QPointF& by) {
             length > end_on * end_on ? QPointF::dotProduct(seen, by) / length : -by.y();
         held_to_ += mm * moved * along;
     }
-    set_look(with_handle_at(parts_->wanted.look, geometry, held_.value(), held_to_));
-    Q_EMIT cut_moved(parts_->wanted.look);
+    const Look look = with_handle_at(parts_->shown.look, geometry, held_.value(), held_to_);
+    set(*this, &Shown::look, look);
+    Q_EMIT cut_moved(look);
 }
 
 void Scene::mousePressEvent(QMouseEvent* event) {
@@ -93,7 +94,7 @@ void Scene::mousePressEvent(QMouseEvent* event) {
     drag_ = drag_of(*event);
     drag_from_ = drag_start_ = event->localPos();
     event->accept();
-    if (measuring_ && event->button() == Qt::LeftButton) {
+    if (parts_->shown.measuring && event->button() == Qt::LeftButton) {
         drag_ = Drag::none;
         if (const auto at = surface_at(drag_from_)) Q_EMIT point_chosen(*at);
         return;
@@ -113,7 +114,7 @@ void Scene::mouseMoveEvent(QMouseEvent* event) {
     drag_from_ = event->localPos();
     if (by.isNull() || !parts_->background.field()) return;
     if (drag_ == Drag::none) show_held(handle_at(drag_from_));
-    if (drag_ == Drag::none && measuring_) {
+    if (drag_ == Drag::none && parts_->shown.measuring) {
         if (const auto at = surface_at(drag_from_)) Q_EMIT point_pointed_at(*at);
     }
     const ViewSize size = view_size();
@@ -188,9 +189,9 @@ void Scene::wheelEvent(QWheelEvent* event) {
     event->accept();
     if (notches == 0 || !parts_->background.field()) return;
     const ViewSize size = view_size();
-    if (hand_ == Hand::probe && !(event->modifiers() & Qt::ControlModifier)) {
+    if (parts_->shown.probe && !(event->modifiers() & Qt::ControlModifier)) {
         const double part = event->modifiers() & Qt::ShiftModifier ? finer : 1;
-        const double into = part * notches * notch_px_ * mm_per_pixel(camera_, size);
+        const double into = part * notches * parts_->shown.wheel_px * mm_per_pixel(camera_, size);
         Q_EMIT probe_dragged(-into * axes_of(camera_).towards_viewer);
         return;
     }

@@ -24,15 +24,11 @@ namespace palpate::viewer {
 
 struct Scene::Parts {
     BackgroundRenderer background;
-    RenderRequest wanted;  // look, crosshair; changed() fills in the rest
+    Shown shown;
+    Look look;  // of it, with its layers
     PerHand<SeenHand> hands;
     HandShapes shapes;
-    double brush = 0;
-    std::vector<Measurement> measurements;
-    LengthUnit unit = LengthUnit::automatic;
     std::shared_ptr<const DetailField> patch_detail;  // null: none
-    std::optional<double> pressed;                    // to this level
-    int pressing = 1;                                 // the hand that does
     std::shared_ptr<const RenderMesh> patch;
     vtkSmartPointer<vtkPolyData> patch_shape;
     Vec3 patched = Vec3::Zero();  // where, and at which level

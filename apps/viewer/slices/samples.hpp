@@ -67,9 +67,4 @@ class SliceSamples {
     std::array<SampleLayer, 3> layers_;
 };
 
-/// Grey levels [data units] that are shown black and white.
-struct GreyWindow {
-    double low = 0, high = 1;
-};
-
 }  // namespace palpate::viewer

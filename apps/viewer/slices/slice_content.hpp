@@ -15,11 +15,11 @@ struct SlicePane::Content {
     Geometry grid;  ///< that slices are counted in
     SlicePlane plane;
     SliceSamples samples;
-    std::optional<GreyWindow> usual;            ///< the first that was set
     double layer = 0;                           ///< of the grid, that the picture shows
     std::shared_ptr<const DetailField> finer;   ///< of a part; null: none
     std::optional<SliceSamples> finer_samples;  ///< its own
     QImage picture;                             ///< grey levels and contour; null: to be made
+    SliceStyle style;                           ///< of the picture
     std::optional<Field> newer;  ///< not yet in samples: another version of the same grid
     QElapsedTimer made;          ///< since then
     qint64 took_ms = 0;

@@ -12,10 +12,10 @@ namespace palpate::viewer {
 void SlicePane::mousePressEvent(QMouseEvent* event) {
     if (!content_ || drag_ != Drag::none) return;
     drag_from_ = event->localPos();
-    if (event->button() == Qt::LeftButton && measuring_) {
+    if (event->button() == Qt::LeftButton && shown_.measuring) {
         Q_EMIT point_chosen(point_at(event->localPos()));
     } else if (event->button() == Qt::LeftButton) {
-        if (probe_ && event->modifiers() & Qt::ControlModifier) {
+        if (shown_.probe && event->modifiers() & Qt::ControlModifier) {
             drag_ = Drag::probe;
             drag_layer_ = layer();
             aim_at(event->localPos());
@@ -52,7 +52,7 @@ void SlicePane::mouseMoveEvent(QMouseEvent* event) {
             picture_changed();
             break;
         case Drag::none:
-            if (measuring_) Q_EMIT point_pointed_at(point_at(event->localPos()));
+            if (shown_.measuring) Q_EMIT point_pointed_at(point_at(event->localPos()));
             break;
     }
     update();
@@ -95,7 +95,7 @@ void SlicePane::wheelEvent(QWheelEvent* event) {
 void SlicePane::keyPressEvent(QKeyEvent* event) {
     if (!content_) return event->ignore();
     const auto move = [&](double u, double v) {
-        const Vec3 index = index_from_physical(geometry(), crosshair_);
+        const Vec3 index = index_from_physical(geometry(), shown_.crosshair);
         const Vec3 slice = slice_from_index(content_->plane, geometry(), index);
         choose(physical_from_slice(in_data(slice + Vec3(u, v, 0))));
     };

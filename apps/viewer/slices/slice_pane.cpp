@@ -11,7 +11,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/slices/slice_content.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
@@ -61,19 +60,13 @@ void SlicePane::set_field(const Field& field, double isovalue,
     const bool same = content_ &&
                       content_->samples.field().volume().data() == field.volume().data() &&
                       geometry() == grid;
-    const auto usual = same ? content_->usual : std::nullopt;
+    shown_ = with_field(shown_, same ? &content_->samples.field() : nullptr, field, isovalue);
     content_ = std::make_unique<Content>(field, grid, slice_plane(grid, axis_));
-    content_->usual = usual;
-    style_.isovalue = isovalue;
     if (!same) {
-        low_ = whole_range(field).low;
-        high_ = whole_range(field).high;
-        crosshair_ = physical_centre(field.geometry());
         view_ = {};
         snapshots_ = {};
     }
     setAccessibleName(tr("%1 slice").arg(title()));
-    set_crosshair(crosshair_);
     picture_changed();
 }
 
@@ -93,39 +86,32 @@ void SlicePane::clear() {
     update();
 }
 
-void SlicePane::set_isovalue(double isovalue) {
-    if (isovalue == style_.isovalue) return;
-    style_.isovalue = isovalue;
-    picture_changed();
-}
-
-void SlicePane::set_look(const Look& look) {
-    const ColourTable colours = colour_table(look.colours);
-    if (colours == style_.colours && look.overlay == style_.overlay_look &&
-        look.surfaces == style_.surfaces) {
-        return;
-    }
-    style_.colours = colours;
-    style_.overlay_look = look.overlay;
-    style_.surfaces = look.surfaces;
-    picture_changed();
-}
-
-void SlicePane::set_overlay(std::shared_ptr<const Overlay> overlay) {
-    style_.overlay = std::move(overlay);
-    picture_changed();
-}
-
-void SlicePane::set_crosshair(const Vec3& physical) {
-    if (!physical.allFinite()) return;
-    crosshair_ = physical;
+void SlicePane::set_shown(Shown shown) {
+    if (!shown.crosshair.allFinite()) shown.crosshair = shown_.crosshair;
+    if (shown == shown_) return;
+    shown_ = std::move(shown);
+    if (!shown_.probe && drag_ == Drag::probe) drag_ = Drag::none;
     update();
+}
+
+GreyWindow SlicePane::grey_window() const {
+    for (const GreyWindow& one : {shown_.window, shown_.usual_window}) {
+        if (one.low < one.high && std::isfinite(one.high - one.low)) return one;
+    }
+    return content_ ? whole_range(content_->samples.field()) : GreyWindow{0, 1};
+}
+
+SliceStyle SlicePane::style() const {
+    const Look look = slice_look(shown_.look, shown_.layers);
+    const double level = shown_.next_level.value_or(shown_.pressed.value_or(shown_.isovalue));
+    return {grey_window(), colour_table(look.colours), level, look.surfaces, shown_.overlay,
+            look.overlay};
 }
 
 /// Of the slice through the crosshair, along the grid axis. The samples follow when it is painted.
 /// Farther out than two layers all is the same.
 double SlicePane::layer() const {
-    const double at = index_from_physical(geometry(), crosshair_)[axis_];
+    const double at = index_from_physical(geometry(), shown_.crosshair)[axis_];
     return std::clamp(at, -2.0, geometry().size[axis_] + 1.0);
 }
 
@@ -147,39 +133,6 @@ void SlicePane::show_snapshot(const std::optional<Snapshot>& snapshot, int hand)
         return;
     }
     shown = snapshot;
-    update();
-}
-
-void SlicePane::set_window(double low, double high) {
-    if (!(low < high) || !std::isfinite(low) || !std::isfinite(high)) return;
-    if (content_ && !content_->usual) content_->usual = {low, high};
-    use_window(low, high);
-}
-
-void SlicePane::use_window(double low, double high) {
-    if (low == low_ && high == high_) return;
-    low_ = low;
-    high_ = high;
-    picture_changed();
-}
-
-void SlicePane::set_hand(bool probe) {
-    probe_ = probe;
-    if (!probe && drag_ == Drag::probe) drag_ = Drag::none;
-}
-
-void SlicePane::set_brush(double radius) {
-    brush_ = radius;
-    update();
-}
-
-void SlicePane::set_measurements(const std::vector<Measurement>& measurements) {
-    measurements_ = measurements;
-    update();
-}
-
-void SlicePane::set_unit(LengthUnit unit) {
-    unit_ = unit;
     update();
 }
 
@@ -243,7 +196,9 @@ void SlicePane::make_picture(const SliceMap& where) {
     Content& c = *content_;
     const double scale = devicePixelRatioF();
     const bool moved = layer() != c.layer;
-    if (!c.picture.isNull() && c.picture.size() == (QSizeF(size()) * scale).toSize()) {
+    const SliceStyle now = style();
+    if (now == c.style && !c.picture.isNull() &&
+        c.picture.size() == (QSizeF(size()) * scale).toSize()) {
         if (!moved && !c.newer) return;
         const auto wait = rest * c.took_ms - c.made.elapsed();
         if (wait > 0) {
@@ -256,10 +211,9 @@ void SlicePane::make_picture(const SliceMap& where) {
     c.newer.reset();
     c.layer = layer();
     c.samples.go_to(layer_in(c.samples.field().geometry()));
-    SliceStyle style = style_;
-    style.window = {low_, high_};
+    c.style = now;
     const SliceMap map = map_of(c.samples.field().geometry(), c.plane, c.grid, where);
-    c.picture = slice_picture(c.samples, c.plane, map, style, size(), scale, finer_slice(where));
+    c.picture = slice_picture(c.samples, c.plane, map, now, size(), scale, finer_slice(where));
     c.took_ms = c.made.elapsed();
     c.made.start();
 }
@@ -338,17 +292,17 @@ void SlicePane::paintEvent(QPaintEvent*) {
     const SliceSheet sheet{content_->plane, geometry(), where, content_->layer, size()};
     const std::vector<SliceWords> words = words_in();
     painter.setClipRegion(QRegion(rect()) - place_of(words, font(), size()));
-    paint_crosshair(painter, sheet, sheet.pixel(crosshair_));
+    paint_crosshair(painter, sheet, sheet.pixel(shown_.crosshair));
     painter.setClipping(false);
     const bool several = snapshots_[2].has_value();
     for (int hand = 1; hand <= most_hands; ++hand) {
         if (!snapshots_[hand]) continue;
         const Snapshot& now = *snapshots_[hand];
-        paint_brush(painter, sheet, now.session.tick.proxy.scp, brush_);
+        paint_brush(painter, sheet, now.session.tick.proxy.scp, shown_.brush);
         paint_probe(painter, sheet, now, colours_of(hand), several ? QString::number(hand) : "");
     }
-    for (const Measurement& measurement : measurements_) {
-        paint_measurement(painter, sheet, measurement, unit_);
+    for (const Measurement& measurement : shown_.measurements) {
+        paint_measurement(painter, sheet, measurement, shown_.unit);
     }
     paint_words(painter, words, size());
     if (hasFocus()) {
@@ -373,8 +327,9 @@ std::vector<SliceWords> SlicePane::words_in() const {
     if (fontMetrics().horizontalAdvance(title()) > beside) corner.push_front("");
     all.push_back({Qt::AlignLeft | Qt::AlignTop, corner.join('\n')});
     // Above the letter of the lower edge where there is no room beside it.
-    QStringList grey{tr("W %1", "window, in the corner").arg(high_ - low_, 0, 'g', 5),
-                     tr("L %1", "level, in the corner").arg(0.5 * (low_ + high_), 0, 'g', 5)};
+    const auto [low, high] = grey_window();
+    QStringList grey{tr("W %1", "window, in the corner").arg(high - low, 0, 'g', 5),
+                     tr("L %1", "level, in the corner").arg(0.5 * (low + high), 0, 'g', 5)};
     if (fontMetrics().horizontalAdvance(grey.back()) > beside) grey << "";
     all.push_back({Qt::AlignRight | Qt::AlignBottom, grey.join('\n')});
     if (!pointer_) return all;
@@ -385,8 +340,8 @@ std::vector<SliceWords> SlicePane::words_in() const {
     QStringList words{QString("(%1, %2, %3) %4")
                           .arg(mm(at[0]), mm(at[1]), mm(at[2]), QString(unit_word(geometry()))),
                       QString::number(value_there(at), 'g', 6)};
-    if (style_.overlay && style_.overlay_look.shown) {
-        const QString there = overlay_words(*style_.overlay, at);
+    if (shown_.overlay && shown_.look.overlay.shown) {
+        const QString there = overlay_words(*shown_.overlay, at);
         if (!there.isEmpty()) words.push_front(there);
     }
     all.push_back({Qt::AlignLeft | Qt::AlignBottom, words.join('\n')});
@@ -410,8 +365,8 @@ bool SlicePane::event(QEvent* event) {
 }
 
 void SlicePane::choose(const Vec3& physical) {
-    set_crosshair(physical);
-    Q_EMIT crosshair_chosen(crosshair_);
+    set(*this, &Shown::crosshair, physical);
+    Q_EMIT crosshair_chosen(physical);
 }
 
 /// The nearest point in the data.
@@ -440,7 +395,7 @@ double SlicePane::next_layer(double from, int steps) const {
 }
 
 void SlicePane::step_slice(int steps) {
-    Vec3 index = index_from_physical(geometry(), crosshair_);
+    Vec3 index = index_from_physical(geometry(), shown_.crosshair);
     index[axis_] = next_layer(index[axis_], steps);
     choose(physical_from_index(geometry(), index));
 }
@@ -459,20 +414,23 @@ void SlicePane::zoom_at(const QPointF& pixel, double factor) {
 void SlicePane::change_window(const QPointF& drag) {
     const double range = content_->samples.field().volume().range();
     const double per_pixel = range / std::max(width(), 100);
-    const double wide = std::max(high_ - low_ + drag.x() * per_pixel, narrowest * range);
-    const double level = std::clamp(0.5 * (low_ + high_) - drag.y() * per_pixel,
+    const auto [low, high] = grey_window();
+    const double wide = std::max(high - low + drag.x() * per_pixel, narrowest * range);
+    const double level = std::clamp(0.5 * (low + high) - drag.y() * per_pixel,
                                     content_->samples.field().volume().minimum() - range,
                                     content_->samples.field().volume().maximum() + range);
-    use_window(level - 0.5 * wide, level + 0.5 * wide);
-    Q_EMIT window_changed(low_, high_);
+    choose_window({level - 0.5 * wide, level + 0.5 * wide});
+}
+
+void SlicePane::choose_window(const GreyWindow& window) {
+    set(*this, &Shown::window, window);
+    Q_EMIT window_chosen(window);
 }
 
 void SlicePane::reset() {
     view_ = {};
-    const GreyWindow usual = content_->usual.value_or(whole_range(content_->samples.field()));
-    use_window(usual.low, usual.high);
     picture_changed();
-    Q_EMIT window_changed(low_, high_);
+    choose_window({});
 }
 
 }  // namespace palpate::viewer

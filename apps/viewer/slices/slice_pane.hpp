@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "apps/viewer/model/detail_choice.hpp"
-#include "apps/viewer/model/hands.hpp"
-#include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/model/shown.hpp"
 #include "apps/viewer/slices/plane.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
 #include "palpate/servo.hpp"
@@ -20,7 +19,7 @@ namespace palpate::viewer {
 
 struct SliceWords;
 
-/// Wheel: next slice. Left: crosshair, or the probe (set_hand; Ctrl then is the crosshair). Right
+/// Wheel: next slice. Left: crosshair; with Ctrl the probe, where it is the mouse (Shown). Right
 /// drag: window and level. Middle drag: moves the picture. Ctrl and wheel: zoom. Double click: the
 /// whole slice, the usual grey levels. Arrows, Page Up and Down, +, -, Home do the same by keys.
 /// Points are physical [mm].
@@ -50,31 +49,13 @@ class SlicePane : public QWidget {
     /// What set_detail() set, where the slice shows it; else null.
     const DetailField* shown_detail() const;
     void clear();
-    /// The level of the contour [data units].
-    void set_isovalue(double isovalue);
-    /// The colour map of the samples, and how an overlay is shown.
-    void set_look(const Look& look);
-    /// Null: none.
-    void set_overlay(std::shared_ptr<const Overlay> overlay);
-    /// The slice goes through it. Not finite: nothing happens.
-    void set_crosshair(const Vec3& physical);
-    const Vec3& crosshair() const { return crosshair_; }
+    /// A crosshair that is not finite stays where it was.
+    void set_shown(Shown shown);
+    const Shown& shown() const { return shown_; }
     /// Hand, proxy, spring and force; nothing: no such hand. The slice stays where it is.
     void show_snapshot(const std::optional<Snapshot>& snapshot, int hand = 1);
-    /// Grey levels [data units]: up to `low` black, from `high` white. Unless low < high, nothing
-    /// happens. Those that are set first for a volume are its usual ones; until then the least
-    /// sample is black and the greatest white.
-    void set_window(double low, double high);
-    double window_low() const { return low_; }
-    double window_high() const { return high_; }
-    /// True: the left button aims the probe.
-    void set_hand(bool probe);
-    /// [mm] Radius of the brush that is outlined round the proxy; 0: none.
-    void set_brush(double radius);
-    /// True: the left button chooses points of the slice, and moves nothing.
-    void set_measuring(bool measuring) { measuring_ = measuring; }
-    void set_measurements(const std::vector<Measurement>& measurements);
-    void set_unit(LengthUnit unit);
+    /// The grey levels that it has.
+    GreyWindow grey_window() const;
 
     /// As SlicePlane::anatomical; without a volume its own axis.
     int anatomical() const;
@@ -92,7 +73,7 @@ class SlicePane : public QWidget {
     void crosshair_chosen(const palpate::Vec3& physical);
     /// The point to which the probe is asked to go.
     void probe_aimed(const palpate::Vec3& physical);
-    void window_changed(double low, double high);
+    void window_chosen(const palpate::viewer::GreyWindow& window);
     /// While measuring: under the pointer [mm, physical].
     void point_chosen(const palpate::Vec3& at);
     void point_pointed_at(const palpate::Vec3& at);
@@ -121,6 +102,7 @@ class SlicePane : public QWidget {
     double value_there(const Vec3& physical) const;
     Vec3 physical_from_slice(const Vec3& slice) const;
     Vec3 in_data(Vec3 slice) const;
+    SliceStyle style() const;
     void picture_changed();
     void make_picture(const SliceMap& where);
     void choose(const Vec3& physical);
@@ -129,22 +111,15 @@ class SlicePane : public QWidget {
     void step_slice(int steps);
     double next_layer(double from, int steps) const;
     void zoom_at(const QPointF& pixel, double factor);
-    void use_window(double low, double high);
+    void choose_window(const GreyWindow& window);
     void change_window(const QPointF& drag);
     void reset();
     std::vector<SliceWords> words_in() const;
 
     const int axis_;
     std::unique_ptr<Content> content_;  // null without a volume
-    SliceStyle style_;                  // but for the window
-    Vec3 crosshair_ = Vec3::Zero();
+    Shown shown_;
     HandSnapshots snapshots_;
-    double low_ = 0, high_ = 1;
-    bool probe_ = false;
-    double brush_ = 0;
-    bool measuring_ = false;
-    std::vector<Measurement> measurements_;
-    LengthUnit unit_ = LengthUnit::automatic;
     SliceView view_;
     Drag drag_ = Drag::none;
     double drag_layer_ = 0;  // of the slice that the probe is dragged in

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "apps/viewer/model/overlay.hpp"
+#include "apps/viewer/model/shown.hpp"
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/slices/contour.hpp"
 #include "apps/viewer/slices/plane.hpp"
@@ -55,13 +55,13 @@ QString overlay_words(const Overlay& overlay, const Vec3& physical);
 QColor contour_colour();
 
 struct SliceStyle {
-    GreyWindow
-        window;  ///< levels up to window.low have the first colour, from window.high the last
+    GreyWindow window{0, 1};  ///< its ends have the first colour and the last
     ColourTable colours = colour_table("grey");
     double isovalue = 0;                     ///< of the contour [data units]
     std::vector<SeenSurface> surfaces;       ///< contours of others, in their colours
     std::shared_ptr<const Overlay> overlay;  ///< null: none
     OverlayLook overlay_look;
+    bool operator==(const SliceStyle&) const = default;
 };
 
 /// A finer part of the slice, drawn in its place.

@@ -284,8 +284,8 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <translation>Erste Schritte</translation>
     </message>
     <message>
-        <source>&lt;h3&gt;Touch&lt;/h3&gt;&lt;p&gt;Click a surface: the probe goes there and touches it. Hold the button, or turn the wheel, to press; drag to move along the surface. The blue ball is your hand, the vermilion one the proxy, which stays on the surface; the green arrow is the force. The right button turns the view. With a haptic device, choose it under &lt;i&gt;Device&lt;/i&gt;.&lt;/p&gt;&lt;h3&gt;Choose what is solid&lt;/h3&gt;&lt;p&gt;Drag the line in the histogram: everything denser is solid, at once. The ticks are good levels to begin with.&lt;/p&gt;&lt;h3&gt;Go deeper&lt;/h3&gt;&lt;p&gt;Under &lt;i&gt;Pressing through&lt;/i&gt; choose &lt;i&gt;Threshold&lt;/i&gt;: press harder than it, and the hand goes through to what is denser.&lt;/p&gt;&lt;h3&gt;See more&lt;/h3&gt;&lt;p&gt;Under &lt;i&gt;Look&lt;/i&gt; add a surface: skin over bone. V cuts everything open with a plane; drag its blue balls. M measures a length. Under &lt;i&gt;Data&lt;/i&gt; open an overlay: labels or another image.&lt;/p&gt;&lt;h3&gt;Change the data&lt;/h3&gt;&lt;p&gt;Switch the brush on (B) and touch: it carves, adds, smooths or paints. Ctrl+Z takes a stroke back, Ctrl+Shift+S saves the volume.&lt;/p&gt;&lt;h3&gt;Come back&lt;/h3&gt;&lt;p&gt;Ctrl+S saves the session: volume, level, view and settings. Ctrl+R records what is felt, to be played later.&lt;/p&gt;</source>
-        <translation>&lt;h3&gt;Berühren&lt;/h3&gt;&lt;p&gt;Klicken Sie auf eine Oberfläche: Die Sonde geht dorthin und berührt sie. Halten Sie die Taste gedrückt oder drehen Sie das Rad, um zu drücken; ziehen Sie, um an der Oberfläche entlangzufahren. Die blaue Kugel ist Ihre Hand, die zinnoberrote der Proxy, der auf der Oberfläche bleibt; der grüne Pfeil ist die Kraft. Die rechte Taste dreht die Ansicht. Ein haptisches Gerät wählen Sie unter &lt;i&gt;Gerät&lt;/i&gt;.&lt;/p&gt;&lt;h3&gt;Wählen, was fest ist&lt;/h3&gt;&lt;p&gt;Ziehen Sie die Linie im Histogramm: Alles, was dichter ist, ist sofort fest. Die Striche sind gute Werte für den Anfang.&lt;/p&gt;&lt;h3&gt;Tiefer gehen&lt;/h3&gt;&lt;p&gt;Wählen Sie unter &lt;i&gt;Durchdrücken&lt;/i&gt; die &lt;i&gt;Schwelle&lt;/i&gt;: Drücken Sie stärker, und die Hand geht hindurch zu dem, was dichter ist.&lt;/p&gt;&lt;h3&gt;Mehr sehen&lt;/h3&gt;&lt;p&gt;Fügen Sie unter &lt;i&gt;Aussehen&lt;/i&gt; eine Fläche hinzu: Haut über Knochen. V schneidet alles mit einer Ebene auf; ziehen Sie an ihren blauen Kugeln. M misst eine Länge. Öffnen Sie unter &lt;i&gt;Daten&lt;/i&gt; eine Überlagerung: Labels oder ein anderes Bild.&lt;/p&gt;&lt;h3&gt;Daten ändern&lt;/h3&gt;&lt;p&gt;Schalten Sie den Pinsel ein (B) und berühren Sie: Er trägt ab, trägt auf, glättet oder malt. Strg+Z nimmt einen Strich zurück, Strg+Umschalt+S speichert das Volumen.&lt;/p&gt;&lt;h3&gt;Wiederkommen&lt;/h3&gt;&lt;p&gt;Strg+S speichert die Sitzung: Volumen, Isowert, Ansicht und Einstellungen. Strg+R zeichnet auf, was gefühlt wird, um es später abzuspielen.&lt;/p&gt;</translation>
+        <source>&lt;h3&gt;Touch&lt;/h3&gt;&lt;p&gt;Click a surface: the probe goes there and touches it. Hold the button, or turn the wheel, to press; drag to move along the surface. The blue ball is your hand, the vermilion one the proxy, which stays on the surface; the green arrow is the force. The right button turns the view. With a haptic device, choose it under &lt;i&gt;Device&lt;/i&gt;.&lt;/p&gt;&lt;h3&gt;Choose what is solid&lt;/h3&gt;&lt;p&gt;Drag the line in the histogram: everything denser is solid, at once. The ticks are good levels to begin with.&lt;/p&gt;&lt;h3&gt;Go deeper&lt;/h3&gt;&lt;p&gt;Under &lt;i&gt;Pressing through&lt;/i&gt; switch on &lt;i&gt;Surfaces give way&lt;/i&gt;: press harder, and the hand goes through to what is denser.&lt;/p&gt;&lt;h3&gt;See more&lt;/h3&gt;&lt;p&gt;Under &lt;i&gt;Look&lt;/i&gt; add a surface: skin over bone. V cuts everything open with a plane; drag its blue balls. M measures a length. Under &lt;i&gt;Data&lt;/i&gt; open an overlay: labels or another image.&lt;/p&gt;&lt;h3&gt;Change the data&lt;/h3&gt;&lt;p&gt;Switch the brush on (B) and touch: it carves, adds, smooths or paints. Ctrl+Z takes a stroke back, Ctrl+Shift+S saves the volume.&lt;/p&gt;&lt;h3&gt;Come back&lt;/h3&gt;&lt;p&gt;Ctrl+S saves the session: volume, level, view and settings. Ctrl+R records what is felt, to be played later.&lt;/p&gt;</source>
+        <translation>&lt;h3&gt;Berühren&lt;/h3&gt;&lt;p&gt;Klicken Sie auf eine Oberfläche: Die Sonde geht dorthin und berührt sie. Halten Sie die Taste gedrückt oder drehen Sie das Rad, um zu drücken; ziehen Sie, um an der Oberfläche entlangzufahren. Die blaue Kugel ist Ihre Hand, die zinnoberrote der Proxy, der auf der Oberfläche bleibt; der grüne Pfeil ist die Kraft. Die rechte Taste dreht die Ansicht. Ein haptisches Gerät wählen Sie unter &lt;i&gt;Gerät&lt;/i&gt;.&lt;/p&gt;&lt;h3&gt;Wählen, was fest ist&lt;/h3&gt;&lt;p&gt;Ziehen Sie die Linie im Histogramm: Alles, was dichter ist, ist sofort fest. Die Striche sind gute Werte für den Anfang.&lt;/p&gt;&lt;h3&gt;Tiefer gehen&lt;/h3&gt;&lt;p&gt;Schalten Sie unter &lt;i&gt;Durchdrücken&lt;/i&gt; &lt;i&gt;Oberflächen geben nach&lt;/i&gt; ein: Drücken Sie stärker, und die Hand geht hindurch zu dem, was dichter ist.&lt;/p&gt;&lt;h3&gt;Mehr sehen&lt;/h3&gt;&lt;p&gt;Fügen Sie unter &lt;i&gt;Aussehen&lt;/i&gt; eine Fläche hinzu: Haut über Knochen. V schneidet alles mit einer Ebene auf; ziehen Sie an ihren blauen Kugeln. M misst eine Länge. Öffnen Sie unter &lt;i&gt;Daten&lt;/i&gt; eine Überlagerung: Labels oder ein anderes Bild.&lt;/p&gt;&lt;h3&gt;Daten ändern&lt;/h3&gt;&lt;p&gt;Schalten Sie den Pinsel ein (B) und berühren Sie: Er trägt ab, trägt auf, glättet oder malt. Strg+Z nimmt einen Strich zurück, Strg+Umschalt+S speichert das Volumen.&lt;/p&gt;&lt;h3&gt;Wiederkommen&lt;/h3&gt;&lt;p&gt;Strg+S speichert die Sitzung: Volumen, Isowert, Ansicht und Einstellungen. Strg+R zeichnet auf, was gefühlt wird, um es später abzuspielen.&lt;/p&gt;</translation>
     </message>
     <message>
         <source>Keys</source>
@@ -2552,28 +2552,8 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
 <context>
     <name>palpate::viewer::PenetrabilityControls</name>
     <message>
-        <source>Off</source>
-        <translation>Aus</translation>
-    </message>
-    <message>
-        <source>Surfaces hold, however hard the hand presses</source>
-        <translation>Oberflächen halten, wie stark die Hand auch drückt</translation>
-    </message>
-    <message>
-        <source>Threshold</source>
-        <translation>Schwelle</translation>
-    </message>
-    <message>
         <source>A surface that is pressed deeper than PT gives way: the level felt follows the hand</source>
         <translation>Eine Oberfläche, die tiefer als PT gedrückt wird, gibt nach: Der gefühlte Wert folgt der Hand</translation>
-    </message>
-    <message>
-        <source>Ranges</source>
-        <translation>Bereiche</translation>
-    </message>
-    <message>
-        <source>As Threshold, but only levels in the ranges of interest are felt</source>
-        <translation>Wie Schwelle, aber nur Werte in den Wertebereichen werden gefühlt</translation>
     </message>
     <message>
         <source>PT, penetration threshold</source>
@@ -2584,14 +2564,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>PT, die Durchdringungsschwelle [mm der Hand]: Sind Hand und Proxy weiter auseinander, gibt die Oberfläche nach. Die Feder übersteigt nie Steifigkeit x PT.</translation>
     </message>
     <message>
-        <source>Minimum level</source>
-        <translation>Kleinster Wert</translation>
-    </message>
-    <message>
-        <source>The least level felt [data units] (the greatest, where below is solid); also by the end of the band on the histogram</source>
-        <translation>Der kleinste gefühlte Wert [Dateneinheiten] (der größte, wo darunter fest ist); auch mit dem Ende des Bandes auf dem Histogramm</translation>
-    </message>
-    <message>
         <source>Add range</source>
         <translation>Bereich hinzufügen</translation>
     </message>
@@ -2600,24 +2572,44 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Ein weiterer Wertebereich; oder Umschalt+Ziehen auf dem Histogramm</translation>
     </message>
     <message>
-        <source>Delete range</source>
-        <translation>Bereich löschen</translation>
-    </message>
-    <message>
-        <source>Delete the chosen range</source>
-        <translation>Den gewählten Bereich löschen</translation>
-    </message>
-    <message>
-        <source>choose the range to delete, in the table or on the histogram</source>
-        <translation>wählen Sie den Bereich, der gelöscht werden soll, in der Tabelle oder auf dem Histogramm</translation>
-    </message>
-    <message>
-        <source>the last range stays: switch penetrability off to have none</source>
-        <translation>der letzte Bereich bleibt: Schalten Sie Durchdrücken aus, um keinen zu haben</translation>
-    </message>
-    <message>
         <source>Layers are felt: their surfaces give way by puncture forces. Choose No layers to press through by depth</source>
         <translation>Es werden Schichten gefühlt: Ihre Oberflächen geben bei ihrer Durchstoßkraft nach. Wählen Sie „Keine Schichten“, um nach Tiefe durchzudrücken</translation>
+    </message>
+    <message>
+        <source>Surfaces give way</source>
+        <translation>Oberflächen geben nach</translation>
+    </message>
+    <message>
+        <source>Levels that are felt, from and to</source>
+        <translation>Gefühlte Werte, von und bis</translation>
+    </message>
+    <message>
+        <source>The least level of this range [data units]; also by the end of its band on the histogram. -inf: without an end</source>
+        <translation>Der kleinste Wert dieses Bereichs [Dateneinheiten]; auch mit dem Ende seines Bandes auf dem Histogramm. -inf: ohne Ende</translation>
+    </message>
+    <message>
+        <source>Range %1, from</source>
+        <translation>Bereich %1, von</translation>
+    </message>
+    <message>
+        <source>The greatest level of this range [data units]; also by the end of its band on the histogram. inf: without an end</source>
+        <translation>Der größte Wert dieses Bereichs [Dateneinheiten]; auch mit dem Ende seines Bandes auf dem Histogramm. inf: ohne Ende</translation>
+    </message>
+    <message>
+        <source>Range %1, to</source>
+        <translation>Bereich %1, bis</translation>
+    </message>
+    <message>
+        <source>Remove it</source>
+        <translation>Entfernen</translation>
+    </message>
+    <message>
+        <source>Remove range %1</source>
+        <translation>Bereich %1 entfernen</translation>
+    </message>
+    <message>
+        <source>the last range stays: switch pressing through off to have none</source>
+        <translation>der letzte Bereich bleibt: Schalten Sie das Durchdrücken aus, um keinen zu haben</translation>
     </message>
 </context>
 <context>
@@ -2772,29 +2764,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Turn the tool up</source>
         <translation>Werkzeug nach oben drehen</translation>
-    </message>
-</context>
-<context>
-    <name>palpate::viewer::RangeTable</name>
-    <message>
-        <source>Ranges of interest</source>
-        <translation>Wertebereiche</translation>
-    </message>
-    <message>
-        <source>from</source>
-        <translation>von</translation>
-    </message>
-    <message>
-        <source>to</source>
-        <translation>bis</translation>
-    </message>
-    <message>
-        <source>Ranges of interest [data units]: only these levels are felt. Del deletes a row.</source>
-        <translation>Wertebereiche [Dateneinheiten]: Nur diese Werte werden gefühlt. Entf löscht eine Zeile.</translation>
-    </message>
-    <message>
-        <source>&apos;%1&apos; is not a number</source>
-        <translation>„%1“ ist keine Zahl</translation>
     </message>
 </context>
 <context>

@@ -144,7 +144,7 @@ void DetailController::observe_slice(int axis) {
 
 DetailController::SceneView DetailController::view_now() const {
     const Scene& shown = views_.scene();
-    return {shown.camera(), shown.width(), shown.height(), views_.isovalue()};
+    return {shown.camera(), shown.width(), shown.height(), views_.shown().isovalue};
 }
 
 /// Once the view rests and the picture of it is there, whose depths tell what is seen.

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
-#include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
@@ -54,22 +54,20 @@ DisplayController::DisplayController(const Desk& desk, MeasureController& measur
     connect(&panel_.look_controls(), &LookControls::look_changed, this,
             &DisplayController::show_look);
     connect(&panel_.look_controls(), &LookControls::cut_wanted, this, &DisplayController::set_cut);
-    connect(&views_.scene(), &Scene::cut_moved, &panel_.look_controls(), &LookControls::set_look);
+    connect(&views_.scene(), &Scene::cut_moved, this, &DisplayController::set_look);
 }
 
 void DisplayController::clear() {
     held_.reset();
-    isovalue_.reset();
-    shown_.reset();
-    layers_.reset();
-    overlays_.set_layers(nullptr);
-    next_level_.reset();
     views_.clear();
+    set(views_, &Shown::layers, nullptr);
+}
+
+std::optional<double> DisplayController::isovalue() const {
+    return content_.volume() ? std::optional(views_.shown().isovalue) : std::nullopt;
 }
 
 void DisplayController::show_field(const Field& field, double isovalue) {
-    isovalue_ = isovalue;
-    shown_.reset();
     const auto& streamed = content_.volume()->loaded.streamed;
     std::optional<Geometry> counted;  // a store's level that is felt
     if (streamed) counted = run::start_samples(content_.volume()->loaded)->geometry();
@@ -86,71 +84,62 @@ void DisplayController::show_volume(const Field& field, double isovalue,
     if (const auto view = face_on(field.geometry(), mouse ? 0.3 : 0)) {
         views_.scene().look_from(*view);
     }
-    views_.set_window(content_.volume()->dark(), content_.volume()->bright());
+    const Opened& opened = *content_.volume();
+    set(views_, &Shown::usual_window, {opened.dark(), opened.bright()});
 }
 
 HandSnapshots DisplayController::observe() {
     const HandSnapshots all = held_ ? *held_ : content_.snapshots();
-    for (int hand = 1; hand <= content_.hands(); ++hand) {
-        views_.scene().set_tool(content_.tool(hand), hand);
-    }
+    observe_state(all[content_.hand()]);
     views_.show_snapshots(all, content_.hand());
     if (const auto& now = all[content_.hand()]) {
-        observe_data(*now);
-        observe_layers();
-        observe_level(*now);
+        views_.update_field(content_.seen(content_.felt_at(*now)));
     }
     return all;
 }
 
-/// Their surfaces are seen with the look.
-void DisplayController::observe_layers() {
-    const SharedLayers layers = content_.layers();
-    if (layers == layers_) return;
-    layers_ = layers;
-    overlays_.set_layers(layers);
-    show_look();
-}
+namespace {
 
-void DisplayController::show_look() {
-    views_.set_look(panel_.look_controls().look(), layers_);
-}
-
-/// The scene's surface is the outermost; the slices tell which one the hand meets next.
-void DisplayController::observe_layer_level(const Snapshot& now) {
-    const double outer = layers_->layers.front().level;
-    if (isovalue_ != outer) {
-        isovalue_ = outer;
-        views_.set_isovalue(outer);
-    }
-    const double next = now.session.tick.proxy.isovalue;
-    if (std::isfinite(next)) next_level_ = next;
-    views_.set_next_level(next_level_.value_or(outer));
+/// With layers the scene's surface is the outermost; the slices tell which one the hand meets next.
+void show_level_of_layers(Shown& shown, const ProxyUpdate& proxy) {
+    shown.isovalue = shown.layers->layers.front().level;
+    if (std::isfinite(proxy.isovalue)) shown.next_level = proxy.isovalue;
+    if (!shown.next_level) shown.next_level = shown.isovalue;
 }
 
 /// While the hand presses through one surface to the next, the first one stays.
-void DisplayController::observe_level(const Snapshot& now) {
-    if (levels_in(layers_) > 0) return observe_layer_level(now);
-    // The overlay shows labels; no level of the densities is felt.
-    if (have_surfaces(layers_)) return views_.set_next_level(infinity);
-    next_level_.reset();
-    const ProxyUpdate& proxy = now.session.tick.proxy;
-    const bool pressing = now.penetrability_on && proxy.mode == Mode::constrained && isovalue_ &&
-                          proxy.isovalue != *isovalue_;
-    if (std::isfinite(proxy.isovalue) && !pressing && isovalue_ != proxy.isovalue) {
-        isovalue_ = proxy.isovalue;
-        views_.set_isovalue(proxy.isovalue);
-    }
-    views_.set_pressed(
-        pressing && std::isfinite(proxy.isovalue) ? std::optional(proxy.isovalue) : std::nullopt,
-        content_.hand());
+void show_level(Shown& shown, const ProxyUpdate& proxy, bool penetrability_on) {
+    shown.next_level.reset();
+    if (!std::isfinite(proxy.isovalue)) return;
+    const bool pressing =
+        penetrability_on && proxy.mode == Mode::constrained && proxy.isovalue != shown.isovalue;
+    if (pressing) shown.pressed = proxy.isovalue;
+    if (!pressing) shown.isovalue = proxy.isovalue;
 }
 
-void DisplayController::observe_data(const Snapshot& now) {
-    const Field field = content_.seen(content_.felt_at(now));
-    if (shown_ && same_samples(*shown_, field)) return;
-    shown_ = field;
-    views_.update_field(field);
+}  // namespace
+
+void DisplayController::observe_state(const std::optional<Snapshot>& now) {
+    Shown next = views_.shown();
+    for (int hand = 1; hand <= content_.hands(); ++hand) next.tools[hand] = content_.tool(hand);
+    if (!now) return views_.set_shown(next);
+    const ProxyUpdate& proxy = now->session.tick.proxy;
+    const SharedLayers before = std::exchange(next.layers, content_.layers());
+    next.pressed.reset();
+    next.pressing = content_.hand();
+    if (levels_in(next.layers) > 0) {
+        show_level_of_layers(next, proxy);
+    } else if (have_surfaces(next.layers)) {
+        next.next_level = infinity;  // the overlay shows labels; no level of the densities is felt
+    } else {
+        show_level(next, proxy, now->penetrability_on);
+    }
+    views_.set_shown(next);
+    if (next.layers != before) overlays_.colour();
+}
+
+void DisplayController::show_look() {
+    set(views_, &Shown::look, panel_.look_controls().look());
 }
 
 void DisplayController::hold() {
@@ -164,7 +153,7 @@ void DisplayController::set_look(const Look& look) {
 
 void DisplayController::set_cut(Cut cut) {
     const Vec3 towards = views_.scene().camera().towards_viewer;
-    set_look(with_cut(panel_.look_controls().look(), cut, views_.crosshair(), towards));
+    set_look(with_cut(panel_.look_controls().look(), cut, views_.shown().crosshair, towards));
 }
 
 void DisplayController::use_usual_look() {
@@ -186,10 +175,10 @@ void DisplayController::look_from_hand(const DeviceTransform& transform) {
 void DisplayController::save_view(SessionFile& session) const {
     session.look = panel_.look_controls().look();
     session.camera = views_.scene().camera();
-    session.crosshair = views_.crosshair();
+    session.crosshair = views_.shown().crosshair;
     session.follow = views_.follows();
-    session.window_low = views_.window_low();
-    session.window_high = views_.window_high();
+    session.window_low = views_.shown().window.low;
+    session.window_high = views_.shown().window.high;
     session.slices_shown = views_.slices_shown();
     session.measurements = measuring_.measurements();
     if (overlays_.overlay()) session.overlay = overlays_.overlay()->source;
@@ -199,10 +188,8 @@ void DisplayController::restore_view(const SessionFile& session) {
     Look look = session.look;
     if (look.transfer.points.empty()) look.transfer = panel_.look_controls().look().transfer;
     set_look(look);
-    if (session.window_low < session.window_high) {
-        views_.set_window(session.window_low, session.window_high);
-    }
-    if (session.crosshair) views_.set_crosshair(*session.crosshair);
+    set(views_, &Shown::window, {session.window_low, session.window_high});
+    if (session.crosshair) set(views_, &Shown::crosshair, *session.crosshair);
     views_.set_follow(session.follow);
     views_.show_slices(session.slices_shown);
     measuring_.set_measurements(session.measurements);

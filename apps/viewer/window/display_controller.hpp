@@ -24,7 +24,7 @@ class DisplayController : public Controller {
     /// Freezes the snapshots shown, for a picture; the live run goes on.
     void hold();
     /// The level of the surface in the scene; nothing if no volume is open.
-    const std::optional<double>& isovalue() const { return isovalue_; }
+    std::optional<double> isovalue() const;
     void set_look(const Look& look);
     /// Through the crosshair, facing the viewer.
     void set_cut(Cut cut);
@@ -41,19 +41,13 @@ class DisplayController : public Controller {
     void show_field(const Field& field, double isovalue);
     void show_volume(const Field& field, double isovalue, const DeviceTransform& transform);
     void observe_data(const Snapshot& now);
-    void observe_level(const Snapshot& now);
-    void observe_layers();
-    void observe_layer_level(const Snapshot& now);
+    void observe_state(const std::optional<Snapshot>& now);
     void show_look();
     void clear();
 
     MeasureController& measuring_;
     OverlayController& overlays_;
     std::optional<HandSnapshots> held_;
-    std::optional<double> isovalue_;
-    SharedLayers layers_;               // as they are shown
-    std::optional<double> next_level_;  // of layers
-    std::optional<Field> shown_;        // as it was given to the views last
 };
 
 }  // namespace palpate::viewer

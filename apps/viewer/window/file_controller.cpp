@@ -219,18 +219,7 @@ void FileController::use_grid(const io::GivenGrid& grid) {
     session.look.cut = Cut::nothing;
     load(session.source,
          [this, session, request = request_for_same()](std::shared_ptr<Opened> opened) {
-             SessionFile elsewhere = session;
-             elsewhere.settings.reset();
-             for (SessionHand& other : elsewhere.others) other.settings.reset();
-             feel_session(std::move(opened), elsewhere, request);
-             elsewhere = session;
-             elsewhere.settings->transform = content_.live(1)->settings().transform;
-             int hand = 1;
-             for (SessionHand& other : elsewhere.others) {
-                 const run::Run* live = content_.live(++hand);
-                 if (live) other.settings->transform = live->settings().transform;
-             }
-             restore_hands(elsewhere);
+             feel_session(std::move(opened), session, request, false);
          });
 }
 
@@ -340,7 +329,7 @@ void FileController::open_session(const QString& path) {
 /// The devices are those of the command line, else the session's; where they cannot be had, those
 /// chosen in this window.
 void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
-                                  RunRequest request) {
+                                  RunRequest request, bool in_place) {
     run::Setup& setup = request.setup;
     setup.field = {session.solid, session.background, session.isovalue, session.interpolation};
     if (!request.device) {
@@ -368,18 +357,18 @@ void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionF
                                 .arg(why, QString::fromStdString(run::text_of(setup.device))));
     }
     display_.use_usual_look();
-    restore_hands(session);
+    restore_hands(session, in_place);
     display_.restore_view(session);
 }
 
-void FileController::restore_hands(const SessionFile& session) {
-    if (session.settings) run_.restore(*session.settings);
+void FileController::restore_hands(const SessionFile& session, bool in_place) {
+    if (session.settings) run_.restore(*session.settings, in_place);
     int hand = 1;
     for (const SessionHand& other : session.others) {
         if (!content_.live(++hand)) break;  // its device cannot be had
         content_.choose_hand(hand);
         content_.effect().request(command::Isovalue{other.isovalue});
-        if (other.settings) run_.restore(*other.settings);
+        if (other.settings) run_.restore(*other.settings, in_place);
     }
     content_.choose_hand(1);
 }

@@ -67,8 +67,8 @@ class FileController : public Controller {
     void load_or_reuse(const run::Source& source, Then then);
     void feel(std::shared_ptr<Opened> opened, const RunRequest& request);
     void feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
-                      RunRequest request);
-    void restore_hands(const SessionFile& session);
+                      RunRequest request, bool in_place = true);
+    void restore_hands(const SessionFile& session, bool in_place);
     RunRequest request_for_same();
     void play(std::shared_ptr<Opened> opened, const QString& path);
     SessionFile session_now() const;

@@ -1,14 +1,10 @@
 // Lays out a side of the body and a spacing for each axis.
 #include "apps/viewer/window/grid_dialog.hpp"
 
-#include <QCheckBox>
-#include <QComboBox>
-#include <QDialogButtonBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
-#include <QPushButton>
-#include <cmath>
+#include <stdexcept>
 
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
@@ -26,98 +22,80 @@ GridDialog::GridDialog(const Geometry& grid, const io::GivenGrid& given, QWidget
     : QDialog(parent),
       before_(grid),
       given_(given),
-      measured_(named(new QCheckBox(tr("The spacing is known")), "grid_measured")),
-      mirror_(named(new QPushButton(tr("Exchange left and right")), "grid_mirror")) {
+      sides_(grid.oriented ? io::orientation_of(grid) : "   "),
+      spacing_(grid.spacing),
+      measured_(grid.measured) {
     setObjectName("grid");
     setWindowTitle(tr("Orientation and spacing"));
-    const std::pair<const char*, QString> sides[] = {
-        {"", tr("not known")},        {"L", tr("to the left (L)")},  {"R", tr("to the right (R)")},
-        {"P", tr("to the back (P)")}, {"A", tr("to the front (A)")}, {"S", tr("to the head (S)")},
-        {"I", tr("to the feet (I)")}};
-    const std::string now = grid.oriented ? io::orientation_of(grid) : "";
     // What the file itself says can be replaced, not taken away.
     const bool may_be_unknown = !grid.oriented || !given.orientation.empty();
-    auto* form = new QFormLayout;
-    for (std::size_t a = 0; a < 3; ++a) {
+    const std::string letters = may_be_unknown ? " LRPASI" : "LRPASI";
+    QStringList names{tr("to the left (L)"),  tr("to the right (R)"), tr("to the back (P)"),
+                      tr("to the front (A)"), tr("to the head (S)"),  tr("to the feet (I)")};
+    if (may_be_unknown) names.push_front(tr("not known"));
+    auto* form = new Form;
+    auto* rows = form_in(form);
+    for (int a = 0; a < 3; ++a) {
         const QChar axis("XYZ"[a]);
-        sides_[a] = named(new QComboBox, "grid_side_" + QString(axis));
-        for (const auto& [letter, text] : sides) {
-            if (*letter || may_be_unknown) sides_[a]->addItem(text, letter);
-        }
-        if (!now.empty()) sides_[a]->setCurrentIndex(sides_[a]->findData(QString(now[a])));
-        spacing_[a] = named(new QDoubleSpinBox, "grid_spacing_" + QString(axis));
-        spacing_[a]->setDecimals(4);
-        spacing_[a]->setRange(1e-4, 1e4);
-        spacing_[a]->setValue(grid.spacing[Eigen::Index(a)]);
-        add_row(*form, tr("%1 runs").arg(axis), sides_[a],
+        char& its_side = sides_[std::size_t(a)];
+        add_row(*rows, tr("%1 runs").arg(axis),
+                form->choice({"grid_side_" + QString(axis), ""}, names,
+                             {[&its_side, letters] { return int(letters.find(its_side)); },
+                              [&its_side, letters](int at) { its_side = letters[at]; }}),
                 tr("The side of the body that this axis of the samples runs to"));
-        add_row(*form, tr("Spacing along %1 [mm]").arg(axis), spacing_[a],
+        add_row(*rows, tr("Spacing along %1 [mm]").arg(axis),
+                form->number({"grid_spacing_" + QString(axis), ""},
+                             within(1e-4, 1e4,
+                                    {[this, a] { return spacing_[a]; },
+                                     [this, a](double to) {
+                                         spacing_[a] = to;
+                                         measured_ = true;
+                                     }})),
                 tr("Between neighbouring samples"));
-        connect(sides_[a], qOverload<int>(&QComboBox::currentIndexChanged), this,
-                &GridDialog::judge);
-        connect(spacing_[a], qOverload<double>(&QDoubleSpinBox::valueChanged), measured_,
-                [this] { measured_->setChecked(true); });
     }
-    mirror_->setAutoDefault(false);  // Return is for OK
-    measured_->setChecked(grid.measured);
-    measured_->setEnabled(!grid.measured || given.spacing);
-    form->addRow(measured_);
-    form->addRow(mirror_);
-    connect(mirror_, &QPushButton::clicked, this, &GridDialog::mirror);
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel);
-    accept_ = buttons->button(QDialogButtonBox::Ok);
-    // With nothing changed the volume need not be read again.
-    connect(buttons, &QDialogButtonBox::accepted, this,
-            [this] { done(changed() ? Accepted : Rejected); });
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
-    auto* fields = new QWidget;
-    fields->setLayout(form);
-    column_in(this, {fields, buttons})->setContentsMargins(9, 9, 9, 9);
-    judge();
-}
-
-std::string GridDialog::letters() const {
-    QString all;
-    for (const QComboBox* side : sides_) all += side->currentData().toString();
-    return all.toStdString();
-}
-
-void GridDialog::mirror() {
-    for (QComboBox* side : sides_) {
-        const QString now = side->currentData().toString();
-        if (now == "L" || now == "R") side->setCurrentIndex(side->findData(now == "L" ? "R" : "L"));
-    }
+    auto* measured =
+        form->check({"grid_measured", tr("The spacing is known")},
+                    {[this] { return measured_; }, [this](bool on) { measured_ = on; }});
+    measured->setEnabled(!grid.measured || given.spacing);
+    auto* mirror = form->button(
+        {"grid_mirror", tr("Exchange left and right")},
+        [this] {
+            for (char& side : sides_) {
+                side = side == 'L' ? 'R' : side == 'R' ? 'L' : side;
+            }
+        },
+        [this] { return is_body() && sides_ != "   "; });
+    mirror->setAutoDefault(false);  // Return is for OK
+    rows->addRow(measured);
+    rows->addRow(mirror);
+    QPushButton* accept = fill(*this, form, QDialogButtonBox::Ok);
+    form->each_time(accept, [this](QPushButton& ok) { ok.setEnabled(is_body()); });
+    form->refresh();
 }
 
 /// Only three sides that make a body, or none, can be taken.
-void GridDialog::judge() {
-    bool good = true;
+bool GridDialog::is_body() const {
     try {
-        if (!letters().empty()) (void)io::direction_from(letters());
+        if (sides_ != "   ") (void)io::direction_from(sides_);
+        return true;
     } catch (const std::invalid_argument&) {
-        good = false;
+        return false;
     }
-    accept_->setEnabled(good);
-    mirror_->setEnabled(good && !letters().empty());
 }
 
-bool GridDialog::changed() const {
+/// With nothing changed the volume need not be read again.
+void GridDialog::accept() {
     const io::GivenGrid now = grid();
-    return now.spacing != given_.spacing || now.orientation != given_.orientation;
+    done(now.spacing != given_.spacing || now.orientation != given_.orientation ? Accepted
+                                                                                : Rejected);
 }
 
 io::GivenGrid GridDialog::grid() const {
     io::GivenGrid grid = given_;
-    const std::string before = before_.oriented ? io::orientation_of(before_) : "";
-    if (letters() != before) grid.orientation = letters();
-    Vec3 spacing = before_.spacing;
-    for (Eigen::Index a = 0; a < 3; ++a) {
-        const double typed = spacing_[std::size_t(a)]->value();
-        if (std::abs(typed - spacing[a]) > 1e-4) spacing[a] = typed;  // else it was rounded
-    }
-    const bool told = spacing != before_.spacing || !before_.measured;
-    if (measured_->isChecked() && told) grid.spacing = spacing;
-    if (!measured_->isChecked()) grid.spacing.reset();
+    const std::string sides = sides_ == "   " ? "" : sides_;
+    if (sides != (before_.oriented ? io::orientation_of(before_) : "")) grid.orientation = sides;
+    if (!measured_) grid.spacing.reset();
+    if (measured_ && (spacing_ != before_.spacing || !before_.measured)) grid.spacing = spacing_;
     return grid;
 }
 

@@ -3,15 +3,10 @@
 #pragma once
 
 #include <QDialog>
-#include <array>
+#include <string>
 
 #include "palpate/io/orientation.hpp"
 #include "palpate/run/source.hpp"
-
-class QCheckBox;
-class QComboBox;
-class QDoubleSpinBox;
-class QPushButton;
 
 namespace palpate::viewer {
 
@@ -26,19 +21,16 @@ class GridDialog : public QDialog {
     GridDialog(const Geometry& grid, const io::GivenGrid& given, QWidget* parent = nullptr);
     /// What shall replace the file's own; what was not touched stays as it was given.
     io::GivenGrid grid() const;
+    void accept() override;
 
   private:
-    void mirror();
-    void judge();
-    bool changed() const;
-    std::string letters() const;
+    bool is_body() const;
 
     const Geometry before_;
     const io::GivenGrid given_;
-    std::array<QComboBox*, 3> sides_;
-    std::array<QDoubleSpinBox*, 3> spacing_;
-    QCheckBox* measured_;
-    QPushButton *mirror_, *accept_;
+    std::string sides_;  // a letter for each axis; a space: not known
+    Vec3 spacing_;
+    bool measured_;
 };
 
 }  // namespace palpate::viewer

@@ -137,7 +137,7 @@ void MainWindow::connect_parts() {
     const auto outline_brush = [this] {
         const BrushChoice& brush = panel_->brush_controls().choice();
         const bool ball = content_.editor() && brush.on && !brush.as_tool;  // a tool is drawn
-        views_->set_brush(ball ? brush.radius : 0);
+        set(*views_, &Shown::brush, ball ? brush.radius : 0);
     };
     connect(&panel_->brush_controls(), &BrushControls::changed, this, outline_brush);
     connect(&probe_, &ProbeController::lifted, &editing_, &EditController::rest);
@@ -259,23 +259,21 @@ void MainWindow::restore_layout() {
 /// But for the appearance, which is the application's.
 void MainWindow::use(const Preferences& preferences) {
     const auto& volume = content_.volume();
-    const LengthUnit unit =
+    Shown next = views_->shown();
+    next.unit =
         volume ? unit_in(volume->loaded.volume.geometry(), preferences.unit) : preferences.unit;
-    views_->set_unit(unit);
-    measuring_.set_unit(unit);
-    views_->scene().set_wheel_step(preferences.wheel_px);
-    views_->scene().set_most_triangles(
-        static_cast<std::size_t>(1e6 * preferences.surface_millions));
+    next.wheel_px = preferences.wheel_px;
+    next.most_triangles = static_cast<std::size_t>(1e6 * preferences.surface_millions);
+    views_->set_shown(next);
 }
 
 void MainWindow::ask_preferences() {
-    auto* dialog = new PreferencesDialog(saved_preferences(), this);
-    connect(dialog, &PreferencesDialog::changed, this, [this](const Preferences& preferences) {
+    const auto change = [this](const Preferences& preferences) {
         if (preferences.appearance != last_appearance()) set_appearance(preferences.appearance);
         save_preferences(preferences);
         use(preferences);
-    });
-    messages_.ask(dialog);
+    };
+    messages_.ask(make_preferences_dialog(saved_preferences(), this, change));
 }
 
 void MainWindow::tick() {

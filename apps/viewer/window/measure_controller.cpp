@@ -18,7 +18,7 @@ MeasureController::MeasureController(const Desk& desk) : Controller(desk) {
 void MeasureController::begin(Measure kind) {
     if (!content_.volume()) return;
     made_ = Measurement{kind, {}};
-    views_.set_measuring(true);
+    set(views_, &Shown::measuring, true);
     show();
     messages_.show_done(
         kind == Measure::length
@@ -30,7 +30,7 @@ void MeasureController::begin(Measure kind) {
 bool MeasureController::cancel() {
     if (!made_) return false;
     made_.reset();
-    views_.set_measuring(false);
+    set(views_, &Shown::measuring, false);
     show();
     return true;
 }
@@ -40,8 +40,8 @@ void MeasureController::add_point(const Vec3& at) {
     made_->points.push_back(at);
     if (made_->points.size() == points_of(made_->kind)) {
         done_.push_back(*std::exchange(made_, std::nullopt));
-        views_.set_measuring(false);
-        messages_.show_done(QString::fromStdString(text_of(done_.back(), unit_)));
+        set(views_, &Shown::measuring, false);
+        messages_.show_done(QString::fromStdString(text_of(done_.back(), views_.shown().unit)));
     }
     show();
 }
@@ -69,7 +69,7 @@ void MeasureController::show(const std::optional<Vec3>& pointed_at) {
         all.push_back(*made_);
         if (pointed_at) all.back().points.push_back(*pointed_at);
     }
-    views_.set_measurements(all);
+    set(views_, &Shown::measurements, all);
 }
 
 }  // namespace palpate::viewer

@@ -22,7 +22,6 @@ class MeasureController : public Controller {
     bool measuring() const { return made_.has_value(); }
     void remove_last();
     void remove_all();
-    void set_unit(LengthUnit unit) { unit_ = unit; }
 
     /// The complete ones.
     const std::vector<Measurement>& measurements() const { return done_; }
@@ -37,7 +36,6 @@ class MeasureController : public Controller {
 
     std::vector<Measurement> done_, saved_;
     std::optional<Measurement> made_;
-    LengthUnit unit_ = LengthUnit::automatic;
 };
 
 }  // namespace palpate::viewer

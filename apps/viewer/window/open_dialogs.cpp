@@ -4,7 +4,6 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDialogButtonBox>
-#include <QDoubleSpinBox>
 #include <QFileInfo>
 #include <QFormLayout>
 #include <QHeaderView>
@@ -14,7 +13,6 @@
 #include <QSlider>
 #include <QSpinBox>
 #include <QTableWidget>
-#include <QVBoxLayout>
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +21,7 @@
 #include "apps/options/exit_status.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/opening.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/scene/threads.hpp"
@@ -33,75 +32,84 @@ namespace palpate::viewer {
 namespace {
 
 constexpr int picture_side = 280;  // pixels
+constexpr double most_skipped = std::numeric_limits<int>::max();
+
+QPixmap pixmap_of(const io::Thumbnail& picture, const QSize& size) {
+    if (picture.grey.empty()) return {};
+    const QImage image(picture.grey.data(), picture.width, picture.height, picture.width,
+                       QImage::Format_Grayscale8);
+    return QPixmap::fromImage(image.scaled(size, Qt::KeepAspectRatio, Qt::SmoothTransformation));
+}
 
 }  // namespace
 
 RawDialog::RawDialog(const QString& path, QWidget* parent)
     : QDialog(parent),
       path_(path),
-      size_{new QSpinBox, new QSpinBox, new QSpinBox},
-      spacing_{new QDoubleSpinBox, new QDoubleSpinBox, new QDoubleSpinBox},
-      type_(named(new QComboBox, "raw_type")),
-      order_(named(new QComboBox, "raw_order")),
-      skip_(named(new QSpinBox, "raw_skip")),
-      skip_rest_(named(new QPushButton(tr("Skip the rest")), "raw_skip_rest",
-                       tr("Takes the bytes that are left over for a header"))),
+      have_(double(QFileInfo(path).size())),
+      layout_(guessed_layout(path.toStdString(), static_cast<std::uint64_t>(have_))),
       slice_(named(new QSlider(Qt::Horizontal), "raw_slice")),
       picture_(named(new QLabel, "raw_picture")),
       verdict_(named(new QLabel, "raw_verdict")) {
     setObjectName("raw");
     setWindowTitle(tr("Raw data: %1").arg(QFileInfo(path).fileName()));
-    make_fields();
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
-    accept_ = buttons->button(QDialogButtonBox::Open);
-    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
-    auto* form = new QFormLayout;
-    add_row(*form, tr("Samples"), row_of({size_[0], size_[1], size_[2]}),
-            tr("How many along x, which runs fastest, y and z"));
-    add_row(*form, tr("Sample type"), type_, tr("Of each sample in the file"));
-    add_row(*form, tr("Byte order"), order_, tr("Of samples of two or four bytes"));
-    add_row(*form, tr("Spacing [mm]"), row_of({spacing_[0], spacing_[1], spacing_[2]}),
-            tr("Between samples along x, y and z"));
-    add_row(*form, tr("Header [bytes]"), row_of({skip_, skip_rest_}),
-            tr("Skipped before the samples"));
-    form->addRow(verdict_);
-    auto* fields = new QWidget;
-    fields->setLayout(form);
-    column_in(this, {row_of({fields, make_preview()}), buttons})->setContentsMargins(9, 9, 9, 9);
-    judge();
+    verdict_->setWordWrap(true);
+    auto* form = new Form;
+    add_rows(*form);
+    QPushButton* accept = fill(*this, row_of({form, make_preview()}), QDialogButtonBox::Open);
+    form->each_time(accept, [this](QPushButton& open) { open.setEnabled(judge()); });
+    form->refresh();
 }
 
-void RawDialog::make_fields() {
-    const auto changed = [this] { judge(); };
-    const auto bytes = static_cast<std::uint64_t>(QFileInfo(path_).size());
-    const io::RawLayout guess = guessed_layout(path_.toStdString(), bytes);
-    const char* const axes[] = {"x", "y", "z"};
-    for (std::size_t a = 0; a < 3; ++a) {
-        size_[a]->setRange(1, 65535);
-        size_[a]->setValue(guess.size[int(a)]);
-        size_[a]->setObjectName(QString("size%1").arg(a));
-        size_[a]->setAccessibleName(tr("Samples along %1").arg(axes[a]));
-        spacing_[a]->setRange(1e-4, 1000);
-        spacing_[a]->setDecimals(4);
-        spacing_[a]->setValue(1);
-        spacing_[a]->setAccessibleName(tr("Spacing along %1").arg(axes[a]));
-        connect(size_[a], qOverload<int>(&QSpinBox::valueChanged), this, changed);
+/// Three numbers, along x, y and z.
+QWidget* RawDialog::make_numbers(Form& form, const QString& name, const QString& spoken,
+                                 auto io::RawLayout::*member, double low, double high) {
+    auto* row = row_of({});
+    for (int a = 0; a < 3; ++a) {
+        const auto get = [this, a, member] { return double((layout_.*member)[a]); };
+        const auto set = [this, a, member](double to) {
+            auto& number = (layout_.*member)[a];
+            number = static_cast<std::decay_t<decltype(number)>>(to);
+        };
+        const Words words{name + QString::number(a), "", {}, spoken.arg(QChar("xyz"[a]))};
+        row->layout()->addWidget(form.number(words, within(low, high, {get, set})));
     }
-    type_->addItems({"uint8", "int16", "uint16", "float32"});
-    type_->setCurrentText(QString::fromLatin1(name_of(guess.type).data()));
-    order_->addItems({tr("little-endian (PC)"), tr("big-endian")});
-    order_->setCurrentIndex(guess.big_endian ? 1 : 0);
-    skip_->setRange(0, std::numeric_limits<int>::max());
-    for (QComboBox* box : {type_, order_}) {
-        connect(box, qOverload<int>(&QComboBox::currentIndexChanged), this, changed);
-    }
-    connect(skip_, qOverload<int>(&QSpinBox::valueChanged), this, changed);
-    connect(skip_rest_, &QPushButton::clicked, this, [this] {
-        const double rest = double(QFileInfo(path_).size()) - bytes_of(layout_now());
-        skip_->setValue(static_cast<int>(skip_->value() + rest));
-    });
-    verdict_->setWordWrap(true);
+    return row;
+}
+
+void RawDialog::add_rows(Form& form) {
+    auto* rows = form_in(&form);
+    const std::vector types{SampleType::uint8, SampleType::int16, SampleType::uint16,
+                            SampleType::float32};
+    auto* type = form.choice(
+        {"raw_type", ""}, {"uint8", "int16", "uint16", "float32"},
+        {[this, types] { return int(std::ranges::find(types, layout_.type) - types.begin()); },
+         [this, types](int at) { layout_.type = types[std::size_t(at)]; }});
+    auto* order = form.choice(
+        {"raw_order", ""}, {tr("little-endian (PC)"), tr("big-endian")},
+        {[this] { return int(layout_.big_endian); }, [this](int at) { layout_.big_endian = at; }});
+    form.each_time(order, [this](QWidget& one) { one.setEnabled(size_of(layout_.type) > 1); });
+    auto* skip = form.number({"raw_skip", ""},
+                             within(0, most_skipped,
+                                    {[this] { return double(layout_.skip); },
+                                     [this](double to) { layout_.skip = std::uint64_t(to); }}));
+    auto* skip_rest = form.button(
+        {"raw_skip_rest", tr("Skip the rest"),
+         tr("Takes the bytes that are left over for a header")},
+        [this] { layout_.skip += std::uint64_t(have_ - bytes_of(layout_)); },
+        [this] { return !is_packed() && bytes_of(layout_) < have_; });
+    add_row(*rows, tr("Samples"),
+            make_numbers(form, "size", tr("Samples along %1"), &io::RawLayout::size, 1, 65535),
+            tr("How many along x, which runs fastest, y and z"));
+    add_row(*rows, tr("Sample type"), type, tr("Of each sample in the file"));
+    add_row(*rows, tr("Byte order"), order, tr("Of samples of two or four bytes"));
+    add_row(
+        *rows, tr("Spacing [mm]"),
+        make_numbers(form, "spacing", tr("Spacing along %1"), &io::RawLayout::spacing, 1e-4, 1000),
+        tr("Between samples along x, y and z"));
+    add_row(*rows, tr("Header [bytes]"), row_of({skip, skip_rest}),
+            tr("Skipped before the samples"));
+    rows->addRow(verdict_);
 }
 
 QWidget* RawDialog::make_preview() {
@@ -110,59 +118,42 @@ QWidget* RawDialog::make_preview() {
     picture_->setWordWrap(true);
     picture_->setFrameShape(QFrame::StyledPanel);
     slice_->setAccessibleName(tr("Slice of the preview"));
-    slice_->setRange(0, size_[2]->value() - 1);
-    slice_->setValue(size_[2]->value() / 2);
     connect(slice_, &QSlider::valueChanged, this, &RawDialog::show_slice);
     return column_of({picture_, slice_});
 }
 
-io::RawLayout RawDialog::layout_now() const {
-    io::RawLayout layout;
-    for (int a = 0; a < 3; ++a) {
-        layout.size[a] = size_.at(static_cast<std::size_t>(a))->value();
-        layout.spacing[a] = spacing_.at(static_cast<std::size_t>(a))->value();
-    }
-    layout.type = sample_type_from(type_->currentText().toStdString());
-    layout.skip = static_cast<std::uint64_t>(skip_->value());
-    layout.big_endian = order_->currentIndex() == 1;
-    return layout;
+bool RawDialog::is_packed() const {
+    return path_.endsWith(".gz", Qt::CaseInsensitive);
 }
 
-void RawDialog::judge() {
-    const io::RawLayout layout = layout_now();
-    const double bytes = bytes_of(layout);
-    const bool packed = path_.endsWith(".gz", Qt::CaseInsensitive);
-    const auto have = static_cast<double>(QFileInfo(path_).size());
-    order_->setEnabled(size_of(layout.type) > 1);
-    accept_->setEnabled(packed || bytes == have);
-    skip_rest_->setEnabled(!packed && bytes < have && have - bytes < skip_->maximum());
+/// Whether the file has just the bytes that are needed; says so, and shows the middle slice.
+bool RawDialog::judge() {
+    const double bytes = bytes_of(layout_);
     verdict_->setText(
-        packed ? tr("These samples take %1 bytes once unpacked.").arg(count_text(bytes))
-        : bytes == have
+        is_packed() ? tr("These samples take %1 bytes once unpacked.").arg(count_text(bytes))
+        : bytes == have_
             ? tr("These samples are just what the file holds.")
-            : (have > bytes ? tr("The file holds %1 bytes, %2 more than these samples take.")
-                            : tr("The file holds %1 bytes, %2 fewer than these samples take."))
-                  .arg(count_text(have), count_text(std::abs(have - bytes))));
-    if (slice_->maximum() != layout.size[2] - 1) {
-        slice_->setMaximum(layout.size[2] - 1);
-        slice_->setValue(layout.size[2] / 2);
+            : (have_ > bytes ? tr("The file holds %1 bytes, %2 more than these samples take.")
+                             : tr("The file holds %1 bytes, %2 fewer than these samples take."))
+                  .arg(count_text(have_), count_text(std::abs(have_ - bytes))));
+    if (slice_->maximum() != layout_.size[2] - 1) {
+        slice_->setMaximum(layout_.size[2] - 1);
+        slice_->setValue(layout_.size[2] / 2);
     }
     show_slice();
+    return is_packed() || bytes == have_;
 }
 
 void RawDialog::show_slice() {
-    const auto slice = raw_slice(path_.toStdString(), layout_now(), slice_->value());
+    const auto slice = raw_slice(path_.toStdString(), layout_, slice_->value());
     if (!slice) return picture_->setText(tr("No preview"));
-    const QImage image(slice->grey.data(), slice->width, slice->height, slice->width,
-                       QImage::Format_Grayscale8);
-    picture_->setPixmap(QPixmap::fromImage(image.scaled(
-        picture_->contentsRect().size(), Qt::KeepAspectRatio, Qt::SmoothTransformation)));
+    picture_->setPixmap(pixmap_of(*slice, picture_->contentsRect().size()));
 }
 
 run::FileSource RawDialog::layout_source() const {
-    const io::RawLayout layout = layout_now();
-    const bool given = layout.spacing != Vec3::Ones();
-    return {path_.toStdString(), layout, given ? std::optional(layout.spacing) : std::nullopt, {}};
+    const bool given = layout_.spacing != Vec3::Ones();
+    return {
+        path_.toStdString(), layout_, given ? std::optional(layout_.spacing) : std::nullopt, {}};
 }
 
 namespace {
@@ -178,14 +169,6 @@ QStringList columns() {
             SeriesDialog::tr("Spacing [mm]"),
             SeriesDialog::tr("Patient"),
             SeriesDialog::tr("Study")};
-}
-
-QPixmap pixmap_of(const io::Thumbnail& picture) {
-    if (picture.grey.empty()) return {};
-    const QImage image(picture.grey.data(), picture.width, picture.height, picture.width,
-                       QImage::Format_Grayscale8);
-    return QPixmap::fromImage(
-        image.scaled(picture_size, picture_size, Qt::KeepAspectRatio, Qt::SmoothTransformation));
 }
 
 QStringList texts_of(const io::SeriesInfo& s) {
@@ -220,7 +203,7 @@ SeriesDialog::SeriesDialog(const QString& name, const std::vector<io::SeriesInfo
     for (int row = 0; row < table_->rowCount(); ++row) {
         const io::SeriesInfo& s = series[static_cast<std::size_t>(row)];
         auto* picture = new QLabel;
-        picture->setPixmap(pixmap_of(s.picture));
+        picture->setPixmap(pixmap_of(s.picture, {picture_size, picture_size}));
         picture->setAlignment(Qt::AlignCenter);
         table_->setCellWidget(row, 0, picture);
         const QStringList texts = texts_of(s);
@@ -236,15 +219,10 @@ SeriesDialog::SeriesDialog(const QString& name, const std::vector<io::SeriesInfo
     // The one with the most slices is most often what is looked for.
     const auto most = std::ranges::max_element(series, {}, &io::SeriesInfo::slices);
     table_->selectRow(static_cast<int>(most - series.begin()));
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
-    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    QPushButton* open = fill(*this, table_, QDialogButtonBox::Open);
     connect(table_, &QTableWidget::cellDoubleClicked, this, &QDialog::accept);
-    connect(table_, &QTableWidget::itemSelectionChanged, buttons,
-            [this, buttons] { buttons->button(QDialogButtonBox::Open)->setEnabled(chosen() > 0); });
-    auto* column = new QVBoxLayout(this);
-    column->addWidget(table_);
-    column->addWidget(buttons);
+    connect(table_, &QTableWidget::itemSelectionChanged, open,
+            [this, open] { open->setEnabled(chosen() > 0); });
     resize(900, 420);
 }
 
@@ -301,7 +279,8 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
       first_time_(time) {
     setObjectName("store");
     setWindowTitle(known ? tr("Level, channel and time") : tr("Open an address"));
-    auto* form = new QFormLayout;
+    auto* fields = new QWidget;
+    auto* form = form_in(fields);
     address_->setPlaceholderText("https://…/image.zarr");
     address_->setMinimumWidth(60 * fontMetrics().averageCharWidth());
     add_row(*form, tr("Address"), row_of({address_, look_}, 0),
@@ -316,13 +295,7 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
     form->addRow(verdict_);
     verdict_->setWordWrap(true);
     verdict_->setTextFormat(Qt::PlainText);
-    auto* buttons = new QDialogButtonBox(QDialogButtonBox::Open | QDialogButtonBox::Cancel);
-    accept_ = buttons->button(QDialogButtonBox::Open);
-    connect(buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
-    auto* fields = new QWidget;
-    fields->setLayout(form);
-    column_in(this, {fields, buttons})->setContentsMargins(9, 9, 9, 9);
+    accept_ = fill(*this, fields, QDialogButtonBox::Open);
     connect(all_times_, &QCheckBox::toggled, time_, &QWidget::setDisabled);
     connect(look_, &QPushButton::clicked, this, &StoreDialog::look);
     connect(address_, &QLineEdit::returnPressed, this, &StoreDialog::look);

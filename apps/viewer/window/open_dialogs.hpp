@@ -4,7 +4,6 @@
 
 #include <QDialog>
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,21 +12,18 @@
 #include "palpate/io/series.hpp"
 #include "palpate/run/source.hpp"
 
-class QComboBox;
-class QDoubleSpinBox;
-class QLabel;
-class QPushButton;
-class QSlider;
-class QSpinBox;
-class QTableWidget;
 class QCheckBox;
 class QComboBox;
 class QLabel;
 class QLineEdit;
 class QPushButton;
+class QSlider;
 class QSpinBox;
+class QTableWidget;
 
 namespace palpate::viewer {
+
+class Form;
 
 /// Begins with what the file's name and length suggest. Shows at every change a slice, and whether
 /// the file has just the bytes that are needed; else it cannot be accepted.
@@ -40,21 +36,19 @@ class RawDialog : public QDialog {
     run::FileSource layout_source() const;
 
   private:
-    void make_fields();
+    QWidget* make_numbers(Form& form, const QString& name, const QString& spoken,
+                          auto io::RawLayout::*member, double low, double high);
+    void add_rows(Form& form);
     QWidget* make_preview();
-    io::RawLayout layout_now() const;
-    void judge();
+    bool is_packed() const;
+    bool judge();
     void show_slice();
 
     QString path_;
-    std::array<QSpinBox*, 3> size_;
-    std::array<QDoubleSpinBox*, 3> spacing_;
-    QComboBox *type_, *order_;
-    QSpinBox* skip_;
-    QPushButton* skip_rest_;
+    double have_;  // [bytes] of the file
+    io::RawLayout layout_;
     QSlider* slice_;
     QLabel *picture_, *verdict_;
-    QPushButton* accept_;
 };
 
 /// A dialog that asks which of the DICOM series of a file or folder to open.

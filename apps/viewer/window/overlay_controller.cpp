@@ -95,16 +95,11 @@ void OverlayController::keep_file(const std::filesystem::path& file) {
     file_ = file;
 }
 
-void OverlayController::set_layers(const SharedLayers& layers) {
-    layers_ = layers;
-    if (overlay_) colour();
-}
-
 void OverlayController::colour() {
-    const auto before = std::exchange(coloured_, in_colours_of(overlay_, layers_));
-    if (coloured_ != before) {
-        panel_.overlay_controls().set_overlay(coloured_.get());
-        views_.set_overlay(coloured_);
+    const auto coloured = in_colours_of(overlay_, views_.shown().layers);
+    if (coloured != views_.shown().overlay) {
+        panel_.overlay_controls().set_overlay(coloured.get());
+        set(views_, &Shown::overlay, coloured);
     }
     show();
 }
@@ -114,11 +109,9 @@ void OverlayController::close() {
     if (!overlay_) return;
     keep_file({});
     overlay_.reset();
-    coloured_.reset();
     labels_.clear();
     image_.clear();
-    panel_.overlay_controls().set_overlay(nullptr);
-    views_.set_overlay(nullptr);
+    colour();
     views_.scene().set_overlay({});
     Q_EMIT changed();
 }
@@ -133,9 +126,10 @@ void OverlayController::show() {
     std::vector<DrawnSurface> surfaces;
     if (overlay_->is_label_map()) {
         for (std::size_t i = 0; i < labels_.size(); ++i) {
-            const Label& label = coloured_->labels[i];
+            const Label& label = views_.shown().overlay->labels[i];
             const bool hidden = std::ranges::count(look.hidden, label.value) > 0;
-            const double seen = hidden ? 0 : opacity * opacity_of(label.value, layers_);
+            const double seen =
+                hidden ? 0 : opacity * opacity_of(label.value, views_.shown().layers);
             surfaces.push_back({labels_[i], label.colour, seen, offset});
         }
     } else {
@@ -151,7 +145,7 @@ void OverlayController::go_to(int value) {
     if (label == overlay_->labels.end()) return;
     const Vec3 index = 0.5 * (label->box.low + label->box.high).cast<double>();
     views_.set_follow(false);
-    views_.set_crosshair(physical_from_index(overlay_->volume.geometry(), index));
+    set(views_, &Shown::crosshair, physical_from_index(overlay_->volume.geometry(), index));
 }
 
 }  // namespace palpate::viewer

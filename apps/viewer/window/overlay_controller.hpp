@@ -28,8 +28,8 @@ class OverlayController : public Controller {
     void close();
     /// Null: none.
     const std::shared_ptr<const Overlay>& overlay() const { return overlay_; }
-    /// Labels have the colours and opacities of these, where they are by label.
-    void set_layers(const SharedLayers& layers);
+    /// Labels have the colours and opacities of the layers shown, where those are by label.
+    void colour();
     bool settled() const { return !loader_.busy() && !image_.extracting(); }
     BackgroundTask& loader() { return loader_; }
 
@@ -41,12 +41,10 @@ class OverlayController : public Controller {
     void use(std::shared_ptr<const Overlay> overlay, std::vector<ExtractedSurface> labels);
     void keep_file(const std::filesystem::path& file);
     void show();
-    void colour();
     void go_to(int label);
 
-    std::shared_ptr<const Overlay> overlay_, coloured_;  // the latter as it is shown
-    std::filesystem::path file_;                         // of the overlay; empty: none
-    SharedLayers layers_;
+    std::shared_ptr<const Overlay> overlay_;
+    std::filesystem::path file_;  // of the overlay; empty: none
     std::vector<ExtractedSurface> labels_;
     SurfaceSource image_;  // its surface
     BackgroundTask loader_;

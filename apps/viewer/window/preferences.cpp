@@ -2,10 +2,9 @@
 #include "apps/viewer/window/preferences.hpp"
 
 #include <QApplication>
-#include <QComboBox>
 #include <QCoreApplication>
+#include <QDialog>
 #include <QDialogButtonBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLibraryInfo>
 #include <QLocale>
@@ -13,7 +12,9 @@
 #include <QSettings>
 
 #include <algorithm>
+#include <utility>
 
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/layout.hpp"
 
 // Outside of all namespaces, as Qt wants it. A static library's resources are linked only if
@@ -127,26 +128,6 @@ double number_in(const QSettings& settings, const char* name, double usual, doub
     return is_number && value >= low && value <= high ? value : usual;
 }
 
-QDoubleSpinBox* number_box(const char* name, double value, double low, double high, double step,
-                           const QString& unit) {
-    auto* box = new QDoubleSpinBox;
-    box->setObjectName(name);
-    box->setRange(low, high);
-    box->setSingleStep(step);
-    box->setDecimals(1);
-    box->setSuffix(unit);
-    box->setValue(value);
-    return box;
-}
-
-QComboBox* choice_box(const char* name, const QStringList& words, int chosen) {
-    auto* box = new QComboBox;
-    box->setObjectName(name);
-    box->addItems(words);
-    box->setCurrentIndex(chosen);
-    return box;
-}
-
 }  // namespace
 
 Preferences saved_preferences() {
@@ -172,52 +153,69 @@ void save_preferences(const Preferences& preferences) {
     settings.setValue("preferences/surface_millions", preferences.surface_millions);
 }
 
-PreferencesDialog::PreferencesDialog(const Preferences& preferences, QWidget* window)
-    : QDialog(window), preferences_(preferences) {
-    setObjectName("preferences");
-    setWindowTitle(tr("Preferences"));
-    auto* theme = choice_box("preferred_theme", {tr("as the system"), tr("light"), tr("dark")},
-                             static_cast<int>(preferences.appearance));
-    // Each language by its own name: whoever looks for it may not read the others.
-    auto* language = choice_box("preferred_language", {tr("as the system"), "English", "Deutsch"},
-                                static_cast<int>(preferences.language));
-    auto* wheel = number_box("preferred_wheel", preferences.wheel_px, least_wheel, most_wheel, 1,
-                             tr(" pixels"));
-    auto* unit = choice_box(
-        "preferred_unit",
-        {tr("automatic"), tr("micrometres"), tr("millimetres"), tr("centimetres"), tr("inches")},
-        static_cast<int>(preferences.unit));
-    auto* millions = number_box("preferred_triangles", preferences.surface_millions, least_millions,
-                                most_millions, 1, tr(" million"));
-    auto* form = new QFormLayout(this);
-    add_row(*form, tr("Theme"), theme, tr("Colours of the window"));
-    add_row(*form, tr("Language, from the next start"), language, tr("Of the window's words"));
-    add_row(*form, tr("A notch of the wheel"), wheel,
-            tr("Moves the probe into the depth as far as a drag of so many pixels"));
-    add_row(*form, tr("Units of lengths"), unit, tr("Of measurements"));
-    add_row(*form, tr("Triangles of the surface"), millions,
-            tr("At most; a finer surface is thinned. A million takes about 80 MB"));
+namespace {
+
+class PreferencesDialog : public Form {
+    Q_DECLARE_TR_FUNCTIONS(palpate::viewer::PreferencesDialog)
+
+  public:
+    PreferencesDialog(const Preferences& now, std::function<void(const Preferences&)> changed)
+        : now_(now), changed_(std::move(changed)) {
+        auto* rows = form_in(this);
+        add_row(*rows, tr("Theme"),
+                choice({"preferred_theme", ""}, {tr("as the system"), tr("light"), tr("dark")},
+                       of<int>(&Preferences::appearance)),
+                tr("Colours of the window"));
+        // Each language by its own name: whoever looks for it may not read the others.
+        add_row(*rows, tr("Language, from the next start"),
+                choice({"preferred_language", ""}, {tr("as the system"), "English", "Deutsch"},
+                       of<int>(&Preferences::language)),
+                tr("Of the window's words"));
+        auto* wheel = number({"preferred_wheel", ""},
+                             within(least_wheel, most_wheel, of<double>(&Preferences::wheel_px)));
+        wheel->setSuffix(tr(" pixels"));
+        add_row(*rows, tr("A notch of the wheel"), wheel,
+                tr("Moves the probe into the depth as far as a drag of so many pixels"));
+        add_row(*rows, tr("Units of lengths"),
+                choice({"preferred_unit", ""},
+                       {tr("automatic"), tr("micrometres"), tr("millimetres"), tr("centimetres"),
+                        tr("inches")},
+                       of<int>(&Preferences::unit)),
+                tr("Of measurements"));
+        auto* millions = number(
+            {"preferred_triangles", ""},
+            within(least_millions, most_millions, of<double>(&Preferences::surface_millions)));
+        millions->setSuffix(tr(" million"));
+        add_row(*rows, tr("Triangles of the surface"), millions,
+                tr("At most; a finer surface is thinned. A million takes about 80 MB"));
+        refresh();
+    }
+
+  private:
+    template <typename As, typename T>
+    Value<As> of(T Preferences::*member) {
+        return {[this, member] { return static_cast<As>(now_.*member); },
+                [this, member](As to) {
+                    now_.*member = static_cast<T>(to);
+                    changed_(now_);
+                }};
+    }
+
+    Preferences now_;
+    std::function<void(const Preferences&)> changed_;
+};
+
+}  // namespace
+
+QDialog* make_preferences_dialog(const Preferences& preferences, QWidget* window,
+                                 std::function<void(const Preferences&)> changed) {
+    auto* dialog = named(new QDialog(window), "preferences");
+    auto* form = new PreferencesDialog(preferences, std::move(changed));
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
-    form->addRow(buttons);
-    connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::accept);
-    const auto choice = [this](QComboBox* box, auto set) {
-        connect(box, qOverload<int>(&QComboBox::activated), this, [this, set](int at) {
-            set(preferences_, at);
-            Q_EMIT changed(preferences_);
-        });
-    };
-    choice(theme, [](Preferences& p, int at) { p.appearance = static_cast<Appearance>(at); });
-    choice(language, [](Preferences& p, int at) { p.language = static_cast<Language>(at); });
-    choice(unit, [](Preferences& p, int at) { p.unit = static_cast<LengthUnit>(at); });
-    const auto number = [this](QDoubleSpinBox* box, double Preferences::*member) {
-        connect(box, qOverload<double>(&QDoubleSpinBox::valueChanged), this,
-                [this, member](double value) {
-                    preferences_.*member = value;
-                    Q_EMIT changed(preferences_);
-                });
-    };
-    number(wheel, &Preferences::wheel_px);
-    number(millions, &Preferences::surface_millions);
+    QObject::connect(buttons, &QDialogButtonBox::rejected, dialog, &QDialog::accept);
+    dialog->setWindowTitle(PreferencesDialog::tr("Preferences"));
+    column_in(dialog, {form, buttons})->setContentsMargins(9, 9, 9, 9);
+    return dialog;
 }
 
 }  // namespace palpate::viewer

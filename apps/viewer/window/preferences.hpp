@@ -2,10 +2,14 @@
 // dialog to change them.
 #pragma once
 
-#include <QDialog>
 #include <QTranslator>
 
+#include <functional>
+
 #include "apps/viewer/model/measurement.hpp"
+
+class QDialog;
+class QWidget;
 
 namespace palpate::viewer {
 
@@ -48,18 +52,8 @@ struct Preferences {
 Preferences saved_preferences();
 void save_preferences(const Preferences& preferences);
 
-class PreferencesDialog : public QDialog {
-    Q_OBJECT
-
-  public:
-    PreferencesDialog(const Preferences& preferences, QWidget* window);
-
-  Q_SIGNALS:
-    /// At every change.
-    void changed(const palpate::viewer::Preferences& preferences);
-
-  private:
-    Preferences preferences_;
-};
+/// A dialog that calls `changed` at every change.
+QDialog* make_preferences_dialog(const Preferences& preferences, QWidget* window,
+                                 std::function<void(const Preferences&)> changed);
 
 }  // namespace palpate::viewer

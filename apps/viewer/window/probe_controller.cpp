@@ -67,8 +67,7 @@ ProbeController::ProbeController(const Desk& desk, RunController& run) : Control
 
 /// If the mouse is the device of the chosen hand, it moves that from where it is.
 void ProbeController::take_over() {
-    pointing_ = possible();
-    views_.set_hand(pointing_);
+    set(views_, &Shown::probe, possible());
     forget_press();
     drop_route();
 }
@@ -77,14 +76,17 @@ bool ProbeController::possible() const {
     return content_.live() && content_.live()->mouse();
 }
 
+bool ProbeController::pointing() const {
+    return views_.shown().probe;
+}
+
 bool ProbeController::travelling() const {
     return (approaching_[content_.hand()] && possible()) || pressed_ || !route_.empty();
 }
 
 void ProbeController::set_pointing(bool probe) {
-    pointing_ = probe && possible();
-    views_.set_hand(pointing_);
-    if (!pointing_) return;
+    set(views_, &Shown::probe, probe && possible());
+    if (!pointing()) return;
     views_.scene().setFocus();
     messages_.show_done(
         tr("Click to touch, drag to move the probe, turn the wheel to push it in; the right button "

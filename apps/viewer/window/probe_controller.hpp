@@ -21,7 +21,7 @@ class ProbeController : public Controller {
     /// Whether the mouse is the device.
     bool possible() const;
     /// Whether the left button moves the probe, not the view.
-    bool pointing() const { return pointing_; }
+    bool pointing() const;
     void set_pointing(bool probe);
     /// Moves what the mouse aims at [mm, physical], not beyond the far side of the grid.
     void move_by(const Vec3& by);
@@ -61,7 +61,6 @@ class ProbeController : public Controller {
     void press_deeper(const Snapshot& now);
     Vec3 before_far_side(const Vec3& from, const Vec3& by);
 
-    bool pointing_ = false;
     // A run has begun: to the first surface, once there is a tick and the hand is chosen.
     PerHand<bool> approaching_;
     std::vector<Vec3> route_;      // stops to come, the next one last [mm, physical]

@@ -93,7 +93,7 @@ TimelineController::TimelineController(const Desk& desk) : Controller(desk) {
     connect(&content_, &Content::closed, &timeline_, &QWidget::hide);
     connect(&content_, &Content::run_changed, this, &TimelineController::show);
     connect(&content_, &Content::playback_started, this, [this] {
-        clock_ = {};
+        recorded_ = {};
         show_hand();
     });
     connect(&content_, &Content::hand_changed, this, [this] {
@@ -109,8 +109,8 @@ void TimelineController::connect_timeline() {
         if (run::Player* player = content_.player()) {
             messages_.guarded([&] { action(*player); });
         } else if (content_.playback()) {
-            action(clock_);
-            content_.set_time(clock_.time());
+            action(recorded_);
+            content_.set_time(recorded_.time);
         }
     };
     connect(&timeline_, &Timeline::speed_asked, this,
@@ -123,27 +123,16 @@ void TimelineController::connect_timeline() {
 
 TimelineView TimelineController::view() const {
     if (const run::Player* player = content_.player()) return TimelineView(player->state());
-    TimelineView view;
-    if (const Playback* playback = content_.playback()) {
-        view.begin = playback->begin();
-        view.end = playback->end();
-        view.time = clock_.time();
-        view.speed = clock_.speed();
-        view.loop = clock_.loop();
-        view.overview = overview_;
-    }
-    return view;
+    return content_.playback() ? recorded_ : TimelineView();
 }
 
 /// The times are those of the chosen hand; the clock goes on.
 void TimelineController::show_hand() {
     const Playback& playback = *content_.playback();
-    PlaybackClock clock(playback.begin(), playback.end());
-    clock.set_loop(clock_.loop());
-    clock.play(clock_.speed());
-    clock.seek(content_.time());
-    clock_ = clock;
-    overview_ = std::make_shared<Overview>(playback.overview());
+    recorded_.begin = playback.begin();
+    recorded_.end = playback.end();
+    recorded_.seek(content_.time());
+    recorded_.overview = std::make_shared<Overview>(playback.overview());
     show();
 }
 
@@ -154,8 +143,8 @@ void TimelineController::show() {
 
 void TimelineController::show_time(double time) {
     if (!content_.playback()) return;
-    clock_.seek(time);
-    content_.set_time(clock_.time());
+    recorded_.seek(time);
+    content_.set_time(recorded_.time);
     timeline_.set_view(view());
 }
 
@@ -163,8 +152,8 @@ void TimelineController::advance() {
     const double passed = 1e-9 * static_cast<double>(since_.nsecsElapsed());
     since_.restart();
     if (!content_.playback() || timeline_.dragging()) return;
-    clock_.advance(passed);
-    content_.set_time(clock_.time());
+    recorded_.advance(passed);
+    content_.set_time(recorded_.time);
 }
 
 void TimelineController::observe() {

@@ -1,15 +1,12 @@
-// Records the live run, all hands into one file, and plays recordings and sequences: the clock of a
-// recording, and the timeline's connection with it or with the player.
+// Records the live run, all hands into one file, and connects the timeline with the recording or
+// the sequence that is played.
 #pragma once
 
 #include <QElapsedTimer>
 #include <QObject>
 #include <QString>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-
+#include "apps/viewer/panel/timeline_view.hpp"
 #include "apps/viewer/window/desk.hpp"
 
 namespace palpate::io {
@@ -45,44 +42,6 @@ class RecordingController : public Controller {
     double began_ = 0;  // [s] of the run
 };
 
-/// Times are those of the recording [s], between begin and end.
-class PlaybackClock {
-  public:
-    PlaybackClock() = default;
-    PlaybackClock(double begin, double end) : begin_(begin), end_(end), time_(begin) {}
-
-    double time() const { return time_; }
-    double speed() const { return speed_; }
-    bool loop() const { return loop_; }
-    /// Seconds of the recording in a second; 0: pause. At the end it begins again.
-    void play(double speed) {
-        if (speed_ == 0 && speed != 0 && time_ >= end_) time_ = begin_;
-        speed_ = speed;
-    }
-    /// Goes to a time; outside the recording, to its ends.
-    void seek(double time) { time_ = std::clamp(std::isnan(time) ? begin_ : time, begin_, end_); }
-    void set_loop(bool loop) { loop_ = loop; }
-    /// `seconds` have passed. At the end it pauses, unless it loops.
-    void advance(double seconds) {
-        const double to = time_ + speed_ * seconds, length = end_ - begin_;
-        if (to < end_ || speed_ == 0) {
-            time_ = to;
-        } else if (loop_ && length > 0) {
-            time_ = begin_ + std::fmod(to - begin_, length);
-        } else {
-            time_ = end_;
-            speed_ = 0;
-        }
-    }
-
-  private:
-    double begin_ = 0, end_ = 0, time_ = 0, speed_ = 0;
-    bool loop_ = false;
-};
-
-struct Overview;
-struct TimelineView;
-
 class TimelineController : public Controller {
   public:
     explicit TimelineController(const Desk& desk);
@@ -100,9 +59,8 @@ class TimelineController : public Controller {
     void show();
     TimelineView view() const;
 
-    PlaybackClock clock_;
-    QElapsedTimer since_;  // the last advance()
-    std::shared_ptr<const Overview> overview_;
+    TimelineView recorded_;  // of the chosen hand
+    QElapsedTimer since_;    // the last advance()
     QString problem_;
 };
 

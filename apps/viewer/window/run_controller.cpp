@@ -94,7 +94,7 @@ void RunController::start(std::shared_ptr<Opened> volume, const std::vector<run:
     Q_EMIT device_changed();
 }
 
-void RunController::restore(const RendererSettings& settings) {
+void RunController::restore(const RendererSettings& settings, bool in_place) {
     const auto send = [this](const Command& command) { content_.effect().request(command); };
     if (!settings.tool) send(command::UseTool{nullptr});  // beside one, other things are refused
     send(settings.force);
@@ -104,7 +104,7 @@ void RunController::restore(const RendererSettings& settings) {
         send(command::UseLayers{settings.layers});
     }
     if (settings.tool) send(command::UseTool{settings.tool});
-    send(settings.transform);
+    if (in_place) send(settings.transform);
     send(command::Forces{settings.forces_on});
     Q_EMIT content_.run_changed();
 }

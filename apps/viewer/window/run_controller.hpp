@@ -51,8 +51,9 @@ class RunController : public Controller {
     void start(std::shared_ptr<Opened> volume, const std::vector<run::Setup>& hands);
 
     /// Requests those of the settings for which there are commands. Not layers that
-    /// lack_labels().
-    void restore(const RendererSettings& settings);
+    /// lack_labels(). Not `in_place`: hands are where this run has put them, as the data lie
+    /// elsewhere.
+    void restore(const RendererSettings& settings, bool in_place);
 
     /// Whether a file that is dropped on the window is a tool: a mesh, by its name.
     static bool is_tool_file(const QString& path);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/slices/slice_pane.hpp"
@@ -49,7 +50,8 @@ Views::Views(MakePainter make_painter, QWidget* parent)
         pane->installEventFilter(this);
         connect(pane, &SlicePane::crosshair_chosen, this, &Views::choose_crosshair);
         connect(pane, &SlicePane::probe_aimed, this, &Views::probe_aimed);
-        connect(pane, &SlicePane::window_changed, this, &Views::set_window);
+        connect(pane, &SlicePane::window_chosen, this,
+                [this](const GreyWindow& window) { set(*this, &Shown::window, window); });
         connect(pane, &SlicePane::point_chosen, this, &Views::point_chosen);
         connect(pane, &SlicePane::point_pointed_at, this, &Views::point_pointed_at);
     }
@@ -77,7 +79,7 @@ void Views::set_missing(const QString& words) {
 Vec3 Views::on_surface(const Vec3& seen) const {
     const Vec3 near =
         1.5 * field_->geometry().spacing.maxCoeff() * axes_of(scene_->camera()).towards_viewer;
-    const RayHit hit = cast_ray(*field_, isovalue_, seen + near, seen - near);
+    const RayHit hit = cast_ray(*field_, shown_.isovalue, seen + near, seen - near);
     return hit.hit && hit.point != seen + near ? hit.point : seen;
 }
 
@@ -139,16 +141,16 @@ void Views::show_panes() {
 }
 
 void Views::set_field(const Field& field, double isovalue, const std::optional<Geometry>& counted) {
-    isovalue_ = isovalue;
+    shown_ = with_field(shown_, field_ ? &*field_ : nullptr, field, isovalue);
     field_ = field;
     scene_->set_field(field, isovalue);
     for (SlicePane* pane : slices_) pane->set_field(field, isovalue, counted);
     order_panes();
-    set_crosshair(physical_centre(field.geometry()));
     touched_ = false;
 }
 
 void Views::update_field(const Field& field) {
+    if (same_samples(*field_, field)) return;
     field_ = field;
     in_all([&](auto& pane) { pane.update_field(field); });
 }
@@ -158,28 +160,9 @@ void Views::clear() {
     in_all([](auto& pane) { pane.clear(); });
 }
 
-void Views::set_pressed(const std::optional<double>& level, int hand) {
-    scene_->set_pressed(level, hand);
-    for (SlicePane* pane : slices_) pane->set_isovalue(level.value_or(isovalue_));
-}
-
-void Views::set_next_level(double level) {
-    scene_->set_pressed(std::nullopt);
-    for (SlicePane* pane : slices_) pane->set_isovalue(level);
-}
-
-void Views::set_isovalue(double isovalue) {
-    isovalue_ = isovalue;
-    in_all([&](auto& pane) { pane.set_isovalue(isovalue); });
-}
-
-void Views::set_look(const Look& look, const SharedLayers& layers) {
-    scene_->set_look(scene_look(look, layers));
-    for (SlicePane* pane : slices_) pane->set_look(slice_look(look, layers));
-}
-
-void Views::set_overlay(const std::shared_ptr<const Overlay>& overlay) {
-    for (SlicePane* pane : slices_) pane->set_overlay(overlay);
+void Views::set_shown(const Shown& shown) {
+    shown_ = shown;
+    in_all([this](auto& pane) { pane.set_shown(shown_); });
 }
 
 void Views::show_snapshots(const HandSnapshots& hands, int chosen) {
@@ -187,55 +170,24 @@ void Views::show_snapshots(const HandSnapshots& hands, int chosen) {
     const bool placed = snapshot && snapshot->session.device.status == DeviceStatus::ready &&
                         snapshot->session.tick.proxy.scp.allFinite();
     touched_ = touched_ || (placed && snapshot->session.tick.proxy.mode == Mode::constrained);
-    if (placed && follow_ && touched_) set_crosshair(snapshot->session.tick.proxy.scp);
+    if (placed && follow_ && touched_) {
+        set(*this, &Shown::crosshair, snapshot->session.tick.proxy.scp);
+    }
     for (int hand = 1; hand <= most_hands; ++hand) {
         in_all([&](auto& pane) { pane.show_snapshot(hands[hand], hand); });
     }
 }
 
-void Views::set_hand(bool probe) {
-    scene_->set_hand(probe ? Scene::Hand::probe : Scene::Hand::camera);
-    for (SlicePane* pane : slices_) pane->set_hand(probe);
-}
-
-void Views::set_brush(double radius) {
-    in_all([&](auto& pane) { pane.set_brush(radius); });
-}
-
-void Views::set_measuring(bool measuring) {
-    in_all([&](auto& pane) { pane.set_measuring(measuring); });
-}
-
-void Views::set_measurements(const std::vector<Measurement>& measurements) {
-    in_all([&](auto& pane) { pane.set_measurements(measurements); });
-}
-
-void Views::set_unit(LengthUnit unit) {
-    in_all([&](auto& pane) { pane.set_unit(unit); });
-}
-
-void Views::set_crosshair(const Vec3& physical) {
-    if (crosshair_ == physical) return;
-    crosshair_ = physical;
-    in_all([&](auto& pane) { pane.set_crosshair(physical); });
-}
-
 /// By hand: then it stays there.
 void Views::choose_crosshair(const Vec3& physical) {
     set_follow(false);
-    set_crosshair(physical);
+    set(*this, &Shown::crosshair, physical);
 }
 
 void Views::set_follow(bool follow) {
     if (follow_ == follow) return;
     follow_ = follow;
     Q_EMIT follow_changed(follow);
-}
-
-void Views::set_window(double low, double high) {
-    window_low_ = low;
-    window_high_ = high;
-    for (SlicePane* pane : slices_) pane->set_window(low, high);
 }
 
 void Views::show_slices(bool shown) {

@@ -6,11 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "apps/viewer/model/hands.hpp"
-#include "apps/viewer/model/layer_set.hpp"
-#include "apps/viewer/model/look.hpp"
-#include "apps/viewer/model/measurement.hpp"
-#include "apps/viewer/model/overlay.hpp"
+#include "apps/viewer/model/shown.hpp"
 #include "apps/viewer/scene/render_request.hpp"
 #include "palpate/servo.hpp"
 
@@ -35,35 +31,13 @@ class Views : public QWidget {
     /// Another version of the data that are shown: edited, or at another moment.
     void update_field(const Field& field);
     void clear();
-    void set_isovalue(double isovalue);
-    double isovalue() const { return isovalue_; }
-    /// `layers` are seen with it; null: none.
-    void set_look(const Look& look, const SharedLayers& layers);
-    /// Null: none.
-    void set_overlay(const std::shared_ptr<const Overlay>& overlay);
-    /// As Scene::set_pressed; the slices show the contour of that level.
-    void set_pressed(const std::optional<double>& level, int hand);
-    /// With layers: the level of the surface that is next, whose contour the slices show.
-    void set_next_level(double level);
+    void set_shown(const Shown& shown);
+    const Shown& shown() const { return shown_; }
     /// Up to 60 times a second. The crosshair follows the chosen hand.
     void show_snapshots(const HandSnapshots& hands, int chosen);
-    /// True: the left button moves the probe, where the device is the mouse.
-    void set_hand(bool probe);
-    /// [mm] Radius of the brush that is outlined round the proxy; 0: none.
-    void set_brush(double radius);
-    /// True: the left button chooses points, everywhere.
-    void set_measuring(bool measuring);
-    void set_measurements(const std::vector<Measurement>& measurements);
-    void set_unit(LengthUnit unit);
-    void set_crosshair(const Vec3& physical);
-    const Vec3& crosshair() const { return crosshair_; }
     /// The crosshair follows the probe, once it has touched something.
     void set_follow(bool follow);
     bool follows() const { return follow_; }
-    /// The grey levels of the slices [data units].
-    void set_window(double low, double high);
-    double window_low() const { return window_low_; }
-    double window_high() const { return window_high_; }
     /// What the file does not say of the volume's grid, on a button over the panes; empty: none.
     void set_missing(const QString& words);
     void show_slices(bool shown);
@@ -114,10 +88,8 @@ class Views : public QWidget {
     QSplitter *across_, *left_, *down_;
     QWidget* alone_ = nullptr;
     bool slices_shown_ = true;
-    Vec3 crosshair_ = Vec3::Zero();
+    Shown shown_;
     bool follow_ = true, touched_ = false;
-    double window_low_ = 0, window_high_ = 1;
-    double isovalue_ = 0;
 };
 
 }  // namespace palpate::viewer

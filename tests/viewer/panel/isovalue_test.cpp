@@ -86,29 +86,6 @@ TEST_F(Isovalue, the_first_level_of_a_drag_is_emitted_at_once_and_the_last_alway
     EXPECT_NEAR(std::get<command::Isovalue>(commands.back()).isovalue, 600, pixel());
 }
 
-TEST(RateLimiter, passes_the_first_at_once_then_the_newest_and_forgets_what_is_dropped) {
-    RateLimiter limiter(nullptr, 1000 * 1000);  // the time never comes in this test
-    std::vector<int> passed;
-    const auto request = [&](int i) { limiter.put([&passed, i] { passed.push_back(i); }); };
-    for (int i = 0; i < 100; ++i) request(i);
-    EXPECT_EQ(passed, (std::vector{0}));
-    limiter.flush();
-    EXPECT_EQ(passed, (std::vector{0, 99}));
-    limiter.flush();
-    request(100);
-    limiter.drop();
-    limiter.flush();
-    EXPECT_EQ(passed, (std::vector{0, 99}));
-}
-
-TEST(RateLimiter, a_held_request_passes_after_the_interval) {
-    RateLimiter limiter(nullptr, 5);
-    int passed = -1;
-    for (int i = 0; i < 10; ++i) limiter.put([&passed, i] { passed = i; });
-    wait_until_quiet(limiter);
-    EXPECT_EQ(passed, 9);
-}
-
 TEST_F(Isovalue, a_tick_of_a_suggested_level_is_taken_exactly) {
     set();
     const double suggested = run::suggested_isovalues(histogram).front();
@@ -303,7 +280,7 @@ TEST_F(Isovalue, any_data_can_be_shown_and_stepped_through) {
         QTest::keyClick(chart(), Qt::Key_End);
         QTest::keyClick(chart(), Qt::Key_PageDown);
         drag(chart(), {20, 30}, {200, 30});
-        press("penetrability_ranges");
+        press("penetrability");
         press("add_range");
         chart()->grab();
         for (const double level : levels()) {

@@ -152,8 +152,8 @@ TEST_F(LayersPart, what_has_no_effect_meanwhile_is_disabled_and_says_why) {
     look.surfaces = {{1000, {0, 0, 1}, 0.5, true}};
     panel.look_controls().set_look(look);
     const QString tip = find<QWidget>("threshold_box")->parentWidget()->toolTip();
-    const char* resting[] = {"isovalue_box", "isovalue_slider", "penetrability_threshold",
-                             "add_range", "surface_1_feel"};
+    const char* resting[] = {"isovalue_box", "isovalue_slider", "penetrability", "add_range",
+                             "surface_1_feel"};
     for (const bool layered : {true, false}) {
         choose(layered ? 1 : 0);
         for (const char* name : resting) {

@@ -66,12 +66,7 @@ TEST_F(WithLive, random_requests_by_mouse_and_keys_are_all_carried_out) {
         "static_friction_slider", "dynamic_friction_slider", "texture_amplitude_slider",
         "magnet_distance_slider", "magnet_peak_slider",      "force_limit_slider",
         "threshold_slider",       "isovalue_slider"};
-    const std::vector<const char*> buttons{"penetrability_off",
-                                           "penetrability_threshold",
-                                           "penetrability_ranges",
-                                           "add_range",
-                                           "forces",
-                                           "freeze",
+    const std::vector<const char*> buttons{"penetrability", "add_range", "forces", "freeze",
                                            "clutch"};
     auto* chart = find<LevelChart>("level_chart");
     const auto on_chart = [&](double y) {

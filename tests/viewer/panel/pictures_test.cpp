@@ -167,7 +167,6 @@ TEST_F(Pictures, show_every_row_of_the_force) {
 
 TEST_F(Pictures, show_a_narrow_panel_with_a_threshold_and_refusals) {
     full();
-    press("penetrability_threshold");
     type("stiffness_box", "99");
     DeviceInfo info = desktop_device();
     panel.device_controls().show_device(info, DeviceStatus::uncalibrated,

@@ -47,7 +47,7 @@ Look slices_alone() {
 }
 
 void open(ShownScene& shown, const Field& field, const Look& look) {
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     shown.scene.set_field(field, 128);
     shown.scene.look_from(pictures::view_named("front"));
 }
@@ -80,11 +80,7 @@ TEST(DrawnChangingScene, after_edits_surface_volume_and_slices_are_those_of_the_
         for (int i = 0; i < 4; ++i) {
             const Edited after = dab(field, 128, 0.9 * i, 9);
             field.use(after.samples);
-            if (i % 2) {
-                shown.scene.update_field(field, after.changed);
-            } else {
-                shown.scene.update_field(field);
-            }
+            shown.scene.update_field(field);
             shown.next_frame();
         }
         const std::string name = "edited_" + std::to_string(number++);
@@ -114,13 +110,13 @@ TEST(DrawnChangingScene, edits_and_levels_in_turns_end_with_the_last_of_both) {
     for (int i = 0; i < 8; ++i) {
         field.use(dab(field, 128, 0.8 * i, 8).samples);
         shown.scene.update_field(field);
-        shown.scene.set_isovalue(60 + 15 * i);
+        set(shown.scene, &Shown::isovalue, 60 + 15 * i);
         for (int j = 0; j < i % 3; ++j) shown.next_frame();
     }
     const QImage after = shown.settled();
     ShownScene fresh;
     open(fresh, flat(field), surface_alone());
-    fresh.scene.set_isovalue(165);
+    set(fresh.scene, &Shown::isovalue, 165);
     EXPECT_LT(difference(fresh.settled(), after), 0.01);
 }
 

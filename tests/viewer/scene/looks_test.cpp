@@ -22,7 +22,7 @@ struct Torus : ShownScene {
     Field field = linear_field(torus.volume);
 
     explicit Torus(const Look& look) {
-        scene.set_look(look);
+        set(scene, &Shown::look, look);
         scene.set_field(field, torus.isovalue);
     }
     /// Pressed on the side that is seen.
@@ -59,7 +59,7 @@ TEST(DrawnLooks, show_a_volume_with_slices) {
     look.volume = look.slices = true;
     look.transfer.points = {{70, {0.7, 0.3, 0.2}, 0}, {160, pictures::bone, 0.5}};
     Torus shown(look);
-    shown.scene.set_crosshair(Vec3(8, 6, -6));
+    set(shown.scene, &Shown::crosshair, Vec3(8, 6, -6));
     expect_as_committed(shown.settled("look_volume"), "volume");
 }
 
@@ -132,7 +132,7 @@ TEST(DrawnLooks, show_an_edit_while_the_brush_is_on) {
     field.use(edited(field.shared_samples(), stroke).samples);
     shown.settled();
     shown.scene.update_field(field);
-    shown.scene.set_brush(5);
+    set(shown.scene, &Shown::brush, 5);
     shown.scene.show_snapshot(pressed);
     expect_as_committed(shown.settled("look_edit"), "edit");
 }

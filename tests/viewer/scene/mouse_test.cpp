@@ -214,7 +214,7 @@ TEST(DrawnMouse, shift_and_double_click_recentre_on_the_surface_and_beside_it_do
 
 TEST(SceneMouse, left_drag_moves_the_probe_as_far_as_the_pointer) {
     Hands hands;
-    hands.scene.set_hand(Scene::Hand::probe);
+    set(hands.scene, &Shown::probe, true);
     const Camera before = hands.scene.camera();
     hands.drag(Qt::LeftButton, {200, 160}, {240, 150});
     EXPECT_LT((hands.dragged - Vec3(8, 0, 2)).norm(), 1e-9);
@@ -227,7 +227,7 @@ TEST(SceneMouse, left_drag_moves_the_probe_as_far_as_the_pointer) {
 
 TEST(SceneMouse, wheel_forward_moves_the_probe_into_the_screen) {
     Hands hands;
-    hands.scene.set_hand(Scene::Hand::probe);
+    set(hands.scene, &Shown::probe, true);
     hands.wheel({200, 160}, 2);
     EXPECT_LT((hands.dragged - Vec3(0, 6, 0)).norm(), 1e-9);  // 15 pixels a notch
     hands.dragged = Vec3::Zero();
@@ -238,7 +238,7 @@ TEST(SceneMouse, wheel_forward_moves_the_probe_into_the_screen) {
 
 TEST(SceneMouse, with_the_probe_in_hand_the_camera_still_turns_pans_and_zooms) {
     Hands hands;
-    hands.scene.set_hand(Scene::Hand::probe);
+    set(hands.scene, &Shown::probe, true);
     hands.drag(Qt::RightButton, {200, 160}, {240, 160});
     const Vec3 turned = hands.scene.camera().towards_viewer;
     EXPECT_LT(turned[0], -0.2);
@@ -292,7 +292,7 @@ TEST(SceneMouse, ctrl_and_left_drag_turn_the_tool_where_the_mouse_is_the_hand) {
     hands.drag(Qt::LeftButton, {200, 160}, {280, 160}, Qt::ControlModifier);
     EXPECT_EQ(turn, Vec3::Zero()) << "the mouse is not the hand";
     hands.scene.set_camera(before);
-    hands.scene.set_hand(Scene::Hand::probe);
+    set(hands.scene, &Shown::probe, true);
     // 80 pixels of 320: 45 degrees; the side towards the viewer (-y) goes to the right (+x).
     hands.drag(Qt::LeftButton, {200, 160}, {280, 160}, Qt::ControlModifier);
     EXPECT_NEAR(turn.norm(), std::acos(-1.0) / 4, 1e-9);

@@ -33,7 +33,7 @@ Camera from_front(const Field& field, double half_height = 40) {
 TEST(DrawnScene, shows_a_ball_as_large_as_it_is_where_it_is) {
     ShownScene shown;
     const Field field = ball(Vec3(-300, 120, 1500));  // far from the origin, as scanners do
-    shown.scene.set_look(bare());
+    set(shown.scene, &Shown::look, bare());
     shown.scene.set_field(field, 0.5);
     shown.scene.set_camera(from_front(field));
     const Blob seen = blob(shown.settled("ball"), is_bone);
@@ -70,7 +70,7 @@ TEST(DrawnScene, mirrored_and_oblique_grids_are_seen_where_their_samples_lie) {
             look.surface = !volume;
             look.volume = volume;
             look.transfer.points = {{50, pictures::bone, 0}, {120, pictures::bone, 1}};
-            shown.scene.set_look(look);
+            set(shown.scene, &Shown::look, look);
             shown.scene.set_field(field, 100);
             for (const char* view : {"front", "left", "top"}) {
                 shown.scene.look_from(pictures::view_named(view));
@@ -89,7 +89,7 @@ TEST(DrawnScene, mirrored_and_oblique_grids_are_seen_where_their_samples_lie) {
 TEST(DrawnScene, hand_and_proxy_are_balls_of_their_colours_at_their_places) {
     ShownScene shown;
     const Field field = ball();
-    shown.scene.set_look(bare());
+    set(shown.scene, &Shown::look, bare());
     shown.scene.set_field(field, 0.9);
     shown.scene.set_camera(from_front(field));
     const Vec3 middle = physical_centre(field.geometry());
@@ -114,7 +114,7 @@ TEST(DrawnScene, hand_and_proxy_are_balls_of_their_colours_at_their_places) {
 TEST(DrawnScene, a_second_hand_is_drawn_in_lighter_colours_with_its_force) {
     ShownScene shown;
     const Field field = ball();
-    shown.scene.set_look(bare());
+    set(shown.scene, &Shown::look, bare());
     shown.scene.set_field(field, 0.9);
     shown.scene.set_camera(from_front(field));
     const Vec3 middle = physical_centre(field.geometry());
@@ -142,7 +142,7 @@ TEST(DrawnScene, a_second_hand_is_drawn_in_lighter_colours_with_its_force) {
 TEST(DrawnScene, force_points_where_it_points_in_the_body_and_is_longer_when_stronger) {
     ShownScene shown;
     const Field field = ball();
-    shown.scene.set_look(bare());
+    set(shown.scene, &Shown::look, bare());
     shown.scene.set_field(field, 0.9);
     shown.scene.set_camera(from_front(field));
     const Vec3 at = physical_centre(field.geometry()) + Vec3(-30, -30, -25);
@@ -162,7 +162,7 @@ TEST(DrawnScene, force_points_where_it_points_in_the_body_and_is_longer_when_str
 TEST(DrawnScene, no_probe_is_shown_while_the_device_is_not_ready_or_contact_is_off) {
     ShownScene shown;
     const Field field = ball();
-    shown.scene.set_look(bare());
+    set(shown.scene, &Shown::look, bare());
     shown.scene.set_field(field, 0.5);
     shown.scene.set_camera(from_front(field));
     const Vec3 at = physical_centre(field.geometry()) + Vec3(-22, -25, 20);
@@ -177,9 +177,9 @@ TEST(DrawnScene, no_probe_is_shown_while_the_device_is_not_ready_or_contact_is_o
     EXPECT_GT(blob(shown.settled(), is_blue).count, 100);
     Look look = bare();
     look.contact = false;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     EXPECT_EQ(blob(shown.settled(), is_blue).count, 0);
-    shown.scene.set_look(bare());
+    set(shown.scene, &Shown::look, bare());
     EXPECT_GT(blob(shown.settled(), is_blue).count, 100);
     shown.scene.show_snapshot({});
     EXPECT_EQ(blob(shown.settled(), is_blue).count, 0);
@@ -188,7 +188,7 @@ TEST(DrawnScene, no_probe_is_shown_while_the_device_is_not_ready_or_contact_is_o
 TEST(DrawnScene, markers_behind_the_surface_are_faintly_visible) {
     ShownScene shown;
     const Field field = ball();
-    shown.scene.set_look(bare());
+    set(shown.scene, &Shown::look, bare());
     shown.scene.set_field(field, 0.5);
     shown.scene.set_camera(from_front(field));
     const QImage without = shown.settled();
@@ -208,7 +208,7 @@ TEST(DrawnScene, glass_lets_the_probe_through_and_tints_it) {
     const Field field = ball();
     Look look = bare();
     look.surface_opacity = 0.3;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     shown.scene.set_field(field, 0.5);
     shown.scene.set_camera(from_front(field));
     const Vec3 middle = physical_centre(field.geometry());
@@ -226,14 +226,14 @@ TEST(DrawnScene, glass_lets_the_probe_through_and_tints_it) {
 TEST(DrawnScene, after_a_sweep_of_fifty_isovalues_the_newest_is_shown) {
     ShownScene shown;
     const Field field = ball();
-    shown.scene.set_look(bare());
+    set(shown.scene, &Shown::look, bare());
     shown.scene.set_field(field, 0.1);
     shown.scene.set_camera(from_front(field));
     double announced = 0;
     QObject::connect(&shown.scene, &Scene::surface_ready,
                      [&](double isovalue, double) { announced = isovalue; });
     for (int i = 0; i < 50; ++i) {
-        shown.scene.set_isovalue(0.2 + 0.01 * i);
+        set(shown.scene, &Shown::isovalue, 0.2 + 0.01 * i);
         handle_events();
     }
     const Blob seen = blob(shown.settled("sweep"), is_bone);
@@ -247,16 +247,16 @@ TEST(DrawnScene,
      an_isovalue_outside_the_data_shows_no_surface_and_one_that_is_no_number_is_a_problem) {
     ShownScene shown;
     const Field field = ball();
-    shown.scene.set_look(bare());
+    set(shown.scene, &Shown::look, bare());
     int problems = 0;
     QObject::connect(&shown.scene, &Scene::problem, [&](const QString&) { ++problems; });
     shown.scene.set_field(field, 7);
     EXPECT_EQ(blob(shown.settled(), is_bone).count, 0);
     EXPECT_EQ(problems, 0);
-    shown.scene.set_isovalue(std::numeric_limits<double>::quiet_NaN());
+    set(shown.scene, &Shown::isovalue, std::numeric_limits<double>::quiet_NaN());
     shown.settled();
     EXPECT_EQ(problems, 1);
-    shown.scene.set_isovalue(0.5);
+    set(shown.scene, &Shown::isovalue, 0.5);
     EXPECT_GT(blob(shown.settled(), is_bone).count, 1000);
 }
 
@@ -268,11 +268,11 @@ TEST(DrawnScene, slices_cut_at_the_crosshair) {
     Look look = bare();
     look.surface = false;
     look.slices = true;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     shown.scene.set_field(field, 0);
     shown.scene.look_from(pictures::view_named("left"));  // looks along -x at that plane
     for (const double x : {4.0, 20.5, 30.0}) {
-        shown.scene.set_crosshair(Vec3(x, 16, 16));
+        set(shown.scene, &Shown::crosshair, Vec3(x, 16, 16));
         const QImage image = shown.settled("slices");
         const Pixel p = shown.at(Vec3(x, 8, 24));
         EXPECT_NEAR(qRed(image.pixel(int(p.x), int(p.y))), x / 31 * 255, 3) << x;
@@ -292,7 +292,7 @@ TEST(DrawnScene, a_maximum_intensity_projection_shows_the_brightest_sample_of_ea
     look.volume = true;
     look.maximum = true;
     look.transfer.points = {{0, pictures::bone, 0}, {255, pictures::bone, 1}};
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     shown.scene.set_field(field, 128);
     shown.scene.look_from(pictures::view_named("front"));
     const QImage image = shown.settled("maximum");
@@ -307,7 +307,7 @@ TEST(DrawnScene, a_maximum_intensity_projection_shows_the_brightest_sample_of_ea
     look.maximum = false;
     look.transfer.points = {{0, pictures::bone, 0}, {60, pictures::bone, 1}, {255, {0, 0, 0}, 1}};
     look.shading = false;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     const QImage composed = shown.settled();
     const auto red = [&](const Vec3& at) {
         const Pixel p = shown.at(at);
@@ -322,7 +322,7 @@ TEST(DrawnScene, the_orientation_cube_seen_straight_on_has_one_upright_letter_an
     Look look = bare();
     look.orientation = true;
     look.surface = false;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     Geometry grid = support::grid(support::cube(8));
     grid.oriented = true;
     shown.scene.set_field(
@@ -351,7 +351,7 @@ TEST(DrawnScene, can_be_destroyed_while_it_renders) {
         Look look;
         look.volume = true;
         look.transfer.points = {{0, pictures::bone, 0}, {255, pictures::bone, 0.5}};
-        shown->scene.set_look(look);
+        set(shown->scene, &Shown::look, look);
         shown->scene.set_field(noise, 128);
         for (int i = 0; i < frames; ++i) shown->next_frame();
         shown.reset();
@@ -373,7 +373,7 @@ TEST(DrawnScene, asks_for_nothing_while_nothing_changes) {
     };
     handle_events();
     EXPECT_TRUE(comes_to_rest());
-    shown.scene.set_look(Look());  // the same
+    set(shown.scene, &Shown::look, Look());  // the same
     const Snapshot snapshot = snapshot_at(Vec3::Zero(), Vec3::Zero());
     shown.scene.show_snapshot(snapshot);
     shown.settled();
@@ -414,7 +414,7 @@ TEST(DrawnScene, shows_the_lattice_round_the_proxy_on_request) {
     const Field field = ball();
     Look look = bare();
     look.surface = false;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     shown.scene.set_field(field, 0.5);
     const Vec3 middle = physical_centre(field.geometry());
     const RayHit hit = cast_ray(field, 0.5, middle + Vec3(3, -24, 5), middle);
@@ -428,13 +428,13 @@ TEST(DrawnScene, shows_the_lattice_round_the_proxy_on_request) {
     shown.scene.show_snapshot(snapshot);
     const QImage without = shown.settled();
     look.tetrahedra = true;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     const QImage tetrahedra = shown.settled("tetrahedra");
     const auto is_patch = [](QRgb p) { return qRed(p) > qBlue(p) + 60; };
     EXPECT_EQ(blob(without, is_patch).count, 0);
     EXPECT_GT(blob(tetrahedra, is_patch).count, 150);
     look.planes = true;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     EXPECT_GT(difference(shown.settled("planes"), tetrahedra), 1);
 }
 

@@ -22,7 +22,7 @@ struct Ball : ShownScene {
     Field field = linear_field(scenes::ball(support::cube(32)));
 
     explicit Ball(const Look& look) {
-        scene.set_look(look);
+        set(scene, &Shown::look, look);
         scene.set_field(field, 128);
         scene.set_camera({Vec3::Zero(), Vec3(0, -1, 0), Vec3(0, 0, 1), 32});
     }
@@ -40,12 +40,12 @@ TEST(DrawnSurfaces, are_seen_beside_the_felt_one_where_their_levels_lie) {
     const Blob outer = blob(shown.settled("surfaces_one"), is_red);
     EXPECT_NEAR(outer.right - outer.left + 1, 2 * shown.radius_at(60) / 0.2, 3);
     look.surfaces[0].level = 200;  // moved
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     const Blob inner = blob(shown.settled(), is_red);
     EXPECT_NEAR(inner.right - inner.left + 1, 2 * shown.radius_at(200) / 0.2, 3);
     EXPECT_LT(inner.count, outer.count);
     look.surfaces[0].shown = false;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     EXPECT_EQ(blob(shown.settled(), is_red).count, 0);
 }
 
@@ -57,7 +57,7 @@ TEST(DrawnSurfaces, an_inner_one_is_seen_through_glass_and_glass_through_glass) 
     const QImage image = shown.settled("surfaces_three");
     const QRgb middle = image.pixel(200, 160);
     look.surfaces[0].shown = false;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     const QRgb without = shown.settled().pixel(200, 160);
     EXPECT_GT(qRed(middle) - qGreen(middle), qRed(without) - qGreen(without) + 30);
     // The outermost is there as well: green at the rim, where the felt one is not.
@@ -96,7 +96,7 @@ TEST(DrawnSurfaces, can_be_changed_at_any_time) {
             s = {random.uniform(20, 240), red, random.uniform(0, 1.5), random.uniform(0, 1) < 0.8};
         }
         look.cut = static_cast<Cut>(i % 3);
-        shown.scene.set_look(look);
+        set(shown.scene, &Shown::look, look);
         if (i % 4 == 0) shown.next_frame();
         if (i % 20 == 9) shown.scene.clear();
         if (i % 20 == 14) shown.scene.set_field(shown.field, 100 + i);
@@ -111,15 +111,15 @@ TEST(DrawnCut, a_plane_takes_away_the_side_of_its_normal_and_shows_what_is_behin
     EXPECT_EQ(blob(shown.settled(), is_red).count, 0);
     look.cut = Cut::plane;
     look.cut_plane = {Vec3::Zero(), Vec3(0, -1, 0)};  // the front half
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     EXPECT_GT(blob(shown.settled("cut_plane"), is_red).count, 500);
     look.cut_plane.normal = Vec3(1, 0, 0);
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     const Blob left = blob(shown.settled("cut_left"), is_bone);
     EXPECT_LE(left.right, 203);
     EXPECT_LT(left.left, 160);
     look.cut = Cut::nothing;
-    shown.scene.set_look(look);
+    set(shown.scene, &Shown::look, look);
     EXPECT_GT(blob(shown.settled(), is_bone).right, 230);
 }
 
@@ -199,6 +199,22 @@ TEST(SceneCut, handles_move_faces_of_the_box_within_the_grid_and_past_no_other) 
     EXPECT_NEAR(shown.now.cut_box.high[2], shown.now.cut_box.low[2] + 0.01, 1e-9);
 }
 
+TEST(SceneCut, handles_that_move_while_layers_are_seen_change_nothing_else_of_the_look) {
+    Look look = bare();
+    look.cut = Cut::plane;
+    look.cut_plane = {Vec3::Zero(), Vec3(1, 0, 0)};
+    Cutting shown(look);
+    const auto layers = std::make_shared<Layers>();
+    layers->layers.resize(2);
+    layers->layers[0].level = 100;
+    layers->layers[1].level = 140;
+    set(shown.scene, &Shown::layers, layers);
+    shown.drag(Vec3::Zero(), {25, 10});
+    EXPECT_NE(shown.now.cut_plane.point, Vec3::Zero());
+    shown.now.cut_plane = look.cut_plane;
+    EXPECT_TRUE(shown.now == look);
+}
+
 TEST(CutHandles, of_a_box_at_the_edge_thinner_than_they_make_one_leave_it_within_the_grid) {
     const Geometry g = support::grid(support::cube(11));
     Look look;
@@ -264,10 +280,10 @@ TEST(DrawnPatch, of_the_level_felt_is_seen_through_the_surface_that_was_pressed_
     const Vec3 scp(0, -radius, 0);
     shown.scene.show_snapshot(snapshot_at(scp + Vec3(0, 0.5, 0), scp));
     const QImage whole = shown.settled();
-    shown.scene.set_pressed(220);
+    set(shown.scene, &Shown::pressed, 220);
     const QImage pressed = shown.settled("pressed");
     EXPECT_GT(difference(whole, pressed), 3);
-    shown.scene.set_pressed({});
+    set(shown.scene, &Shown::pressed, {});
     EXPECT_LT(difference(whole, shown.settled()), 0.5);
 }
 

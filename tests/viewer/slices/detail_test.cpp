@@ -83,11 +83,11 @@ QImage picture_of(ShownPane& shown) {
 TEST(ChangingSlices, a_pane_shows_the_newest_of_many_versions_as_if_it_had_been_opened) {
     Field field = ball_on(Mat3::Identity());
     ShownPane shown(2, field);
-    shown.pane.set_window(0, 1);
-    shown.pane.set_crosshair({3, 4, 1.25});
+    set(shown.pane, &Shown::window, {0, 1});
+    set(shown.pane, &Shown::crosshair, {3, 4, 1.25});
     shown.wheel({150, 170}, 240, Qt::ControlModifier);  // a view of its own
     const QImage before = picture_of(shown);
-    const Vec3 crosshair = shown.pane.crosshair();
+    const Vec3 crosshair = shown.pane.shown().crosshair;
     for (int i = 0; i < 30; ++i) {
         field = carved(field, {20 - 0.5 * i, 0.3 * i, 0}, 5);
         shown.pane.update_field(field);
@@ -96,11 +96,11 @@ TEST(ChangingSlices, a_pane_shows_the_newest_of_many_versions_as_if_it_had_been_
     const QImage after = picture_of(shown);
     keep_picture(shown.pane, "carved_slice");
     EXPECT_NE(after, before);
-    EXPECT_EQ(shown.pane.crosshair(), crosshair);
+    EXPECT_EQ(shown.pane.shown().crosshair, crosshair);
 
     ShownPane fresh(2, flat(field));
-    fresh.pane.set_window(0, 1);
-    fresh.pane.set_crosshair({3, 4, 1.25});
+    set(fresh.pane, &Shown::window, {0, 1});
+    set(fresh.pane, &Shown::crosshair, {3, 4, 1.25});
     fresh.wheel({150, 170}, 240, Qt::ControlModifier);
     EXPECT_EQ(after, picture_of(fresh));
     // And back: undone.
@@ -111,13 +111,13 @@ TEST(ChangingSlices, a_pane_shows_the_newest_of_many_versions_as_if_it_had_been_
 TEST(ChangingSlices, a_pane_follows_the_moment) {
     Field field = moving_ball(Mat3::Identity());
     ShownPane shown(1, field);
-    shown.pane.set_window(0, 1);
+    set(shown.pane, &Shown::window, {0, 1});
     for (const double time : {0.4, 1.1, 1.5}) {
         field.set_time(time);
         shown.pane.update_field(field);
     }
     ShownPane fresh(1, flat(field));
-    fresh.pane.set_window(0, 1);
+    set(fresh.pane, &Shown::window, {0, 1});
     EXPECT_EQ(picture_of(shown), picture_of(fresh));
     keep_picture(shown.pane, "between_frames_slice");
 }
@@ -182,14 +182,14 @@ TEST_P(SliceDetail, all_of_a_level_looks_like_the_volume_itself) {
     for (int axis = 0; axis < 3; ++axis) {
         ShownPane whole(axis, levels.field(levels.fine), 0.3), store(axis);
         store.pane.set_field(levels.field(levels.coarse), 0.3, levels.fine);
-        for (SlicePane* pane : {&whole.pane, &store.pane}) pane->set_window(-3, 3);
+        for (SlicePane* pane : {&whole.pane, &store.pane}) set(*pane, &Shown::window, {-3, 3});
         EXPECT_GT(differing(whole.picture(), store.picture(), whole.pane.rect()), 3000);
         store.pane.set_detail(levels.detail(whole_box(levels.fine)));
         for (const double part : {0.0, 0.3, 0.52, 1.0}) {
             Vec3 index = 0.5 * (levels.fine.size - Index3::Ones()).cast<double>();
             index[axis] = std::round(part * (levels.fine.size[axis] - 1));
             for (SlicePane* pane : {&whole.pane, &store.pane}) {
-                pane->set_crosshair(physical_from_index(levels.fine, index));
+                set(*pane, &Shown::crosshair, physical_from_index(levels.fine, index));
             }
             EXPECT_LE(differing(whole.picture(), store.picture(), whole.pane.rect()), 40)
                 << axis << ' ' << part;
@@ -201,7 +201,7 @@ TEST_P(SliceDetail, a_part_is_finer_there_and_changes_nothing_elsewhere) {
     const Levels levels(GetParam());
     ShownPane whole(2, levels.field(levels.fine), 0.3), store(2);
     store.pane.set_field(levels.field(levels.coarse), 0.3, levels.fine);
-    for (SlicePane* pane : {&whole.pane, &store.pane}) pane->set_window(-3, 3);
+    for (SlicePane* pane : {&whole.pane, &store.pane}) set(*pane, &Shown::window, {-3, 3});
     const QImage fine = whole.picture(), coarse = store.picture();
     const SampleBox box{{10, 12, 18}, {50, 40, 28}};
     store.pane.set_detail(levels.detail(box));
@@ -230,7 +230,7 @@ TEST_P(SliceDetail, a_slice_that_has_left_the_part_shows_the_overview) {
     ShownPane store(2);
     store.pane.set_field(levels.field(levels.coarse), 0.3, levels.fine);
     const auto at = [&](double layer) {
-        store.pane.set_crosshair(physical_from_index(levels.fine, Vec3(30, 30, layer)));
+        set(store.pane, &Shown::crosshair, physical_from_index(levels.fine, Vec3(30, 30, layer)));
         return store.picture();
     };
     const QImage coarse = at(30), coarse_end = at(47);
@@ -251,8 +251,10 @@ TEST_P(SliceDetail, slices_are_counted_in_the_level_that_is_felt_and_stepped_as_
     const Levels levels(GetParam());
     ShownPane store(2);
     store.pane.set_field(levels.field(levels.coarse), 0.3, levels.fine);
-    store.pane.set_crosshair(physical_from_index(levels.fine, Vec3(30, 30, 20)));
-    const auto layer = [&] { return index_from_physical(levels.fine, store.pane.crosshair())[2]; };
+    set(store.pane, &Shown::crosshair, physical_from_index(levels.fine, Vec3(30, 30, 20)));
+    const auto layer = [&] {
+        return index_from_physical(levels.fine, store.pane.shown().crosshair)[2];
+    };
     (void)store.picture();
     store.wheel({200, 180}, 120);
     EXPECT_NEAR(layer(), 22, 1e-9) << "a sample of the overview";

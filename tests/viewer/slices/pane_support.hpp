@@ -37,8 +37,8 @@ struct ShownPane {
                          [this](const Vec3& p) { chosen.push_back(p); });
         QObject::connect(&pane, &SlicePane::probe_aimed, &pane,
                          [this](const Vec3& p) { aimed.push_back(p); });
-        QObject::connect(&pane, &SlicePane::window_changed, &pane,
-                         [this](double low, double high) { windows.emplace_back(low, high); });
+        QObject::connect(&pane, &SlicePane::window_chosen, &pane,
+                         [this](const GreyWindow& window) { windows.push_back(window); });
     }
 
     void wheel(const QPoint& at, int turned, Qt::KeyboardModifiers keys = Qt::NoModifier) {
@@ -65,7 +65,7 @@ struct ShownPane {
 
     SlicePane pane;
     std::vector<Vec3> chosen, aimed;
-    std::vector<std::pair<double, double>> windows;
+    std::vector<GreyWindow> windows;
 };
 
 /// For people to look at.

@@ -27,7 +27,7 @@ TEST(SlicePane, a_click_puts_the_crosshair_where_it_is) {
             QTest::mouseClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, at);
             ASSERT_EQ(shown.chosen.size(), 1U);
             EXPECT_LT((shown.chosen[0] - expected).norm(), 1e-9);
-            EXPECT_EQ(shown.pane.crosshair(), shown.chosen[0]);
+            EXPECT_EQ(shown.pane.shown().crosshair, shown.chosen[0]);
             EXPECT_LT(distance(shown.pane.pixel_of(shown.chosen[0]), at), 1e-6);
             EXPECT_TRUE(shown.aimed.empty());
         }
@@ -43,13 +43,13 @@ TEST(SlicePane, a_click_beside_the_data_goes_to_their_border) {
 
 TEST(SlicePane, as_a_hand_it_aims_the_probe_with_ctrl_only) {
     ShownPane shown(2, ball_on(oblique_direction()));
-    shown.pane.set_hand(true);
-    const Vec3 before = shown.pane.crosshair();
+    set(shown.pane, &Shown::probe, true);
+    const Vec3 before = shown.pane.shown().crosshair;
     shown.drag(Qt::LeftButton, {150, 150}, {250, 190}, Qt::ControlModifier);
     ASSERT_EQ(shown.aimed.size(), 2U);
     EXPECT_LT((shown.aimed[0] - shown.pane.point_at(QPointF(150, 150))).norm(), 1e-9);
     EXPECT_LT((shown.aimed[1] - shown.pane.point_at(QPointF(250, 190))).norm(), 1e-9);
-    EXPECT_EQ(shown.pane.crosshair(), before);
+    EXPECT_EQ(shown.pane.shown().crosshair, before);
     EXPECT_TRUE(shown.chosen.empty());
     shown.drag(Qt::LeftButton, {150, 150}, {250, 190});
     QTest::mouseClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, {200, 180});
@@ -60,10 +60,10 @@ TEST(SlicePane, as_a_hand_it_aims_the_probe_with_ctrl_only) {
 
 TEST(SlicePane, the_probe_stays_in_its_slice_while_it_is_dragged_and_the_wheel_moves_it_in_depth) {
     ShownPane shown(2, ball_on(Mat3::Identity()));
-    shown.pane.set_hand(true);
-    shown.pane.set_crosshair({0, 0, 3});
+    set(shown.pane, &Shown::probe, true);
+    set(shown.pane, &Shown::crosshair, {0, 0, 3});
     QTest::mousePress(&shown.pane, Qt::LeftButton, Qt::ControlModifier, {200, 180});
-    shown.pane.set_crosshair({0, 0, 4.2});  // the probe was pushed back
+    set(shown.pane, &Shown::crosshair, {0, 0, 4.2});  // the probe was pushed back
     QMouseEvent move(QEvent::MouseMove, QPointF(210, 180), Qt::NoButton, Qt::LeftButton,
                      Qt::NoModifier);
     QApplication::sendEvent(&shown.pane, &move);
@@ -79,7 +79,7 @@ TEST(SlicePane, the_probe_stays_in_its_slice_while_it_is_dragged_and_the_wheel_m
 TEST(SlicePane, the_wheel_goes_layer_by_layer_up_to_the_head_and_stops_at_the_end) {
     for (const Mat3& direction : {Mat3(Mat3::Identity()), mirrored()}) {
         ShownPane shown(2, ball_on(direction));
-        shown.pane.set_crosshair({1, 2, 0.4});
+        set(shown.pane, &Shown::crosshair, {1, 2, 0.4});
         shown.wheel({200, 180}, 120);
         ASSERT_EQ(shown.chosen.size(), 1U);
         EXPECT_NEAR(shown.chosen[0][2], 1.5, 1e-9);
@@ -117,28 +117,28 @@ TEST(SlicePane, the_middle_button_moves_the_picture_with_the_pointer) {
 
 TEST(SlicePane, the_right_button_changes_grey_levels_and_a_double_click_brings_the_first_back) {
     ShownPane shown(2, ball_on(Mat3::Identity()));
-    shown.pane.set_window(0.25, 0.75);
+    set(shown.pane, &Shown::usual_window, {0.25, 0.75});
     shown.drag(Qt::RightButton, {100, 100}, {140, 100});  // a tenth of the width: of the range
-    EXPECT_NEAR(shown.pane.window_high() - shown.pane.window_low(), 0.6, 0.01);
-    EXPECT_NEAR(shown.pane.window_high() + shown.pane.window_low(), 1, 1e-9);
+    EXPECT_NEAR(shown.pane.grey_window().high - shown.pane.grey_window().low, 0.6, 0.01);
+    EXPECT_NEAR(shown.pane.grey_window().high + shown.pane.grey_window().low, 1, 1e-9);
     ASSERT_EQ(shown.windows.size(), 1U);
-    EXPECT_EQ(shown.windows[0].first, shown.pane.window_low());
+    EXPECT_EQ(shown.windows[0].low, shown.pane.grey_window().low);
     shown.drag(Qt::RightButton, {100, 100}, {-4000, 60});
-    EXPECT_LT(shown.pane.window_low(), shown.pane.window_high());
+    EXPECT_LT(shown.pane.grey_window().low, shown.pane.grey_window().high);
     QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, {10, 10});
-    EXPECT_EQ(shown.pane.window_low(), 0.25);
-    EXPECT_EQ(shown.pane.window_high(), 0.75);
+    EXPECT_EQ(shown.pane.grey_window().low, 0.25);
+    EXPECT_EQ(shown.pane.grey_window().high, 0.75);
 }
 
 TEST(SlicePane, keys_do_what_the_mouse_does) {
     ShownPane shown(2, ball_on(Mat3::Identity()));
-    shown.pane.set_crosshair({0.5, 0, 0});
+    set(shown.pane, &Shown::crosshair, {0.5, 0, 0});
     QTest::keyClick(&shown.pane, Qt::Key_Right);
-    EXPECT_NEAR(shown.pane.crosshair()[0], 1.5, 1e-9);
+    EXPECT_NEAR(shown.pane.shown().crosshair[0], 1.5, 1e-9);
     QTest::keyClick(&shown.pane, Qt::Key_Down);
-    EXPECT_NEAR(shown.pane.crosshair()[1], 1.25, 1e-9);
+    EXPECT_NEAR(shown.pane.shown().crosshair[1], 1.25, 1e-9);
     QTest::keyClick(&shown.pane, Qt::Key_PageUp);
-    EXPECT_NEAR(shown.pane.crosshair()[2], 1.5, 1e-9);
+    EXPECT_NEAR(shown.pane.shown().crosshair[2], 1.5, 1e-9);
     EXPECT_EQ(shown.chosen.size(), 3U);
     const Vec3 corner = shown.pane.point_at(QPointF(0, 0));
     QTest::keyClick(&shown.pane, Qt::Key_Plus);
@@ -174,7 +174,7 @@ TEST(SlicePane, grey_levels_run_from_low_to_high_and_the_contour_is_on_the_surfa
     // The lattice's field and a linear one differ a little between samples.
     for (int axis = 0; axis < 3; ++axis) {
         ShownPane shown(axis, field);
-        shown.pane.set_window(0, 2);
+        set(shown.pane, &Shown::window, {0, 2});
         const QImage picture = shown.picture();
         // In the middle of the ball, beside the crosshair.
         const QPoint inside = (shown.pane.pixel_of(Vec3::Zero()) + QPointF(20, 20)).toPoint();
@@ -194,16 +194,16 @@ TEST(SlicePane, grey_levels_run_from_low_to_high_and_the_contour_is_on_the_surfa
 TEST(SlicePane, without_a_surface_at_the_level_nothing_is_orange) {
     ShownPane shown(2, ball_on(Mat3::Identity()), 7);
     QImage picture = shown.picture();
-    shown.pane.set_isovalue(0.5);
+    set(shown.pane, &Shown::isovalue, 0.5);
     const QImage contoured = shown.picture();
     EXPECT_NE(picture, contoured);
-    shown.pane.set_isovalue(7);
+    set(shown.pane, &Shown::isovalue, 7);
     EXPECT_EQ(shown.picture(), picture);
 }
 
 TEST(SlicePane, hand_and_proxy_are_where_they_are_and_pale_where_they_are_off_the_slice) {
     ShownPane shown(2, ball_on(Mat3::Identity()), 7);
-    shown.pane.set_window(-1, 0);  // all white
+    set(shown.pane, &Shown::window, {-1, 0});  // all white
     const Vec3 hip(10, 10, 0), scp(12, 14, 0);
     const auto blueness = [&](const Vec3& at) {
         const QColor c = shown.picture().pixel(shown.pane.pixel_of(at).toPoint());
@@ -224,7 +224,7 @@ TEST(SlicePane, hand_and_proxy_are_where_they_are_and_pale_where_they_are_off_th
 
 TEST(SlicePane, a_second_hand_has_colours_of_its_own_and_both_have_their_numbers) {
     ShownPane shown(2, ball_on(Mat3::Identity()), 7);
-    shown.pane.set_window(-1, 0);  // all white
+    set(shown.pane, &Shown::window, {-1, 0});  // all white
     const Vec3 hip(10, 10, 0), scp(12, 14, 0), other_hip(-10, 10, 0), other_scp(-12, 14, 0);
     const auto colour_at = [&](const Vec3& at) {
         return QColor(shown.picture().pixel(shown.pane.pixel_of(at).toPoint()));
@@ -248,7 +248,7 @@ TEST(SlicePane, a_second_hand_has_colours_of_its_own_and_both_have_their_numbers
 
 TEST(SlicePane, the_force_points_where_it_points_in_space) {
     ShownPane shown(2, ball_on(mirrored()), 7);
-    shown.pane.set_window(1, 2);  // all black
+    set(shown.pane, &Shown::window, {1, 2});  // all black
     Snapshot snapshot = contact_at({0, 12, 0}, {0, 10, 0}, Vec3(0, 0, 2));
     // Device z is the patient's front here: the force is to be drawn upwards.
     snapshot.session.transform.rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
@@ -266,29 +266,30 @@ TEST(SlicePane, the_same_samples_again_keep_the_view_and_others_do_not) {
     const Field field = ball_on(Mat3::Identity());
     ShownPane shown(2, field);
     shown.wheel({100, 100}, 240, Qt::ControlModifier);
-    shown.pane.set_window(0.2, 0.4);
-    shown.pane.set_crosshair({1, 2, 3});
+    set(shown.pane, &Shown::window, {0.2, 0.4});
+    set(shown.pane, &Shown::crosshair, {1, 2, 3});
     const Vec3 corner = shown.pane.point_at(QPointF(0, 0));
     shown.pane.set_field(linear_field(field.volume(), Solid::below), 0.5);
     EXPECT_EQ(shown.pane.point_at(QPointF(0, 0)), corner);
-    EXPECT_EQ(shown.pane.window_low(), 0.2);
-    EXPECT_EQ(shown.pane.crosshair(), Vec3(1, 2, 3));
+    EXPECT_EQ(shown.pane.grey_window().low, 0.2);
+    EXPECT_EQ(shown.pane.shown().crosshair, Vec3(1, 2, 3));
     shown.pane.set_field(ball_on(Mat3::Identity()), 0.5);
     EXPECT_NE(shown.pane.point_at(QPointF(0, 0)), corner);
-    EXPECT_NE(shown.pane.window_low(), 0.2);
+    EXPECT_NE(shown.pane.grey_window().low, 0.2);
 }
 
 TEST(SlicePane, however_fast_the_crosshair_moves_the_last_slice_is_shown) {
     const Field field = ball_on(oblique_direction());
     ShownPane moved(2, field), there(2, field);
     const Vec3 last = physical_from_index(field.geometry(), {30, 12, 20.3});
-    there.pane.set_crosshair(last);
+    set(there.pane, &Shown::crosshair, last);
     const QImage expected = there.picture();
     for (int i = 0; i < 50; ++i) {
-        moved.pane.set_crosshair(physical_from_index(field.geometry(), {30, 12, 5 + 0.31 * i}));
+        set(moved.pane, &Shown::crosshair,
+            physical_from_index(field.geometry(), {30, 12, 5 + 0.31 * i}));
         moved.pane.grab();
     }
-    moved.pane.set_crosshair(last);
+    set(moved.pane, &Shown::crosshair, last);
     EXPECT_EQ(moved.picture(), expected);
 }
 
@@ -301,8 +302,8 @@ TEST(SlicePane, empty_or_emptied_in_the_middle_of_a_drag_it_takes_everything) {
         shown.wheel({10, 10}, 120);
         QTest::keyClick(&shown.pane, Qt::Key_Up);
         QTest::mouseDClick(&shown.pane, Qt::LeftButton);
-        shown.pane.set_crosshair({1, 2, 3});
-        shown.pane.set_isovalue(3);
+        set(shown.pane, &Shown::crosshair, {1, 2, 3});
+        set(shown.pane, &Shown::isovalue, 3);
         shown.pane.show_snapshot(contact_at({1, 2, 3}, {4, 5, 6}, {1, 1, 1}));
         shown.picture();
     };
@@ -326,13 +327,13 @@ TEST(SlicePane, odd_sizes_and_places_do_no_harm) {
         shown.picture();
     }
     for (const Vec3& far : {Vec3(1e9, 0, 0), Vec3(-1e300, 1e300, 5), Vec3(0, 0, 1e5)}) {
-        shown.pane.set_crosshair(far);
+        set(shown.pane, &Shown::crosshair, far);
         shown.pane.show_snapshot(contact_at(far, Vec3::Zero(), Vec3(1, 0, 0)));
         shown.picture();
     }
-    const Vec3 before = shown.pane.crosshair();
-    shown.pane.set_crosshair({0, std::nan(""), 0});
-    EXPECT_EQ(shown.pane.crosshair(), before);
+    const Vec3 before = shown.pane.shown().crosshair;
+    set(shown.pane, &Shown::crosshair, {0, std::nan(""), 0});
+    EXPECT_EQ(shown.pane.shown().crosshair, before);
     for (int i = 0; i < 40; ++i) shown.wheel({1, 30}, 120, Qt::ControlModifier);
     shown.picture();
     for (int i = 0; i < 80; ++i) shown.wheel({1, 30}, -120, Qt::ControlModifier);
@@ -352,7 +353,7 @@ TEST(SlicePane, the_crosshair_leaves_room_for_words) {
     const QImage image = shown.picture();
     keep_picture(shown.pane, "narrow_pane");
     const double scale = image.devicePixelRatio();
-    const int x = static_cast<int>(shown.pane.pixel_of(shown.pane.crosshair()).x() * scale);
+    const int x = static_cast<int>(shown.pane.pixel_of(shown.pane.shown().crosshair).x() * scale);
     const auto yellow = [&](double y) {
         const QRgb colour = image.pixel(x, static_cast<int>(y * scale));
         return qRed(colour) - qBlue(colour) > 60;

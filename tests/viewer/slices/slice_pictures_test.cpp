@@ -286,7 +286,7 @@ struct ThreePanes {
         for (const int axis : {0, 1, 2}) {
             auto* pane = panes[std::size_t(axis)] = new SlicePane(axis);
             pane->set_field(field, isovalue);
-            pane->set_crosshair(update.scp);
+            set(*pane, &Shown::crosshair, update.scp);
             pane->show_snapshot(contact_at(hip, update.scp, 0.3 * (update.scp - hip)));
             layout->addWidget(pane, 0, 2 - axis);
         }
@@ -304,7 +304,7 @@ TEST(SlicePictures, show_the_ct_of_a_head) {
     const QPoint middle = shown.panes[2]->rect().center();
     QTest::mouseMove(shown.panes[2], middle + QPoint(40, 10));
     for (int i = 0; i < 8; ++i) {
-        const QPoint at = shown.panes[2]->pixel_of(shown.panes[2]->crosshair()).toPoint();
+        const QPoint at = shown.panes[2]->pixel_of(shown.panes[2]->shown().crosshair).toPoint();
         QWheelEvent zoom(at, shown.panes[2]->mapToGlobal(at), {}, {0, 120}, Qt::NoButton,
                          Qt::ControlModifier, Qt::NoScrollPhase, false);
         QApplication::sendEvent(shown.panes[2], &zoom);

@@ -2,9 +2,9 @@
 // touch to the exported mesh, with a picture of each step for people to look at. With a window
 // manager: scripts/with_display.sh sh -c "openbox & PROGRAM --gtest_filter=DrawnAfternoon*".
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QLabel>
-#include <QRadioButton>
 #include <QToolButton>
 
 #include "palpate/io/mesh_file.hpp"
@@ -61,10 +61,10 @@ void DrawnAfternoon::open_and_press_through() {
     touch({0, 40});
     wait_until([&] { return force() > 0.1; });
     show("touched");
-    QTest::mouseClick(&on_page<QRadioButton>("penetrability_threshold"), Qt::LeftButton);
+    QTest::mouseClick(&on_page<QCheckBox>("penetrability"), Qt::LeftButton);
     EXPECT_TRUE(press_until([&] { return now().session.tick.proxy.isovalue > 60; }, 40));
     show("pressed-through");
-    QTest::mouseClick(&on_page<QRadioButton>("penetrability_off"), Qt::LeftButton);
+    QTest::mouseClick(&on_page<QCheckBox>("penetrability"), Qt::LeftButton);
 }
 
 void DrawnAfternoon::drill() {

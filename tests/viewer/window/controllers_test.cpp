@@ -26,48 +26,6 @@
 namespace palpate::viewer::test {
 namespace {
 
-TEST(PlaybackClock, plays_to_the_end_pauses_there_and_begins_again) {
-    PlaybackClock clock(5, 7);
-    clock.advance(1);
-    EXPECT_EQ(clock.time(), 5) << "it is paused";
-    clock.play(0.5);
-    clock.advance(1);
-    EXPECT_EQ(clock.time(), 5.5);
-    clock.advance(10);
-    EXPECT_EQ(clock.time(), 7);
-    EXPECT_EQ(clock.speed(), 0);
-    clock.play(1);
-    EXPECT_EQ(clock.time(), 5);
-}
-
-TEST(PlaybackClock, wraps_around_in_a_loop) {
-    PlaybackClock clock(5, 7);
-    clock.set_loop(true);
-    clock.play(4);
-    clock.advance(0.625);
-    EXPECT_DOUBLE_EQ(clock.time(), 5.5);
-    EXPECT_EQ(clock.speed(), 4);
-}
-
-TEST(PlaybackClock, a_recording_of_one_tick_ends_at_once_even_in_a_loop) {
-    PlaybackClock clock(3, 3);
-    clock.set_loop(true);
-    clock.play(1);
-    clock.advance(0.1);
-    EXPECT_EQ(clock.time(), 3);
-    EXPECT_EQ(clock.speed(), 0);
-}
-
-TEST(PlaybackClock, seeks_within_the_recording_only) {
-    PlaybackClock clock(5, 7);
-    for (const auto& [asked, is] : {std::pair{6.0, 6.0}, {9.0, 7.0}, {-1.0, 5.0}}) {
-        clock.seek(asked);
-        EXPECT_EQ(clock.time(), is);
-    }
-    clock.seek(std::nan(""));
-    EXPECT_EQ(clock.time(), 5);
-}
-
 class Controllers : public testing::Test {
   protected:
     Controllers() {

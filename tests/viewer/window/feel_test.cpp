@@ -118,10 +118,10 @@ TEST_F(Window, at_the_start_the_probe_stands_just_off_the_first_surface_in_view)
     const auto away = [&] { return (now().session.tick.proxy.hip - *surface).dot(towards); };
     EXPECT_NEAR(away(), 2 * field.geometry().spacing.maxCoeff(), 1);
     EXPECT_EQ(now().session.tick.proxy.mode, Mode::free);
-    EXPECT_EQ(window_->views().crosshair(), physical_centre(field.geometry()));
+    EXPECT_EQ(window_->views().shown().crosshair, physical_centre(field.geometry()));
     press_until_force();
     wait_until([&] {
-        return window_->views().crosshair() != physical_centre(field.geometry());
+        return window_->views().shown().crosshair != physical_centre(field.geometry());
     });  // from the first contact on it follows
 }
 

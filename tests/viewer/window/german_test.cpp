@@ -111,7 +111,7 @@ class German : public InWindow {
         for (QDialog* dialog :
              {make_first_steps_dialog(window_.get()), make_shortcuts_dialog(window_.get()),
               make_about_dialog(window_.get()),
-              static_cast<QDialog*>(new PreferencesDialog({}, window_.get())),
+              make_preferences_dialog({}, window_.get(), [](const Preferences&) {}),
               static_cast<QDialog*>(new RawDialog("/data/a.raw", window_.get())),
               static_cast<QDialog*>(new SeriesDialog("a", {io::SeriesInfo{}}, window_.get()))}) {
             all |= all_words(*dialog);

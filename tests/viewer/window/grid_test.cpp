@@ -138,7 +138,7 @@ TEST_F(Grid, that_the_file_gives_cannot_be_taken_away_and_is_not_read_again_unch
     wait_until([&] { return choose.isEnabled(); });
     choose.trigger();
     EXPECT_EQ(part<QComboBox>("grid_side_X").count(), 6) << "not known is no choice";
-    EXPECT_EQ(part<QComboBox>("grid_side_X").currentData().toString(), "R");
+    EXPECT_EQ(part<QComboBox>("grid_side_X").currentText(), "to the right (R)");
     EXPECT_FALSE(part<QCheckBox>("grid_measured").isEnabled());
     const QPointer<QDialog> dialog = &part<QDialog>("grid");
     QTest::keyClick(dialog, Qt::Key_Return);

@@ -66,7 +66,7 @@ TEST_F(Looking, a_length_and_an_angle_are_measured_in_a_slice_and_kept) {
         QTest::mouseClick(&pane, Qt::LeftButton, {}, pane.pixel_of(at).toPoint());
     };
     const double mm = 1.0 / (pane.pixel_of({1, 0, 0}) - pane.pixel_of({0, 0, 0})).x();
-    const Vec3 before = window_->views().crosshair();
+    const Vec3 before = window_->views().shown().crosshair;
     press(Qt::Key_M);
     EXPECT_TRUE(window_->measuring().measuring());
     click({-10, 0, 0});
@@ -75,7 +75,8 @@ TEST_F(Looking, a_length_and_an_angle_are_measured_in_a_slice_and_kept) {
     ASSERT_EQ(window_->measuring().measurements().size(), 1U);
     const auto& length = window_->measuring().measurements()[0];
     EXPECT_NEAR((length.points[1] - length.points[0]).norm(), 20, 1.5 * mm);
-    EXPECT_EQ(window_->views().crosshair(), before) << "a click while measuring moves nothing";
+    EXPECT_EQ(window_->views().shown().crosshair, before)
+        << "a click while measuring moves nothing";
     press(Qt::Key_M, Qt::ShiftModifier);
     click({0, 10, 0});
     click({0, 0, 0});
@@ -138,7 +139,7 @@ TEST_F(Looking, a_segmentation_lies_over_slices_and_scene_with_its_names_and_col
         return pane.grab().toImage().pixel(
             (pane.pixel_of(at) * pane.devicePixelRatioF()).toPoint());
     };
-    window_->views().set_crosshair({3, 3, 3});
+    set(window_->views(), &Shown::crosshair, {3, 3, 3});
     EXPECT_GT(qRed(colour_at({-8, 6, 3})), qBlue(colour_at({-8, 6, 3})) + 40);
     EXPECT_GT(qBlue(colour_at({8, 6, 3})), qRed(colour_at({8, 6, 3})) + 40);
     save("overlay");

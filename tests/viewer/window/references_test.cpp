@@ -59,7 +59,7 @@ TEST_F(DrawnReferences, overlay) {
     write_segmentation(scratch_.path() / "ball.seg.nrrd");
     window_->overlays().open(run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
     wait_until([&] { return window_->overlays().overlay() != nullptr; });
-    window_->views().set_crosshair({3, 3, 3});
+    set(window_->views(), &Shown::crosshair, {3, 3, 3});
     expect_as("overlay");
 }
 

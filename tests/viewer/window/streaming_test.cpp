@@ -60,7 +60,7 @@ TEST_F(DrawnStreaming, a_store_looks_like_the_same_volume_in_memory) {
     // The overview suggests another level and other greys.
     const auto look = [&] {
         window_->content().effect().request(command::Isovalue{60});
-        window_->views().set_window(0, 240);
+        set(window_->views(), &Shown::window, {0, 240});
         scene.set_camera(camera);
         wait_until_settled();
     };
@@ -105,7 +105,7 @@ class StreamingEdits : public Streaming {
     /// The same level, greys and view, whatever is open.
     void look() {
         window_->content().effect().request(command::Isovalue{60});
-        window_->views().set_window(0, 240);
+        set(window_->views(), &Shown::window, {0, 240});
         set_camera();
         wait_until_settled();
     }
@@ -228,7 +228,7 @@ TEST_F(DrawnStreaming, zooming_and_stepping_bring_what_is_seen_then) {
     SlicePane& pane = window_->views().slice(2);
     const auto layer = [&] {
         const Geometry& grid = window_->live()->field().geometry();
-        return index_from_physical(grid, pane.crosshair())[2];
+        return index_from_physical(grid, pane.shown().crosshair)[2];
     };
     const double before = layer();
     turn_wheel(pane, 3);
