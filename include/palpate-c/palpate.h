@@ -20,8 +20,8 @@
  * recording may take seconds. One renderer is for one thread at a time. Destroy a handle when no other
  * call uses it. Handles made from it keep what they need. The servo has a thread of its own, at
  * real-time priority if the system grants it. It calls no function of yours. A callback may not
- * start, stop or destroy the run that it belongs to. Other calls from a callback are PALPATE_WRONG_STATE
- * where they would have to wait for the run.
+ * start, stop or destroy the run that it belongs to. Its other calls return PALPATE_WRONG_STATE if
+ * they would have to wait for the run.
  */
 #ifndef PALPATE_H
 #define PALPATE_H
@@ -69,8 +69,8 @@ PALPATE_API const char *palpate_version(void); /* MAJOR.MINOR.PATCH, as "0.2.0" 
 /* "" after a call without error. Valid until the next call of this thread. */
 PALPATE_API const char *palpate_last_error(void);
 /* Sets a function (or null) that long calls of this thread call with 0 to 1, unless their options have
- * a progress of their own. It returns 0 to cancel the call. Calls that copy, adopt, load or describe a
- * volume, make a field, a mesh or a run, save data or change the device may take long. */
+ * their own. It returns 0 to cancel the call. Calls may take long if they copy, adopt, load or describe
+ * a volume, make a field, a mesh or a run, save data or change the device. */
 PALPATE_API void palpate_set_progress(int32_t (*progress)(double fraction, void *context),
                                       void *context);
 

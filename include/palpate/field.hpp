@@ -104,18 +104,18 @@ class Field {
         Gathered gathered;
         return visit_around(at, visit, gathered);
     }
-    /// Samples that lie in one array: the first of them, and how far apart neighbours in y and z
-    /// are. Null: they do not.
+    /// Samples that can be read directly from one array: the address of the first one, and the
+    /// distances of neighbours in y and z. Null: they cannot.
     struct Run {
         const void* first = nullptr;
         std::ptrdiff_t row = 0, slice = 0;
         bool in_frame = false;  ///< of the moment, not in a brick
     };
-    /// The same for a caller that reads one place several times: its samples are found once.
+    /// For a caller that reads one place several times, so that its samples are found only once.
     struct Gathered {
         bool done = false;  ///< the caller resets it for another place
         int work = 0;       ///< of the slow reads so far (ProxySettings::step_budget)
-        Run run;            ///< where they lie, or null: they are gathered
+        Run run;            ///< their place in memory. Null: they were gathered into `samples`
         Neighbours samples;
     };
     template <class Visit>

@@ -46,7 +46,7 @@ struct ForceSettings {
     // For a tool that turns.
 
     /// [N mm/rad] torque = this times the rotation from hand to proxy. 0: the stiffness times the
-    /// square of the tool's gyration, which makes the wrench that of the contacts.
+    /// square of the tool's gyration, with which the wrench equals that of the contacts.
     double rotational_stiffness = 0;
     /// [N mm s/rad] against the hand's turning out of equilibrium; at most cancels the torque
     double rotational_damping = 0;
@@ -66,23 +66,23 @@ struct DeviceLimits {
     /// 2.5 N s/m is a desktop device in a light grip.
     double physical_damping = 2.5e-3;
     double maximum_torque = 0;  ///< [N mm] never exceeded. 0: the device renders none
-    /// [N mm s/rad] the same of turning. 1 is `physical_damping` at a lever of 20 mm.
+    /// [N mm s/rad] the same for rotation. 1 is `physical_damping` at a lever of 20 mm.
     double physical_rotational_damping = 1;
-    /// [s] from the measurement of a position until the force for it acts, but for the sampling: of
-    /// the device, of its exchange with the servo, and of rendering.
+    /// [s] from the measurement of a position until its force acts: the delay of the device, of its
+    /// exchange with the servo, and of rendering. The sampling is not included.
     double delay = 0;
-    /// [N] that the motors can give for hours (warm_limit()). Infinity: all that they can give.
+    /// [N] the force that the motors can give for hours (warm_limit()). Infinity: their full force.
     double continuous_force = std::numeric_limits<double>::infinity();
-    double warming_time = 60;  ///< [s] in which a constant force brings them to 63 % of its warmth
+    double warming_time = 60;  ///< [s] after which a constant force has warmed them to 63 %
 
     bool operator==(const DeviceLimits&) const = default;
 };
 
 /// Largest stiffness [N/mm] these limits can render with this damping [N s/mm].
 double greatest_stiffness(const DeviceLimits& limits, double damping);
-/// Rotational stiffness [N mm/rad] of the coupling to a tool of this gyration [device mm]: what is
-/// set, or follows from the gyration, and no more than the device renders stably. To one that
-/// renders no torque it is what the proxy's pose is found with.
+/// Rotational stiffness [N mm/rad] of the coupling to a tool of this gyration [device mm]. It is
+/// set, or follows from the gyration, and is limited to the value that the device renders stably.
+/// For a device without torque, it only serves to find the proxy's pose.
 double rotational_stiffness(const ForceSettings& settings, const DeviceLimits& limits,
                             double gyration);
 /// The smaller of both, number by number, but the larger delay. A number that is negative or NaN

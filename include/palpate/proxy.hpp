@@ -127,9 +127,9 @@ struct ProxyUpdate {
     int level = 0;        ///< of detail of the samples at the SCP (reach.hpp)
 };
 
-/// True if the spring between SCP and HIP acts: at a surface, and wherever the budget has ended. If
-/// it acted at surfaces only, a hand could move away from a free SCP without work, and the spring
-/// would return that work at the next surface.
+/// True if the spring between SCP and HIP acts: in contact, and after an update out of budget. If
+/// it acted only in contact, a hand could move away from a free SCP without work, and the spring
+/// would give this energy to the hand at the next surface.
 inline bool pulls(const ProxyUpdate& update) {
     return update.mode == Mode::constrained || update.status == UpdateStatus::out_of_budget;
 }

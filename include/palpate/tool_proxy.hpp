@@ -17,9 +17,9 @@ struct ToolSettings {
     /// pressure. Then it follows the hand with the dynamic one.
     Friction friction = {};
     /// Largest work per update, in the units of ProxySettings::step_budget. In addition, an update
-    /// may look once at each point of the tool, twice during recovery, and gather the samples that
-    /// this needs. Later updates continue. A thousand points take 0.6 ms at most. Faster loops need
-    /// a smaller budget.
+    /// may examine each point of the tool once, or twice during recovery, and gather the samples
+    /// for this. Later updates continue the work. With a thousand points, an update takes at most
+    /// 0.6 ms. Faster loops need a smaller budget.
     int work_budget = 4096;
     /// [mm] Replaces the tool's own gyration. 0: the tool's own.
     double gyration = 0;

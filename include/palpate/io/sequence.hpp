@@ -50,11 +50,11 @@ inline constexpr double assumed_frame_interval = 0.1;
 /// place of a number. %d is any number of digits, %03d a number as printf writes it; the files that
 /// match are the frames, by number. The least step between two numbers is one interval, so that
 /// a missing file leaves a gap in time (and a note says so). Reads the first frame. Throws
-/// InputError, std::invalid_argument for an interval that is none.
+/// InputError, std::invalid_argument for an invalid interval.
 SequenceFile open_sequence(const std::filesystem::path& path, const SequenceOptions& options = {});
 
-/// Whether `path` is a file that `source` is read from: this file, one with the name of a slice in
-/// this folder, or one of this series. (why_not_written() knows whose samples a .raw file has.)
+/// True if reading `source` reads the file `path`: `source` itself, a file in this folder with the
+/// name of a slice, or a file of this series. (why_not_written() checks .raw files.)
 bool is_read_from(const std::filesystem::path& path, const std::filesystem::path& source);
 
 /// Frames made by `make`, `interval` [s] apart from time 0. Makes the first one to learn its grid

@@ -1,4 +1,4 @@
-"""layers: what is felt of several surfaces in one stroke?"""
+"""layers: are several surfaces in one stroke rendered as they are defined?"""
 
 import itertools
 

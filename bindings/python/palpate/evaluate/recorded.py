@@ -1,4 +1,4 @@
-"""recorded: is the force of a recorded stroke rendered again? (Ruffaldi, Morris et al. 2006)"""
+"""recorded: does each method reproduce the force of a recorded stroke? (Ruffaldi, Morris et al. 2006)"""
 
 import collections
 import dataclasses
