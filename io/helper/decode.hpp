@@ -14,6 +14,7 @@
 
 #include "io/stored.hpp"
 #include "io/words.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/io/orientation.hpp"
 #include "palpate/io/series.hpp"
 #include "palpate/io/value_info.hpp"
@@ -21,10 +22,11 @@
 
 namespace palpate::io {
 
-/// Ends the job. what() says what is wrong and what to do; the caller adds the file's name.
+/// Ends the job. what() says in one line what is wrong and what to do; the caller adds the file's
+/// name.
 class Failure : public std::runtime_error {
   public:
-    using std::runtime_error::runtime_error;
+    explicit Failure(const std::string& what) : std::runtime_error(one_line(what)) {}
 };
 
 /// The samples are there, but cannot be read from where they lie by the box.

@@ -25,7 +25,6 @@
 #include "io/helper/text_lines.hpp"
 #include "io/helper/vtk_errors.hpp"
 #include "io/system/number.hpp"
-#include "palpate/io/error.hpp"
 
 namespace palpate::io {
 namespace {
@@ -56,8 +55,7 @@ vtkIdType vertex_of(std::string_view corner, vtkIdType vertices, const std::stri
     const std::int64_t index = number.value_or(0);
     if (index > 0) return index - 1;
     if (index < 0 && index >= -vertices) return vertices + index;
-    throw Failure("'" + one_line(line.substr(0, 60)) +
-                  "' names a vertex that is not there; export it again");
+    throw Failure("'" + line.substr(0, 60) + "' names a vertex that is not there; export it again");
 }
 
 /// A mesh of polygons, to be filled.
@@ -95,7 +93,7 @@ vtkSmartPointer<vtkPolyData> read_obj(const std::filesystem::path& path) {
                 words >> word;
                 const auto number = number_from<double>(word);
                 if (!words || !number) {
-                    throw Failure("'" + one_line(line.substr(0, 60)) +
+                    throw Failure("'" + line.substr(0, 60) +
                                   "' is no vertex of three numbers; export it again");
                 }
                 coordinate = *number;

@@ -61,7 +61,7 @@ std::vector<Corner> corners_in_text(const std::string& text, std::size_t begin) 
             } else if (word == "endloop") {
                 if (corners.size() % 3 != 0) fail_stl("a facet has not three corners");
             } else if (word != "facet" && word != "outer" && word != "loop" && word != "endfacet") {
-                fail_stl("'" + one_line(word.substr(0, 40)) + "' is no word of STL");
+                fail_stl("'" + word.substr(0, 40) + "' is no word of STL");
             }
         }
     }
