@@ -1,5 +1,5 @@
-// The requirements of fuzz targets on every outcome: one that is not met ends the program, which the
-// fuzzer reports with the input.
+// The requirements of fuzz targets on every outcome: one that is not met ends the program, which
+// the fuzzer reports with the input.
 #pragma once
 
 #include <algorithm>
