@@ -394,13 +394,16 @@ def test_raw_samples_of_a_vti_that_a_transfer_as_text_changed_are_refused(tmp_pa
         head = head.replace(b"<VTKFile", b'<VTKFile header_type="UInt64"')
     data = numpy.full(SHAPE, 0x0a0d, "<i2")
     data[-1, -1, -1] = 0x4141
-    end = b"\n  </AppendedData>\n</VTKFile>\n"
     raw = struct.pack("<Q" if wide else "<I", data.nbytes) + data.tobytes()
-    (tmp_path / "a.vti").write_bytes(head + raw + end)
-    assert numpy.array_equal(palpate.load(tmp_path / "a.vti").volume.array, data)
-    for before, after, count in ((b"\r\n", b"\n", 1), (b"\r\n", b"\n", 30), (b"\n", b"\r\n", 1)):
-        (tmp_path / "a.vti").write_bytes(head + raw.replace(before, after, count) + end)
-        refused(tmp_path / "a.vti", "transfer as text")
+    for end in (b"", b" ", b"\n  ", b"\n"):  # VTK's is the third
+        end += b"</AppendedData>\n</VTKFile>\n"
+        (tmp_path / "a.vti").write_bytes(head + raw + end)
+        assert numpy.array_equal(palpate.load(tmp_path / "a.vti").volume.array, data)
+    for blanks in (b"\n  ", b"\n"):
+        end = blanks + b"</AppendedData>\n</VTKFile>\n"
+        for before, after, count in ((b"\r\n", b"\n", 1), (b"\r\n", b"\n", 3), (b"\r\n", b"\n", 30), (b"\n", b"\r\n", 1)):
+            (tmp_path / "a.vti").write_bytes(head + raw.replace(before, after, count) + end)
+            refused(tmp_path / "a.vti", "transfer as text")
 
 
 @pytest.mark.parametrize("names, order", (([None] * 3, None), (["x", None, "z"], "an unnamed axis as y")))
