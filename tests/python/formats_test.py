@@ -432,8 +432,16 @@ def test_no_output_replaces_a_file_that_is_read(tmp_path):
     (tmp_path / "points.csv").write_text("x,y,z\n0,0,1\n")
     replay = ("replay", "synthetic:sphere:16x16x16", "--trajectory", tmp_path / "hand.csv")
     layers, tool = ("--layers", tmp_path / "set.json"), ("--isovalue", "50%", "--tool", tmp_path / "points.csv")
+    links = tmp_path / "links"
+    links.mkdir()
+    for number in range(2):
+        (links / f"a{number + 1}.tif").symlink_to(slices / f"a{number + 1}.tif")
+        (links / f"beat_{number}.nii").symlink_to(tmp_path / f"beat_{number}.nii")
     for output, *words in ((slices / "a2.tif", "convert", slices, slices / "a2.tif"),
                            (tmp_path / "beat_1.nii", "convert", tmp_path / "beat_%d.nii", tmp_path / "beat_1.nii"),
+                           (slices / "a2.tif", "convert", links, slices / "a2.tif"),
+                           (slices / "a2.tif", "convert", links, links / "a2.tif"),
+                           (tmp_path / "beat_1.nii", "convert", links / "beat_%d.nii", links / "beat_1.nii"),
                            (tmp_path / "set.json", *replay, *layers, "--output", tmp_path / "set.json"),
                            (tmp_path / "points.csv", *replay, *tool, "--output", tmp_path / "points.csv")):
         before = output.read_bytes()
