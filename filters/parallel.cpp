@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -26,7 +27,10 @@ Parallel in_parallel(int threads) {
         };
         {
             std::vector<std::jthread> others;
-            for (std::size_t i = 1; i < team; ++i) others.emplace_back(take_pieces, i);
+            try {
+                for (std::size_t i = 1; i < team; ++i) others.emplace_back(take_pieces, i);
+            } catch (const std::system_error&) {  // no more threads: those that there are do it
+            }
             take_pieces(0);
         }
         for (const auto& one : thrown) {

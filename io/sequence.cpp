@@ -246,6 +246,14 @@ std::string difference(const Volume& frame, const Sequence& sequence) {
     return here.direction == there.direction ? "" : "its axes are not those of the first frame";
 }
 
+/// As those of slices end: "a.dcm", "I.001", "1.2.840.113619.4", "IM0001".
+bool may_be_slice(const fs::path& file) {
+    static constexpr std::array of_slices = {".tif", ".tiff", ".dcm", ".dicom", ".ima", ""};
+    const std::string end = lower(file.extension().string());
+    return std::ranges::count(of_slices, end) > 0 ||
+           end.find_first_not_of("0123456789", 1) == std::string::npos;
+}
+
 }  // namespace
 
 std::uint64_t Sequence::frame_bytes() const {
@@ -322,23 +330,27 @@ void check(const Sequence& sequence) {
 }
 
 bool is_read_from(const fs::path& path, const fs::path& source) {
-    static constexpr std::array of_slices = {".tif", ".tiff", ".dcm", ".dicom", ".ima", ""};
     if (is_same_file(path, source)) return true;
     std::error_code error;
     if (!fs::is_regular_file(path, error)) return false;
-    const fs::path file = fs::weakly_canonical(path, error);  // through links
-    if (fs::is_directory(source, error)) {
-        return fs::equivalent(file.parent_path(), source, error) &&
-               std::ranges::count(of_slices, lower(file.extension().string())) > 0;
-    }
+    const bool is_folder = fs::is_directory(source, error);
+    std::optional<Pattern> pattern;
     try {
-        const auto pattern = pattern_of(source);
-        return pattern && !fs::exists(source, error) &&
-               number_in(file.filename().string(), *pattern) &&
-               fs::equivalent(file.parent_path(), fs::absolute(source, error).parent_path(), error);
-    } catch (const InputError&) {
-        return false;  // it cannot be read
+        if (!fs::exists(source, error)) pattern = pattern_of(source);
+    } catch (const InputError&) {  // it cannot be read
     }
+    if (!is_folder && !pattern) return false;
+    // By identity: slices and frames may be links to files elsewhere.
+    fs::directory_iterator at(is_folder ? source : fs::absolute(source, error).parent_path(),
+                              error);
+    for (; !error && at != fs::directory_iterator(); at.increment(error)) {
+        const fs::path& one = at->path();
+        const bool counts = is_folder ? may_be_slice(one)
+                                      : number_in(one.filename().string(), *pattern).has_value();
+        std::error_code ignored;  // a link may lead nowhere
+        if (counts && fs::equivalent(one, path, ignored)) return true;
+    }
+    return false;
 }
 
 }  // namespace palpate::io

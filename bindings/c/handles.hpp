@@ -39,9 +39,6 @@ struct palpate_run {
 
 namespace palpate::c {
 
-/// This thread calls the callbacks of an own device.
-inline thread_local bool calls_back = false;
-
 /// The run for this call alone. A callback does not wait for it: a call that holds the run may be
 /// waiting for the callback.
 inline std::unique_lock<std::mutex> locked(const palpate_run* run) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <new>
 #include <system_error>
+#include <utility>
 
 #include "palpate/devices/error.hpp"
 #include "palpate/io/error.hpp"
@@ -26,17 +27,26 @@ palpate_status keep(palpate_status status, const char* text) noexcept {
 /// Of palpate_set_progress().
 thread_local OnProgress thread_progress;
 
+struct InCallback {
+    bool before = std::exchange(calls_back, true);
+    InCallback() = default;
+    InCallback(const InCallback&) = delete;
+    InCallback& operator=(const InCallback&) = delete;
+    ~InCallback() { calls_back = before; }
+};
+
 }  // namespace
 
 OnProgress progress_by(int32_t (*progress)(double fraction, void* context), void* context,
                        const char* cancelled) {
     return [=](double fraction) {
+        const InCallback in_callback;
         if (progress(fraction, context) == 0) throw Cancelled(cancelled);
     };
 }
 
 OnProgress progress_of_thread() {
-    return thread_progress;
+    return calls_back ? OnProgress() : thread_progress;
 }
 
 void forget_error() noexcept {

@@ -23,10 +23,14 @@ class Cancelled : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// This thread is in a callback: those of an own device, or a progress function.
+inline thread_local bool calls_back = false;
+
 /// Calls a caller's progress function; throws Cancelled with this text when it returns 0.
 OnProgress progress_by(int32_t (*progress)(double fraction, void* context), void* context,
                        const char* cancelled);
-/// Calls what palpate_set_progress() set for this thread.
+/// Calls what palpate_set_progress() set for this thread; nothing in a callback, which could be
+/// that function itself.
 OnProgress progress_of_thread();
 
 /// Forgets this thread's last error.
@@ -38,9 +42,9 @@ palpate_status status_of_exception() noexcept;
 /// Runs `work`, and returns how it ended.
 template <class Work>
 palpate_status guarded(Work&& work) noexcept {
-    forget_error();
     try {
         work();
+        forget_error();  // also that of a call in a callback
         return PALPATE_OK;
     } catch (...) {
         return status_of_exception();

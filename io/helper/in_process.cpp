@@ -31,14 +31,18 @@ void say_doing(const std::string&) {}
 
 VolumeFile read_in_process(const Request& request, const Progress& progress,
                            const std::function<Result(const Request&)>& read) {
+    const struct Forgetting {
+        ~Forgetting() { reading = {}; }
+    } forgetting;  // also where progress or `read` throw what is theirs
     reading = {nullptr, progress};
-    std::string problem;
+    const auto error = [&](const std::string& problem) {
+        return InputError(request.path.string() + ": " + problem);
+    };
     try {
         Result result = read(request);
         const auto bytes =
             static_cast<std::size_t>(sample_count(result.geometry)) * size_of(result.type);
-        const Reading done = std::exchange(reading, {});
-        return {Volume(result.geometry, result.type, done.samples, bytes),
+        return {Volume(result.geometry, result.type, reading.samples, bytes),
                 result.format,
                 result.time_steps,
                 std::move(result.notes),
@@ -46,12 +50,10 @@ VolumeFile read_in_process(const Request& request, const Progress& progress,
                 result.times.first,
                 result.values};
     } catch (const Failure& e) {
-        problem = e.what();
+        throw error(e.what());
     } catch (const std::bad_alloc&) {
-        problem = "not enough memory; crop or downsample the volume";
+        throw error("not enough memory; crop or downsample the volume");
     }
-    reading = {};
-    throw InputError(request.path.string() + ": " + problem);
 }
 
 }  // namespace palpate::io

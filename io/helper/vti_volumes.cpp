@@ -150,11 +150,16 @@ void check_raw_end(std::istream& in, const std::string& file_tag, std::uint64_t 
     const bool swapped = is_big != (std::endian::native == std::endian::big);
     const std::uint64_t bytes = is_wide ? number_in<std::uint64_t>(length, swapped)
                                         : number_in<std::uint32_t>(length, swapped);
-    in.seekg(static_cast<std::streamoff>(bytes), std::ios::cur);
-    std::string rest(256, ' ');
-    in.read(rest.data(), std::ssize(rest));
-    // VTK writes a line's end and blanks before the tag.
-    if (!rest.starts_with(' ') && trimmed(rest).starts_with("</AppendedData")) return;
+    const auto back = std::min(bytes, std::uint64_t{64});
+    in.seekg(static_cast<std::streamoff>(bytes - back), std::ios::cur);
+    std::string text(static_cast<std::size_t>(back) + 256, ' ');
+    in.read(text.data(), std::ssize(text));
+    const std::string rest = text.substr(back);
+    // Writers end the line before the tag. That end lies in the array where bytes were lost.
+    const auto before = text.substr(0, back).find_last_not_of(" \t");
+    const bool is_moved =
+        rest[0] != '\n' && rest[0] != '\r' && before != std::string::npos && text[before] == '\n';
+    if (!is_moved && trimmed(rest).starts_with("</AppendedData")) return;
     throw Failure(
         "its arrays do not end where its raw data do: bytes were lost or added, perhaps by a "
         "transfer as text; copy or export it again");

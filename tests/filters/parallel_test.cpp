@@ -2,9 +2,11 @@
 #include "filters/parallel.hpp"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <atomic>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -33,6 +35,21 @@ TEST(Parallel, throws_what_a_piece_has_thrown_on_another_thread) {
     };
     EXPECT_THROW(in_parallel(2)(100, work), std::runtime_error);
 }
+
+#ifdef __linux__
+TEST(Parallel, needs_no_more_threads_than_the_system_gives) {
+    pthread_attr_t usual, too_large;
+    ASSERT_EQ(pthread_getattr_default_np(&usual), 0);
+    ASSERT_EQ(pthread_getattr_default_np(&too_large), 0);
+    ASSERT_EQ(pthread_attr_setstacksize(&too_large, std::size_t{1} << 50), 0);
+    ASSERT_EQ(pthread_setattr_default_np(&too_large), 0);
+    std::atomic<int> done{0};
+    EXPECT_NO_THROW(in_parallel(2)(100, [&](int) { ++done; }));
+    EXPECT_THROW(std::thread([] {}).join(), std::system_error);
+    EXPECT_EQ(pthread_setattr_default_np(&usual), 0);
+    EXPECT_EQ(done, 100);
+}
+#endif
 
 }  // namespace
 }  // namespace palpate::filters

@@ -12,7 +12,7 @@ import numpy
 import palpate
 import pytest
 import tifffile
-from readers_test import SHAPE, noted, ramp, refused, save, slice_of
+from readers_test import SHAPE, noted, ramp, refused, save, slice_of, stack
 
 
 def program(*arguments):
@@ -394,13 +394,16 @@ def test_raw_samples_of_a_vti_that_a_transfer_as_text_changed_are_refused(tmp_pa
         head = head.replace(b"<VTKFile", b'<VTKFile header_type="UInt64"')
     data = numpy.full(SHAPE, 0x0a0d, "<i2")
     data[-1, -1, -1] = 0x4141
-    end = b"\n  </AppendedData>\n</VTKFile>\n"
     raw = struct.pack("<Q" if wide else "<I", data.nbytes) + data.tobytes()
-    (tmp_path / "a.vti").write_bytes(head + raw + end)
-    assert numpy.array_equal(palpate.load(tmp_path / "a.vti").volume.array, data)
-    for before, after, count in ((b"\r\n", b"\n", 1), (b"\r\n", b"\n", 30), (b"\n", b"\r\n", 1)):
-        (tmp_path / "a.vti").write_bytes(head + raw.replace(before, after, count) + end)
-        refused(tmp_path / "a.vti", "transfer as text")
+    for end in (b"", b" ", b"\n  ", b"\n"):  # VTK's is the third
+        end += b"</AppendedData>\n</VTKFile>\n"
+        (tmp_path / "a.vti").write_bytes(head + raw + end)
+        assert numpy.array_equal(palpate.load(tmp_path / "a.vti").volume.array, data)
+    for blanks in (b"\n  ", b"\n"):
+        end = blanks + b"</AppendedData>\n</VTKFile>\n"
+        for before, after, count in ((b"\r\n", b"\n", 1), (b"\r\n", b"\n", 3), (b"\r\n", b"\n", 30), (b"\n", b"\r\n", 1)):
+            (tmp_path / "a.vti").write_bytes(head + raw.replace(before, after, count) + end)
+            refused(tmp_path / "a.vti", "transfer as text")
 
 
 @pytest.mark.parametrize("names, order", (([None] * 3, None), (["x", None, "z"], "an unnamed axis as y")))
@@ -429,8 +432,21 @@ def test_no_output_replaces_a_file_that_is_read(tmp_path):
     (tmp_path / "points.csv").write_text("x,y,z\n0,0,1\n")
     replay = ("replay", "synthetic:sphere:16x16x16", "--trajectory", tmp_path / "hand.csv")
     layers, tool = ("--layers", tmp_path / "set.json"), ("--isovalue", "50%", "--tool", tmp_path / "points.csv")
+    links = tmp_path / "links"
+    links.mkdir()
+    for number in range(2):
+        (links / f"a{number + 1}.tif").symlink_to(slices / f"a{number + 1}.tif")
+        (links / f"beat_{number}.nii").symlink_to(tmp_path / f"beat_{number}.nii")
+    series = save(tmp_path / "series", stack(ramp("i2")))
+    for file in sorted(series.iterdir()):
+        file.rename(series / f"I.{file.stem}")
     for output, *words in ((slices / "a2.tif", "convert", slices, slices / "a2.tif"),
+                           (series / "I.002", "replay", series, *replay[2:], "--output",
+                            series / "I.002"),
                            (tmp_path / "beat_1.nii", "convert", tmp_path / "beat_%d.nii", tmp_path / "beat_1.nii"),
+                           (slices / "a2.tif", "convert", links, slices / "a2.tif"),
+                           (slices / "a2.tif", "convert", links, links / "a2.tif"),
+                           (tmp_path / "beat_1.nii", "convert", links / "beat_%d.nii", links / "beat_1.nii"),
                            (tmp_path / "set.json", *replay, *layers, "--output", tmp_path / "set.json"),
                            (tmp_path / "points.csv", *replay, *tool, "--output", tmp_path / "points.csv")):
         before = output.read_bytes()

@@ -169,6 +169,21 @@ TEST_F(CRun, stopping_waits_for_no_callback_that_asks_for_the_run) {
     EXPECT_EQ(hand_.force, 0);
 }
 
+TEST_F(CRun, the_progress_of_a_call_does_not_wait_for_the_run_of_that_call) {
+    const palpate_own_device own = device_of(hand_);
+    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+    ASSERT_EQ(palpate_run_start(run_), PALPATE_OK) << palpate_last_error();
+    const auto ask = [](double, void* context) {
+        PALPATE_STRUCT(palpate_snapshot, snapshot);
+        auto* const run = static_cast<palpate_run*>(context);
+        EXPECT_EQ(palpate_run_snapshot(run, &snapshot), PALPATE_WRONG_STATE);
+        return 0;
+    };
+    palpate_set_progress(ask, run_);
+    EXPECT_EQ(palpate_run_use_device(run_, "mouse"), PALPATE_CANCELLED);
+    palpate_set_progress(nullptr, nullptr);
+}
+
 TEST_F(CRun, what_is_set_by_any_name_is_what_the_run_has_and_renders) {
     const palpate_own_device own = device_of(hand_);
     ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();

@@ -252,6 +252,15 @@ TEST(CProgress, of_a_thread_is_told_by_every_long_call_and_can_stop_it) {
     EXPECT_EQ(calls, 7) << "once each";
     EXPECT_EQ(field, first);
     std::thread([&] { EXPECT_EQ(palpate_volume_describe(volume, &info), PALPATE_OK); }).join();
+    const auto describe = [](double, void* context) {
+        PALPATE_STRUCT(palpate_volume_info, again);
+        const auto* of = static_cast<const palpate_volume*>(context);
+        const bool is_told = palpate_volume_describe(of, &again) == PALPATE_OK;
+        return int{is_told && palpate_volume_describe(of, nullptr) == PALPATE_INVALID};
+    };
+    palpate_set_progress(describe, volume);  // which does not come to itself again
+    EXPECT_EQ(palpate_volume_describe(volume, &info), PALPATE_OK);
+    EXPECT_STREQ(palpate_last_error(), "");
     palpate_set_progress(nullptr, nullptr);
     EXPECT_EQ(palpate_volume_describe(volume, &info), PALPATE_OK);
     EXPECT_EQ(palpate_mesh_create(field, 100, &mesh), PALPATE_OK);
