@@ -441,7 +441,7 @@ def test_no_output_replaces_a_file_that_is_read(tmp_path):
     for file in sorted(series.iterdir()):
         file.rename(series / f"I.{file.stem}")
     for output, *words in ((slices / "a2.tif", "convert", slices, slices / "a2.tif"),
-                           (series / "I.002", "replay", series, *replay[2:], "--output",
+                           (series / "I.002", "replay", series, "--isovalue", "50%", *replay[2:], "--output",
                             series / "I.002"),
                            (tmp_path / "beat_1.nii", "convert", tmp_path / "beat_%d.nii", tmp_path / "beat_1.nii"),
                            (slices / "a2.tif", "convert", links, slices / "a2.tif"),
