@@ -84,7 +84,7 @@ TEST(Output, replaces_a_file_where_there_are_no_modes) {
     const ScratchFolder folder;
     const auto write_twice = [&] {
         deny_modes();
-        const Volume volume = noise_of(SampleType::uint8, grid({4, 4, 4}), 1);
+        const palpate::Volume volume = noise_of(palpate::SampleType::uint8, grid({4, 4, 4}), 1);
         for (int i = 0; i < 2; ++i) {
             write_file(folder / "a.csv", "text");
             write_volume(volume, folder / "a.nrrd");

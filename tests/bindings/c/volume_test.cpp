@@ -224,7 +224,7 @@ TEST(CProgress, of_a_thread_is_told_by_every_long_call_and_can_stop_it) {
     palpate_mesh* mesh = nullptr;
     PALPATE_STRUCT(palpate_volume_info, info);
     const support::ScratchFolder folder;
-    const std::string path = folder / "saved.nrrd";
+    const std::string path = (folder / "saved.raw").string();
     const auto copy = [&] {
         return palpate_volume_copy(&grid, PALPATE_UINT8, samples.data(), samples.size(), &volume);
     };
