@@ -143,6 +143,9 @@ struct DetailReader::Parts {
     DetailStatus status() {
         DetailStatus status;
         status.bytes = blocks_.bytes();
+        const auto fails = [](const Piece& piece) {  // also while it is tried again
+            return piece.state != Piece::State::there && piece.again != Clock::time_point{};
+        };
         const std::scoped_lock lock(mutex_);
         for (const auto& [viewer, work] : work_) {
             const std::size_t first = work->complete() ? work->stages.size() - 1 : work->stage;
@@ -152,9 +155,9 @@ struct DetailReader::Parts {
                 status.missing += stage.pieces.size() - stage.count(Piece::State::there);
                 status.coming += stage.count(Piece::State::reading);
                 status.failed += stage.count(Piece::State::failed);
+                if (std::ranges::any_of(stage.pieces, fails)) status.problem = problem_;
             }
         }
-        if (status.failed > 0) status.problem = problem_;
         return status;
     }
 

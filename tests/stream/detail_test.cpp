@@ -134,13 +134,29 @@ TEST(DetailReader, what_is_missing_is_interpolated_from_the_coarse_box_then_from
         for (std::size_t i = 0; i < samples.size(); ++i) {
             ASSERT_NEAR(samples[i], expected[i], 1e-3) << i << ' ' << only_overview;
         }
-        EXPECT_FALSE(reader.status().problem.empty());
+        EXPECT_TRUE(comes_true([&] { return !reader.status().problem.empty(); }));
         fine_fails = false;
         ASSERT_TRUE(comes_true([&] { return seen.complete(0); })) << "they are tried again";
         EXPECT_EQ(bytes_of(seen.of(0).back().volume), test::box_of(levels[0], box));
         EXPECT_EQ(reader.status().missing, 0U);
         EXPECT_TRUE(reader.status().problem.empty());
     }
+}
+
+TEST(DetailReader, a_problem_is_told_until_what_failed_is_there) {
+    const auto store = std::make_shared<VolumesStore>(ramps(), cube(16));
+    DetailReader reader(store, ramps().back(), settings_of(2), [](int, const Detail&) {});
+    int tries = 0;
+    std::string problem;  // while it is tried again
+    store->before_read = [&](int, const SampleBox&, const std::stop_token&) {
+        if (++tries == 1) throw io::InputError("the network is away");
+        problem = reader.status().problem;
+    };
+    reader.want(0, {{0, {{1, 1, 1}, {9, 9, 9}}}}, often);
+    EXPECT_TRUE(comes_true([&] { return reader.status().missing == 0; }));
+    EXPECT_EQ(tries, 2);
+    EXPECT_FALSE(problem.empty());
+    EXPECT_TRUE(reader.status().problem.empty());
 }
 
 TEST(DetailReader, versions_say_which_samples_have_changed) {
