@@ -38,12 +38,13 @@ void Blocks::load(int level, const SampleBox& box, const std::stop_token& stop) 
                     [&](const SampleBox& piece) { read_if_unread(level, piece, stop); });
 }
 
-void Blocks::load_one(int level, const SampleBox& box, const std::stop_token& stop) {
-    if (!keeps(level)) return;
+bool Blocks::load_one(int level, const SampleBox& box, const std::stop_token& stop) {
+    if (!keeps(level)) return false;
     bool is_done = false;
     for_each_stored(level, box, [&](const SampleBox& piece) {
         is_done = is_done || read_if_unread(level, piece, stop);
     });
+    return is_done;
 }
 
 StoredPiece Blocks::piece(int level, const SampleBox& part, const std::stop_token& stop) {
@@ -74,7 +75,6 @@ bool Blocks::has_all(int level, const SampleBox& box) const {
     return all;
 }
 
-/// False for pieces that are too large, and for rows, which cost nothing to read in parts.
 bool Blocks::keeps(int level) const {
     const Index3& chunk = level_of(store_, level).chunk;
     const SampleBox piece{Index3::Zero(), chunk - Index3::Ones()};

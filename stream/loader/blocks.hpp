@@ -27,6 +27,9 @@ class Blocks {
     Blocks(const Blocks&) = delete;
     Blocks& operator=(const Blocks&) = delete;
 
+    /// Whether pieces of a level are kept. False for those that are too large, and for rows, which
+    /// cost nothing to read in parts.
+    bool keeps(int level) const;
     /// As Store::read(), to the places of the samples in a box `room`, which `out` holds. Pieces
     /// small enough to keep are read whole, and each by one thread; first those that no other
     /// thread reads, so that threads with neighbouring boxes share the work.
@@ -34,8 +37,9 @@ class Blocks {
               const std::stop_token& stop);
     /// So that read() finds them, unless they are dropped meanwhile.
     void load(int level, const SampleBox& box, const std::stop_token& stop);
-    /// The same for one piece of the box, the first that no other thread reads.
-    void load_one(int level, const SampleBox& box, const std::stop_token& stop);
+    /// The same for one piece of the box, the first that no other thread reads. False if there is
+    /// none.
+    bool load_one(int level, const SampleBox& box, const std::stop_token& stop);
     /// The piece that holds `part`, or `part` alone if pieces of the level are not kept.
     StoredPiece piece(int level, const SampleBox& part, const std::stop_token& stop);
     /// The same, without samples unless they are in memory: waits for nothing.
@@ -64,7 +68,6 @@ class Blocks {
                                               std::promise<Bytes>& promise);
     Bytes read_claimed(int level, const SampleBox& box, std::promise<Bytes>& promise,
                        const std::stop_token& stop);
-    bool keeps(int level) const;
     void use(Kept& kept);
     void forget(const Key& key);
     void forget_old(const Key& but);

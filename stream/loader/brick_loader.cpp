@@ -244,7 +244,7 @@ std::optional<BrickLoader::Parts::Job> BrickLoader::Parts::job_for(const Index3&
     const auto read = in_flight_.find(brick);
     if (read == in_flight_.end()) return Job{brick, level, false};
     const int coarser = read->second;
-    if (blocks_->has_all(settings_.level + coarser, source_of(brick, coarser))) return std::nullopt;
+    if (has_all(brick, coarser)) return std::nullopt;
     return Job{brick, coarser, true};
 }
 
@@ -294,8 +294,10 @@ void BrickLoader::Parts::make(const Job& job, std::uint64_t waits, const std::st
     std::string problem;
     bool is_kept = false, failed = false;
     try {
-        is_kept =
-            blocks_->has_all(settings_.level + job.coarser, source_of(job.brick, job.coarser));
+        {
+            const std::scoped_lock lock(mutex_);
+            is_kept = has_all(job.brick, job.coarser);
+        }
         brick = read(job.brick, job.coarser, stop);
     } catch (const Cancelled&) {  // the loader ends
     } catch (const std::exception& e) {
@@ -332,9 +334,16 @@ void BrickLoader::Parts::fail(const Index3& brick, const std::string& problem,
 }
 
 /// What fails here fails for the thread that makes the brick, too, which says so.
-void BrickLoader::Parts::help(const Job& job, const std::stop_token& stop) const {
+void BrickLoader::Parts::help(const Job& job, const std::stop_token& stop) {
     try {
-        blocks_->load_one(settings_.level + job.coarser, source_of(job.brick, job.coarser), stop);
+        Makings makings;
+        {
+            const std::scoped_lock lock(mutex_);
+            makings = makings_of(job.brick, job.coarser);
+        }
+        for (const SampleBox& part : makings.unread) {
+            if (blocks_->load_one(settings_.level + job.coarser, part, stop)) return;
+        }
     } catch (const Cancelled&) {
     } catch (const std::exception&) {
     }

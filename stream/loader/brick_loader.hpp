@@ -20,6 +20,11 @@ struct BrickLoader::Parts {
         int coarser;
         bool helps;  ///< another thread makes the brick; this one reads a piece of it
     };
+    /// What a brick is made of.
+    struct Makings {
+        std::vector<std::pair<Index3, Brick>> held;  ///< neighbours, for parts of its margin
+        std::vector<SampleBox> unread;               ///< what the store is asked for
+    };
     /// A wait_for() that has not ended.
     struct Waiting {
         std::vector<Index3> needed;
@@ -40,8 +45,10 @@ struct BrickLoader::Parts {
 
     Turn next(bool urgent);
     void make(const Job& job, std::uint64_t waits, const std::stop_token& stop);
-    void help(const Job& job, const std::stop_token& stop) const;
+    void help(const Job& job, const std::stop_token& stop);
     SampleBox source_of(const Index3& brick, int coarser) const;
+    Makings makings_of(const Index3& brick, int coarser) const;
+    bool has_all(const Index3& brick, int coarser) const;
     std::optional<Job> next_job(bool urgent);
     int for_eyes() const;
     std::optional<Job> job_for(const Index3& brick, int level, Clock::time_point now) const;

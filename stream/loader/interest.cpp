@@ -19,6 +19,9 @@ constexpr double ahead_factor = 0.5;
 /// And those on a long way from proxy to hand by this: where the proxy waits, all round it is
 /// needed before it can go on.
 constexpr double pull_factor = 0.2;
+/// A proxy that is farther from its hand than this has been left behind: it waits for samples, or
+/// a surface holds it [bricks].
+constexpr double left_behind = 1;
 /// A hand that goes farther than this while a brick comes [bricks] has left what it is in before
 /// that can come: then what it reaches comes first, and what it is in counts as this much farther
 /// [bricks].
@@ -72,8 +75,14 @@ std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
         const Segment pull{proxy, proxy + shortened(in_bricks(hand.hand) - proxy)};
         const Vec3 velocity = hand.velocity.allFinite() ? hand.velocity : Vec3::Zero();
         const Vec3 soon = in_bricks(hand.proxy + look_ahead * velocity) - proxy;
-        const bool is_fast = soon.norm() * seconds > fast * look_ahead;
-        const Vec3 begin = is_fast ? Vec3(pull.to + 0.5 * shortened(soon)) : proxy;
+        const double behind = (pull.to - pull.from).norm();
+        const bool is_left = behind > left_behind;
+        const bool is_fast = !is_left && soon.norm() * seconds > fast * look_ahead;
+        // Where the hand will be: after all that lies between it and a proxy left behind, and of a
+        // fast hand only what can come in time.
+        Vec3 begin = proxy;
+        if (is_left) begin = pull.to;
+        if (is_fast) begin = pull.to + 0.5 * shortened(soon);
         const Segment path{begin, begin + shortened(soon)};
         const Vec3 low = proxy.cwiseMin(pull.to).cwiseMin(path.to) - Vec3::Constant(radius);
         const Vec3 high = proxy.cwiseMax(pull.to).cwiseMax(path.to) + Vec3::Constant(radius);
@@ -86,9 +95,15 @@ std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
             const double to_pull = distance(pull, centre);
             const double to_path = distance(path, centre);
             if (std::min(to_pull, to_path) > radius + 1) return;
-            const double near = to_pull + pull_factor * to_proxy + (is_fast ? late_penalty : 0);
-            const double ahead =
-                is_fast ? to_path : to_path + ahead_factor * std::min(1.0, to_proxy);
+            double near = to_pull + pull_factor * to_proxy;
+            double ahead = to_path;
+            if (is_fast) {
+                near += late_penalty;
+            } else if (is_left) {
+                ahead += ahead_factor + pull_factor * behind;
+            } else {
+                ahead += ahead_factor * std::min(1.0, to_proxy);
+            }
             scored.push_back({std::min(near, ahead), brick});
         });
     }

@@ -11,7 +11,6 @@
 
 #include "palpate/field.hpp"
 #include "palpate/io/error.hpp"
-#include "stream/loader/interest.hpp"
 #include "stream/loader/upsample.hpp"
 #include "stream/volumes_store.hpp"
 #include "support/constants.hpp"
@@ -91,15 +90,6 @@ TEST(BrickLoader, a_coarser_level_is_interpolated_where_it_lies_in_space) {
             }
         }
     }
-}
-
-TEST(Levels, are_the_coarser_the_more_bricks_a_hand_passes_while_one_comes) {
-    EXPECT_EQ(levels_for(0, 0, 5), (LevelChoice{2, 0}));
-    EXPECT_EQ(levels_for(2, 0.4, 5), (LevelChoice{2, 0}));
-    EXPECT_EQ(levels_for(4, 0.4, 5), (LevelChoice{3, 1}));
-    EXPECT_EQ(levels_for(40, 0.4, 5), (LevelChoice{5, 4}));
-    EXPECT_EQ(levels_for(1e300, 1e300, 5), (LevelChoice{5, 5}));
-    EXPECT_EQ(levels_for(40, 0.4, 0), (LevelChoice{0, 0}));
 }
 
 TEST(BrickLoader, a_hand_that_is_too_fast_gets_coarser_bricks_and_finer_ones_when_it_rests) {
@@ -216,6 +206,35 @@ TEST(BrickLoader, memory_is_bounded_and_what_the_hand_needs_arrives_wherever_it_
     EXPECT_GT(status.dropped, 0U);
     EXPECT_EQ(status.resident, field.samples().resident()->size());
     EXPECT_EQ(status.problem, "");
+}
+
+TEST(BrickLoader, a_hand_that_goes_through_a_store_reads_each_piece_about_once) {
+    const Volume volume = large_noise({1280, 192, 192}, 4);
+    const auto store = store_in_pieces(volume, {64, 64, 64});
+    // Room for 64 bricks and a third as many pieces, where a brick touches 27.
+    BrickLoader loader(store, overview_of(*store, 1000), {.memory = least_memory, .threads = 1});
+    const std::uint64_t before = loader.status().traffic.requests;
+    for (int x = 32; x < 1280; x += 16) {
+        const Interest hand{Vec3(x, 96, 96), Vec3(x, 96, 96)};
+        loader.look({&hand, 1});
+        ASSERT_TRUE(comes_true([&] { return loader.status().missing == 0; }));
+        const auto version = loader.take();
+        if (!version) continue;
+        const ResidentBricks& bricks = *version->samples->resident();
+        for (const BrickEvent& event : version->events) {
+            if (event.level < 0) continue;
+            const Brick* const brick = bricks.at(event.brick);
+            ASSERT_NE(brick, nullptr);
+            ASSERT_EQ(
+                std::memcmp(brick->samples.get(), brick_of(volume, event.brick, 0).samples.get(),
+                            ResidentBricks::per_brick),
+                0)
+                << event.brick.transpose();
+        }
+    }
+    const BrickLoaderStatus status = loader.status();
+    EXPECT_GE(status.loaded, 20U * 9U);
+    EXPECT_LE(status.traffic.requests - before, status.loaded * 3 / 2);
 }
 
 TEST(BrickLoader, where_memory_is_that_of_the_process_bricks_take_what_the_rest_leaves) {
@@ -448,46 +467,6 @@ TEST(Overview, is_the_finest_level_that_is_small_enough_or_single_samples) {
             ASSERT_EQ(thin.sample(at), fine.sample(index.array().round().cast<int>()));
         });
     }
-}
-
-class Wanted : public testing::Test {
-  protected:
-    const Geometry geometry = grid({2000, 2000, 2000});
-    const Index3 count = ResidentBricks(geometry.size).count();
-    const Index3 at_proxy = ResidentBricks::brick_of({1000, 1000, 1000});
-    const Index3 at_hand = ResidentBricks::brick_of({1100, 1000, 1000});
-    std::vector<Index3> wanted;
-
-    void look(double speed) {
-        const Interest hand{Vec3(1000, 1000, 1000), Vec3(1100, 1000, 1000), Vec3(speed, 0, 0)};
-        wanted = wanted_bricks(geometry, count, {&hand, 1}, 400, 0.5);
-        EXPECT_LE(wanted.size(), 400U);
-    }
-    std::ptrdiff_t place(const Index3& brick) const {
-        return std::ranges::find(wanted, brick) - wanted.begin();
-    }
-};
-
-TEST_F(Wanted, of_a_slow_hand_what_it_is_in_comes_first_and_all_of_its_reach_is_wanted) {
-    look(60);
-    EXPECT_LT(place(at_proxy), 4);
-    EXPECT_LT(place(at_hand), 4);
-    for (const Index3& brick : bricks_round(geometry, {1100, 1000, 1000}, 100)) {
-        EXPECT_LT(place(brick), std::ptrdiff_t(wanted.size())) << brick.transpose();
-    }
-}
-
-TEST_F(Wanted, of_a_fast_hand_what_it_reaches_meanwhile_comes_before_what_it_leaves) {
-    look(600);
-    EXPECT_LT(place(at_hand + Index3(4, 0, 0)), 8);
-    EXPECT_LT(place(at_hand + Index3(4, 0, 0)), place(at_proxy));
-    EXPECT_LT(place(at_hand), place(at_proxy - Index3(3, 0, 0)));
-    EXPECT_LT(place(at_proxy), std::ptrdiff_t(wanted.size()));
-}
-
-TEST_F(Wanted, a_hand_that_is_nowhere_wants_nothing) {
-    const Interest broken{Vec3::Constant(not_a_number), Vec3(0, 0, 0)};
-    EXPECT_TRUE(wanted_bricks(geometry, count, {&broken, 1}, 400, 0.5).empty());
 }
 
 }  // namespace
