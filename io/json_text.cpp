@@ -2,7 +2,11 @@
 #include "io/json_text.hpp"
 
 #include <algorithm>
+#include <set>
 #include <string>
+#include <vector>
+
+#include "palpate/io/error.hpp"
 
 namespace palpate::io {
 namespace {
@@ -54,7 +58,17 @@ std::string flaw_in(std::string_view text, bool with_comments, std::size_t& room
 json parsed_json_within(std::size_t& room, std::string_view text, bool with_comments) {
     const std::string flaw = flaw_in(text, with_comments, room);
     if (!flaw.empty()) throw json::other_error::create(501, flaw, nullptr);
-    return json::parse(text, nullptr, true, with_comments);
+    std::vector<std::set<std::string>> names;  // of the objects that are open
+    const auto check = [&](int, json::parse_event_t event, const json& value) {
+        if (event == json::parse_event_t::object_start) names.emplace_back();
+        if (event == json::parse_event_t::object_end) names.pop_back();
+        if (event != json::parse_event_t::key) return true;
+        const auto& name = value.get_ref<const std::string&>();
+        if (names.back().insert(name).second) return true;
+        throw json::other_error::create(
+            501, "it has the member '" + one_line(name.substr(0, 40)) + "' twice", nullptr);
+    };
+    return json::parse(text, check, true, with_comments);
 }
 
 json parsed_json(std::string_view text, bool with_comments) {
@@ -63,9 +77,11 @@ json parsed_json(std::string_view text, bool with_comments) {
 }
 
 json parsed_or_discarded(std::string_view text) {
-    std::size_t room = most_json_bytes;
-    if (!flaw_in(text, false, room).empty()) return json(json::value_t::discarded);
-    return json::parse(text, nullptr, false);
+    try {
+        return parsed_json(text);
+    } catch (const json::exception&) {
+        return json(json::value_t::discarded);
+    }
 }
 
 }  // namespace palpate::io

@@ -14,8 +14,8 @@ inline constexpr int deepest_json = 64;
 /// for a string, and 32 for each value but the first.
 inline constexpr std::size_t most_json_bytes = std::size_t{64} << 20;
 
-/// Throws nlohmann::json::exception for what is no JSON, nested deeper, or larger.
-/// `with_comments`: as in C++ they are left out.
+/// Throws nlohmann::json::exception for what is no JSON, nested deeper, or larger, and for an
+/// object that has a member twice. `with_comments`: as in C++ they are left out.
 nlohmann::json parsed_json(std::string_view text, bool with_comments = false);
 
 /// The same with `room` instead of most_json_bytes, less what the values take afterwards: for

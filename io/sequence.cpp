@@ -9,7 +9,9 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "io/named_files.hpp"
 #include "io/system/number.hpp"
+#include "io/system/own_names.hpp"
 #include "io/words.hpp"
 #include "palpate/io/output.hpp"
 
@@ -246,12 +248,49 @@ std::string difference(const Volume& frame, const Sequence& sequence) {
     return here.direction == there.direction ? "" : "its axes are not those of the first frame";
 }
 
-/// As those of slices end: "a.dcm", "I.001", "1.2.840.113619.4", "IM0001".
-bool may_be_slice(const fs::path& file) {
+/// Metadata in the folder of a disc or a store, which has files in folders.
+constexpr std::array metadata_names = {"DICOMDIR", "dicomdir", "zarr.json",      ".zgroup",
+                                       ".zattrs",  ".zarray",  "attributes.json"};
+
+/// Whether a folder is read with a file of this name: metadata, a chunk, or a slice, as those end:
+/// "a.dcm", "I.001", "1.2.840.113619.4", "IM0001".
+bool may_be_part(const fs::path& file) {
     static constexpr std::array of_slices = {".tif", ".tiff", ".dcm", ".dicom", ".ima", ""};
     const std::string end = lower(file.extension().string());
-    return std::ranges::count(of_slices, end) > 0 ||
+    return std::ranges::count(of_slices, end) > 0 || file.filename() == edits_note ||
+           std::ranges::count(metadata_names, file.filename()) > 0 ||
            end.find_first_not_of("0123456789", 1) == std::string::npos;
+}
+
+bool is_part_of(const fs::path& file, const fs::path& folder) {
+    std::error_code error;
+    // By identity: slices may be links to files elsewhere.
+    fs::directory_iterator at(folder, error);
+    for (; !error && at != fs::directory_iterator(); at.increment(error)) {
+        std::error_code ignored;  // a link may lead nowhere
+        if (may_be_part(at->path()) && fs::equivalent(at->path(), file, ignored)) return true;
+    }
+    const auto is_there = [&](const char* name) { return fs::exists(folder / name, error); };
+    const std::string end = lower(fs::path(folder / "").parent_path().extension().string());
+    if (end != ".zarr" && end != ".n5" && std::ranges::none_of(metadata_names, is_there))
+        return false;
+    const fs::path whole = fs::canonical(file, error);
+    const fs::path inside = whole.lexically_relative(fs::canonical(folder, error));
+    return may_be_part(whole) && !inside.empty() && *inside.begin() != "..";
+}
+
+/// The files of a series; one that is there is itself.
+std::vector<fs::path> files_named(const fs::path& source) {
+    std::error_code error;
+    if (fs::exists(source, error)) return {source};
+    std::vector<fs::path> files;
+    try {
+        if (const auto pattern = pattern_of(source)) {
+            for (const NumberedFile& one : files_of(source, *pattern)) files.push_back(one.path);
+        }
+    } catch (const InputError&) {  // it cannot be read
+    }
+    return files;
 }
 
 }  // namespace
@@ -333,24 +372,11 @@ bool is_read_from(const fs::path& path, const fs::path& source) {
     if (is_same_file(path, source)) return true;
     std::error_code error;
     if (!fs::is_regular_file(path, error)) return false;
-    const bool is_folder = fs::is_directory(source, error);
-    std::optional<Pattern> pattern;
-    try {
-        if (!fs::exists(source, error)) pattern = pattern_of(source);
-    } catch (const InputError&) {  // it cannot be read
-    }
-    if (!is_folder && !pattern) return false;
-    // By identity: slices and frames may be links to files elsewhere.
-    fs::directory_iterator at(is_folder ? source : fs::absolute(source, error).parent_path(),
-                              error);
-    for (; !error && at != fs::directory_iterator(); at.increment(error)) {
-        const fs::path& one = at->path();
-        const bool counts = is_folder ? may_be_slice(one)
-                                      : number_in(one.filename().string(), *pattern).has_value();
-        std::error_code ignored;  // a link may lead nowhere
-        if (counts && fs::equivalent(one, path, ignored)) return true;
-    }
-    return false;
+    if (fs::is_directory(source, error)) return is_part_of(path, source);
+    const auto is_path = [&](const fs::path& one) { return is_same_file(one, path); };
+    const std::vector<fs::path> files = files_named(source);
+    return std::ranges::any_of(files, is_path) ||
+           std::ranges::any_of(files_read_with(files), is_path);
 }
 
 }  // namespace palpate::io

@@ -14,6 +14,7 @@
 #include "palpate/io/written_formats.hpp"
 #include "palpate/stream/convert.hpp"
 #include "palpate/stream/edits.hpp"
+#include "palpate/stream/read_files.hpp"
 
 namespace palpate::run {
 namespace {
@@ -146,7 +147,7 @@ void Data::require_unused(const std::filesystem::path& path) const {
     const std::filesystem::path own = place_of(loaded_.source);
     const std::lock_guard lock(mutex_);
     const auto is_used = [&](const auto& used) {
-        return !used.empty() && io::is_read_from(path, used);
+        return !used.empty() && stream::is_read_from(path, used);
     };
     if (!is_used(own) && std::none_of(kept_.begin(), kept_.end(), is_used)) return;
     throw io::OutputError(path.string() +

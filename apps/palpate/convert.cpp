@@ -57,18 +57,27 @@ std::optional<run::StoreSource> store_of(const run::Source& source) {
     return store;
 }
 
+/// Nothing for a file that may be read whole all the same, as TIFF with tiles of some kinds.
+std::shared_ptr<const stream::Store> opened_store(const ConvertWords& words,
+                                                  const run::Source& source,
+                                                  const run::StoreSource& from) {
+    ProgressBar bar("opening", words.source.quiet);
+    try {
+        return stream::open_store(from.address, from.options,
+                                  [&](double fraction) { bar.at(fraction); });
+    } catch (const io::InputError&) {
+        if (!std::holds_alternative<run::FileSource>(source.from)) throw;
+        return nullptr;
+    }
+}
+
 /// What is read by the box stays where it is; all else is loaded.
 Taken opened(const ConvertWords& words) {
     const run::Source source = words.source.source();
-    if (auto from = store_of(source)) {
+    auto from = store_of(source);
+    if (from) from->options.time = source.frame.value_or(0);
+    if (auto store = from ? opened_store(words, source, *from) : nullptr) {
         words.source.warn_of_no_effect(source);
-        from->options.time = source.frame.value_or(0);
-        std::shared_ptr<const stream::Store> store;
-        {
-            ProgressBar bar("opening", words.source.quiet);
-            store = stream::open_store(from->address, from->options,
-                                       [&](double fraction) { bar.at(fraction); });
-        }
         if (!words.source.quiet) {
             for (const std::string& note : store->info().notes) {
                 say("palpate: note: {}: {}\n", io::without_secrets(from->address), note);

@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "palpate/io/output.hpp"
-#include "palpate/io/sequence.hpp"
 #include "palpate/io/written_formats.hpp"
 #include "palpate/names.hpp"
+#include "palpate/stream/read_files.hpp"
 
 namespace palpate::app {
 namespace {
@@ -62,7 +62,7 @@ void check_outputs(const std::vector<std::string>& inputs,
         if (!is_zarr(outputs[i])) io::check_output(outputs[i]);
         for (const std::string& input : inputs) {
             if (input.empty()) continue;
-            if (!same_file(outputs[i], input) && !io::is_read_from(outputs[i], input)) continue;
+            if (!same_file(outputs[i], input) && !stream::is_read_from(outputs[i], input)) continue;
             throw std::invalid_argument(
                 outputs[i] + " is an input and would be replaced: choose another output");
         }

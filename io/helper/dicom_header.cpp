@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr DicomTag groups_of_frames{0x5200, 0x9230}, value_mapping{0x0040, 0x9096};
 constexpr DicomTag position_tag{0x0020, 0x0032}, orientation_tag{0x0020, 0x0037},
     pixel_tag{0x0028, 0x0030}, thickness_tag{0x0018, 0x0050}, between_tag{0x0018, 0x0088},
-    intercept_tag{0x0028, 0x1052}, slope_tag{0x0028, 0x1053};
+    intercept_tag{0x0028, 0x1052}, slope_tag{0x0028, 0x1053}, dose_tag{0x3004, 0x000e};
 
 /// The number of a tag that has one, or one again and again; nothing if it is not there.
 std::vector<double> one_number(const DicomGroup& group, DicomTag tag, const std::string& name) {
@@ -113,22 +113,43 @@ void set_pixel(DicomSlice& s, const DicomGroup& measures) {
     if (!(s.thickness > 0)) s.thickness = measures.number(thickness_tag, 0);
 }
 
+/// Puts `with` in place of a number that makes no sense.
+void check_number(DicomSlice& s, double& number, bool is_good, const char* name, double with) {
+    if (is_good) return;
+    add_note(s.notes, "its " + std::string(name) + " is " + text_of(number) +
+                          ", which makes no sense: " + text_of(with) + " was taken");
+    number = with;
+}
+
 void set_rescale(DicomSlice& s, const DicomGroup& transformation) {
     const auto slope = one_number(transformation, slope_tag, "RescaleSlope"),
                intercept = one_number(transformation, intercept_tag, "RescaleIntercept");
     s.has_rescale = s.has_rescale || !(slope.empty() || intercept.empty());
     if (!slope.empty()) s.slope = slope[0];
     if (!intercept.empty()) s.intercept = intercept[0];
-    const auto replace = [&](double& number, bool is_good, const char* name, double with) {
-        if (is_good) return;
-        add_note(s.notes, "its " + std::string(name) + " is " + text_of(number) +
-                              ", which makes no sense: " + text_of(with) + " was taken");
-        number = with;
-    };
-    replace(s.slope, s.slope != 0 && std::isfinite(s.slope), "RescaleSlope", 1);
-    replace(s.intercept, std::isfinite(s.intercept), "RescaleIntercept", 0);
+    check_number(s, s.slope, s.slope != 0 && std::isfinite(s.slope), "RescaleSlope", 1);
+    check_number(s, s.intercept, std::isfinite(s.intercept), "RescaleIntercept", 0);
     const std::string units = transformation.text({0x0028, 0x1054});
     if (!units.empty() && units != "US") s.values.units = units;  // "US": unspecified
+}
+
+/// In the place of slope and intercept: of a dose, and of segmentations that have fractions of a
+/// greatest value (PS3.3 C.8.20.2.3).
+void set_scaling(DicomSlice& s, const DicomGroup& data) {
+    const auto most = data.counts({0x0062, 0x000e});
+    if (data.text({0x0062, 0x0001}) == "FRACTIONAL" && most.size() == 1 && most[0] > 0) {
+        s.slope = 1.0 / most[0];
+    }
+    if (!data.has(dose_tag)) return;
+    if (s.slope != 1 || s.intercept != 0) {
+        add_note(s.notes, "its slope and intercept are not those of a dose: they were ignored");
+    }
+    const auto told = one_number(data, dose_tag, "DoseGridScaling");
+    s.slope = told.empty() ? std::nan("") : told[0];
+    s.intercept = 0;
+    check_number(s, s.slope, s.slope > 0 && std::isfinite(s.slope), "DoseGridScaling", 1);
+    s.has_rescale = true;
+    s.values.units = data.text({0x3004, 0x0002});  // GY
 }
 
 void set_window(DicomSlice& s, const DicomGroup& group) {
@@ -398,6 +419,7 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     if (s.values.modality == "CT") s.values.units = "HU";
     set_rescale(s, data);
     if (s.values.units.empty()) s.values.units = data.text({0x0054, 0x1001});  // of PET
+    set_scaling(s, data);
     set_window(s, data);
     set_padding(s, data);
     set_table(s, data);
@@ -405,8 +427,7 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     const std::string colours = data.text({0x0028, 0x0004});
     if (colours == "MONOCHROME1") {
         add_note(s.notes,
-                 "its MONOCHROME1 says that greater values are shown darker: "
-                 "values were taken as they are stored");
+                 "its MONOCHROME1 shows greater values darker: values were taken as stored");
     }
     note_overlays(s, data);
     // Segmentations of labels may bring colours for them.
@@ -420,16 +441,6 @@ DicomSlice file_as_slice(const fs::path& file, const DicomExtent& extent, const 
     }
     const double location = data.optional_number(location_tag);
     if (std::isfinite(location)) s.location = location;
-    if (constexpr DicomTag dose{0x3004, 0x000e}; data.has(dose)) {
-        s.slope = data.number(dose, 1);
-        s.has_rescale = true;
-        s.values.units = data.text({0x3004, 0x0002});  // GY
-    }
-    // Segmentations may have fractions of a greatest value (PS3.3 C.8.20.2.3).
-    const auto most = data.counts({0x0062, 0x000e});
-    if (data.text({0x0062, 0x0001}) == "FRACTIONAL" && most.size() == 1 && most[0] > 0) {
-        s.slope = 1.0 / most[0];
-    }
     return s;
 }
 

@@ -137,11 +137,25 @@ std::string Hdf5File::text(const std::string& object, const char* attribute) con
         H5Aopen_by_name(file_, object.c_str(), attribute, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     const Hdf5Handle type(H5Aget_type(one), H5Tclose), space(H5Aget_space(one), H5Sclose);
     const hssize_t letters = H5Sget_simple_extent_npoints(space);
-    if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 || letters < 1 ||
-        static_cast<std::size_t>(letters) > longest_text || H5Tget_size(type) > longest_text) {
+    std::string text;
+    double number = 0;
+    char* word = nullptr;
+    if (H5Tget_class(type) != H5T_STRING) {
+        if (letters != 1 || H5Aread(one, H5T_NATIVE_DOUBLE, &number) < 0) return "";
+        append_number(text, number);
+        return text;
+    }
+    if (H5Tis_variable_str(type) > 0) {
+        if (letters != 1 || H5Aread(one, type, static_cast<void*>(&word)) < 0 || !word) return "";
+        text.assign(word, strnlen(word, longest_text));
+        H5free_memory(word);
+        return trimmed(text);
+    }
+    if (letters < 1 || static_cast<std::size_t>(letters) > longest_text ||
+        H5Tget_size(type) > longest_text) {
         return "";
     }
-    std::string text(static_cast<std::size_t>(letters) * H5Tget_size(type), '\0');
+    text.resize(static_cast<std::size_t>(letters) * H5Tget_size(type));
     if (H5Aread(one, type, text.data()) < 0) throw Failure("is damaged; copy it again");
     text.resize(std::min(text.find('\0'), text.size()));
     return trimmed(text);

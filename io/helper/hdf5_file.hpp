@@ -51,8 +51,8 @@ class Hdf5File {
     std::vector<std::string> names() const;
     /// How many of PREFIX0, PREFIX1, ... there are: `name` makes each from its number.
     int count(const std::function<std::string(int)>& name) const;
-    /// An attribute that is a text or, as Imaris writes it, a list of characters; empty if there is
-    /// none.
+    /// An attribute that is a text, a list of characters, as Imaris writes it, or a number; empty
+    /// if there is none.
     std::string text(const std::string& object, const char* attribute) const;
     /// The same as a number.
     std::optional<double> number(const std::string& object, const char* attribute) const;

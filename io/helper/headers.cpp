@@ -50,6 +50,10 @@ std::optional<FilePattern> pattern_in(const std::string& name) {
 }  // namespace
 
 std::string HeaderFields::value(const std::string& name) const {
+    if (disputed.contains(name)) {
+        throw Failure("its header has the field '" + name.substr(0, 40) +
+                      "' twice; remove the wrong one");
+    }
     const auto found = values.find(name);
     return found == values.end() ? "" : found->second;
 }
@@ -95,6 +99,19 @@ ReadHeader* header_reader(const std::filesystem::path& path) {
     if (extension == ".nii" || extension == ".nii.gz") return &nifti_header;
     if (!other_halves(path).empty()) return &nifti_header;
     return nullptr;
+}
+
+std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& header) {
+    std::vector<std::filesystem::path> files = other_halves(header);
+    Request request;
+    request.path = header;
+    try {
+        if (ReadHeader* const read = header_reader(header)) {
+            for (const DataPlace& place : read(request).places) files.push_back(place.file);
+        }
+    } catch (const Failure&) {  // said where it is read
+    }
+    return files;
 }
 
 std::vector<double> numbers_in(const std::string& text, const std::string& field) {

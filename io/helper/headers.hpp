@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 
 #include "io/helper/decode.hpp"
 #include "io/inflate.hpp"
@@ -14,10 +15,16 @@ namespace palpate::io {
 struct HeaderFields {
     std::map<std::string, std::string> values;
     std::map<std::string, std::string> keys;  ///< NRRD's own pairs, "key:=value", as they are
+    std::set<std::string> disputed;           ///< fields that are given twice
     std::uint64_t data_offset = 0;            ///< of the first byte after the header
 
+    /// `only_once`: the format does not allow to repeat a field.
+    void add(const std::string& name, const std::string& value, bool only_once) {
+        const auto [at, is_new] = values.emplace(name, value);
+        if (!is_new && (only_once || at->second != value)) disputed.insert(name);
+    }
     bool has(const std::string& name) const { return values.count(name) > 0; }
-    /// Empty if there is no such field.
+    /// Empty if there is no such field. Throws Failure if it is there twice.
     std::string value(const std::string& name) const;
     /// Throws Failure that names the field if it is missing or empty.
     std::string needed(const std::string& name) const;
@@ -65,6 +72,10 @@ ReadHeader* header_reader(const std::filesystem::path& path);
 /// The other file of a pair of NIfTI or Analyze, a.hdr and a.img, which may be packed. Of several,
 /// the first is taken.
 std::vector<std::filesystem::path> other_halves(const std::filesystem::path& path);
+
+/// What reading a header's volume reads beside it: the files that it names, the other half of a
+/// pair. None if it cannot be read.
+std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& header);
 
 /// In lower case; of a.nii.gz both, which are packed.
 std::string extension_of(const std::filesystem::path& path);

@@ -18,6 +18,7 @@
 #include "io/helper/far_file.hpp"
 #include "io/helper/library_words.hpp"
 #include "io/helper/report.hpp"
+#include "io/path_json.hpp"
 #include "io/system/leftovers.hpp"
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
@@ -103,6 +104,15 @@ nlohmann::json run_locate(const fs::path& path, const nlohmann::json& asked, Loc
     request.path = path;
     request.grid = grid_from(asked);
     limit_this_process(asked);
+    if (asked.contains("headers")) {
+        nlohmann::json files = nlohmann::json::array();
+        for (const nlohmann::json& header : asked["headers"]) {
+            for (const fs::path& file : files_read_with(path_from_json(header))) {
+                files.push_back(json_of_path(file));
+            }
+        }
+        return {{"files", files}};
+    }
     VolumeHeader header;
     try {
         header = locate(request);

@@ -30,7 +30,7 @@ HeaderFields read_fields(const std::filesystem::path& path) {
             break;
         }
         const std::string name = lower(trimmed(line.substr(0, equals)));
-        fields.values[name] = trimmed(line.substr(equals + 1));
+        fields.add(name, trimmed(line.substr(equals + 1)), false);
         if (name == "elementdatafile") {
             if (in) fields.data_offset = static_cast<std::uint64_t>(in.tellg());
             return fields;

@@ -27,8 +27,8 @@ constexpr NiftiField dim{40, 16}, datatype{70, 12}, bitpix{72, 14}, pixdim{76, 1
 
 /// The header's bytes, and numbers from them.
 struct Header {
-    std::array<std::byte, 540> bytes{};
-    std::size_t size = 0;  ///< [bytes] that the file has of these
+    std::array<std::byte, 544> bytes{};  // with those that tell of extensions
+    std::size_t size = 0;                ///< [bytes] that the file has of these
     bool swapped = false;
     bool is_second = false;   ///< NIfTI-2
     bool is_analyze = false;  ///< of the format before NIfTI, which has no place in the body
@@ -395,6 +395,11 @@ DataPlace place_of(const Header& header, const std::filesystem::path& path, std:
         const bool is_short = std::filesystem::file_size(path) == header_bytes + bytes &&
                               place.encoding == DataPlace::Encoding::raw;
         place.skip = is_short ? header_bytes : whole_header;
+        if (!is_short && header.bytes[header_bytes] != std::byte{0}) {
+            throw Failure("its header puts the samples at byte " + text_of(offset) +
+                          ", within itself, and has extensions behind it: where the samples begin "
+                          "is not known; correct vox_offset");
+        }
         notes.push_back("its header puts the samples at byte " + text_of(offset) +
                         ", within itself: those behind it were taken");
     }

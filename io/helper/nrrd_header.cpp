@@ -77,10 +77,7 @@ HeaderFields read_fields(const std::filesystem::path& path) {
         }
         const std::string name = field_named(lower(trimmed(text.substr(0, colon))));
         const std::string value = trimmed(text.substr(colon + 1));
-        if (!fields.values.emplace(name, value).second) {
-            throw Failure("its header has the field '" + name.substr(0, 40) +
-                          "' twice; remove the wrong one");
-        }
+        fields.add(name, value, true);
         if (name == "data file" && is_list(value)) break;
     }
     if (in) fields.data_offset = static_cast<std::uint64_t>(in.tellg());

@@ -1,7 +1,8 @@
 // The protocol between the library and its helper, a program that becomes another where it needs a
 // library (own_program.cpp).
 //   palpate-io-helper read PATH REQUEST       samples come back in descriptor 3
-//   palpate-io-helper locate PATH REQUEST     says where the samples lie in their file
+//   palpate-io-helper locate PATH REQUEST     says where the samples lie in their file, or, of the
+//                                             "headers" in the REQUEST, which files they name
 //   palpate-io-helper explore PATH REQUEST    answers questions about a file of chunks
 //   palpate-io-helper read-mesh PATH REQUEST  vertices and triangles come back in descriptor 3
 //   palpate-io-helper write PATH REQUEST FOLDER   samples are given in descriptor 3; FOLDER, beside

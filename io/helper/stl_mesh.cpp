@@ -18,15 +18,13 @@ namespace {
 
 using Corner = std::array<double, 3>;
 
-/// Behind the line of a text that begins with "solid", after comments; the size of the text if none
-/// does.
+/// Where "solid" begins the line of a text, after comments; the size of the text if it does not.
 std::size_t begin_of_solid(const std::string& text) {
     std::size_t at = 0;
     while (at < text.size()) {
         const std::size_t end = std::min(text.find('\n', at), text.size());
-        const bool found = lower(trimmed(text.substr(at, end - at))).starts_with("solid");
+        if (lower(trimmed(text.substr(at, end - at))).starts_with("solid")) break;
         at = end + 1;
-        if (found) break;
     }
     return std::min(at, text.size());
 }
@@ -35,19 +33,20 @@ std::size_t begin_of_solid(const std::string& text) {
     throw Failure("is damaged or not what its name says (" + what + "); export it again");
 }
 
-/// Three corners for each triangle of a text, from behind its first line on.
+/// Three corners for each triangle of a text, from its "solid" on.
 std::vector<Corner> corners_in_text(const std::string& text, std::size_t begin) {
     std::istringstream in(text.substr(begin));
     std::vector<Corner> corners;
     bool is_open = true;
     for (std::string line; next_line(in, line);) {
         std::istringstream words(lower(line));
-        for (std::string word; words >> word;) {
-            if (word == "solid" || word == "endsolid") {
-                is_open = word == "solid";
-                break;  // its name follows
-            }
-            if (word == "normal") {
+        bool in_name = false;
+        for (std::string before, word; before = word, words >> word;) {
+            if (in_name && !(before == "facet" && word == "normal")) continue;
+            in_name = word.starts_with("solid") || word == "endsolid";
+            if (in_name) {
+                is_open = word != "endsolid";
+            } else if (word == "normal") {
                 words >> word >> word >> word;  // it follows from the corners
             } else if (word == "vertex") {
                 Corner& corner = corners.emplace_back();

@@ -22,7 +22,7 @@ struct Tiling {
     bool operator==(const Tiling&) const = default;
 };
 
-std::vector<std::string> codecs_of(TIFF* tiff) {
+std::vector<std::string> codecs_of(TIFF* tiff, Stored stored) {
     std::uint16_t compression = COMPRESSION_NONE, predictor = 1, order = FILLORDER_MSB2LSB;
     TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_FILLORDER, &order);
@@ -50,6 +50,8 @@ std::vector<std::string> codecs_of(TIFF* tiff) {
     TIFFGetFieldDefaulted(tiff, TIFFTAG_PREDICTOR, &predictor);
     if (predictor == PREDICTOR_NONE) return {name};
     if (predictor == PREDICTOR_HORIZONTAL) return {name, "difference"};
+    const bool is_real = stored == Stored::float32 || stored == Stored::float64;
+    if (predictor == PREDICTOR_FLOATINGPOINT && is_real) return {name, "float_difference"};
     throw Failure("its predictor " + std::to_string(predictor) +
                   " is not read by the tile; save it without or with the horizontal one");
 }
@@ -70,7 +72,7 @@ Tiling tiling_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
         tiling.tile_height == 0) {
         fail_damaged_tiff(file);
     }
-    tiling.codecs = codecs_of(tiff);
+    tiling.codecs = codecs_of(tiff, tiling.page.stored);
     return tiling;
 }
 

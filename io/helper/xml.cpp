@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string_view>
 
 #include "io/helper/decode.hpp"
@@ -12,6 +13,24 @@ namespace palpate::io {
 namespace {
 
 constexpr std::size_t most_bytes = 64 << 20;
+
+/// XML does not allow an attribute twice, and pugixml takes the first.
+class OnceEach : public pugi::xml_tree_walker {
+  public:
+    explicit OnceEach(const std::string& where) : where_(where) {}
+    bool for_each(XmlElement& element) override {
+        std::set<std::string_view> names;
+        for (const pugi::xml_attribute& one : element.attributes()) {
+            if (names.insert(one.name()).second) continue;
+            throw Failure(where_ + " has the attribute '" + std::string(one.name()).substr(0, 40) +
+                          "' twice in one element; remove the wrong one");
+        }
+        return true;
+    }
+
+  private:
+    const std::string& where_;
+};
 
 }  // namespace
 
@@ -51,6 +70,8 @@ pugi::xml_document parse_xml(const std::string& text, const std::string& where) 
     if (status != pugi::status_ok || root.type() != pugi::node_element || root.next_sibling()) {
         throw Failure(where + " is no XML; write it again");
     }
+    OnceEach check(where);
+    document.traverse(check);
     return document;
 }
 

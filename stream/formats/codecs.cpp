@@ -84,6 +84,9 @@ Bytes undone(Codec codec, Bytes bytes, std::size_t most, const SampleRows& rows)
         case Codec::difference:
             undo_differences(bytes, rows.each, rows.row, rows.swapped);
             return bytes;
+        case Codec::float_difference:
+            undo_float_differences(bytes, rows.each, rows.row, rows.swapped);
+            return bytes;
         case Codec::fletcher32:
             return without_checksum(std::move(bytes), fletcher32_of);
         case Codec::crc32c:
@@ -132,6 +135,7 @@ std::optional<Codec> codec_in_file(std::string_view name) {
                                           Name{"blosc", Codec::blosc},
                                           Name{"lzw", Codec::lzw},
                                           Name{"difference", Codec::difference},
+                                          Name{"float_difference", Codec::float_difference},
                                           Name{"shuffle", Codec::shuffle},
                                           Name{"fletcher32", Codec::fletcher32},
                                           Name{"hdf5_lz4", Codec::hdf5_lz4}};

@@ -21,9 +21,11 @@ enum class Codec {
     crc32c,
     shuffle,  ///< of HDF5: first the first bytes of all samples, then the second ones, ...
     fletcher32,
-    hdf5_lz4,   ///< blocks with big-endian sizes
-    lzw,        ///< of TIFF
-    difference  ///< of TIFF: samples less the one before in their row
+    hdf5_lz4,         ///< blocks with big-endian sizes
+    lzw,              ///< of TIFF
+    difference,       ///< of TIFF: samples less the one before in their row
+    float_difference  ///< of TIFF: bytes of a row, the highest of all samples first, less the one
+                      ///< before
 };
 
 /// What some codecs have to know of the samples.

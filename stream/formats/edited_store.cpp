@@ -8,6 +8,8 @@
 #include "io/system/own_names.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/io/sequence.hpp"
+#include "palpate/stream/read_files.hpp"
 #include "stream/formats/content.hpp"
 #include "stream/formats/stores.hpp"
 #include "stream/objects/held_folder.hpp"
@@ -280,6 +282,18 @@ std::shared_ptr<const Store> open_edits(const std::stop_token& stop, const std::
         if (note.of.address == note.beside || !fs::exists(note.of.address, error)) throw;
     }
     return open_with_original(stop, folder, std::move(note));
+}
+
+bool is_read_from(const fs::path& path, const fs::path& source) {
+    if (io::is_read_from(path, source)) return true;
+    if (!holds_edits(source)) return false;
+    try {
+        const EditsNote note = read_note(source, {});
+        return io::is_read_from(path, note.of.address) ||
+               (!note.beside.empty() && io::is_read_from(path, note.beside));
+    } catch (const io::InputError&) {  // opening them says why
+        return false;
+    }
 }
 
 void write_note(const fs::path& folder, const fs::path& out, const EditsNote& note) {

@@ -177,6 +177,10 @@ std::optional<Image> ome_image(const Json& given) {
     found.range = range_of(given);
     found.notes = notes_on(attributes, all);
     take_direction(given, found);
+    if (!found.scaled) {
+        found.measured = false;
+        found.notes.emplace_back("its metadata give no scale: 1 was taken");
+    }
     return found;
 }
 

@@ -2,8 +2,10 @@
 // fetches over HTTP are not built there.
 #include "io/plain_samples.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/io/sequence.hpp"
 #include "palpate/stream/convert.hpp"
 #include "palpate/stream/edits.hpp"
+#include "palpate/stream/read_files.hpp"
 #include "palpate/stream/store.hpp"
 #include "stream/formats/stores.hpp"
 #include "stream/objects/remote_objects.hpp"
@@ -26,6 +28,10 @@ void check_edits_name(const std::filesystem::path& out) {
 
 std::string content_below_edits(const Store&, int, const std::stop_token&) {
     return {};
+}
+
+bool is_read_from(const std::filesystem::path& path, const std::filesystem::path& source) {
+    return io::is_read_from(path, source);
 }
 
 void check_edits_place(const std::filesystem::path& out, const Opened&) {

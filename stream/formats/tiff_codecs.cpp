@@ -3,6 +3,7 @@
 #include "stream/formats/undo_codecs.hpp"
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -125,6 +126,21 @@ void undo_differences(std::span<std::byte> bytes, std::size_t each, std::size_t 
         }
     }
     if (swapped) io::swap_bytes(bytes, each);
+}
+
+void undo_float_differences(std::span<std::byte> bytes, std::size_t each, std::size_t row,
+                            bool swapped) {
+    const bool is_big = swapped == (std::endian::native == std::endian::little);
+    std::vector<std::byte> sums;
+    for (std::size_t at = 0; at + row * each <= bytes.size(); at += row * each) {
+        const auto samples = bytes.subspan(at, row * each);
+        add_up<std::uint8_t>(samples);
+        sums.assign(samples.begin(), samples.end());
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+            const std::size_t place = i / row;  // from the highest byte
+            samples[i % row * each + (is_big ? place : each - 1 - place)] = sums[i];
+        }
+    }
 }
 
 }  // namespace palpate::stream

@@ -25,5 +25,8 @@ std::vector<std::byte> unlzw(std::span<const std::byte> packed, std::size_t most
 /// Of TIFF. Makes samples of `each` bytes (1, 2, 4, 8) of their differences along rows of `row`
 /// samples. `swapped`: their bytes are in the other order than the machine's.
 void undo_differences(std::span<std::byte> bytes, std::size_t each, std::size_t row, bool swapped);
+/// The same of floating-point samples (predictor 3, TIFF Technical Note 3).
+void undo_float_differences(std::span<std::byte> bytes, std::size_t each, std::size_t row,
+                            bool swapped);
 
 }  // namespace palpate::stream

@@ -9,6 +9,7 @@
 #include "palpate/io/error.hpp"
 #include "palpate/stream/convert.hpp"
 #include "palpate/stream/loader.hpp"
+#include "palpate/stream/read_files.hpp"
 #include "stream/store_support.hpp"
 #include "stream/writer/pyramid.hpp"
 #include "support/constants.hpp"
@@ -149,7 +150,13 @@ TEST(Edits, a_raw_file_is_opened_again_with_its_layout_also_where_both_were_move
     const edit::Fill fill{{{60, 60, 0}, {69, 65, 4}}, 77};
     const auto edits = edited(empty_samples(*original, volume, 0), fill, reader_of(*original, 0));
     save_edits(*original, {address, options}, 0, *edits.samples, here / "a-edits.zarr", {});
+    EXPECT_TRUE(is_read_from(here / "a.raw", here / "a-edits.zarr"));
     fs::rename(here, there);
+    EXPECT_TRUE(is_read_from(there / "a.raw", there / "a-edits.zarr"));
+    EXPECT_TRUE(
+        is_read_from(there / "a-edits.zarr" / "palpate-edits.json", there / "a-edits.zarr"));
+    io::write_volume(volume, there / "b.raw");
+    EXPECT_FALSE(is_read_from(there / "b.raw", there / "a-edits.zarr"));
     const auto again = open_store((there / "a-edits.zarr").string());
     EXPECT_TRUE(same_bits(volume_of(*again), flattened(*edited(plain, fill).samples)));
 }

@@ -53,8 +53,8 @@ inline constexpr double assumed_frame_interval = 0.1;
 /// InputError, std::invalid_argument for an invalid interval.
 SequenceFile open_sequence(const std::filesystem::path& path, const SequenceOptions& options = {});
 
-/// True if reading `source` reads the file `path`: `source` itself, a file in this folder with the
-/// name of a slice, or a file of this series. (why_not_written() checks .raw files.)
+/// True if reading `source` reads the file `path`: itself, a slice, a frame or a part of a store.
+/// Data files that a header names count, too.
 bool is_read_from(const std::filesystem::path& path, const std::filesystem::path& source);
 
 /// Frames made by `make`, `interval` [s] apart from time 0. Makes the first one to learn its grid

@@ -1,0 +1,11 @@
+// Which files a volume is read from, so that no output takes the place of one.
+#pragma once
+
+#include <filesystem>
+
+namespace palpate::stream {
+
+/// As io::is_read_from(), also for the original of edits.
+bool is_read_from(const std::filesystem::path& path, const std::filesystem::path& source);
+
+}  // namespace palpate::stream

@@ -1,0 +1,237 @@
+"""Headers that give a value twice, leave it out or give it in an unusual way are read as they are meant, or refused. No
+output replaces a file that a header names."""
+
+import gzip
+import json
+import os
+import struct
+import subprocess
+
+import h5py
+import numpy
+import palpate
+import pytest
+import tifffile
+import zarr
+from formats_test import nrrd
+from readers_test import SHAPE, noted, ramp, refused, save, slice_of, stack
+
+
+def run(*arguments):
+    """The exit status, and all that the program says."""
+    done = subprocess.run([os.environ["PALPATE"], *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, check=False)
+    return done.returncode, done.stdout
+
+
+def meta_image(path, *fields, data=b"", file="LOCAL"):
+    lines = ["NDims = 3", "DimSize = 6 4 5", "ElementType = MET_SHORT", "ElementSpacing = 1 2 3", *fields,
+             f"ElementDataFile = {file}"]
+    path.write_bytes("".join(line + "\n" for line in lines).encode() + data)
+    return path
+
+
+# Outputs ---------------------------------------------------------------------------------------------
+
+
+def numbered_meta(folder):
+    meta_image(folder / "y.mhd", file="part%d.raw 0 4 1")
+    for number, plane in enumerate(ramp("i2")):
+        (folder / f"part{number}.raw").write_bytes(plane.tobytes())
+    return folder / "y.mhd", folder / "part3.raw"
+
+
+def listed_nrrd(folder):
+    (folder / "a.nhdr").write_text("NRRD0004\ntype: short\ndimension: 3\nsizes: 6 4 6\nendian: little\nencoding: gzip\n"
+                                   "data file: LIST\nfirst.nii\nsecond.nii\n")
+    for name, part in (("first.nii", ramp("i2")[:3]), ("second.nii", ramp("i2")[2:])):
+        (folder / name).write_bytes(gzip.compress(part.tobytes()))
+    return folder / "a.nhdr", folder / "second.nii"
+
+
+def detached_meta(folder):
+    meta_image(folder / "y.mhd", file="all.raw")
+    (folder / "all.raw").write_bytes(ramp("i2").tobytes())
+    return folder / "y.mhd", folder / "all.raw"
+
+
+def series_of_headers(folder):
+    for number in range(3):
+        meta_image(folder / f"t_{number}.mhd", file=f"samples{number}.raw")
+        (folder / f"samples{number}.raw").write_bytes(ramp("i2").tobytes())
+    return folder / "t_%d.mhd", folder / "samples2.raw"
+
+
+def store(folder):
+    group = zarr.open_group(str(folder / "s.zarr"), mode="w")
+    group.create_dataset("0", data=ramp("i2"), chunks=(2, 2, 3))
+    group.attrs["multiscales"] = [{"version": "0.4", "axes": [{"name": name, "type": "space"} for name in "zyx"],
+                                   "datasets": [{"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1, 1, 1]}]}]}]
+    return folder / "s.zarr", folder / "s.zarr" / "0" / "1.0.1"
+
+
+def metadata_of_store(folder):
+    assert run("convert", "synthetic:sphere:16x16x16", folder / "s.zarr")[0] == 0
+    return folder / "s.zarr", folder / "s.zarr" / "zarr.json"
+
+
+def disc(folder):
+    slices = save(folder / "IMAGES", stack(ramp("i2")))
+    (folder / "DICOMDIR").write_bytes(b"")
+    return folder, sorted(slices.iterdir())[1]
+
+
+@pytest.mark.parametrize("make", (numbered_meta, listed_nrrd, detached_meta, series_of_headers, store, metadata_of_store, disc))
+def test_an_output_replaces_no_file_that_is_read_with_its_source(tmp_path, make):
+    source, read = make(tmp_path)
+    before = read.read_bytes()
+    output = tmp_path / "link.csv"
+    hand = tmp_path / "hand.csv"
+    hand.write_text("t,x,y,z\n0,0,0,0\n1,1,0,0\n")
+    output.symlink_to(read)
+    for name in (read, output):
+        status, said = run("replay", source, "--isovalue", "50%", "--trajectory", hand, "--output", name)
+        assert status == 2 and "is an input and would be replaced" in said, said
+        assert read.read_bytes() == before
+    status, said = run("replay", source, "--isovalue", "50%", "--trajectory", hand, "--output", tmp_path / "trace.csv")
+    assert "would be replaced" not in said
+    status, said = run("replay", source, "--isovalue", "50%", "--trajectory", hand, "--output", tmp_path / "trace.csv")
+    assert "would be replaced" not in said
+
+
+def test_converting_replaces_no_data_file_of_its_header(tmp_path):
+    source, read = detached_meta(tmp_path)
+    before = read.read_bytes()
+    status, said = run("convert", source, read)
+    assert status == 2 and "is an input and would be replaced" in said, said
+    assert read.read_bytes() == before
+    assert run("convert", source, tmp_path / "other.raw")[0] == 0
+
+
+# Fields ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("twice, is_used", (("ElementSpacing = 1 2 5", True), ("DimSize = 6 5 4", True),
+                                            ("Offset = 0 0 0\nOffset = 0 0 1", True), ("ElementSpacing = 1 2 3", False),
+                                            ("Comment = a\nComment = b", False)))
+def test_a_field_of_meta_image_that_is_given_twice_is_refused_if_it_counts(tmp_path, twice, is_used):
+    path = meta_image(tmp_path / "a.mha", twice, data=ramp("i2").tobytes())
+    if is_used:
+        refused(path, "twice")
+    else:
+        assert (palpate.load(path).volume.array == ramp("i2")).all()
+
+
+@pytest.mark.parametrize("space", ("space: RAS", "space dimension: 3"))
+def test_spacings_of_a_nrrd_in_a_space_without_directions_are_used(tmp_path, space):
+    volume = palpate.load(nrrd(tmp_path / "a.nrrd", ramp("i2"), space, "spacings: 0.5 0.7 2", "space origin: (1,2,3)")).volume
+    assert numpy.allclose(volume.geometry.spacing, (0.5, 0.7, 2))
+    assert numpy.allclose(volume.geometry.origin, (-1, -2, 3) if "RAS" in space else (1, 2, 3))
+    if "RAS" in space:
+        noted(tmp_path / "a.nrrd", "no directions")
+    refused(nrrd(tmp_path / "b.nrrd", ramp("i2"), space, "spacings: 0.5 nan nan", "space directions: (1,0,0) (0,1,0) (0,0,1)"),
+            "both a spacing and a direction")
+
+
+def test_samples_behind_extensions_of_an_unknown_place_are_refused(tmp_path):
+    head = bytearray(348)
+    struct.pack_into("<i", head, 0, 348)
+    struct.pack_into("<8h", head, 40, 3, 6, 4, 5, 1, 1, 1, 1)
+    struct.pack_into("<hh", head, 70, 4, 16)
+    struct.pack_into("<4f", head, 76, 1, 1, 1, 1)
+    head[344:348] = b"n+1\0"
+    extension = struct.pack("<ii", 32, 6) + bytes(24)
+    (tmp_path / "a.nii").write_bytes(bytes(head) + b"\1\0\0\0" + extension + ramp("i2").tobytes())
+    refused(tmp_path / "a.nii", "vox_offset")
+    (tmp_path / "b.nii").write_bytes(bytes(head) + b"\0\0\0\0" + ramp("i2").tobytes())
+    assert (noted(tmp_path / "b.nii", "within itself").array == ramp("i2")).all()
+
+
+@pytest.mark.parametrize("scaling, factor, note", (("0.5", 0.5, ""), ("0", 1, "DoseGridScaling"), ("nan", 1, "DoseGridScaling"),
+                                                   ("", 1, "DoseGridScaling")))
+def test_a_scaling_of_a_dose_that_makes_no_sense_is_noted(tmp_path, scaling, factor, note):
+    data = slice_of(ramp("u2")[0], 1, (0, 0, 0))
+    data.add_new(0x3004000E, "DS", scaling)
+    path = save(tmp_path / "dose", [data])
+    assert numpy.allclose(noted(path, note or "time" if note else "").array[0], factor * ramp("u2")[0])
+
+
+def test_slope_and_intercept_are_not_those_of_a_dose(tmp_path):
+    data = slice_of(ramp("u2")[0], 1, (0, 0, 0), RescaleSlope=2, RescaleIntercept=7)
+    data.add_new(0x3004000E, "DS", "0.5")
+    assert numpy.allclose(noted(save(tmp_path / "dose", [data]), "not those of a dose").array[0], 0.5 * ramp("u2")[0])
+
+
+@pytest.mark.parametrize("scale", (None, [{"type": "scale", "scale": [2, 2, 2]}]))
+def test_a_store_without_a_scale_has_no_known_spacing(tmp_path, scale):
+    path = store(tmp_path)[0]
+    group = zarr.open_group(str(path))
+    images = group.attrs["multiscales"]
+    images[0]["datasets"][0] = {"path": "0", **({"coordinateTransformations": scale} if scale else {})}
+    group.attrs["multiscales"] = images
+    told = json.loads(run("info", path, "--json", "--quiet")[1])
+    assert told["spacing_known"] == (scale is not None)
+    assert any("give no scale" in note for note in told["notes"]) == (scale is None)
+
+
+# Attributes and members ------------------------------------------------------------------------------
+
+
+def as_letters(text):
+    return numpy.frombuffer(text.encode(), "S1")
+
+
+@pytest.mark.parametrize("written", (as_letters, str, numpy.bytes_, float))
+def test_attributes_of_imaris_may_be_texts_of_any_kind_or_numbers(tmp_path, written):
+    with h5py.File(tmp_path / "a.ims", "w") as file:
+        image = file.create_group("DataSetInfo/Image")
+        for axis, end in enumerate((3, 8, 10)):
+            image.attrs[f"ExtMin{axis}"], image.attrs[f"ExtMax{axis}"] = written("0"), written(str(end))
+        image.attrs["Unit"] = "mm" if written is float else written("mm")
+        channel = file.create_group("DataSet/ResolutionLevel 0/TimePoint 0/Channel 0")
+        for name, size in zip("XYZ", SHAPE[::-1]):
+            channel.attrs[f"ImageSize{name}"] = written(str(size))
+        padded = numpy.zeros((8, 8, 8), "u2")
+        padded[tuple(map(slice, SHAPE))] = ramp("u2")
+        channel.create_dataset("Data", data=padded, chunks=(8, 8, 8))
+    store_ = palpate.open_store(tmp_path / "a.ims")
+    assert numpy.allclose(store_.levels[0].spacing, (0.5, 2, 2))
+    assert (palpate.LoadedVolume(store_).volume.array == ramp("u2")).all()
+
+
+def test_a_member_that_json_has_twice_is_refused(tmp_path):
+    path = store(tmp_path)[0]
+    zarray = path / "0" / ".zarray"
+    zarray.write_text(zarray.read_text().replace('"fill_value"', '"shape": [5, 4, 5], "fill_value"'))
+    status, said = run("info", path)
+    assert status == 3 and "'shape' twice" in said, said
+    layers = tmp_path / "a.json"
+    layers.write_text('{"palpate_layers": 1, "layers": [{"name": "a", "level": 100, "level": 300}]}')
+    status, said = run("replay", "synthetic:sphere:8x8x8", "--layers", layers, "--trajectory", layers, "--output", tmp_path / "t")
+    assert "'level' twice" in said, said
+
+
+@pytest.mark.parametrize("twice", (False, True))
+def test_an_attribute_that_xml_has_twice_is_refused(tmp_path, twice):
+    size = 'PhysicalSizeX="1" PhysicalSizeY="1" PhysicalSizeZ="1" ' + ('PhysicalSizeX="2" ' if twice else "")
+    xml = ('<OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06"><Image><Pixels DimensionOrder="XYZCT" SizeX="6" '
+           f'SizeY="4" SizeZ="5" SizeC="1" SizeT="1" Type="uint16" {size}><TiffData/></Pixels></Image></OME>')
+    tifffile.imwrite(tmp_path / "a.tif", ramp("u2"), description=xml, metadata=None)
+    if twice:
+        refused(tmp_path / "a.tif", "PhysicalSizeX", "twice")
+    else:
+        assert numpy.allclose(palpate.load(tmp_path / "a.tif").volume.geometry.spacing, 1e-3)
+
+
+def test_tiles_that_are_not_read_one_by_one_are_converted_as_a_whole(tmp_path):
+    samples = numpy.arange(256).reshape(1, 16, 16) % 16
+    packed = (samples[0, :, ::2] * 16 + samples[0, :, 1::2]).astype("u1").tobytes()  # 4 bits each
+    tags = ((256, 16), (257, 16), (258, 4), (259, 1), (262, 1), (277, 1), (322, 16), (323, 16), (324, 8), (325, len(packed)))
+    entries = b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags)
+    (tmp_path / "a.tif").write_bytes(struct.pack("<2sHI", b"II", 42, 8 + len(packed)) + packed + struct.pack("<H", len(tags)) +
+                                     entries + bytes(4))
+    assert run("info", tmp_path / "a.tif")[0] == 0
+    assert run("convert", tmp_path / "a.tif", tmp_path / "a.nrrd")[0] == 0
+    assert (palpate.load(tmp_path / "a.nrrd").volume.array == samples).all()
+    status, said = run("info", tmp_path / "a.tif", "--level", 0)
+    assert status == 3 and "not read by the tile" in said
