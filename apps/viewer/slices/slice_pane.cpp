@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "apps/viewer/model/ruler.hpp"
 #include "apps/viewer/slices/slice_content.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
@@ -336,9 +337,10 @@ std::vector<SliceWords> SlicePane::words_in() const {
     const Vec3 at = point_at(*pointer_);
     const Vec3 index = index_from_physical(geometry(), at);
     if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return all;
-    const auto mm = [](double x) { return QString::number(x, 'f', 1); };
+    const Ruler ruler = ruler_of(geometry());
+    const auto number = [&](double mm) { return QString::fromStdString(ruler.number(mm)); };
     QStringList words{QString("(%1, %2, %3) %4")
-                          .arg(mm(at[0]), mm(at[1]), mm(at[2]), QString(unit_word(geometry()))),
+                          .arg(number(at[0]), number(at[1]), number(at[2]), QString(ruler.unit)),
                       QString::number(value_there(at), 'g', 6)};
     if (shown_.overlay && shown_.look.overlay.shown) {
         const QString there = overlay_words(*shown_.overlay, at);

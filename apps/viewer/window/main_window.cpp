@@ -24,6 +24,7 @@
 
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/model/ruler.hpp"
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
@@ -313,15 +314,17 @@ void MainWindow::show_readout(const Snapshot& now) {
     const Vec3& at = now.session.tick.proxy.scp;
     if (!at.allFinite()) return readout_->clear();
     const QString units = QString::fromStdString(content_.volume()->loaded.values.units);
-    const auto number = [](double value) { return QString::number(value, 'f', 1); };
+    const Ruler ruler = ruler_of(content_.volume()->loaded.volume.geometry());
+    const auto number = [&](double mm) { return QString::fromStdString(ruler.number(mm)); };
     QString words = felt_text(now.session.tick.layers, content_.layers());
     if (!words.isEmpty()) words += "   ";
-    const QString unit = unit_word(content_.volume()->loaded.volume.geometry());
+    const QString unit = ruler.unit;
     words += QString("%1, %2, %3 %4").arg(number(at[0]), number(at[1]), number(at[2]), unit);
     if (const auto field = content_.felt_round(now, at)) {
+        const double slope = gradient_at(*field, at).norm() / ruler.per_mm;
         words += "   " + tr("%1 %2   slope %3 /%4")
                              .arg(QString::number(value_at(*field, at), 'g', 4), units,
-                                  QString::number(gradient_at(*field, at).norm(), 'g', 3), unit);
+                                  QString::number(slope, 'g', 3), unit);
     }
     readout_->setText(words);
 }
