@@ -3,6 +3,7 @@
 
 #include <QFontMetrics>
 #include <QHelpEvent>
+#include <QKeyEvent>
 #include <QPainter>
 #include <QToolTip>
 
@@ -26,6 +27,10 @@ constexpr qint64 rest = 3;
 constexpr double least_zoom = 0.2, most_zoom = 200;
 /// The narrowest window, as a part of the data's range.
 constexpr double narrowest = 1e-4;
+
+bool is_zoom_key(int key) {
+    return key == Qt::Key_Plus || key == Qt::Key_Equal || key == Qt::Key_Minus;
+}
 
 GreyWindow whole_range(const Field& field) {
     const double low = field.volume().minimum();
@@ -361,6 +366,12 @@ bool SlicePane::event(QEvent* event) {
             QToolTip::hideText();
             event->ignore();
         }
+        return true;
+    }
+    // With the focus here, these keys are not the menu's.
+    if (event->type() == QEvent::ShortcutOverride && content_ &&
+        is_zoom_key(static_cast<QKeyEvent*>(event)->key())) {
+        event->accept();
         return true;
     }
     return QWidget::event(event);

@@ -41,6 +41,25 @@ TEST_F(Looking, skin_over_bone_is_two_clicks_and_either_is_felt) {
     EXPECT_EQ(look().surfaces[0].level, skin);
 }
 
+TEST_F(Looking, plus_and_minus_zoom_a_slice_that_has_the_focus_and_change_the_level_elsewhere) {
+    feel("synthetic:sphere:48x48x48");
+    SlicePane& pane = window_->views().slice(2);
+    Scene& scene = window_->views().scene();
+    const double level = window_->content().effect().isovalue();
+    const Vec3 aside = physical_centre(window_->live()->field().geometry()) + Vec3(9, 0, 0);
+    const auto seen = [&] { return pane.pixel_of(aside); };
+    QTest::mouseClick(&pane, Qt::LeftButton, {}, middle(pane));
+    const QPointF before = seen();
+    QTest::keyClick(&pane, Qt::Key_Plus);
+    EXPECT_GT((seen() - before).manhattanLength(), 3);
+    QTest::keyClick(&pane, Qt::Key_Minus);
+    EXPECT_LT((seen() - before).manhattanLength(), 0.1);
+    EXPECT_EQ(window_->content().effect().isovalue(), level);
+    scene.setFocus();
+    QTest::keyClick(&scene, Qt::Key_Plus);
+    EXPECT_GT(window_->content().effect().isovalue(), level);
+}
+
 TEST_F(Looking, a_cut_by_key_faces_the_viewer_and_a_session_brings_it_back) {
     feel("synthetic:sphere:48x48x48");
     press(Qt::Key_V);
