@@ -2765,6 +2765,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>Turn the tool up</source>
         <translation>Werkzeug nach oben drehen</translation>
     </message>
+    <message>
+        <source>Nothing can be touched here from in front of the cut</source>
+        <translation>Hier lässt sich von vor dem Schnitt aus nichts berühren</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::RawDialog</name>
