@@ -47,6 +47,10 @@
         <source>Volumes (%1);;All files (*)</source>
         <translation>Volumen (%1);;Alle Dateien (*)</translation>
     </message>
+    <message>
+        <source>%1 exists already. Replace it?</source>
+        <translation>%1 gibt es schon. Ersetzen?</translation>
+    </message>
 </context>
 <context>
     <name>ForceRows</name>
@@ -887,6 +891,10 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
             <numerusform>%1 gespeichert, %2 Dreieck</numerusform>
             <numerusform>%1 gespeichert, %2 Dreiecke</numerusform>
         </translation>
+    </message>
+    <message>
+        <source>Volumes (%1)</source>
+        <translation>Volumen (%1)</translation>
     </message>
 </context>
 <context>

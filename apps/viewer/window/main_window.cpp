@@ -107,6 +107,7 @@ void MainWindow::build() {
     layout->setSpacing(0);
     layout->addWidget(make_progress_strip(files_.loader()));
     layout->addWidget(make_progress_strip(overlays_.loader()));
+    layout->addWidget(make_progress_strip(editing_.saver()));
     layout->addWidget(make_progress_strip(layers_.reader()));
     layout->addWidget(make_progress_strip(run_.reader()));
     setCentralWidget(centre);
@@ -146,6 +147,8 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::closed, this, outline_brush);
     connect(&panel_->isovalue_controls(), &IsovalueControls::dequantize_wanted, this,
             [this](bool on) { editing_.settle_edits([this, on] { files_.dequantize(on); }); });
+    files_.guard([this] { return unsaved_work(); },
+                 [this](const std::function<void()>& action) { settle_work(action); });
     connect(&content_, &Content::closed, this, &MainWindow::show_title);
     connect(&content_, &Content::run_started, this, &MainWindow::show_title);
     connect(&content_, &Content::playback_started, this, &MainWindow::show_title);
@@ -216,6 +219,14 @@ void MainWindow::ask_grid() {
 
 void MainWindow::settle_work(const std::function<void()>& action) {
     if (may_lose_work([this, action] { settle_work(action); })) action();
+}
+
+UnsavedWork MainWindow::unsaved_work() const {
+    UnsavedWork work{editing_.unsaved(), {}, nullptr};
+    if (measuring_.unsaved()) work.measurements = measuring_.measurements();
+    const LayersControls& layers = panel_->layers_controls();
+    if (layers.unsaved()) work.layers = layers.layers();
+    return work;
 }
 
 /// True if there is none, or it is given up. `once_saved` runs after it was saved.
