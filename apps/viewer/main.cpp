@@ -106,6 +106,9 @@ int main(int argc, char** argv) {
     vtkObject::GlobalWarningDisplayOff();
     QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
     QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
+    // Qt would make 150 % of it 200 %, for which a laptop's screen is too small.
+    QGuiApplication::setHighDpiScaleFactorRoundingPolicy(
+        Qt::HighDpiScaleFactorRoundingPolicy::PassThrough);
     QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
     QApplication::setStyle("fusion");
     int qt_arguments = 1;

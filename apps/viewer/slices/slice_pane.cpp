@@ -45,7 +45,8 @@ SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis), 
     setWhatsThis(
         tr("Wheel: next slice. Left: crosshair. Ctrl+left: the probe, if the mouse is the hand. "
            "Right drag: window (sideways) and level (up, down). Middle drag: move. "
-           "Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home."));
+           "Ctrl+wheel: zoom. Double click: this pane alone, or all again; with Shift: reset. "
+           "Keys: arrows, Page Up and Down, +, -, Home."));
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     setAttribute(Qt::WA_OpaquePaintEvent);

@@ -3088,8 +3088,8 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Schnitt</translation>
     </message>
     <message>
-        <source>Wheel: next slice. Left: crosshair. Ctrl+left: the probe, if the mouse is the hand. Right drag: window (sideways) and level (up, down). Middle drag: move. Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home.</source>
-        <translation>Rad: nächster Schnitt. Links: Fadenkreuz. Strg+Links: die Sonde, wenn die Maus die Hand ist. Rechts ziehen: Fensterbreite (seitwärts) und Fensterlage (auf, ab). Mittlere Taste ziehen: verschieben. Strg+Rad: zoomen. Doppelklick: zurücksetzen. Tasten: Pfeile, Bild auf und ab, +, -, Pos1.</translation>
+        <source>Wheel: next slice. Left: crosshair. Ctrl+left: the probe, if the mouse is the hand. Right drag: window (sideways) and level (up, down). Middle drag: move. Ctrl+wheel: zoom. Double click: this pane alone, or all again; with Shift: reset. Keys: arrows, Page Up and Down, +, -, Home.</source>
+        <translation>Rad: nächster Schnitt. Links: Fadenkreuz. Strg+Links: die Sonde, wenn die Maus die Hand ist. Rechts ziehen: Fensterbreite (seitwärts) und Fensterlage (auf, ab). Mittlere Taste ziehen: verschieben. Strg+Rad: zoomen. Doppelklick: nur dieses Feld oder wieder alle; mit Umschalt: zurücksetzen. Tasten: Pfeile, Bild auf und ab, +, -, Pos1.</translation>
     </message>
     <message>
         <source>%1 slice</source>
