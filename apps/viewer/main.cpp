@@ -13,6 +13,7 @@
 #include "apps/options/view_options.hpp"
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/opening.hpp"
+#include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/preferences.hpp"
 #include "apps/viewer/window/screenshot.hpp"
@@ -28,6 +29,10 @@ void on_signal(int number) {
 }
 
 void open(viewer::MainWindow& window, const app::ViewOptions& options) {
+    // Dialogs begin where the file lies, also those that save.
+    for (const std::string& name : {options.session, options.play, options.run.source.name()}) {
+        if (!name.empty()) viewer::remember_folder(QString::fromStdString(name));
+    }
     if (!options.session.empty()) {
         window.files().open_session(QString::fromStdString(options.session));
     } else if (!options.play.empty()) {
@@ -101,6 +106,9 @@ int main(int argc, char** argv) {
     vtkObject::GlobalWarningDisplayOff();
     QCoreApplication::setAttribute(Qt::AA_EnableHighDpiScaling);
     QCoreApplication::setAttribute(Qt::AA_UseHighDpiPixmaps);
+    // Qt would make 150 % of it 200 %, for which a laptop's screen is too small.
+    QGuiApplication::setHighDpiScaleFactorRoundingPolicy(
+        Qt::HighDpiScaleFactorRoundingPolicy::PassThrough);
     QSurfaceFormat::setDefaultFormat(QVTKOpenGLNativeWidget::defaultFormat());
     QApplication::setStyle("fusion");
     int qt_arguments = 1;

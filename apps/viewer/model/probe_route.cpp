@@ -23,6 +23,20 @@ double front_of(const DepthExtent& extent) {
     return extent.front + 0.02 * (extent.front - extent.back);
 }
 
+/// What the cuts leave of the line through `at` between these depths. Nothing: nothing.
+std::optional<DepthExtent> part_seen(DepthExtent line, const Vec3& at, const Vec3& towards,
+                                     std::span<const CutPlane> cuts) {
+    for (const CutPlane& cut : cuts) {
+        const double slope = cut.normal.dot(towards);
+        const double room = cut.normal.dot(cut.point - at_depth(at, towards, 0));
+        if (slope > 0) line.front = std::min(line.front, room / slope);
+        if (slope < 0) line.back = std::max(line.back, room / slope);
+        if (slope == 0 && room < 0) return std::nullopt;
+    }
+    if (!(line.front > line.back)) return std::nullopt;
+    return line;
+}
+
 }  // namespace
 
 DepthExtent extent_along(const Geometry& geometry, const Vec3& towards) {
@@ -41,19 +55,22 @@ DepthExtent extent_along(const Geometry& geometry, const Vec3& towards) {
 }
 
 std::optional<Vec3> surface_under(const Field& field, double isovalue, const Vec3& at,
-                                  const Vec3& towards) {
+                                  const Vec3& towards, std::span<const CutPlane> cuts) {
     const DepthExtent extent = extent_along(field.geometry(), towards);
-    const Vec3 from = at_depth(at, towards, front_of(extent));
-    const RayHit hit = cast_ray(field, isovalue, from, at_depth(at, towards, extent.back));
+    const auto seen = part_seen({extent.back, front_of(extent)}, at, towards, cuts);
+    if (!seen) return std::nullopt;
+    const Vec3 from = at_depth(at, towards, seen->front);
+    const RayHit hit = cast_ray(field, isovalue, from, at_depth(at, towards, seen->back));
     return hit.hit && hit.point != from ? std::optional(hit.point) : std::nullopt;
 }
 
 std::optional<Vec3> tool_on_surface(const Field& field, double isovalue, const Vec3& at,
-                                    const Vec3& towards, std::span<const Vec3> points) {
-    std::optional<Vec3> rest = surface_under(field, isovalue, at, towards);
+                                    const Vec3& towards, std::span<const Vec3> points,
+                                    std::span<const CutPlane> cuts) {
+    std::optional<Vec3> rest = surface_under(field, isovalue, at, towards, cuts);
     if (!rest) return rest;
     for (const Vec3& point : points) {
-        const auto met = surface_under(field, isovalue, at + point, towards);
+        const auto met = surface_under(field, isovalue, at + point, towards, cuts);
         if (!met) continue;
         const double depth = (*met - point).dot(towards);
         if (depth > rest->dot(towards)) rest = at_depth(*rest, towards, depth);

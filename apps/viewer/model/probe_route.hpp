@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "apps/viewer/model/look.hpp"
 #include "palpate/field.hpp"
 
 namespace palpate::viewer {
@@ -18,16 +19,17 @@ struct DepthExtent {
 DepthExtent extent_along(const Geometry& geometry, const Vec3& towards);
 
 /// Where the surface is first met under a point of the picture, seen from `towards` (a unit vector
-/// to the viewer) [mm, physical]. Nothing beside the surface, and where the solid reaches out of
-/// the grid towards the viewer.
+/// to the viewer) [mm, physical]. `cuts` take away what lies on the side of their normals. Nothing
+/// beside the surface, and where the solid reaches out of the grid or of a cut towards the viewer.
 std::optional<Vec3> surface_under(const Field& field, double isovalue, const Vec3& at,
-                                  const Vec3& towards);
+                                  const Vec3& towards, std::span<const CutPlane> cuts = {});
 
 /// Where a tool's reference point is when the tool, coming from the viewer over a point of the
 /// picture, first touches. `points`: of the tool, turned as it is [mm, physical axes]. Nothing
 /// where surface_under() finds nothing.
 std::optional<Vec3> tool_on_surface(const Field& field, double isovalue, const Vec3& at,
-                                    const Vec3& towards, std::span<const Vec3> points);
+                                    const Vec3& towards, std::span<const Vec3> points,
+                                    std::span<const CutPlane> cuts = {});
 
 /// As surface_under(), under the middle of the grid, or under the point nearest to it that has a
 /// surface.

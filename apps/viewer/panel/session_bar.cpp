@@ -14,7 +14,7 @@
 
 #include "apps/options/words.hpp"
 #include "apps/viewer/model/hands.hpp"
-#include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/model/ruler.hpp"
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/level_axis.hpp"
 
@@ -253,13 +253,13 @@ void SessionBar::show_snapshot(const Snapshot& now) {
     refresh();
     const Tick& tick = now.session.tick;
     gauge_->set_force(tick.force.norm(), limit(), QString::fromStdString(words));
+    const Ruler ruler = ruler_of(effect_.field().geometry());
     const double apart = (tick.proxy.scp - tick.proxy.hip).norm();
     const bool touching = tick.proxy.mode == palpate::Mode::constrained;
     QString text = (touching ? tr("In contact, pull %1 mm (%2 %3 in the volume)")
                              : tr("Free, pull %1 mm (%2 %3 in the volume)"))
                        .arg(apart / now.session.transform.scale, 0, 'f', 2)
-                       .arg(apart, 0, 'f', 2)
-                       .arg(unit_word(effect_.field().geometry()));
+                       .arg(QString::fromStdString(ruler.number(apart, 2)), QString(ruler.unit));
     if (tick.tool.contacts > 0) {
         text += '\n' + tr("%n points of the tool hold, torque %1 N mm", nullptr, tick.tool.contacts)
                            .arg(tick.torque.norm(), 0, 'f', 1);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/model/ruler.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -111,11 +111,11 @@ Vec3 index_from_slice(const SlicePlane& plane, const Geometry& geometry, const V
 std::string position_text(const SlicePlane& plane, const Geometry& geometry, const Vec3& physical) {
     const Vec3 axis = geometry.direction.col(plane.axis);
     double at = (axis[plane.anatomical] > 0 ? 1 : -1) * axis.dot(physical);
-    if (std::abs(at) < 0.005) at = 0;  // as it will be shown
-    char text[32];
-    std::snprintf(text, sizeof text, "%s %.2f %s", end_of(geometry, plane.anatomical, at >= 0),
-                  std::abs(at), unit_word(geometry));
-    return text;
+    const Ruler ruler = ruler_of(geometry);
+    const std::string number = ruler.number(std::abs(at), 2);
+    if (number.find_first_not_of("0.") == std::string::npos) at = 0;  // as it is shown
+    return std::string(end_of(geometry, plane.anatomical, at >= 0)) + " " + number + " " +
+           ruler.unit;
 }
 
 }  // namespace palpate::viewer

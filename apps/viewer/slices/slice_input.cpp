@@ -66,7 +66,10 @@ void SlicePane::mouseReleaseEvent(QMouseEvent* event) {
     if (event->button() == of_drag) drag_ = Drag::none;
 }
 
-void SlicePane::mouseDoubleClickEvent(QMouseEvent*) {
+/// Two drags soon after another begin like a double click.
+void SlicePane::mouseDoubleClickEvent(QMouseEvent* event) {
+    const bool asked = event->button() == Qt::LeftButton && event->modifiers() & Qt::ShiftModifier;
+    if (!asked) return mousePressEvent(event);
     if (content_) reset();
 }
 

@@ -3,6 +3,7 @@
 
 #include <QFontMetrics>
 #include <QHelpEvent>
+#include <QKeyEvent>
 #include <QPainter>
 #include <QToolTip>
 
@@ -11,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "apps/viewer/model/ruler.hpp"
 #include "apps/viewer/slices/slice_content.hpp"
 #include "apps/viewer/slices/slice_marks.hpp"
 #include "apps/viewer/slices/slice_picture.hpp"
@@ -26,6 +28,10 @@ constexpr double least_zoom = 0.2, most_zoom = 200;
 /// The narrowest window, as a part of the data's range.
 constexpr double narrowest = 1e-4;
 
+bool is_zoom_key(int key) {
+    return key == Qt::Key_Plus || key == Qt::Key_Equal || key == Qt::Key_Minus;
+}
+
 GreyWindow whole_range(const Field& field) {
     const double low = field.volume().minimum();
     return {low, low + field.volume().range()};
@@ -39,7 +45,8 @@ SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis), 
     setWhatsThis(
         tr("Wheel: next slice. Left: crosshair. Ctrl+left: the probe, if the mouse is the hand. "
            "Right drag: window (sideways) and level (up, down). Middle drag: move. "
-           "Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home."));
+           "Ctrl+wheel: zoom. Double click: this pane alone, or all again; with Shift: reset. "
+           "Keys: arrows, Page Up and Down, +, -, Home."));
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     setAttribute(Qt::WA_OpaquePaintEvent);
@@ -336,9 +343,10 @@ std::vector<SliceWords> SlicePane::words_in() const {
     const Vec3 at = point_at(*pointer_);
     const Vec3 index = index_from_physical(geometry(), at);
     if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return all;
-    const auto mm = [](double x) { return QString::number(x, 'f', 1); };
+    const Ruler ruler = ruler_of(geometry());
+    const auto number = [&](double mm) { return QString::fromStdString(ruler.number(mm)); };
     QStringList words{QString("(%1, %2, %3) %4")
-                          .arg(mm(at[0]), mm(at[1]), mm(at[2]), QString(unit_word(geometry()))),
+                          .arg(number(at[0]), number(at[1]), number(at[2]), QString(ruler.unit)),
                       QString::number(value_there(at), 'g', 6)};
     if (shown_.overlay && shown_.look.overlay.shown) {
         const QString there = overlay_words(*shown_.overlay, at);
@@ -359,6 +367,12 @@ bool SlicePane::event(QEvent* event) {
             QToolTip::hideText();
             event->ignore();
         }
+        return true;
+    }
+    // With the focus here, these keys are not the menu's.
+    if (event->type() == QEvent::ShortcutOverride && content_ &&
+        is_zoom_key(static_cast<QKeyEvent*>(event)->key())) {
+        event->accept();
         return true;
     }
     return QWidget::event(event);

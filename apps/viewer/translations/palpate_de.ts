@@ -47,6 +47,10 @@
         <source>Volumes (%1);;All files (*)</source>
         <translation>Volumen (%1);;Alle Dateien (*)</translation>
     </message>
+    <message>
+        <source>%1 exists already. Replace it?</source>
+        <translation>%1 gibt es schon. Ersetzen?</translation>
+    </message>
 </context>
 <context>
     <name>ForceRows</name>
@@ -887,6 +891,10 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
             <numerusform>%1 gespeichert, %2 Dreieck</numerusform>
             <numerusform>%1 gespeichert, %2 Dreiecke</numerusform>
         </translation>
+    </message>
+    <message>
+        <source>Volumes (%1)</source>
+        <translation>Volumen (%1)</translation>
     </message>
 </context>
 <context>
@@ -2765,6 +2773,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>Turn the tool up</source>
         <translation>Werkzeug nach oben drehen</translation>
     </message>
+    <message>
+        <source>Nothing can be touched here from in front of the cut</source>
+        <translation>Hier lässt sich von vor dem Schnitt aus nichts berühren</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::RawDialog</name>
@@ -3076,8 +3088,8 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Schnitt</translation>
     </message>
     <message>
-        <source>Wheel: next slice. Left: crosshair. Ctrl+left: the probe, if the mouse is the hand. Right drag: window (sideways) and level (up, down). Middle drag: move. Ctrl+wheel: zoom. Double click: reset. Keys: arrows, Page Up and Down, +, -, Home.</source>
-        <translation>Rad: nächster Schnitt. Links: Fadenkreuz. Strg+Links: die Sonde, wenn die Maus die Hand ist. Rechts ziehen: Fensterbreite (seitwärts) und Fensterlage (auf, ab). Mittlere Taste ziehen: verschieben. Strg+Rad: zoomen. Doppelklick: zurücksetzen. Tasten: Pfeile, Bild auf und ab, +, -, Pos1.</translation>
+        <source>Wheel: next slice. Left: crosshair. Ctrl+left: the probe, if the mouse is the hand. Right drag: window (sideways) and level (up, down). Middle drag: move. Ctrl+wheel: zoom. Double click: this pane alone, or all again; with Shift: reset. Keys: arrows, Page Up and Down, +, -, Home.</source>
+        <translation>Rad: nächster Schnitt. Links: Fadenkreuz. Strg+Links: die Sonde, wenn die Maus die Hand ist. Rechts ziehen: Fensterbreite (seitwärts) und Fensterlage (auf, ab). Mittlere Taste ziehen: verschieben. Strg+Rad: zoomen. Doppelklick: nur dieses Feld oder wieder alle; mit Umschalt: zurücksetzen. Tasten: Pfeile, Bild auf und ab, +, -, Pos1.</translation>
     </message>
     <message>
         <source>%1 slice</source>

@@ -46,6 +46,15 @@ SurfaceMesh surface_of(const Field& field, double isovalue, const io::Progress& 
     return extract_surface(field, isovalue, options);
 }
 
+/// The filter of a dialog: all that a volume can be saved as.
+QString saved_volumes() {
+    QStringList patterns;
+    for (const std::string_view extension : io::written_extensions()) {
+        patterns << "*" + QString::fromUtf8(extension.data(), int(extension.size()));
+    }
+    return EditController::tr("Volumes (%1)").arg((patterns << "*.zarr").join(' '));
+}
+
 }  // namespace
 
 EditController::EditController(const Desk& desk) : Controller(desk), saving_(messages_) {
@@ -121,7 +130,8 @@ void EditController::ask_save(std::function<void()> then) {
     if (base.endsWith("." + suffix, Qt::CaseInsensitive)) base.chop(suffix.size() + 1);
     if (!content_.saved_elsewhere()) base += "-edited";
     const QString path =
-        ask_save_name(messages_.window(), tr("Save the volume"), base + "." + suffix, suffix);
+        ask_save_name(messages_.window(), tr("Save the volume"), base + "." + suffix, suffix, true,
+                      streamed ? QString() : saved_volumes());
     if (!path.isEmpty()) save(path, std::move(then));
 }
 
@@ -139,7 +149,7 @@ void EditController::save(const QString& path, std::function<void()> then) {
             ? tr(": it opens as the edited volume while the original stays where it is")
             : QString::fromStdString(io::opening_words(file, data->loaded().volume));
     saving_.start(
-        tr("Saving %1").arg(path),
+        tr("Saving %1").arg(short_name(path)),
         [file, data](const io::Progress& progress) { data->save(file, progress); },
         [this, path, words, data, then = std::move(then)] {
             if (content_.editor()) {  // of a sequence only one frame was saved
@@ -199,7 +209,7 @@ void EditController::write_surface(const QString& path, const std::shared_ptr<Su
         if (most < mesh->triangles.size()) *mesh = decimated(*mesh, most, progress);
         io::write_mesh(*mesh, path.toStdString(), progress);
     };
-    saving_.start(tr("Saving %1").arg(path), write, [this, path, mesh] {
+    saving_.start(tr("Saving %1").arg(short_name(path)), write, [this, path, mesh] {
         const auto triangles = static_cast<int>(mesh->triangles.size());
         messages_.show_done(
             tr("Saved %1, %2 triangles", nullptr, triangles).arg(path, count_text(triangles)));

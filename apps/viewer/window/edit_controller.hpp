@@ -42,6 +42,7 @@ class EditController : public Controller {
     /// More triangles than this are many.
     void set_many_triangles(std::size_t triangles) { many_triangles_ = triangles; }
     bool saving() const { return saving_.busy(); }
+    BackgroundTask& saver() { return saving_; }
 
     /// True if there are no unsaved edits, or the user goes on without them. Offers to save them,
     /// and calls `once_saved` when that is done. False while the volume is being saved.

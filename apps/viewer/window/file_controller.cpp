@@ -50,13 +50,25 @@ FileController::FileController(const Desk& desk, RunController& run, LayersContr
       measuring_(measuring),
       loader_(messages_) {}
 
+void FileController::guard(std::function<UnsavedWork()> unsaved,
+                           std::function<void(const std::function<void()>&)> settle) {
+    unsaved_ = std::move(unsaved);
+    settle_ = std::move(settle);
+}
+
+void FileController::read(const QString& label, Worker::Task task, std::function<void()> then) {
+    loader_.start(label, std::move(task), [this, before = unsaved_(), then = std::move(then)] {
+        unsaved_() == before ? then() : settle_(then);
+    });
+}
+
 void FileController::load(const run::Source& source, Then then) {
     struct Result {
         std::shared_ptr<Opened> opened;
         std::optional<io::SeriesChoice> choice;
     };
     auto result = std::make_shared<Result>();
-    loader_.start(
+    read(
         tr("Reading %1").arg(short_name(QString::fromStdString(name_of(source)))),
         [result, source](const io::Progress& progress) {
             try {
@@ -237,7 +249,7 @@ void FileController::open_recording(const QString& path) {
 
 void FileController::play(std::shared_ptr<Opened> opened, const QString& path) {
     auto result = std::make_shared<std::vector<Playback>>();
-    loader_.start(
+    read(
         tr("Reading %1").arg(short_name(path)),
         [result, opened, path](const io::Progress& progress) {
             *result = Playback::read_hands(path_of(path), opened->loaded, progress);

@@ -5,11 +5,15 @@
 #include <QString>
 #include <functional>
 #include <memory>
+#include <vector>
 
+#include "apps/viewer/model/layer_set.hpp"
+#include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "palpate/io/orientation.hpp"
+#include "palpate/samples.hpp"
 
 namespace palpate::viewer {
 
@@ -21,6 +25,14 @@ class RunController;
 struct Opened;
 struct RunRequest;
 
+/// What would be lost with the volume that is open.
+struct UnsavedWork {
+    std::shared_ptr<const Samples> edits;
+    std::vector<Measurement> measurements;
+    SharedLayers layers;
+    bool operator==(const UnsavedWork&) const = default;
+};
+
 /// Errors are shown; what was open then stays open, as long as the new file cannot be read.
 class FileController : public Controller {
     Q_OBJECT
@@ -29,6 +41,11 @@ class FileController : public Controller {
     FileController(const Desk& desk, RunController& run, LayersController& layers,
                    RecordingController& recordings, DisplayController& display,
                    MeasureController& measuring);
+
+    /// The volume that is open can be changed while a file is read. If it was, `settle` is called
+    /// before the file takes its place: it calls the action once the work is saved or given up.
+    void guard(std::function<UnsavedWork()> unsaved,
+               std::function<void(const std::function<void()>&)> settle);
 
     /// A volume, a folder, a session, layers or a recording: its name tells which. Asks for the
     /// layout where lacks_layout().
@@ -60,6 +77,7 @@ class FileController : public Controller {
 
   private:
     using Then = std::function<void(std::shared_ptr<Opened>)>;
+    void read(const QString& label, Worker::Task task, std::function<void()> then);
     void load(const run::Source& source, Then then);
     void feel_again(const run::Source& source);
     void tell_choices(const Opened& opened);
@@ -79,6 +97,8 @@ class FileController : public Controller {
     DisplayController& display_;
     MeasureController& measuring_;
     BackgroundTask loader_;
+    std::function<UnsavedWork()> unsaved_ = [] { return UnsavedWork(); };
+    std::function<void(const std::function<void()>&)> settle_;
 };
 
 }  // namespace palpate::viewer

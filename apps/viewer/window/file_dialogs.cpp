@@ -6,6 +6,7 @@
 #include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QMessageBox>
 #include <QSettings>
 
 #include "palpate/io/address.hpp"
@@ -31,9 +32,17 @@ QString ask_file(QWidget* window, const QString& title, const QString& filter) {
     return QFileDialog::getOpenFileName(window, title, last_folder(), filter);
 }
 
-/// A synthetic volume or a web address.
+/// A synthetic volume, a live source or a web address.
 bool is_no_file(const QString& path) {
-    return path.startsWith("synthetic:") || io::is_web_address(path.toStdString());
+    return path.startsWith("synthetic:") || path.startsWith("live:") ||
+           io::is_web_address(path.toStdString());
+}
+
+bool may_replace(QWidget* window, const QString& path) {
+    return QMessageBox::question(
+               window, "Palpate",
+               FileDialogs::tr("%1 exists already. Replace it?").arg(short_name(path))) ==
+           QMessageBox::Yes;
 }
 
 }  // namespace
@@ -63,9 +72,16 @@ QString ask_save_name(QWidget* window, const QString& title, const QString& name
     dialog.setDefaultSuffix(suffix);
     dialog.setOption(QFileDialog::DontConfirmOverwrite, !replaces);
     dialog.selectFile(name);
-    if (dialog.exec() != QDialog::Accepted) return {};
-    QSettings().setValue("folder", dialog.directory().absolutePath());
-    return dialog.selectedFiles().value(0);
+    while (dialog.exec() == QDialog::Accepted) {
+        QSettings().setValue("folder", dialog.directory().absolutePath());
+        const QString path = dialog.selectedFiles().value(0);
+        const bool whole = !filter.isEmpty() || path.endsWith("." + suffix, Qt::CaseInsensitive);
+        if (whole) return path;
+        // The dialog adds none to "day.2", which would not open again as what it is.
+        const QString longer = path + "." + suffix;
+        if (!replaces || !QFileInfo::exists(longer) || may_replace(window, longer)) return longer;
+    }
+    return {};
 }
 
 QString ask_open_raw_name(QWidget* window) {
@@ -87,6 +103,7 @@ void remember_folder(const QString& path) {
 }
 
 void remember_file(const QString& path) {
+    if (path.contains(QChar::ReplacementCharacter)) return;  // not UTF-8: it would not be found
     const QString name = is_no_file(path) ? path : QFileInfo(path).absoluteFilePath();
     QStringList recent = recent_files();
     recent.removeAll(name);
@@ -100,6 +117,10 @@ QStringList recent_files() {
 
 QString time_stamp() {
     return QDateTime::currentDateTime().toString("yyyyMMdd-hhmmss");
+}
+
+QString on_button(QString name) {
+    return name.replace('&', "&&");
 }
 
 QString short_name(const QString& path) {

@@ -16,9 +16,9 @@ QString ask_open_folder(QWidget* window);
 QString ask_open_raw_name(QWidget* window);
 QString ask_open_layers_name(QWidget* window);
 QString ask_open_tool_name(QWidget* window);
-/// A name without an extension gets `suffix`. `replaces`: the dialog asks before an existing file
-/// is replaced; false for files that are never replaced. `filter`: of the
-/// files shown, without it those with the suffix.
+/// `replaces`: the dialog asks before an existing file is replaced; false for files that are never
+/// replaced. `filter`: of the files shown, and a name without an extension gets `suffix`. Without
+/// it, files with the suffix are shown, and every name gets it that has it not.
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,
                       const QString& suffix, bool replaces = true, const QString& filter = {});
 
@@ -30,6 +30,8 @@ QStringList recent_files();
 
 /// For names of new files: "20260130-174501".
 QString time_stamp();
+/// As the text of a button or a menu's entry, which would take "&" for the mark of a key.
+QString on_button(QString name);
 /// The name without its folder, for titles and messages.
 QString short_name(const QString& path);
 

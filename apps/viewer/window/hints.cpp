@@ -5,7 +5,7 @@
 #include <QStringList>
 
 #include "apps/viewer/model/hands.hpp"
-#include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/model/ruler.hpp"
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/names.hpp"
@@ -211,9 +211,10 @@ void Hints::show_depth(const std::optional<Snapshot>& now) {
     const ProxyUpdate& proxy = now->session.tick.proxy;
     const QString felt = felt_text(now->session.tick.layers, content_.layers());
     const QString layer = felt.isEmpty() ? QString() : felt + ": ";
+    const Ruler ruler = ruler_of(content_.live()->field().geometry());
+    const std::string depth = ruler.number((proxy.hip - proxy.scp).norm());
     const QString words = layer + tr("%1 %2 deep, %3 N")
-                                      .arg((proxy.hip - proxy.scp).norm(), 0, 'f', 1)
-                                      .arg(unit_word(content_.live()->field().geometry()))
+                                      .arg(QString::fromStdString(depth), QString(ruler.unit))
                                       .arg(now->session.tick.force.norm(), 0, 'f', 1);
     const Pixel hand = pixel_of(scene_.camera(), scene_.view_size(), proxy.hip);
     const int line = scene_.fontMetrics().height();

@@ -24,6 +24,7 @@
 
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
+#include "apps/viewer/model/ruler.hpp"
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
@@ -106,6 +107,7 @@ void MainWindow::build() {
     layout->setSpacing(0);
     layout->addWidget(make_progress_strip(files_.loader()));
     layout->addWidget(make_progress_strip(overlays_.loader()));
+    layout->addWidget(make_progress_strip(editing_.saver()));
     layout->addWidget(make_progress_strip(layers_.reader()));
     layout->addWidget(make_progress_strip(run_.reader()));
     setCentralWidget(centre);
@@ -145,6 +147,8 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::closed, this, outline_brush);
     connect(&panel_->isovalue_controls(), &IsovalueControls::dequantize_wanted, this,
             [this](bool on) { editing_.settle_edits([this, on] { files_.dequantize(on); }); });
+    files_.guard([this] { return unsaved_work(); },
+                 [this](const std::function<void()>& action) { settle_work(action); });
     connect(&content_, &Content::closed, this, &MainWindow::show_title);
     connect(&content_, &Content::run_started, this, &MainWindow::show_title);
     connect(&content_, &Content::playback_started, this, &MainWindow::show_title);
@@ -215,6 +219,14 @@ void MainWindow::ask_grid() {
 
 void MainWindow::settle_work(const std::function<void()>& action) {
     if (may_lose_work([this, action] { settle_work(action); })) action();
+}
+
+UnsavedWork MainWindow::unsaved_work() const {
+    UnsavedWork work{editing_.unsaved(), {}, nullptr};
+    if (measuring_.unsaved()) work.measurements = measuring_.measurements();
+    const LayersControls& layers = panel_->layers_controls();
+    if (layers.unsaved()) work.layers = layers.layers();
+    return work;
 }
 
 /// True if there is none, or it is given up. `once_saved` runs after it was saved.
@@ -313,15 +325,17 @@ void MainWindow::show_readout(const Snapshot& now) {
     const Vec3& at = now.session.tick.proxy.scp;
     if (!at.allFinite()) return readout_->clear();
     const QString units = QString::fromStdString(content_.volume()->loaded.values.units);
-    const auto number = [](double value) { return QString::number(value, 'f', 1); };
+    const Ruler ruler = ruler_of(content_.volume()->loaded.volume.geometry());
+    const auto number = [&](double mm) { return QString::fromStdString(ruler.number(mm)); };
     QString words = felt_text(now.session.tick.layers, content_.layers());
     if (!words.isEmpty()) words += "   ";
-    const QString unit = unit_word(content_.volume()->loaded.volume.geometry());
+    const QString unit = ruler.unit;
     words += QString("%1, %2, %3 %4").arg(number(at[0]), number(at[1]), number(at[2]), unit);
     if (const auto field = content_.felt_round(now, at)) {
+        const double slope = gradient_at(*field, at).norm() / ruler.per_mm;
         words += "   " + tr("%1 %2   slope %3 /%4")
                              .arg(QString::number(value_at(*field, at), 'g', 4), units,
-                                  QString::number(gradient_at(*field, at).norm(), 'g', 3), unit);
+                                  QString::number(slope, 'g', 3), unit);
     }
     readout_->setText(words);
 }

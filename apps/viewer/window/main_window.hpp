@@ -91,6 +91,7 @@ class MainWindow : public QMainWindow {
     void connect_welcome();
     void show_title();
     void show_grid();
+    UnsavedWork unsaved_work() const;
     bool may_lose_work(const std::function<void()>& once_saved);
     void restore_layout();
     void use(const Preferences& preferences);

@@ -99,7 +99,7 @@ void add_menu(QToolBar& bar, QMenu& menu, Shape shape) {
 void MainWindow::fill_recent(QMenu& menu) {
     menu.clear();
     for (const QString& path : recent_files()) {
-        connect(menu.addAction(path), &QAction::triggered, this,
+        connect(menu.addAction(on_button(path)), &QAction::triggered, this,
                 [this, path] { settle_work([this, path] { files_.open_path(path); }); });
     }
     if (menu.isEmpty()) menu.addAction(tr("nothing yet"))->setEnabled(false);

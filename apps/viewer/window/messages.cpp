@@ -42,6 +42,7 @@ void Messages::show_problem(const QString& what, int status) {
     std::fprintf(stderr, "palpate: %s\n", what.toLocal8Bit().constData());
     auto* box = new QMessageBox(QMessageBox::Warning, "Palpate", what, QMessageBox::Ok, window_);
     box->setObjectName("problem");
+    box->setTextFormat(Qt::PlainText);  // also of a file with a name like "<b>"
     box->setTextInteractionFlags(Qt::TextSelectableByMouse);
     box->setAttribute(Qt::WA_DeleteOnClose);
     box->open();  // does not block the live run
@@ -82,6 +83,8 @@ void BackgroundTask::abandon() {
 
 QWidget* make_progress_strip(BackgroundTask& task) {
     auto* label = new QLabel;
+    label->setTextFormat(Qt::PlainText);
+    label->setMinimumWidth(1);  // a long name must not make the window wider
     auto* bar = new QProgressBar;
     bar->setRange(0, 100);
     auto* cancel = named(new QPushButton(BackgroundTask::tr("Cancel")), "cancel");
@@ -93,6 +96,7 @@ QWidget* make_progress_strip(BackgroundTask& task) {
     QObject::connect(cancel, &QPushButton::clicked, &task, &BackgroundTask::cancel);
     QObject::connect(&task, &BackgroundTask::began, strip, [=](const QString& what) {
         label->setText(what);
+        label->setToolTip("<p>" + what.toHtmlEscaped() + "</p>");
         bar->setValue(0);
         strip->show();
     });

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "apps/viewer/model/probe_route.hpp"
+#include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
@@ -142,6 +143,7 @@ void ProbeController::send_to(const DeviceTransform& transform, const Vec3& to) 
     route_ =
         route_in_front(content_.live()->field().geometry(), aimed(transform), to, towards_viewer());
     std::ranges::reverse(route_);
+    behind_cut_ = false;
     aim(transform, route_.back());
     Q_EMIT lifted(true);
 }
@@ -178,16 +180,24 @@ void ProbeController::touch(const Vec3& at) {
     const Vec3 aside = at - from - (at - from).dot(towards) * towards;
     const double grab = grab_px * mm_per_pixel(views_.scene().camera(), views_.scene().view_size());
     const Content::OuterSurface outer = content_.outer_surface();
+    const Geometry& geometry = content_.live()->field().geometry();
+    const auto cuts = planes_of(views_.shown().look, geometry);
     const auto surface =
-        tool_on_surface(outer.field, outer.level, at, towards, tool_points(transform));
+        tool_on_surface(outer.field, outer.level, at, towards, tool_points(transform), cuts);
+    if (!surface && !cuts.empty()) {
+        messages_.show_done(tr("Nothing can be touched here from in front of the cut"));
+    }
     if (!surface) return;
     const ProxyUpdate& proxy = now->session.tick.proxy;
     const double away = std::abs((proxy.scp - *surface).dot(towards));
-    const double near = grab_voxels * content_.live()->field().geometry().spacing.maxCoeff();
+    const double voxel = geometry.spacing.maxCoeff(), near = grab_voxels * voxel;
     if (aside.norm() <= grab && away <= near && proxy.mode == Mode::constrained) return;
     const double stiffness = content_.live()->settings().force.stiffness;
     const double depth = transform.scale * std::min(touch_newtons / stiffness, deepest_touch);
     send_to(transform, *surface - depth * towards);
+    // What is cut away would stop the proxy: it is put down behind that, just off what is seen.
+    behind_cut_ = !cuts.empty();
+    if (behind_cut_) route_.insert(route_.begin() + 1, *surface + off_voxels * voxel * towards);
 }
 
 void ProbeController::observe() {
@@ -221,9 +231,11 @@ void ProbeController::approach(const Snapshot& now) {
 
 void ProbeController::travel(const Snapshot& now) {
     const Vec3 away = now.session.device.position - content_.live()->mouse()->aimed();
-    if (away.norm() > arrived_mm) return;
-    // In front of the volume nothing is in the way of the proxy, whatever held it.
-    if (route_.size() == 2) content_.effect().request(command::Lift{});
+    const bool arrived = away.norm() <= arrived_mm;
+    // In front of the volume nothing is in the way of the proxy, whatever held it. On the way
+    // through what is cut away, it stays with the hand.
+    if (route_.size() == 2 && (arrived || behind_cut_)) content_.effect().request(command::Lift{});
+    if (!arrived) return;
     if (route_.size() == 1) return end_route();
     route_.pop_back();
     aim(now.session.transform, route_.back());

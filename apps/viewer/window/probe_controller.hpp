@@ -64,6 +64,7 @@ class ProbeController : public Controller {
     // A run has begun: to the first surface, once there is a tick and the hand is chosen.
     PerHand<bool> approaching_;
     std::vector<Vec3> route_;      // stops to come, the next one last [mm, physical]
+    bool behind_cut_ = false;      // its last part but one goes through what is cut away
     std::optional<Vec3> pressed_;  // where the button went down, until it is a touch or a drag
     QElapsedTimer since_;          // then
     bool held_ = false;            // since then, without a drag

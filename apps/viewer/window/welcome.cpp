@@ -99,10 +99,10 @@ void Welcome::refresh() {
     for (const QString& path : files) {
         const QString name =
             fontMetrics().elidedText(short_name(path), Qt::ElideMiddle, longest_name);
-        auto* link = new QPushButton(name);
+        auto* link = new QPushButton(on_button(name));
         link->setFlat(true);
         link->setStyleSheet("text-align: left; padding: 2px 8px;");
-        link->setToolTip(path);
+        link->setToolTip("<p>" + path.toHtmlEscaped() + "</p>");
         connect(link, &QPushButton::clicked, this, [this, path] { Q_EMIT recent_chosen(path); });
         recent_->layout()->addWidget(link);
     }

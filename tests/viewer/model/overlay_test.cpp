@@ -5,6 +5,7 @@
 
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/overlay.hpp"
+#include "apps/viewer/model/ruler.hpp"
 #include "apps/viewer/model/transfer.hpp"
 #include "palpate/field.hpp"
 #include "support/fields.hpp"
@@ -103,6 +104,24 @@ TEST(ColourMap, goes_from_dark_to_bright_and_unknown_ones_are_refused) {
     for (std::uint32_t i = 0; i < 256; ++i) EXPECT_EQ(grey[i], 0xff000000U | 0x010101U * i);
     EXPECT_THROW((void)colour_table("beige"), std::invalid_argument);
     for (int i = 1; i < 30; ++i) EXPECT_FALSE(label_colour(i) == label_colour(i + 1));
+}
+
+TEST(Measurement, has_the_unit_and_the_decimals_of_its_grid) {
+    const auto text = [](double spacing, double mm, bool measured = true) {
+        Geometry grid;
+        grid.spacing = Vec3::Constant(spacing);
+        grid.measured = measured;
+        const Ruler ruler = ruler_of(grid);
+        return ruler.number(mm) + " " + ruler.unit;
+    };
+    EXPECT_EQ(text(1, 12.34), "12.3 mm");
+    EXPECT_EQ(text(0.5, 12.34), "12.3 mm");
+    EXPECT_EQ(text(0.04, 12.34), "12.340 mm");
+    EXPECT_EQ(text(0.005, 0.0123), "12.3 µm");
+    EXPECT_EQ(text(0.0003, 0.0123), "12.30 µm");
+    EXPECT_EQ(text(1, 12.34, false), "12.3 voxel");
+    EXPECT_EQ(text(1, -0.01), "0.0 mm");
+    EXPECT_EQ(text(1e-9, 1e-9), "0.000001 µm") << "digits end somewhere";
 }
 
 TEST(Measurement, is_put_into_words) {

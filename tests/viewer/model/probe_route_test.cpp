@@ -22,6 +22,16 @@ TEST(ProbeRoute, a_click_meets_the_surface_nearest_to_the_viewer) {
     EXPECT_NEAR(((*front + *back) / 2 - centre).norm(), 0, 0.1);
     const Vec3 corner = physical_from_index(field.geometry(), Vec3(1, 1, 20));
     EXPECT_FALSE(surface_under(field, scene.isovalue, corner, towards)) << "beside the ball";
+    const auto under = [&](const Vec3& point, const Vec3& normal) {
+        const CutPlane cuts[] = {{point, normal}};
+        return surface_under(field, scene.isovalue, centre, towards, cuts);
+    };
+    EXPECT_EQ(under(centre, -towards), front) << "behind it all is cut away";
+    EXPECT_FALSE(under(centre, towards)) << "the cut goes through the solid";
+    EXPECT_FALSE(under(*front + 5 * towards, -towards)) << "all that lies there is cut away";
+    const Vec3 aside = towards.unitOrthogonal();
+    EXPECT_EQ(under(centre - aside, -aside), front);
+    EXPECT_FALSE(under(centre + aside, -aside));
     EXPECT_EQ(surface_in_view(field, scene.isovalue, towards, up), front);
 }
 

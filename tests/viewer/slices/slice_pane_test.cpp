@@ -53,7 +53,7 @@ TEST(SlicePane, as_a_hand_it_aims_the_probe_with_ctrl_only) {
     EXPECT_TRUE(shown.chosen.empty());
     shown.drag(Qt::LeftButton, {150, 150}, {250, 190});
     QTest::mouseClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, {200, 180});
-    QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, {200, 180});
+    QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::ShiftModifier, {200, 180});
     EXPECT_EQ(shown.aimed.size(), 2U);
     EXPECT_EQ(shown.chosen.size(), 3U);
 }
@@ -103,7 +103,7 @@ TEST(SlicePane, zooming_keeps_what_is_under_the_pointer_and_a_double_click_shows
     EXPECT_LT((shown.pane.point_at(at) - before).norm(), 1e-9);
     EXPECT_GT((shown.pane.point_at(QPointF(0, 0)) - corner).norm(), 3);
     EXPECT_TRUE(shown.chosen.empty());
-    QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, at);
+    QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::ShiftModifier, at);
     EXPECT_LT((shown.pane.point_at(QPointF(0, 0)) - corner).norm(), 1e-9);
 }
 
@@ -125,7 +125,13 @@ TEST(SlicePane, the_right_button_changes_grey_levels_and_a_double_click_brings_t
     EXPECT_EQ(shown.windows[0].low, shown.pane.grey_window().low);
     shown.drag(Qt::RightButton, {100, 100}, {-4000, 60});
     EXPECT_LT(shown.pane.grey_window().low, shown.pane.grey_window().high);
-    QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::NoModifier, {10, 10});
+    const double high = shown.pane.grey_window().high;
+    for (const auto button : {Qt::RightButton, Qt::MiddleButton}) {
+        QTest::mouseDClick(&shown.pane, button, Qt::NoModifier, {10, 10});
+        QTest::mouseRelease(&shown.pane, button, Qt::NoModifier, {10, 10});
+        EXPECT_EQ(shown.pane.grey_window().high, high) << "the next of two quick drags";
+    }
+    QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::ShiftModifier, {10, 10});
     EXPECT_EQ(shown.pane.grey_window().low, 0.25);
     EXPECT_EQ(shown.pane.grey_window().high, 0.75);
 }
@@ -301,7 +307,7 @@ TEST(SlicePane, empty_or_emptied_in_the_middle_of_a_drag_it_takes_everything) {
         shown.drag(Qt::RightButton, {10, 10}, {50, 50});
         shown.wheel({10, 10}, 120);
         QTest::keyClick(&shown.pane, Qt::Key_Up);
-        QTest::mouseDClick(&shown.pane, Qt::LeftButton);
+        QTest::mouseDClick(&shown.pane, Qt::LeftButton, Qt::ShiftModifier);
         set(shown.pane, &Shown::crosshair, {1, 2, 3});
         set(shown.pane, &Shown::isovalue, 3);
         shown.pane.show_snapshot(contact_at({1, 2, 3}, {4, 5, 6}, {1, 1, 1}));

@@ -148,6 +148,10 @@ TEST(SlicePlane, the_position_names_the_side_of_the_body_it_lies_on) {
     EXPECT_EQ(position_text(slice_plane(mirrored, 2), mirrored, {1, 2, 12.5}), "S 12.50 mm");
     EXPECT_EQ(position_text(slice_plane(mirrored, 2), mirrored, {1, 2, -3}), "I 3.00 mm");
     EXPECT_EQ(position_text(slice_plane(mirrored, 0), mirrored, {-4, 2, 9}), "R 4.00 mm");
+    const double fine = 0.0003;  // a microscope's
+    const Geometry cell =
+        grid({4, 5, 6}, Vec3::Constant(fine), Vec3::Zero(), columns(-left, back, -head));
+    EXPECT_EQ(position_text(slice_plane(cell, 2), cell, {1, 2, 2 * fine}), "S 0.60 µm");
 }
 
 /// A value that tells its place, on a mirrored and turned grid.

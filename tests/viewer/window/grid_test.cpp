@@ -6,6 +6,7 @@
 #include <QLabel>
 #include <QPointer>
 #include <QPushButton>
+#include <QRegularExpression>
 #include <QStatusBar>
 
 #include "apps/viewer/model/session_file.hpp"
@@ -116,6 +117,21 @@ TEST_F(Grid, without_a_spacing_says_so_and_takes_one) {
     ends_in("mm");
     EXPECT_EQ(badge().text(), "No orientation in the file");
     EXPECT_TRUE(badge().isVisible());
+}
+
+TEST_F(Grid, of_a_microscope_is_told_in_micrometres) {
+    write("d.nrrd",
+          "space directions: (0.0002,0,0) (0,0.0002,0) (0,0,0.0002)\nspace: RAS\n"
+          "kinds: space space space\n");
+    feel(scratch("d.nrrd").toStdString());
+    press_until_force();
+    for (const char* name : {"depth", "contact", "readout"}) {
+        auto& label = part<QLabel>(name);
+        wait_until([&] { return label.text().contains("µm"); });
+        EXPECT_FALSE(label.text().contains(QRegularExpression("\\b0\\.0+ (mm|µm)")))
+            << name << ": " << label.text().toStdString();
+    }
+    EXPECT_TRUE(part<QLabel>("readout").text().endsWith("/µm"));
 }
 
 TEST_F(Grid, of_a_body_or_of_no_file_needs_no_words) {

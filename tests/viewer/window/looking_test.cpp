@@ -41,6 +41,54 @@ TEST_F(Looking, skin_over_bone_is_two_clicks_and_either_is_felt) {
     EXPECT_EQ(look().surfaces[0].level, skin);
 }
 
+TEST_F(Looking, plus_and_minus_zoom_a_slice_that_has_the_focus_and_change_the_level_elsewhere) {
+    feel("synthetic:sphere:48x48x48");
+    SlicePane& pane = window_->views().slice(2);
+    Scene& scene = window_->views().scene();
+    const double level = window_->content().effect().isovalue();
+    const Vec3 aside = physical_centre(window_->live()->field().geometry()) + Vec3(9, 0, 0);
+    const auto seen = [&] { return pane.pixel_of(aside); };
+    QTest::mouseClick(&pane, Qt::LeftButton, {}, middle(pane));
+    const QPointF before = seen();
+    QTest::keyClick(&pane, Qt::Key_Plus);
+    EXPECT_GT((seen() - before).manhattanLength(), 3);
+    QTest::keyClick(&pane, Qt::Key_Minus);
+    EXPECT_LT((seen() - before).manhattanLength(), 0.1);
+    EXPECT_EQ(window_->content().effect().isovalue(), level);
+    scene.setFocus();
+    QTest::keyClick(&scene, Qt::Key_Plus);
+    EXPECT_GT(window_->content().effect().isovalue(), level);
+}
+
+TEST_F(Looking, a_click_touches_what_is_seen_behind_a_cut) {
+    const Index3 size = Index3::Constant(48);
+    std::vector<std::uint8_t> shell(48 * 48 * 48);
+    for (int i = 0; i < int(shell.size()); ++i) {
+        const Vec3 from_middle = Vec3(i % 48, i / 48 % 48, i / 2304) - Vec3::Constant(23.5);
+        shell[std::size_t(i)] =
+            std::uint8_t(std::max(0.0, 250 - 60 * std::abs(from_middle.norm() - 17)));
+    }
+    io::write_volume(Volume(Geometry{size}, std::move(shell)), scratch_.path() / "shell.nrrd");
+    feel(scratch("shell.nrrd").toStdString());
+    Scene& scene = window_->views().scene();
+    const Vec3 towards = axes_of(scene.camera()).towards_viewer;
+    const Vec3 centre = physical_centre(window_->live()->field().geometry());
+    const auto touch = [&] {
+        QTest::mouseClick(&scene, Qt::LeftButton, {}, middle(scene) + QPoint(40, 30));
+        wait_until([&] { return !window_->probe().travelling() && force() > 0.1; });
+        wait_for_hand();
+        EXPECT_EQ(now().session.tick.proxy.mode, Mode::constrained);
+        return (now().session.tick.proxy.scp - centre).dot(towards);
+    };
+    press(Qt::Key_V);
+    wait_until_settled();
+    EXPECT_LT(touch(), -8) << "the inside of the far wall";
+    EXPECT_LT(force(), 1);
+    window_->findChild<QAction*>("cut_nothing")->trigger();
+    wait_until_settled();
+    EXPECT_GT(touch(), 10) << "the outside of the near wall";
+}
+
 TEST_F(Looking, a_cut_by_key_faces_the_viewer_and_a_session_brings_it_back) {
     feel("synthetic:sphere:48x48x48");
     press(Qt::Key_V);

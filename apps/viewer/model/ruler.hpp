@@ -1,0 +1,22 @@
+// How positions and lengths in a volume are written.
+#pragma once
+
+#include <string>
+
+#include "palpate/volume.hpp"
+
+namespace palpate::viewer {
+
+/// With enough decimals for a fifth of the smallest spacing, and in micrometres if that is below
+/// 10 µm.
+struct Ruler {
+    const char* unit = "mm";
+    double per_mm = 1;
+    int decimals = 1;
+
+    /// The number alone, with at least so many decimals.
+    std::string number(double mm, int least_decimals = 1) const;
+};
+Ruler ruler_of(const Geometry& geometry);
+
+}  // namespace palpate::viewer
