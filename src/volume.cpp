@@ -121,8 +121,9 @@ void check(const Geometry& g) {
     if ((g.size.array() > 1 << 20).any()) {
         throw std::invalid_argument("more than 1048576 samples along one axis");
     }
-    if (!(g.spacing.array() > 0).all() || !g.spacing.allFinite()) {
-        throw std::invalid_argument("every spacing must be a finite number above 0 mm");
+    // So that products of a few lengths keep their digits.
+    if (!(g.spacing.array() >= 1e-30).all() || !(g.spacing.array() <= 1e30).all()) {
+        throw std::invalid_argument("every spacing must be a number from 1e-30 to 1e30 mm");
     }
     if (!g.origin.allFinite()) throw std::invalid_argument("the origin is not finite");
     const Mat3 should_be_identity = g.direction.transpose() * g.direction;

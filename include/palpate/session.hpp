@@ -160,15 +160,7 @@ struct SessionPoint {
     std::optional<double> isovalue_without_layers;
     ForceState force;
     LayerState layers;
-    /// A tool's proxy.
-    Pose tool;
-    Mode tool_mode = Mode::free;
-    bool tool_placed = false;
-    bool tool_slides = false;
-    std::array<ToolContact, most_tool_contacts> contacts{};
-    std::array<int, most_tool_contacts> idle{};  ///< updates for which a contact had no pressure
-    int contact_count = 0;
-    double trust = 1, stride = 64;  ///< longest steps [voxel], in contact and with nothing near
+    ToolState tool;
 };
 /// Writes the state of a session to `point`. The proxy first drops results that only save time.
 /// Neither throws nor allocates.

@@ -21,7 +21,7 @@ struct ToolSettings {
     /// for this. Later updates continue the work. With a thousand points, an update takes at most
     /// 0.6 ms. Faster loops need a smaller budget.
     int work_budget = 4096;
-    /// [mm] Replaces the tool's own gyration. 0: the tool's own.
+    /// [mm] Replaces the tool's own gyration: 1e-10 to 1e10. 0: the tool's own.
     double gyration = 0;
 };
 
@@ -65,8 +65,20 @@ class Keeper {
 
 }  // namespace tool
 
-/// The state between updates. Set `isovalue` freely between two updates. Copies are independent.
-class ToolProxy {
+/// The state between updates, without results that only save time.
+struct ToolState {
+    Pose pose;
+    Mode mode = Mode::free;
+    bool placed = false;   ///< false: the next update starts at the hand's pose
+    bool sliding = false;  ///< dynamic friction applies
+    std::array<ToolContact, most_tool_contacts> contacts{};
+    std::array<int, most_tool_contacts> idle{};  ///< updates for which a contact had no pressure
+    int contact_count = 0;          ///< contacts known, those without pressure included
+    double trust = 1, stride = 64;  ///< longest steps [voxel], in contact and with nothing near
+};
+
+/// The proxy. Set `isovalue` freely between two updates. Copies are independent.
+class ToolProxy : public ToolState {
   public:
     /// Allocates what updates need. Not null.
     explicit ToolProxy(std::shared_ptr<const Tool> tool);
@@ -78,13 +90,7 @@ class ToolProxy {
     /// recovery follows. Allocates nothing. Frees the previous tool unless it is held elsewhere.
     /// False, without any change, if there is no room for its points.
     bool use(std::shared_ptr<const Tool> tool) noexcept;
-    Pose pose;
     double isovalue = 0;  ///< [data units]
-    Mode mode = Mode::free;
-    bool placed = false;  ///< false: the next update starts at the hand's pose
-    std::array<ToolContact, most_tool_contacts> contacts{};
-    int contact_count = 0;  ///< contacts known, those without pressure included
-    bool sliding = false;   ///< dynamic friction applies
 
     tool::Kept& kept() const { return *kept_; }
 
@@ -111,7 +117,7 @@ struct PoseObserver {
 ///    and isovalue unchanged); T3 and T4 without friction;
 /// T5 bounded work, and never NaN.
 /// Refused: a field that is not cubic, a pose that is not finite or farther than `farthest_hip`, a
-/// tool whose radius is more than `farthest_hip` voxels.
+/// tool whose radius is more than `farthest_hip` voxels, a gyration out of range.
 ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
                        const ToolSettings& settings = {}, PoseObserver observer = {});
 

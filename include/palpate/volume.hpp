@@ -110,7 +110,8 @@ Vec3 physical_from_grid_axes(const Geometry& geometry, const Vec3& grid);
 /// The centre of the grid [mm, physical].
 Vec3 physical_centre(const Geometry& geometry);
 /// Throws std::invalid_argument, saying what is wrong, unless every size is >= 1, every spacing
-/// finite and > 0, the origin finite, and the direction orthonormal to 1e-4 (mirrored is allowed).
+/// from 1e-30 to 1e30 mm, the origin finite, and the direction orthonormal to 1e-4 (mirrored is
+/// allowed).
 void check(const Geometry& geometry);
 /// The same with the nearest direction that is orthonormal to all digits, as volumes and samples
 /// store it. With a direction of few digits, as in some files, a transform and its inverse would

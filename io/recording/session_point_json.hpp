@@ -144,18 +144,19 @@ static void members(auto& v, Is<SessionPoint> auto& s) {
     v("isovalue_without_layers", s.isovalue_without_layers);
     v("force", s.force);
     v("layers", s.layers);
-    v("tool", s.tool.position);
-    v("tool_orientation", s.tool.orientation);
-    whole(v, "tool_mode", s.tool_mode, 0, 1);
-    v("tool_placed", s.tool_placed);
-    v("tool_slides", s.tool_slides);
-    v("trust", s.trust);
-    v("stride", s.stride);
-    whole(v, "contact_count", s.contact_count, 0, most_tool_contacts);
-    for (int i = 0; i < s.contact_count; ++i) {
+    auto& tool = s.tool;
+    v("tool", tool.pose.position);
+    v("tool_orientation", tool.pose.orientation);
+    whole(v, "tool_mode", tool.mode, 0, 1);
+    v("tool_placed", tool.placed);
+    v("tool_slides", tool.sliding);
+    v("trust", tool.trust);
+    v("stride", tool.stride);
+    whole(v, "contact_count", tool.contact_count, 0, most_tool_contacts);
+    for (int i = 0; i < tool.contact_count; ++i) {
         const std::string number = std::to_string(i + 1);
-        v("contact_" + number, s.contacts[static_cast<std::size_t>(i)]);
-        whole(v, "idle_" + number, s.idle[static_cast<std::size_t>(i)], 0, 1e9);
+        v("contact_" + number, tool.contacts[static_cast<std::size_t>(i)]);
+        whole(v, "idle_" + number, tool.idle[static_cast<std::size_t>(i)], 0, 1e9);
     }
 }
 

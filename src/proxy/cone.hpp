@@ -8,9 +8,10 @@
 namespace palpate {
 
 /// {d : normal_i . d <= 0 for all i}. Normals need not have unit length, but must not be zero.
-template <int Most>
 struct HalfSpaces {
-    std::array<Vec3, Most> normal;
+    static constexpr int most = 48;  ///< tetrahedra that meet at a sample (method paper)
+
+    std::array<Vec3, most> normal;  // those beyond `count` are not even set
     int count = 0;
 
     void add(const Vec3& n) { normal[count++] = n; }
@@ -27,11 +28,6 @@ inline constexpr int work_of_projection = 2;
 /// The projection of h. In three dimensions it lies in the interior, on one border, on the line of
 /// two, or at the apex: each candidate is tried, the longest feasible one is the projection (for a
 /// projection p on a cone, |h|^2 = |p|^2 + |h - p|^2).
-template <int Most>
-ConeProjection project_on_cone(const Vec3& h, const HalfSpaces<Most>& cone);
-
-/// The most tetrahedra meet at a sample: 48 constraint planes (method paper).
-extern template ConeProjection project_on_cone(const Vec3&, const HalfSpaces<4>&);
-extern template ConeProjection project_on_cone(const Vec3&, const HalfSpaces<48>&);
+ConeProjection project_on_cone(const Vec3& h, const HalfSpaces& cone);
 
 }  // namespace palpate

@@ -14,28 +14,6 @@ Vec3 normal_of(const Field& field, const LatticePoint& point) {
     return physical_from_grid_axes(field.geometry(), out / length);
 }
 
-/// place() for one kind of site.
-template <class AnySite>
-bool place_at(Proxy& proxy, const Field& field, const Vec3& hip, const Vec3& target,
-              StepObserver observer) {
-    const Vec3 size = field.geometry().size.cast<double>();
-    const int patience = 1000 + static_cast<int>(size.norm());
-    const LatticePoint start = AnySite::located(target);
-    for (int i = 0; i < patience; ++i) {
-        Update<AnySite> update(proxy, field, target, {}, observer);
-        // Not by coordinates: those of a point just below zero do not come back bit for bit.
-        const LatticePoint& at = update.site.point;
-        const bool stayed =
-            same_tetrahedron(at.tetrahedron, start.tetrahedron) && at.folded == start.folded;
-        finish_update(proxy, update, hip,
-                      update.recovering ? Rest::recovering
-                      : stayed          ? Rest::at_target
-                                        : Rest::on_surface);
-        if (!update.recovering) return proxy.placed;
-    }
-    return false;
-}
-
 /// Where straight motion from one point (index space) to another meets the surface.
 template <class AnySite>
 std::optional<LatticePoint> first_hit(const Field& field, double isovalue, const Vec3& start,
@@ -86,11 +64,13 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
            StepObserver observer) {
     proxy = Proxy{};
     proxy.isovalue = isovalue;
-    const Vec3 target = index_from_physical(field.geometry(), hip);
-    if (!accepts(proxy.isovalue, field, target)) return false;
-    const auto place_here =
-        field.interpolation() == Interpolation::cubic ? place_at<CubicSite> : place_at<Site>;
-    return place_here(proxy, field, hip, target, observer);
+    const int patience = 1000 + static_cast<int>(field.geometry().size.cast<double>().norm());
+    for (int i = 0; i < patience; ++i) {
+        // Where the hand is in the solid, recovery leads to the surface, and no way on.
+        const ProxyUpdate update = update_straight(proxy, field, hip, {}, observer);
+        if (update.status != UpdateStatus::recovering) return proxy.placed;
+    }
+    return false;
 }
 
 RayHit cast_ray(const Field& field, double isovalue, const Vec3& from, const Vec3& to,

@@ -13,44 +13,24 @@
 namespace palpate {
 namespace {
 
-/// Takes the contacts out of a tool's proxy, and drops the results that only save time.
-void halt_tool(ToolProxy& proxy, const Tool* tool, SessionPoint& point) noexcept {
+/// Drops the results of a tool's proxy that only save time.
+void halt_tool(ToolProxy& proxy) noexcept {
     tool::Kept& kept = proxy.kept();
-    if (tool) {
-        point.tool = proxy.pose;
-        point.tool_mode = proxy.mode;
-        point.tool_placed = proxy.placed;
-        point.tool_slides = proxy.sliding;
-        point.contacts = proxy.contacts;
-        point.idle = kept.idle;
-        point.contact_count = proxy.contact_count;
-        point.trust = kept.trust;
-        point.stride = kept.stride;
-    }
     kept.renewed = true;
     kept.inside = false;
     kept.recovery = {};
     kept.surroundings.samples.reset();  // others hold them
 }
 
-/// The inverse, for a proxy that halt_tool() has left or that is new.
-void resume_tool(ToolProxy& proxy, const SessionPoint& point) noexcept {
-    tool::Kept& kept = proxy.kept();
-    proxy.pose = point.tool;
-    proxy.mode = point.tool_mode;
-    proxy.placed = point.tool_placed;
-    proxy.sliding = point.tool_slides;
-    proxy.contacts = point.contacts;
+/// For a proxy that halt_tool() has left or that is new.
+void resume_tool(ToolProxy& proxy, const ToolState& state) noexcept {
+    static_cast<ToolState&>(proxy) = state;
     // The tool may be another one than that of the check.
     const auto is_of_tool = [&](const ToolContact& contact) {
         return static_cast<std::size_t>(contact.point) < proxy.tool().points().size();
     };
-    const auto end = point.contacts.begin() + point.contact_count;
-    proxy.contact_count =
-        std::all_of(point.contacts.begin(), end, is_of_tool) ? point.contact_count : 0;
-    kept.idle = point.idle;
-    kept.trust = point.trust;
-    kept.stride = point.stride;
+    const auto end = state.contacts.begin() + state.contact_count;
+    if (!std::all_of(state.contacts.begin(), end, is_of_tool)) proxy.contact_count = 0;
 }
 
 void require(bool is_so, const char* what) {
@@ -91,18 +71,17 @@ bool is_possible(const HandPast& past) {
            is_rotation(past.frozen_tool) && is_rotation(past.held_tool);
 }
 
-bool is_possible(const SessionPoint& point, const Tool* tool, const Geometry& grid) {
+bool is_possible(const ToolState& state, const Tool* tool, const Geometry& grid) {
     const int points = tool ? static_cast<int>(tool->points().size()) : 0;
     const auto is_contact = [&](const ToolContact& contact) {
         return contact.point >= 0 && contact.point < points && is_near(contact.place, grid) &&
                is_within(contact.normal, 2) && std::isfinite(contact.pressure);
     };
-    return point.contact_count >= 0 && point.contact_count <= most_tool_contacts &&
-           std::all_of(point.contacts.begin(), point.contacts.begin() + point.contact_count,
+    return state.contact_count >= 0 && state.contact_count <= most_tool_contacts &&
+           std::all_of(state.contacts.begin(), state.contacts.begin() + state.contact_count,
                        is_contact) &&
-           point.trust > 0 && point.trust <= 1 && point.stride > 0 && point.stride <= 64 &&
-           is_unit(point.tool.orientation) &&
-           (!point.tool_placed || is_near(point.tool.position, grid));
+           state.trust > 0 && state.trust <= 1 && state.stride > 0 && state.stride <= 64 &&
+           is_unit(state.pose.orientation) && (!state.placed || is_near(state.pose.position, grid));
 }
 
 bool is_finite(const ForceState& force) {
@@ -149,9 +128,10 @@ bool is_of(const LayerState& state, const Layers* layers) {
 void halt(Session& session, SessionPoint& point) noexcept {
     Renderer& renderer = session.renderer;
     const RendererSettings& settings = renderer.settings;
-    if (renderer.tool_proxy) {
-        halt_tool(*renderer.tool_proxy, settings.tool.get(), point);
-        if (!settings.tool) resume_tool(*renderer.tool_proxy, point);  // as a new one
+    if (std::optional<ToolProxy>& proxy = renderer.tool_proxy) {
+        halt_tool(*proxy);
+        if (settings.tool) point.tool = *proxy;
+        if (!settings.tool) resume_tool(*proxy, {});  // as a new one
     }
     point.moment = renderer.field.time();
     point.speed = session.speed;
@@ -181,7 +161,7 @@ void check(const SessionPoint& point, const RendererSettings& settings, const Fi
     require(!proxy.placed || proxy.interpolation == field.interpolation,
             "the proxy is of another field");
     require(is_of(point.layers, settings.layers.get()), "it is of other layers");
-    require(is_possible(point, settings.tool.get(), field.geometry), "the tool has no pose");
+    require(is_possible(point.tool, settings.tool.get(), field.geometry), "the tool has no pose");
 }
 
 void resume(Session& session, const SessionPoint& point) noexcept {
@@ -201,9 +181,8 @@ void resume(Session& session, const SessionPoint& point) noexcept {
         Tissues(*settings.layers, renderer.layers, renderer.proxy, renderer.field);
     }
     if (!renderer.tool_proxy) return;
-    SessionPoint ignored;
-    halt_tool(*renderer.tool_proxy, nullptr, ignored);
-    resume_tool(*renderer.tool_proxy, point);
+    halt_tool(*renderer.tool_proxy);
+    resume_tool(*renderer.tool_proxy, point.tool);
 }
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "palpate/tool_proxy.hpp"
@@ -40,10 +41,18 @@ struct Kept {
     std::vector<double> expiry;  ///< travel [mm] up to which it certainly meets nothing
     double moved = 0;            ///< odometers: translation [mm] ...
     double turned = 0;           ///< ... and rotation [rad] so far
-    double trust = 1;            ///< longest step in contact [voxel]
-    double stride = 64;          ///< longest motion with nothing near [voxel]
-    std::array<int, most_tool_contacts> idle{};
-    std::vector<int> suspects;  ///< room for one motion
+    std::vector<int> suspects;   ///< room for one motion
+    /// A motion from the pose, and how far the test of its points has come. Where a budget ends,
+    /// the next update goes on from here.
+    struct Pass {
+        Vec3 translation = Vec3::Zero(), rotation = Vec3::Zero();  ///< [mm], [rad]
+        std::optional<Pose> exact;                                 ///< the end of the whole motion
+        double part = 0;                       ///< that may be free; 0: no motion is under way
+        int next = 0;                          ///< the first point that was not looked at
+        int suspects = 0, outdated = 0;        ///< so many may meet something, and may not be free
+        int tries = 0, again = 0, first = -1;  ///< test of those: the next one, what blocked last
+        double least = 1;                      ///< what they leave of the part
+    } pass;
     Surroundings surroundings;
     double isovalue = 0;
     bool renewed = true;  ///< the tool is another one

@@ -11,19 +11,22 @@ struct Motion {
     ToolProxy& proxy;
     Around& around;
     PoseObserver observer;
-    /// Points that ended the last motion.
-    std::array<int, 8> hits{};
-    int hit_count = 0;
+    int hit = -1;  ///< the point that ended the last motion; -1: none
 
     /// Goes towards the pose that a translation [mm] and a rotation vector [rad] lead to; returns
     /// how far, from 0 to 1. With `exact`, that pose is the end. Small rotations only: chords are
-    /// straight.
+    /// straight. Where the budget ends, the tool has not moved, and the motion is under way
+    /// (Kept::pass).
     double go(const Vec3& translation, const Vec3& rotation, const Pose* exact = nullptr);
+    /// Goes on with the motion that is under way, in another update.
+    double go_on();
+    /// The farthest pose to which that leads.
+    Pose end() const { return pose_at(proxy.kept().pass.part); }
 
   private:
+    double test_points();
+    Pose pose_at(double part) const;
     double free_part_of(int point, const Pose& to, double level);
-    /// Below 0: none.
-    void hit(int point);
     /// Puts the tool there; the odometers then say so.
     void arrive(const Pose& at, double moved, double turned);
 };

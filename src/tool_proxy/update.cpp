@@ -67,6 +67,7 @@ class Rounds {
 
     /// Also ends as out of budget if it makes no progress before it is at rest.
     UpdateStatus run(int& rounds) {
+        go_on();
         int failures = 0;
         for (rounds = 0; rounds < most_rounds && !around_.is_exhausted(); ++rounds) {
             look();
@@ -87,19 +88,19 @@ class Rounds {
             const double least = 2e-9 * voxel_ * std::max(std::sqrt(before), 1e-9 * voxel_);
             if (before - after > least) {
                 failures = 0;
-                proxy_.kept().trust = std::min(1.0, 2 * proxy_.kept().trust);
+                proxy_.trust = std::min(1.0, 2 * proxy_.trust);
                 continue;
             }
-            proxy_.kept().trust = std::max(1e-4, 0.25 * proxy_.kept().trust);
+            proxy_.trust = std::max(1e-4, 0.25 * proxy_.trust);
             if (added_ > 0) {  // a new contact is news; it shares in the friction
                 is_at_hand();
                 continue;
             }
             if (++failures > most_failures) break;
         }
-        if (around_.is_exhausted()) {
-            proxy_.kept().trust = std::max(1e-3, 0.5 * proxy_.kept().trust);
-            proxy_.kept().stride = std::max(1e-2, 0.25 * proxy_.kept().stride);
+        if (around_.is_exhausted() && proxy_.kept().pass.part == 0) {
+            proxy_.trust = std::max(1e-3, 0.5 * proxy_.trust);
+            proxy_.stride = std::max(1e-2, 0.25 * proxy_.stride);
         }
         proxy_.mode = proxy_.contact_count > 0 ? Mode::constrained : Mode::free;
         return UpdateStatus::out_of_budget;
@@ -173,7 +174,7 @@ class Rounds {
         int kept = 0;
         for (int i = 0; i < proxy_.contact_count; ++i) {
             ToolContact contact = proxy_.contacts[i];
-            int idle = proxy_.kept().idle[i];
+            int idle = proxy_.idle[i];
             contact.place = physical_from_tool(proxy_.pose, proxy_.tool().points()[contact.point]);
             const Around::Expansion at = around_.expand(contact.place);
             const double slope = std::sqrt(dot(at.gradient, at.gradient));
@@ -186,36 +187,30 @@ class Rounds {
                               at.hessian / slope, gap, gap > 0 ? -gap : -1.5 * gap};
             rows_[kept] = {row_of(touches_[kept].arm, contact.normal), touches_[kept].bound};
             proxy_.contacts[kept] = contact;
-            proxy_.kept().idle[kept] = idle;
+            proxy_.idle[kept] = idle;
             ++kept;
         }
         proxy_.contact_count = kept;
     }
 
-    /// Takes up the points that ended the last motion.
-    void take_up_hits() {
-        for (int h = 0; h < motion_.hit_count; ++h) {
-            const int point = motion_.hits[h];
-            bool known = false;
-            for (int i = 0; i < proxy_.contact_count; ++i) {
-                if (proxy_.contacts[i].point == point) known = true;
-            }
-            if (known) continue;
-            int at = proxy_.contact_count;
-            if (at == most_tool_contacts)
-                at = least_needed();
-            else
-                ++proxy_.contact_count;
-            proxy_.contacts[at] = {.point = point};
-            proxy_.kept().idle[at] = 0;
-            ++added_;
+    /// Takes up the point that ended the last motion.
+    void take_up_hit() {
+        const int point = motion_.hit;
+        if (point < 0) return;
+        for (int i = 0; i < proxy_.contact_count; ++i) {
+            if (proxy_.contacts[i].point == point) return;
         }
+        const bool is_full = proxy_.contact_count == most_tool_contacts;
+        const int at = is_full ? least_needed() : proxy_.contact_count++;
+        proxy_.contacts[at] = {.point = point};
+        proxy_.idle[at] = 0;
+        ++added_;
     }
 
     int least_needed() const {
         int least = 0;
         for (int i = 1; i < most_tool_contacts; ++i) {
-            if (proxy_.kept().idle[i] > proxy_.kept().idle[least]) least = i;
+            if (proxy_.idle[i] > proxy_.idle[least]) least = i;
         }
         return least;
     }
@@ -223,8 +218,21 @@ class Rounds {
     double go(const Six& step, const Pose* exact = nullptr) {
         const Split s = split(step);
         const double part = motion_.go(s.v, s.w, exact);
-        take_up_hits();
+        take_up_hit();
         return part;
+    }
+    /// The motion whose test did not fit into the last update's budget, unless the hand has moved
+    /// so that it would lead away.
+    void go_on() {
+        double& part = proxy_.kept().pass.part;
+        if (part == 0 || around_.is_exhausted()) return;
+        const Six before = pull(), after = pull_from(motion_.end());
+        if (dot(after, after) > dot(before, before)) {
+            part = 0;
+            return;
+        }
+        motion_.go_on();
+        take_up_hit();
     }
 
     /// With nothing near: straight to the hand, in turns small enough that chords are arcs. True at
@@ -233,21 +241,21 @@ class Rounds {
         added_ = 0;
         const Split s = split(pull_);
         const double angle = s.w.norm();
-        const double far = s.v.norm() + angle * reach_, stride = proxy_.kept().stride * voxel_;
+        const double far = s.v.norm() + angle * reach_, stride = proxy_.stride * voxel_;
         double share = far > stride ? stride / far : 1;
         if (angle * share > most_angle_) share = most_angle_ / angle;
         Pose end = target_;
         if (!turns()) end.orientation = proxy_.pose.orientation;
         const bool whole = share == 1;
         const double part = go(pull_ * share, whole ? &end : nullptr);
-        if (part == 1) proxy_.kept().stride = std::min(longest_stride, 2 * proxy_.kept().stride);
+        if (part == 1) proxy_.stride = std::min(longest_stride, 2 * proxy_.stride);
         return part == 1 && whole;
     }
 
     /// No longer than the trust, in translation and at the farthest point, and no more of a turn
     /// than chords allow.
     double share_of(const Six& step) const {
-        const double trust = proxy_.kept().trust * voxel_;
+        const double trust = proxy_.trust * voxel_;
         const Split s = split(step);
         const double v = s.v.norm(), w = s.w.norm();
         double share = 1;
@@ -283,7 +291,7 @@ class Rounds {
         for (int i = 0; i < count; ++i) {
             proxy_.contacts[i].pressure = flat.multiplier[i];
             if (!(flat.multiplier[i] > 0)) continue;
-            proxy_.kept().idle[i] = 0;
+            proxy_.idle[i] = 0;
             pressing = std::max(pressing, std::abs(touches_[i].gap));
         }
         const double pull = std::sqrt(dot(pull_, pull_));
@@ -301,7 +309,7 @@ class Rounds {
         lift(step, failures);
         const Six along = lifted(step);
         if (!descend(along)) return false;
-        if (motion_.hit_count > 0) return false;
+        if (motion_.hit >= 0 || around_.is_exhausted()) return false;
         fall(step, along);
         return false;
     }
@@ -415,8 +423,10 @@ class Rounds {
     int added_ = 0;
 };
 
-bool accepts(const Tool& tool, const Field& field, double isovalue, const Pose& hand) {
+bool accepts(const Tool& tool, const Field& field, double isovalue, const Pose& hand,
+             double gyration) {
     return field.interpolation() == Interpolation::cubic &&
+           (gyration == 0 || (gyration >= 1e-10 && gyration <= 1e10)) &&
            tool.radius() <= farthest_hip * field.geometry().spacing.minCoeff() &&
            std::abs(hand.orientation.squaredNorm() - 1) < 1e-6 &&
            palpate::accepts(isovalue, field, index_from_physical(field.geometry(), hand.position));
@@ -429,7 +439,7 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
                        const ToolSettings& settings, PoseObserver observer) {
     ToolUpdate result{.mode = proxy.mode, .hand = hand, .proxy = proxy.pose};
     Quaternion& turn = result.hand.orientation;
-    if (!tool::accepts(proxy.tool(), field, proxy.isovalue, hand)) {
+    if (!tool::accepts(proxy.tool(), field, proxy.isovalue, hand, settings.gyration)) {
         result.status = UpdateStatus::refused;
         return result;
     }
@@ -441,14 +451,17 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
     // Each point is looked at once; where it is pushed out, before and after.
     const int looks =
         (others || kept.inside ? 2 : 1) * static_cast<int>(proxy.tool().points().size());
-    tool::Around around(field, proxy.isovalue, kept.surroundings, settings.work_budget, looks);
+    const int budget = std::min(settings.work_budget, 1 << 30);
+    tool::Around around(field, proxy.isovalue, kept.surroundings, budget, looks);
     if (others) kept.recovery = {};
+    if (others || kept.inside) kept.pass = {};
     if (!proxy.placed) {
         proxy.pose = result.hand;
         proxy.contact_count = 0;
     }
     // Odometers keep their digits.
-    if (others || kept.inside || kept.moved + kept.turned * proxy.tool().radius() > 1000) {
+    const double most_travel = 1000 * around.shortest();
+    if (others || kept.inside || kept.moved + kept.turned * proxy.tool().radius() > most_travel) {
         std::ranges::fill(kept.expiry, -1.0);
         kept.moved = kept.turned = 0;
         kept.isovalue = proxy.isovalue;
@@ -470,7 +483,7 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
     }
     result.mode = proxy.mode;
     result.proxy = proxy.pose;
-    result.work = settings.work_budget + looks - around.work_left();
+    result.work = budget + looks - around.work_left();
     for (int i = 0; i < proxy.contact_count; ++i) {
         result.contacts += proxy.contacts[i].pressure > 0;
     }

@@ -5,11 +5,15 @@
 #include <cmath>
 
 #include "palpate/baselines/methods.hpp"
+#include "palpate/session.hpp"
 #include "support/constants.hpp"
 #include "support/fields.hpp"
 #include "support/guarantees.hpp"
 #include "support/hand.hpp"
+#include "support/layer.hpp"
+#include "support/press.hpp"
 #include "support/proxy_state.hpp"
+#include "support/scripted_device.hpp"
 
 using namespace palpate;
 using namespace palpate::support;
@@ -224,6 +228,67 @@ TEST(ProxyDomain, inverted_data_far_from_zero_give_the_same_bits) {
                               b = update_exact(other, below, hip);
             ASSERT_EQ(a.scp, b.scp) << i;
             ASSERT_EQ(a.density, -b.density) << i;
+        }
+    }
+}
+
+/// A hand in noise with all lengths of the scene in units of so many millimetres: forces, and the
+/// work of each tick.
+enum class With { point, layers, tool };
+std::pair<std::vector<Vec3>, std::vector<int>> felt_in_units_of(double unit, With with,
+                                                                Interpolation interpolation) {
+    const Index3 size(16, 14, 12);
+    const Geometry geometry =
+        grid(size, unit * Vec3(1, 0.5, 1.75), unit * Vec3(-3, 4, 5), oblique_direction());
+    const Field field(noise_volume<std::uint8_t>(geometry, 5, 0, 256), Solid::above, 0,
+                      interpolation);
+    RendererSettings settings = at_once();
+    settings.transform.scale = unit;
+    settings.device.maximum_torque = 100;
+    settings.proxy.friction = {0.3, 0.2};
+    if (with == With::layers) {
+        auto layers = std::make_shared<Layers>();
+        for (int i = 0; i < 3; ++i) {
+            layers->layers.push_back(
+                layer_of(std::to_string(i), 100 + 25 * i, 0.3 + 0.2 * i, i == 2 ? infinity : 0.4));
+            layers->layers.back()[HapticProperty::drag] = 0.01 / unit;
+        }
+        layers->closing = unit;
+        layers->needle = Needle{};
+        settings.layers = layers;
+    }
+    if (with == With::tool) {
+        const Tool box = box_tool({2, 1, 1.5}, 0.5);
+        std::vector<Vec3> points;
+        for (const Vec3& point : box.points()) points.push_back(unit * point);
+        settings.tool = std::make_shared<const Tool>(points);
+    }
+    Session session{make_renderer(field, 150, settings), {.fastest_hand = infinity}};
+    Hand hand(grid(size), 5);
+    std::pair<std::vector<Vec3>, std::vector<int>> felt;
+    for (int i = 0; i < 600; ++i) {
+        DeviceReading reading = ready_at(hand.next());
+        reading.orientation =
+            turned(Quaternion::Identity(), 0.01 * i * Vec3(1, 2, 3)).toRotationMatrix();
+        const Tick tick = advance(session, (i + 1) * period, reading).tick;
+        felt.first.push_back(tick.force);
+        felt.second.push_back(tick.proxy.work);
+    }
+    return felt;
+}
+
+/// Powers of two change no digit.
+TEST(ProxyDomain, a_scene_in_another_unit_of_length_feels_the_same) {
+    for (const Interpolation interpolation : {Interpolation::linear, Interpolation::cubic}) {
+        for (const With with : {With::point, With::layers, With::tool}) {
+            if (with == With::tool && interpolation == Interpolation::linear) continue;
+            const auto usual = felt_in_units_of(1, with, interpolation);
+            const int most = with == With::tool ? 14 : 97;  // tools are at least 1e-6 mm large
+            for (const int power : {-most, -most / 2, most / 2, most}) {
+                const auto other = felt_in_units_of(std::ldexp(1.0, power), with, interpolation);
+                EXPECT_EQ(usual.first, other.first) << "2^" << power << " mm";
+                EXPECT_EQ(usual.second, other.second) << "2^" << power << " mm";
+            }
         }
     }
 }

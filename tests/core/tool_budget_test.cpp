@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <limits>
 
 #include "palpate/tool_proxy.hpp"
 #include "support/fields.hpp"
@@ -77,6 +78,49 @@ TEST(ToolBudget, counts_the_samples_that_it_gathers) {
     const auto plain = run(Field(volume)), gathered = run(support::between_alike(volume));
     EXPECT_EQ(plain.second, gathered.second) << "the same samples";
     EXPECT_GT(gathered.first, 1.2 * plain.first);
+}
+
+/// The chords of the points on the plane take several times the budget.
+TEST(ToolBudget, lets_thousands_of_points_flat_on_a_plane_come_to_rest_and_slide) {
+    const Field field = support::smooth(linear_field(support::volume_of<float>(
+        support::grid(support::cube(48)), [](const Index3& i) { return 24 - i[2]; })));
+    const auto tool = std::make_shared<const Tool>(box_tool({16, 16, 2}, 0.25));
+    ASSERT_GT(tool->points().size(), 8000U);
+    constexpr double rests_at = 15;
+    for (const int budget : {200, 1000}) {
+        ToolProxy proxy(tool);
+        proxy.isovalue = 10;
+        const ToolSettings settings{.work_budget = budget};
+        const auto update = [&](double x, double z) {
+            return update_tool(proxy, field, {{x, 24, z}, Quaternion::Identity()}, settings);
+        };
+        update(20, 20);
+        ToolUpdate r;
+        int ticks = 0;
+        do {
+            r = update(20, 14);
+        } while (r.status != UpdateStatus::done && ++ticks < 200);
+        ASSERT_EQ(r.status, UpdateStatus::done) << budget;
+        EXPECT_EQ(r.mode, Mode::constrained);
+        EXPECT_NEAR(r.proxy.position[2], rests_at, 1e-3);
+        for (int i = 1; i <= 400; ++i) r = update(20 + 0.01 * i, 14);
+        EXPECT_NEAR(r.proxy.position[0], 24, 0.5) << budget;
+        for (ticks = 0; r.status != UpdateStatus::done && ticks < 200; ++ticks) r = update(24, 14);
+        EXPECT_EQ(r.status, UpdateStatus::done) << budget;
+        EXPECT_NEAR(r.proxy.position[0], 24, 1e-3) << budget;
+    }
+}
+
+TEST(ToolBudget, may_be_as_large_as_an_integer) {
+    const Field field = support::smooth(support::noise_field().field);
+    ToolProxy proxy(std::make_shared<const Tool>(box_tool({2, 2, 2}, 0.5)));
+    proxy.isovalue = 165;
+    const ToolSettings settings{.work_budget = std::numeric_limits<int>::max()};
+    update_tool(proxy, field, {{12, 12, 30}, Quaternion::Identity()}, settings);
+    const ToolUpdate r =
+        update_tool(proxy, field, {{12, 12, 27}, Quaternion::Identity()}, settings);
+    EXPECT_EQ(r.status, UpdateStatus::done);
+    EXPECT_EQ(r.proxy.position[2], 27);
 }
 
 /// Each update may look at every point, whatever its samples cost: otherwise a tool of many points

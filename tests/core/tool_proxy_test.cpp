@@ -370,6 +370,10 @@ TEST(ToolProxy, refuses_what_it_cannot_follow) {
     EXPECT_EQ(update_tool(proxy, cubic, at(nan, 12, 18)).status, UpdateStatus::refused);
     EXPECT_EQ(update_tool(proxy, cubic, at(12, 3e5, 18)).status, UpdateStatus::refused);
     EXPECT_EQ(update_tool(proxy, cubic, bad).status, UpdateStatus::refused);
+    for (const double gyration : {nan, -1.0, 1e-300, 1e300, HUGE_VAL}) {
+        EXPECT_EQ(update_tool(proxy, cubic, at(12, 12, 18), {.gyration = gyration}).status,
+                  UpdateStatus::refused);
+    }
     EXPECT_EQ(proxy.pose.position, first.proxy.position);
 }
 

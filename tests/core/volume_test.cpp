@@ -162,7 +162,7 @@ TEST(Volume, refuses_geometry_that_makes_no_sense_and_says_what_is_wrong) {
             EXPECT_THROW(check(geometry), std::invalid_argument);
         }
     }
-    for (const double bad : {0.0, -1.0, infinite, -infinite, not_a_number}) {
+    for (const double bad : {0.0, -1.0, infinite, -infinite, not_a_number, 1e-200, 1e200, 5e-324}) {
         for (int axis = 0; axis < 3; ++axis) {
             Geometry geometry = grid({2, 2, 2});
             geometry.spacing[axis] = bad;
