@@ -9,7 +9,7 @@ namespace palpate::python {
 namespace {
 
 namespace fs = std::filesystem;
-using Unlocked = py::call_guard<py::gil_scoped_release>;
+using Unlocked = py::call_guard<GilReleased>;
 
 std::unique_ptr<stream::GrowingImage> growing_image(const fs::path& folder, SampleType type,
                                                     const Geometry& finest,

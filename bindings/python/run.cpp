@@ -13,7 +13,7 @@
 namespace palpate::python {
 namespace {
 
-using Unlocked = py::call_guard<py::gil_scoped_release>;
+using Unlocked = py::call_guard<GilReleased>;
 namespace fs = std::filesystem;
 
 struct Setup : run::Setup {
@@ -162,7 +162,7 @@ std::shared_ptr<LiveRun> make(const Feelable& what, const std::optional<Setup>& 
         setup.device = {python_device->info().name, {}};
         setup.open_device = [made](const auto&, const auto&) { return std::move(*made); };
     }
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     return {new LiveRun(std::move(data), setup, python_device), &destroy_session<LiveRun>};
 }
 
@@ -177,7 +177,7 @@ void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
         .def_property_readonly(
             "problem",
             [](const R& r) {
-                const py::gil_scoped_release unlocked;
+                const GilReleased unlocked;
                 const std::string device = r.device_problem();
                 return device.empty() ? r.data().problem() : device;
             },
