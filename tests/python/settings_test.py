@@ -258,6 +258,22 @@ def test_a_number_out_of_range_is_refused_where_it_is_set_or_constructed(kind, n
     assert made == getattr(palpate, kind)()
 
 
+@pytest.mark.parametrize("name, usual, wrong", [
+    ("clutch", None, ("Middle", 0, -1, 33)), ("deadman", None, ("Middle", 0, -1, 33))])
+def test_a_button_is_a_number_or_none_at_all(name, usual, wrong):
+    setup = palpate.Setup()
+    assert getattr(setup, name) is usual
+    for value in wrong:
+        with pytest.raises(ValueError, match=f"^{name}: a button is a number from 1 to 32, none or auto"):
+            setattr(setup, name, value)
+    setattr(setup, name, 2)
+    assert getattr(setup, name) == getattr(copy.copy(setup), name) == 2
+    setattr(setup, name, "auto")
+    assert getattr(setup, name) == {"clutch": None, "deadman": "auto"}[name]
+    setattr(setup, name, "none")
+    assert getattr(setup, name) == {"clutch": "none", "deadman": None}[name]
+
+
 def test_layers_in_another_order_are_still_those_of_the_set():
     layers = palpate.layers_named("ct-needle")
     first = layers.layers[0]
