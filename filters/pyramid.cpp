@@ -53,14 +53,12 @@ void Pyramid::run(const DequantizePlan::Rounds& rounds, const std::function<void
     const auto at_slab = [&](int count) { done(count / slices); };
     if (rounds.way == Way::down) {
         Grid next(every_second(top()), parallel_);
-        run_round(top(), levels_, bricks_, parallel_, at_slab, &next.samples);
+        repeat_round(top(), levels_, bricks_, 1, parallel_, at_slab, &next.samples);
         coarse_.push_back(std::move(next));
         return;
     }
     if (rounds.way == Way::up) refine(top(), levels_, bricks_, parallel_, at_slab);
-    for (int round = 0; round < rounds.count; ++round) {
-        run_round(top(), levels_, bricks_, parallel_, at_slab);
-    }
+    repeat_round(top(), levels_, bricks_, rounds.count, parallel_, at_slab);
 }
 
 }  // namespace palpate::filters

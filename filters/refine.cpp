@@ -162,10 +162,10 @@ void refine(const MovedSamples& samples, const Levels& levels, const TerracedBri
             parallel((height + rows - 1) / rows, [&](int i) {
                 const int begin = i * rows, end = std::min(begin + rows, height);
                 const int near = 4 * (apart - 1);
-                const bool any = bricks.for_runs(samples, std::max(apart * begin - near, 0),
-                                                 std::min(apart * end + near, size[1]), begin_z,
-                                                 end_z, size[0], [](int, int) {});
-                if (any) work(begin, end);
+                if (bricks.any(samples, std::max(apart * begin - near, 0),
+                               std::min(apart * end + near, size[1]), begin_z, end_z)) {
+                    work(begin, end);
+                }
             });
         };
         Weights weights{coarse.size, std::max(half_of(begin_z - first_z), 0),

@@ -12,13 +12,12 @@
 namespace palpate::filters {
 namespace {
 
-/// Of a strip, so that a sweep stays in the second-level cache.
-constexpr int most_rows = 32, most_bricks = 16;
 constexpr int most_slices = 32, fewest_slices = 8;
 
 struct Slab {
+    int begin_z, end_z;
     std::vector<Strip> strips;
-    std::vector<std::int16_t> result;
+    std::int16_t* result = nullptr;
 };
 
 struct Round {
@@ -27,21 +26,7 @@ struct Round {
     const TerracedBricks& bricks;
     const MovedSamples* coarser;
 
-    /// The strips of a slab that have some of the bricks in them.
-    std::vector<Strip> strips_of(int begin_z, int end_z) const {
-        std::vector<Strip> strips;
-        const int height = samples.size[1];
-        for (int begin = 0; begin < height; begin += most_rows) {
-            const int end = std::min(begin + most_rows, height);
-            bricks.for_runs(samples, begin, end, begin_z, end_z, most_bricks * samples.step,
-                            [&](int from, int to) {
-                                strips.push_back({from, to, begin, end, begin_z, end_z});
-                            });
-        }
-        return strips;
-    }
-
-    void move(const Strip& strip, Slab& slab) const {
+    void move(const Strip& strip, const Slab& slab) const {
         with_own_type(samples, [&](auto zero) {
             using T = decltype(zero);
             const auto run = [&](auto is_coarse) {
@@ -65,7 +50,7 @@ struct Round {
         const std::int16_t* moved = moved_row(samples, row.y, row.z) + strip.begin_x;
         for (int i = 0; i < strip.end_x - strip.begin_x; ++i) {
             const float sample = in_levels(own[i], levels), bend = row.bend(i);
-            float to = row.mean[i] + bend - sample;
+            float to = row.mean(i) + bend - sample;
             if constexpr (is_coarse) {
                 const float from = static_cast<float>(moved[i]) * moved_unit;
                 to = from + part_of(bend, levels) * (to - from);
@@ -77,7 +62,7 @@ struct Round {
         });
     }
 
-    void put(const Strip& strip, Slab& slab) const {
+    void put(const Strip& strip, const Slab& slab) const {
         for (int z = strip.begin_z; z < strip.end_z; ++z) {
             for (int y = strip.begin_y; y < strip.end_y; ++y) {
                 const std::int16_t* const from = row_of(slab, strip, y, z);
@@ -95,37 +80,46 @@ struct Round {
     }
 
     /// Where the result of a strip's row waits.
-    std::int16_t* row_of(Slab& slab, const Strip& strip, int y, int z) const {
-        const std::ptrdiff_t row = std::ptrdiff_t{z - strip.begin_z} * samples.size[1] + y;
-        return slab.result.data() + row * samples.size[0] + strip.begin_x;
+    std::int16_t* row_of(const Slab& slab, const Strip& strip, int y, int z) const {
+        const std::ptrdiff_t row = std::ptrdiff_t{z - slab.begin_z} * samples.size[1] + y;
+        return slab.result + row * samples.size[0] + strip.begin_x;
     }
 };
 
 }  // namespace
 
-void run_round(const MovedSamples& samples, const Levels& levels, const TerracedBricks& bricks,
-               const Parallel& parallel, const std::function<void(int)>& at_slab,
-               const MovedSamples* coarser) {
+void repeat_round(const MovedSamples& samples, const Levels& levels, const TerracedBricks& bricks,
+                  int count, const Parallel& parallel, const std::function<void(int)>& at_slab,
+                  const MovedSamples* coarser) {
     const Round round{samples, levels, bricks, coarser};
     const Index3& size = samples.size;
     const int slices = std::min(size[2], std::clamp(size[2] / 8, fewest_slices, most_slices));
-    std::array<Slab, 2> slabs;  // the one that is computed, and the one before
-    for (Slab& slab : slabs) {
-        slab.result.resize(std::size_t(slices) * std::size_t(size[0]) * std::size_t(size[1]));
+    const std::size_t most = std::size_t(slices) * std::size_t(size[0]) * std::size_t(size[1]);
+    std::array<std::vector<std::int16_t>, 2> results;  // of this slab and of the one before
+    for (auto& result : results) result.resize(most);
+    std::vector<Slab> slabs;
+    for (int begin = 0; begin < size[2]; begin += slices) {
+        slabs.push_back(
+            {begin, std::min(begin + slices, size[2]), {}, results[slabs.size() % 2].data()});
     }
-    const auto for_strips = [&](Slab& slab, const auto& work) {
+    parallel(int(slabs.size()), [&](int i) {
+        Slab& slab = slabs[static_cast<std::size_t>(i)];
+        slab.strips = strips_of(bricks, samples, slab.begin_z, slab.end_z);
+    });
+    const auto for_strips = [&](const Slab& slab, const auto& work) {
         parallel(int(slab.strips.size()),
                  [&](int i) { (round.*work)(slab.strips[static_cast<std::size_t>(i)], slab); });
     };
-    for (int begin = 0; begin < size[2]; begin += slices) {
-        const int end = std::min(begin + slices, size[2]);
-        std::swap(slabs[0], slabs[1]);
-        slabs[0].strips = round.strips_of(begin, end);
-        for_strips(slabs[0], &Round::move);
-        for_strips(slabs[1], &Round::put);
-        at_slab(end - begin);
+    for (int i = 0; i < count; ++i) {
+        const Slab* before = nullptr;
+        for (const Slab& slab : slabs) {
+            for_strips(slab, &Round::move);
+            if (before) for_strips(*before, &Round::put);
+            before = &slab;
+            at_slab(slab.end_z - slab.begin_z);
+        }
+        for_strips(*before, &Round::put);
     }
-    for_strips(slabs[0], &Round::put);
 }
 
 }  // namespace palpate::filters

@@ -9,7 +9,7 @@
 #include <memory>
 #include <type_traits>
 
-#include "filters/terraced_bricks.hpp"
+#include "filters/strips.hpp"
 
 // Loops over rows are compiled twice, the second time for processors with AVX2 (without FMA, so
 // both have the same bits). What is called in them has to be part of them. MinGW does not align
@@ -48,15 +48,10 @@ auto with_own_type(const MovedSamples& samples, const Work& work) {
     return samples.floats ? work(float{}) : work(std::uint16_t{});
 }
 
-/// What is swept: the samples begin_x to end_x - 1 of rows begin_y to end_y - 1 of slices begin_z
-/// to end_z - 1.
-struct Strip {
-    int begin_x, end_x, begin_y, end_y, begin_z, end_z;
-};
-
-/// (a + 2b + c) / 4
+/// a + 2b + c, four times their binomial mean. Sums are divided only at their end: factors of two
+/// change no bits.
 PALPATE_INLINE float binomial(float a, float b, float c) {
-    return 0.25F * (a + 2 * b + c);
+    return a + 2 * b + c;
 }
 PALPATE_INLINE void binomial(const float* a, const float* b, const float* c, float* __restrict out,
                              int count) {
@@ -66,16 +61,19 @@ PALPATE_INLINE void binomial(const float* a, const float* b, const float* c, flo
 /// A row in the result of a sweep. Pointers point to the sample begin_x.
 struct SweptRow {
     int y, z;
-    const float* mean;        ///< b [levels], with a sample more at both ends
-    std::ptrdiff_t mean_row;  ///< to the mean of the next row
-    const float* before;      ///< Bb but for its smoothing along z: of the slice before,
-    const float* here;        ///< of this one,
-    const float* after;       ///< and of the next one
+    const float* sums;    ///< 64 b [levels], with a sample more at both ends
+    std::ptrdiff_t row;   ///< to the sums of the next row
+    const float* before;  ///< 1024 Bb but for its smoothing along z: of the slice before,
+    const float* here;    ///< of this one,
+    const float* after;   ///< and of the next one
 
-    /// b - Bb of a sample
-    PALPATE_INLINE float bend(int i) const {
-        return mean[i] - binomial(before[i], here[i], after[i]);
+    /// b and Bb of a sample
+    PALPATE_INLINE float mean(std::ptrdiff_t i) const { return sums[i] * (1.0F / 64); }
+    PALPATE_INLINE float twice(std::ptrdiff_t i) const {
+        return binomial(before[i], here[i], after[i]) * (1.0F / 4096);
     }
+    /// b - Bb
+    PALPATE_INLINE float bend(std::ptrdiff_t i) const { return mean(i) - twice(i); }
 };
 
 /// How far a sample lies above the least one [levels].
@@ -169,13 +167,17 @@ PALPATE_INLINE void load(const MovedSamples& samples, const Levels& levels, int 
 }
 
 /// Smooths the rows of a strip: once (b) and, but for z, twice. Rows of each kind follow each other
-/// at the same distance and begin 2 samples before begin_x.
+/// at the same distance and begin 2 samples before begin_x. Loops over them take `count` samples,
+/// whole vectors, of which the last ones are not used.
 struct SweepBuffers {
     explicit SweepBuffers(const Strip& strip)
         : rows(strip.end_y - strip.begin_y),
-          row(strip.end_x - strip.begin_x + 4),
-          kept(std::size_t(row) * std::size_t(9 * rows + 15)),
-          memory(std::make_unique_for_overwrite<float[]>(kept)) {}
+          count((strip.end_x - strip.begin_x + 4 + vector - 1) / vector * vector),
+          row(count + vector),
+          memory(std::make_unique_for_overwrite<float[]>(std::size_t(row) *
+                                                         std::size_t(9 * rows + 15))) {
+        std::fill(scratch() + count, scratch() + row, 0.0F);
+    }
 
     float* at(int i) { return memory.get() + std::ptrdiff_t{i} * row; }
     float* loaded(int y) { return at(y + 2); }  // -2 to rows + 1
@@ -184,9 +186,9 @@ struct SweepBuffers {
     float* twice(int z, int y) { return at(6 * rows + 14 + z % 3 * rows + y); }
     float* scratch() { return at(9 * rows + 14); }
 
-    int rows;
+    static constexpr int vector = 8;
+    int rows, count;
     std::ptrdiff_t row;
-    std::size_t kept;
     std::unique_ptr<float[]> memory;
 };
 
@@ -194,31 +196,38 @@ struct SweepBuffers {
 template <class T, class Each>
 PALPATE_INLINE void sweep(const MovedSamples& samples, const Levels& levels, const Strip& strip,
                           const Each& each) {
-    const int width = strip.end_x - strip.begin_x;
     SweepBuffers buffers(strip);
-    const int rows = buffers.rows;
+    const int rows = buffers.rows, count = buffers.count / buffers.vector * buffers.vector;
     const auto number = [&](int z) { return z - strip.begin_z + 6; };  // above 0
     for (int z = strip.begin_z - 2; z < strip.end_z + 2; ++z) {
-        float* const scratch = buffers.scratch();
+        float* __restrict const scratch = buffers.scratch();
         for (int y = -2; y < rows + 2; ++y) {
-            load<T>(samples, levels, strip.begin_y + y, z, strip.begin_x - 2, strip.end_x + 2,
-                    buffers.loaded(y), scratch);
+            load<T>(samples, levels, strip.begin_y + y, z, strip.begin_x - 2,
+                    strip.begin_x - 2 + count, buffers.loaded(y), scratch);
         }
         const bool has_mean = z >= strip.begin_z;  // of the slice before
         for (int y = -1; y < rows + 1; ++y) {
             binomial(buffers.loaded(y - 1), buffers.loaded(y), buffers.loaded(y + 1), scratch,
-                     width + 4);
-            float* const flat = buffers.flat(number(z), y) + 1;
-            binomial(scratch, scratch + 1, scratch + 2, flat, width + 2);
-            if (!has_mean) continue;
-            binomial(buffers.flat(number(z - 2), y) + 1, buffers.flat(number(z - 1), y) + 1, flat,
-                     buffers.mean(number(z - 1), y) + 1, width + 2);
+                     count);
+            float* __restrict const flat = buffers.flat(number(z), y) + 1;
+            if (!has_mean) {
+                binomial(scratch, scratch + 1, scratch + 2, flat, count);
+                continue;
+            }
+            const float* const first = buffers.flat(number(z - 2), y) + 1;
+            const float* const second = buffers.flat(number(z - 1), y) + 1;
+            float* __restrict const mean = buffers.mean(number(z - 1), y) + 1;
+            for (int i = 0; i < count; ++i) {
+                const float third = binomial(scratch[i], scratch[i + 1], scratch[i + 2]);
+                flat[i] = third;
+                mean[i] = binomial(first[i], second[i], third);
+            }
         }
         if (!has_mean) continue;
         for (int y = 0; y < rows; ++y) {
             const auto mean = [&](int at) { return buffers.mean(number(z - 1), at) + 1; };
-            binomial(mean(y - 1), mean(y), mean(y + 1), scratch, width + 2);
-            binomial(scratch, scratch + 1, scratch + 2, buffers.twice(number(z - 1), y), width);
+            binomial(mean(y - 1), mean(y), mean(y + 1), scratch, count);
+            binomial(scratch, scratch + 1, scratch + 2, buffers.twice(number(z - 1), y), count);
             if (z < strip.begin_z + 2) continue;
             each(SweptRow{strip.begin_y + y, z - 2, buffers.mean(number(z - 2), y) + 2, buffers.row,
                           buffers.twice(number(z - 3), y), buffers.twice(number(z - 2), y),

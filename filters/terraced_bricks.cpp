@@ -36,17 +36,15 @@ std::vector<BrickSums> sums_of(const MovedSamples& samples, const Levels& levels
                       begin(2, brick_z + 1)};
     const auto add = [&](const SweptRow& row) PALPATE_INLINE_LAMBDA {
         const T* own = own_row<T>(samples, row.y, row.z);
-        const float* const above = row.mean + row.mean_row;
-        const float* const below = row.mean - row.mean_row;
         for (int brick = 0; brick < bricks.count()[0]; ++brick) {
             const int from = begin(0, brick), to = begin(0, brick + 1);
             std::int32_t all = 0, stepped = 0;
             for (int i = from; i < to; ++i) {
-                const float x = row.mean[i + 1] - row.mean[i - 1], y = above[i] - below[i];
-                const float z = row.after[i] - row.before[i];
+                const float x = row.mean(i + 1) - row.mean(i - 1);
+                const float y = row.mean(i + row.row) - row.mean(i - row.row);
+                const float z = (row.after[i] - row.before[i]) * (1.0F / 1024);
                 const float slope = 0.5F * std::sqrt(x * x + y * y + z * z);
-                const float twice = binomial(row.before[i], row.here[i], row.after[i]);
-                const float off = in_levels(own[i], levels) - (2 * row.mean[i] - twice);
+                const float off = in_levels(own[i], levels) - (2 * row.mean(i) - row.twice(i));
                 const auto weight = static_cast<std::int32_t>(16 * std::min(slope, 4096.0F));
                 all += weight;
                 stepped += std::abs(off) <= 0.5F ? weight : 0;
@@ -107,28 +105,16 @@ TerracedBricks terraced_bricks(const MovedSamples& samples, const DequantizePlan
     return bricks;
 }
 
-bool TerracedBricks::for_runs(const MovedSamples& samples, int begin_y, int end_y, int begin_z,
-                              int end_z, int most,
-                              const std::function<void(int, int)>& work) const {
-    std::vector<std::uint8_t> any(static_cast<std::size_t>(count_[0]));
+bool TerracedBricks::any(const MovedSamples& samples, int begin_y, int end_y, int begin_z,
+                         int end_z) const {
     const int last_y = brick_of(1, samples, end_y - 1), last_z = brick_of(2, samples, end_z - 1);
     for (int z = brick_of(2, samples, begin_z); z <= last_z; ++z) {
         for (int y = brick_of(1, samples, begin_y); y <= last_y; ++y) {
-            for (std::size_t i = 0; i < any.size(); ++i) any[i] |= row(y, z)[i];
+            const std::uint8_t* const here = row(y, z);
+            if (std::any_of(here, here + count_[0], [](auto is) { return is != 0; })) return true;
         }
     }
-    const int gap = 1 + samples.step / 4;  // [bricks] a sweep smooths some samples beyond its ends
-    for (int brick = 0, end = 0; brick < count_[0]; brick = end) {
-        end = brick + 1;
-        if (!any[std::size_t(brick)]) continue;
-        for (int i = end; i < std::min({end + gap, brick + most, count_[0]}); ++i) {
-            if (any[std::size_t(i)]) end = i + 1;
-        }
-        const int from = std::max(first_of(0, samples, brick), 0);
-        const int to = std::min(first_of(0, samples, end), samples.size[0]);
-        if (from < to) work(from, to);
-    }
-    return std::ranges::count(any, 0) < count_[0];
+    return false;
 }
 
 void TerracedBricks::grow_into(const TerracedBricks& others) {

@@ -98,11 +98,8 @@ class TerracedBricks {
                  std::min(first_of(0, samples, brick + 1), end));
         }
     }
-    /// Calls work(from, to) for samples along x between which these bricks lie, of all rows from
-    /// begin_y to end_y - 1 of slices from begin_z to end_z - 1: up to `most` bricks at a time,
-    /// without long gaps. Returns whether there are any.
-    bool for_runs(const MovedSamples& samples, int begin_y, int end_y, int begin_z, int end_z,
-                  int most, const std::function<void(int from, int to)>& work) const;
+    /// Is one of these in rows begin_y to end_y - 1 of slices begin_z to end_z - 1?
+    bool any(const MovedSamples& samples, int begin_y, int end_y, int begin_z, int end_z) const;
 
     /// Adds those of `others` that touch one of these.
     void grow_into(const TerracedBricks& others);

@@ -13,6 +13,7 @@ namespace palpate::run {
 namespace {
 
 constexpr int bins = 256;
+constexpr int most_buttons = 32;     // of a reading
 constexpr double most_torque = 1e9;  // [N mm] of no device: no limit
 
 std::optional<double> background_in(const Volume& volume, const FieldSetup& setup) {
@@ -32,13 +33,9 @@ std::uint32_t bit_of(const ButtonSetup& setup, const char* purpose, int buttons)
         return buttons == 0 ? 0 : buttons == 1 ? 1U : 2U;
     }
     const int number = std::get<Button>(setup).number;
-    const std::string what = purpose + (" button " + std::to_string(number));
-    if (number < 1 || number > 32) {
-        throw std::invalid_argument(what + ": a button's number is 1 to 32");
-    }
     if (number > buttons) {
-        throw std::invalid_argument(what + ": the device has " + std::to_string(buttons) +
-                                    " buttons");
+        throw std::invalid_argument(purpose + (" button " + std::to_string(number)) +
+                                    ": the device has " + std::to_string(buttons) + " buttons");
     }
     return std::uint32_t{1} << (number - 1);
 }
@@ -208,12 +205,30 @@ Session make_session(const Field& field, double isovalue, const DeviceInfo& info
     RendererSettings settings = render_settings(render, field, isovalue, info.limits);
     settings.transform = transform_for(field.geometry(), info, setup);
     Session session{make_renderer(field, isovalue, settings), {}};
-    session.settings.clutch_buttons = bit_of(setup.clutch, "clutch", info.buttons);
-    session.settings.deadman_buttons = bit_of(setup.deadman, "dead-man", info.buttons);
+    session.settings.clutch_buttons = bit_of(setup.buttons.clutch, "clutch", info.buttons);
+    session.settings.deadman_buttons = bit_of(setup.buttons.deadman, "dead-man", info.buttons);
     if (session.settings.clutch_buttons & session.settings.deadman_buttons) {
         throw std::invalid_argument("clutch and dead-man switch are the same button: name another");
     }
     return session;
+}
+
+ButtonSetup button_from(const std::string& purpose, const std::string& text) {
+    if (text == "none") return {};
+    if (text == "auto") return UsualButton{};
+    const auto number = io::number_from<int>(text);
+    if (!number || *number < 1 || *number > most_buttons) {
+        throw std::invalid_argument(purpose + ": a button is a number from 1 to " +
+                                    std::to_string(most_buttons) + ", none or auto, not '" + text +
+                                    "'");
+    }
+    return Button{*number};
+}
+
+std::string text_of(const ButtonSetup& button) {
+    if (const auto* numbered = std::get_if<Button>(&button))
+        return std::to_string(numbered->number);
+    return std::holds_alternative<UsualButton>(button) ? "auto" : "none";
 }
 
 baselines::NamedMethod named_method(std::string_view name) {

@@ -15,16 +15,6 @@
 namespace palpate::app {
 namespace {
 
-run::ButtonSetup button_from(const std::string& option, const std::string& text) {
-    if (text == "none") return {};
-    if (text == "auto") return run::UsualButton{};
-    const auto number = io::number_from<int>(text);
-    if (!number || *number < 1 || *number > 32) {
-        throw std::invalid_argument(option + " " + text + ": a button's number from 1, or none");
-    }
-    return run::Button{*number};
-}
-
 std::vector<devices::DeviceChoice> choices_from(const std::vector<std::string>& texts) {
     std::vector<devices::DeviceChoice> choices;
     for (const std::string& text : texts) choices.push_back(devices::parse_device(text));
@@ -69,15 +59,14 @@ void RunOptions::add_device_options(CLI::App& command) {
         ->type_name(fmt::format("{{{}}}[:KEY=VALUE,...]", fmt::join(devices::device_names(), ",")))
         ->default_str(run::text_of(given.device));
     add_named(command, "--facing", given.facing, "Side of the body that faces you");
-    command.add_option_function<std::string>(
-        "--clutch",
-        [this](const std::string& text) { given.clutch = button_from("--clutch", text); },
-        "Button that attaches the volume to the hand: 1, 2, ... or none (default: 2, or 1 on "
-        "devices with one button)");
-    command.add_option_function<std::string>(
-        "--dead-man",
-        [this](const std::string& text) { given.deadman = button_from("--dead-man", text); },
-        "Button that must be held for any force (default: none)");
+    for_each_setting<run::Buttons>([&](const auto& one) {
+        const auto choose = [this, one](const std::string& text) {
+            gives_buttons = true;
+            given.buttons.*one.member = run::button_from(one.option, text);
+        };
+        command.add_option_function<std::string>(
+            one.option, choose, fmt::format("{} (default: {})", one.about, one.left_open));
+    });
 }
 
 void RunOptions::add_script_options(CLI::App& command) {

@@ -30,6 +30,11 @@ void choose_device(const palpate_run_options& asked, run::Setup& setup) {
     if (asked.device) setup.device = devices::parse_device(asked.device);
 }
 
+void choose_button(const char* member, std::int32_t number, run::ButtonSetup& button) {
+    if (number == 0) return;
+    button = run::button_from(member, number == -1 ? "none" : std::to_string(number));
+}
+
 run::Setup setup_from(const palpate_run_options& asked) {
     const auto render = taken_or_default(asked.render, "render");
     run::Setup setup;
@@ -39,7 +44,8 @@ run::Setup setup_from(const palpate_run_options& asked) {
     if (render.has_isovalue) setup.field.isovalue = render.isovalue;
     setup.facing = one_of<Facing>(asked.facing, "facing");
     setup.real_time = asked.no_real_time == 0;
-    if (asked.deadman_button != 0) setup.deadman = run::Button{asked.deadman_button};
+    choose_button("clutch_button", asked.clutch_button, setup.buttons.clutch);
+    choose_button("deadman_button", asked.deadman_button, setup.buttons.deadman);
     choose_device(asked, setup);
     return setup;
 }

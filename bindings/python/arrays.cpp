@@ -79,7 +79,7 @@ Volume volume_from(const py::array& given, const Geometry& geometry_but_size,
     const void* data = array.data();
     const auto bytes = static_cast<std::size_t>(array.nbytes());
     auto samples = kept_by(std::move(array), data);
-    const py::gil_scoped_release unlocked;  // every sample is looked at
+    const GilReleased unlocked;  // every sample is looked at
     return {geometry, *type, std::move(samples), bytes, ctrl_c()};
 }
 

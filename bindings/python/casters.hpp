@@ -6,6 +6,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cxxabi.h>
+#include <unistd.h>
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,11 +22,45 @@
 
 namespace palpate::python {
 
+/// As py::gil_scoped_release. But if the interpreter ends meanwhile, Python would unwind this
+/// thread, through functions of C++ that abort the process then. It waits for the end of the
+/// process instead.
+class GilReleased {
+  public:
+    GilReleased() : thread_(PyEval_SaveThread()) {}
+    ~GilReleased() {
+        until_the_end([&] { PyEval_RestoreThread(thread_); });
+    }
+    GilReleased(const GilReleased&) = delete;
+    GilReleased& operator=(const GilReleased&) = delete;
+
+    /// Does work that takes the GIL.
+    template <class Work>
+    static void until_the_end(const Work& work) {
+        try {
+            work();
+        } catch (abi::__forced_unwind&) {
+            for (;;) ::pause();
+        }
+    }
+
+  private:
+    PyThreadState* thread_;
+};
+
 /// What work() returns.
 template <class Work>
 auto without_gil(Work&& work) {
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     return work();
+}
+
+/// In UTF-8. Throws Python's UnicodeEncodeError for halves of surrogate pairs.
+inline std::string text_from(py::handle text) {
+    py::ssize_t size = 0;
+    const char* const data = PyUnicode_AsUTF8AndSize(text.ptr(), &size);
+    if (!data) throw py::error_already_set();
+    return {data, static_cast<std::size_t>(size)};
 }
 
 /// The name of a file, as os.fsdecode() gives it.
@@ -42,7 +79,7 @@ struct type_caster<E> {
 
     bool load(handle source, bool) {
         if (!isinstance<str>(source)) return false;
-        value = palpate::named<E>(source.cast<std::string>());
+        value = palpate::named<E>(palpate::python::text_from(source));
         return true;
     }
     static handle cast(E from, return_value_policy, handle) {
@@ -74,7 +111,7 @@ struct type_caster<palpate::io::Level> {
 
     bool load(handle source, bool convert) {
         if (isinstance<str>(source)) {
-            value = palpate::io::level_from_text(source.cast<std::string>());
+            value = palpate::io::level_from_text(palpate::python::text_from(source));
             return true;
         }
         make_caster<double> number;

@@ -53,7 +53,7 @@ py::dict closed_loop(const SharedRenderer& renderer, const std::string& text, do
     std::vector<LoopTick> ticks(static_cast<std::size_t>(seconds * rate));
     ReportedItems slices(progress_of(progress), ticks.size(), updates_in_slice);
     {
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         const auto device = simulated(text, own.field, own.proxy.isovalue, rate);
         for (std::size_t i = 0; i < ticks.size(); ++i) {
             const double time = double(i) / rate;

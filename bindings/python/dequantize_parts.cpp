@@ -106,8 +106,8 @@ void bind_dequantize_parts(py::module_& module) {
         return filters::level_of(values, whole_numbers);
     });
     module.def("_sites_of", &sites_of);
-    module.def("_rounds_of", &rounds_of, py::call_guard<py::gil_scoped_release>());
-    module.def("_moved_samples", &moved_samples, py::call_guard<py::gil_scoped_release>());
+    module.def("_rounds_of", &rounds_of, py::call_guard<GilReleased>());
+    module.def("_moved_samples", &moved_samples, py::call_guard<GilReleased>());
     module.def("_reach_of", [](const Rounds& rounds) { return rounds_from(rounds).reach(); });
     module.attr("_DOWN") = int(filters::DequantizePlan::Rounds::Way::down);
     module.attr("_STAY") = int(filters::DequantizePlan::Rounds::Way::stay);

@@ -76,7 +76,7 @@ void bind_edits(py::module_& module) {
             [](Editor& e, const Edit& edit, bool same_step) {
                 return box_of(e.apply(edit, same_step ? EditStep::same : EditStep::own));
             },
-            py::arg("edit"), py::arg("same_step") = false, py::call_guard<py::gil_scoped_release>(),
+            py::arg("edit"), py::arg("same_step") = false, py::call_guard<GilReleased>(),
             "The box of samples that changed, (low, high), or None. same_step: belongs to the\n"
             "last step of undo().")
         .def(

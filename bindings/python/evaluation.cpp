@@ -176,7 +176,7 @@ void bind_subject(py::module_& module) {
         });
     module.def(
         "subject", &subject, py::arg("text"), py::arg("contestant") = py::none(),
-        py::call_guard<py::gil_scoped_release>(),
+        py::call_guard<GilReleased>(),
         "'synthetic:NAME[:WxHxD]' or a file or folder, '@ISOVALUE' behind it: 'head.nrrd@500'.\n"
         "With a contestant, the field that it feels. Raises ValueError, InputError.");
     module.def(

@@ -16,7 +16,7 @@ py::array_t<double> values_at(const Field& field, const Doubles& points) {
     std::vector<double> values(at.size());
     {
         ReportedItems slices(ctrl_c(), at.size(), updates_in_slice);
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         for (std::size_t i = 0; i < at.size(); ++i, slices.done()) {
             values[i] = at[i].hasNaN() ? std::nan("") : value_at(field, at[i]);
         }
@@ -28,7 +28,7 @@ py::array_t<double> gradients_at(const Field& field, const Doubles& points) {
     std::vector<Vec3> at = points_from(points, "points");
     {
         ReportedItems slices(ctrl_c(), at.size(), updates_in_slice);
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         for (Vec3& point : at) {
             slices.done();
             point = point.hasNaN() ? Vec3::Constant(std::nan("")) : gradient_at(field, point);
@@ -92,7 +92,7 @@ void bind_samples(py::module_& module) {
         .def(
             "volume",
             [](const Samples& self, double time) { return flattened(self, self.moment_at(time)); },
-            py::arg("time") = 0.0, py::call_guard<py::gil_scoped_release>(),
+            py::arg("time") = 0.0, py::call_guard<GilReleased>(),
             "As one Volume, with all edits, at a time of a sequence [s].")
         .def(py::pickle(
             [](const Samples& self) { return py::make_tuple(moments_of(self), self.period()); },

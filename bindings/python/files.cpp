@@ -59,7 +59,7 @@ run::LoadedVolume load(const fs::path& name, const LoadOptions& options,
                              "Volume, and Run(open_store(...)) feels it");
     }
     const auto tell = progress_of(progress);
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     run::LoadedVolume loaded = run::load(source, tell);
     if (loaded.streamed) loaded.streamed->store = destroyed_here_only(loaded.streamed->store);
     return loaded;
@@ -111,7 +111,7 @@ py::tuple state_of(const run::LoadedVolume& loaded) {
 run::LoadedVolume loaded_again(const py::tuple& state) {
     const auto source = run::source_from(state[1].cast<std::map<std::string, std::string>>());
     if (state[0].is_none()) {
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         run::LoadedVolume loaded = run::load(source);
         if (loaded.streamed) loaded.streamed->store = destroyed_here_only(loaded.streamed->store);
         return loaded;
@@ -201,7 +201,7 @@ void write(const Volume& volume, const fs::path& path, bool compress,
     io::WriteOptions options;
     options.compress = compress;
     options.progress = progress_of(progress);
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     io::write_volume(volume, path, options);
 }
 
@@ -216,7 +216,7 @@ void bind_live_writer(py::module_& module) {
              py::arg("path"), py::arg("geometry"), py::arg("type"), py::arg("interval") = 0.0,
              py::arg("slots") = 4, "interval [s] from frame to frame, nominal; 0: unknown.")
         .def("push", py::overload_cast<const Volume&, double>(&io::LiveWriter::push),
-             py::arg("volume"), py::arg("time"), py::call_guard<py::gil_scoped_release>(),
+             py::arg("volume"), py::arg("time"), py::call_guard<GilReleased>(),
              "The next frame, on the same grid and of the same type, taken at `time` [s].");
 }
 

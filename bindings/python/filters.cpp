@@ -7,12 +7,12 @@
 namespace palpate::python {
 namespace {
 
-using Unlocked = py::call_guard<py::gil_scoped_release>;
+using Unlocked = py::call_guard<GilReleased>;
 
 Volume dequantized(const Volume& volume, int rounds, std::optional<int> coarsest,
                    std::optional<double> level, int threads, const ProgressFunction& progress) {
     filters::DequantizeOptions options{rounds, coarsest, level, threads, progress_of(progress)};
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     return filters::dequantized(volume, options);
 }
 

@@ -9,7 +9,7 @@ namespace palpate::python {
 namespace {
 
 namespace fs = std::filesystem;
-using Unlocked = py::call_guard<py::gil_scoped_release>;
+using Unlocked = py::call_guard<GilReleased>;
 
 std::unique_ptr<stream::GrowingImage> growing_image(const fs::path& folder, SampleType type,
                                                     const Geometry& finest,
@@ -123,7 +123,8 @@ void bind_growing_images(py::module_& module) {
         .def("write", &write_block, py::arg("low"), py::arg("block"), Unlocked())
         .def("make_coarser", &make_coarser, py::arg("level"), py::arg("low"), py::arg("high"),
              Unlocked());
-    module.def("_check_new_folder", &io::check_new_folder, py::arg("out"));
+    module.def("_check_resumable", &io::GrowingFolder::check_resumable, py::arg("out"),
+               py::arg("job"));
     py::class_<Folder>(module, "_GrowingFolder")
         .def(py::init(&resumable), py::arg("out"), py::arg("job"))
         .def_property_readonly("note", [](const Folder& folder) { return folder.open().note(); })

@@ -56,6 +56,10 @@ void set_properties(Layer& layer, const std::map<std::string, double>& own) {
     layer = changed;
 }
 
+constexpr auto closing = setting(&Layers::closing, "closing", "mm, physical",
+                                 "Distance at which a punctured surface closes behind the SCP")
+                             .within(ranges::positive);
+
 void bind_layers_class(py::module_& module) {
     using F = io::LayersFile;
     py::class_<F> layers =
@@ -68,8 +72,13 @@ void bind_layers_class(py::module_& module) {
             .part("layers", "A list of Layer.", &F::layers, &Layers::layers)
             .property("curves", &curves_of, &set_curves,
                       "{property: (knots over density, knots over gradient)}, a knot (at, value).")
-            .part("closing", "[mm, physical] a punctured surface closes behind the SCP", &F::layers,
-                  &Layers::closing)
+            .property(
+                closing.name, [](const F& file) { return file.layers.closing; },
+                [](F& file, double value) {
+                    check_range(closing, value);
+                    file.layers.closing = value;
+                },
+                text_of(closing).c_str())
             .part("needle", "Needle or None.", &F::layers, &Layers::needle)
             .done();
     layers.def_property_readonly("by_label", member_of(&F::layers, &Layers::by_label),

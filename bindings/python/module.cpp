@@ -8,6 +8,8 @@
 
 #include "bindings/python/bindings.hpp"
 
+namespace py = pybind11;
+
 namespace {
 
 /// Where the helper programs are: inside the package, as pip installs it, or in the prefix that it
@@ -22,6 +24,26 @@ std::string folder_of_helpers() {
     std::error_code error;
     if (std::filesystem::is_directory(inside, error)) return inside;
     return (package / PALPATE_LIBEXEC_FROM_PYTHON).lexically_normal();
+}
+
+/// pybind11 would give memory that nothing was written to.
+void* refuse_unmade(std::size_t) {
+    throw py::type_error("this object was not made: call its class, not __new__()");
+}
+
+/// Objects of this module's classes that __init__() has not made are refused wherever they are
+/// used.
+void refuse_unmade_objects(const py::module_& module) {
+    for (const auto& [name, member] : module.attr("__dict__").cast<py::dict>()) {
+        if (py::isinstance<py::module_>(member)) {
+            refuse_unmade_objects(member.cast<py::module_>());
+        } else if (PyType_Check(member.ptr())) {
+            auto* const type = reinterpret_cast<PyTypeObject*>(member.ptr());
+            if (auto* const info = py::detail::get_type_info(type)) {
+                info->operator_new = &refuse_unmade;
+            }
+        }
+    }
 }
 
 }  // namespace
@@ -63,4 +85,5 @@ PYBIND11_MODULE(_palpate, module) {
     bind_tool_paths(module);
     bind_closed_loop(module);
     bind_scenes(module);
+    refuse_unmade_objects(module);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "bindings/python/casters.hpp"
 #include "palpate/progress.hpp"
@@ -16,7 +17,8 @@ using ProgressFunction = std::optional<py::function>;
 /// Throws what the function throws, and KeyboardInterrupt. The function has to outlive the result.
 inline OnProgress progress_of(const ProgressFunction& function) {
     return [&function](double fraction) {
-        const py::gil_scoped_acquire gil;
+        std::optional<py::gil_scoped_acquire> gil;
+        GilReleased::until_the_end([&] { gil.emplace(); });
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (function) (*function)(fraction);
     };

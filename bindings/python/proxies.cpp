@@ -155,7 +155,7 @@ ProxyTrace follow(PlacedProxy& placed, const Doubles& hips,
     }
     ReportedItems slices(progress_of(progress), points.size(), updates_in_slice);
     {
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         for (std::size_t i = 0; i < points.size(); ++i) {
             context.first = static_cast<std::int64_t>(i);
             Clock::duration took{};
@@ -216,7 +216,7 @@ ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles
     const std::size_t wanted = std::min(
         {threads > 0 ? static_cast<std::size_t>(threads) : usual, begins.size() - 1, most_threads});
     ReportedItems slices(progress_of(progress), points.size() / wanted, updates_in_slice);
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     std::vector<std::jthread> others;
     for (std::size_t t = 1; t < wanted; ++t) others.emplace_back([&] { follow_some([] {}); });
     try {
@@ -301,7 +301,7 @@ py::dict follow_levels(const Field& field, const Doubles& hips, const Firsts& fi
     ReportedItems slices(ctrl_c(), points.size(), updates_in_slice);
     double growth = 0;
     {
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         const double before = heap_in_use();
         for (std::size_t hand = 0; hand + 1 < begins.size(); ++hand) {
             const std::size_t first = begins[hand];
@@ -341,7 +341,7 @@ std::pair<py::array_t<double>, py::array_t<double>> cast_rays(const Field& field
     const Vec3 none = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
     std::vector<Vec3> points(rays.from.size(), none), normals(rays.from.size(), none);
     {
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         for (std::size_t i = 0; i < points.size(); ++i) {
             const RayHit hit = cast_ray(field, isovalue, rays.from[i], rays.to[i]);
             if (!hit.hit) continue;
@@ -356,7 +356,7 @@ double ray_ns(const Field& field, const io::Level& level, const Doubles& starts,
               const Doubles& ends) {
     const Rays rays(starts, ends);
     const double isovalue = io::level_in(field.volume(), level);
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     const auto begin = Clock::now();
     for (std::size_t i = 0; i < rays.from.size(); ++i) {
         cast_ray(field, isovalue, rays.from[i], rays.to[i]);

@@ -2,6 +2,7 @@
 #include "bindings/python/python_device.hpp"
 
 #include <chrono>
+#include <future>
 #include <optional>
 
 namespace palpate::python {
@@ -34,6 +35,18 @@ std::string tried(const std::string& function, Work&& work) {
     } catch (const std::exception& error) {
         return "the device's " + function + ": " + error.what();
     }
+}
+
+std::string write_to(const py::object& device, const Wrench& wrench) {
+    return tried("write()", [&] {
+        if (py::hasattr(device, "write")) device.attr("write")(wrench.force, wrench.torque);
+    });
+}
+
+/// It may outlive the PythonDevice.
+std::unique_ptr<py::object> held_by_thread(const py::object& device) {
+    const py::gil_scoped_acquire gil;
+    return std::make_unique<py::object>(device);
 }
 
 }  // namespace
@@ -74,14 +87,29 @@ bool PythonDevice::finish() {
     left_behind_ = true;
     const std::string stuck = "its read() or write() does not return";
     set_problem(stuck);
-    const py::gil_scoped_acquire gil;
-    const std::string unwritten = write_to_device({});
+    // On a thread of its own, as it may hang as well.
+    std::promise<std::string> promise;
+    std::future<std::string> zero = promise.get_future();
+    std::thread([device = held_by_thread(self_), written = std::move(promise)]() mutable {
+        std::string problem;
+        {
+            const py::gil_scoped_acquire gil;
+            problem = write_to(*device, {});
+            device.reset();
+        }
+        written.set_value(std::move(problem));
+    }).detach();
+    if (zero.wait_for(longest) != std::future_status::ready) {
+        set_problem(stuck + ", not even with a force of zero");
+        return false;
+    }
+    const std::string unwritten = zero.get();
     if (!unwritten.empty()) set_problem(stuck + ", and " + unwritten);
     return false;
 }
 
 PythonDevice::~PythonDevice() {
-    std::optional<py::gil_scoped_release> unlocked;  // its thread takes the GIL before it ends
+    std::optional<GilReleased> unlocked;  // its thread takes the GIL before it ends
     if (PyGILState_Check()) unlocked.emplace();
     finish();
     if (thread_.joinable()) thread_.join();
@@ -135,22 +163,16 @@ void PythonDevice::step() {
     } else {
         link_.report(reading, now);
     }
-    const std::string unwritten = write_to_device(rests ? Wrench{} : newest);
+    const std::string unwritten = write_to(self_, rests ? Wrench{} : newest);
     if (!unwritten.empty()) rests_until_ = now + rest;
     set_problem(unread.empty() ? unwritten : unread);
-}
-
-std::string PythonDevice::write_to_device(const Wrench& wrench) {
-    return tried("write()", [&] {
-        if (py::hasattr(self_, "write")) self_.attr("write")(wrench.force, wrench.torque);
-    });
 }
 
 void PythonDevice::end() {
     constexpr int tries = 3;  // of a device that refuses its last zero
     const py::gil_scoped_acquire gil;
-    std::string problem = write_to_device({});
-    for (int i = 1; i < tries && !problem.empty(); ++i) problem = write_to_device({});
+    std::string problem = write_to(self_, {});
+    for (int i = 1; i < tries && !problem.empty(); ++i) problem = write_to(self_, {});
     for (int i = 0; i < 2; ++i) link_.wrench(devices::monotonic_ns());  // the zero is out
     const std::string open = tried("close()", [&] {
         if (py::hasattr(self_, "close")) self_.attr("close")();

@@ -55,8 +55,6 @@ class PythonDevice final : public devices::LinkedDevice {
     void run();
     void step();
     void end();
-    /// Empty, or what write() raised.
-    std::string write_to_device(const Wrench& wrench);
     void set_problem(const std::string& problem);
 
     py::object self_;  // used with the GIL
@@ -88,12 +86,12 @@ void stop_session(Owner& owner) {
 /// What all sessions offer.
 template <class Owner>
 void add_session(py::class_<Owner, std::shared_ptr<Owner>>& kind) {
-    using Unlocked = py::call_guard<py::gil_scoped_release>;
+    using Unlocked = py::call_guard<GilReleased>;
     const auto start = [](const py::object& self) {
         auto& owner = self.cast<Owner&>();
         owner.process.check();
         stop_at_exit<Owner>(self, [](Owner& running) { stop_session(running); });
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         owner.start();
     };
     kind.def("start", start, "Once.")
@@ -113,7 +111,7 @@ void add_session(py::class_<Owner, std::shared_ptr<Owner>>& kind) {
                  return self;
              })
         .def("__exit__", [](Owner& owner, const py::args&) {
-            const py::gil_scoped_release unlocked;
+            const GilReleased unlocked;
             if (owner.process.is_here()) stop_session(owner);
         });
 }
@@ -139,7 +137,7 @@ void destroy_session(Owner* owner) {
         if (owner->finish()) delete owner;
     };
     if (!PyGILState_Check()) return end();
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     end();
 }
 

@@ -17,6 +17,16 @@ std::string text_of(const Setting<Owner, Value>& setting) {
     return text;
 }
 
+/// Throws std::invalid_argument for a number that the setting can never have.
+template <class Owner>
+void check_range(const Setting<Owner, double>& setting, double value) {
+    if (setting.range.has(value)) return;
+    const std::string unit = *setting.unit != '\0' ? std::string(" [") + setting.unit + "]" : "";
+    throw std::invalid_argument(setting.title + unit + " = " +
+                                std::string(py::str(py::float_(value))) + ": must be " +
+                                setting.range.words);
+}
+
 /// Reads a member of a member: member_of(&Tick::proxy, &ProxyUpdate::scp)(tick).
 template <class Owner, class First, class... Path>
 auto member_of(First Owner::*first, Path... path) {
@@ -45,9 +55,23 @@ class Record {
     /// All fields of a struct that has a table, as the table describes them.
     template <class Owner = T>
     Record& settings() {
-        for_each_setting<Owner>(
-            [&](const auto& one) { field(one.name, one.member, text_of(one).c_str()); });
+        for_each_setting<Owner>([&](const auto& one) { setting(one); });
         return *this;
+    }
+    /// A field as its setting describes it, which refuses numbers out of range.
+    template <class Owner, class Value>
+    Record& setting(const Setting<Owner, Value>& one) {
+        return field(one.name, one.member, text_of(one).c_str());
+    }
+    template <class Owner>
+    Record& setting(const Setting<Owner, double>& one) {
+        return property(
+            one.name, [=](const T& whole) { return whole.*one.member; },
+            [=](T& whole, double value) {
+                check_range(one, value);
+                whole.*one.member = value;
+            },
+            text_of(one).c_str());
     }
     /// A member of a member: part("solid", "Side", &Setup::field, &FieldSetup::solid).
     template <class Owner, class First, class... Path>

@@ -32,7 +32,7 @@ py::tuple read(const fs::path& path, int hand) {
     std::vector<std::int64_t> commands;
     {
         ReportedItems slices(ctrl_c(), 0, updates_in_slice);
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         while (const auto event = reader.next()) {
             slices.done();
             if (const auto* tick = std::get_if<SessionTick>(&*event)) {
@@ -77,7 +77,7 @@ py::dict validate(const fs::path& path, const fs::path& volume, const ProgressFu
     Counted counted;
     io::RecordingReader reader(path);
     {
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         const run::LoadedVolume loaded =
             run::load(run::recorded_source(reader.head(), path, volume.string()), tell);
         validate_hand(reader, loaded, path.string(), tell, counted);

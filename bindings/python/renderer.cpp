@@ -73,7 +73,7 @@ void moved_without_gil(SharedRenderer& renderer, const Move& move) {
         ~Moving() { moves = false; }
     } const moving(renderer.moves);
     {
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         move(own);
     }
     static_cast<Renderer&>(renderer) = std::move(own);
@@ -87,7 +87,7 @@ py::dict follow_ticks(SharedRenderer& renderer, const Doubles& time, const Doubl
     ReportedItems slices(progress_of(progress), ticks.size(), updates_in_slice);
     if (alternatives) {
         const Renderer own = renderer;  // other threads may use it
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         for (std::size_t i = 0; i < states.size(); ++i) {
             Renderer copy = own;
             ticks[i] = render(copy, states[i]);

@@ -13,7 +13,7 @@
 namespace palpate::python {
 namespace {
 
-using Unlocked = py::call_guard<py::gil_scoped_release>;
+using Unlocked = py::call_guard<GilReleased>;
 namespace fs = std::filesystem;
 
 struct Setup : run::Setup {
@@ -28,21 +28,27 @@ run::Setup live_setup(const Setup& given) {
     return setup;
 }
 
-std::optional<int> number_of(const run::ButtonSetup& setup) {
-    const auto* button = std::get_if<run::Button>(&setup);
-    return button ? std::optional(button->number) : std::nullopt;
-}
+using GivenButton = std::optional<std::variant<int, std::string>>;
 
-/// A button by its number; `usual` where that is None.
-template <class Usual>
-void add_button(Record<Setup>& record, const char* name, run::ButtonSetup run::Setup::*button,
-                Usual usual, const char* about) {
-    record.property(
-        name, [=](const Setup& s) { return number_of(s.*button); },
-        [=](Setup& s, std::optional<int> number) {
-            s.*button = number ? run::ButtonSetup(run::Button{*number}) : usual;
-        },
-        about);
+/// By its number or as in files. Nothing: what it is by default.
+template <class Setting>
+void add_button(Record<Setup>& record, const Setting& one) {
+    const auto get = [one](const Setup& s) -> GivenButton {
+        const run::ButtonSetup& button = s.buttons.*one.member;
+        if (const auto* numbered = std::get_if<run::Button>(&button)) return numbered->number;
+        if (button == run::Buttons{}.*one.member) return std::nullopt;
+        return run::text_of(button);
+    };
+    const auto set = [one](Setup& s, const GivenButton& given) {
+        run::ButtonSetup button = run::Buttons{}.*one.member;
+        if (given) {
+            const auto* number = std::get_if<int>(&*given);
+            button = run::button_from(
+                one.name, number ? std::to_string(*number) : std::get<std::string>(*given));
+        }
+        s.buttons.*one.member = button;
+    };
+    record.property(one.name, get, set, text_of(one).c_str());
 }
 
 void bind_setup(py::module_& module) {
@@ -61,10 +67,7 @@ void bind_setup(py::module_& module) {
             [](S& s, const std::string& text) { s.device = devices::parse_device(text); },
             "As for --device: 'simulated', 'haply:port=10001', ...")
         .field("facing", &S::facing, "The side of the body that faces the person.");
-    add_button(record, "clutch", &S::clutch, run::UsualButton{},
-               "Number of the button, from 1; None: the usual one.");
-    add_button(record, "deadman", &S::deadman, std::monostate{},
-               "Number of the button, from 1; None: none.");
+    for_each_setting<run::Buttons>([&](const auto& one) { add_button(record, one); });
     using P = run::PlaybackSetup;
     using L = io::LoaderSettings;
     record.part("speed", "Of a sequence, at the start.", &S::playback, &P::speed)
@@ -162,7 +165,7 @@ std::shared_ptr<LiveRun> make(const Feelable& what, const std::optional<Setup>& 
         setup.device = {python_device->info().name, {}};
         setup.open_device = [made](const auto&, const auto&) { return std::move(*made); };
     }
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     return {new LiveRun(std::move(data), setup, python_device), &destroy_session<LiveRun>};
 }
 
@@ -177,7 +180,7 @@ void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
         .def_property_readonly(
             "problem",
             [](const R& r) {
-                const py::gil_scoped_release unlocked;
+                const GilReleased unlocked;
                 const std::string device = r.device_problem();
                 return device.empty() ? r.data().problem() : device;
             },

@@ -49,7 +49,7 @@ void bind_scenes(py::module_& module) {
         "scene",
         [](const std::string& name, std::optional<SampleType> type,
            const std::optional<Geometry>& geometry) {
-            const py::gil_scoped_release unlocked;
+            const GilReleased unlocked;
             return geometry ? scenes::make_volume(name, *geometry, type, ctrl_c())
                             : scenes::make_volume(name, type, ctrl_c());
         },

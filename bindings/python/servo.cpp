@@ -47,7 +47,7 @@ Held make_servo(const SharedRenderer& renderer, const py::object& device, double
     settings.real_time = real_time;
     auto its_device = make_python_device(device, device_rate);
     Renderer own = renderer;  // with the GIL, as other threads may use it
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     return {new DeviceServo(std::move(own), std::move(its_device), settings),
             &destroy_session<DeviceServo>};
 }

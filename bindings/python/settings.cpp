@@ -86,10 +86,7 @@ void add_open(Record<AskedForce>& force, const Setting<ForceSettings, double>& o
     force.property(
         one.name, [one](const AskedForce& from) { return asked(from.*one.member); },
         [one](AskedForce& to, std::optional<double> value) {
-            if (value && std::isnan(*value)) {
-                throw std::invalid_argument(std::string(one.title) + " = nan: must be " +
-                                            one.range.words);
-            }
+            if (value) check_range(one, *value);
             to.*one.member = value.value_or(std::nan(""));
         },
         text_of(one).c_str());
@@ -111,7 +108,7 @@ void bind_force(py::module_& module) {
         if constexpr (std::same_as<decltype(one.member), double ForceSettings::*>) {
             if (*one.left_open != '\0') return add_open(force, one);
         }
-        force.field(one.name, one.member, text_of(one).c_str());
+        force.setting(one);
     });
     force.done();
     Record<Friction>(module, "Friction", "Coulomb friction on the proxy's motion.")

@@ -12,7 +12,7 @@ namespace palpate::python {
 namespace {
 
 namespace fs = std::filesystem;
-using Unlocked = py::call_guard<py::gil_scoped_release>;
+using Unlocked = py::call_guard<GilReleased>;
 
 struct OpenStore {
     std::shared_ptr<const stream::Store> store;

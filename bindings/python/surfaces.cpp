@@ -24,7 +24,7 @@ SurfaceMesh extract(const Field& field, const io::Level& level, double tolerance
         return true;
     };
     const double isovalue = io::level_in(field.volume(), level);
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     return extract_surface(field, isovalue, options);
 }
 
@@ -87,7 +87,7 @@ void bind_surfaces(py::module_& module) {
             [](const SurfaceMesh& mesh, const std::filesystem::path& path) {
                 io::write_mesh(mesh, path, ctrl_c());
             },
-            py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+            py::arg("path"), py::call_guard<GilReleased>(),
             "As .ply, .stl, .obj or .vtp, whole or not at all. Raises OutputError.")
         .def(py::pickle(
             [](const py::object& self) {
@@ -109,8 +109,7 @@ void bind_surfaces(py::module_& module) {
         "The whole isosurface as one watertight Mesh. isovalue: a number [data units] or\n"
         "'53%'. tolerance [voxel]: facets of a cubic field are split until they are as near;\n"
         "normals: of a cubic field, those that are felt.");
-    module.def("read_mesh", &io::read_mesh, py::arg("path"),
-               py::call_guard<py::gil_scoped_release>(),
+    module.def("read_mesh", &io::read_mesh, py::arg("path"), py::call_guard<GilReleased>(),
                "The triangles of an .stl, .ply, .obj or .vtp file. Raises InputError.");
 }
 

@@ -17,7 +17,7 @@ Made made(Tool tool) {
 }
 
 Made from_text(const std::filesystem::path& text, double spacing) {
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     const auto tool = io::make_tool(io::tool_spec_from(text.string()), spacing);
     return made(tool ? *tool : point_tool());
 }

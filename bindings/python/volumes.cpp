@@ -98,7 +98,7 @@ void bind_volumes(py::module_& module) {
                            : py::object(array.attr("astype")(dtype, py::arg("copy") = false));
             },
             py::arg("dtype") = py::none(), "For numpy.asarray(): shared and read-only.")
-        .def("_placed", &placed, py::arg("geometry"), py::call_guard<py::gil_scoped_release>())
+        .def("_placed", &placed, py::arg("geometry"), py::call_guard<GilReleased>())
         .def("__repr__", &text_of_volume)
         .def(py::pickle(
             [](const Volume& self) {

@@ -16,13 +16,13 @@ std::shared_ptr<T> made_without_gil(Arguments&&... arguments) {
     const auto destroy = [process = OwnProcess()](T* object) {
         if (!process.is_here()) return;
         if (PyGILState_Check()) {
-            const py::gil_scoped_release unlocked;
+            const GilReleased unlocked;
             delete object;
         } else {
             delete object;
         }
     };
-    const py::gil_scoped_release unlocked;
+    const GilReleased unlocked;
     return {new T(std::forward<Arguments>(arguments)...), destroy};
 }
 
@@ -33,7 +33,7 @@ void stop_at_exit(const py::object& self, Stop stop) {
     const py::cpp_function at_exit([held, stop, process = OwnProcess()] {
         const std::shared_ptr<T> object = held.lock();
         if (!object || !process.is_here()) return;
-        const py::gil_scoped_release unlocked;
+        const GilReleased unlocked;
         stop(*object);
     });
     py::module_::import("weakref").attr("finalize")(self, at_exit);

@@ -467,6 +467,8 @@ typedef struct palpate_run_options {
      * opened. Returns 0 to cancel. Since 0.3. */
     int32_t (*progress)(double fraction, void *context);
     void *context;
+    int32_t clutch_button;                /* from 1: the volume hangs on the hand while it is held; 0: 2,
+                                             or 1 where it is the only one; -1: none. Since 0.3 */
 } palpate_run_options;
 
 typedef struct palpate_snapshot {

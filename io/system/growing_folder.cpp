@@ -119,6 +119,14 @@ std::string remove_held(const fs::path& folder, int held) {
     return left;
 }
 
+/// Throws for what is in a folder that would be removed.
+void refuse_unknown(const fs::path& folder, const std::string& unknown) {
+    if (unknown.empty()) return;
+    refuse(folder / unknown,
+           "was not written by Palpate or cannot be removed, so that this folder of an "
+           "interrupted run stays; move it elsewhere");
+}
+
 }  // namespace
 
 GrowingFolder::GrowingFolder(fs::path out, const std::string* job)
@@ -175,39 +183,60 @@ void GrowingFolder::make(const std::string* job) {
     if (problem != EEXIST) refuse(partial, reason(problem) + "; choose another folder");
 }
 
+struct GrowingFolder::Earlier {
+    int folder = -1;  ///< locked; -1: there is none
+    std::string job = {};
+};
+
+/// What an earlier run has left. Throws if it must not be continued or removed.
+GrowingFolder::Earlier GrowingFolder::earlier_run(const fs::path& folder) {
+    Earlier found{::open(folder.c_str(), as_folder)};
+    if (found.folder < 0) {
+        if (errno == ENOENT) return found;
+        if (errno != ENOTDIR && errno != ELOOP) refuse(folder, reason(errno) + what_to_do);
+        refuse(folder, std::string("is a link or a file, which Palpate did not make") + what_to_do);
+    }
+    const auto refused = [&](const std::string& why) {
+        ::close(found.folder);
+        refuse(folder, why);
+    };
+    struct stat about {};
+    if (::fstat(found.folder, &about) != 0 || about.st_uid != ::geteuid()) {
+        refused(std::string("belongs to another user") + what_to_do);
+    }
+    const auto job = job_in(found.folder);
+    if (!job) refused(std::string("is a folder that Palpate did not make") + what_to_do);
+    if (::flock(found.folder, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        refused("another process is writing it; wait for that");
+    }
+    found.job = *job;
+    return found;
+}
+
+void GrowingFolder::check_resumable(const fs::path& out, const std::string& job) {
+    check_new_folder(out);
+    const fs::path folder = with_end(without_slash(out), ".partial");
+    const Earlier found = earlier_run(folder);
+    if (found.folder < 0) return;
+    ::close(found.folder);
+    if (found.job != job) refuse_unknown(folder, unknown_below(folder, OwnFolder::growing));
+}
+
 /// Opens what an earlier run has left. False if there is none of this job (any more).
 bool GrowingFolder::take(const std::string& job) {
     folder_ = with_end(out_, ".partial");
-    const int folder = ::open(folder_.c_str(), as_folder);
-    if (folder < 0) {
-        if (errno == ENOENT) return false;
-        if (errno != ENOTDIR && errno != ELOOP) refuse(folder_, reason(errno) + what_to_do);
-        refuse(folder_,
-               std::string("is a link or a file, which Palpate did not make") + what_to_do);
-    }
-    lock_ = folder;
-    const auto refused = [&](const std::string& why) {
-        let_go();
-        refuse(folder_, why);
-    };
-    struct stat about {};
-    if (::fstat(folder, &about) != 0 || about.st_uid != ::geteuid()) {
-        refused(std::string("belongs to another user") + what_to_do);
-    }
-    const auto before = job_in(folder);
-    if (!before) refused(std::string("is a folder that Palpate did not make") + what_to_do);
-    if (::flock(folder, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-        refused("another process is writing it; wait for that");
-    }
-    if (!is_still(AT_FDCWD, folder_.c_str(), folder)) {
+    const Earlier found = earlier_run(folder_);
+    if (found.folder < 0) return false;
+    lock_ = found.folder;
+    if (!is_still(AT_FDCWD, folder_.c_str(), found.folder)) {
         let_go();
         return false;
     }
-    if (*before != job) {
+    if (found.job != job) {
         begin_anew();
         return false;
     }
-    hold(folder);
+    hold(found.folder);
     is_continued_ = true;
     return true;
 }
@@ -222,11 +251,7 @@ void GrowingFolder::begin_anew() {
     }
     if (unknown.empty()) unknown = remove_held(folder_, lock_);
     let_go();
-    if (!unknown.empty()) {
-        refuse(folder_ / unknown,
-               "was not written by Palpate or cannot be removed, so that this folder of an "
-               "interrupted run stays; move it elsewhere");
-    }
+    refuse_unknown(folder_, unknown);
     note_ = folder_.string() +
             ": was of another source, of other settings or of another version: begun anew";
 }

@@ -26,6 +26,8 @@ class GrowingFolder {
     /// link, a file, a folder without Palpate's marker, of another user, in use by another process,
     /// or with something in it that Palpate did not write; and if `out` itself is there.
     static GrowingFolder resumable(const std::filesystem::path& out, const std::string& job);
+    /// Throws what resumable() refuses now, and changes nothing.
+    static void check_resumable(const std::filesystem::path& out, const std::string& job);
     ~GrowingFolder();
     GrowingFolder(const GrowingFolder&) = delete;
     GrowingFolder& operator=(const GrowingFolder&) = delete;
@@ -48,6 +50,9 @@ class GrowingFolder {
     void put_in_place(const MayReplace& may_replace = {});
 
   private:
+    struct Earlier;
+    static Earlier earlier_run(const std::filesystem::path& folder);
+
     GrowingFolder(std::filesystem::path out, const std::string* job);
     void make(const std::string* job);
     bool take(const std::string& job);

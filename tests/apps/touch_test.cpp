@@ -283,7 +283,7 @@ TEST(Touch, refuses_options_that_make_no_sense) {
     wrong("--device simulated:colour=red", "no option 'colour'");
     wrong("--rate 100", "250 to 8000 Hz");
     wrong("--facing up", "up");
-    wrong("--clutch x", "a button's number");
+    wrong("--clutch x", "--clutch: a button is a number from 1 to 32, none or auto, not 'x'");
     wrong("--dead-man 1", "the device has 0 buttons");
     wrong("--seconds -1", "-1");
     wrong("--seconds nan", "'nan' is not a number");

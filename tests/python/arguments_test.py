@@ -122,6 +122,31 @@ def test_messages_say_what_to_write(call, text):
     assert complaint(call) == text
 
 
+@pytest.mark.parametrize("call", [
+    lambda: palpate.Setup(isovalue="\ud800"), lambda: palpate.Setup(solid="\ud800"),
+    lambda: palpate.extract(palpate.Field(volume()), "\ud800"), lambda: palpate.Brush(kind="\ud800")])
+def test_text_that_has_no_utf_8_is_a_value_error_in_one_line(call):
+    with pytest.raises(ValueError, match="^[^\n]*surrogates not allowed$"):
+        call()
+
+
+CLASSES = [kind for within in (palpate, palpate.command) for kind in vars(within).values()
+           if isinstance(kind, type) and kind.__module__.startswith("palpate") and "__new__" not in vars(kind)
+           and type(kind).__name__ == "pybind11_type"]
+
+
+@pytest.mark.parametrize("kind", CLASSES, ids=lambda kind: kind.__name__)
+def test_an_object_that_was_not_made_is_refused_wherever_it_is_used(kind):
+    unmade = kind.__new__(kind)
+    for name in dir(kind):
+        if not name.startswith("_") and isinstance(getattr(kind, name), property):
+            with pytest.raises((TypeError, RuntimeError), match="^[^\n]*$"):
+                getattr(unmade, name)
+    if kind is palpate.Volume:
+        with pytest.raises(TypeError, match="this object was not made"):
+            palpate.Field(unmade)
+
+
 def test_an_error_inside_a_callback_stays_as_it_is():
     def progress(fraction):
         raise TypeError("mine,\nin two lines")

@@ -129,7 +129,11 @@ def test_other_work_is_not_continued(client, tmp_path):
     assert palpate.open_store(out).range[0] == 1
 
 
-def test_a_folder_of_somebody_else_is_refused_and_stays(client, tmp_path):
+def no_client():
+    pytest.fail("a cluster was started before all else was found good")
+
+
+def test_a_folder_of_somebody_else_is_refused_before_a_cluster_is_started_and_stays(tmp_path):
     source, precious = ball(tmp_path), tmp_path / "precious"
     precious.mkdir()
     (precious / "thesis.txt").write_text("years")
@@ -138,8 +142,19 @@ def test_a_folder_of_somebody_else_is_refused_and_stays(client, tmp_path):
     (tmp_path / "folder.zarr.partial" / "thesis.txt").write_text("years")
     for name in ("linked.zarr", "folder.zarr"):
         with pytest.raises(palpate.OutputError, match=f"{name}.partial: is a"):
-            convert(client, source, str(tmp_path / name), chunk=16, block=32)
+            convert(no_client, source, str(tmp_path / name), chunk=16, block=32)
         assert (tmp_path / f"{name}.partial" / "thesis.txt").read_text() == "years"
+
+
+def test_an_interrupted_run_with_a_foreign_file_is_refused_before_a_cluster_is_started(client, tmp_path):
+    source, out = ball(tmp_path), str(tmp_path / "foreign.zarr")
+    with pytest.raises(KeyboardInterrupt):
+        convert(client, source, out, chunk=16, block=32, progress=stop_at("level-0", 5))
+    foreign = tmp_path / "foreign.zarr.partial" / "thesis.txt"
+    foreign.write_text("years")
+    with pytest.raises(palpate.OutputError, match="thesis.txt: was not written by Palpate"):
+        convert(no_client, source, out, chunk=16, block=64)
+    assert foreign.read_text() == "years"
 
 
 def test_other_work_that_looks_the_same_is_not_continued(client, tmp_path):

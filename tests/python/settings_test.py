@@ -239,6 +239,41 @@ def test_what_was_assigned_belongs_to_each_owner():
         renderer(one).force = mine
 
 
+@pytest.mark.parametrize("kind, name, value, words", [
+    ("Layers", "closing", -1, r"closing \[mm, physical\] = -1\.0: must be finite and above 0"),
+    ("Layers", "closing", numpy.nan, "closing .* = nan: must be"),
+    ("ForceSettings", "limit", -1, r"force limit \[N\] = -1\.0: must be finite and at least 0"),
+    ("ForceSettings", "damping", numpy.inf, "damping .* = inf: must be"),
+    ("Friction", "dynamic_coefficient", -0.1, r"dynamic friction = -0\.1: must be"),
+    ("DeviceLimits", "maximum_force", 0, "maximum force .* = 0.0: must be finite and above 0"),
+    ("DeviceTransform", "scale", 0, "scale = 0.0: must be"),
+    ("Needle", "static_ratio", 0.5, "static_ratio = 0.5: must be finite and at least 1"),
+    ("Texture", "wavelength", 0, "texture wavelength"), ("Magnet", "distance", -1, "magnet distance")])
+def test_a_number_out_of_range_is_refused_where_it_is_set_or_constructed(kind, name, value, words):
+    with pytest.raises(ValueError, match=words):
+        getattr(palpate, kind)(**{name: value})
+    made = getattr(palpate, kind)()
+    with pytest.raises(ValueError, match=words):
+        setattr(made, name, value)
+    assert made == getattr(palpate, kind)()
+
+
+@pytest.mark.parametrize("name, usual, wrong", [
+    ("clutch", None, ("Middle", 0, -1, 33)), ("deadman", None, ("Middle", 0, -1, 33))])
+def test_a_button_is_a_number_or_none_at_all(name, usual, wrong):
+    setup = palpate.Setup()
+    assert getattr(setup, name) is usual
+    for value in wrong:
+        with pytest.raises(ValueError, match=f"^{name}: a button is a number from 1 to 32, none or auto"):
+            setattr(setup, name, value)
+    setattr(setup, name, 2)
+    assert getattr(setup, name) == getattr(copy.copy(setup), name) == 2
+    setattr(setup, name, "auto")
+    assert getattr(setup, name) == {"clutch": None, "deadman": "auto"}[name]
+    setattr(setup, name, "none")
+    assert getattr(setup, name) == {"clutch": "none", "deadman": None}[name]
+
+
 def test_layers_in_another_order_are_still_those_of_the_set():
     layers = palpate.layers_named("ct-needle")
     first = layers.layers[0]

@@ -70,6 +70,37 @@ print("end")
     assert words == ["True", "False", "True", "False", "end"]
 
 
+def test_stopping_a_device_whose_write_hangs_returns_and_says_so():
+    words = run_program("""
+class Hanging(live_test.Still):
+    def write(self, force, torque):
+        threading.Event().wait()
+servo = palpate.Servo(live_test.renderer(), Hanging(60), real_time=False)
+servo.start()
+try:
+    servo.stop()
+except palpate.DeviceError as e:
+    print("not even with a force of zero" in servo.device_problem, "does not return" in str(e))
+os._exit(0 if sys.stdout.flush() is None else 1)
+""")
+    assert words == ["True", "True"]
+
+
+def test_a_program_may_end_while_other_threads_compute():
+    words = run_program("""
+field = palpate.Field(palpate.scene("sphere").volume)
+begun = threading.Event()
+def compute():
+    while True:
+        palpate.extract(field, 100, progress=lambda fraction: begun.set())
+for i in range(2):
+    threading.Thread(target=compute, daemon=True).start()
+begun.wait()
+print("end")
+""")
+    assert words == ["end"]
+
+
 def serve(folder, kind=http.server.SimpleHTTPRequestHandler):
     handler = functools.partial(kind, directory=folder)
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)

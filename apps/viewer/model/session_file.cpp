@@ -52,6 +52,20 @@ static void members(auto& v, io::Is<Camera> auto& s) {
 
 }  // namespace palpate::pictures
 
+namespace palpate::run {
+
+static io::Json to_value(const ButtonSetup& button) {
+    return text_of(button);
+}
+
+static void from_value(const io::Json& json, const std::string& name, ButtonSetup& button) {
+    std::string text;
+    io::from_value(json, name, text);
+    button = button_from("'" + name + "'", text);
+}
+
+}  // namespace palpate::run
+
 namespace palpate::viewer {
 
 using io::Is;
@@ -168,6 +182,7 @@ static void members(auto& v, Is<Measurement> auto& s) {
 /// The plain members after `method`.
 static void members(auto& v, Is<SessionFile> auto& s) {
     constexpr std::size_t most_measurements = 1000;
+    members(v, s.buttons);
     v("look", s.look);
     v("camera", s.camera);
     finite(v, "crosshair", s.crosshair);

@@ -28,6 +28,7 @@ struct SessionFile : SessionHand {
     Interpolation interpolation = Interpolation::cubic;
     std::optional<double> background;  ///< [data units] nothing: the usual one
     baselines::NamedMethod method = baselines::methods().front();
+    run::Buttons buttons;             ///< of every device
     std::vector<SessionHand> others;  ///< beside the first
     Look look;
     std::optional<run::Source> overlay;      ///< a label map or image over the volume

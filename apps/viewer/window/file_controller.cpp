@@ -217,6 +217,7 @@ void FileController::feel_again(const run::Source& source) {
 RunRequest FileController::request_for_same() {
     RunRequest request = run_.take_request();
     request.device.reset();
+    request.buttons.reset();
     return request;
 }
 
@@ -292,6 +293,7 @@ SessionFile FileController::session_now() const {
         session.interpolation = live->field().interpolation();
         session.background = live->field().background();
         session.method = live->setup().render.method;
+        session.buttons = live->setup().buttons;
         static_cast<SessionHand&>(session) = hand_now(*live);
         for (int hand = 2; hand <= content_.hands(); ++hand) {
             session.others.push_back(hand_now(*content_.live(hand)));
@@ -308,6 +310,7 @@ SessionFile FileController::session_now() const {
             session.others.push_back({device, (other ? other->head() : head).isovalue, {}});
         }
         session.method = run::named_method(head.method);
+        session.buttons = run_.request().setup.buttons;
         session.settings = head.settings;
     }
     display_.save_view(session);
@@ -338,8 +341,8 @@ void FileController::open_session(const QString& path) {
     });
 }
 
-/// The devices are those of the command line, else the session's; where they cannot be had, those
-/// chosen in this window.
+/// Devices and buttons are those of the command line, else the session's; where they cannot be had,
+/// those chosen in this window.
 void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
                                   RunRequest request, bool in_place) {
     run::Setup& setup = request.setup;
@@ -349,6 +352,7 @@ void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionF
         for (const SessionHand& other : session.others) request.others.push_back(other.device);
     }
     setup.device = request.device.value_or(session.device);
+    setup.buttons = request.buttons.value_or(session.buttons);
     setup.render.method = session.method;
     setup.render.layers.reset();  // the session's are in its settings
     // The usual one is smaller for a fast device.

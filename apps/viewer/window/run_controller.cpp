@@ -28,6 +28,7 @@ std::vector<run::Setup> RunRequest::setups() const {
 
 void RunRequest::use_devices_of(const RunRequest& other) {
     setup.device = other.setup.device;
+    setup.buttons = other.setup.buttons;
     others = other.others;
 }
 

@@ -25,6 +25,8 @@ struct RunRequest {
     std::string record;  ///< recording to write; empty: none
     /// Of the hands beside the first.
     std::vector<devices::DeviceChoice> others = {};
+    /// The buttons of the command line: used instead of those in a session file.
+    std::optional<run::Buttons> buttons = {};
 
     std::vector<run::Setup> setups() const;
     void use_devices_of(const RunRequest& other);

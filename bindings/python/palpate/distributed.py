@@ -399,10 +399,11 @@ def convert(client: Union["Client", Callable[[], "Client"]], source: str, out: s
     job = _Job(source, pickle.dumps(options or {}), f"{seen(source)} {content}", level, _result(out), _work(out), kind,
                smooth, prefilter, chunk, compression, ome_version)
     job.image("level-0")  # refuses a wrong format before anything is made
-    _palpate._check_new_folder(out)
+    work = json.dumps([__version__, repr(job), dequantize, block])
+    _palpate._check_resumable(out, work)
     client = client() if callable(client) else client
     check_workers(client)
-    with _growing(out, json.dumps([__version__, repr(job), dequantize, block])):
+    with _growing(out, work):
         return _Conversion(client, job, block, progress).run(dequantize)
 
 

@@ -17,6 +17,7 @@
 #include "palpate/io/tool_file.hpp"
 #include "palpate/run/source.hpp"
 #include "palpate/session.hpp"
+#include "palpate/settings.hpp"
 
 namespace palpate::run {
 
@@ -66,11 +67,26 @@ double rate_of(const RenderSetup& setup, const DeviceInfo& device);
 /// A button of the device, by its number from 1.
 struct Button {
     int number = 1;
+    bool operator==(const Button&) const = default;
 };
 /// The second button, or the first if it is the only one.
-struct UsualButton {};
+struct UsualButton {
+    bool operator==(const UsualButton&) const = default;
+};
 /// Nothing (monostate): no button.
 using ButtonSetup = std::variant<std::monostate, UsualButton, Button>;
+/// The text is "auto" (UsualButton), "none" or a number from 1 to 32. Throws std::invalid_argument
+/// for other texts. The message begins with the purpose.
+ButtonSetup button_from(const std::string& purpose, const std::string& text);
+/// The inverse of button_from().
+std::string text_of(const ButtonSetup& button);
+
+/// The purposes of the device's buttons.
+struct Buttons {
+    ButtonSetup clutch = UsualButton{};
+    ButtonSetup deadman;
+    bool operator==(const Buttons&) const = default;
+};
 
 struct PlaybackSetup {
     double speed = 1;           ///< of a sequence, from the start. 0: paused
@@ -87,8 +103,7 @@ struct Setup {
     devices::DeviceChoice device{"simulated", {}};
     OpenDevice open_device = &devices::open_device;  ///< an application may have its own devices
     Facing facing = Facing::anterior;
-    ButtonSetup clutch = UsualButton{};
-    ButtonSetup deadman;
+    Buttons buttons;
     PlaybackSetup playback;
     bool real_time = true;  ///< ask for real-time priority
 };
@@ -138,3 +153,19 @@ baselines::NamedMethod named_method(std::string_view name);
 std::string text_of(const devices::DeviceChoice& choice);
 
 }  // namespace palpate::run
+
+namespace palpate {
+
+template <>
+inline constexpr auto settings_of<run::Buttons> =
+    std::tuple{setting(&run::Buttons::clutch, "clutch", "",
+                       "Button that attaches the volume to the hand: 1, 2, ... or none")
+                   .as_option("--clutch")
+                   .if_open("2, or 1 on devices with one button"),
+               setting(&run::Buttons::deadman, "deadman", "",
+                       "Button that must be held for any force: 1, 2, ... or none")
+                   .in_files("dead-man")
+                   .as_option("--dead-man")
+                   .if_open("none")};
+
+}  // namespace palpate

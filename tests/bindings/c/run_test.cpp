@@ -112,6 +112,25 @@ class CRun : public testing::Test {
     palpate_run* run_ = nullptr;
 };
 
+TEST_F(CRun, a_button_that_cannot_be_is_refused_by_name) {
+    PALPATE_STRUCT(palpate_run_options, options);
+    options.no_real_time = 1;
+    const auto refused = [&](const std::string& words) {
+        EXPECT_EQ(palpate_run_create(data_, &options, &run_), PALPATE_INVALID) << words;
+        EXPECT_NE(std::string(palpate_last_error()).find(words), std::string::npos)
+            << palpate_last_error();
+    };
+    options.clutch_button = -2;
+    refused("clutch_button: a button is");
+    options.clutch_button = 1;
+    refused("clutch button 1: the device has 0 buttons");
+    options.clutch_button = -1;  // none
+    options.deadman_button = 33;
+    refused("deadman_button: a button is");
+    options.deadman_button = 0;
+    EXPECT_EQ(palpate_run_create(data_, &options, &run_), PALPATE_OK) << palpate_last_error();
+}
+
 TEST_F(CRun, an_own_device_feels_the_ball_within_its_limit_on_a_thread_of_its_own) {
     const palpate_own_device own = device_of(hand_);
     ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();

@@ -33,6 +33,7 @@ SessionFile some_session() {
     s.background = 0.1 + 0.2;
     s.isovalue = 1.0 / 3;
     s.device = {"haply", {{"port", "10001"}}};
+    s.buttons = {run::Button{3}, run::Button{1}};
     s.settings.emplace();
     s.settings->proxy.friction = {0.3, 0.2};
     s.settings->proxy.step_budget = 777;
@@ -74,6 +75,7 @@ void expect_same(const SessionFile& a, const SessionFile& b) {
     EXPECT_EQ(a.background, b.background);
     EXPECT_EQ(a.isovalue, b.isovalue);
     EXPECT_EQ(a.device, b.device);
+    EXPECT_EQ(a.buttons, b.buttons);
     EXPECT_EQ(a.method.method, b.method.method);
     EXPECT_EQ(a.settings->proxy.friction.static_coefficient,
               b.settings->proxy.friction.static_coefficient);
@@ -151,6 +153,7 @@ TEST(SessionFile, a_volume_and_a_level_are_enough) {
     EXPECT_EQ(read.isovalue, 300);
     EXPECT_EQ(read.look, Look{});
     EXPECT_EQ(read.device, SessionFile{}.device);
+    EXPECT_EQ(read.buttons, run::Buttons{});
     EXPECT_EQ(read.interpolation, Interpolation::cubic);  // as of a volume without a session
     EXPECT_FALSE(read.background || read.settings || read.camera || read.crosshair);
     // And as little comes back.
@@ -221,6 +224,8 @@ TEST(SessionFile, an_error_is_one_line_with_file_and_member) {
     names("/field", "quartic", "'field'");
     names("/method", "magic", "exact");
     names("/device", "", "'device'");
+    names("/clutch", 2, "'clutch'");
+    names("/dead-man", "33", "'dead-man'");
     names("/settings/force/stiffness", -1, "stiffness");
     names("/settings/force", "strong", "'force'");
     names("/settings/penetrability/range_count", 99, "range_count");

@@ -351,6 +351,27 @@ TEST_F(Files, a_session_brings_back_its_step_budget) {
     EXPECT_EQ(window_->live()->settings().proxy.step_budget, 777);
 }
 
+TEST_F(Files, a_session_keeps_its_buttons_unless_the_command_line_names_others) {
+    const std::string holds = "simulated:hand=hold,depth=4,seconds=3600";
+    const auto feel_by = [&](const RunRequest& request, const QString& path) {
+        open_window(request);
+        window_->files().open_path(path);
+        wait_until([&] { return window_->live() && window_->live()->snapshot(); });
+        return window_->live()->setup().buttons;
+    };
+    RunRequest request{setup_with(holds), {}, {}};
+    request.setup.buttons.clutch = {};  // simulated hands have no buttons
+    feel_by(request, "synthetic:sphere:48x48x48");
+    window_->files().save_session(scratch("day.json"));
+
+    RunRequest usual{setup_with("mouse"), {}, {}};
+    EXPECT_EQ(feel_by(usual, scratch("day.json")), request.setup.buttons);
+    // They are those of another hand or device in this window as well.
+    EXPECT_EQ(window_->run().request().setup.buttons, request.setup.buttons);
+    usual.buttons = run::Buttons{};
+    EXPECT_EQ(feel_by(usual, scratch("day.json")), run::Buttons{});
+}
+
 TEST_F(Files, nobody_is_asked_where_nobody_is_there) {
     for (int i = 0; i < 6; ++i) {
         io::test::TestSlice slice;
