@@ -102,9 +102,8 @@ TEST_F(Grid, without_a_spacing_says_so_and_takes_one) {
             return part<QLabel>("contact").text().contains(QString(" %1 in the vol").arg(unit)) &&
                    part<QLabel>("readout").text().endsWith(QString("/%1").arg(unit));
         });
-        EXPECT_TRUE(
-            QString::fromStdString(position_text(slice_plane(grid(), 2), grid(), Vec3::Constant(3)))
-                .endsWith(unit));
+        EXPECT_TRUE(QString::fromStdString(position_text(slice_plane(grid(), 2), Vec3::Constant(3)))
+                        .endsWith(unit));
     };
     ends_in("voxel");
     answer(QMessageBox::Discard);
