@@ -59,14 +59,14 @@ void measure(const Field& field, int axis, int edge) {
     const Geometry& geometry = field.geometry();
     const viewer::SlicePlane plane = viewer::slice_plane(geometry, axis);
     const QSize size(edge, edge);
-    const viewer::SliceMap map = viewer::slice_map(plane, geometry, {}, size, 16);
+    const viewer::SliceMap map = viewer::slice_map(plane, {}, size, 16);
     viewer::SliceStyle style;
     style.window = {field.volume().minimum(), field.volume().maximum()};
     style.isovalue = 500;
     viewer::SliceSamples samples(field, plane);
     const auto draw = [&](double position) {
         samples.go_to(position);
-        (void)viewer::slice_picture(samples, plane, map, style, size, 1);
+        (void)viewer::slice_picture(samples, map, style, size, 1);
     };
     const double layer =
         milliseconds([&](int i) { draw((0.3 + 0.0117 * i) * geometry.size[axis]); });

@@ -55,13 +55,14 @@ std::string letters_towards(const Geometry& geometry, const Vec3& direction) {
 
 }  // namespace
 
-SlicePlane slice_plane(const Geometry& geometry, int axis) {
-    const Mat3& direction = geometry.direction;
+SlicePlane slice_plane(const Geometry& grid, int axis) {
+    const Mat3& direction = grid.direction;
     const std::array<int, 3> body = anatomical_axes(direction);
     SlicePlane plane;
+    plane.grid = grid;
     plane.axis = axis;
     plane.anatomical = body[std::size_t(axis)];
-    plane.title = (geometry.oriented ? titles : plain_titles)[std::size_t(plane.anatomical)];
+    plane.title = (grid.oriented ? titles : plain_titles)[std::size_t(plane.anatomical)];
     // To the right: the patient's left; on sagittal slices, the back. Down: the back; on upright
     // slices, the feet, which are against +z.
     const int to_right = plane.anatomical == 0 ? 1 : 0;
@@ -75,47 +76,69 @@ SlicePlane slice_plane(const Geometry& geometry, int axis) {
     const auto shown = [&](const ScreenAxis& s) -> Vec3 {
         return (s.flip ? -1 : 1) * direction.col(s.axis);
     };
-    plane.at_right = letters_towards(geometry, shown(plane.right));
-    plane.at_left = letters_towards(geometry, -shown(plane.right));
-    plane.at_bottom = letters_towards(geometry, shown(plane.down));
-    plane.at_top = letters_towards(geometry, -shown(plane.down));
+    plane.at_right = letters_towards(grid, shown(plane.right));
+    plane.at_left = letters_towards(grid, -shown(plane.right));
+    plane.at_bottom = letters_towards(grid, shown(plane.down));
+    plane.at_top = letters_towards(grid, -shown(plane.down));
     return plane;
 }
 
-std::array<int, 2> samples_of(const SlicePlane& plane, const Geometry& geometry) {
-    return {geometry.size[plane.right.axis], geometry.size[plane.down.axis]};
-}
-
-std::array<double, 2> spacing_of(const SlicePlane& plane, const Geometry& geometry) {
-    return {geometry.spacing[plane.right.axis], geometry.spacing[plane.down.axis]};
-}
-
-Vec3 slice_from_index(const SlicePlane& plane, const Geometry& geometry, const Vec3& index) {
+Vec3 SlicePlane::point(const Vec3& physical) const {
+    const Vec3 index = index_from_physical(grid, physical);
     const auto along = [&](const ScreenAxis& s) {
-        return s.flip ? geometry.size[s.axis] - 1 - index[s.axis] : index[s.axis];
+        return s.flip ? grid.size[s.axis] - 1 - index[s.axis] : index[s.axis];
     };
-    return {along(plane.right), along(plane.down), index[plane.axis]};
+    return {along(right), along(down), index[axis]};
 }
 
-Vec3 index_from_slice(const SlicePlane& plane, const Geometry& geometry, const Vec3& slice) {
+Vec3 SlicePlane::physical(const Vec3& point) const {
     Vec3 index;
     const auto put = [&](const ScreenAxis& s, double value) {
-        index[s.axis] = s.flip ? geometry.size[s.axis] - 1 - value : value;
+        index[s.axis] = s.flip ? grid.size[s.axis] - 1 - value : value;
     };
-    put(plane.right, slice[0]);
-    put(plane.down, slice[1]);
-    index[plane.axis] = slice[2];
-    return index;
+    put(right, point[0]);
+    put(down, point[1]);
+    index[axis] = point[2];
+    return physical_from_index(grid, index);
 }
 
-std::string position_text(const SlicePlane& plane, const Geometry& geometry, const Vec3& physical) {
-    const Vec3 axis = geometry.direction.col(plane.axis);
+SlicePlane SlicePlane::in(const Geometry& other) const {
+    SlicePlane plane = *this;
+    plane.grid = other;
+    return plane;
+}
+
+std::string position_text(const SlicePlane& plane, const Vec3& physical) {
+    const Vec3 axis = plane.grid.direction.col(plane.axis);
     double at = (axis[plane.anatomical] > 0 ? 1 : -1) * axis.dot(physical);
-    const Ruler ruler = ruler_of(geometry);
+    const Ruler ruler = ruler_of(plane.grid);
     const std::string number = ruler.number(std::abs(at), 2);
     if (number.find_first_not_of("0.") == std::string::npos) at = 0;  // as it is shown
-    return std::string(end_of(geometry, plane.anatomical, at >= 0)) + " " + number + " " +
+    return std::string(end_of(plane.grid, plane.anatomical, at >= 0)) + " " + number + " " +
            ruler.unit;
+}
+
+SliceMap slice_map(const SlicePlane& plane, const SliceView& view, const QSizeF& size,
+                   double margin) {
+    const auto fit = [&](double pixels, double mm) {
+        return std::max(pixels - 2 * margin, 8.0) / mm;
+    };
+    SliceMap map;
+    map.per_mm = view.zoom * std::min(fit(size.width(), plane.width() * plane.mm_u()),
+                                      fit(size.height(), plane.height() * plane.mm_v()));
+    map.per_u = map.per_mm * plane.mm_u();
+    map.per_v = map.per_mm * plane.mm_v();
+    map.first = QPointF(0.5 * (size.width() - (plane.width() - 1) * map.per_u),
+                        0.5 * (size.height() - (plane.height() - 1) * map.per_v)) +
+                map.per_mm * view.moved;
+    return map;
+}
+
+SliceMap map_in(const SlicePlane& other, const SlicePlane& plane, const SliceMap& map) {
+    if (other.grid == plane.grid) return map;
+    const Vec3 first = plane.point(other.physical(Vec3::Zero()));
+    return {map.pixel(first[0], first[1]), map.per_mm * other.mm_u(), map.per_mm * other.mm_v(),
+            map.per_mm};
 }
 
 }  // namespace palpate::viewer

@@ -5,8 +5,6 @@
 #include <QPointF>
 #include <QSizeF>
 
-#include <algorithm>
-#include <array>
 #include <string>
 
 #include "palpate/volume.hpp"
@@ -19,9 +17,11 @@ struct ScreenAxis {
     bool flip = false;  ///< the sample with the greatest index comes first
 };
 
-/// A family of slices across one grid axis. Points on a slice are (u, v): samples from its upper
-/// left corner, u to the right, v down; the middle of the first sample is (0, 0).
+/// The slices across one axis of a grid. Points are (u, v, layer): u and v in samples from the
+/// slice's upper left corner, u to the right, v down, the middle of the first sample at (0, 0); the
+/// layer counts from 0 along the grid axis.
 struct SlicePlane {
+    Geometry grid;
     int axis = 2;            ///< of the grid: across
     ScreenAxis right, down;  ///< u and v
     int anatomical = 2;      ///< what `axis` is nearest to: 0 left-right, 1 front-back, 2 up-down
@@ -29,24 +29,26 @@ struct SlicePlane {
     /// What lies towards each edge of the screen: L, R, A, P, S, I (+X, -X, ...), the nearest
     /// first; a second or third letter where the grid lies aslant by more than 15 degrees.
     std::string at_left, at_right, at_top, at_bottom;
+
+    int width() const { return grid.size[right.axis]; }  ///< samples along u
+    int height() const { return grid.size[down.axis]; }  ///< samples along v
+    int layers() const { return grid.size[axis]; }
+    double mm_u() const { return grid.spacing[right.axis]; }  ///< between samples
+    double mm_v() const { return grid.spacing[down.axis]; }
+    Vec3 point(const Vec3& physical) const;
+    Vec3 physical(const Vec3& point) const;
+    /// The slices of another grid with the same directions.
+    SlicePlane in(const Geometry& other) const;
 };
 
 /// The slices across grid axis `axis` (0, 1, 2): the patient's left on the right, the front above
 /// (axial) or on the left (sagittal), the head above (coronal, sagittal). Three axes of a grid get
 /// three different titles.
-SlicePlane slice_plane(const Geometry& geometry, int axis);
-
-std::array<int, 2> samples_of(const SlicePlane& plane, const Geometry& geometry);
-/// [mm] between samples along u and v.
-std::array<double, 2> spacing_of(const SlicePlane& plane, const Geometry& geometry);
-
-/// (u, v, slice), the slice counted from 0 along the grid axis, from index space and back.
-Vec3 slice_from_index(const SlicePlane& plane, const Geometry& geometry, const Vec3& index);
-Vec3 index_from_slice(const SlicePlane& plane, const Geometry& geometry, const Vec3& slice);
+SlicePlane slice_plane(const Geometry& grid, int axis);
 
 /// Where a slice lies along its axis, as "S 12.5 mm": millimetres from the physical origin towards
 /// the body's side that the letter names.
-std::string position_text(const SlicePlane& plane, const Geometry& geometry, const Vec3& physical);
+std::string position_text(const SlicePlane& plane, const Vec3& physical);
 
 /// The part of a slice that is shown.
 struct SliceView {
@@ -70,30 +72,9 @@ struct SliceMap {
 };
 
 /// The slice in a widget of `size`, with `margin` pixels left free round it at zoom 1.
-inline SliceMap slice_map(const SlicePlane& plane, const Geometry& geometry, const SliceView& view,
-                          const QSizeF& size, double margin) {
-    const auto [nu, nv] = samples_of(plane, geometry);
-    const auto [mm_u, mm_v] = spacing_of(plane, geometry);
-    const double fit = std::min(std::max(size.width() - 2 * margin, 8.0) / (nu * mm_u),
-                                std::max(size.height() - 2 * margin, 8.0) / (nv * mm_v));
-    SliceMap map;
-    map.per_mm = fit * view.zoom;
-    map.per_u = map.per_mm * mm_u;
-    map.per_v = map.per_mm * mm_v;
-    map.first =
-        QPointF(0.5 * size.width() + map.per_mm * view.moved.x() - 0.5 * (nu - 1) * map.per_u,
-                0.5 * size.height() + map.per_mm * view.moved.y() - 0.5 * (nv - 1) * map.per_v);
-    return map;
-}
-
-/// The map of another grid with the same directions, drawn in the same place.
-inline SliceMap map_of(const Geometry& other, const SlicePlane& plane, const Geometry& geometry,
-                       const SliceMap& map) {
-    if (other == geometry) return map;
-    const Vec3 first = physical_from_index(other, index_from_slice(plane, other, Vec3::Zero()));
-    const Vec3 at = slice_from_index(plane, geometry, index_from_physical(geometry, first));
-    const auto [mm_u, mm_v] = spacing_of(plane, other);
-    return {map.pixel(at[0], at[1]), map.per_mm * mm_u, map.per_mm * mm_v, map.per_mm};
-}
+SliceMap slice_map(const SlicePlane& plane, const SliceView& view, const QSizeF& size,
+                   double margin);
+/// Of the slices of another grid, drawn in the same place.
+SliceMap map_in(const SlicePlane& other, const SlicePlane& plane, const SliceMap& map);
 
 }  // namespace palpate::viewer

@@ -12,8 +12,7 @@ namespace palpate::viewer {
 
 /// The data of a volume that the pane holds.
 struct SlicePane::Content {
-    Geometry grid;  ///< that slices are counted in
-    SlicePlane plane;
+    SlicePlane plane;  ///< that slices are counted in
     SliceSamples samples;
     double layer = 0;                           ///< of the grid, that the picture shows
     std::shared_ptr<const DetailField> finer;   ///< of a part; null: none
@@ -24,8 +23,8 @@ struct SlicePane::Content {
     QElapsedTimer made;          ///< since then
     qint64 took_ms = 0;
 
-    Content(const Field& field, const Geometry& counted, const SlicePlane& across)
-        : grid(counted), plane(across), samples(field, across) {}
+    Content(const Field& field, const SlicePlane& counted)
+        : plane(counted), samples(field, counted) {}
 };
 
 }  // namespace palpate::viewer

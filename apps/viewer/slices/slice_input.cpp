@@ -98,9 +98,7 @@ void SlicePane::wheelEvent(QWheelEvent* event) {
 void SlicePane::keyPressEvent(QKeyEvent* event) {
     if (!content_) return event->ignore();
     const auto move = [&](double u, double v) {
-        const Vec3 index = index_from_physical(geometry(), shown_.crosshair);
-        const Vec3 slice = slice_from_index(content_->plane, geometry(), index);
-        choose(physical_from_slice(in_data(slice + Vec3(u, v, 0))));
+        choose(plane().physical(in_data(plane().point(shown_.crosshair) + Vec3(u, v, 0))));
     };
     const QPointF middle = QRectF(rect()).center();
     switch (event->key()) {

@@ -20,7 +20,7 @@ QColor qt_colour(const pictures::Colour& c, double opacity = 1) {
 /// 1 on the slice, 0.25 far from it; half way at a hundredth of what is seen.
 double opacity_of(const SliceSheet& sheet, const Vec3& physical) {
     const double half_mm = 0.03 * sheet.size.height() / sheet.map.per_mm;
-    const double spacing = 0.5 * sheet.geometry.spacing[sheet.plane.axis];
+    const double spacing = 0.5 * sheet.plane.grid.spacing[sheet.plane.axis];
     const double away = std::max(sheet.distance(physical) - spacing, 0.0) / half_mm;
     return 0.25 + 0.75 / (1 + away * away);
 }
@@ -99,13 +99,12 @@ void shadowed(QPainter& painter, const QRectF& box, int flags, const QString& te
 }  // namespace
 
 QPointF SliceSheet::pixel(const Vec3& physical) const {
-    const Vec3 at = slice_from_index(plane, geometry, index_from_physical(geometry, physical));
+    const Vec3 at = plane.point(physical);
     return map.pixel(at[0], at[1]);
 }
 
 double SliceSheet::distance(const Vec3& physical) const {
-    const Vec3 at = index_from_physical(geometry, physical);
-    return std::abs(at[plane.axis] - position) * geometry.spacing[plane.axis];
+    return std::abs(plane.point(physical)[2] - layer) * plane.grid.spacing[plane.axis];
 }
 
 void paint_crosshair(QPainter& painter, const SliceSheet& sheet, const QPointF& at) {

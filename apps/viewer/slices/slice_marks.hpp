@@ -16,10 +16,9 @@ namespace palpate::viewer {
 
 struct SliceSheet {
     const SlicePlane& plane;
-    const Geometry& geometry;
     const SliceMap& map;
-    double position;  ///< along the grid axis, in layers
-    QSizeF size;      ///< of the widget [pixels]
+    double layer;
+    QSizeF size;  ///< of the widget [pixels]
 
     /// Of a physical point [mm], seen along the grid axis.
     QPointF pixel(const Vec3& physical) const;

@@ -57,8 +57,8 @@ SlicePane::SlicePane(int axis, QWidget* parent) : QWidget(parent), axis_(axis), 
 
 SlicePane::~SlicePane() = default;
 
-const Geometry& SlicePane::geometry() const {
-    return content_->grid;
+const SlicePlane& SlicePane::plane() const {
+    return content_->plane;
 }
 
 void SlicePane::set_field(const Field& field, double isovalue,
@@ -66,9 +66,9 @@ void SlicePane::set_field(const Field& field, double isovalue,
     const Geometry grid = counted.value_or(field.geometry());
     const bool same = content_ &&
                       content_->samples.field().volume().data() == field.volume().data() &&
-                      geometry() == grid;
+                      plane().grid == grid;
     shown_ = with_field(shown_, same ? &content_->samples.field() : nullptr, field, isovalue);
-    content_ = std::make_unique<Content>(field, grid, slice_plane(grid, axis_));
+    content_ = std::make_unique<Content>(field, slice_plane(grid, axis_));
     if (!same) {
         view_ = {};
         snapshots_ = {};
@@ -118,17 +118,14 @@ SliceStyle SlicePane::style() const {
 /// Of the slice through the crosshair, along the grid axis. The samples follow when it is painted.
 /// Farther out than two layers all is the same.
 double SlicePane::layer() const {
-    const double at = index_from_physical(geometry(), shown_.crosshair)[axis_];
-    return std::clamp(at, -2.0, geometry().size[axis_] + 1.0);
+    return std::clamp(plane().point(shown_.crosshair)[2], -2.0, plane().layers() + 1.0);
 }
 
 /// The same in another grid; whole where it is but for rounding.
-double SlicePane::layer_in(const Geometry& other) const {
-    if (other == geometry()) return layer();
+double SlicePane::layer_in(const SlicePlane& other) const {
+    if (other.grid == plane().grid) return layer();
     constexpr double hair = 1e-6;
-    Vec3 index = Vec3::Zero();
-    index[axis_] = layer();
-    const double at = index_from_physical(other, physical_from_index(geometry(), index))[axis_];
+    const double at = other.point(plane().physical({0, 0, layer()}))[2];
     return std::abs(at - std::round(at)) < hair ? std::round(at) : at;
 }
 
@@ -144,11 +141,11 @@ void SlicePane::show_snapshot(const std::optional<Snapshot>& snapshot, int hand)
 }
 
 int SlicePane::anatomical() const {
-    return content_ ? content_->plane.anatomical : axis_;
+    return content_ ? plane().anatomical : axis_;
 }
 
 QString SlicePane::title() const {
-    return content_ ? tr(content_->plane.title.c_str()) : QString();
+    return content_ ? tr(plane().title.c_str()) : QString();
 }
 
 double SlicePane::margin() const {
@@ -156,31 +153,26 @@ double SlicePane::margin() const {
 }
 
 SliceMap SlicePane::map() const {
-    return slice_map(content_->plane, geometry(), view_, size(), margin());
+    return slice_map(plane(), view_, size(), margin());
 }
 
 QPointF SlicePane::pixel_of(const Vec3& physical) const {
     if (!content_) return {};
     const SliceMap where = map();
-    return SliceSheet{content_->plane, geometry(), where, 0, size()}.pixel(physical);
-}
-
-Vec3 SlicePane::physical_from_slice(const Vec3& slice) const {
-    return physical_from_index(geometry(), index_from_slice(content_->plane, geometry(), slice));
+    return SliceSheet{plane(), where, 0, size()}.pixel(physical);
 }
 
 /// (u, v) as the nearest sample's if it lies outside the data.
-Vec3 SlicePane::in_data(Vec3 slice) const {
-    const auto [width, height] = samples_of(content_->plane, geometry());
-    slice[0] = std::clamp(slice[0], 0.0, width - 1.0);
-    slice[1] = std::clamp(slice[1], 0.0, height - 1.0);
-    return slice;
+Vec3 SlicePane::in_data(Vec3 point) const {
+    point[0] = std::clamp(point[0], 0.0, plane().width() - 1.0);
+    point[1] = std::clamp(point[1], 0.0, plane().height() - 1.0);
+    return point;
 }
 
 Vec3 SlicePane::point_at(const QPointF& pixel) const {
     if (!content_) return Vec3::Zero();
     const QPointF at = map().sample(pixel);
-    return physical_from_slice({at.x(), at.y(), layer()});
+    return plane().physical({at.x(), at.y(), layer()});
 }
 
 QSize SlicePane::sizeHint() const {
@@ -217,10 +209,10 @@ void SlicePane::make_picture(const SliceMap& where) {
     if (c.newer) c.samples.use(*c.newer);
     c.newer.reset();
     c.layer = layer();
-    c.samples.go_to(layer_in(c.samples.field().geometry()));
+    c.samples.go_to(layer_in(c.samples.plane()));
     c.style = now;
-    const SliceMap map = map_of(c.samples.field().geometry(), c.plane, c.grid, where);
-    c.picture = slice_picture(c.samples, c.plane, map, now, size(), scale, finer_slice(where));
+    const SliceMap map = map_in(c.samples.plane(), c.plane, where);
+    c.picture = slice_picture(c.samples, map, now, size(), scale, finer_slice(where));
     c.took_ms = c.made.elapsed();
     c.made.start();
 }
@@ -238,7 +230,7 @@ std::optional<SeenBox> SlicePane::seen() const {
     const SliceMap where = map();
     const QPointF low = where.sample({0, 0}), high = where.sample(QPointF(width(), height()));
     const auto at = [&](const QPointF& p) {
-        return physical_from_slice(in_data({p.x(), p.y(), layer()}));
+        return plane().physical(in_data({p.x(), p.y(), layer()}));
     };
     return SeenBox{at(low), at(high), 1 / (where.per_mm * devicePixelRatioF())};
 }
@@ -247,10 +239,10 @@ const DetailField* SlicePane::shown_detail() const {
     if (!content_ || !content_->finer) return nullptr;
     // The layers before and after the slice, and one more of each for a smooth field.
     const DetailField& finer = *content_->finer;
-    const double at = layer_in(finer.field.geometry());
+    const double at = layer_in(content_->finer_samples->plane());
     const bool begins = finer.at_begin(axis_) || std::floor(at) >= 1;
     const bool ends =
-        finer.at_end(axis_) || std::ceil(at) + 1 <= finer.field.geometry().size[axis_] - 1;
+        finer.at_end(axis_) || std::ceil(at) + 1 <= content_->finer_samples->plane().layers() - 1;
     return begins && ends ? content_->finer.get() : nullptr;
 }
 
@@ -259,18 +251,17 @@ const DetailField* SlicePane::shown_detail() const {
 std::optional<FinerSlice> SlicePane::finer_slice(const SliceMap& where) {
     const DetailField* const finer = shown_detail();
     if (!finer) return std::nullopt;
-    const Geometry& grid = finer->field.geometry();
     SliceSamples& samples = *content_->finer_samples;
-    samples.go_to(layer_in(grid));
+    samples.go_to(layer_in(samples.plane()));
     constexpr double edge = 1.5, beyond = 1e6;
-    const SliceMap map = map_of(grid, content_->plane, geometry(), where);
+    const SliceMap map = map_in(samples.plane(), plane(), where);
     const auto range = [&](const ScreenAxis& s, int count) {
         const bool first = s.flip ? finer->at_end(s.axis) : finer->at_begin(s.axis);
         const bool last = s.flip ? finer->at_begin(s.axis) : finer->at_end(s.axis);
         return std::pair{first ? -beyond : edge, last ? beyond : count - 1 - edge};
     };
-    const auto [left, right] = range(content_->plane.right, samples.width());
-    const auto [top, bottom] = range(content_->plane.down, samples.height());
+    const auto [left, right] = range(plane().right, samples.width());
+    const auto [top, bottom] = range(plane().down, samples.height());
     const QRectF drawn(map.pixel(left, top), map.pixel(right, bottom));
     return FinerSlice{&samples, map, drawn & QRectF(rect())};
 }
@@ -296,7 +287,7 @@ void SlicePane::paintEvent(QPaintEvent*) {
     const SliceMap where = map();
     make_picture(where);
     painter.drawImage(QPointF(0, 0), content_->picture);
-    const SliceSheet sheet{content_->plane, geometry(), where, content_->layer, size()};
+    const SliceSheet sheet{plane(), where, content_->layer, size()};
     const std::vector<SliceWords> words = words_in();
     painter.setClipRegion(QRegion(rect()) - place_of(words, font(), size()));
     paint_crosshair(painter, sheet, sheet.pixel(shown_.crosshair));
@@ -322,14 +313,14 @@ void SlicePane::paintEvent(QPaintEvent*) {
 /// Letters, and what the corners tell.
 std::vector<SliceWords> SlicePane::words_in() const {
     const double layer = content_->layer;
-    const int layers = geometry().size[axis_];
+    const int layers = plane().layers();
     const bool in_data = layer >= -0.5 && layer <= layers - 0.5;
     const Vec3 middle = point_at(QPointF(rect().center()));
-    std::vector<SliceWords> all = letters_of(content_->plane);
+    std::vector<SliceWords> all = letters_of(plane());
     QStringList corner{title(),
                        in_data ? QString("%1 / %2").arg(std::lround(layer) + 1).arg(layers)
                                : tr("outside the data"),
-                       QString::fromStdString(position_text(content_->plane, geometry(), middle))};
+                       QString::fromStdString(position_text(plane(), middle))};
     const int beside = width() / 2 - fontMetrics().height();  // the letter of the upper edge
     if (fontMetrics().horizontalAdvance(title()) > beside) corner.push_front("");
     all.push_back({Qt::AlignLeft | Qt::AlignTop, corner.join('\n')});
@@ -341,9 +332,9 @@ std::vector<SliceWords> SlicePane::words_in() const {
     all.push_back({Qt::AlignRight | Qt::AlignBottom, grey.join('\n')});
     if (!pointer_) return all;
     const Vec3 at = point_at(*pointer_);
-    const Vec3 index = index_from_physical(geometry(), at);
+    const Vec3 index = index_from_physical(plane().grid, at);
     if (!(index.cwiseAbs().maxCoeff() <= farthest_index)) return all;
-    const Ruler ruler = ruler_of(geometry());
+    const Ruler ruler = ruler_of(plane().grid);
     const auto number = [&](double mm) { return QString::fromStdString(ruler.number(mm)); };
     QStringList words{QString("(%1, %2, %3) %4")
                           .arg(number(at[0]), number(at[1]), number(at[2]), QString(ruler.unit)),
@@ -386,12 +377,12 @@ void SlicePane::choose(const Vec3& physical) {
 /// The nearest point in the data.
 void SlicePane::choose_at(const QPointF& pixel) {
     const QPointF at = map().sample(pixel);
-    choose(physical_from_slice(in_data({at.x(), at.y(), layer()})));
+    choose(plane().physical(in_data({at.x(), at.y(), layer()})));
 }
 
 void SlicePane::aim_at(const QPointF& pixel) {
     const QPointF at = map().sample(pixel);
-    Q_EMIT probe_aimed(physical_from_slice({at.x(), at.y(), drag_layer_}));
+    Q_EMIT probe_aimed(plane().physical({at.x(), at.y(), drag_layer_}));
 }
 
 /// Whole layers, up towards the patient's left, back or head; where coarser ones are shown, as far
@@ -399,19 +390,19 @@ void SlicePane::aim_at(const QPointF& pixel) {
 double SlicePane::next_layer(double from, int steps) const {
     const DetailField* const finer = shown_detail();
     const Field& shown = finer ? finer->field : content_->samples.field();
-    const double ratio = shown.geometry().spacing[axis_] / geometry().spacing[axis_];
+    const double ratio = shown.geometry().spacing[axis_] / plane().grid.spacing[axis_];
     steps *= std::max(1, static_cast<int>(std::lround(ratio)));
-    if (geometry().direction(content_->plane.anatomical, axis_) < 0) steps = -steps;
+    if (plane().grid.direction(plane().anatomical, axis_) < 0) steps = -steps;
     constexpr double hair = 1e-6;
     const double layer =
         steps > 0 ? std::floor(from + hair) + steps : std::ceil(from - hair) + steps;
-    return std::clamp(layer, 0.0, geometry().size[axis_] - 1.0);
+    return std::clamp(layer, 0.0, plane().layers() - 1.0);
 }
 
 void SlicePane::step_slice(int steps) {
-    Vec3 index = index_from_physical(geometry(), shown_.crosshair);
-    index[axis_] = next_layer(index[axis_], steps);
-    choose(physical_from_index(geometry(), index));
+    Vec3 point = plane().point(shown_.crosshair);
+    point[2] = next_layer(point[2], steps);
+    choose(plane().physical(point));
 }
 
 /// The point at the pixel stays there.

@@ -93,15 +93,14 @@ class SlicePane : public QWidget {
     struct Content;
     enum class Drag { none, crosshair, probe, window, move };
 
-    const Geometry& geometry() const;
+    const SlicePlane& plane() const;
     SliceMap map() const;
     double margin() const;
     double layer() const;
-    double layer_in(const Geometry& other) const;
+    double layer_in(const SlicePlane& other) const;
     std::optional<FinerSlice> finer_slice(const SliceMap& where);
     double value_there(const Vec3& physical) const;
-    Vec3 physical_from_slice(const Vec3& slice) const;
-    Vec3 in_data(Vec3 slice) const;
+    Vec3 in_data(Vec3 point) const;
     SliceStyle style() const;
     void picture_changed();
     void make_picture(const SliceMap& where);

@@ -14,13 +14,6 @@
 #include "apps/viewer/model/transfer.hpp"
 
 namespace palpate::viewer {
-namespace {
-
-/// [pixels] A longer line is cut, so that the box round it is not mostly empty.
-constexpr double longest = 8;
-
-}  // namespace
-
 LineMask::LineMask(int width, int height)
     : width_(std::max(width, 0)),
       height_(std::max(height, 0)),
@@ -28,31 +21,6 @@ LineMask::LineMask(int width, int height)
 
 void LineMask::draw(double x0, double y0, double x1, double y1, double radius) {
     if (!std::isfinite(x0 + y0 + x1 + y1)) return;
-    const double margin = radius + 1;
-    // The part inside the picture, for a line may be far longer than it (Liang and Barsky 1984).
-    double from = 0, to = 1;
-    const auto clip = [&](double start, double length, double low, double high) {
-        if (length == 0) {
-            if (start < low || start > high) to = -1;
-            return;
-        }
-        const double a = (low - start) / length, b = (high - start) / length;
-        from = std::max(from, std::min(a, b));
-        to = std::min(to, std::max(a, b));
-    };
-    const double dx = x1 - x0, dy = y1 - y0;
-    clip(x0, dx, -margin, width_ + margin);
-    clip(y0, dy, -margin, height_ + margin);
-    if (!(from <= to)) return;
-    const double length = (to - from) * std::sqrt(dx * dx + dy * dy);
-    const int parts = std::max(1, static_cast<int>(std::ceil(length / longest)));
-    for (int i = 0; i < parts; ++i) {
-        const double a = from + (to - from) * i / parts, b = from + (to - from) * (i + 1) / parts;
-        draw_short(x0 + a * dx, y0 + a * dy, x0 + b * dx, y0 + b * dy, radius);
-    }
-}
-
-void LineMask::draw_short(double x0, double y0, double x1, double y1, double radius) {
     const auto fx0 = static_cast<float>(x0), fy0 = static_cast<float>(y0);
     const auto dx = static_cast<float>(x1 - x0), dy = static_cast<float>(y1 - y0);
     const auto r = static_cast<float>(radius);
@@ -169,15 +137,13 @@ QRgb mixed(QRgb under, const Ink& ink) {
 
 }  // namespace
 
-void draw_overlay(QImage& picture, const SlicePlane& plane, const Geometry& geometry,
-                  const SliceMap& map, double position, const Overlay& overlay,
-                  const OverlayLook& look) {
+void draw_overlay(QImage& picture, const SlicePlane& plane, const SliceMap& map, double layer,
+                  const Overlay& overlay, const OverlayLook& look) {
     const double scale = picture.devicePixelRatio();
     const auto index_of = [&](double x, double y) {
         const QPointF at = map.sample(QPointF((x + 0.5) / scale, (y + 0.5) / scale));
-        const Vec3 physical = physical_from_index(
-            geometry, index_from_slice(plane, geometry, {at.x(), at.y(), position}));
-        return index_from_physical(overlay.volume.geometry(), physical);
+        return index_from_physical(overlay.volume.geometry(),
+                                   plane.physical({at.x(), at.y(), layer}));
     };
     // All of it is affine.
     const Vec3 first = index_of(0, 0);
@@ -208,22 +174,45 @@ namespace {
 
 /// [device pixels] Half the contour's width, for a scale of 1.
 constexpr double contour_radius = 0.8;
-/// [device pixels] Cells that are smaller show no difference between the lattice and two triangles.
-constexpr double smallest_exact_cell = 3;
+/// [device pixels] Straight pieces of the contour are about so long.
+constexpr double contour_step = 2;
+constexpr int most_parts = 16;
 /// A picture that is made smaller than this is averaged, not sampled.
 constexpr double least_enlargement = 0.75;
 
-/// The samples that are seen, with one more on each side to interpolate with.
+/// A part of the picture that shows samples of its own.
+struct Part {
+    const SliceSamples& samples;
+    SliceMap map;
+    QRectF drawn;     // [pixels] where its grey levels are
+    QRegion contour;  // [device pixels] where its contour is
+    QRect cells;      // that are seen, with one more on each side to interpolate with
+};
+
 QRect seen(const SliceSamples& samples, const SliceMap& map, const QSize& size) {
     const QPointF low = map.sample({0, 0}), high = map.sample(QPointF(size.width(), size.height()));
     const auto cut = [](double at, int count) {
         return static_cast<int>(std::clamp(at, -2.0, count + 1.0));
     };
-    const QRect wide(QPoint(cut(std::floor(low.x()) - 1, samples.width()),
-                            cut(std::floor(low.y()) - 1, samples.height())),
-                     QPoint(cut(std::ceil(high.x()) + 1, samples.width()),
-                            cut(std::ceil(high.y()) + 1, samples.height())));
-    return wide;
+    return {QPoint(cut(std::floor(low.x()) - 1, samples.width()),
+                   cut(std::floor(low.y()) - 1, samples.height())),
+            QPoint(cut(std::ceil(high.x()) + 1, samples.width()),
+                   cut(std::ceil(high.y()) + 1, samples.height()))};
+}
+
+/// A finer part is drawn in the place of the whole.
+std::vector<Part> parts_of(const SliceSamples& samples, const SliceMap& map, const QSize& size,
+                           double scale, const std::optional<FinerSlice>& finer) {
+    const QRect all({0, 0}, (QSizeF(size) * scale).toSize());
+    std::vector<Part> parts{
+        {samples, map, QRectF({0, 0}, QSizeF(size)), all, seen(samples, map, size)}};
+    if (!finer) return parts;
+    const QRectF& drawn = finer->drawn;
+    const QRect inside = QRectF(scale * drawn.topLeft(), scale * drawn.size()).toAlignedRect();
+    parts.front().contour -= inside;
+    parts.push_back({*finer->samples, finer->map, drawn, inside & all,
+                     seen(*finer->samples, finer->map, size)});
+    return parts;
 }
 
 QImage grey_image(const SliceSamples& samples, const QRect& part, const SliceStyle& style) {
@@ -244,66 +233,51 @@ QImage grey_image(const SliceSamples& samples, const QRect& part, const SliceSty
     return image;
 }
 
-void draw_grey(QImage& picture, const SliceSamples& samples, const SliceMap& map,
-               const SliceStyle& style, const QRect& cells, const QRectF& drawn) {
-    const QRect part = cells & QRect(0, 0, samples.width(), samples.height());
-    if (part.isEmpty() || !samples.in_data()) return;
-    QImage image = grey_image(samples, part, style);
-    const QRectF target(map.pixel(part.left() - 0.5, part.top() - 0.5),
-                        map.pixel(part.right() + 0.5, part.bottom() + 0.5));
+/// Grey levels over what is there, and black where they end.
+void draw_grey(QImage& picture, const Part& part, const SliceStyle& style) {
+    QPainter painter(&picture);
+    painter.fillRect(part.drawn, Qt::black);
+    const SliceMap& map = part.map;
+    const QRect shown = part.cells & QRect(0, 0, part.samples.width(), part.samples.height());
+    if (shown.isEmpty() || !part.samples.in_data()) return;
+    QImage image = grey_image(part.samples, shown, style);
+    const QRectF target(map.pixel(shown.left() - 0.5, shown.top() - 0.5),
+                        map.pixel(shown.right() + 0.5, shown.bottom() + 0.5));
     const double scale = picture.devicePixelRatio();
     if (std::min(map.per_u, map.per_v) * scale < least_enlargement) {
         const QSize pixels = (target.size() * scale).toSize().expandedTo(QSize(1, 1));
         image = image.scaled(pixels.boundedTo(image.size() * 4), Qt::IgnoreAspectRatio,
                              Qt::SmoothTransformation);
     }
-    QPainter painter(&picture);
     painter.setRenderHint(QPainter::SmoothPixmapTransform);
-    painter.setClipRect(drawn);
+    painter.setClipRect(part.drawn);
     painter.drawImage(target, image, QRectF(image.rect()));
 }
 
-/// `drawn`: the pixels of the picture in which the contour is drawn.
-void draw_contour(QImage& picture, const SliceSamples& samples, const SliceMap& map,
-                  double isovalue, const QColor& colour, const QRect& part, const QRegion& drawn) {
+void draw_contour(QImage& picture, const Part& part, double isovalue, const QColor& colour) {
     const double scale = picture.devicePixelRatio();
-    const ContourDetail detail = std::min(map.per_u, map.per_v) * scale < smallest_exact_cell
-                                     ? ContourDetail::cells
-                                     : ContourDetail::lattice;
+    const double cell = std::min(part.map.per_u, part.map.per_v) * scale;
+    const auto steps = std::clamp<double>(std::round(cell / contour_step), 1, most_parts);
+    const QRect& cells = part.cells;
     std::vector<ContourPiece> pieces;
-    append_contour(samples, isovalue,
-                   {part.left(), part.top(), part.right() + 1, part.bottom() + 1}, detail, pieces);
+    append_contour(part.samples, isovalue,
+                   {cells.left(), cells.top(), cells.right() + 1, cells.bottom() + 1},
+                   static_cast<int>(steps), pieces);
     LineMask mask(picture.width(), picture.height());
     for (const ContourPiece& p : pieces) {
-        const QPointF a = scale * map.pixel(p.u0, p.v0), b = scale * map.pixel(p.u1, p.v1);
+        const QPointF a = scale * part.map.pixel(p.u0, p.v0),
+                      b = scale * part.map.pixel(p.u1, p.v1);
         mask.draw(a.x(), a.y(), b.x(), b.y(), scale * contour_radius);
     }
-    const std::array<int, 3> ink{colour.red(), colour.green(), colour.blue()};
-    const auto draw_row = [&](int y, int first, int last) {
-        const std::uint8_t* const covered = mask.row(y);
-        auto* const line = reinterpret_cast<QRgb*>(picture.scanLine(y));
-        for (int x = first; x <= last; ++x) {
-            const int c = covered[x];
-            if (c == 0) continue;
-            const auto mix = [c](int under, int over) { return under + (over - under) * c / 255; };
-            line[x] = qRgb(mix(qRed(line[x]), ink[0]), mix(qGreen(line[x]), ink[1]),
-                           mix(qBlue(line[x]), ink[2]));
+    for (const QRect& rect : part.contour) {
+        for (int y = rect.top(); y <= rect.bottom(); ++y) {
+            const std::uint8_t* const covered = mask.row(y);
+            auto* const line = reinterpret_cast<QRgb*>(picture.scanLine(y));
+            for (int x = rect.left(); x <= rect.right(); ++x) {
+                if (covered[x] > 0) line[x] = mixed(line[x], {colour.rgb(), covered[x] / 255.0});
+            }
         }
-    };
-    for (const QRect& rect : drawn) {
-        for (int y = rect.top(); y <= rect.bottom(); ++y) draw_row(y, rect.left(), rect.right());
     }
-}
-
-/// Grey levels over what is there, and black where they end.
-void draw_finer_grey(QImage& picture, const FinerSlice& finer, const SliceStyle& style,
-                     const QSize& size) {
-    {
-        QPainter painter(&picture);
-        painter.fillRect(finer.drawn, Qt::black);
-    }
-    draw_grey(picture, *finer.samples, finer.map, style, seen(*finer.samples, finer.map, size),
-              finer.drawn);
 }
 
 }  // namespace
@@ -312,28 +286,19 @@ QColor contour_colour() {
     return {250, 120, 30};
 }
 
-QImage slice_picture(const SliceSamples& samples, const SlicePlane& plane, const SliceMap& map,
-                     const SliceStyle& style, const QSize& size, double scale,
-                     const std::optional<FinerSlice>& finer) {
+QImage slice_picture(const SliceSamples& samples, const SliceMap& map, const SliceStyle& style,
+                     const QSize& size, double scale, const std::optional<FinerSlice>& finer) {
     QImage picture((QSizeF(size) * scale).toSize().expandedTo(QSize(1, 1)), QImage::Format_RGB32);
     picture.setDevicePixelRatio(scale);
     picture.fill(Qt::black);
-    const QRect cells = seen(samples, map, size);
-    draw_grey(picture, samples, map, style, cells, QRectF(QPointF(0, 0), QSizeF(size)));
-    if (finer) draw_finer_grey(picture, *finer, style, size);
+    const std::vector<Part> parts = parts_of(samples, map, size, scale, finer);
+    for (const Part& part : parts) draw_grey(picture, part, style);
     if (style.overlay && style.overlay_look.shown) {
-        draw_overlay(picture, plane, samples.field().geometry(), map, samples.position(),
-                     *style.overlay, style.overlay_look);
+        draw_overlay(picture, samples.plane(), map, samples.position(), *style.overlay,
+                     style.overlay_look);
     }
-    const QRegion inside =
-        finer ? QRectF(scale * finer->drawn.topLeft(), scale * finer->drawn.size()).toAlignedRect()
-              : QRect();
     const auto contour = [&](double level, const QColor& colour) {
-        const QRect all = picture.rect();
-        draw_contour(picture, samples, map, level, colour, cells, QRegion(all) - inside);
-        if (!finer) return;
-        draw_contour(picture, *finer->samples, finer->map, level, colour,
-                     seen(*finer->samples, finer->map, size), inside & all);
+        for (const Part& part : parts) draw_contour(picture, part, level, colour);
     };
     for (const SeenSurface& other : style.surfaces) {
         const Colour& c = other.colour;

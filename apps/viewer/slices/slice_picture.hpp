@@ -35,18 +35,15 @@ class LineMask {
     }
 
   private:
-    void draw_short(double x0, double y0, double x1, double y1, double radius);
-
     int width_, height_;
     std::vector<std::uint8_t> covered_;
 };
 
 /// Over `picture`, by the look's opacity: labels in their colours, sample by sample; an image in
 /// its colour map, interpolated, fading out towards its dark end. Each pixel is looked up in the
-/// overlay's own grid, whatever that is. `position`: of the slice, in layers of `geometry`.
-void draw_overlay(QImage& picture, const SlicePlane& plane, const Geometry& geometry,
-                  const SliceMap& map, double position, const Overlay& overlay,
-                  const OverlayLook& look);
+/// overlay's own grid, whatever that is. `layer`: of the slice.
+void draw_overlay(QImage& picture, const SlicePlane& plane, const SliceMap& map, double layer,
+                  const Overlay& overlay, const OverlayLook& look);
 
 /// What the overlay has at a point [mm, physical]: a label's name, or a number. Empty outside.
 QString overlay_words(const Overlay& overlay, const Vec3& physical);
@@ -73,8 +70,7 @@ struct FinerSlice {
 
 /// The slice as it is seen through `map` in a widget of `size`, `scale` device pixels a pixel;
 /// black where there are no data. Nothing is drawn beyond what is seen.
-QImage slice_picture(const SliceSamples& samples, const SlicePlane& plane, const SliceMap& map,
-                     const SliceStyle& style, const QSize& size, double scale,
-                     const std::optional<FinerSlice>& finer = {});
+QImage slice_picture(const SliceSamples& samples, const SliceMap& map, const SliceStyle& style,
+                     const QSize& size, double scale, const std::optional<FinerSlice>& finer = {});
 
 }  // namespace palpate::viewer

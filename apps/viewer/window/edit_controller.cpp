@@ -221,35 +221,25 @@ void EditController::settle_edits(const std::function<void()>& action) {
 }
 
 bool EditController::may_lose_edits(const std::function<void()>& once_saved) {
-    QMessageBox box(QMessageBox::Question, "Palpate",
-                    tr("The volume was edited, and not saved since. Save it?"),
-                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
-                    messages_.window());
-    return go_on(box, once_saved);
+    return go_on(tr("The volume was edited, and not saved since. Save it?"), {}, once_saved);
 }
 
 void EditController::save_edits_first(const std::function<void()>& action) {
-    QMessageBox box(QMessageBox::Question, "Palpate",
-                    tr("This will name the volume's file, which has not the latest edits. Save the "
-                       "volume first?"),
-                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel,
-                    messages_.window());
-    box.button(QMessageBox::Discard)->setText(tr("Without the edits"));
-    if (go_on(box, action)) action();
+    const bool at_once = go_on(tr("This will name the volume's file, which has not the latest "
+                                  "edits. Save the volume first?"),
+                               tr("Without the edits"), action);
+    if (at_once) action();
 }
 
 /// Asks, if there are unsaved edits.
-bool EditController::go_on(QMessageBox& question, const std::function<void()>& once_saved) {
+bool EditController::go_on(const QString& question, const QString& without,
+                           const std::function<void()>& once_saved) {
     if (saving()) {
         messages_.show_done(tr("The volume is still being saved"));
         return false;
     }
-    if (!unsaved()) return true;
-    question.setObjectName("lose_edits");
-    question.setDefaultButton(QMessageBox::Save);
-    const int answer = messages_.answer_to(question);
-    if (answer == QMessageBox::Save) ask_save(once_saved);
-    return answer == QMessageBox::Discard;
+    return !unsaved() || messages_.may_lose("lose_edits", question, without,
+                                            [this, once_saved] { ask_save(once_saved); });
 }
 
 std::shared_ptr<const Samples> EditController::unsaved() const {

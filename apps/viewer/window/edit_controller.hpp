@@ -13,8 +13,6 @@
 #include "palpate/run/data.hpp"
 #include "palpate/surface.hpp"
 
-class QMessageBox;
-
 namespace palpate::viewer {
 
 class EditController : public Controller {
@@ -58,7 +56,8 @@ class EditController : public Controller {
     void observe();
 
   private:
-    bool go_on(QMessageBox& question, const std::function<void()>& once_saved);
+    bool go_on(const QString& question, const QString& without,
+               const std::function<void()>& once_saved);
     void show();
     void write_surface(const QString& path, const std::shared_ptr<SurfaceMesh>& mesh);
     void step(bool (run::VolumeEditor::*take)(), const QString& if_none);

@@ -158,7 +158,7 @@ void Hints::observe(const HandSnapshots& hands, bool brush) {
                            : live                ? reason_of(*now)
                            : content_.playback() ? tr("A recording is played: Esc leaves it")
                                                  : QString();
-    // Below what the grid lacks (Views) and the clock.
+    // Below the clock.
     say(*reason_, reason, {scene_.width() / 2, 2 * line});
     say(*brush_,
         live && brush ? tr("The brush is on: it changes what it touches (B: off)") : QString(),

@@ -12,7 +12,6 @@
 #include <QDragEnterEvent>
 #include <QKeyEvent>
 #include <QLabel>
-#include <QMessageBox>
 #include <QMimeData>
 #include <QScreen>
 #include <QSettings>
@@ -234,18 +233,11 @@ bool MainWindow::may_lose_work(const std::function<void()>& once_saved) {
     if (!editing_.may_lose_edits(once_saved)) return false;
     const bool measured = measuring_.unsaved();
     if (!measured && !panel_->layers_controls().unsaved()) return true;
-    QMessageBox box(QMessageBox::Question, "Palpate",
-                    measured
-                        ? tr("The measurements are in no session file yet. Save the session?")
-                        : tr("The changed layers are in no file yet. Save them in the session?"),
-                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, this);
-    box.setObjectName("lose_work");
-    box.setDefaultButton(QMessageBox::Save);
-    const int answer = messages_.answer_to(box);
-    if (answer == QMessageBox::Save) {
-        messages_.guarded([&] { save_session(content_.session(), once_saved); });
-    }
-    return answer == QMessageBox::Discard;
+    return messages_.may_lose(
+        "lose_work",
+        measured ? tr("The measurements are in no session file yet. Save the session?")
+                 : tr("The changed layers are in no file yet. Save them in the session?"),
+        {}, [this, once_saved] { save_session(content_.session(), once_saved); });
 }
 
 void MainWindow::save_session(const QString& name, const std::function<void()>& then) {

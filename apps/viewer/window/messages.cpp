@@ -1,6 +1,7 @@
 // Shows problems in a dialog that does not block the window, and watches tasks.
 #include "apps/viewer/window/messages.hpp"
 
+#include <QAbstractButton>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QMessageBox>
@@ -34,6 +35,18 @@ void Messages::ask(QDialog* dialog, const QString& otherwise) {
 
 int Messages::answer_to(QMessageBox& question) {
     return unattended_ ? int(QMessageBox::Discard) : question.exec();
+}
+
+bool Messages::may_lose(const char* name, const QString& question, const QString& without,
+                        const std::function<void()>& save) {
+    QMessageBox box(QMessageBox::Question, "Palpate", question,
+                    QMessageBox::Save | QMessageBox::Discard | QMessageBox::Cancel, window_);
+    box.setObjectName(name);
+    box.setDefaultButton(QMessageBox::Save);
+    if (!without.isEmpty()) box.button(QMessageBox::Discard)->setText(without);
+    const int answer = answer_to(box);
+    if (answer == QMessageBox::Save) guarded(save);
+    return answer == QMessageBox::Discard;
 }
 
 void Messages::show_problem(const QString& what, int status) {

@@ -28,13 +28,14 @@ Views::Views(MakePainter make_painter, QWidget* parent)
       scene_(new Scene(nullptr, std::move(make_painter))),
       slices_{new SlicePane(0), new SlicePane(1), new SlicePane(2)},
       by_body_(slices_),
-      missing_(named(new QPushButton(this), "missing_grid",
+      missing_(named(new QPushButton, "missing_grid",
                      tr("Sides of the body are not known: say how the volume lies, and its "
                         "spacing"))),
       across_(new QSplitter(Qt::Horizontal)),
       left_(new QSplitter(Qt::Vertical)),
       down_(new QSplitter(Qt::Vertical)) {
-    row_in(this, {across_});
+    // Above the panes, so that it covers no words of theirs.
+    column_in(this, {missing_, across_})->setAlignment(missing_, Qt::AlignLeft);
     missing_->setAccessibleName(missing_->toolTip());
     scene_->setObjectName("scene");
     scene_->setMinimumSize(200, 200);
@@ -63,16 +64,13 @@ Views::Views(MakePainter make_painter, QWidget* parent)
     missing_->setStyleSheet(
         "QPushButton { background-color: #ffb000; color: black; border-radius: 4px; "
         "padding: 3px 8px; }");
-    missing_->move(fontMetrics().height(), fontMetrics().height());
     missing_->hide();
     connect(missing_, &QPushButton::clicked, this, &Views::grid_asked);
 }
 
 void Views::set_missing(const QString& words) {
     missing_->setText(words);
-    missing_->adjustSize();
     missing_->setVisible(!words.isEmpty());
-    missing_->raise();
 }
 
 /// The picture is coarser than the surface that is felt.

@@ -73,7 +73,7 @@ TEST(SlicePlane, sides_that_the_file_does_not_tell_are_not_named) {
         for (int axis = 0; axis < 3; ++axis) {
             const SlicePlane plane = slice_plane(geometry, axis);
             std::string all = plane.title + plane.at_left + plane.at_right + plane.at_top;
-            all += plane.at_bottom + position_text(plane, geometry, {10, 20, 30});
+            all += plane.at_bottom + position_text(plane, {10, 20, 30});
             all.resize(all.find(" "));
             EXPECT_EQ(all.find_first_not_of("XYZ+-"), std::string::npos) << all;
         }
@@ -85,26 +85,26 @@ TEST(SlicePlane, right_on_the_screen_is_where_its_letter_says) {
         const Geometry geometry = grid({4, 5, 6}, {1, 2, 3}, {7, 8, 9}, direction);
         for (int axis = 0; axis < 3; ++axis) {
             const SlicePlane plane = slice_plane(geometry, axis);
-            const auto at = [&](const Vec3& slice) {
-                return physical_from_index(geometry, index_from_slice(plane, geometry, slice));
-            };
-            const Vec3 right = at({1, 0, 2}) - at({0, 0, 2}), down = at({0, 1, 2}) - at({0, 0, 2});
+            const Vec3 first = plane.physical({0, 0, 2});
+            const Vec3 right = plane.physical({1, 0, 2}) - first;
+            const Vec3 down = plane.physical({0, 1, 2}) - first;
             EXPECT_GT(right.dot(plane.at_right == "L" ? left : back), 0.5);
             EXPECT_GT(down.dot(plane.at_bottom == "P" ? back : -head), 0.5);
         }
     }
 }
 
-TEST(SlicePlane, slice_coordinates_come_back_from_index_space) {
+TEST(SlicePlane, points_come_back_from_physical_space) {
     support::Random random(7);
     for (const Mat3& direction : signed_orders()) {
         const Geometry geometry = grid({4, 5, 6}, {1, 2, 3}, {7, 8, 9}, direction);
         for (int axis = 0; axis < 3; ++axis) {
             const SlicePlane plane = slice_plane(geometry, axis);
             const Vec3 index = random.point(-2, 7);
-            const Vec3 slice = slice_from_index(plane, geometry, index);
-            EXPECT_LT((index_from_slice(plane, geometry, slice) - index).norm(), 1e-12);
-            EXPECT_EQ(slice[2], index[axis]);
+            const Vec3 physical = physical_from_index(geometry, index);
+            const Vec3 point = plane.point(physical);
+            EXPECT_LT((plane.physical(point) - physical).norm(), 1e-12);
+            EXPECT_NEAR(point[2], index[axis], 1e-12);
         }
     }
 }
@@ -145,13 +145,13 @@ TEST(SlicePlane, any_orientation_gives_three_different_planes) {
 TEST(SlicePlane, the_position_names_the_side_of_the_body_it_lies_on) {
     const Geometry mirrored =
         grid({4, 5, 6}, Vec3::Ones(), Vec3::Zero(), columns(-left, back, -head));
-    EXPECT_EQ(position_text(slice_plane(mirrored, 2), mirrored, {1, 2, 12.5}), "S 12.50 mm");
-    EXPECT_EQ(position_text(slice_plane(mirrored, 2), mirrored, {1, 2, -3}), "I 3.00 mm");
-    EXPECT_EQ(position_text(slice_plane(mirrored, 0), mirrored, {-4, 2, 9}), "R 4.00 mm");
+    EXPECT_EQ(position_text(slice_plane(mirrored, 2), {1, 2, 12.5}), "S 12.50 mm");
+    EXPECT_EQ(position_text(slice_plane(mirrored, 2), {1, 2, -3}), "I 3.00 mm");
+    EXPECT_EQ(position_text(slice_plane(mirrored, 0), {-4, 2, 9}), "R 4.00 mm");
     const double fine = 0.0003;  // a microscope's
     const Geometry cell =
         grid({4, 5, 6}, Vec3::Constant(fine), Vec3::Zero(), columns(-left, back, -head));
-    EXPECT_EQ(position_text(slice_plane(cell, 2), cell, {1, 2, 2 * fine}), "S 0.60 µm");
+    EXPECT_EQ(position_text(slice_plane(cell, 2), {1, 2, 2 * fine}), "S 0.60 µm");
 }
 
 /// A value that tells its place, on a mirrored and turned grid.
@@ -178,8 +178,8 @@ TEST(SliceSamples, are_those_of_the_volume_whatever_its_type_axis_and_direction)
                 for (int v = 0; v < samples.height(); ++v) {
                     samples.interpolate(v, row.data());
                     for (int u = 0; u < samples.width(); ++u) {
-                        const Vec3 i =
-                            index_from_slice(plane, field.geometry(), Vec3(u, v, position));
+                        const Vec3 i = index_from_physical(
+                            field.geometry(), plane.physical({double(u), double(v), position}));
                         EXPECT_NEAR(row[std::size_t(u)], i[0] + 10 * i[1] + 40 * i[2], 1e-4);
                     }
                 }

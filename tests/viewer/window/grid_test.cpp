@@ -83,6 +83,15 @@ TEST_F(Grid, without_a_spacing_says_so_and_takes_one) {
     feel(scratch("c.nrrd").toStdString());
     EXPECT_EQ(badge().text(), "No orientation and no spacing in the file");
     window_->resize(800, 560);
+    part<QAction>("four").trigger();
+    wait_until_settled();
+    std::vector<const QWidget*> panes{&window_->views().scene()};
+    for (const int axis : {0, 1, 2}) panes.push_back(&window_->views().slice(axis));
+    for (const QWidget* pane : panes) {
+        const QRect seen(pane->mapTo(&window_->views(), QPoint()), pane->size());
+        EXPECT_TRUE(pane->isVisible());
+        EXPECT_FALSE(seen.intersects(badge().geometry())) << "no words of a pane are covered";
+    }
     press(Qt::Key_Space);
     auto& hint = part<QLabel>("hint");
     wait_until([&] { return hint.isVisible(); });
@@ -103,9 +112,8 @@ TEST_F(Grid, without_a_spacing_says_so_and_takes_one) {
             return part<QLabel>("contact").text().contains(QString(" %1 in the vol").arg(unit)) &&
                    part<QLabel>("readout").text().endsWith(QString("/%1").arg(unit));
         });
-        EXPECT_TRUE(
-            QString::fromStdString(position_text(slice_plane(grid(), 2), grid(), Vec3::Constant(3)))
-                .endsWith(unit));
+        EXPECT_TRUE(QString::fromStdString(position_text(slice_plane(grid(), 2), Vec3::Constant(3)))
+                        .endsWith(unit));
     };
     ends_in("voxel");
     answer(QMessageBox::Discard);
