@@ -27,6 +27,10 @@ Overview::Piece piece_of(const SessionTick& session) {
     return piece;
 }
 
+double time_of(const Snapshot& snapshot) {
+    return snapshot.session.tick.time;
+}
+
 }  // namespace
 
 void Overview::Piece::add(const Piece& other) {
@@ -42,6 +46,17 @@ void Overview::Piece::add(const Piece& other) {
     const bool none = least_isovalue > most_isovalue;
     least_isovalue = none ? other.least_isovalue : std::min(least_isovalue, other.least_isovalue);
     most_isovalue = none ? other.most_isovalue : std::max(most_isovalue, other.most_isovalue);
+}
+
+Overview::Piece Overview::over(double from, double to) const {
+    Piece all;
+    if (pieces.empty()) return all;
+    const auto number = [&](double time) {
+        const auto last = static_cast<double>(pieces.size() - 1);
+        return static_cast<std::size_t>(std::clamp((time - begin) / width, 0.0, last));
+    };
+    for (std::size_t i = number(from); i <= number(to); ++i) all.add(pieces[i]);
+    return all;
 }
 
 Playback Playback::read(const std::filesystem::path& recording, const run::LoadedVolume& loaded,
@@ -73,10 +88,10 @@ std::vector<Playback> Playback::read_hands(const std::filesystem::path& recordin
 Playback Playback::read(io::RecordingReader& reader, const std::string& recording,
                         const run::LoadedVolume& loaded, const io::Progress& progress,
                         std::size_t most_bytes) {
-    const std::size_t most = std::max(most_bytes / sizeof(Snapshot), least_snapshots);
+    const std::size_t most = std::max(most_bytes / sizeof(Moment), least_snapshots);
     run::Replay replay(reader, loaded, recording);
     Playback playback(reader.head(), replay.session().renderer.field);
-    Snapshot last;
+    Moment last;
     bool kept = true;
     while (const auto tick = replay.next()) {
         if (run::difference(tick->recorded, tick->again)) ++playback.different_;
@@ -84,40 +99,40 @@ Playback Playback::read(io::RecordingReader& reader, const std::string& recordin
         // A time that is not finite or goes back has no place on a timeline.
         const double time = tick->again.tick.time;
         if (!std::isfinite(time)) continue;
-        if (!playback.snapshots_.empty() && !(time > playback.overview_.end)) continue;
-        playback.layers_.note(time, replay.session().renderer.settings.layers);
-        playback.tools_.note(time, replay.session().renderer.settings.tool);
-        last = snapshot_of(replay.session(), tick->again, tick->number, 0);
-        kept = playback.snapshots_.empty() ||
-               time >= playback.snapshots_.back().session.tick.time + punctual * playback.interval_;
+        auto& moments = playback.moments_;
+        if (!moments.empty() && !(time > playback.overview_.end)) continue;
+        const RendererSettings& settings = replay.session().renderer.settings;
+        last = {snapshot_of(replay.session(), tick->again, tick->number, 0), settings.layers,
+                settings.tool};
+        kept = moments.empty() ||
+               time >= time_of(moments.back().snapshot) + punctual * playback.interval_;
         playback.survey(tick->again);
         if (kept) playback.keep(last, most);
     }
-    if (playback.snapshots_.empty()) {
+    if (playback.moments_.empty()) {
         throw io::InputError(recording + ": has no ticks: nothing was recorded");
     }
-    if (!kept) playback.snapshots_.push_back(last);
+    if (!kept) playback.moments_.push_back(last);
     playback.ticks_ = static_cast<std::size_t>(replay.ticks());
     playback.samples_ = std::move(replay.samples());
     playback.complete_ = reader.complete();
     playback.hands_ = reader.hands();
     playback.clock_ = reader.begin().value_or(-playback.begin());
-    playback.finish();
     if (progress) progress(1);
     return playback;
 }
 
-/// Drops every second snapshot when the memory is full.
-void Playback::keep(const Snapshot& snapshot, std::size_t most) {
-    if (snapshots_.size() + 1 >= most) {
+/// Drops every second one when the memory is full.
+void Playback::keep(Moment moment, std::size_t most) {
+    if (moments_.size() + 1 >= most) {
         std::size_t to = 0;
-        for (std::size_t from = 0; from < snapshots_.size(); from += 2) {
-            snapshots_[to++] = snapshots_[from];
+        for (std::size_t from = 0; from < moments_.size(); from += 2) {
+            moments_[to++] = moments_[from];
         }
-        snapshots_.resize(to);
+        moments_.resize(to);
         interval_ *= 2;
     }
-    snapshots_.push_back(snapshot);
+    moments_.push_back(std::move(moment));
 }
 
 /// Pieces become twice as wide where there are too many.
@@ -140,21 +155,6 @@ void Playback::survey(const SessionTick& tick) {
     o.pieces[at].add(piece_of(tick));
 }
 
-void Playback::finish() {
-    Overview& o = overview_;
-    for (std::size_t i = 0; i < o.pieces.size(); ++i) {
-        if (!o.pieces[i].contact) continue;
-        const double from = o.begin + static_cast<double>(i) * o.width;
-        const double to = std::min(from + o.width, o.end);
-        const bool goes_on = !o.contacts.empty() && from - o.contacts.back().to < 0.5 * o.width;
-        if (goes_on) {
-            o.contacts.back().to = to;
-        } else {
-            o.contacts.push_back({from, to});
-        }
-    }
-}
-
 Field Playback::field_at(const Snapshot& snapshot) {
     Field field = field_;
     field.use(samples_->of(snapshot.session.version));
@@ -162,12 +162,11 @@ Field Playback::field_at(const Snapshot& snapshot) {
     return field;
 }
 
-const Snapshot& Playback::at(double time) const {
-    const auto after = std::upper_bound(
-        snapshots_.begin(), snapshots_.end(), time,
-        [](double t, const Snapshot& snapshot) { return t < snapshot.session.tick.time; });
-    const bool before_all = after == snapshots_.begin() || std::isnan(time);
-    return before_all ? snapshots_.front() : *(after - 1);
+const Playback::Moment& Playback::moment_at(double time) const {
+    const auto after = std::ranges::upper_bound(
+        moments_, time, {}, [](const Moment& moment) { return time_of(moment.snapshot); });
+    const bool before_all = after == moments_.begin() || std::isnan(time);
+    return before_all ? moments_.front() : *(after - 1);
 }
 
 }  // namespace palpate::viewer

@@ -1,7 +1,6 @@
 // Playback of a recording: hand, proxy and force by time. No servo, no device.
 #pragma once
 
-#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -25,14 +24,13 @@ struct Overview {
         /// Becomes the summary of both.
         void add(const Piece& other);
     };
-    struct Interval {
-        double from, to;  ///< [s]
-    };
 
     double begin = 0, end = 0;  ///< [s] of the first and the last tick
     double width = 1e-3;        ///< [s] of a piece, the first from `begin`
     std::vector<Piece> pieces;  ///< at most most_pieces
-    std::vector<Interval> contacts;
+
+    /// The summary of a stretch of time [s]: of the pieces that it touches, one at least.
+    Piece over(double from, double to) const;
 
     static constexpr std::size_t most_pieces = 4096;
 };
@@ -64,10 +62,10 @@ class Playback {
     double clock() const { return clock_; }
     double end() const { return overview_.end; }
     /// The last snapshot at or before `time`; the first for a time before it or NaN.
-    const Snapshot& at(double time) const;
+    const Snapshot& at(double time) const { return moment_at(time).snapshot; }
     /// In the recording; snapshots are fewer.
     std::size_t ticks() const { return ticks_; }
-    std::size_t snapshots() const { return snapshots_.size(); }
+    std::size_t snapshots() const { return moments_.size(); }
     const io::RecordingHead& head() const { return head_; }
     /// It was finished, not cut off.
     bool complete() const { return complete_; }
@@ -80,9 +78,9 @@ class Playback {
     /// The field that was felt, as it was at the start.
     const Field& field() const { return field_; }
     /// The layers in use at this time; null: none.
-    std::shared_ptr<const Layers> layers_at(double time) const { return layers_.at(time); }
+    std::shared_ptr<const Layers> layers_at(double time) const { return moment_at(time).layers; }
     /// The tool; null: a point.
-    std::shared_ptr<const Tool> tool_at(double time) const { return tools_.at(time); }
+    std::shared_ptr<const Tool> tool_at(double time) const { return moment_at(time).tool; }
     /// The field at a snapshot: with the edits up to then, some of which may have to be repeated,
     /// or at the moment of the sequence.
     Field field_at(const Snapshot& snapshot);
@@ -93,33 +91,22 @@ class Playback {
     static Playback read(io::RecordingReader& reader, const std::string& recording,
                          const run::LoadedVolume& loaded, const io::Progress& progress,
                          std::size_t most_bytes);
-    void keep(const Snapshot& snapshot, std::size_t most);
+    /// A snapshot, with the layers and the tool in use.
+    struct Moment {
+        Snapshot snapshot;
+        std::shared_ptr<const Layers> layers;
+        std::shared_ptr<const Tool> tool;
+    };
+
+    const Moment& moment_at(double time) const;
+    void keep(Moment moment, std::size_t most);
     void survey(const SessionTick& tick);
-    void finish();
 
     io::RecordingHead head_;
     Field field_;
     std::optional<run::RecordedSamples> samples_;  // once all is read
-    std::deque<Snapshot> snapshots_;               // grows without a copy of all of it
-    /// What is in use from when on.
-    template <class T>
-    class Changes {
-      public:
-        void note(double time, const std::shared_ptr<const T>& now) {
-            if (all_.empty() || all_.back().second != now) all_.emplace_back(time, now);
-        }
-        std::shared_ptr<const T> at(double time) const {
-            const auto after = std::ranges::upper_bound(
-                all_, time, {}, [](const auto& change) { return change.first; });
-            return after == all_.begin() ? all_.front().second : (after - 1)->second;
-        }
-
-      private:
-        std::vector<std::pair<double, std::shared_ptr<const T>>> all_;  // [s]
-    };
-    Changes<Layers> layers_;
-    Changes<Tool> tools_;
-    double interval_ = least_interval;  // [s] between snapshots
+    std::deque<Moment> moments_;                   // grows without a copy of all of it
+    double interval_ = least_interval;             // [s] between snapshots
     std::size_t ticks_ = 0, different_ = 0;
     bool complete_ = false;
     double clock_ = 0;  // [s]

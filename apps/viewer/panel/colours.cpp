@@ -6,6 +6,15 @@
 
 namespace palpate::viewer {
 
+bool is_dark(const QPalette& palette) {
+    return palette.color(QPalette::Window).lightnessF() < 0.5;
+}
+
+QColor readable(const QColor& colour, const QPalette& palette) {
+    if (is_dark(palette)) return colour.lighter(155);
+    return colour.lightnessF() > 0.6 ? colour.darker(160) : colour;
+}
+
 QIcon icon_of(const Colour& colour) {
     QPixmap square(16, 16);
     square.fill(to_qt(colour));

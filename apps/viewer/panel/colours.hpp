@@ -17,6 +17,11 @@ inline Colour from_qt(const QColor& colour) {
     return {colour.redF(), colour.greenF(), colour.blueF()};
 }
 
+bool is_dark(const QPalette& palette);
+/// The colour, lighter on a dark palette, and darker on a light one if it is pale: thin lines and
+/// small text stay readable.
+QColor readable(const QColor& colour, const QPalette& palette);
+
 /// A square of it, for lists; not tinted where it is chosen.
 QIcon icon_of(const Colour& colour);
 

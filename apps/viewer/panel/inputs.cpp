@@ -147,7 +147,6 @@ void Quantity::set_value(double value) {
     value_ = value;
     box_->show_value(value);
     if (!slider_->isSliderDown()) place_slider();
-    Q_EMIT shown(value);
 }
 
 void Quantity::set_ends(double low, double high) {

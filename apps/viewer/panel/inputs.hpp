@@ -92,8 +92,6 @@ class Quantity : public QWidget {
   Q_SIGNALS:
     /// From the box any number may come.
     void wanted(double value);
-    /// Whatever it comes from.
-    void shown(double value);
 
   private:
     double value_at(int place) const;

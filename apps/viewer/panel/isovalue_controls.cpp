@@ -25,30 +25,58 @@ IsovalueControls::IsovalueControls(Effect& effect)
       felt_(named(new QLabel, "felt",
                   tr("The level felt now [data units]; another than the isovalue while "
                      "penetrability lets the hand through"))),
-      warning_(new Note("isovalue_warning", Note::Kind::warning)),
-      overruled_(new Note("isovalue_overruled", Note::Kind::plain)),
       terraces_(new Note("terraces", Note::Kind::plain)) {
-    QSizePolicy keeps_room = overruled_->sizePolicy();  // so that what is below does not jump
-    keeps_room.setRetainSizeWhenHidden(true);
-    overruled_->setSizePolicy(keeps_room);
     felt_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
     auto* slider = level_->findChild<QSlider*>();  // below the chart, as wide
     slider->setToolTip(level_->toolTip());
-    column_in(this, {chart_, slider, row_of({level_, felt_}, 1), make_field(), terraces_, warning_,
-                     overruled_})
+    for (QWidget* one : std::initializer_list<QWidget*>{level_, slider}) {
+        each_time(one, [this](QWidget& shown) {
+            allow(shown, layered()
+                             ? tr("Layers are felt, not an isovalue: choose No layers to feel one")
+                             : QString());
+        });
+    }
+    each_time(chart_, [this](LevelChart& chart) {
+        chart.set_level(layered() ? std::nan("") : level_->value());
+    });
+    auto* warning =
+        each_time(new Note("isovalue_warning", Note::Kind::warning), [this](Note& note) {
+            const bool felt = effect_.there() && !layered();
+            note.say(
+                felt ? QString::fromStdString(isovalue_warning(effect_.field(), effect_.isovalue()))
+                     : QString());
+        });
+    column_in(this, {chart_, slider, row_of({level_, felt_}, 1), make_field(), terraces_, warning,
+                     make_overruled()})
         ->setSpacing(3);
     connect(chart_, &LevelChart::level_moved, level_, &Quantity::ask);
-    connect(level_, &Quantity::shown, this, &IsovalueControls::show_level);
     connect(&effect_, &Effect::begun, this, &IsovalueControls::begin);
     connect(&effect_, &Effect::ended, this, &IsovalueControls::clear);
-    connect(&effect_, &Effect::changed, this, [this] {
-        refresh();
-        show_rests();
-    });
+    connect(&effect_, &Effect::changed, this, &IsovalueControls::refresh);
     connect(&effect_, &Effect::observed, this, [this](const Snapshot& now) {
         show_felt(now.session.tick.proxy.isovalue, now.penetrability_on);
     });
     clear();
+}
+
+bool IsovalueControls::layered() const {
+    return have_surfaces(effect_.settings().layers);
+}
+
+/// The isovalue does nothing while layers are felt, and follows the hand that presses through.
+QWidget* IsovalueControls::make_overruled() {
+    auto* note = new Note("isovalue_overruled", Note::Kind::plain);
+    QSizePolicy keeps_room = note->sizePolicy();  // so that what is below does not jump
+    keeps_room.setRetainSizeWhenHidden(true);
+    note->setSizePolicy(keeps_room);
+    return each_time(note, [this](Note& shown) {
+        const RendererSettings& now = effect_.settings();
+        shown.say(
+            levels_in(now.layers) > 0 ? tr("Layers have levels of their own: drag their squares.")
+            : layered()            ? tr("Layers by label are felt, not a level of the densities.")
+            : now.penetrability.on ? tr("The level felt follows the hand: pressing through is on.")
+                                   : QString());
+    });
 }
 
 /// A choice here begins another session, unless that fails.
@@ -94,9 +122,10 @@ void IsovalueControls::begin() {
 }
 
 void IsovalueControls::clear() {
-    chart_->clear();
+    chart_->set_data({}, {});
+    chart_->set_felt(std::nan(""));
     felt_->clear();
-    show_rests();
+    refresh();
     set_dequantized(false, false, {});
 }
 
@@ -106,42 +135,13 @@ void IsovalueControls::set_dequantized(bool on, bool possible, const QString& re
     terraces_->say(reason.isEmpty() ? "" : tr("Dequantizing is worth it: %1.").arg(reason));
 }
 
-/// The isovalue does nothing while layers are felt, and follows the hand that presses through.
-void IsovalueControls::show_rests() {
-    const SharedLayers& layers = effect_.settings().layers;
-    const bool layered = have_surfaces(layers);
-    for (QWidget* one : std::initializer_list<QWidget*>{level_, findChild<QSlider*>()}) {
-        allow(*one, layered ? tr("Layers are felt, not an isovalue: choose No layers to feel one")
-                            : QString());
-    }
-    chart_->set_level_shown(!layered);
-    overruled_->say(layered ? levels_in(layers) > 0
-                                  ? tr("Layers have levels of their own: drag their squares.")
-                                  : tr("Layers by label are felt, not a level of the densities.")
-                    : effect_.settings().penetrability.on
-                        ? tr("The level felt follows the hand: pressing through is on.")
-                        : QString());
-    if (layered || !effect_.there()) warning_->say({});
-}
-
 /// Separately where it differs from the level asked for.
 void IsovalueControls::show_felt(double isovalue, bool penetrability_on) {
-    if (have_surfaces(effect_.settings().layers)) {
-        chart_->set_felt(std::nan(""));
-        return felt_->clear();
-    }
     // Just after a command the snapshots still have the old level.
     differing_ = isovalue == level_->value() ? 0 : differing_ + 1;
-    const bool apart = penetrability_on || differing_ > snapshots_of_grace;
+    const bool apart = !layered() && (penetrability_on || differing_ > snapshots_of_grace);
     chart_->set_felt(apart ? isovalue : std::nan(""));
     felt_->setText(apart ? tr("felt %1").arg(number_text(isovalue)) : QString());
-}
-
-void IsovalueControls::show_level(double isovalue) {
-    chart_->set_level(isovalue);
-    warning_->say(effect_.there()
-                      ? QString::fromStdString(isovalue_warning(effect_.field(), isovalue))
-                      : QString());
 }
 
 }  // namespace palpate::viewer

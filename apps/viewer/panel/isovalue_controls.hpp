@@ -26,10 +26,10 @@ class IsovalueControls : public Form {
 
   private:
     QWidget* make_field();
+    QWidget* make_overruled();
     void begin();
     void clear();
-    void show_rests();
-    void show_level(double isovalue);
+    bool layered() const;
     void show_felt(double isovalue, bool penetrability_on);
 
     Effect& effect_;
@@ -37,7 +37,7 @@ class IsovalueControls : public Form {
     Quantity* level_;
     QCheckBox* dequantize_ = nullptr;
     QLabel* felt_;
-    Note *warning_, *overruled_, *terraces_;
+    Note* terraces_;
     int differing_ = 0;  // consecutive snapshots with another level
 };
 

@@ -224,7 +224,7 @@ QWidget* LayersControls::make_curves() {
     column_in(whole, {make_property(), over_density, own, over_gradient, factors_})->setSpacing(2);
     connect(factors_, &LevelChart::curve_changed, this, &LayersControls::set_factors);
     each_time(factors_, [gradient](LevelChart& chart) {
-        chart.set_curve(line_of(gradient()));
+        chart.set_curve({gradient()});
         chart.setVisible(!gradient().empty());
     });
     return whole;

@@ -37,7 +37,6 @@ LayersControls::LayersControls(Effect& effect)
       plot_(new StrokePlot) {
     setObjectName("layers_controls");
     factors_->setObjectName("gradient_chart");
-    factors_->set_level_shown(false);
     factors_->setAccessibleName(tr("Factor over the gradient"));
     factors_->setToolTip(
         tr("Factor over the gradient's magnitude [data units / mm]; behind it, how often there is "

@@ -11,7 +11,7 @@
 #include <QVBoxLayout>
 #include <QVariant>
 
-#include "apps/viewer/panel/level_axis.hpp"
+#include "apps/viewer/panel/colours.hpp"
 
 namespace palpate::viewer {
 namespace {

@@ -1,9 +1,8 @@
-// An axis of levels along a widget's width, with histogram, bands and a curve over it.
+// An axis of levels or times along a widget's width, the histogram over it, and the ranges and
+// curves that are dragged there.
 #pragma once
 
 #include <QColor>
-#include <QPalette>
-#include <QPointF>
 #include <QRectF>
 #include <QString>
 
@@ -15,12 +14,10 @@
 #include "palpate/run/statistics.hpp"
 
 class QPainter;
-class QPainterPath;
-class QWheelEvent;
 
 namespace palpate::viewer {
 
-/// low < high [data units] lie at left < right [logical pixels].
+/// low <= high [data units or s] lie at left < right [logical pixels].
 struct LevelAxis {
     double low = 0, high = 1;
     double left = 0, right = 1;
@@ -44,8 +41,6 @@ struct LevelView {
     /// where it is as long as the ends allow.
     void zoom(double factor, double about);
     void move(double part);
-    /// Control and wheel zooms about the pointer, shift and wheel moves. False: neither is held.
-    bool wheel(const QWheelEvent& event, const LevelAxis& whole);
 };
 
 /// The multiple of `unit`, a power of ten, that is nearest.
@@ -58,23 +53,11 @@ LevelAxis axis_of(const run::Histogram& histogram, const QRectF& plot);
 void paint_histogram(QPainter& painter, const run::Histogram& histogram, const LevelAxis& axis,
                      const QRectF& plot, const QColor& colour);
 
-bool is_dark(const QPalette& palette);
-/// The colour, lighter on a dark palette: thin lines and small text stay readable.
-QColor readable(const QColor& colour, const QPalette& palette);
-
-// Ranges of interest as bands on a level axis: finding the one under the pointer, dragging,
-// drawing.
+/// Ranges of interest, which are bands on a chart.
 using Ranges = std::vector<DensityRange>;
 
-/// The part of a band that is dragged.
-enum class Grip { none, low, high, whole };
-struct BandGrip {
-    int band = -1;
-    Grip grip = Grip::none;
-};
-
-/// The part under a pointer at x: the nearest end within `reach` pixels, else the band itself.
-BandGrip band_at(const Ranges& ranges, const LevelAxis& axis, double x, double reach);
+/// The part of a range that is dragged.
+enum class Grip { low, high, whole };
 
 /// A range after its dragged part has moved: an end to the level, at most as far as the other end;
 /// the whole by as much as `level` differs from `held_at`, within the axis. Ends at infinity stay.
@@ -84,43 +67,26 @@ DensityRange dragged(const DensityRange& start, Grip grip, double held_at, doubl
 /// The colour of the band with this number, for chart and table.
 QColor band_colour(int band);
 
-/// Bands over the plot, with grips along `strip`, at its lower edge.
-void paint_bands(QPainter& painter, const Ranges& ranges, const LevelAxis& axis, const QRectF& plot,
-                 const QRectF& strip, int chosen);
-
-// A curve over levels, drawn over the histogram, with knots to drag.
 using Knots = std::vector<Curve::Knot>;
 
-/// Knots where they lie in a plot: levels along it, values from 0 on its lower edge to `top` on its
-/// upper one.
+/// A curve over levels, whose values are drawn from 0 to `top`.
 struct CurveLine {
-    Knots knots;
-    double top = 1;
+    Knots knots = {};
     double least = 1;   ///< of `top`, where all values are 0
     QString unit = {};  ///< of values; empty: none
-    /// Of each knot; `top` stays then, and the area below is filled with them. Empty: none.
+    /// Of each knot; values are 0 to 1 then, and the area below is filled with them. Empty: none.
     std::vector<Colour> colours = {};
     std::size_t fewest = 1;  ///< knots that stay
+    double top = 1;
 
-    QPointF place_of(const Curve::Knot& knot, const LevelAxis& axis, const QRectF& plot) const;
-    Curve::Knot knot_of(const QPointF& at, const LevelAxis& axis, const QRectF& plot) const;
-    /// The nearest knot within reach, or -1.
-    int knot_at(const QPointF& at, const LevelAxis& axis, const QRectF& plot, double reach) const;
+    /// Leaves room above the highest value that is finite.
+    void fit();
     /// A knot becomes another one, but stays between its neighbours, `gap` from them [data units].
     void put(std::size_t knot, Curve::Knot to, double gap);
     /// One more, at its place in the order; its number. -1: one has that level already.
     int add(const Curve::Knot& knot);
     /// False: it has to stay.
     bool remove(int knot);
-    void paint(QPainter& painter, const LevelAxis& axis, const QRectF& plot, const QColor& colour,
-               int chosen) const;
-
-  private:
-    void fill(QPainter& painter, const QPainterPath& line, const LevelAxis& axis,
-              const QRectF& plot) const;
 };
-
-/// With room above the highest knot, up to `least` at least. Infinite values lie on the upper edge.
-CurveLine line_of(const Knots& knots, double least = 1, const QString& unit = {});
 
 }  // namespace palpate::viewer

@@ -1,11 +1,13 @@
 // The histogram with the isovalue as a line to drag, the level felt as a second line, suggested
-// levels as ticks and ranges of interest as bands.
+// levels as ticks, ranges of interest as bands, and a curve.
 #pragma once
 
 #include <QColor>
 #include <QWidget>
 
+#include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "apps/viewer/panel/level_axis.hpp"
@@ -16,15 +18,16 @@ namespace palpate::viewer {
 struct LevelMark {
     double level = 0;
     QColor colour;
-    /// Stands beside its line; empty: nothing.
-    QString name = {};
-    /// It is dragged between these.
+    std::function<void(double level)> moved;  ///< by dragging, between `low` and `high`
+    std::function<void()> pressed = [] {};
+    QString name = {};  ///< stands beside its line; empty: nothing
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
-
-    bool operator==(const LevelMark&) const = default;
 };
 
+/// Keeps nothing of its own but what is seen and chosen: it emits what is asked for, and shows what
+/// it is then given.
+///
 /// Mouse: press or drag in the plot moves the level; a tick on the upper edge is taken exactly;
 /// bands are moved and resized by their strip on the lower edge; shift-drag makes a new one; right
 /// click or Del on a band deletes it. Control and wheel zooms, shift and wheel moves what is seen.
@@ -35,32 +38,29 @@ class LevelChart : public QWidget {
   public:
     LevelChart();
 
-    /// New data; `suggested` are levels that are worth feeling.
+    /// New data, or none; `suggested` are levels that are worth feeling.
     void set_data(const run::Histogram& histogram, const std::vector<double>& suggested);
-    void clear();
-    /// Moves the line; emits nothing.
+    /// The isovalue. NaN: there is none, and no bands; marks are held by their whole lines, and
+    /// arrow keys are for the curve.
     void set_level(double level);
     double level() const { return level_; }
     /// The level felt now; NaN: none to show.
     void set_felt(double level);
     double felt() const { return felt_; }
-    /// Bands; emits nothing. Ignored while a band is dragged.
     void set_bands(const Ranges& bands);
-    /// Further levels, as lines with a grip below; emits nothing. Ignored while one is dragged.
-    void set_marks(const std::vector<LevelMark>& marks);
-    /// A curve over levels, with knots to drag; emits nothing. Ignored while one is dragged. No
-    /// knots: none.
+    const Ranges& bands() const { return bands_; }
+    /// Further levels, as lines with a grip below.
+    void set_marks(std::vector<LevelMark> marks);
+    /// Without knots: none. Its scale stays while the pointer holds something.
     void set_curve(const CurveLine& curve);
     const CurveLine& curve() const { return curve_; }
     /// The knot that keys move, or -1.
-    int held_knot() const { return held_knot_; }
-    void hold_knot(int knot);
+    int held_knot() const { return knot_; }
+    void hold_knot(int knot) { choose(knot, -1); }
+    /// A knot becomes another one, as by dragging.
+    void put_knot(int knot, const Curve::Knot& to);
     /// Where a knot is drawn [logical pixels].
     QPointF place_of(std::size_t knot) const;
-    /// False: there are no isovalue and no bands, marks are held by their whole lines, and arrow
-    /// keys are for the curve.
-    void set_level_shown(bool shown);
-    const Ranges& bands() const { return bands_; }
     /// What an arrow key moves the level by [data units].
     double fine_step() const;
     /// The visible range, and the whole of the data.
@@ -76,13 +76,12 @@ class LevelChart : public QWidget {
     void level_moved(double level);
     void bands_moved(const palpate::viewer::Ranges& bands);
     void bands_settled();  ///< the drag is over
-    void mark_chosen(int mark);
-    void mark_moved(int mark, double level);
-    void curve_changed(const palpate::viewer::Knots& knots);
-    void knot_held(int knot);
-    void knot_activated(int knot);  ///< by a double click or Return
     void band_added(const palpate::DensityRange& range);
     void band_deleted(int band);
+    void curve_changed(const palpate::viewer::Knots& knots,
+                       const std::vector<palpate::viewer::Colour>& colours);
+    void knot_held(int knot);
+    void knot_activated(int knot);  ///< by a double click or Return
 
   protected:
     void paintEvent(QPaintEvent* event) override;
@@ -95,51 +94,52 @@ class LevelChart : public QWidget {
     void wheelEvent(QWheelEvent* event) override;
 
   private:
-    enum class Part { none, level, tick, mark, knot, band, fresh };
-    /// What the pointer takes hold of, or would.
-    struct Hold {
-        Part part = Part::none;
-        int at = -1;  // of ticks, marks, knots, bands
-        Grip grip = Grip::none;
+    /// What the pointer takes hold of at some place, and what it then does.
+    struct Handle {
+        Qt::CursorShape cursor = Qt::ArrowCursor;
+        std::function<void()> press = [] {};
+        std::function<void(const QPointF& to)> drag = [](const QPointF&) {};
+        std::function<void()> release = [] {};
+        int knot = -1, band = -1;  // chosen by it
     };
 
-    QRectF plot() const;
-    double text_height() const;
-    void choose_band(int band);
+    Handle handle_at(const QPointF& at);
+    Handle knot_handle(int knot);
+    Handle band_handle(double x);
+    Handle new_band_handle(double x);
+    int knot_at(const QPointF& at) const;
+    bool have_level() const;
+    void choose(int knot, int band);
     void ask_level(double level);
     void step_level(double steps);
-    int knot_at(const QPointF& at) const;
-    Hold hold_at(const QPointF& at) const;
-    void drag_to(const QPointF& at);
+    Curve::Knot knot_of(const QPointF& at) const;
+    void ask_curve(const CurveLine& curve, int chosen);
+    void add_knot(const QPointF& at);
     void remove_knot(int knot);
-    void curve_edited();
-    bool step_knot(int key, double steps);
-    bool have_bands() const { return level_shown_ && !bands_.empty(); }
-    void paint_marks(QPainter& painter, const LevelAxis& axis) const;
-    void show_cursor(const QPointF& at);
-    void paint_ticks(QPainter& painter, const LevelAxis& axis) const;
-    void paint_markers(QPainter& painter, const LevelAxis& axis) const;
+    bool level_key(int key, double many);
+    bool knot_key(int key, double many);
+    QRectF plot() const;
+    double text_height() const;
+    void paint_bands(QPainter& painter) const;
+    void paint_levels(QPainter& painter) const;
+    void paint_curve(QPainter& painter) const;
     void paint_ends(QPainter& painter) const;
 
     run::Histogram histogram_;
     std::vector<double> suggested_;
-    double level_ = 0;
+    double level_ = std::numeric_limits<double>::quiet_NaN();
     double felt_ = std::numeric_limits<double>::quiet_NaN();
     Ranges bands_;
-    int chosen_ = -1;
-
     std::vector<LevelMark> marks_;
     CurveLine curve_;
-    bool level_shown_ = true;
 
-    Hold hold_;
-    int held_knot_ = -1;
-    QPointF pressed_at_;
-    bool activates_ = false;     // the knot, by a second press that has not become a drag
-    double held_at_ = 0;         // level under the pointer when the drag began
-    DensityRange held_, fresh_;  // the band then; the one that is being made
     LevelView view_;
-    int wheel_ = 0;  // eighths of degrees that make no step yet
+    int knot_ = -1, band_ = -1;  // chosen, or -1
+    std::optional<Handle> hold_;
+    std::optional<DensityRange> new_band_;
+    QPointF pressed_at_;
+    bool activates_ = false;  // the knot, by a second press that has not become a drag
+    int wheel_ = 0;           // eighths of degrees that make no step yet
 };
 
 }  // namespace palpate::viewer

@@ -41,8 +41,7 @@ Value<T> LookControls::of_point(T ControlPoint::*member) {
                 CurveLine line = editor_->curve();
                 line.put(at, {point.level, point.opacity}, editor_->axis().step());
                 line.colours[at] = point.colour;
-                editor_->set_curve(line);
-                take_transfer();
+                take_transfer(line.knots, line.colours);
             }};
 }
 
@@ -56,7 +55,6 @@ LookControls::LookControls(Effect& effect)
              "chooses its colour.\nChoose the preset again to undo. Ctrl-wheel zooms, shift-wheel "
              "moves, Ctrl+0 shows all again."))) {
     editor_->setAccessibleName(tr("Transfer function"));
-    editor_->set_level_shown(false);
     auto* felt = row_of(
         {check({"show_surface", tr("Surface"), tr("The isosurface that is felt")},
                of(&Look::surface)),
@@ -119,7 +117,7 @@ QWidget* LookControls::make_surface(std::size_t at) {
     opacity->setMaximumWidth(5 * em);
     felt->setMaximumWidth(3 * em);
     remove->setMaximumWidth(2 * em);
-    each_time(level, [this](NumberBox& box) { box.setSingleStep(level_step()); });
+    each_time(level, [this](NumberBox& box) { box.setSingleStep(editor_->fine_step()); });
     each_time(felt, [this](QWidget& one) {
         allow(one, have_surfaces(effect_.settings().layers)
                        ? tr("Layers are felt, not an isovalue: choose No layers to feel one")
@@ -150,9 +148,7 @@ void LookControls::add_surface() {
     levels.push_back(histogram.low + 0.5 * range);
     const auto is_new = [&](double level) {
         const auto near = [&](double other) { return std::abs(other - level) < 0.02 * range; };
-        return !near(felt) && std::ranges::none_of(look_.surfaces, [&](const SeenSurface& s) {
-            return near(s.level);
-        });
+        return !near(felt) && std::ranges::none_of(look_.surfaces, near, &SeenSurface::level);
     };
     const auto found = std::ranges::find_if(levels, is_new);
     SeenSurface added;
@@ -210,7 +206,7 @@ QWidget* LookControls::make_volume() {
     auto* its_colour = colour({"point_colour", "", tr("Colour of the chosen point")},
                               of_point(&ControlPoint::colour));
     opacity->setSingleStep(0.05);
-    each_time(level, [this](NumberBox& box) { box.setSingleStep(level_step()); });
+    each_time(level, [this](NumberBox& box) { box.setSingleStep(editor_->fine_step()); });
     for (NumberBox* box : {level, opacity}) {
         box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     }
@@ -266,19 +262,13 @@ const ControlPoint* LookControls::held_point() const {
     return at < look_.transfer.points.size() ? &look_.transfer.points[at] : nullptr;
 }
 
-void LookControls::take_transfer() {
-    const CurveLine& line = editor_->curve();
+void LookControls::take_transfer(const Knots& knots, const std::vector<Colour>& colours) {
     change([&](Look& look) {
         look.transfer = {};
-        for (std::size_t i = 0; i < line.knots.size(); ++i) {
-            look.transfer.points.push_back(
-                {line.knots[i].at, line.colours[i], line.knots[i].value});
+        for (std::size_t i = 0; i < knots.size(); ++i) {
+            look.transfer.points.push_back({knots[i].at, colours[i], knots[i].value});
         }
     });
-}
-
-double LookControls::level_step() const {
-    return axis_of(effect_.histogram(), QRectF(0, 0, 100, 1)).step();
 }
 
 void LookControls::begin() {

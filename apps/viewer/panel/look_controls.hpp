@@ -42,8 +42,7 @@ class LookControls : public Form {
     void begin();
     void add_surface();
     void feel(std::size_t at);
-    double level_step() const;
-    void take_transfer();
+    void take_transfer(const Knots& knots, const std::vector<Colour>& colours);
     const ControlPoint* held_point() const;
 
     Effect& effect_;

@@ -8,6 +8,9 @@
 #include <QTabWidget>
 #include <QVBoxLayout>
 
+#include <utility>
+#include <vector>
+
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/force_controls.hpp"
@@ -136,24 +139,12 @@ void Panel::answer(const Command& command, const QString& why) {
     if (!why.isEmpty()) raise_page(*section);
 }
 
-/// On the chart, levels of layers are the first marks, then surfaces of the look.
 void Panel::connect_levels() {
-    const LevelChart* chart = &isovalue_->chart();
-    connect(chart, &LevelChart::curve_changed, layers_, &LayersControls::set_curve);
+    connect(&isovalue_->chart(), &LevelChart::curve_changed, layers_, &LayersControls::set_curve);
     connect(layers_, &LayersControls::curve_chosen, this, &Panel::show_marks);
     connect(look_, &LookControls::look_changed, this, &Panel::show_marks);
     connect(look_, &LookControls::look_set, this, &Panel::show_marks);
     connect(overlay_, &OverlayControls::feel_wanted, this, [this] { raise_page(*layers_); });
-    connect(chart, &LevelChart::mark_chosen, this, [this](int mark) {
-        if (mark < static_cast<int>(levels_in(layers_->layers()))) layers_->choose_layer(mark);
-    });
-    connect(chart, &LevelChart::mark_moved, this, [this](int mark, double level) {
-        const auto count = static_cast<int>(levels_in(layers_->layers()));
-        if (mark < count) return layers_->move_level(mark, level);
-        look_->change([&](Look& look) {
-            look.surfaces.at(static_cast<std::size_t>(mark - count)).level = level;
-        });
-    });
 }
 
 void Panel::show_marks() {
@@ -163,19 +154,21 @@ void Panel::show_marks() {
     for (int i = 0; i < levels; ++i) {
         const Layer& layer = layers->layers[static_cast<std::size_t>(i)];
         const auto [low, high] = layers_->room(i);
-        marks.push_back(
-            {layer.level, to_qt(colour_of(layer)), QString::fromStdString(layer.name), low, high});
+        marks.push_back({layer.level, to_qt(colour_of(layer)),
+                         [this, i](double to) { layers_->move_level(i, to); },
+                         [this, i] { layers_->choose_layer(i); },
+                         QString::fromStdString(layer.name), low, high});
     }
-    for (const SeenSurface& surface : look_->look().surfaces) {
-        LevelMark mark;
-        mark.level = surface.level;
-        mark.colour = to_qt(surface.colour);
-        marks.push_back(mark);
+    const auto& surfaces = look_->look().surfaces;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        marks.push_back({surfaces[i].level, to_qt(surfaces[i].colour), [this, i](double to) {
+                             look_->change([=](Look& look) { look.surfaces.at(i).level = to; });
+                         }});
     }
-    isovalue_->chart().set_marks(marks);
+    isovalue_->chart().set_marks(std::move(marks));
     const PropertyWords& words = words_of(layers_->curve_property());
-    isovalue_->chart().set_curve(line_of(layers ? (*layers)[words.property].density.knots : Knots(),
-                                         words.high, words.unit));
+    isovalue_->chart().set_curve(
+        {layers ? (*layers)[words.property].density.knots : Knots(), words.high, words.unit});
 }
 
 void Panel::enable() {

@@ -16,7 +16,6 @@
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/ruler.hpp"
 #include "apps/viewer/panel/colours.hpp"
-#include "apps/viewer/panel/level_axis.hpp"
 
 namespace palpate::viewer {
 
@@ -91,26 +90,6 @@ struct ForceWords {
         {QT_TR_NOOP("rate limit"), QT_TR_NOOP("Rate limit: the force may not change faster")}};
 };
 
-/// The words in the person's language, or their meaning; empty: nothing is known.
-QString told(const QString& words, const char* ForceWords::Row::*part) {
-    const auto known = std::ranges::find_if(
-        ForceWords::all, [&](const ForceWords::Row& one) { return words == one.words; });
-    const bool any = known != std::end(ForceWords::all) && *((*known).*part) != '\0';
-    return any ? ForceWords::tr((*known).*part) : QString();
-}
-
-/// Others as they are.
-QString shown_words(const QString& words) {
-    const QString text = told(words, &ForceWords::Row::words);
-    return text.isEmpty() ? words : text;
-}
-
-QString tip_for(const QString& words) {
-    const QString what = ForceGauge::tr("Force on the hand [N] against the limit in use");
-    const QString meaning = told(words, &ForceWords::Row::meaning);
-    return meaning.isEmpty() ? what : what + "\n" + meaning;
-}
-
 }  // namespace
 
 ForceGauge::ForceGauge()
@@ -133,11 +112,16 @@ void ForceGauge::set_force(double force, double limit, const QString& words) {
     force_ = force;
     limit_ = limit;
     words_ = words;
-    setToolTip(tip_for(words));
-    setAccessibleName(
-        tr("Force %1 N of %2 N %3").arg(force, 0, 'f', 2).arg(limit).arg(shown_words(words)));
+    const auto* const known = std::ranges::find_if(
+        ForceWords::all, [&](const ForceWords::Row& one) { return words == one.words; });
+    const bool is_known = known != std::end(ForceWords::all);
+    const QString said = is_known ? ForceWords::tr(known->words) : words;
+    QString tip = tr("Force on the hand [N] against the limit in use");
+    if (is_known && *known->meaning != '\0') tip += "\n" + ForceWords::tr(known->meaning);
+    setToolTip(tip);
+    setAccessibleName(tr("Force %1 N of %2 N %3").arg(force, 0, 'f', 2).arg(limit).arg(said));
     number_->setText(QString("%1 N").arg(force, 0, 'f', 2));
-    why_->setText(shown_words(words));
+    why_->setText(said);
     most_->setText(limit > 0 ? tr("of %1 N").arg(QString::number(limit, 'g', 3)) : QString());
     bar_->setValue(static_cast<int>(std::lround(places * filled())));
     const Colour colour = filled() > 0.9 ? near_limit : pictures::force_colour;
@@ -161,25 +145,21 @@ SessionBar::SessionBar(Effect& effect)
         "forces", tr("Forces on or off (space bar). Off: zero at once; on: they ramp up"),
         [this] { return effect_.there() && effect_.settings().forces_on; },
         [](bool on) { return command::Forces{on}; },
-        [this] {
-            return !forces_->isChecked() ? tr("Forces are OFF")
-                   : waits_.isEmpty()    ? tr("Forces are ON")
-                                         : tr("Forces WAIT") + '\n' + waits_;
+        [this](bool on) {
+            return !on                ? tr("Forces are OFF")
+                   : waits_.isEmpty() ? tr("Forces are ON")
+                                      : tr("Forces WAIT") + '\n' + waits_;
         });
     auto* freeze = make_switch(
         "freeze", tr("Hand and proxy stand still for the session, forces are let go"),
         [this] { return effect_.there() && effect_.session().frozen; },
         [](bool on) { return command::Freeze{on}; },
-        [this] {
-            return effect_.there() && effect_.session().frozen ? tr("Frozen") : tr("Freeze");
-        });
+        [](bool on) { return on ? tr("Frozen") : tr("Freeze"); });
     auto* clutch = make_switch(
         "clutch", tr("The volume hangs on the hand, to put it elsewhere; forces are let go"),
         [this] { return effect_.there() && effect_.session().clutched; },
         [](bool on) { return command::Clutch{on}; },
-        [this] {
-            return effect_.there() && effect_.session().clutched ? tr("Clutched") : tr("Clutch");
-        });
+        [](bool on) { return on ? tr("Clutched") : tr("Clutch"); });
     QFont big = forces_->font();
     big.setBold(true);
     big.setPointSizeF(1.25 * big.pointSizeF());
@@ -205,13 +185,13 @@ SessionBar::SessionBar(Effect& effect)
 QPushButton* SessionBar::make_switch(const char* name, const QString& tip,
                                      std::function<bool()> state,
                                      std::function<Command(bool)> command,
-                                     std::function<QString()> text) {
+                                     std::function<QString(bool)> text) {
     auto* one =
         button({name, "", tip}, [this, state, command] { effect_.request(command(!state())); });
     one->setCheckable(true);
     return each_time(one, [state, text](QPushButton& shown) {
         shown.setChecked(state());
-        shown.setText(text());
+        shown.setText(text(state()));
     });
 }
 

@@ -70,7 +70,8 @@ class SessionBar : public Form {
 
   private:
     QPushButton* make_switch(const char* name, const QString& tip, std::function<bool()> state,
-                             std::function<Command(bool)> command, std::function<QString()> text);
+                             std::function<Command(bool)> command,
+                             std::function<QString(bool)> text);
     void clear();
     void show_snapshot(const Snapshot& now);
     double limit() const;

@@ -3,7 +3,6 @@
 
 #include <QPainter>
 
-#include <algorithm>
 #include <set>
 
 #include "apps/viewer/panel/colours.hpp"
@@ -48,10 +47,7 @@ QColor StrokePlot::colour_of(int layer) const {
     if (layer < 0 || !layers_ || at >= layers_->layers.size()) {
         return palette().color(QPalette::PlaceholderText);
     }
-    const QColor colour = to_qt(palpate::viewer::colour_of(layers_->layers[at]));
-    // Pale colours would vanish on white, dark ones on black.
-    if (is_dark(palette())) return colour.lightnessF() < 0.45 ? colour.lighter(180) : colour;
-    return colour.lightnessF() > 0.55 ? colour.darker(160) : colour;
+    return readable(to_qt(palpate::viewer::colour_of(layers_->layers[at])), palette());
 }
 
 void StrokePlot::paint_axes(QPainter& painter, double deepest, double highest) const {
@@ -102,9 +98,10 @@ void StrokePlot::paintEvent(QPaintEvent*) {
         while (point.depth > deepest) deepest *= 2;
         while (point.force > highest) highest *= 2;
     }
+    const LevelAxis depths{0, deepest, p.left(), p.right()},
+        forces{0, highest, p.bottom(), p.top()};
     const auto place = [&](const Stroke::Point& point) {
-        return QPointF(p.left() + p.width() * std::clamp(point.depth / deepest, 0.0, 1.0),
-                       p.bottom() - p.height() * std::min(point.force / highest, 1.0));
+        return QPointF(depths.x_of(point.depth), forces.x_of(point.force));
     };
     for (std::size_t i = 1; i < points.size(); ++i) {
         painter.setPen(QPen(colour_of(points[i].layer), 1.5));

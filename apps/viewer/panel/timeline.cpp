@@ -3,7 +3,6 @@
 
 #include <QBoxLayout>
 #include <QCheckBox>
-#include <QFontMetrics>
 #include <QHelpEvent>
 #include <QKeyEvent>
 #include <QLabel>
@@ -16,20 +15,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "apps/viewer/panel/colours.hpp"
 #include "apps/viewer/panel/icons.hpp"
-#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
 
 namespace palpate::viewer {
-namespace {
-
-constexpr double least_between_ticks = 3;  // pixels
-
-}  // namespace
 
 TimelineTrack::TimelineTrack() {
     setObjectName("timeline_track");
@@ -39,15 +34,9 @@ TimelineTrack::TimelineTrack() {
     setOrientation(Qt::Horizontal);
     // By keys, and by whatever else moves a slider.
     connect(this, &QAbstractSlider::valueChanged, this, [this](int milliseconds) {
-        time_ = view_.begin + std::min(1e-3 * milliseconds, length());
-        update();
-        Q_EMIT chosen(time_);
+        choose(std::min(view_.begin + 1e-3 * milliseconds, view_.end));
     });
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
-}
-
-double TimelineTrack::length() const {
-    return std::max(view_.end - view_.begin, 0.0);
 }
 
 bool TimelineTrack::set_view(const TimelineView& view) {
@@ -63,65 +52,50 @@ bool TimelineTrack::set_view(const TimelineView& view) {
     update();
     if (!other) return false;
     const QSignalBlocker quiet(this);  // a drag that ends by this asks for nothing
-    setRange(0, static_cast<int>(std::min(std::ceil(1e3 * length()), 2e9)));
+    setRange(0, static_cast<int>(std::min(std::ceil(1e3 * length(view)), 2e9)));
     setSingleStep(std::max(1, maximum() / 100));
     setPageStep(std::max(1, maximum() / 10));
-    setEnabled(!view.live && length() > 0);
+    setEnabled(!view.live && length(view) > 0);
     updateGeometry();
-    time_ = within(view_, time_);
-    place();
+    set_time(time_);
     return true;
 }
 
 void TimelineTrack::set_time(double time) {
     const double to = within(view_, time);
-    if (to == time_) return;
-    time_ = to;
-    place();
-    update();
+    const QSignalBlocker quiet(this);
+    setValue(static_cast<int>(std::lround(std::min(1e3 * (to - view_.begin), 2e9))));
+    if (to != std::exchange(time_, to)) update();
 }
 
-/// The slider's value at the time.
-void TimelineTrack::place() {
-    const QSignalBlocker quiet(this);
-    setValue(static_cast<int>(std::lround(std::min(1e3 * (time_ - view_.begin), 2e9))));
+void TimelineTrack::choose(double time) {
+    set_time(time);
+    Q_EMIT chosen(time_);
 }
 
 QSize TimelineTrack::sizeHint() const {
-    const int height = QFontMetrics(font()).height();
-    return {24 * height, (view_.overview ? 3 : 2) * height};
+    return {24 * fontMetrics().height(), (view_.overview ? 3 : 2) * fontMetrics().height()};
 }
 
 QSize TimelineTrack::minimumSizeHint() const {
-    const int height = QFontMetrics(font()).height();
-    return {6 * height, 2 * height};
+    return {6 * fontMetrics().height(), 2 * fontMetrics().height()};
 }
 
 QRectF TimelineTrack::plot() const {
-    const double edge = 0.4 * QFontMetricsF(font()).height();
+    const double edge = 0.4 * fontMetrics().height();
     return QRectF(rect()).adjusted(edge, 2, -edge, -2);
 }
 
-double TimelineTrack::x_of(double time) const {
+LevelAxis TimelineTrack::axis() const {
     const QRectF box = plot();
-    return length() > 0 ? box.left() + box.width() * (time - view_.begin) / length() : box.left();
-}
-
-double TimelineTrack::time_at(double x) const {
-    const QRectF box = plot();
-    const double part = std::clamp((x - box.left()) / std::max(box.width(), 1.0), 0.0, 1.0);
-    return part == 1 ? view_.end : view_.begin + part * length();
-}
-
-void TimelineTrack::choose_at(double x) {
-    set_time(time_at(x));
-    Q_EMIT chosen(time_);
+    return {view_.begin, view_.begin + length(view_), box.left(),
+            std::max(box.right(), box.left() + 1)};
 }
 
 bool TimelineTrack::event(QEvent* event) {
     if (event->type() == QEvent::ToolTip && !empty(view_) && !view_.live) {
         const auto* const help = static_cast<QHelpEvent*>(event);
-        const double time = time_at(help->pos().x());
+        const double time = axis().level_of(help->pos().x());
         QToolTip::showText(help->globalPos(),
                            view_.overview ? overview_text_at(view_, time) : text_at(view_, time));
         return true;
@@ -129,64 +103,51 @@ bool TimelineTrack::event(QEvent* event) {
     return QAbstractSlider::event(event);
 }
 
-void TimelineTrack::paint_loaded(QPainter& painter, const QRectF& box) const {
-    QColor loaded = palette().color(QPalette::Highlight);
+/// What is in memory, and one line for each frame; fewer where they would run together.
+void TimelineTrack::paint_frames(QPainter& painter) const {
+    constexpr double least_between = 3;  // pixels
+    const QRectF box = plot();
+    const LevelAxis a = axis();
+    QColor loaded = palette().color(QPalette::Highlight), lines = palette().color(QPalette::Text);
     loaded.setAlphaF(0.4);
-    for (const Overview::Interval& one : loaded_stretches(view_)) {
-        const double from = x_of(one.from), to = x_of(one.to);
-        painter.fillRect(QRectF(from, box.top(), std::max(to - from, 2.0), box.height()), loaded);
+    lines.setAlphaF(0.6);
+    for (const auto& [from, to] : loaded_stretches(view_)) {
+        const double left = a.x_of(from), width = std::max(a.x_of(to) - left, 2.0);
+        painter.fillRect(QRectF(left, box.top(), width, box.height()), loaded);
     }
-}
-
-/// One line for each frame; fewer where they would run together.
-void TimelineTrack::paint_frames(QPainter& painter, const QRectF& box) const {
-    QColor colour = palette().color(QPalette::Text);
-    colour.setAlphaF(0.6);
-    painter.setPen(QPen(colour, 1));
+    painter.setPen(QPen(lines, 1));
     double last = -std::numeric_limits<double>::infinity();
     for (const double frame : view_.frames) {
-        const double x = x_of(frame);
-        if (x - last < least_between_ticks || x > box.right() + 0.5) continue;
+        const double x = a.x_of(frame);
+        if (x - last < least_between) continue;
         painter.drawLine(QPointF(x, box.bottom() - 0.4 * box.height()), QPointF(x, box.bottom()));
         last = x;
     }
 }
 
-/// One column of pixels at a time.
-void TimelineTrack::paint_overview(QPainter& painter, const QRectF& box) const {
+/// Force, level and contact, one column of pixels at a time.
+void TimelineTrack::paint_overview(QPainter& painter) const {
     const Overview& overview = *view_.overview;
-    Overview::Piece whole;
-    for (const Overview::Piece& piece : overview.pieces) whole.add(piece);
-    if (whole.empty) return;
-    const double level_range = whole.most_isovalue - whole.least_isovalue;
-    const int columns = std::max(1, static_cast<int>(box.width() * devicePixelRatioF()));
-    const double step = box.width() / columns;
-    const auto count = static_cast<double>(overview.pieces.size());
-    const double shown = length() > 0 ? length() / overview.width : 1;  // pieces
+    const Overview::Piece whole = overview.over(view_.begin, view_.end);
+    const QRectF box = plot();
+    const double bar = std::max(3.0, 0.15 * box.height()), bottom = box.bottom() - bar - 2;
+    const double step = 1 / devicePixelRatioF();
+    const LevelAxis times = axis(), newton{0, whole.most_force, bottom, box.top() + 2},
+                    levels{whole.least_isovalue, whole.most_isovalue, bottom - 1, box.top() + 3};
     QColor force = to_qt(pictures::force_colour);
     force.setAlphaF(0.55);
-    painter.setPen(Qt::NoPen);
-    for (int c = 0; c < columns; ++c) {
-        const auto first = static_cast<std::size_t>(std::min(shown * c / columns, count - 1));
-        const auto last = static_cast<std::size_t>(std::min(shown * (c + 1) / columns, count - 1));
-        Overview::Piece column;
-        for (std::size_t i = first; i <= last; ++i) column.add(overview.pieces[i]);
-        if (column.empty) continue;
-        const double x = box.left() + c * step;
-        const auto fill = [&](double top, double bottom, const QColor& colour) {
-            painter.fillRect(QRectF(x, top, step, bottom - top), colour);
+    for (double x = box.left(); x < box.right(); x += step) {
+        const auto piece = overview.over(times.level_of(x), times.level_of(x + step));
+        const auto fill = [&](double top, double below, const QColor& colour) {
+            painter.fillRect(QRectF(x, top, step, below - top), colour);
         };
-        if (whole.most_force > 0) {
-            const double newton = box.height() / whole.most_force;
-            fill(box.bottom() - newton * column.most_force, box.bottom(), force);
-            fill(box.bottom() - newton * column.least_force, box.bottom(), force);
-        }
-        if (level_range > 0 && column.least_isovalue <= column.most_isovalue) {
-            const double unit = (box.height() - 2) / level_range, zero = box.bottom() - 1;
-            fill(zero - unit * (column.most_isovalue - whole.least_isovalue) - 0.75,
-                 zero - unit * (column.least_isovalue - whole.least_isovalue) + 0.75,
+        fill(newton.x_of(piece.most_force), bottom, force);
+        fill(newton.x_of(piece.least_force), bottom, force);
+        if (levels.low < levels.high && piece.least_isovalue <= piece.most_isovalue) {
+            fill(levels.x_of(piece.most_isovalue) - 0.75, levels.x_of(piece.least_isovalue) + 0.75,
                  palette().color(QPalette::Text));
         }
+        if (piece.contact) fill(box.bottom() - bar, box.bottom(), to_qt(pictures::scp_colour));
     }
 }
 
@@ -196,24 +157,16 @@ void TimelineTrack::paintEvent(QPaintEvent*) {
     const QPalette colours = palette();
     painter.fillRect(box, colours.base());
     if (view_.overview) {
-        const double bar = std::max(3.0, 0.15 * box.height());
-        paint_overview(painter, box.adjusted(0, 2, 0, -bar - 2));
-        for (const Overview::Interval& contact : view_.overview->contacts) {
-            const double from = x_of(contact.from), to = x_of(contact.to);
-            painter.fillRect(QRectF(from, box.bottom() - bar, std::max(to - from, 1.0), bar),
-                             to_qt(pictures::scp_colour));
-        }
+        paint_overview(painter);
     } else if (!view_.live) {
-        paint_loaded(painter, box);
-        paint_frames(painter, box);
+        paint_frames(painter);
     }
     painter.setRenderHint(QPainter::Antialiasing);
-    painter.setBrush(Qt::NoBrush);
     painter.setPen(
         QPen(hasFocus() ? colours.highlight().color() : colours.mid().color(), hasFocus() ? 2 : 1));
     painter.drawRect(box);
     if (!isEnabled()) return;
-    const double x = x_of(time_), head = 0.35 * QFontMetricsF(font()).height();
+    const double x = axis().x_of(time_), head = 0.35 * fontMetrics().height();
     const QBrush& marker = view_.overview ? colours.highlight() : colours.text();
     painter.setPen(QPen(marker.color(), 2));
     painter.drawLine(QPointF(x, box.top()), QPointF(x, box.bottom()));
@@ -241,11 +194,11 @@ void TimelineTrack::keyPressEvent(QKeyEvent* event) {
 void TimelineTrack::mousePressEvent(QMouseEvent* event) {
     if (event->button() != Qt::LeftButton) return event->ignore();
     setSliderDown(true);
-    choose_at(event->localPos().x());
+    choose(axis().level_of(event->localPos().x()));
 }
 
 void TimelineTrack::mouseMoveEvent(QMouseEvent* event) {
-    if (isSliderDown()) choose_at(event->localPos().x());
+    if (isSliderDown()) choose(axis().level_of(event->localPos().x()));
 }
 
 void TimelineTrack::mouseReleaseEvent(QMouseEvent* event) {
@@ -260,17 +213,11 @@ constexpr std::array speed_steps{0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0};  // of the
 class SpeedBox : public NumberBox {
   public:
     void stepBy(int count) override {
-        double to = value();
-        for (int i = 0; i < std::abs(count); ++i) {
-            if (count > 0) {
-                const auto above = std::ranges::upper_bound(speed_steps, to);
-                to = above == speed_steps.end() ? speed_steps.back() : *above;
-            } else {
-                const auto from = std::ranges::lower_bound(speed_steps, to);
-                to = from == speed_steps.begin() ? speed_steps.front() : *(from - 1);
-            }
-        }
-        setValue(to);
+        const auto* const from = count > 0 ? std::ranges::upper_bound(speed_steps, value())
+                                           : std::ranges::lower_bound(speed_steps, value());
+        const auto to = from - speed_steps.begin() + (count > 0 ? count - 1 : count);
+        constexpr auto last = static_cast<std::ptrdiff_t>(speed_steps.size()) - 1;
+        setValue(speed_steps[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(to, 0, last))]);
         selectAll();
     }
 };
@@ -287,7 +234,7 @@ QToolButton* make_button(const QString& name, const QString& accessible, const Q
 Timeline::Timeline(QWidget* parent)
     : QWidget(parent),
       back_(make_button("timeline_back", tr("Step back"), tr("To the frame before"))),
-      play_(make_button("timeline_play", tr("Play"), tr("Play"))),
+      play_(make_button("timeline_play", {}, {})),
       forward_(make_button("timeline_forward", tr("Step forward"), tr("To the next frame"))),
       track_(new TimelineTrack),
       text_(
@@ -302,6 +249,8 @@ Timeline::Timeline(QWidget* parent)
     row->setStretch(3, 1);
     back_->setAutoRepeat(true);
     forward_->setAutoRepeat(true);
+    back_->setIcon(icon_of(Shape::back));
+    forward_->setIcon(icon_of(Shape::forward));
     speed_->setAccessibleName(tr("Speed"));
     speed_->setSuffix(QString::fromUtf8("×"));
     speed_->show_value(play_speed_);
@@ -309,30 +258,23 @@ Timeline::Timeline(QWidget* parent)
                           2 * fontMetrics().height());
     let_return_press_buttons(*this);
     connect_inputs();
-    show_playing(false);
-    back_->setIcon(icon_of(Shape::back));
-    forward_->setIcon(icon_of(Shape::forward));
     show_possible();
+    show_asked();
 }
 
 void Timeline::connect_inputs() {
     connect(back_, &QToolButton::clicked, this, [this] { step(-1); });
     connect(forward_, &QToolButton::clicked, this, [this] { step(1); });
-    connect(play_, &QToolButton::clicked, this, [this] {
-        const bool play = !playing_;
-        show_playing(play);
-        ask_speed(play ? play_speed_ : 0);
-    });
+    connect(play_, &QToolButton::clicked, this, [this] { ask_speed(playing() ? 0 : play_speed_); });
     connect(speed_, qOverload<double>(&NumberBox::valueChanged), this, [this](double speed) {
         const double bounded = std::clamp(speed, speed_steps.front(), speed_steps.back());
         speed_->show_value(bounded);
         const double asked = std::copysign(bounded, play_speed_);
-        if (asked == play_speed_) return;
-        play_speed_ = asked;
-        if (playing_) ask_speed(asked);
+        if (asked == std::exchange(play_speed_, asked)) return;
+        if (playing()) ask_speed(asked);
     });
     connect(loop_, &QCheckBox::clicked, this, [this](bool loop) {
-        awaited_loop_.begin();
+        asked_loop_.ask(loop);
         Q_EMIT loop_asked(loop);
     });
     connect(track_, &TimelineTrack::chosen, this, &Timeline::ask_moment);
@@ -351,55 +293,47 @@ void Timeline::step(int direction) {
     if (!track_->isEnabled()) return;
     const auto time = frame_beside(track_->view(), track_->time(), direction);
     if (!time) return;
-    if (playing_) {
-        show_playing(false);
-        ask_speed(0);
-    }
-    track_->set_time(*time);
-    ask_moment(track_->time());
+    if (playing()) ask_speed(0);
+    ask_moment(*time);
 }
 
 void Timeline::ask_speed(double speed) {
-    awaited_speed_.begin();
+    asked_speed_.ask(speed);
+    show_asked();
     Q_EMIT speed_asked(speed);
 }
 
 void Timeline::ask_moment(double time) {
-    asked_time_ = time;
-    awaited_time_.begin();
-    show_text();
-    Q_EMIT moment_asked(time);
+    asked_time_.ask(time);
+    show_asked();
+    Q_EMIT moment_asked(track_->time());
 }
 
 void Timeline::set_view(const TimelineView& view) {
     if (track_->set_view(view)) {
-        awaited_time_.end();
+        asked_time_.set(view.time);
         show_possible();
     }
-    show_speed(view.speed);
-    if (!awaited_loop_.passes_over(view.loop == loop_->isChecked())) loop_->setChecked(view.loop);
-    show_time(view.time);
+    if (!dragging()) asked_time_.observe(view.time);
+    asked_speed_.observe(view.speed);
+    asked_loop_.observe(view.loop);
+    show_asked();
 }
 
-void Timeline::show_speed(double speed) {
-    const bool playing = speed != 0;
-    const bool same = playing == playing_ && (!playing || speed == play_speed_);
-    if (awaited_speed_.passes_over(same) || same) return;
-    if (playing) {
-        play_speed_ = speed;
-        speed_->show_value(std::abs(speed));
+/// Changes only what is shown otherwise.
+void Timeline::show_asked() {
+    if (playing() && play_speed_ != asked_speed_.shown()) {
+        play_speed_ = asked_speed_.shown();
+        speed_->show_value(std::abs(play_speed_));
     }
-    show_playing(playing);
-}
-
-void Timeline::show_time(double time) {
-    if (dragging() || awaited_time_.passes_over(time == asked_time_)) return;
-    track_->set_time(time);
-    show_text();
-}
-
-void Timeline::show_text() {
+    loop_->setChecked(asked_loop_.shown());
+    track_->set_time(asked_time_.shown());
     text_->setText(text_at(track_->view(), track_->time()));
+    const QString does = playing() ? tr("Pause") : tr("Play");
+    if (does == play_->accessibleName()) return;
+    play_->setIcon(icon_of(playing() ? Shape::pause : Shape::play));
+    play_->setAccessibleName(does);
+    play_->setToolTip(does);
 }
 
 /// Enables what is possible; makes the text as wide as it will ever be, so that nothing moves while
@@ -407,11 +341,9 @@ void Timeline::show_text() {
 void Timeline::show_possible() {
     const TimelineView& view = track_->view();
     setEnabled(!empty(view));
-    const bool seeks = track_->isEnabled();
-    back_->setEnabled(seeks);
-    forward_->setEnabled(seeks);
-    loop_->setEnabled(seeks);
-    speed_->setEnabled(seeks);
+    for (QWidget* one : std::initializer_list<QWidget*>{back_, forward_, loop_, speed_}) {
+        one->setEnabled(track_->isEnabled());
+    }
     int width = 0;
     for (const double time : {view.begin, view.end}) {
         QString words = text_at(view, time);
@@ -419,15 +351,6 @@ void Timeline::show_possible() {
         width = std::max(width, fontMetrics().horizontalAdvance(words));
     }
     text_->setMinimumWidth(width);
-    show_text();
-}
-
-void Timeline::show_playing(bool playing) {
-    if (playing == playing_ && !play_->icon().isNull()) return;
-    playing_ = playing;
-    play_->setIcon(icon_of(playing ? Shape::pause : Shape::play));
-    play_->setAccessibleName(playing ? tr("Pause") : tr("Play"));
-    play_->setToolTip(play_->accessibleName());
 }
 
 }  // namespace palpate::viewer

@@ -6,6 +6,7 @@
 #include <QWidget>
 
 #include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/panel/level_axis.hpp"
 #include "apps/viewer/panel/timeline_view.hpp"
 
 class QCheckBox;
@@ -49,21 +50,37 @@ class TimelineTrack : public QAbstractSlider {
     void mouseReleaseEvent(QMouseEvent* event) override;
 
   private:
-    double length() const;
     QRectF plot() const;
-    double x_of(double time) const;
-    double time_at(double x) const;
-    void choose_at(double x);
-    void place();
-    void paint_loaded(QPainter& painter, const QRectF& box) const;
-    void paint_frames(QPainter& painter, const QRectF& box) const;
-    void paint_overview(QPainter& painter, const QRectF& box) const;
+    LevelAxis axis() const;
+    void choose(double time);
+    void paint_frames(QPainter& painter) const;
+    void paint_overview(QPainter& painter) const;
 
     TimelineView view_;
     double time_ = 0;
 };
 
-class NumberBox;
+/// A setting as it was asked for, until the views agree with it or three of them do not.
+template <class T>
+class Asked {
+  public:
+    const T& shown() const { return shown_; }
+    void ask(const T& value) {
+        shown_ = value;
+        awaited_.begin();
+    }
+    void observe(const T& now) {
+        if (!awaited_.passes_over(now == shown_)) shown_ = now;
+    }
+    void set(const T& value) {
+        shown_ = value;
+        awaited_.end();
+    }
+
+  private:
+    T shown_{};
+    AwaitedChange awaited_;
+};
 
 /// Has no clock: it shows the views that it is given, and emits what the user asks for. That is
 /// shown at once (AwaitedChange). For a live source only the play button works.
@@ -80,7 +97,7 @@ class Timeline : public QWidget {
     void toggle_playing();
     /// As if a step button was pressed: a frame forward (1) or back (-1).
     void step(int direction);
-    bool playing() const { return playing_; }
+    bool playing() const { return asked_speed_.shown() != 0; }
     /// The user is dragging in the track.
     bool dragging() const;
 
@@ -94,10 +111,7 @@ class Timeline : public QWidget {
 
   private:
     void connect_inputs();
-    void show_speed(double speed);
-    void show_time(double time);
-    void show_text();
-    void show_playing(bool playing);
+    void show_asked();
     void show_possible();
     void ask_speed(double speed);
     void ask_moment(double time);
@@ -107,10 +121,9 @@ class Timeline : public QWidget {
     QLabel* text_;
     NumberBox* speed_;
     QCheckBox* loop_;
-    bool playing_ = false;
+    Asked<double> asked_speed_, asked_time_;
+    Asked<bool> asked_loop_;
     double play_speed_ = 1;  // while it plays; below 0: backwards
-    double asked_time_ = 0;
-    AwaitedChange awaited_speed_, awaited_time_, awaited_loop_;
 };
 
 }  // namespace palpate::viewer

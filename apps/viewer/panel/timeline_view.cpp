@@ -12,10 +12,6 @@ struct TimelineWords {
     Q_DECLARE_TR_FUNCTIONS(TimelineWords)
 };
 
-double length(const TimelineView& view) {
-    return std::max(view.end - view.begin, 0.0);
-}
-
 constexpr double recording_step = 0.01;  // [s]
 
 /// Digits behind the point that tell one frame from the next, at least two.
@@ -62,6 +58,10 @@ void TimelineView::advance(double seconds) {
 
 bool empty(const TimelineView& view) {
     return view.frames.empty() && !view.live && !view.overview;
+}
+
+double length(const TimelineView& view) {
+    return std::max(view.end - view.begin, 0.0);
 }
 
 double within(const TimelineView& view, double time) {
@@ -114,28 +114,23 @@ QString text_at(const TimelineView& view, double time) {
 }
 
 QString overview_text_at(const TimelineView& view, double time) {
-    const Overview& overview = *view.overview;
     QString words = QString("%1 s").arg(time - view.begin, 0, 'f', 3);
-    const auto at = static_cast<std::size_t>((time - view.begin) / overview.width);
-    if (overview.pieces.empty()) return words;
-    const Overview::Piece& piece = overview.pieces[std::min(at, overview.pieces.size() - 1)];
-    if (!piece.empty)
-        words += "\n" + TimelineWords::tr("force up to %1 N").arg(piece.most_force, 0, 'f', 2);
-    if (!piece.empty && piece.least_isovalue <= piece.most_isovalue) {
+    const Overview::Piece piece = view.overview->over(time, time);
+    if (piece.empty) return words;
+    words += "\n" + TimelineWords::tr("force up to %1 N").arg(piece.most_force, 0, 'f', 2);
+    if (piece.least_isovalue <= piece.most_isovalue) {
         words += "\n" + TimelineWords::tr("isovalue %1").arg(piece.most_isovalue, 0, 'g', 6);
     }
     if (piece.contact) words += "\n" + TimelineWords::tr("in contact");
     return words;
 }
 
-std::vector<Overview::Interval> loaded_stretches(const TimelineView& view) {
+std::vector<Stretch> loaded_stretches(const TimelineView& view) {
     const double from = view.loaded_from, whole = length(view);
     double to = view.loaded_to;
-    if (!std::isfinite(from) || !std::isfinite(to)) return {};
-    if (to < from && view.loop) to += whole;
-    if (to < from) return {};
-    if (to - from >= whole && view.loop) return {{view.begin, view.end}};
-    std::vector<Overview::Interval> stretches;
+    if (view.loop) to = std::min(to < from ? to + whole : to, from + whole);
+    if (!std::isfinite(from) || !(from <= to)) return {};
+    std::vector<Stretch> stretches;
     // In a loop also a length earlier and later, of which only one can reach in.
     for (const double shift : {-whole, 0.0, whole}) {
         if (shift != 0 && !view.loop) continue;

@@ -35,6 +35,7 @@ struct TimelineView : run::PlayState {
 };
 
 bool empty(const TimelineView& view);
+double length(const TimelineView& view);  ///< [s]
 /// A time brought between begin and end: wrapped around in a loop, else the nearer end.
 double within(const TimelineView& view, double time);
 /// The last frame not after a time, from 0. Nothing without frames.
@@ -48,6 +49,9 @@ QString text_at(const TimelineView& view, double time);
 QString overview_text_at(const TimelineView& view, double time);
 
 /// What is in memory: one stretch, or two in a loop.
-std::vector<Overview::Interval> loaded_stretches(const TimelineView& view);
+struct Stretch {
+    double from, to;  ///< [s]
+};
+std::vector<Stretch> loaded_stretches(const TimelineView& view);
 
 }  // namespace palpate::viewer

@@ -193,7 +193,7 @@ TEST(Playback, the_time_line_knows_force_level_and_contact) {
         piece.contact = piece.contact || tick.tick.proxy.mode == Mode::constrained;
         piece.empty = false;
     }
-    int touching = 0;
+    int touching = 0, dips = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         EXPECT_EQ(overview.pieces[i].empty, expected[i].empty);
         EXPECT_EQ(overview.pieces[i].least_force, expected[i].least_force);
@@ -202,15 +202,18 @@ TEST(Playback, the_time_line_knows_force_level_and_contact) {
         EXPECT_EQ(overview.pieces[i].most_isovalue, expected[i].most_isovalue);
         EXPECT_EQ(overview.pieces[i].contact, expected[i].contact);
         const double middle = overview.begin + (double(i) + 0.5) * overview.width;
-        const bool within =
-            std::ranges::any_of(overview.contacts, [&](const Overview::Interval& c) {
-                return c.from < middle && (middle < c.to || c.to == overview.end);
-            });
-        EXPECT_EQ(within, expected[i].contact) << middle;
+        EXPECT_EQ(overview.over(middle, middle).contact, expected[i].contact) << middle;
         touching += expected[i].contact;
+        dips += expected[i].contact && (i == 0 || !expected[i - 1].contact);
     }
     EXPECT_GT(touching, 300);
-    EXPECT_EQ(overview.contacts.size(), 20U);  // a dip a second
+    EXPECT_EQ(dips, 20);  // one a second
+    const Overview::Piece two =
+        overview.over(overview.begin, overview.begin + 1.5 * overview.width);
+    EXPECT_EQ(two.most_force, std::max(expected[0].most_force, expected[1].most_force));
+    const Overview::Piece all = overview.over(-1e9, 1e9);
+    EXPECT_EQ(all.most_force,
+              std::ranges::max_element(expected, {}, &Overview::Piece::most_force)->most_force);
 }
 
 TEST(Playback, memory_is_bounded_however_long_it_is) {

@@ -159,6 +159,15 @@ TEST_F(Pressing, del_on_a_chosen_band_deletes_it_but_not_the_last) {
     EXPECT_TRUE(message("penetrability_part").contains("last range"));
 }
 
+TEST_F(Pressing, del_deletes_no_band_once_something_else_was_pressed) {
+    set_ranges({{-400, 100}, {700, 1500}});
+    QTest::mouseClick(chart(), Qt::LeftButton, {}, on_strip(1000).toPoint());
+    QTest::mouseClick(chart(), Qt::LeftButton, {}, over(600).toPoint());
+    QTest::keyClick(chart(), Qt::Key_Delete);
+    EXPECT_EQ(chart()->bands().size(), 2U);
+    EXPECT_TRUE(of<Penetrability>().empty());
+}
+
 TEST_F(Pressing, a_right_click_on_a_band_offers_to_delete_it) {
     set_ranges({{-400, 100}, {700, 1500}});
     const QPoint at = on_strip(0).toPoint();
@@ -260,7 +269,7 @@ TEST(RangeBands, a_dragged_range_stays_a_range_within_the_axis) {
         const DensityRange start{std::min(a, b), std::max(a, b)};
         const double held = level(random);
         const double to = level(random);
-        const auto grip = static_cast<Grip>(1 + random() % 3);
+        const auto grip = static_cast<Grip>(random() % 3);
         const DensityRange moved = dragged(start, grip, held, to, axis);
         ASSERT_LE(moved.low, moved.high);
         ASSERT_GE(moved.low, axis.low - 1e-9);

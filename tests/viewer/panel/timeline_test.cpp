@@ -131,6 +131,21 @@ TEST_F(ATimeline, the_speed_of_the_box_is_asked_for_at_once_while_it_plays_else_
     EXPECT_EQ(speeds, (std::vector<double>{0.25, 4, 10, 5, 0, 5})) << "it remembers";
 }
 
+TEST_F(ATimeline, views_leave_a_speed_alone_that_is_being_typed) {
+    TimelineView view = six();
+    view.speed = 1;
+    bar.set_view(view);
+    auto* box = find<NumberBox>("timeline_speed");
+    box->setFocus();
+    QTest::keyClick(box, Qt::Key_A, Qt::ControlModifier);
+    QTest::keyClicks(box, "2.");
+    view.time = 1.9;
+    bar.set_view(view);
+    QTest::keyClicks(box, "5");
+    QTest::keyClick(box, Qt::Key_Return);
+    EXPECT_EQ(speeds, (std::vector<double>{2.5}));
+}
+
 TEST_F(ATimeline,
        a_view_taken_before_a_request_was_carried_out_does_not_flicker_but_a_refusal_shows) {
     press("timeline_play");
@@ -338,9 +353,6 @@ Overview some_overview(double seconds) {
         piece.most_force = 1.2 * piece.least_force;
         piece.least_isovalue = piece.most_isovalue = i < 300 ? 500 : std::min(900, 500 + i);
         overview.pieces.push_back(piece);
-    }
-    for (double t = 0.5; t < seconds; t += 1) {
-        overview.contacts.push_back({5 + t, 5 + std::min(t + 0.5, seconds)});
     }
     return overview;
 }
