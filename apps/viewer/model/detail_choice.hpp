@@ -62,10 +62,9 @@ struct SeenPoints {
     double pixel_mm = 1;         ///< of a device pixel
 };
 
-/// A part of the overview that is replaced: whole cells of its lattice.
-struct PatchChoice {
-    int level = 0;
-    SampleBox box;  ///< of that level: two samples more than the cells need
+/// A part of the overview that is replaced: whole cells of its lattice. The box has two samples
+/// more than these need.
+struct PatchChoice : stream::DetailBox {
     /// Planes between cells of the overview, in its index space; infinite where the data end.
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
 
@@ -90,15 +89,14 @@ Volume joined_samples(const Volume& fine, const Field& overview, const PatchChoi
 /// A finer part of what is shown, where the whole is an overview of a store.
 struct DetailField {
     Field field;              ///< on a grid of its own, all in memory
-    SampleBox box;            ///< where that lies in the grid of `level`
+    stream::DetailBox of;     ///< where that lies in the store
     Index3 level_size;        ///< samples of the whole level
-    int level = 0;            ///< of the store
     std::size_t missing = 0;  ///< pieces that have not come: coarser samples stand in for them
     SampleBox changed = {};   ///< of the field's grid, since the last version of this box
 
     /// True where the box ends with the data.
-    bool at_begin(int axis) const { return box.low[axis] == 0; }
-    bool at_end(int axis) const { return box.high[axis] == level_size[axis] - 1; }
+    bool at_begin(int axis) const { return of.box.low[axis] == 0; }
+    bool at_end(int axis) const { return of.box.high[axis] == level_size[axis] - 1; }
 };
 
 }  // namespace palpate::viewer

@@ -87,8 +87,7 @@ std::optional<DetailMaker::Job> DetailMaker::next_job() {
     for (int viewer = 0; viewer < viewers; ++viewer) {
         Place& place = places_[static_cast<std::size_t>(viewer)];
         if (!std::exchange(place.due, false)) continue;
-        const bool wanted = viewer != scene || (patch_ && patch_->level == place.detail->of.level &&
-                                                patch_->box == place.detail->of.box);
+        const bool wanted = viewer != scene || (patch_ && place.detail->of == *patch_);
         if (!wanted) continue;
         return Job{viewer, *place.detail, std::exchange(place.changed, {}), edited_, patch_};
     }
@@ -138,11 +137,10 @@ void DetailMaker::make(const Job& job) {
             joined_samples(flattened(*samples), overview, *job.patch));
     }
     const auto level = static_cast<std::size_t>(job.detail.of.level);
-    made_(job.viewer, std::make_shared<const DetailField>(
-                          DetailField{Field(std::move(samples), overview_.solid(),
-                                            overview_.background(), overview_.interpolation()),
-                                      job.detail.of.box, level_sizes_[level], job.detail.of.level,
-                                      job.detail.missing, changed}));
+    made_(job.viewer, std::make_shared<const DetailField>(DetailField{
+                          Field(std::move(samples), overview_.solid(), overview_.background(),
+                                overview_.interpolation()),
+                          job.detail.of, level_sizes_[level], job.detail.missing, changed}));
 }
 
 }  // namespace palpate::viewer

@@ -95,12 +95,14 @@ void SurfacePart::divide() {
     }
 }
 
-std::vector<vtkSmartPointer<vtkActor>> SurfacePart::show(const MeshBlocks& blocks) {
+std::vector<vtkSmartPointer<vtkActor>> SurfacePart::show(const MeshBlocks& blocks,
+                                                         const std::optional<PatchBounds>& bounds,
+                                                         Keep keep) {
     std::vector<vtkSmartPointer<vtkActor>> gone;
     const auto drop = [&](Actor& actor) {
         if (actor.actor) gone.push_back(std::exchange(actor.actor, nullptr));
     };
-    bool fits = blocks.size() == blocks_.size();
+    bool fits = blocks.size() == blocks_.size() && bounds == bounds_;
     for (Actor& actor : actors_) {
         if (!fits) break;
         const auto first = static_cast<std::ptrdiff_t>(actor.first);
@@ -112,6 +114,7 @@ std::vector<vtkSmartPointer<vtkActor>> SurfacePart::show(const MeshBlocks& block
         fits = part.size() == 1 || triangle_count(part) <= most_part_triangles;
     }
     blocks_ = blocks;
+    bounds_ = bounds;
     if (!fits) {
         for (Actor& actor : actors_) drop(actor);
         divide();
@@ -122,7 +125,9 @@ std::vector<vtkSmartPointer<vtkActor>> SurfacePart::show(const MeshBlocks& block
         const std::span part(blocks_.data() + actor.first, blocks_.data() + actor.last);
         // The only one is drawn at once in any case.
         const bool waits = !hardware_ && actors_.size() > 1;
-        if (auto mesh = joined(part)) {
+        auto mesh = joined(part);
+        if (mesh && bounds) mesh = cut(mesh, *bounds, keep);
+        if (mesh) {
             actor.actor = actor_of(std::move(mesh), give_up_, waits, cut_);
         }
     }

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <atomic>
+#include <optional>
 #include <vector>
 
 #include "apps/viewer/model/look.hpp"
@@ -32,9 +33,12 @@ class SurfacePart {
     SurfacePart(const std::atomic<bool>& give_up, bool hardware, vtkPlaneCollection* cut)
         : give_up_(give_up), hardware_(hardware), cut_(cut) {}
 
-    /// Shows other blocks. Actors whose blocks are the same stay; those that are no longer wanted
-    /// are returned. If it is cancelled in the middle, the rest is made the next time.
-    std::vector<vtkSmartPointer<vtkActor>> show(const MeshBlocks& blocks);
+    /// Shows other blocks, with bounds only the triangles that cut() keeps. Actors whose blocks are
+    /// the same stay; those that are no longer wanted are returned. If it is cancelled in the
+    /// middle, the rest is made the next time.
+    std::vector<vtkSmartPointer<vtkActor>> show(const MeshBlocks& blocks,
+                                                const std::optional<PatchBounds>& bounds = {},
+                                                Keep keep = Keep::outside);
     const std::vector<Actor>& actors() const { return actors_; }
 
   private:
@@ -44,6 +48,7 @@ class SurfacePart {
     bool hardware_;
     vtkSmartPointer<vtkPlaneCollection> cut_;
     MeshBlocks blocks_;
+    std::optional<PatchBounds> bounds_;
     std::vector<Actor> actors_;
 };
 

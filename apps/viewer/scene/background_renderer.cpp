@@ -35,16 +35,22 @@ bool same_picture(const RenderRequest& a, const RenderRequest& b) {
            a.pixel_ratio == b.pixel_ratio;
 }
 
-/// Beside the felt one: several of them are in memory.
-constexpr SurfaceLimits limits_of_others{2'000'000, 20'000};
+/// The finer part comes at once as it is: coarser ones would not fit what is round it.
+SurfaceLimits limits_of_patch() {
+    SurfaceLimits limits;
+    limits.most_triangles = 4'000'000;
+    limits.coarse_first = false;
+    return limits;
+}
 
 }  // namespace
 
 BackgroundRenderer::BackgroundRenderer(MakePainter make_painter)
-    : make_painter_(std::move(make_painter)) {
-    connect(&felt_, &SurfaceSource::made, this, &BackgroundRenderer::paint);
-    connect(&felt_, &SurfaceSource::finished, this, [this] { announce_ = true; });
-    connect(&felt_, &SurfaceSource::problem, this, &BackgroundRenderer::problem);
+    : make_painter_(std::move(make_painter)), finer_(limits_of_patch()) {
+    for (const SurfaceMaker* maker : {&whole_, &finer_}) {
+        connect(maker, &SurfaceMaker::made, this, &BackgroundRenderer::paint);
+        connect(maker, &SurfaceMaker::problem, this, &BackgroundRenderer::problem);
+    }
     rest_.setSingleShot(true);
     rest_.setInterval(rest_ms);
     connect(&rest_, &QTimer::timeout, this, [this] {
@@ -57,8 +63,8 @@ BackgroundRenderer::BackgroundRenderer(MakePainter make_painter)
 
 BackgroundRenderer::~BackgroundRenderer() {
     // All are cancelled before the first is waited for.
-    felt_.clear();
-    for (const auto& source : others_) source->clear();
+    whole_.clear();
+    finer_.clear();
     if (fine_) fine_->give_up();
     if (quick_) quick_->give_up();
 }
@@ -98,49 +104,40 @@ void BackgroundRenderer::request(const RenderRequest& request) {
     next.number = request_.number;
     next.field = request_.field;
     request_ = std::move(next);
-    match_sources();
+    whole_.set_levels(levels());
+    finer_.set_levels(levels());
     paint();
 }
 
-/// One source a surface of the look: those that have its level already, then any.
-void BackgroundRenderer::match_sources() {
-    const auto& wanted = request_.look.surfaces;
-    auto old = std::exchange(others_, {});
-    others_.resize(wanted.size());
-    const auto claim = [&](auto fits) {
-        for (std::size_t i = 0; i < wanted.size(); ++i) {
-            if (others_[i]) continue;
-            const auto found = std::ranges::find_if(
-                old, [&](const auto& source) { return source && fits(*source, wanted[i]); });
-            if (found != old.end()) others_[i] = std::move(*found);
-        }
-    };
-    claim([](const SurfaceSource& s, const SeenSurface& w) { return s.level() == w.level; });
-    claim([](const SurfaceSource&, const SeenSurface&) { return true; });
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-        if (!others_[i]) {
-            others_[i] = std::make_unique<SurfaceSource>(limits_of_others);
-            connect(others_[i].get(), &SurfaceSource::made, this, &BackgroundRenderer::paint);
-            connect(others_[i].get(), &SurfaceSource::problem, this, &BackgroundRenderer::problem);
-            if (request_.field) {
-                others_[i]->set_field(*request_.field, wanted[i].level);
-                others_[i]->set_patch(patch_);
-            }
-        }
-        others_[i]->set_level(wanted[i].level);
-    }
+std::vector<double> BackgroundRenderer::levels() const {
+    std::vector<double> levels{isovalue_};
+    for (const SeenSurface& seen : request_.look.surfaces) levels.push_back(seen.level);
+    return levels;
 }
 
 void BackgroundRenderer::collect_surfaces() {
     const Look& look = request_.look;
     request_.surfaces.clear();
     if (!request_.field) return;
-    request_.surfaces.push_back(
-        {felt_.surface(), look.surface_colour, look.surface ? look.surface_opacity : 0});
-    for (std::size_t i = 0; i < others_.size(); ++i) {
+    const auto at = [](const SurfaceMaker& maker, double level) {
+        return std::ranges::find(maker.surfaces(), level, &ExtractedSurface::isovalue);
+    };
+    const auto add = [&](std::size_t i, double level, const Colour& colour, double opacity) {
+        const auto& all = whole_.surfaces();
+        DrawnSurface drawn{{}, colour, opacity};
+        if (const auto found = at(whole_, level); found != all.end()) {
+            drawn.surface = *found;
+        } else if (i < all.size()) {
+            drawn.surface = all[i];  // stands in for it
+        }
+        const auto finer = at(finer_, drawn.surface.isovalue);
+        if (finer != finer_.surfaces().end()) drawn.finer = *finer;
+        request_.surfaces.push_back(std::move(drawn));
+    };
+    add(0, isovalue_, look.surface_colour, look.surface ? look.surface_opacity : 0);
+    for (std::size_t i = 0; i < look.surfaces.size(); ++i) {
         const SeenSurface& seen = look.surfaces[i];
-        request_.surfaces.push_back(
-            {others_[i]->surface(), seen.colour, seen.shown ? seen.opacity : 0});
+        add(i + 1, seen.level, seen.colour, seen.shown ? seen.opacity : 0);
     }
     request_.surfaces.insert(request_.surfaces.end(), overlay_.begin(), overlay_.end());
 }
@@ -153,11 +150,10 @@ void BackgroundRenderer::set_overlay(std::vector<DrawnSurface> surfaces) {
 
 void BackgroundRenderer::set_field(const Field& field, double isovalue) {
     request_.field = field;
-    patch_.reset();
-    felt_.set_field(field, isovalue);
-    for (std::size_t i = 0; i < others_.size(); ++i) {
-        others_[i]->set_field(field, request_.look.surfaces[i].level);
-    }
+    isovalue_ = isovalue;
+    set_patch({});
+    whole_.set_field(field, levels());
+    announce_ = true;
     paint();
 }
 
@@ -168,28 +164,42 @@ void BackgroundRenderer::update_field(const Field& field) {
     const SampleBox box = changed_between(*request_.field, field);
     request_.field = field;
     if (box.empty()) return;
-    felt_.update_field(field, box);
-    for (const auto& source : others_) source->update_field(field, box);
+    whole_.update_field(field, box);
     if (request_.look.volume || request_.look.slices) paint();
 }
 
 void BackgroundRenderer::set_patch(const std::optional<ScenePatch>& patch) {
-    patch_ = patch;
-    felt_.set_patch(patch);
-    for (const auto& source : others_) source->set_patch(patch);
+    const auto before = std::exchange(patch_, patch);
+    if (!patch) {
+        finer_.clear();
+        if (before) paint();
+        return;
+    }
+    const Field& field = patch->detail->field;
+    // Changes of all of it would be taken for a sequence, whose surfaces are coarse.
+    const SampleBox& changed = patch->detail->changed;
+    if (changed != whole_box(field.geometry()) && before && before->bounds == patch->bounds &&
+        before->detail->field.geometry() == field.geometry()) {
+        return finer_.update_field(field, changed);
+    }
+    finer_.set_field(field, levels(), patch->bounds);
 }
 
 void BackgroundRenderer::clear() {
     request_.field.reset();
-    patch_.reset();
-    felt_.clear();
-    for (const auto& source : others_) source->clear();
+    set_patch({});
+    whole_.clear();
     overlay_.clear();
+    announce_ = false;
     paint();
 }
 
 void BackgroundRenderer::set_isovalue(double isovalue) {
-    felt_.set_level(isovalue);
+    if (isovalue == isovalue_) return;
+    isovalue_ = isovalue;
+    whole_.set_levels(levels());
+    finer_.set_levels(levels());
+    announce_ = request_.field.has_value();
 }
 
 void BackgroundRenderer::take(RenderedImage image) {
@@ -203,23 +213,20 @@ void BackgroundRenderer::take(RenderedImage image) {
     }
     shown_ = std::make_shared<const RenderedImage>(std::move(image));
     Q_EMIT painted();
-    if (settled() && announce_) {
-        announce_ = false;
-        Q_EMIT surface_ready(felt_.surface().isovalue, felt_.surface().seconds);
+    if (!announce_ || !settled()) return;
+    announce_ = false;
+    const auto& surfaces = whole_.surfaces();
+    if (!surfaces.empty() && surfaces[0].finished) {
+        Q_EMIT surface_ready(surfaces[0].isovalue, surfaces[0].seconds);
     }
 }
 
 bool BackgroundRenderer::shows_whole() const {
-    const auto extracting = [](const auto& source) { return source->extracting_whole(); };
-    return shown_ && shown_->number == request_.number && !shown_->moving &&
-           !felt_.extracting_whole() && std::ranges::none_of(others_, extracting);
+    return shown_ && shown_->number == request_.number && !shown_->moving && !whole_.extracting();
 }
 
 bool BackgroundRenderer::settled() const {
-    if (broken_) return true;
-    const auto extracting = [](const auto& source) { return source->extracting(); };
-    return shown_ && shown_->number == request_.number && !shown_->moving && !felt_.extracting() &&
-           std::ranges::none_of(others_, extracting);
+    return broken_ || (shows_whole() && !finer_.extracting());
 }
 
 }  // namespace palpate::viewer

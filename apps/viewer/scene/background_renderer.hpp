@@ -9,10 +9,18 @@
 #include <optional>
 #include <vector>
 
+#include "apps/viewer/model/detail_choice.hpp"
 #include "apps/viewer/scene/render_request.hpp"
-#include "apps/viewer/scene/surface_source.hpp"
+#include "apps/viewer/scene/surface_maker.hpp"
 
 namespace palpate::viewer {
+
+/// A finer part of the data: its samples reach at least two beyond the bounds, and come to be those
+/// of the overview's field there (joined_samples()).
+struct ScenePatch {
+    std::shared_ptr<const DetailField> detail;
+    PatchBounds bounds;
+};
 
 /// Belongs to the window's thread. Two painters: one for quick images, and one for fine
 /// images, which may take long and are cancelled when something changes.
@@ -29,7 +37,7 @@ class BackgroundRenderer : public QObject {
     void set_patch(const std::optional<ScenePatch>& patch);
     void clear();
     void set_isovalue(double isovalue);
-    void set_most_triangles(std::size_t triangles) { felt_.set_most_triangles(triangles); }
+    void set_most_triangles(std::size_t triangles) { whole_.set_most_triangles(triangles); }
     /// Surfaces that do not depend on the field, drawn with it. The same again draw nothing anew.
     void set_overlay(std::vector<DrawnSurface> surfaces);
     /// Draws this, with the number, field and surfaces that are kept here, if it differs from the
@@ -52,7 +60,7 @@ class BackgroundRenderer : public QObject {
 
   private:
     void make_painters();
-    void match_sources();
+    std::vector<double> levels() const;
     void collect_surfaces();
     void paint();
     void take(RenderedImage image);
@@ -61,12 +69,12 @@ class BackgroundRenderer : public QObject {
     RenderRequest request_;
     std::shared_ptr<const RenderedImage> shown_;
     std::optional<ScenePatch> patch_;
-    bool announce_ = false;  // the felt surface is finished, but not yet drawn
+    double isovalue_ = 0;
+    bool announce_ = false;  // the felt surface was asked for, not by a version of the data
     double frame_seconds_ = 0;
     bool broken_ = false;  // no painter can draw
     QTimer rest_;
-    SurfaceSource felt_;
-    std::vector<std::unique_ptr<SurfaceSource>> others_;  // as in the look
+    SurfaceMaker whole_, finer_;  // of all data, of the patch; the felt level first
     std::vector<DrawnSurface> overlay_;
     std::unique_ptr<Painter> quick_, fine_;
 };

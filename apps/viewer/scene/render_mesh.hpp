@@ -1,15 +1,17 @@
-// Meshes as arrays for graphics hardware, and meshes of fewer triangles: for drawing while things
-// move, and for files.
+// Surfaces as meshes in arrays for graphics hardware, a finer part of one in place of a coarse one,
+// and meshes of fewer triangles for files.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "palpate/surface.hpp"
+#include "palpate/volume.hpp"
 
 namespace palpate::viewer {
 
@@ -18,29 +20,55 @@ struct RenderMesh {
     std::vector<float> positions;  ///< [mm, physical axes] from an origin, so that floats do
     std::vector<float> normals;    ///< unit, out of the solid
     std::vector<std::int32_t> triangles;
-    /// Of a block of a larger mesh: on which of its sides a vertex lies, 0 inside. Vertices that
-    /// lie alike go together when it is simplified, so that blocks fit as they did. Or empty.
-    std::vector<std::uint8_t> seams;
 
     std::size_t vertex_count() const { return positions.size() / 3; }
     std::size_t triangle_count() const { return triangles.size() / 3; }
 };
 
-/// The mesh with at most about `most_triangles` (some more for very few): vertices in one box of a
-/// grid that face the same way become one. The mesh itself if it is small enough. Its outline stays
-/// where it is to within the box's size.
-RenderMesh simplified(const RenderMesh& mesh, std::size_t most_triangles);
-
-/// Vertices in one box of a grid of `size` [mm] become one if they face the same way.
-RenderMesh clustered(const RenderMesh& mesh, float size);
-/// [mm^2]
-double area_of(const RenderMesh& mesh);
-
 /// Blocks of a mesh; null: there is nothing of it.
 using MeshBlocks = std::vector<std::shared_ptr<const RenderMesh>>;
 std::size_t triangle_count(std::span<const std::shared_ptr<const RenderMesh>> blocks);
-/// All in one, without seams; the only one itself. Null if there is no triangle.
+/// All in one; the only one itself. Null if there is no triangle.
 std::shared_ptr<const RenderMesh> joined(std::span<const std::shared_ptr<const RenderMesh>> blocks);
+
+/// A box of whole cells of a grid; infinite on a side where the data end.
+struct PatchBounds {
+    Geometry grid;
+    /// Planes between cells, in the grid's index space.
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+
+    bool operator==(const PatchBounds&) const = default;
+    bool has(const Vec3& index) const {
+        return (index.array() >= low.array()).all() && (index.array() <= high.array()).all();
+    }
+};
+
+/// Which triangles are kept: those with their middle outside of the bounds, those with any corner
+/// outside, or those with any corner inside.
+enum class Keep : std::uint8_t { outside, reaching_out, reaching_in };
+
+/// The mesh without the other triangles, itself if that is all of it. Null if no triangle is left.
+/// Positions are from the middle of the grid.
+std::shared_ptr<const RenderMesh> cut(const std::shared_ptr<const RenderMesh>& mesh,
+                                      const PatchBounds& bounds, Keep keep);
+
+/// A surface that can be drawn.
+struct ExtractedSurface {
+    double isovalue = 0;  ///< [data units]
+    /// Positions from the middle of the grid. Blocks that did not change are the same as before,
+    /// and in the same place.
+    MeshBlocks blocks;
+    MeshBlocks moving;      ///< of few triangles
+    int every = 1;          ///< made from one sample for so many along each axis
+    bool finished = false;  ///< no finer one comes
+    double seconds = 0;     ///< since it was begun
+    /// The part of a coarser surface that this one replaces. Positions are from the middle of its
+    /// grid.
+    std::optional<PatchBounds> part;
+
+    /// The very same meshes, not others like them.
+    bool operator==(const ExtractedSurface&) const = default;
+};
 
 /// The mesh with about `most_triangles`, or more where its shape does not allow so few. A closed
 /// mesh stays closed, and its vertices stay where they are: some are left out. Without normals.

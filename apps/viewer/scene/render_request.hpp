@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "apps/viewer/model/look.hpp"
-#include "apps/viewer/scene/surface_extractor.hpp"
+#include "apps/viewer/scene/render_mesh.hpp"
 #include "palpate/field.hpp"
 #include "pictures/scene.hpp"
 #include "pictures/vtk/layer.hpp"
@@ -19,8 +19,9 @@ namespace palpate::viewer {
 struct DrawnSurface {
     ExtractedSurface surface;
     Colour colour;
-    double opacity = 1;          ///< 0: not drawn
-    Vec3 offset = Vec3::Zero();  ///< [mm] of its origin from the middle of the grid
+    double opacity = 1;           ///< 0: not drawn
+    Vec3 offset = Vec3::Zero();   ///< [mm] of its origin from the middle of the grid
+    ExtractedSurface finer = {};  ///< in place of a part of it, unless that has no bounds
 
     bool operator==(const DrawnSurface&) const = default;
 };

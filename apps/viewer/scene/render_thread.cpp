@@ -79,7 +79,7 @@ class OffscreenRenderer {
   private:
     void show(const RenderRequest& request);
     void show_surfaces(const RenderRequest& request);
-    void show_surface(SurfacePart& part, const DrawnSurface& surface, bool quick);
+    void dress(const SurfacePart& part, const DrawnSurface& surface);
     void drop(const std::vector<vtkSmartPointer<vtkActor>>& actors);
     Layer glass_layer(const RenderRequest& request, const Layer& solid);
     void show_slices(const RenderRequest& request);
@@ -94,8 +94,11 @@ class OffscreenRenderer {
     bool hardware_;
 
     vtkSmartPointer<vtkPlaneCollection> cut_;
-    std::vector<SurfacePart> surfaces_;  // as in the request
-    std::optional<Field> sliced_;        // what the slices show
+    struct Surface {
+        SurfacePart whole, finer;  // the one without what the other is shown for
+    };
+    std::vector<Surface> surfaces_;  // as in the request
+    std::optional<Field> sliced_;    // what the slices show
     Vec3 crosshair_ = Vec3::Zero();
     std::array<vtkSmartPointer<vtkProp>, 3> slices_;
     std::optional<Geometry> boxed_;
@@ -146,19 +149,28 @@ void OffscreenRenderer::drop(const std::vector<vtkSmartPointer<vtkActor>>& actor
 void OffscreenRenderer::show_surfaces(const RenderRequest& request) {
     const bool quick = request.moving && !hardware_;
     while (surfaces_.size() > request.surfaces.size()) {
-        drop(surfaces_.back().show({}));
+        drop(surfaces_.back().whole.show({}));
+        drop(surfaces_.back().finer.show({}));
         surfaces_.pop_back();
     }
     while (surfaces_.size() < request.surfaces.size()) {
-        surfaces_.emplace_back(give_up_, hardware_, cut_);
+        const SurfacePart none(give_up_, hardware_, cut_);
+        surfaces_.push_back({none, none});
     }
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        show_surface(surfaces_[i], request.surfaces[i], quick);
+        const DrawnSurface& surface = request.surfaces[i];
+        const ExtractedSurface &whole = surface.surface, &finer = surface.finer;
+        auto& [coarse_part, finer_part] = surfaces_[i];
+        // Coarse cells do not end with the part: the two overlap a little while things move.
+        drop(coarse_part.show(quick ? whole.moving : whole.blocks, finer.part,
+                              quick ? Keep::reaching_out : Keep::outside));
+        drop(finer_part.show(quick ? finer.moving : finer.blocks, finer.part, Keep::reaching_in));
+        dress(coarse_part, surface);
+        dress(finer_part, surface);
     }
 }
 
-void OffscreenRenderer::show_surface(SurfacePart& part, const DrawnSurface& surface, bool quick) {
-    drop(part.show(quick ? MeshBlocks{surface.surface.moving} : surface.surface.blocks));
+void OffscreenRenderer::dress(const SurfacePart& part, const DrawnSurface& surface) {
     const double opacity = std::clamp(surface.opacity, 0.0, 1.0);
     vtkRenderer& in = opacity < 1 ? *glass_ : *solid_;
     vtkRenderer& out = opacity < 1 ? *solid_ : *glass_;
@@ -181,8 +193,10 @@ void OffscreenRenderer::show_surface(SurfacePart& part, const DrawnSurface& surf
 Layer OffscreenRenderer::glass_layer(const RenderRequest& request, const Layer& solid) {
     const auto is_glass = [](const DrawnSurface& s) { return s.opacity > 0 && s.opacity < 1; };
     const auto set_visible = [&](std::size_t i, bool visible) {
-        for (const auto& part : surfaces_[i].actors()) {
-            if (part.actor) part.actor->SetVisibility(visible);
+        for (const SurfacePart* part : {&surfaces_[i].whole, &surfaces_[i].finer}) {
+            for (const auto& one : part->actors()) {
+                if (one.actor) one.actor->SetVisibility(visible);
+            }
         }
     };
     std::vector<Layer> layers;

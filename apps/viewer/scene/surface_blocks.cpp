@@ -5,8 +5,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 #include "apps/viewer/model/sample_block.hpp"
 #include "apps/viewer/model/worker.hpp"
@@ -19,56 +19,16 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// The samples at the corners of the cells `first` to `first` + `size` - 2.
-struct Corners {
-    Index3 first, size;
-    std::vector<float> values;
-
-    float at(const Index3& i) const {
-        const Index3 in = i - first;
-        return values[(static_cast<std::size_t>(in[2]) * size[1] + in[1]) * size[0] + in[0]];
+/// The differences over a sample to either side, in index space: smoother than the facets of the
+/// lattice. A cubic field is smooth itself.
+Vec3 slope_at(const Field& field, const Vec3& p) {
+    if (field.interpolation() == Interpolation::cubic) return gradient_at(field, p);
+    Vec3 slope;
+    for (int a = 0; a < 3; ++a) {
+        const Vec3 step = Vec3::Unit(a);
+        slope[a] = value_at(field, Vec3(p + step)) - value_at(field, Vec3(p - step));
     }
-    /// Central differences at a sample, per sample.
-    Vec3 slope(const Index3& i) const {
-        Vec3 slope;
-        for (int a = 0; a < 3; ++a) {
-            Index3 high = i, low = i;
-            ++high[a];
-            --low[a];
-            slope[a] = 0.5 * (double(at(high)) - double(at(low)));
-        }
-        return slope;
-    }
-};
-
-/// The differences of the lattice's field over a voxel to either side, per sample, at a point in
-/// index space: since the lattice is the same in every cell, its interpolation of the samples'.
-Vec3 slope_at(const Corners& corners, const Vec3& p, const Index3& cell) {
-    const Vec3 from_centre = p - (cell.cast<double>() + Vec3::Constant(0.5));
-    std::array<int, 3> axis{0, 1, 2};  // the longest way first
-    const auto longer = [&](int a, int b) {
-        return std::abs(from_centre[a]) > std::abs(from_centre[b]);
-    };
-    if (longer(axis[1], axis[0])) std::swap(axis[0], axis[1]);
-    if (longer(axis[2], axis[1])) std::swap(axis[1], axis[2]);
-    if (longer(axis[1], axis[0])) std::swap(axis[0], axis[1]);
-    const auto [d, s, e] = axis;
-    std::array<Vec3, 8> g;
-    for (int c = 0; c < 8; ++c) {
-        g[static_cast<std::size_t>(c)] =
-            corners.slope(cell + Index3(c & 1, c >> 1 & 1, c >> 2 & 1));
-    }
-    Vec3 centre = Vec3::Zero(), face = Vec3::Zero();
-    const int side = from_centre[d] > 0 ? 1 : 0;
-    for (int c = 0; c < 8; ++c) {
-        centre += 0.125 * g[static_cast<std::size_t>(c)];
-        if ((c >> d & 1) == side) face += 0.25 * g[static_cast<std::size_t>(c)];
-    }
-    const int minus = side << d | (from_centre[s] > 0 ? 1 : 0) << s, plus = minus | 1 << e;
-    const double far = std::abs(from_centre[d]), middle = std::abs(from_centre[s]);
-    return (1 - 2 * far) * centre + 2 * (far - middle) * face +
-           (middle - from_centre[e]) * g[static_cast<std::size_t>(minus)] +
-           (middle + from_centre[e]) * g[static_cast<std::size_t>(plus)];
+    return slope;
 }
 
 Index3 cell_of(const Vec3& index) {
@@ -90,16 +50,6 @@ void drop_neighbours(SurfaceMesh& mesh, const Index3& low, int edge, double begi
         const Index3 cell = cell_of(middle - Vec3::Constant(begin));
         return (cell.array() < low.array()).any() || (cell.array() > last.array()).any();
     });
-}
-
-/// On which sides of the block: 2 bits an axis.
-std::uint8_t seams_of(const Vec3& index, const Vec3& low, int edge) {
-    int seams = 0;
-    for (int a = 0; a < 3; ++a) {
-        if (index[a] == low[a]) seams |= 1 << (2 * a);
-        if (index[a] == low[a] + edge) seams |= 2 << (2 * a);
-    }
-    return static_cast<std::uint8_t>(seams);
 }
 
 /// From index space to where it is drawn: physical axes, from `middle`.
@@ -131,11 +81,11 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
     const double begin = is_smooth ? -0.5 : 0;
     const Index3 around = cell - Index3::Constant(more);
     const Index3 size = Index3::Constant(edge + (is_smooth ? 4 : 3));
-    const Corners corners{around, size, sample_block(field, around, size)};
-    if (one_sided(corners.values, field, isovalue)) return nullptr;
+    std::vector<float> samples = sample_block(field, around, size);
+    if (one_sided(samples, field, isovalue)) return nullptr;
 
     // In index space, so that a vertex between two blocks is the same number in both.
-    const Field local(Volume({size, Vec3::Ones(), around.cast<double>()}, corners.values),
+    const Field local(Volume({size, Vec3::Ones(), around.cast<double>()}, std::move(samples)),
                       field.solid(), field.background(), field.interpolation());
     SurfaceOptions options;
     options.cells = SampleBox{Index3::Constant(more - 1), Index3::Constant(edge + more)};
@@ -150,14 +100,9 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
 
     auto block = std::make_shared<RenderMesh>();
     block->triangles.reserve(3 * mesh.triangles.size());
-    const Index3 last = cell + Index3::Constant(edge - 1);
     const auto add_vertex = [&](std::uint32_t v) {
         const Vec3& index = mesh.vertices[v];
-        const Index3 in = cell_of(index).cwiseMax(cell).cwiseMin(last);
-        // The copy's physical space is index space.
-        const Vec3 per_sample =
-            is_smooth ? gradient_at(local, index) : slope_at(corners, index, in);
-        const Vec3 slope = place.direction * per_sample.cwiseQuotient(place.spacing);
+        const Vec3 slope = place.direction * slope_at(local, index).cwiseQuotient(place.spacing);
         // The facet's where the slope says nothing (plateaus) or something else (thin sheets).
         const Vector3f smooth = (-field.sign() * slope).normalized().cast<float>();
         const Vector3f normal = smooth.dot(facets[v]) > 0.3F ? smooth : facets[v];
@@ -165,7 +110,6 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
             place(index.cwiseMax(bounds.low).cwiseMin(bounds.high)).cast<float>();
         block->positions.insert(block->positions.end(), position.begin(), position.end());
         block->normals.insert(block->normals.end(), normal.begin(), normal.end());
-        block->seams.push_back(seams_of(index, cell.cast<double>() + Vec3::Constant(begin), edge));
     };
     std::vector<std::int32_t> number(mesh.vertices.size(), -1);
     for (const auto& t : mesh.triangles) {
@@ -179,21 +123,8 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
     }
     block->positions.shrink_to_fit();
     block->normals.shrink_to_fit();
-    block->seams.shrink_to_fit();
     return block;
 }
-
-namespace {
-
-std::vector<std::size_t> zeros_of(const std::vector<std::uint8_t>& flags) {
-    std::vector<std::size_t> places;
-    for (std::size_t i = 0; i < flags.size(); ++i) {
-        if (flags[i] == 0) places.push_back(i);
-    }
-    return places;
-}
-
-}  // namespace
 
 SurfaceBlocks::SurfaceBlocks(const Geometry& geometry, int every, Interpolation interpolation,
                              const Vec3& origin)
@@ -206,10 +137,7 @@ SurfaceBlocks::SurfaceBlocks(const Geometry& geometry, int every, Interpolation 
     count_ = (cells_there.array() + cells - 1) / cells;
     const auto blocks = static_cast<std::size_t>(count_.cast<std::int64_t>().prod());
     meshes_.resize(blocks);
-    simple_.resize(blocks);
     fresh_.resize(blocks, 0);
-    fresh_simple_.resize(blocks, 0);
-    area_.resize(blocks, 0);
 }
 
 Index3 SurfaceBlocks::first_cell(std::size_t block) const {
@@ -252,64 +180,22 @@ SurfaceBlocks::Outcome SurfaceBlocks::renew(const Field& field, double isovalue,
                                (geometry_.size.array() + (reach_ - 1)).cast<double>() / every_};
     std::atomic<std::size_t> triangles{triangle_count(meshes_)};
     std::atomic<bool> too_many{false};
-    const bool all = for_each_at_once(zeros_of(fresh_), [&](std::size_t b) {
+    std::vector<std::size_t> outdated;
+    for (std::size_t b = 0; b < fresh_.size(); ++b) {
+        if (fresh_[b] == 0) outdated.push_back(b);
+    }
+    const bool all = for_each_at_once(outdated, [&](std::size_t b) {
         if (!go_on()) return false;
         auto mesh = block_mesh(field, isovalue, first_cell(b), cells, origin_, bounds);
         const auto count = [](const auto& m) { return m ? m->triangle_count() : 0; };
         triangles += count(mesh) - count(meshes_[b]);
         meshes_[b] = std::move(mesh);
-        area_[b] = meshes_[b] ? area_of(*meshes_[b]) : 0;
         fresh_[b] = 1;
-        fresh_simple_[b] = 0;
         if (triangles > most_triangles) too_many = true;
         return !too_many;
     });
     if (too_many) return Outcome::too_many;
     return all ? Outcome::done : Outcome::interrupted;
-}
-
-/// Simplifies the blocks that are outdated. False if there are still too many triangles.
-bool SurfaceBlocks::simplify(std::size_t most_triangles, double slack) {
-    for_each_at_once(zeros_of(fresh_simple_), [&](std::size_t b) {
-        simple_[b] = nullptr;
-        if (meshes_[b]) {
-            simple_[b] = std::make_shared<const RenderMesh>(
-                clustered(*meshes_[b], static_cast<float>(grain_)));
-        }
-        fresh_simple_[b] = 1;
-        return true;
-    });
-    return double(triangle_count(simple_)) <= slack * double(most_triangles);
-}
-
-std::shared_ptr<const RenderMesh> SurfaceBlocks::simplified(std::size_t most_triangles) {
-    const auto refresh_all = [&] { std::ranges::fill(fresh_simple_, std::uint8_t{0}); };
-    if (triangle_count(meshes_) <= most_triangles) {
-        simple_.assign(simple_.size(), nullptr);
-        refresh_all();
-        grain_ = 0;
-        return joined(meshes_);
-    }
-    // A surface that grows may have half as many again before all of it is made coarser.
-    if (grain_ > 0 && simplify(most_triangles, 1.5)) return joined(simple_);
-    const double most = static_cast<double>(std::max<std::size_t>(most_triangles, 1));
-    if (grain_ == 0) {
-        double area = 0;
-        for (const double a : area_) area += a;
-        // About three triangles a box that the surface goes through, and more where blocks meet.
-        grain_ = 1.2 * std::sqrt(3 * area / most);
-        refresh_all();
-        if (simplify(most_triangles, 1.25)) return joined(simple_);
-    }
-    const double widest = 0.5 * cells * every_ * geometry_.spacing.minCoeff();
-    while (grain_ < widest) {
-        grain_ *= std::max(1.1, std::sqrt(double(triangle_count(simple_)) / most));
-        refresh_all();
-        if (simplify(most_triangles, 1.25)) return joined(simple_);
-    }
-    // Of noise even the coarsest blocks are too many: the seams between them go, too.
-    const auto coarse = joined(simple_);
-    return std::make_shared<const RenderMesh>(viewer::simplified(*coarse, most_triangles));
 }
 
 }  // namespace palpate::viewer

@@ -28,8 +28,8 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
                                              const SurfaceBounds& bounds = {});
 
 /// The surface of a field, or of its coarse version (coarse_samples.hpp); made piece by piece, by
-/// as many threads as there are processors. Blocks meet without cracks, simplified ones too, and do
-/// not depend on what was there before: the same field has the same blocks.
+/// as many threads as there are processors. Blocks meet without cracks, and do not depend on
+/// what was there before: the same field has the same blocks.
 class SurfaceBlocks {
   public:
     static constexpr int cells = 32;  ///< along each axis of a block
@@ -59,24 +59,17 @@ class SurfaceBlocks {
     std::size_t triangles() const { return triangle_count(meshes_); }
     /// The blocks, always in the same order.
     const MeshBlocks& meshes() const { return meshes_; }
-    /// One mesh of at most about `most_triangles`; blocks that did not change are not simplified
-    /// again.
-    std::shared_ptr<const RenderMesh> simplified(std::size_t most_triangles);
 
   private:
     Index3 first_cell(std::size_t block) const;
-    bool simplify(std::size_t most_triangles, double slack);
 
     Geometry geometry_;
     int every_;
     Vec3 origin_;
     int reach_;  // of a block's cells: samples before the first and after the last
     Index3 count_;
-    MeshBlocks meshes_, simple_;
-    std::vector<std::uint8_t> fresh_;         // the mesh is what it should be
-    std::vector<std::uint8_t> fresh_simple_;  // the simple one is made from the mesh
-    std::vector<double> area_;                // [mm^2]
-    double grain_ = 0;                        // [mm] of the simple ones
+    MeshBlocks meshes_;
+    std::vector<std::uint8_t> fresh_;  // the mesh is what it should be
 };
 
 }  // namespace palpate::viewer

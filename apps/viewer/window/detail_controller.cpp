@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "apps/viewer/scene/background_renderer.hpp"
 #include "apps/viewer/scene/scene.hpp"
-#include "apps/viewer/scene/surface_source.hpp"
 #include "apps/viewer/scene/threads.hpp"
 #include "apps/viewer/slices/slice_pane.hpp"
 #include "apps/viewer/window/content.hpp"
@@ -47,7 +47,7 @@ void DetailController::end() {
     reader_.reset();
     maker_.reset();
     ++generation_;
-    slices_ = {};
+    wanted_ = {};
     patch_.reset();
     view_.reset();
     chosen_for_.reset();
@@ -90,21 +90,14 @@ void DetailController::begin() {
 
 void DetailController::take(std::uint64_t generation, int viewer,
                             const std::shared_ptr<const DetailField>& made) {
-    if (generation != generation_) return;
-    const auto is = [&](int level, const SampleBox& box) {
-        return made->level == level && made->box == box;
-    };
-    auto& shown = made_[static_cast<std::size_t>(viewer)];
+    const auto place = static_cast<std::size_t>(viewer);
+    if (generation != generation_ || wanted_[place] != made->of) return;
+    made_[place] = made;
     if (viewer == scene) {
-        if (!patch_ || !is(patch_->level, patch_->box)) return;
-        shown = made;
         views_.scene().set_patch(ScenePatch{made, {store_.overview, patch_->low, patch_->high}});
-        return;
+    } else {
+        views_.slice(viewer).set_detail(made);
     }
-    const auto& wanted = slices_[static_cast<std::size_t>(viewer)];
-    if (!wanted || !is(wanted->level, wanted->box)) return;
-    shown = made;
-    views_.slice(viewer).set_detail(made);
 }
 
 void DetailController::observe(const std::optional<Snapshot>& now) {
@@ -121,7 +114,7 @@ std::optional<int> DetailController::level_of_slice(const std::optional<SeenBox>
 
 /// What is wanted for this slice is what it needs.
 bool DetailController::has(int axis, const std::optional<SeenBox>& seen) const {
-    const auto& wanted = slices_[static_cast<std::size_t>(axis)];
+    const auto& wanted = wanted_[static_cast<std::size_t>(axis)];
     const auto level = level_of_slice(seen);
     if (!level || !wanted) return level.has_value() == wanted.has_value();
     return wanted->level == *level && has_slice(store_, *wanted, *seen, axis);
@@ -130,16 +123,21 @@ bool DetailController::has(int axis, const std::optional<SeenBox>& seen) const {
 void DetailController::observe_slice(int axis) {
     const auto seen = views_.slice(axis).seen();
     if (has(axis, seen)) return;
-    auto& wanted = slices_[static_cast<std::size_t>(axis)];
     const auto level = level_of_slice(seen);
-    if (!level) {
-        reader_->forget(axis);
-        wanted.reset();
-        if (seen) views_.slice(axis).set_detail(nullptr);
-        return;
-    }
-    wanted = {*level, slice_box(store_, *level, *seen, axis)};
-    reader_->want(axis, coarse_to_fine(store_, *level, wanted->box), slice_interval);
+    if (!level && seen) views_.slice(axis).set_detail(nullptr);
+    want(axis,
+         level ? std::optional(stream::DetailBox{*level, slice_box(store_, *level, *seen, axis)})
+               : std::nullopt,
+         slice_interval);
+}
+
+void DetailController::want(int viewer, const std::optional<stream::DetailBox>& box,
+                            std::chrono::milliseconds interval) {
+    const auto place = static_cast<std::size_t>(viewer);
+    wanted_[place] = box;
+    if (box) return reader_->want(viewer, coarse_to_fine(store_, box->level, box->box), interval);
+    made_[place].reset();
+    reader_->forget(viewer);
 }
 
 DetailController::SceneView DetailController::view_now() const {
@@ -182,30 +180,20 @@ void DetailController::choose_patch(const std::optional<Snapshot>& now) {
     if (patch_ && is_enough(*patch_, store_, *seen, interpolation_, limits)) return;
     patch_ = patch_for(store_, *seen, interpolation_, limits);
     maker_->want_patch(patch_);
-    if (patch_) {
-        return reader_->want(scene, coarse_to_fine(store_, patch_->level, patch_->box),
-                             patch_interval);
-    }
-    reader_->forget(scene);
-    made_[scene].reset();
-    views_.scene().set_patch(std::nullopt);
+    want(scene, patch_, patch_interval);
+    if (!patch_) views_.scene().set_patch(std::nullopt);
 }
 
 bool DetailController::settled() const {
     if (!reader_) return true;
     const stream::DetailStatus status = reader_->status();
-    const auto shows = [&](const auto& wanted, int viewer) {
-        const auto& made = made_[static_cast<std::size_t>(viewer)];
-        return !wanted || (made && made->level == wanted->level && made->box == wanted->box &&
-                           made->missing == 0);
-    };
     bool all = !views_.scene().isVisible() || chosen_for_ == view_now();
-    for (int axis = 0; axis < scene; ++axis) {
-        all = all && has(axis, views_.slice(axis).seen()) &&
-              shows(slices_[static_cast<std::size_t>(axis)], axis);
+    for (int axis = 0; axis < scene; ++axis) all = all && has(axis, views_.slice(axis).seen());
+    for (std::size_t i = 0; i < made_.size(); ++i) {
+        all = all &&
+              (!wanted_[i] || (made_[i] && made_[i]->of == *wanted_[i] && made_[i]->missing == 0));
     }
-    return (all && shows(patch_, scene) && maker_->idle() && handed_over_ == 0) ||
-           status.failed > 0;
+    return (all && maker_->idle() && handed_over_ == 0) || status.failed > 0;
 }
 
 DetailController::State DetailController::state() const {
@@ -219,7 +207,8 @@ DetailController::State DetailController::state() const {
     }
     state.finest = state.overview;
     for (const auto& made : made_) {
-        if (made && (!state.finest || made->level < *state.finest)) state.finest = made->level;
+        if (made && (!state.finest || made->of.level < *state.finest))
+            state.finest = made->of.level;
     }
     return state;
 }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <optional>
 
@@ -49,6 +50,8 @@ class DetailController : public Controller {
     std::optional<int> level_of_slice(const std::optional<SeenBox>& seen) const;
     bool has(int axis, const std::optional<SeenBox>& seen) const;
     void observe_slice(int axis);
+    void want(int viewer, const std::optional<stream::DetailBox>& box,
+              std::chrono::milliseconds interval);
     void observe_scene(const std::optional<Snapshot>& now);
     void choose_patch(const std::optional<Snapshot>& now);
     bool is_in_patch(const Snapshot& now) const;
@@ -56,9 +59,9 @@ class DetailController : public Controller {
 
     SeenStore store_;
     Interpolation interpolation_ = Interpolation::linear;
-    std::uint64_t generation_ = 0;                            // of readers
-    std::array<std::optional<stream::DetailBox>, 3> slices_;  // as they are wanted
-    std::optional<PatchChoice> patch_;
+    std::uint64_t generation_ = 0;  // of readers
+    std::array<std::optional<stream::DetailBox>, DetailMaker::viewers> wanted_;
+    std::optional<PatchChoice> patch_;  // that is wanted for the scene
     /// A view of the scene for which a patch was chosen.
     struct SceneView {
         pictures::Camera camera;
@@ -70,7 +73,7 @@ class DetailController : public Controller {
     SceneView view_now() const;
     std::optional<SceneView> view_, chosen_for_;
     QElapsedTimer rested_;  // since the view is this one
-    std::array<std::shared_ptr<const DetailField>, 4> made_;
+    std::array<std::shared_ptr<const DetailField>, DetailMaker::viewers> made_;
     std::uint64_t memory_ = 0;                   // [bytes] of decoded pieces
     std::shared_ptr<const stream::Store> held_;  // store_ points into it
     std::atomic<int> handed_over_ = 0;           // by the maker, not taken yet

@@ -10,7 +10,7 @@
 #include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/scene/render_request.hpp"
 #include "apps/viewer/scene/scene.hpp"
-#include "apps/viewer/scene/surface_source.hpp"
+#include "apps/viewer/scene/surface_maker.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/messages.hpp"
@@ -30,9 +30,9 @@ double opacity_of(int label, const SharedLayers& layers) {
 }  // namespace
 
 OverlayController::OverlayController(const Desk& desk)
-    : Controller(desk), image_({2000000, 20000}), loader_(messages_) {
+    : Controller(desk), image_({2000000, 40000}), loader_(messages_) {
     connect(&content_, &Content::closed, this, &OverlayController::close);
-    connect(&image_, &SurfaceSource::made, this, &OverlayController::show);
+    connect(&image_, &SurfaceMaker::made, this, &OverlayController::show);
     connect(&panel_.look_controls(), &LookControls::look_changed, this, &OverlayController::show);
     connect(&panel_.look_controls(), &LookControls::look_set, this, &OverlayController::show);
     OverlayControls& controls = panel_.overlay_controls();
@@ -80,7 +80,7 @@ void OverlayController::use(std::shared_ptr<const Overlay> overlay,
     if (overlay_->is_label_map()) {
         image_.clear();
     } else {
-        image_.set_field(linear_field(overlay_->volume), level.value_or(overlay_->level));
+        image_.set_field(linear_field(overlay_->volume), {level.value_or(overlay_->level)});
     }
     colour();
     Q_EMIT changed();
@@ -133,8 +133,10 @@ void OverlayController::show() {
             surfaces.push_back({labels_[i], label.colour, seen, offset});
         }
     } else {
-        image_.set_level(look.level.value_or(overlay_->level));
-        surfaces.push_back({image_.surface(), image_colour, opacity, offset});
+        image_.set_levels({look.level.value_or(overlay_->level)});
+        for (const ExtractedSurface& surface : image_.surfaces()) {
+            surfaces.push_back({surface, image_colour, opacity, offset});
+        }
     }
     views_.scene().set_overlay(std::move(surfaces));
 }

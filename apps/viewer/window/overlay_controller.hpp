@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/viewer/model/overlay.hpp"
-#include "apps/viewer/scene/surface_source.hpp"
+#include "apps/viewer/scene/surface_maker.hpp"
 #include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 
@@ -46,7 +46,7 @@ class OverlayController : public Controller {
     std::shared_ptr<const Overlay> overlay_;
     std::filesystem::path file_;  // of the overlay; empty: none
     std::vector<ExtractedSurface> labels_;
-    SurfaceSource image_;  // its surface
+    SurfaceMaker image_;  // its surface
     BackgroundTask loader_;
 };
 

@@ -57,7 +57,7 @@ struct Shown {
     void take(int viewer, const std::shared_ptr<const DetailField>& now) {
         const std::scoped_lock lock(mutex);
         auto& before = last[viewer];
-        if (before && before->box == now->box) count_untold(*before, *now);
+        if (before && before->of == now->of) count_untold(*before, *now);
         before = now;
         ++made;
     }

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "apps/viewer/scene/background_renderer.hpp"
-#include "apps/viewer/scene/surface_source.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"
 #include "viewer/scene/shown_scene.hpp"
@@ -23,8 +22,8 @@ struct DrawnBall {
         triangle.positions = {-5, -9, -5, 5, -9, -5, 0, -9, 5};
         triangle.normals = {0, -1, 0, 0, -1, 0, 0, -1, 0};
         triangle.triangles = {0, 1, 2};
-        label.moving = std::make_shared<const RenderMesh>(std::move(triangle));
-        label.blocks = {label.moving};
+        label.blocks = {std::make_shared<const RenderMesh>(std::move(triangle))};
+        label.moving = label.blocks;
         wanted.look.slices = true;
         wanted.width = wanted.height = 32;
         wanted.camera = {physical_centre(field.geometry()), Vec3(0, -1, 0), Vec3(0, 0, 1), 10};
@@ -67,7 +66,7 @@ TEST(BackgroundRenderer, draws_an_overlay_whose_surfaces_have_changed) {
     EXPECT_TRUE(draws());
     labels[0].offset = Vec3(1, 0, 0);
     EXPECT_TRUE(draws());
-    labels[0].surface.blocks = {std::make_shared<const RenderMesh>(*drawn.label.moving)};
+    labels[0].surface.blocks = {std::make_shared<const RenderMesh>(*drawn.label.blocks[0])};
     EXPECT_TRUE(draws());
     labels.clear();
     EXPECT_TRUE(draws());

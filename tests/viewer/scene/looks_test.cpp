@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/viewer/scene/render_request.hpp"
-#include "apps/viewer/scene/surface_source.hpp"
+#include "apps/viewer/scene/surface_maker.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/scenes/volumes.hpp"
 #include "support/fields.hpp"

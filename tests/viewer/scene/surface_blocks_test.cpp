@@ -54,21 +54,6 @@ int open_edges(const RenderMesh& mesh) {
     return open;
 }
 
-/// Edges, by where their ends lie, along which there is one triangle alone: the rim of a crack. (Of
-/// a simplified mesh some triangles lie on each other, and equal ones are drawn once.)
-int rims(const RenderMesh& mesh) {
-    ByPlace<Edge, int> triangles;
-    for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            const Point a = point(mesh.positions, mesh.triangles[t + c]);
-            const Point b = point(mesh.positions, mesh.triangles[t + (c + 1) % 3]);
-            ++triangles[std::minmax(a, b)];
-        }
-    }
-    return static_cast<int>(
-        std::ranges::count_if(triangles, [](const auto& edge) { return edge.second == 1; }));
-}
-
 /// How far the surface reaches out of the grid's samples at most [samples].
 double overhang(const Field& field, double isovalue, int every) {
     const Geometry& g = field.geometry();
@@ -148,26 +133,6 @@ TEST(SurfaceBlocks, meet_without_cracks) {
     }
 }
 
-TEST(SurfaceBlocks, meet_without_cracks_when_they_are_simplified) {
-    const Field ball = linear_field(scenes::ball(support::cube(100)));
-    const Field waves = linear_field(support::volume_of<float>(
-        support::grid({90, 80, 70}, {1, 1.1, 0.9}, {0, 0, 0}, support::oblique_direction()),
-        [](const Index3& i) {
-            return std::sin(0.11 * i[0]) + std::cos(0.13 * i[1]) * std::sin(0.09 * i[2]);
-        }));
-    for (const auto& [field, level] : {std::pair(ball, 128.0), std::pair(waves, 0.2)}) {
-        for (const int every : {1, 2}) {
-            SurfaceBlocks blocks = blocks_of(field, level, every);
-            for (const std::size_t most : {20'000U, 3'000U}) {
-                const auto simple = blocks.simplified(most);
-                EXPECT_LE(simple->triangle_count(), 3 * most / 2);
-                EXPECT_GT(simple->triangle_count(), most / 4);
-                EXPECT_EQ(rims(*simple), 0) << every << ' ' << most;
-            }
-        }
-    }
-}
-
 TEST(SurfaceBlocks, after_edits_are_those_of_the_flattened_volume) {
     const Geometry g = support::grid({75, 66, 40}, {1, 1.25, 0.8}, {10, 0, -5});
     Field field = noise(g);
@@ -206,7 +171,6 @@ TEST(SurfaceBlocks, after_edits_are_those_of_the_flattened_volume) {
 TEST(SurfaceBlocks, a_small_edit_costs_few_blocks_and_the_others_stay_as_they_are) {
     Field field = linear_field(scenes::ball(support::cube(128)));
     SurfaceBlocks blocks = blocks_of(field, 128);
-    const auto simple = blocks.simplified(5'000);
     const MeshBlocks before = blocks.meshes();
     blocks.mark({Index3(40, 40, 40), Index3(40, 40, 40)});  // a sample in one block's middle
     EXPECT_EQ(blocks.outdated(), 1U);
@@ -218,7 +182,6 @@ TEST(SurfaceBlocks, a_small_edit_costs_few_blocks_and_the_others_stay_as_they_ar
     int others = 0;
     for (std::size_t i = 0; i < before.size(); ++i) others += before[i] == blocks.meshes()[i];
     EXPECT_GE(others, int(before.size()) - 2);
-    EXPECT_EQ(rims(*blocks.simplified(5'000)), 0);
 }
 
 TEST(SurfaceBlocks, between_two_frames_are_those_of_the_samples_between_them) {

@@ -163,7 +163,7 @@ struct Levels {
         Geometry part = fine;
         part.origin = physical_from_index(fine, box.low.cast<double>());
         part.size = box.high - box.low + Index3::Ones();
-        return std::make_shared<const DetailField>(DetailField{field(part), box, fine.size});
+        return std::make_shared<const DetailField>(DetailField{field(part), {0, box}, fine.size});
     }
 };
 
