@@ -134,10 +134,8 @@ std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::
 
 std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options,
                                         const io::Progress& progress) {
-    const auto tell = [&] { progress(0); };
     return while_telling(
-        progress ? tell : std::function<void()>(),
-        [&](const std::stop_token& stop) { return open_until(stop, address, options); });
+        progress, [&](const std::stop_token& stop) { return open_until(stop, address, options); });
 }
 
 }  // namespace palpate::stream

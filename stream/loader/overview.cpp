@@ -108,10 +108,8 @@ Volume read_level(const Store& store, int level, const io::Progress& progress) {
         throw io::InputError(store.info().address + ": level " + std::to_string(level) +
                              " is larger than the memory there is; take a coarser one");
     }
-    std::atomic<double> made{0};
-    const auto tell = [&] { progress(made); };
-    return while_telling(progress ? tell : std::function<void()>(), [&](std::stop_token stop) {
-        return whole_level(store, level, std::move(stop), [&](double part) { made = part; });
+    return while_telling(progress, [&](const std::stop_token& stop, std::atomic<double>& made) {
+        return whole_level(store, level, stop, [&](double part) { made = part; });
     });
 }
 
