@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "palpate/run/streamer.hpp"
+#include "stream/while_telling.hpp"
 
 namespace palpate::run {
 namespace {
@@ -140,22 +141,39 @@ void VolumeEditor::set_brush(const std::optional<HandBrush>& brush) {
     set_problem({});
 }
 
-void VolumeEditor::apply(const Edit& asked, const std::stop_token& stop) {
-    std::unique_lock lock(mutex_);
-    with_samples(lock, stop, [&] {
-        edit(asked, EditStep::own);
-        new_step_ = true;
+/// An edit under way, which holds the lock, may take seconds.
+VolumeEditor::Lock VolumeEditor::locked(const std::stop_token& stop) {
+    if (!stop.stop_possible()) return Lock(mutex_);
+    Lock lock(mutex_, std::try_to_lock);
+    while (!lock.owns_lock() && !lock.try_lock()) {
+        if (stop.stop_requested()) throw stream::Cancelled{};
+        std::this_thread::sleep_for(1ms);
+    }
+    return lock;
+}
+
+void VolumeEditor::apply(const Edit& asked, const OnProgress& progress) {
+    stream::while_telling(progress, [&](const std::stop_token& stop) {
+        Lock lock = locked(stop);
+        with_samples(lock, stop, [&] {
+            edit(asked, EditStep::own);
+            new_step_ = true;
+        });
     });
 }
 
-bool VolumeEditor::undo() {
-    const std::scoped_lock lock(mutex_);
-    return go_to(editor_.undo());
+bool VolumeEditor::undo(const OnProgress& progress) {
+    return stream::while_telling(progress, [&](const std::stop_token& stop) {
+        const Lock lock = locked(stop);
+        return go_to(editor_.undo());
+    });
 }
 
-bool VolumeEditor::redo() {
-    const std::scoped_lock lock(mutex_);
-    return go_to(editor_.redo());
+bool VolumeEditor::redo(const OnProgress& progress) {
+    return stream::while_telling(progress, [&](const std::stop_token& stop) {
+        const Lock lock = locked(stop);
+        return go_to(editor_.redo());
+    });
 }
 
 /// Sends the version that the editor went back or forth to.
@@ -254,8 +272,7 @@ void VolumeEditor::send(const command::Samples& command) {
 /// the lock: a network must hold nobody up who holds or needs it. They are of this call alone, so
 /// that nobody else's edit can take them away.
 template <class Work>
-void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, const std::stop_token& stop,
-                                Work&& work) {
+void VolumeEditor::with_samples(Lock& lock, const std::stop_token& stop, Work&& work) {
     Fetched fetched;
     while (true) {
         fetched_ = &fetched;
@@ -313,7 +330,7 @@ void VolumeEditor::run(const std::stop_token& stop) {
 }
 
 void VolumeEditor::step(std::chrono::steady_clock::time_point now) {
-    std::unique_lock lock(mutex_);
+    Lock lock(mutex_);
     try {
         with_samples(lock, {}, [&] {
             for (Hand& hand : hands_) brush(hand, now);

@@ -37,7 +37,8 @@ void FiniteStore::read(int level, const SampleBox& box, std::span<std::byte> out
     };
     put(level, box, place, stop);
     bool all = true;
-    for_each_float(info_.type, out, [&](float sample, auto) { all = all && std::isfinite(sample); });
+    for_each_float(info_.type, out,
+                   [&](float sample, auto) { all = all && std::isfinite(sample); });
     if (all) return;
     const auto least = static_cast<float>(least_finite(stop));
     for_each_float(info_.type, out, [&](float sample, std::byte* at) {
