@@ -2,6 +2,7 @@
 #include "palpate/run/volume_editor.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <set>
 #include <stdexcept>
@@ -31,6 +32,14 @@ struct NotFetched {};
 struct Lacking {
     Edit edit;
 };
+
+/// Throws Cancelled once the stop is requested, else puts what is done into `made`.
+OnProgress until(const std::stop_token& stop, std::atomic<double>& made) {
+    return [&stop, &made](double fraction) {
+        if (stop.stop_requested()) throw stream::Cancelled{};
+        made = std::max(made.load(), fraction);
+    };
+}
 
 std::uint64_t bytes_of_edits(const Samples& samples) {
     const Bricks* bricks = samples.bricks();
@@ -153,10 +162,11 @@ VolumeEditor::Lock VolumeEditor::locked(const std::stop_token& stop) {
 }
 
 void VolumeEditor::apply(const Edit& asked, const OnProgress& progress) {
-    stream::while_telling(progress, [&](const std::stop_token& stop) {
+    stream::while_telling(progress, [&](const std::stop_token& stop, std::atomic<double>& made) {
         Lock lock = locked(stop);
-        with_samples(lock, stop, [&] {
-            edit(asked, EditStep::own);
+        const OnProgress tell = until(stop, made);
+        with_samples(lock, stop, tell, [&] {
+            edit(asked, EditStep::own, tell);
             new_step_ = true;
         });
     });
@@ -196,12 +206,12 @@ std::uint64_t VolumeEditor::version_of(const std::shared_ptr<const Samples>& sam
     return 0;  // not reached: the editor holds what it made
 }
 
-void VolumeEditor::edit(const Edit& asked, EditStep step) {
+void VolumeEditor::edit(const Edit& asked, EditStep step, const OnProgress& progress) {
     const std::uint64_t from = version_of(editor_.samples());
     edited_bytes_ = bytes_of_edits(*editor_.samples());
     SampleBox changed;
     try {
-        changed = editor_.apply(asked, step);
+        changed = editor_.apply(asked, step, progress);
     } catch (const NotFetched&) {
         throw Lacking{asked};
     }
@@ -272,7 +282,8 @@ void VolumeEditor::send(const command::Samples& command) {
 /// the lock: a network must hold nobody up who holds or needs it. They are of this call alone, so
 /// that nobody else's edit can take them away.
 template <class Work>
-void VolumeEditor::with_samples(Lock& lock, const std::stop_token& stop, Work&& work) {
+void VolumeEditor::with_samples(Lock& lock, const std::stop_token& stop, const OnProgress& tell,
+                                Work&& work) {
     Fetched fetched;
     while (true) {
         fetched_ = &fetched;
@@ -282,7 +293,7 @@ void VolumeEditor::with_samples(Lock& lock, const std::stop_token& stop, Work&& 
             const std::shared_ptr<const Samples> samples = editor_.samples();
             lock.unlock();
             try {
-                fetch(samples, lacking.edit, fetched, stop);
+                fetch(samples, lacking.edit, fetched, stop, tell);
             } catch (...) {
                 lock.lock();
                 throw;
@@ -294,12 +305,13 @@ void VolumeEditor::with_samples(Lock& lock, const std::stop_token& stop, Work&& 
 
 /// Without the lock: all that an edit of these samples reads. Stops with the caller or the editor.
 void VolumeEditor::fetch(const std::shared_ptr<const Samples>& samples, const Edit& asked,
-                         Fetched& fetched, const std::stop_token& stop) const {
+                         Fetched& fetched, const std::stop_token& stop,
+                         const OnProgress& tell) const {
     std::stop_source either;
     const auto end = [&] { either.request_stop(); };
     const std::stop_callback with_editor(reading_.get_token(), end), with_caller(stop, end);
     std::uint64_t bytes = bytes_of_edits(*samples);
-    (void)edited(samples, asked, [&](const SampleBox& box, std::span<std::byte> out) {
+    const auto get = [&](const SampleBox& box, std::span<std::byte> out) {
         count_brick(bytes, *samples, memory_);
         std::vector<std::byte>& read = fetched[{box.low[0], box.low[1], box.low[2]}];
         if (read.size() != out.size()) {
@@ -307,7 +319,8 @@ void VolumeEditor::fetch(const std::shared_ptr<const Samples>& samples, const Ed
             read.assign(out.begin(), out.end());
         }
         std::ranges::copy(read, out.begin());
-    });
+    };
+    (void)edited(samples, asked, get, tell);
 }
 
 /// Samples of a brick that is edited for the first time.
@@ -332,7 +345,7 @@ void VolumeEditor::run(const std::stop_token& stop) {
 void VolumeEditor::step(std::chrono::steady_clock::time_point now) {
     Lock lock(mutex_);
     try {
-        with_samples(lock, {}, [&] {
+        with_samples(lock, {}, {}, [&] {
             for (Hand& hand : hands_) brush(hand, now);
         });
     } catch (const stream::Cancelled&) {  // the editor ends

@@ -161,6 +161,16 @@ run.edit(palpate.Fill([195, 195, 195], [198, 198, 198], 80))
 """, serve(tmp_path, SilentAbout) + "v.zarr") < 10  # of 50
 
 
+def test_ctrl_c_ends_an_edit_in_memory():
+    for call in ("palpate.Editor(volume).apply(edit)",
+                 "palpate.Run(volume, palpate.Setup(isovalue=100, real_time=False)).edit(edit)"):
+        assert interrupted_after(f"""
+volume = palpate.load("synthetic:sphere:640x640x640").volume
+edit = palpate.Stroke(palpate.Brush(kind="smooth", radius=1000), [0, 0, 0], [0, 0, 0])
+{call}
+""") < 5  # of a minute
+
+
 def test_ctrl_c_ends_the_wait_for_a_silent_server():
     with socket.create_server(("127.0.0.1", 0)) as silent:  # connects, and never answers
         address = f"http://127.0.0.1:{silent.getsockname()[1]}/v.zarr"

@@ -126,15 +126,15 @@ class VolumeEditor {
     using Lock = std::unique_lock<std::mutex>;
     Lock locked(const std::stop_token& stop);
     template <class Work>
-    void with_samples(Lock& lock, const std::stop_token& stop, Work&& work);
+    void with_samples(Lock& lock, const std::stop_token& stop, const OnProgress& tell, Work&& work);
     void fetch(const std::shared_ptr<const Samples>& samples, const Edit& edit, Fetched& fetched,
-               const std::stop_token& stop) const;
+               const std::stop_token& stop, const OnProgress& tell) const;
     void read(const SampleBox& box, std::span<std::byte> out);
     void run(const std::stop_token& stop);
     void brush(Hand& hand, std::chrono::steady_clock::time_point now);
     bool brush_from(const Touch& from, const Touch& to, Hand& hand, double isovalue);
     Edit edit_of(const Brush& brush, const Touch& from, const Touch& to, Hand& hand);
-    void edit(const Edit& edit, EditStep step);
+    void edit(const Edit& edit, EditStep step, const OnProgress& progress = {});
     bool go_to(SampleBox changed);
     void send(const command::Samples& command);
     std::uint64_t version_of(const std::shared_ptr<const Samples>& samples) const;
