@@ -37,7 +37,7 @@ SurfaceMesh mesh_from(const nlohmann::json& done, const Descriptor& memory) {
 
 }  // namespace
 
-SurfaceMesh read_mesh(const std::filesystem::path& path) {
+SurfaceMesh read_mesh(const std::filesystem::path& path, const OnProgress& progress) {
     check_readable(path);
     if (std::filesystem::is_directory(path)) {
         throw InputError(path.string() + ": is a folder; give a mesh file");
@@ -48,9 +48,10 @@ SurfaceMesh read_mesh(const std::filesystem::path& path) {
     return asked_of_helper(path, [&] {
         const Descriptor memory = shared_memory();
         const TimeLimits limits(0, bytes_in(path));
-        const HelperJob job{io_helper,         {}, {"read-mesh", path.string(), line_from(request)},
-                            &memory,           {}, limits.wall_s,
-                            limits.processor_s};
+        const HelperJob job{
+            io_helper,         {},       {"read-mesh", path.string(), line_from(request)},
+            &memory,           progress, limits.wall_s,
+            limits.processor_s};
         const HelperResult result = result_of(path, job);
         return mesh_from(result.done, memory);
     });

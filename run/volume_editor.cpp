@@ -2,11 +2,13 @@
 #include "palpate/run/volume_editor.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <set>
 #include <stdexcept>
 
 #include "palpate/run/streamer.hpp"
+#include "stream/while_telling.hpp"
 
 namespace palpate::run {
 namespace {
@@ -30,6 +32,14 @@ struct NotFetched {};
 struct Lacking {
     Edit edit;
 };
+
+/// Throws Cancelled once the stop is requested, else puts what is done into `made`.
+OnProgress until(const std::stop_token& stop, std::atomic<double>& made) {
+    return [&stop, &made](double fraction) {
+        if (stop.stop_requested()) throw stream::Cancelled{};
+        made = std::max(made.load(), fraction);
+    };
+}
 
 std::uint64_t bytes_of_edits(const Samples& samples) {
     const Bricks* bricks = samples.bricks();
@@ -140,22 +150,40 @@ void VolumeEditor::set_brush(const std::optional<HandBrush>& brush) {
     set_problem({});
 }
 
-void VolumeEditor::apply(const Edit& asked, const std::stop_token& stop) {
-    std::unique_lock lock(mutex_);
-    with_samples(lock, stop, [&] {
-        edit(asked, EditStep::own);
-        new_step_ = true;
+/// An edit under way, which holds the lock, may take seconds.
+VolumeEditor::Lock VolumeEditor::locked(const std::stop_token& stop) {
+    if (!stop.stop_possible()) return Lock(mutex_);
+    Lock lock(mutex_, std::try_to_lock);
+    while (!lock.owns_lock() && !lock.try_lock()) {
+        if (stop.stop_requested()) throw stream::Cancelled{};
+        std::this_thread::sleep_for(1ms);
+    }
+    return lock;
+}
+
+void VolumeEditor::apply(const Edit& asked, const OnProgress& progress) {
+    stream::while_telling(progress, [&](const std::stop_token& stop, std::atomic<double>& made) {
+        Lock lock = locked(stop);
+        const OnProgress tell = until(stop, made);
+        with_samples(lock, stop, tell, [&] {
+            edit(asked, EditStep::own, tell);
+            new_step_ = true;
+        });
     });
 }
 
-bool VolumeEditor::undo() {
-    const std::scoped_lock lock(mutex_);
-    return go_to(editor_.undo());
+bool VolumeEditor::undo(const OnProgress& progress) {
+    return stream::while_telling(progress, [&](const std::stop_token& stop) {
+        const Lock lock = locked(stop);
+        return go_to(editor_.undo());
+    });
 }
 
-bool VolumeEditor::redo() {
-    const std::scoped_lock lock(mutex_);
-    return go_to(editor_.redo());
+bool VolumeEditor::redo(const OnProgress& progress) {
+    return stream::while_telling(progress, [&](const std::stop_token& stop) {
+        const Lock lock = locked(stop);
+        return go_to(editor_.redo());
+    });
 }
 
 /// Sends the version that the editor went back or forth to.
@@ -178,12 +206,12 @@ std::uint64_t VolumeEditor::version_of(const std::shared_ptr<const Samples>& sam
     return 0;  // not reached: the editor holds what it made
 }
 
-void VolumeEditor::edit(const Edit& asked, EditStep step) {
+void VolumeEditor::edit(const Edit& asked, EditStep step, const OnProgress& progress) {
     const std::uint64_t from = version_of(editor_.samples());
     edited_bytes_ = bytes_of_edits(*editor_.samples());
     SampleBox changed;
     try {
-        changed = editor_.apply(asked, step);
+        changed = editor_.apply(asked, step, progress);
     } catch (const NotFetched&) {
         throw Lacking{asked};
     }
@@ -254,7 +282,7 @@ void VolumeEditor::send(const command::Samples& command) {
 /// the lock: a network must hold nobody up who holds or needs it. They are of this call alone, so
 /// that nobody else's edit can take them away.
 template <class Work>
-void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, const std::stop_token& stop,
+void VolumeEditor::with_samples(Lock& lock, const std::stop_token& stop, const OnProgress& tell,
                                 Work&& work) {
     Fetched fetched;
     while (true) {
@@ -265,7 +293,7 @@ void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, const std::s
             const std::shared_ptr<const Samples> samples = editor_.samples();
             lock.unlock();
             try {
-                fetch(samples, lacking.edit, fetched, stop);
+                fetch(samples, lacking.edit, fetched, stop, tell);
             } catch (...) {
                 lock.lock();
                 throw;
@@ -277,12 +305,13 @@ void VolumeEditor::with_samples(std::unique_lock<std::mutex>& lock, const std::s
 
 /// Without the lock: all that an edit of these samples reads. Stops with the caller or the editor.
 void VolumeEditor::fetch(const std::shared_ptr<const Samples>& samples, const Edit& asked,
-                         Fetched& fetched, const std::stop_token& stop) const {
+                         Fetched& fetched, const std::stop_token& stop,
+                         const OnProgress& tell) const {
     std::stop_source either;
     const auto end = [&] { either.request_stop(); };
     const std::stop_callback with_editor(reading_.get_token(), end), with_caller(stop, end);
     std::uint64_t bytes = bytes_of_edits(*samples);
-    (void)edited(samples, asked, [&](const SampleBox& box, std::span<std::byte> out) {
+    const auto get = [&](const SampleBox& box, std::span<std::byte> out) {
         count_brick(bytes, *samples, memory_);
         std::vector<std::byte>& read = fetched[{box.low[0], box.low[1], box.low[2]}];
         if (read.size() != out.size()) {
@@ -290,7 +319,8 @@ void VolumeEditor::fetch(const std::shared_ptr<const Samples>& samples, const Ed
             read.assign(out.begin(), out.end());
         }
         std::ranges::copy(read, out.begin());
-    });
+    };
+    (void)edited(samples, asked, get, tell);
 }
 
 /// Samples of a brick that is edited for the first time.
@@ -313,9 +343,9 @@ void VolumeEditor::run(const std::stop_token& stop) {
 }
 
 void VolumeEditor::step(std::chrono::steady_clock::time_point now) {
-    std::unique_lock lock(mutex_);
+    Lock lock(mutex_);
     try {
-        with_samples(lock, {}, [&] {
+        with_samples(lock, {}, {}, [&] {
             for (Hand& hand : hands_) brush(hand, now);
         });
     } catch (const stream::Cancelled&) {  // the editor ends

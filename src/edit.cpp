@@ -67,8 +67,9 @@ T brushed(const Brush& brush, double w, const Before& before, const Index3& at, 
 /// Copies and changes the bricks that hold samples of a box; bricks that do not change stay shared.
 class Rewriting {
   public:
-    Rewriting(Before& before, const SampleBox& box)
+    Rewriting(Before& before, const SampleBox& box, const OnProgress& progress)
         : before_(before),
+          progress_(progress),
           box_{box.low.cwiseMax(Index3::Zero()), box.high.cwiseMin(before.last())},
           minimum_(before.samples().minimum()),
           maximum_(before.samples().maximum()) {}
@@ -82,9 +83,13 @@ class Rewriting {
         // A sample on the border of a brick lies in the brick before as well.
         const Index3 first = (box_.low - Index3::Ones()).cwiseMax(Index3::Zero()) / Bricks::edge;
         const Index3 last = box_.high / Bricks::edge;
+        constexpr std::size_t between = 4;  // each may take milliseconds
+        const auto bricks_along = (last - first + Index3::Ones()).cast<std::size_t>();
+        ReportedItems told(progress_, bricks_along.prod(), between);
         for (int k = first[2]; k <= last[2]; ++k) {
             for (int j = first[1]; j <= last[1]; ++j) {
                 for (int i = first[0]; i <= last[0]; ++i) {
+                    told.done();
                     if (before_.is_large() && !prepare({i, j, k}, around, reaches)) continue;
                     rewrite<T>({i, j, k}, value);
                 }
@@ -179,6 +184,7 @@ class Rewriting {
     }
 
     Before& before_;
+    const OnProgress& progress_;
     SampleBox box_, changed_;
     double minimum_, maximum_;
     std::vector<Bricks::Change> changes_;
@@ -193,8 +199,8 @@ bool is_beyond(const Brush& brush, double old) {
 
 template <class T>
 Edited edited_by(const std::shared_ptr<const Samples>& samples, Before& before, const Brush& brush,
-                 const auto& reach) {
-    return Rewriting(before, reach.box())
+                 const auto& reach, const OnProgress& progress) {
+    return Rewriting(before, reach.box(), progress)
         .run<T>(
             samples, brush.kind == BrushKind::smooth ? 1 : 0,
             [&](const Index3& at) { return reach.weight(at) > 0; },
@@ -206,27 +212,28 @@ Edited edited_by(const std::shared_ptr<const Samples>& samples, Before& before, 
 
 template <class T>
 Edited edited_as(const std::shared_ptr<const Samples>& samples, const Edit& edit,
-                 const ReadSamples& read) {
+                 const ReadSamples& read, const OnProgress& progress) {
     const Geometry& geometry = samples->geometry();
     Before before(*samples, read);
     if (const auto* stroke = std::get_if<edit::Stroke>(&edit)) {
-        return edited_by<T>(samples, before, stroke->brush, StrokeReach(*stroke, geometry));
+        return edited_by<T>(samples, before, stroke->brush, StrokeReach(*stroke, geometry),
+                            progress);
     }
     if (const auto* sweep = std::get_if<edit::Sweep>(&edit)) {
-        return edited_by<T>(samples, before, sweep->brush, SweepReach(*sweep, geometry));
+        return edited_by<T>(samples, before, sweep->brush, SweepReach(*sweep, geometry), progress);
     }
     const auto everywhere = [](const Index3&) { return true; };
     if (const auto* fill = std::get_if<edit::Fill>(&edit)) {
         const T value = fitted<T>(fill->value);
-        return Rewriting(before, fill->box).run<T>(samples, 0, everywhere, [&](const Index3&, T) {
-            return value;
-        });
+        return Rewriting(before, fill->box, progress)
+            .run<T>(samples, 0, everywhere, [&](const Index3&, T) { return value; });
     }
     const auto& replace = std::get<edit::Replace>(edit);
     const SampleBox box{replace.at, replace.at + replace.samples.geometry().size - Index3::Ones()};
-    return Rewriting(before, box).run<T>(samples, 0, everywhere, [&](const Index3& at, T) {
-        return fitted<T>(replace.samples.sample(at - replace.at));
-    });
+    return Rewriting(before, box, progress)
+        .run<T>(samples, 0, everywhere, [&](const Index3& at, T) {
+            return fitted<T>(replace.samples.sample(at - replace.at));
+        });
 }
 
 void check_brush(const Brush& brush) {
@@ -304,15 +311,16 @@ void check(const Edit& edit, const Samples& samples) {
 }
 
 Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit,
-              const ReadSamples& read) {
+              const ReadSamples& read, const OnProgress& progress) {
     check(edit, *samples);
     if (samples->resident() && !read) {
         throw std::invalid_argument(
             "samples that are not in memory can only be edited as they are "
             "read: give what reads them");
     }
-    return with_type(samples->type(),
-                     [&](auto zero) { return edited_as<decltype(zero)>(samples, edit, read); });
+    return with_type(samples->type(), [&](auto zero) {
+        return edited_as<decltype(zero)>(samples, edit, read, progress);
+    });
 }
 
 Brush brush_for(BrushKind kind, const Field& field, double isovalue, double radius) {

@@ -26,9 +26,9 @@ std::size_t bytes_between(const Samples& before, const Samples& after) {
 
 }  // namespace
 
-SampleBox Editor::apply(const Edit& edit, EditStep step) {
+SampleBox Editor::apply(const Edit& edit, EditStep step, const OnProgress& progress) {
     begun_ |= step == EditStep::own;  // also if this edit fails
-    Edited result = edited(samples_, edit, read_);
+    Edited result = edited(samples_, edit, read_, progress);
     if (result.changed.empty()) return {};
     const bool same = !std::exchange(begun_, false) && undone_from_ > 0 && redo_steps() == 0;
     steps_.resize(undone_from_);

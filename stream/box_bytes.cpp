@@ -5,6 +5,25 @@
 
 namespace palpate::stream {
 
+bool is_stored_in_rows(const Level& level) {
+    return level.chunk[1] == 1 && level.chunk[2] == 1;
+}
+
+Index3 piece_of(const Level& level) {
+    constexpr std::int64_t few = 4096;
+    const Index3& size = level.geometry.size;
+    Index3 piece = level.chunk;
+    while (piece.cast<std::int64_t>().prod() < few && (piece.array() < size.array()).any()) {
+        int shortest = -1;
+        for (int a = 0; a < 3; ++a) {
+            const bool may_grow = piece[a] < size[a];
+            if (may_grow && (shortest < 0 || piece[a] < piece[shortest])) shortest = a;
+        }
+        piece[shortest] += level.chunk[shortest];
+    }
+    return piece;
+}
+
 std::uint64_t bytes_of(const SampleBox& box, SampleType type) {
     const Index3 size = box.high - box.low + Index3::Ones();
     return static_cast<std::uint64_t>(size.cast<std::int64_t>().prod()) * size_of(type);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "palpate/samples.hpp"
+#include "palpate/stream/store.hpp"
 
 namespace palpate::stream {
 
@@ -14,6 +14,13 @@ struct ByPlace {
         return std::ranges::lexicographical_compare(a, b);
     }
 };
+
+/// Whether stored pieces are rows, as of a plain file: these cost nothing to read in parts.
+bool is_stored_in_rows(const Level& level);
+
+/// Samples along each axis of the pieces that readers ask for and keep: the stored ones or, if
+/// those have few samples, several together. Each one costs memory beside its samples.
+Index3 piece_of(const Level& level);
 
 std::uint64_t bytes_of(const SampleBox& box, SampleType type);
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -15,31 +14,6 @@ namespace palpate::stream {
 void SampleBytes::unpack(std::span<std::byte> raw, std::byte* to) const {
     if (swapped) io::swap_bytes(raw, size());
     io::convert(stored, raw.data(), type(), to, raw.size() / size(), values);
-}
-
-FiniteSamples finite_samples(SampleType type, std::span<const std::byte> bytes) {
-    FiniteSamples found;
-    if (type != SampleType::float32) return found;
-    for (std::size_t at = 0; at + sizeof(float) <= bytes.size(); at += sizeof(float)) {
-        float value;
-        std::memcpy(&value, bytes.data() + at, sizeof value);
-        if (!std::isfinite(value)) {
-            found.all = false;
-        } else if (value < found.least) {
-            found.least = value;
-        }
-    }
-    return found;
-}
-
-void make_finite(SampleType type, std::span<std::byte> bytes, double instead) {
-    if (type != SampleType::float32) return;
-    const auto with = static_cast<float>(instead);
-    for (std::size_t at = 0; at + sizeof(float) <= bytes.size(); at += sizeof(float)) {
-        float value;
-        std::memcpy(&value, bytes.data() + at, sizeof value);
-        if (!std::isfinite(value)) std::memcpy(bytes.data() + at, &with, sizeof with);
-    }
 }
 
 void note_finite(const SampleBytes& bytes, std::vector<std::string>& notes) {

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,20 +25,7 @@ struct SampleBytes {
     void unpack(std::span<std::byte> raw, std::byte* to) const;
 };
 
-/// Samples that are searched for the least finite one, at most.
-inline constexpr std::int64_t most_searched = std::int64_t{1} << 28;
-
-/// What is known of some samples: the least finite one, and whether others are not finite.
-struct FiniteSamples {
-    float least = std::numeric_limits<float>::infinity();
-    bool all = true;
-};
-FiniteSamples finite_samples(SampleType type, std::span<const std::byte> bytes);
-
-/// Samples that are not finite become `instead`, as io::read_volume() does it.
-void make_finite(SampleType type, std::span<std::byte> bytes, double instead);
-
-/// Notes that such samples, if there can be any, become the least finite one.
+/// Notes that samples that are not finite, if there can be any, become the least finite one.
 void note_finite(const SampleBytes& bytes, std::vector<std::string>& notes);
 
 /// A fill value as the type that is kept has it; NaN if it is not finite, 0 in whole numbers.

@@ -2,31 +2,50 @@
 // also where a server keeps everybody waiting. For the libraries and programs.
 #pragma once
 
+#include <atomic>
 #include <chrono>
-#include <functional>
 #include <future>
 #include <stop_token>
+#include <type_traits>
 
 namespace palpate::stream {
 
-/// What work(stop) returns or throws. `tell` is called every 20 ms until then; what it throws stops
-/// the work and is thrown. Without `tell`, this thread works itself.
-template <class Work>
-auto while_telling(const std::function<void()>& tell, Work&& work) {
+/// What work(stop) or work(stop, made) returns or throws. `tell`, an OnProgress or a function of
+/// nothing, is called first and then every 20 ms; what it throws stops the work and is thrown. It
+/// gets the part that the work has put into `made`, which begins at 0. Without `tell`, this thread
+/// works itself.
+template <class Tell, class Work>
+auto while_telling(const Tell& tell, Work&& work) {
     constexpr std::chrono::milliseconds between{20};
-    std::stop_source stop;
-    if (!tell) return work(stop.get_token());
-    auto made = std::async(std::launch::async, [&] { return work(stop.get_token()); });
-    while (made.wait_for(between) != std::future_status::ready) {
-        try {
+    std::atomic<double> made{0};
+    const auto run = [&](const std::stop_token& stop) {
+        if constexpr (std::is_invocable_v<Work, std::stop_token, std::atomic<double>&>) {
+            return work(stop, made);
+        } else {
+            return work(stop);
+        }
+    };
+    const auto say = [&] {
+        if constexpr (std::is_invocable_v<Tell, double>) {
+            tell(made);
+        } else {
             tell();
+        }
+    };
+    if (!tell) return run({});
+    say();
+    std::stop_source stop;
+    auto result = std::async(std::launch::async, [&] { return run(stop.get_token()); });
+    while (result.wait_for(between) != std::future_status::ready) {
+        try {
+            say();
         } catch (...) {
             stop.request_stop();
-            made.wait();
+            result.wait();
             throw;
         }
     }
-    return made.get();
+    return result.get();
 }
 
 }  // namespace palpate::stream

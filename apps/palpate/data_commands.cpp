@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "apps/palpate/commands.hpp"
 #include "io/system/number.hpp"
 #include "palpate/io/level.hpp"
 
@@ -44,7 +45,7 @@ std::array<Vec3, 2> two_points(const CommandWords& words) {
 /// A request that has nothing to say.
 template <class Change>
 DataRequest silent(Change change) {
-    return [change](run::Data& data, const Field&, double, const std::stop_token&) {
+    return [change](run::Data& data, const Field&, double, const io::Progress&) {
         change(data);
         return std::string();
     };
@@ -60,13 +61,13 @@ DataRequest stroke(const CommandWords& words, const Volume& volume) {
     const auto ends = two_points(words);
     if (!ends[0].allFinite() || !ends[1].allFinite()) words.refuse();
     return [hand, ends](run::Data& data, const Field& field, double isovalue,
-                        const std::stop_token& stop) {
+                        const io::Progress& progress) {
         if (!std::isfinite(isovalue))
             throw std::invalid_argument(
                 "there is no surface to touch now, so the brush has nothing to work on");
         Brush brush = brush_for(hand.kind, field, isovalue, hand.radius);
         if (hand.value) brush.value = *hand.value;
-        data.editor().apply(edit::Stroke{brush, ends[0], ends[1]}, stop);
+        data.editor().apply(edit::Stroke{brush, ends[0], ends[1]}, progress);
         return std::string();
     };
 }
@@ -78,8 +79,8 @@ DataRequest fill(const CommandWords& words, const Volume& volume) {
     if (!(most <= 1 << 20)) words.refuse();
     const SampleBox box{low.cwiseMin(high).cast<int>(), low.cwiseMax(high).cast<int>()};
     const edit::Fill fill{box, io::level_from_text(words[2], volume)};
-    return [fill](run::Data& data, const Field&, double, const std::stop_token& stop) {
-        data.editor().apply(fill, stop);
+    return [fill](run::Data& data, const Field&, double, const io::Progress& progress) {
+        data.editor().apply(fill, progress);
         return std::string();
     };
 }
@@ -87,8 +88,11 @@ DataRequest fill(const CommandWords& words, const Volume& volume) {
 DataRequest save(const CommandWords& words, const Volume& volume) {
     const std::string path = words.expect(2)[1];
     run::check_volume_name(path, volume.geometry());
-    return [path](run::Data& data, const Field&, double, const std::stop_token&) {
-        return data.save(path, {});
+    return [path](run::Data& data, const Field&, double, const io::Progress&) {
+        // What has begun is completed after the end of the session, unless Ctrl-C is pressed again.
+        return data.save(path, [before = interruptions()](double) {
+            if (interruptions() > before + 1) throw io::OutputError("saving was interrupted");
+        });
     };
 }
 
@@ -146,7 +150,7 @@ std::optional<run::HandBrush> brush_from(const CommandWords& words, const Volume
 }
 
 DataRequest set_brush(const std::optional<run::HandBrush>& brush) {
-    return [brush](run::Data& data, const Field&, double, const std::stop_token&) {
+    return [brush](run::Data& data, const Field&, double, const io::Progress&) {
         data.editor().set_brush(brush);
         if (!brush) return std::string("brush: off");
         return fmt::format("brush: {}, {:g} mm{}", name_of(brush->kind), brush->radius,
@@ -155,14 +159,14 @@ DataRequest set_brush(const std::optional<run::HandBrush>& brush) {
 }
 
 DataRequest undo() {
-    return [](run::Data& data, const Field&, double, const std::stop_token&) {
-        return data.editor().undo() ? "" : "there is nothing to undo";
+    return [](run::Data& data, const Field&, double, const io::Progress& progress) {
+        return data.editor().undo(progress) ? "" : "there is nothing to undo";
     };
 }
 
 DataRequest redo() {
-    return [](run::Data& data, const Field&, double, const std::stop_token&) {
-        return data.editor().redo() ? "" : "there is nothing to redo";
+    return [](run::Data& data, const Field&, double, const io::Progress& progress) {
+        return data.editor().redo(progress) ? "" : "there is nothing to redo";
     };
 }
 

@@ -38,10 +38,9 @@ class CommandWords {
 
 /// Changes the data, at the level `isovalue` of the field felt; returns a sentence for the person
 /// who asked, or nothing. Throws std::invalid_argument for what the data cannot do,
-/// io::OutputError, io::InputError, and io::Cancelled if an edit waits for samples when `stop` is
-/// requested. Any thread.
+/// io::OutputError, io::InputError, and what `progress` throws. Any thread.
 using DataRequest = std::function<std::string(run::Data& data, const Field& field, double isovalue,
-                                              const std::stop_token& stop)>;
+                                              const io::Progress& progress)>;
 
 /// `carve|add|smooth|paint X,Y,Z[:X,Y,Z] RADIUS [VALUE]`, `fill I,J,K[:I,J,K] VALUE`, `undo`,
 /// `redo`, `save FILE`, `play [SPEED]`, `pause`, `step [FRAMES]`, `seek SECONDS`, `loop on|off`.

@@ -140,7 +140,10 @@ void RunTerminal::carry_out(const Request& request, LiveHand& hand, const Snapsh
         [&](const DataRequest& data) {
             const double isovalue = now.session.tick.proxy.isovalue;
             queue_.put([&run = *hand.run, data, isovalue](const std::stop_token& stop) {
-                return data(run.data(), run.field_now(), isovalue, stop);
+                const auto until_stop = [&stop](double) {
+                    if (stop.stop_requested()) throw io::Cancelled{};
+                };
+                return data(run.data(), run.field_now(), isovalue, until_stop);
             });
         },
         [&](const Command& command) { hand.run->send(command); },

@@ -103,7 +103,8 @@ void describe(const CLI::App& command, const ToolOptions& options) {
         throw std::invalid_argument(
             "--json, a table and a picture cannot share standard output: give them files");
     }
-    const io::ToolSpec spec = io::tool_spec_from(options.spec);
+    const io::ToolSpec spec =
+        io::tool_spec_from(options.spec, [](double) { stop_if_interrupted(); });
     if (std::holds_alternative<io::PointSpec>(spec) ||
         std::holds_alternative<io::PointsSpec>(spec)) {
         warn_of_no_effect(command, {"--spacing"}, "the points of this tool are given");

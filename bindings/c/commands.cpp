@@ -129,7 +129,9 @@ extern "C" PALPATE_API palpate_status palpate_run_set_ranges(palpate_run* run, d
 extern "C" PALPATE_API palpate_status palpate_run_set_tool(palpate_run* run, const char* tool) {
     return send(run, [&](const run::Run& now) {
         const double spacing = io::usual_spacing(now.field().geometry());
-        return command::UseTool{tool ? io::make_tool(io::tool_spec_from(tool), spacing) : nullptr};
+        if (!tool) return command::UseTool{nullptr};
+        return command::UseTool{
+            io::make_tool(io::tool_spec_from(tool, progress_of_thread()), spacing)};
     });
 }
 

@@ -64,9 +64,10 @@ extern "C" PALPATE_API palpate_status palpate_data_stroke(palpate_data* data,
                                                           const double from[3],
                                                           const double to[3]) {
     return guarded([&] {
-        data_of(data).editor().apply(edit::Stroke{stroke_brush(taken(brush, "brush")),
-                                                  vec3(&given(from, "from")),
-                                                  vec3(&given(to, "to"))});
+        data_of(data).editor().apply(
+            edit::Stroke{stroke_brush(taken(brush, "brush")), vec3(&given(from, "from")),
+                         vec3(&given(to, "to"))},
+            progress_of_thread());
     });
 }
 
@@ -74,7 +75,7 @@ extern "C" PALPATE_API palpate_status palpate_data_fill(palpate_data* data, cons
                                                         const int32_t high[3], double value) {
     return guarded([&] {
         const SampleBox box{index3(&given(low, "low")), index3(&given(high, "high"))};
-        data_of(data).editor().apply(edit::Fill{box, value});
+        data_of(data).editor().apply(edit::Fill{box, value}, progress_of_thread());
     });
 }
 
@@ -82,16 +83,17 @@ extern "C" PALPATE_API palpate_status palpate_data_replace(palpate_data* data, c
                                                            const palpate_volume* samples) {
     return guarded([&] {
         data_of(data).editor().apply(
-            edit::Replace{index3(&given(at, "at")), given(samples, "samples").loaded.volume});
+            edit::Replace{index3(&given(at, "at")), given(samples, "samples").loaded.volume},
+            progress_of_thread());
     });
 }
 
 extern "C" PALPATE_API palpate_status palpate_data_undo(palpate_data* data, int32_t* done) {
-    return guarded([&] { tell(done, data_of(data).editor().undo()); });
+    return guarded([&] { tell(done, data_of(data).editor().undo(progress_of_thread())); });
 }
 
 extern "C" PALPATE_API palpate_status palpate_data_redo(palpate_data* data, int32_t* done) {
-    return guarded([&] { tell(done, data_of(data).editor().redo()); });
+    return guarded([&] { tell(done, data_of(data).editor().redo(progress_of_thread())); });
 }
 
 extern "C" PALPATE_API palpate_status palpate_data_edits(const palpate_data* data,

@@ -28,7 +28,10 @@ extern "C" PALPATE_API palpate_status palpate_field_values(const palpate_field* 
                 throw std::invalid_argument("point " + std::to_string(i) + " is not finite");
             }
         }
+        constexpr std::size_t between = 4096;
+        ReportedItems told(progress_of_thread(), count, between);
         for (std::size_t i = 0; i < count; ++i) {
+            told.done();
             const Vec3 point = vec3(points + 3 * i);
             if (densities) densities[i] = value_at(f, point);
             if (gradients) put(gradient_at(f, point), gradients + 3 * i);

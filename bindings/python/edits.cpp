@@ -2,6 +2,7 @@
 #include "palpate/edit.hpp"
 
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 #include "palpate/run/brush.hpp"
 
@@ -74,7 +75,7 @@ void bind_edits(py::module_& module) {
         .def(
             "apply",
             [](Editor& e, const Edit& edit, bool same_step) {
-                return box_of(e.apply(edit, same_step ? EditStep::same : EditStep::own));
+                return box_of(e.apply(edit, same_step ? EditStep::same : EditStep::own, ctrl_c()));
             },
             py::arg("edit"), py::arg("same_step") = false, py::call_guard<GilReleased>(),
             "The box of samples that changed, (low, high), or None. same_step: belongs to the\n"

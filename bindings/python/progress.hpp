@@ -37,7 +37,7 @@ inline constexpr std::size_t updates_in_slice = 4096, batches_in_slice = 64;
 /// What work(stop) returns. Ctrl-C stops it.
 template <class Work>
 auto until_ctrl_c(Work&& work) {
-    return stream::while_telling([progress = ctrl_c()] { progress(0); }, work);
+    return stream::while_telling(ctrl_c(), work);
 }
 
 }  // namespace palpate::python

@@ -190,17 +190,13 @@ void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
 void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
     using R = LiveRun;
     run.def(
-           "edit",
-           [](R& r, const Edit& edit) {
-               until_ctrl_c(
-                   [&](const std::stop_token& stop) { r.data().editor().apply(edit, stop); });
-           },
+           "edit", [](R& r, const Edit& edit) { r.data().editor().apply(edit, ctrl_c()); },
            py::arg("edit"), Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
         .def(
-            "undo", [](R& r) { return r.data().editor().undo(); }, Unlocked(),
+            "undo", [](R& r) { return r.data().editor().undo(ctrl_c()); }, Unlocked(),
             "False if there is nothing to undo.")
         .def(
-            "redo", [](R& r) { return r.data().editor().redo(); }, Unlocked(),
+            "redo", [](R& r) { return r.data().editor().redo(ctrl_c()); }, Unlocked(),
             "False if there is nothing to redo.")
         .def(
             "set_brush",

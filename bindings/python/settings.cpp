@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 #include "bindings/python/setup.hpp"
 #include "palpate/baselines/methods.hpp"
@@ -50,7 +51,7 @@ run::RenderSetup setup_of(const RenderSetup& setup, const ForceSettings& usual) 
         const auto points = tool->points();
         made.tool = io::PointsSpec{{points.begin(), points.end()}, tool->turns(), tool->shape()};
     } else {
-        made.tool = io::tool_spec_from(std::get<std::string>(setup.asked_tool));
+        made.tool = io::tool_spec_from(std::get<std::string>(setup.asked_tool), ctrl_c());
     }
     if (made.tool_spacing && (std::holds_alternative<io::PointSpec>(made.tool) ||
                               std::holds_alternative<io::PointsSpec>(made.tool))) {

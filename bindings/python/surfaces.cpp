@@ -109,8 +109,11 @@ void bind_surfaces(py::module_& module) {
         "The whole isosurface as one watertight Mesh. isovalue: a number [data units] or\n"
         "'53%'. tolerance [voxel]: facets of a cubic field are split until they are as near;\n"
         "normals: of a cubic field, those that are felt.");
-    module.def("read_mesh", &io::read_mesh, py::arg("path"), py::call_guard<GilReleased>(),
-               "The triangles of an .stl, .ply, .obj or .vtp file. Raises InputError.");
+    module.def(
+        "read_mesh",
+        [](const std::filesystem::path& path) { return io::read_mesh(path, ctrl_c()); },
+        py::arg("path"), py::call_guard<GilReleased>(),
+        "The triangles of an .stl, .ply, .obj or .vtp file. Raises InputError.");
 }
 
 }  // namespace palpate::python

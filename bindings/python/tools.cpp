@@ -5,6 +5,7 @@
 
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "palpate/io/tool_file.hpp"
 
 namespace palpate::python {
@@ -18,7 +19,7 @@ Made made(Tool tool) {
 
 Made from_text(const std::filesystem::path& text, double spacing) {
     const GilReleased unlocked;
-    const auto tool = io::make_tool(io::tool_spec_from(text.string()), spacing);
+    const auto tool = io::make_tool(io::tool_spec_from(text.string(), ctrl_c()), spacing);
     return made(tool ? *tool : point_tool());
 }
 

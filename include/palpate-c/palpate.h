@@ -70,8 +70,9 @@ PALPATE_API const char *palpate_version(void); /* MAJOR.MINOR.PATCH, as "0.2.0" 
 PALPATE_API const char *palpate_last_error(void);
 /* Sets a function (or null) that long calls of this thread call with 0 to 1, unless their options have
  * their own. It returns 0 to cancel the call. Calls may take long if they copy, adopt, load or describe
- * a volume, make a field, a mesh or a run, save data or change the device. Calls that are made in a
- * callback do not call it. */
+ * a volume, look up many values, make a field, a mesh or a run, edit or save data, read a tool or change
+ * the device. A cancelled edit is made whole or not at all. Calls that are made in a callback do not
+ * call it. */
 PALPATE_API void palpate_set_progress(int32_t (*progress)(double fraction, void *context),
                                       void *context);
 

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "palpate/field.hpp"
+#include "palpate/progress.hpp"
 #include "palpate/tool.hpp"
 
 namespace palpate {
@@ -101,9 +102,9 @@ void check(const Edit& edit, const Samples& samples);
 /// The samples after an edit. Values outside the sample type's range are clamped. The same input
 /// gives the same bits. For a large grid, `read` gives the samples of the bricks that are edited
 /// for the first time, in memory or not. Throws as check() does, for a large grid without `read`,
-/// and whatever `read` throws.
+/// and whatever `read` and `progress` throw.
 Edited edited(const std::shared_ptr<const Samples>& samples, const Edit& edit,
-              const ReadSamples& read = {});
+              const ReadSamples& read = {}, const OnProgress& progress = {});
 
 /// A brush with a value that fits the level: carving leaves the field's background, adding and
 /// painting leave a value as far above the level as the background lies below it.
@@ -124,8 +125,10 @@ class Editor {
 
     /// The current version.
     const std::shared_ptr<const Samples>& samples() const { return samples_; }
-    /// Applies an edit and returns the box of samples that changed. Throws as edited() does.
-    SampleBox apply(const Edit& edit, EditStep step = EditStep::own);
+    /// Applies an edit and returns the box of samples that changed. Throws as edited() does, and
+    /// has then changed nothing.
+    SampleBox apply(const Edit& edit, EditStep step = EditStep::own,
+                    const OnProgress& progress = {});
     /// Undoes the last step, or redoes the step undone last. Returns the box of samples that
     /// changed. It is empty if there is no such step.
     SampleBox undo();

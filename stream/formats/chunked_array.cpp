@@ -1,8 +1,10 @@
 // An array in chunks: keys, shards, limits. See the header.
 #include "stream/formats/chunked_array.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <stdexcept>
+#include <utility>
 
 #include "io/byte_order.hpp"
 #include "palpate/io/error.hpp"
@@ -14,7 +16,7 @@ namespace {
 constexpr std::size_t most_axes = 8;
 constexpr double most_chunk_bytes = 1 << 30;
 constexpr double most_chunks_in_shard = 1 << 20;
-constexpr std::size_t most_held = 1 << 22;  // numbers in all indices that are kept
+constexpr std::size_t most_held = 1 << 20;  // places in all indices that are kept
 // What was damaged on its way may come whole the next time.
 constexpr int attempts_at_damage = 3, attempts_at_change = 3;
 constexpr std::uint64_t not_stored = UINT64_MAX;
@@ -27,7 +29,7 @@ std::size_t product(std::span<const std::int64_t> sizes) {
 
 /// Also an index that is not there takes some memory.
 template <class Index>
-std::size_t numbers_in(const Index& index) {
+std::size_t places_in(const Index& index) {
     return 64 + (index ? index->places.size() : 0);
 }
 
@@ -126,8 +128,9 @@ auto ChunkReader::unpacked(Wanted wanted, const std::string& part, const std::st
 
 std::optional<Bytes> ChunkReader::chunk(std::span<const std::int64_t> index,
                                         std::stop_token stop) const {
-    if (array_.shards) return chunk_in_shard(index, stop);
-    const auto place = place_of(index, stop);
+    if (!array_.shards) return chunk_at({key_of(array_, index)}, nullptr, false, stop);
+    if (!array_.shards->file) return chunk_in_shard(index, stop);
+    const auto place = place_in_shard(index, false, stop);
     return place ? chunk_at(*place, nullptr, false, stop) : std::nullopt;
 }
 
@@ -180,61 +183,94 @@ std::optional<Bytes> ChunkReader::chunk_at(const Place& place, std::string* iden
                     });
 }
 
-std::optional<ChunkReader::Place> ChunkReader::place_of(std::span<const std::int64_t> index,
-                                                        const std::stop_token& stop) const {
-    if (!array_.table) return Place{key_of(array_, index)};
-    const auto found = array_.table->find(index, stop);
-    if (!found) return std::nullopt;
-    return Place{array_.folder, ByteRange{found->offset, found->length}, found->skipped};
+/// Of a file, shards end where the array does.
+std::int64_t ChunkReader::chunks_of(const Shard& shard, std::size_t axis) const {
+    const std::int64_t most = array_.shards->chunks[axis];
+    const std::int64_t all = (array_.shape[axis] - 1) / array_.chunk[axis] + 1;
+    return array_.shards->file ? std::min(most, all - shard[axis] * most) : most;
 }
 
 std::optional<ChunkReader::Place> ChunkReader::place_in_shard(std::span<const std::int64_t> index,
                                                               bool again,
                                                               const std::stop_token& stop) const {
-    std::vector<std::int64_t> shard(index.begin(), index.end());
+    Shard shard(index.begin(), index.end());
     std::size_t inside = 0;
     for (const int axis : array_.shards->axes) {
         const auto a = static_cast<std::size_t>(axis);
-        const std::int64_t count = array_.shards->chunks[a];
-        inside =
-            inside * static_cast<std::size_t>(count) + static_cast<std::size_t>(index[a] % count);
-        shard[a] /= count;
+        const std::int64_t at = index[a] % array_.shards->chunks[a];
+        shard[a] /= array_.shards->chunks[a];
+        inside = inside * static_cast<std::size_t>(chunks_of(shard, a)) + std::size_t(at);
     }
-    const std::string key = key_of(array_, shard);
-    const Index found = index_of(key, again, stop);
+    const Index found = index_of(shard, again, stop);
     if (!found) return std::nullopt;
-    const ByteRange range{found->places[2 * inside], found->places[2 * inside + 1]};
-    if (range.offset == not_stored && range.length == not_stored) return std::nullopt;
-    return Place{.key = key, .range = range, .identity = found->identity};
+    const auto& [offset, length, skipped] = found->places[inside];
+    if (offset == not_stored && length == not_stored) return std::nullopt;
+    const bool in_file = array_.shards->file != nullptr;
+    return Place{in_file ? array_.folder : key_of(array_, shard), ByteRange{offset, length},
+                 skipped, found->identity};
 }
 
-ChunkReader::Index ChunkReader::index_of(const std::string& shard, bool again,
+ChunkReader::Index ChunkReader::index_of(const Shard& shard, bool again,
                                          const std::stop_token& stop) const {
-    if (!again) {
-        const std::lock_guard lock(mutex_);
-        const auto found = indices_.find(shard);
-        if (found != indices_.end()) return found->second;
+    std::unique_lock lock(mutex_);
+    const auto is_free = [&] { return !fetching_.contains(shard); };
+    if (!is_free() && !fetched_.wait(lock, stop, is_free)) throw Cancelled{};
+    const auto found = indices_.find(shard);
+    if (found != indices_.end() && !again) return found->second;
+    fetching_.insert(shard);
+    lock.unlock();
+    const auto end = [&] {
+        lock.lock();
+        fetching_.erase(shard);
+        fetched_.notify_all();
+    };
+    Index index;
+    try {
+        index =
+            array_.shards->file ? located_index(shard, stop) : fetched_index(shard, again, stop);
+    } catch (...) {
+        end();
+        throw;
     }
-    const Index index = fetched_index(shard, again, stop);
-    const std::lock_guard lock(mutex_);
+    end();
+    keep(shard, index);
+    return index;
+}
+
+/// Needs the lock.
+void ChunkReader::keep(const Shard& shard, const Index& index) const {
     const auto [kept, is_new] = indices_.emplace(shard, index);
-    if (!is_new) {  // as long as the one before, unless that shard was not there
-        held_ += numbers_in(index) - numbers_in(kept->second);
-        kept->second = index;
-        return index;
-    }
-    order_.push_back(shard);
-    held_ += numbers_in(index);
+    if (!is_new) held_ -= places_in(std::exchange(kept->second, index));
+    if (is_new) order_.push_back(shard);
+    held_ += places_in(index);
     while (held_ > most_held && order_.size() > 1) {
         const auto oldest = indices_.find(order_.front());
-        held_ -= numbers_in(oldest->second);
+        held_ -= places_in(oldest->second);
         indices_.erase(oldest);
         order_.pop_front();
+    }
+}
+
+ChunkReader::Index ChunkReader::located_index(const Shard& shard,
+                                              const std::stop_token& stop) const {
+    const Shards& shards = *array_.shards;
+    std::array<std::int64_t, 3> first{}, count{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        first[a] = shard[a] * shards.chunks[a];
+        count[a] = chunks_of(shard, a);
+    }
+    const auto index = std::make_shared<ShardIndex>();
+    {
+        const UnpackingRoom::Share turn(shards.file->turn, 1, stop);
+        index->places = shards.file->file.locate(shards.id, first, count, stop);
+    }
+    for (io::ChunkPlace& place : index->places) {
+        if (place.length == 0) place.offset = place.length = not_stored;
     }
     return index;
 }
 
-ChunkReader::Index ChunkReader::fetched_index(const std::string& shard, bool again,
+ChunkReader::Index ChunkReader::fetched_index(const Shard& shard, bool again,
                                               const std::stop_token& stop) const {
     const std::size_t size = 16 * product(array_.shards->chunks);
     std::size_t stored = size;
@@ -247,12 +283,15 @@ ChunkReader::Index ChunkReader::fetched_index(const std::string& shard, bool aga
         const Bytes plain = decoded(array_.shards->index_codecs, std::move(packed), size);
         const auto index = std::make_shared<ShardIndex>();
         index->identity = identity;
-        for (std::size_t at = 0; at < size; at += 8) {
-            index->places.push_back(io::little_endian<std::uint64_t>(std::span(plain).subspan(at)));
+        const auto number = [&](std::size_t at) {
+            return io::little_endian<std::uint64_t>(std::span(plain).subspan(at));
+        };
+        for (std::size_t at = 0; at < size; at += 16) {
+            index->places.push_back({number(at), number(at + 8)});
         }
         return Index(index);
     };
-    return unpacked({.key = shard,
+    return unpacked({.key = key_of(array_, shard),
                      .range = range,
                      .most = stored,
                      .lasting = true,

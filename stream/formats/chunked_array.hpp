@@ -2,28 +2,43 @@
 // become samples. Private to stream/.
 #pragma once
 
+#include <condition_variable>
 #include <cstdint>
 #include <list>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "stream/formats/chunk_table.hpp"
+#include "io/process/located_chunks.hpp"
 #include "stream/formats/codecs.hpp"
+#include "stream/formats/unpacking_room.hpp"
 #include "stream/objects/objects.hpp"
 #include "stream/sample_bytes.hpp"
 
 namespace palpate::stream {
 
-/// Several chunks in one object, with an index of where each lies in it.
+/// A file that its arrays ask about, one thread at a time. Others wait, or are stopped.
+struct LocatedFile {
+    explicit LocatedFile(io::ChunkFile of) : file(std::move(of)) {}
+    io::ChunkFile file;
+    UnpackingRoom turn{1};
+};
+
+/// Several chunks that have an index together of where each lies in its object.
 struct Shards {
     std::vector<std::int64_t> chunks;  ///< along each axis of the array, in a shard
     std::vector<int> axes;            ///< in the order in which the index counts, the slowest first
     std::vector<Codec> index_codecs;  ///< in the order of decoding
     bool index_at_start = false;
+    /// The one object of an array (HDF5, TIFF), in which the helper process looks up a shard when
+    /// the first chunk of it is wanted; null: each shard is an object, with its index in it.
+    std::shared_ptr<LocatedFile> file = {};
+    std::string id = {};  ///< of the array in that file
 };
 
 struct ChunkedArray {
@@ -32,14 +47,12 @@ struct ChunkedArray {
     SampleBytes bytes;
     std::vector<Codec> codecs;  ///< in the order of decoding
     std::optional<Shards> shards;
-    std::string folder;  ///< the key of the array
+    std::string folder;  ///< the key of the array, or of its one file
     std::string prefix;  ///< of a chunk's name: "c/", "c." or none
     char separator = '.';
     /// Chunks are blocks of N5: named with the fastest axis first, with a header, those at the end
     /// of the array cut.
     bool n5_blocks = false;
-    /// Where the chunks lie in the object `folder`; null: each chunk or shard is an object.
-    std::shared_ptr<const ChunkTable> table;
 
     std::size_t axes() const { return shape.size(); }
     std::size_t samples_in_chunk() const;
@@ -75,12 +88,16 @@ class ChunkReader {
 
   private:
     struct ShardIndex {
-        std::vector<std::uint64_t> places;  ///< offset and length of each chunk
-        std::string identity;               ///< of the shard
+        std::vector<io::ChunkPlace> places;
+        std::string identity;  ///< of the shard
     };
     using Index = std::shared_ptr<const ShardIndex>;  ///< null: there is no such shard
-    Index index_of(const std::string& shard, bool again, const std::stop_token& stop) const;
-    Index fetched_index(const std::string& shard, bool again, const std::stop_token& stop) const;
+    using Shard = std::vector<std::int64_t>;
+    Index index_of(const Shard& shard, bool again, const std::stop_token& stop) const;
+    Index fetched_index(const Shard& shard, bool again, const std::stop_token& stop) const;
+    Index located_index(const Shard& shard, const std::stop_token& stop) const;
+    void keep(const Shard& shard, const Index& index) const;
+    std::int64_t chunks_of(const Shard& shard, std::size_t axis) const;
     /// Where a chunk is stored.
     struct Place {
         std::string key;  ///< of the object
@@ -88,8 +105,6 @@ class ChunkReader {
         std::uint64_t skipped = 0;  ///< as in io::ChunkPlace
         std::string identity = {};  ///< that the shard had with this index
     };
-    std::optional<Place> place_of(std::span<const std::int64_t> index,
-                                  const std::stop_token& stop) const;
     /// `again`: reads the shard's index anew.
     std::optional<Place> place_in_shard(std::span<const std::int64_t> index, bool again,
                                         const std::stop_token& stop) const;
@@ -104,9 +119,11 @@ class ChunkReader {
     std::shared_ptr<const Objects> objects_;
     ChunkedArray array_;
     mutable std::mutex mutex_;
-    mutable std::map<std::string, Index> indices_;
-    mutable std::list<std::string> order_;  ///< of indices_, the oldest first
-    mutable std::size_t held_ = 0;          ///< numbers in indices_
+    mutable std::condition_variable_any fetched_;
+    mutable std::set<Shard> fetching_;  ///< each by one thread, for which others wait
+    mutable std::map<Shard, Index> indices_;
+    mutable std::list<Shard> order_;  ///< of indices_, the oldest first
+    mutable std::size_t held_ = 0;    ///< places in indices_
 };
 
 }  // namespace palpate::stream

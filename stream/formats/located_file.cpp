@@ -6,16 +6,16 @@
 #include "io/process/located_chunks.hpp"
 #include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
-#include "stream/formats/chunk_table.hpp"
 #include "stream/formats/metadata_files.hpp"
 #include "stream/formats/stores.hpp"
-#include "stream/formats/unpacking_room.hpp"
 
 namespace palpate::stream {
 namespace {
 
 /// Of HDF5 and TIFF: with these they say where everything else lies.
 constexpr std::uint64_t bytes_of_head = 64;
+/// Chunks along each axis whose places are looked up together.
+constexpr std::int64_t page_side = 16;
 
 ChunkedArray located_array(const io::ImageArray& level, const std::shared_ptr<LocatedFile>& file) {
     ChunkedArray array;
@@ -34,12 +34,12 @@ ChunkedArray located_array(const io::ImageArray& level, const std::shared_ptr<Lo
         if (!codec) throw BadMetadata("its compression '" + name + "' is not known");
         array.codecs.push_back(*codec);
     }
+    array.shards = Shards{.chunks = std::vector<std::int64_t>(3, page_side),
+                          .axes = array.stored_axes,
+                          .index_codecs = {},
+                          .file = file,
+                          .id = level.id};
     check_array(array);
-    std::array<std::int64_t, 3> chunks{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        chunks[a] = (array.shape[a] - 1) / array.chunk[a] + 1;
-    }
-    array.table = std::make_shared<ChunkTable>(file, level.id, chunks);
     return array;
 }
 

@@ -50,8 +50,10 @@ Json parsed(std::optional<Bytes> bytes, const std::string& name, std::size_t& ro
         const bool is_plain = text.find("NaN") == text.npos && text.find("Infinity") == text.npos;
         return io::parsed_json_within(room, is_plain ? text : with_quoted_numbers(text));
     } catch (const Json::other_error& error) {
-        const std::string flaw = error.what();
-        throw io::InputError(name + ": is not read: " + flaw.substr(flaw.find("] ") + 2));
+        const std::string words = error.what(), flaw = words.substr(words.find("] ") + 2);
+        throw io::InputError(name + ": is not read: " + flaw +
+                             (flaw.starts_with("its values take") ? "; allow more memory"
+                                                                  : "; its metadata are damaged"));
     } catch (const Json::exception&) {
         // A server's page about a login or an error, although its status says that all is well.
         const std::size_t begin = text.find_first_not_of(" \t\r\n");

@@ -1,10 +1,6 @@
 // Plain files of samples, read where they lie: opening costs a header, whatever the file's size.
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
-#include <limits>
-#include <numeric>
-#include <optional>
 #include <vector>
 
 #include "io/plain_samples.hpp"
@@ -12,26 +8,26 @@
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/box_bytes.hpp"
+#include "stream/formats/finite_store.hpp"
 #include "stream/formats/stores.hpp"
-#include "stream/formats/unpacking_room.hpp"
 #include "stream/objects/traffic_count.hpp"
 #include "stream/sample_bytes.hpp"
 
 namespace palpate::stream {
 namespace {
 
-class PlainFile : public Store {
+class PlainFile : public FiniteStore {
   public:
     PlainFile(const std::string& path, const StoreOptions& options)
         : PlainFile(path, options, io::locate_samples(path, read_options(options))) {}
 
-    const StoreInfo& info() const override { return info_; }
     Traffic traffic() const override { return traffic_.now(); }
 
-    void read(int level, const SampleBox& box, std::span<std::byte> out,
-              std::stop_token stop) const override {
-        if (level != 0) throw std::invalid_argument("a plain file has one level, number 0");
-        check_request(grid(), box, info_.type, out.size());
+  private:
+    static constexpr std::size_t piece_bytes = 1 << 20;  // converted at a time
+
+    void put(int, const SampleBox& box, const Places& to,
+             const std::stop_token& stop) const override {
         const Index3 size = box.high - box.low + Index3::Ones();
         const auto row = static_cast<std::size_t>(size[0]);
         // Rows that follow each other in the file are read in one go.
@@ -40,7 +36,6 @@ class PlainFile : public Store {
         const int together =
             whole_rows ? static_cast<int>(std::min<std::size_t>(most, std::size_t(size[1]))) : 1;
         std::vector<std::byte> raw;
-        std::byte* to = out.data();
         for (int z = box.low[2]; z <= box.high[2]; ++z) {
             for (int y = box.low[1]; y <= box.high[1]; y += together) {
                 if (stop.stop_requested()) throw Cancelled{};
@@ -48,12 +43,7 @@ class PlainFile : public Store {
                 const std::size_t count = row * static_cast<std::size_t>(rows);
                 raw.resize(count * bytes_.size());
                 fetch({box.low[0], y, z}, raw);
-                bytes_.unpack(raw, to);
-                const std::span<std::byte> samples{to, count * size_of(info_.type)};
-                if (!finite_samples(info_.type, samples).all) {
-                    make_finite(info_.type, samples, least_finite(stop));
-                }
-                to += samples.size();
+                bytes_.unpack(raw, to({box.low[0], y, z}, count));
             }
         }
         if (io::identity_of(file_.number()) != identity_) {
@@ -61,9 +51,6 @@ class PlainFile : public Store {
                                  ": was written anew since it was opened; open it again");
         }
     }
-
-  private:
-    static constexpr std::size_t piece_bytes = 1 << 20;  // converted at a time
 
     static io::ReadOptions read_options(const StoreOptions& options) {
         io::ReadOptions read;
@@ -100,35 +87,6 @@ class PlainFile : public Store {
 
     const Geometry& grid() const { return info_.levels.front().geometry; }
 
-    /// The least finite sample of the chosen time, which takes the place of those that are not
-    /// finite, as in io::read_volume(). Searched when it is first needed; where there are more than
-    /// `most_searched` samples, in as many, in rows spread over the file.
-    float least_finite(const std::stop_token& stop) const {
-        const UnpackingRoom::Share only(searching_, 1, stop);
-        if (least_finite_) return *least_finite_;
-        const Index3& size = grid().size;
-        std::vector<std::byte> raw, row;
-        float least = std::numeric_limits<float>::infinity();
-        const std::int64_t rows = std::int64_t{size[1]} * size[2];
-        std::int64_t step = (sample_count(grid()) + most_searched - 1) / most_searched;
-        while (step > 1 && std::gcd(step, std::int64_t{size[1]}) > 1) ++step;  // else few y
-        for (std::int64_t at = 0; at < rows; at += step) {
-            if (stop.stop_requested()) throw Cancelled{};
-            raw.resize(static_cast<std::size_t>(size[0]) * bytes_.size());
-            row.resize(static_cast<std::size_t>(size[0]) * sizeof(float));
-            fetch({0, static_cast<int>(at % size[1]), static_cast<int>(at / size[1])}, raw);
-            bytes_.unpack(raw, row.data());
-            least = std::min(least, finite_samples(info_.type, row).least);
-        }
-        if (std::isinf(least) && step > 1) least = 0;
-        if (std::isinf(least)) {
-            throw io::InputError(info_.address +
-                                 ": none of its samples is a finite number; export it again");
-        }
-        least_finite_ = least;
-        return least;
-    }
-
     /// The stored bytes from a sample on.
     void fetch(const Index3& from, std::span<std::byte> raw) const {
         const std::uint64_t before = place_in(whole_box(grid()), from) * bytes_.size();
@@ -144,11 +102,8 @@ class PlainFile : public Store {
 
     io::Descriptor file_;
     std::string identity_;  ///< of the file when it was opened: samples of two files never mix
-    StoreInfo info_;
     SampleBytes bytes_;
-    std::uint64_t first_ = 0;             ///< [bytes] of the first sample of the chosen time
-    mutable UnpackingRoom searching_{1};  // for one thread; others wait, or are stopped
-    mutable std::optional<float> least_finite_;
+    std::uint64_t first_ = 0;  ///< [bytes] of the first sample of the chosen time
     mutable TrafficCount traffic_;
 };
 

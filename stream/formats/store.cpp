@@ -114,6 +114,10 @@ bool is_store(const std::string& address, const StoreOptions& options) {
 std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::string& address,
                                         const StoreOptions& options) {
     if (io::is_web_address(address)) {
+        // What a browser adds to an address is not for the server.
+        const bool is_s3 = address.find("://") == 2;  // where it is a part of the name
+        const std::size_t fragment = is_s3 ? address.npos : address.find('#');
+        if (fragment != address.npos) return open_until(stop, address.substr(0, fragment), options);
         if (const auto file = remote_file(address)) {
             return open_located(stop, remote_objects(file->folder, options, stop), file->name,
                                 options);
@@ -134,10 +138,8 @@ std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::
 
 std::shared_ptr<const Store> open_store(const std::string& address, const StoreOptions& options,
                                         const io::Progress& progress) {
-    const auto tell = [&] { progress(0); };
     return while_telling(
-        progress ? tell : std::function<void()>(),
-        [&](const std::stop_token& stop) { return open_until(stop, address, options); });
+        progress, [&](const std::stop_token& stop) { return open_until(stop, address, options); });
 }
 
 }  // namespace palpate::stream

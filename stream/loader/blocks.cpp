@@ -19,7 +19,7 @@ Blocks::~Blocks() {
 template <class Work>
 void Blocks::for_each_stored(int level, const SampleBox& box, Work&& work) const {
     if (!keeps(level)) return work(box);
-    for_each_piece(level_of(store_, level).chunk, box,
+    for_each_piece(piece_of(level_of(store_, level)), box,
                    [&](const Index3&, const SampleBox& part) { work(whole(level, part)); });
 }
 
@@ -76,18 +76,18 @@ bool Blocks::has_all(int level, const SampleBox& box) const {
 }
 
 bool Blocks::keeps(int level) const {
-    const Index3& chunk = level_of(store_, level).chunk;
-    const SampleBox piece{Index3::Zero(), chunk - Index3::Ones()};
-    const bool is_row = chunk[1] == 1 && chunk[2] == 1;
-    return !is_row && bytes_of(piece, store_.info().type) <= most_bytes_ / 4;
+    const Level& grid = level_of(store_, level);
+    const SampleBox piece{Index3::Zero(), piece_of(grid) - Index3::Ones()};
+    return !is_stored_in_rows(grid) && bytes_of(piece, store_.info().type) <= most_bytes_ / 4;
 }
 
 /// The piece that a part lies in.
 SampleBox Blocks::whole(int level, const SampleBox& part) const {
     const Level& grid = level_of(store_, level);
-    const Index3 low = part.low.cwiseQuotient(grid.chunk).cwiseProduct(grid.chunk);
+    const Index3 piece = piece_of(grid);
+    const Index3 low = part.low.cwiseQuotient(piece).cwiseProduct(piece);
     const Index3 last = grid.geometry.size - Index3::Ones();
-    return {low, (low + grid.chunk - Index3::Ones()).cwiseMin(last)};
+    return {low, (low + piece - Index3::Ones()).cwiseMin(last)};
 }
 
 Blocks::Bytes Blocks::read_now(int level, const SampleBox& box, const std::stop_token& stop) const {

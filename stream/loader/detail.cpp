@@ -34,10 +34,10 @@ void check(const Store& store, const DetailBox& of) {
 
 /// The box in parts as they are stored, the nearest to its middle first.
 std::vector<SampleBox> parts_of(const Level& level, const SampleBox& box) {
-    const bool is_row = level.chunk[1] == 1 && level.chunk[2] == 1;
-    const Index3 chunk = is_row ? Index3::Constant(piece_of_rows) : level.chunk;
+    const Index3 piece =
+        is_stored_in_rows(level) ? Index3(Index3::Constant(piece_of_rows)) : piece_of(level);
     std::vector<SampleBox> parts;
-    for_each_piece(chunk, box,
+    for_each_piece(piece, box,
                    [&](const Index3&, const SampleBox& part) { parts.push_back(part); });
     const auto away = [&](const SampleBox& part) {
         return (part.low + part.high - box.low - box.high).cast<std::int64_t>().squaredNorm();

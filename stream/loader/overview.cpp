@@ -27,10 +27,10 @@ constexpr std::int64_t most_pieces = 512;
 Volume whole_level(const Store& store, int level, const std::stop_token& stop,
                    const std::function<void(double)>& made = {}) {
     const StoreInfo& info = store.info();
-    const auto& [geometry, chunk] = level_of(store, level);
+    const Geometry& geometry = level_of(store, level).geometry;
     const SampleBox box = whole_box(geometry);
     std::vector<SampleBox> pieces;
-    for_each_piece(chunk, box,
+    for_each_piece(piece_of(level_of(store, level)), box,
                    [&](const Index3&, const SampleBox& piece) { pieces.push_back(piece); });
     std::vector<std::byte> all(bytes_of(box, info.type));
     std::atomic<std::size_t> done{0};
@@ -48,7 +48,7 @@ Volume thinned_level(const Store& store, std::int64_t samples, std::stop_token s
     const StoreInfo& info = store.info();
     const auto level = static_cast<int>(info.levels.size()) - 1;
     const Level& grid = info.levels.back();
-    const bool by_row = grid.chunk[1] == 1 && grid.chunk[2] == 1;
+    const bool by_row = is_stored_in_rows(grid);
     const auto count_at = [&](int step) {
         return Index3((grid.geometry.size + Index3::Constant(step - 1)) / step);
     };
@@ -108,10 +108,8 @@ Volume read_level(const Store& store, int level, const io::Progress& progress) {
         throw io::InputError(store.info().address + ": level " + std::to_string(level) +
                              " is larger than the memory there is; take a coarser one");
     }
-    std::atomic<double> made{0};
-    const auto tell = [&] { progress(made); };
-    return while_telling(progress ? tell : std::function<void()>(), [&](std::stop_token stop) {
-        return whole_level(store, level, std::move(stop), [&](double part) { made = part; });
+    return while_telling(progress, [&](const std::stop_token& stop, std::atomic<double>& made) {
+        return whole_level(store, level, stop, [&](double part) { made = part; });
     });
 }
 

@@ -101,28 +101,22 @@ std::vector<Entry> entries_in(const fs::path& folder) {
     std::vector<Entry> entries;
     const auto now = fs::file_time_type::clock::now();
     std::error_code error;
-    for (fs::directory_iterator inner(folder, error), end; inner != end && !error;
-         inner.increment(error)) {
-        std::error_code of_inner;
-        if (!is_hexadecimal(inner->path().filename().string(), folder_digits) ||
-            !fs::is_directory(inner->symlink_status(of_inner))) {
+    constexpr auto past_others = fs::directory_options::skip_permission_denied;
+    for (fs::recursive_directory_iterator file(folder, past_others, error), end;
+         file != end && !error; file.increment(error)) {
+        const bool in_folder = file.depth() == 1;
+        const auto digits = in_folder ? name_digits - folder_digits : folder_digits;
+        const bool is_ours = is_hexadecimal(file->path().filename().string(), digits);
+        if (in_folder || !is_ours) file.disable_recursion_pending();
+        std::error_code of_entry;
+        if (!in_folder || !is_ours || !fs::is_regular_file(file->symlink_status(of_entry)))
             continue;
-        }
-        for (fs::directory_iterator file(inner->path(), of_inner), last; file != last && !of_inner;
-             file.increment(of_inner)) {
-            std::error_code of_entry;
-            if (!is_hexadecimal(file->path().filename().string(), name_digits - folder_digits) ||
-                !fs::is_regular_file(file->symlink_status(of_entry))) {
-                continue;
-            }
-            const auto used = file->last_write_time(of_entry);
-            const auto bytes = file->file_size(of_entry);
-            if (of_entry) continue;
-            // Of before the clock was set back: otherwise they would outlive all that is used now.
-            const bool of_the_future = used > now + std::chrono::seconds(2);
-            entries.push_back(
-                {file->path(), of_the_future ? fs::file_time_type::min() : used, bytes});
-        }
+        const auto used = file->last_write_time(of_entry);
+        const auto bytes = file->file_size(of_entry);
+        if (of_entry) continue;
+        // Of before the clock was set back: otherwise they would outlive all that is used now.
+        const bool of_the_future = used > now + std::chrono::seconds(2);
+        entries.push_back({file->path(), of_the_future ? fs::file_time_type::min() : used, bytes});
     }
     return entries;
 }

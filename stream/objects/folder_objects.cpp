@@ -62,11 +62,7 @@ class FolderObjects : public Objects {
             fail(wanted.key, "is shorter than its metadata say; copy it again");
         }
         if (range.from_end) range.offset = size - range.length;
-        if (range.length > wanted.most) {
-            fail(wanted.key, "has " + std::to_string(range.length) +
-                                 " bytes, more than its metadata allow; copy it again" +
-                                 (wanted.probe ? ", or allow more memory" : ""));
-        }
+        if (range.length > wanted.most) fail_too_long(name_of(wanted.key), wanted);
         Bytes bytes = read(wanted.key, file.number(), range);
         if (wanted.identity) {
             const std::string after = io::identity_of(file.number());
@@ -104,6 +100,11 @@ class FolderObjects : public Objects {
 };
 
 }  // namespace
+
+void fail_too_long(const std::string& name, const Wanted& wanted) {
+    throw io::InputError(name + ": has more bytes than its metadata allow; copy it again" +
+                         (wanted.probe ? ", or allow more memory" : ""));
+}
 
 std::vector<std::optional<Bytes>> Objects::get_all(std::span<const Wanted> wanted,
                                                    std::uint64_t most, std::stop_token stop) const {

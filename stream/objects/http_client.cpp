@@ -140,7 +140,7 @@ std::string words_of(const Job& job, CURLcode code, long status) {
         return "the server gives whole files only, no parts of them; copy the store from there";
     }
     if (job.no_memory) return no_memory_words;
-    if (job.too_long) return "the server gives more bytes than the metadata allow";
+    if (job.too_long) return "the server gives more bytes than were asked for";
     if (code != CURLE_OK) return curl_easy_strerror(code);
     if (status >= 400) return "the server answers with status " + std::to_string(status);
     return "the server gives fewer bytes than were asked for";
@@ -344,6 +344,7 @@ class HttpClient::Worker {
         curl_easy_getinfo(easy, CURLINFO_RETRY_AFTER, &wait_s);
         job->answer.status = status;
         if (const auto range = content_range_of(easy)) job->answer.whole_size = range->whole;
+        job->answer.too_long = job->too_long && !job->request.range;
         job->answer.version =
             header_of(easy, "ETag") + '\n' + header_of(easy, "Last-Modified") + '\n';
         traffic_.request(job->answer.body.size());

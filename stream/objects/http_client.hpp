@@ -24,8 +24,9 @@ struct HttpAnswer {
     Bytes body;       ///< of 200 and 206
     /// [bytes] Of the object that a range was asked of, where the server tells.
     std::optional<std::uint64_t> whole_size = std::nullopt;
-    std::string version;  ///< ETag and Last-Modified, as far as the server tells them
-    std::string error;    ///< what went wrong after all attempts; empty: nothing
+    std::string version;    ///< ETag and Last-Modified, as far as the server tells them
+    std::string error;      ///< what went wrong after all attempts; empty: nothing
+    bool too_long = false;  ///< an error: there are more bytes than asked for
 };
 
 struct HttpLimits {
@@ -43,7 +44,7 @@ class HttpClient {
     HttpClient& operator=(const HttpClient&) = delete;
 
     /// Answers in the order of the requests, when all are there. An answer has a body, or a status
-    /// of 400 and above, or an error, as where all bodies have more than `most` bytes. Throws
+    /// of 400 and above, or an error, also if all bodies have more than `most` bytes. Throws
     /// Cancelled at once when `stop` is requested.
     std::vector<HttpAnswer> get(std::span<const HttpRequest> requests, std::stop_token stop,
                                 std::uint64_t most = UINT64_MAX);

@@ -165,6 +165,7 @@ class HttpObjects : public Objects {
     }
 
     std::optional<Bytes> body_of(const Wanted& wanted, HttpAnswer answer) const {
+        if (answer.too_long) fail_too_long(name_of(wanted.key), wanted);
         if (!answer.error.empty()) {
             throw io::InputError(name_of(wanted.key) + ": " + answer.error +
                                  "; check the address and the network, and try again");

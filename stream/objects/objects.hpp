@@ -37,6 +37,9 @@ struct Wanted {
     std::string* identity = nullptr;
 };
 
+/// Throws io::InputError: it has more bytes than it may have, and what to do.
+[[noreturn]] void fail_too_long(const std::string& name, const Wanted& wanted);
+
 /// Safe to use from several threads at a time.
 class Objects {
   public:

@@ -91,16 +91,16 @@ class Conversion {
     Converted run() {
         partial_.check();  // that the image holds the same folder
         image_.write_metadata({});
-        for (int l = 0; l < image_.levels(); ++l) {
-            while_telling([&] { tell(done_); },
-                          [&](const std::stop_token& stop) {
-                              for_all_at_once(static_cast<std::size_t>(chunks(l)), options_.threads,
-                                              stop, [&](std::size_t i, const auto& until) {
-                                                  convert(l, std::int64_t(i), until);
-                                              });
-                          });
-        }
-        tell(total_);
+        while_telling(options_.progress, [&](const std::stop_token& stop, auto& made) {
+            std::atomic<std::int64_t> done = 0;
+            for (int l = 0; l < image_.levels(); ++l) {
+                for_all_at_once(std::size_t(chunks(l)), options_.threads, stop,
+                                [&](std::size_t i, const auto& until) {
+                                    convert(l, std::int64_t(i), until);
+                                    made = double(++done) / double(total_);
+                                });
+            }
+        });
         if (image_.stored_chunks() + empty_ != static_cast<std::uint64_t>(total_)) {
             throw io::OutputError(partial_.result().string() +
                                   ": chunks were removed while it was written; run it again");
@@ -113,12 +113,6 @@ class Conversion {
     std::int64_t chunks(int level) const {
         return image_.chunks(level).cast<std::int64_t>().prod();
     }
-    void tell(std::int64_t done) const {
-        if (options_.progress) {
-            options_.progress(static_cast<double>(done) / static_cast<double>(total_));
-        }
-    }
-
     void convert(int level, std::int64_t number, const std::stop_token& stop) {
         const Index3 count = image_.chunks(level);
         const Index3 chunk(static_cast<int>(number % count[0]),
@@ -133,7 +127,6 @@ class Conversion {
             if (!image_.write(level, chunk, *samples)) ++empty_;
         }
         if (level == 0) seen_.take(from_.info().type, *samples);
-        ++done_;
     }
 
     Bytes read(const SampleBox& box, const std::stop_token& stop) const {
@@ -149,7 +142,6 @@ class Conversion {
     GrowingImage image_;
     SeenRange seen_;
     std::int64_t total_ = 0;
-    std::atomic<std::int64_t> done_ = 0;
     std::atomic<std::uint64_t> kept_ = 0, empty_ = 0;
 };
 
@@ -166,18 +158,16 @@ Converted convert_to_zarr(const Store& from, int level, const fs::path& out,
         throw std::invalid_argument("there are 1 to 256 threads");
     }
     check_zarr_place(out);
-    double made = 0;
-    std::function<void()> tell;
-    if (options.progress) tell = [&] { options.progress(made); };
     const auto source = [&](const std::stop_token& stop) { return source_of(from, level, stop); };
-    const nlohmann::json before = while_telling(tell, source);
+    const nlohmann::json before = while_telling(options.progress, source);
     io::GrowingFolder folder =
         options.resumable
             ? io::GrowingFolder::resumable(out, job_of(from, level, options, before).dump(1))
             : io::GrowingFolder::alone(out);
     Converted converted = Conversion(from, level, options, folder).run();
-    made = 1;
-    const nlohmann::json after = while_telling(tell, source);
+    io::Progress at_end;
+    if (options.progress) at_end = [&](double) { options.progress(1); };
+    const nlohmann::json after = while_telling(at_end, source);
     if (after["content"] != before["content"]) fail_changed(from);
     folder.put_in_place();
     converted.note = folder.note();

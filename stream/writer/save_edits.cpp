@@ -256,15 +256,12 @@ void save_edits(const Store& from, const Opened& opened, int level, const Sample
     }
     check_edits_place(out, opened);
     io::GrowingFolder folder = io::GrowingFolder::alone(out);
-    std::atomic<double> made{0};
-    const auto tell = [&] { progress(made); };
-    const auto save = [&](const std::stop_token& stop) {
+    while_telling(progress, [&](const std::stop_token& stop, std::atomic<double>& made) {
         Saving saving(from, level, edits, folder.result(),
                       note_for(from, opened, level, edits, stop), made, stop);
         write_note(folder.result(), out, saving.run());
-    };
-    while_telling(progress ? tell : std::function<void()>(), save);
-    if (progress) tell();
+    });
+    if (progress) progress(1);
     folder.put_in_place(check_replaceable);
 }
 

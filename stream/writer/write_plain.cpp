@@ -72,28 +72,24 @@ void write_plain(const Store& from, int level, const std::filesystem::path& out,
     if (!problem.empty()) throw io::OutputError(problem);
     const std::string_view extension = io::written_extension_of(out);
     const bool raw = extension == ".raw";
-    std::atomic<double> made{0};
-    std::function<void()> tell;
-    if (options.progress) tell = [&] { options.progress(made); };
     if (raw || (extension == ".nrrd" && !options.compress)) {
+        io::PendingFile file(out);
+        if (!raw) file.write(nrrd_head(grid, from.info().type));
         const auto files_now = [&](const std::stop_token& stop) {
             return files_at(from.info().address, stop);
         };
-        const std::uint64_t files = while_telling(tell, files_now);
-        io::PendingFile file(out);
-        if (!raw) file.write(nrrd_head(grid, from.info().type));
-        while_telling(
-            tell, [&](const std::stop_token& stop) { write_slabs(from, level, file, made, stop); });
-        if (tell) tell();
-        if (while_telling(tell, files_now) != files) fail_changed(from);
+        std::uint64_t files = 0;
+        while_telling(options.progress, [&](const std::stop_token& stop, auto& made) {
+            files = files_now(stop);
+            write_slabs(from, level, file, made, stop);
+        });
+        io::Progress at_end;
+        if (options.progress) at_end = [&](double) { options.progress(1); };
+        if (while_telling(at_end, files_now) != files) fail_changed(from);
         file.commit();
         return;
     }
-    Bytes samples(bytes_of(whole_box(grid), from.info().type));
-    while_telling(tell, [&](const std::stop_token& stop) {
-        from.read(level, whole_box(grid), samples, stop);
-    });
-    io::write_volume(volume_from(grid, from.info().type, std::move(samples)), out, options);
+    io::write_volume(read_level(from, level, options.progress), out, options);
 }
 
 }  // namespace palpate::stream

@@ -85,7 +85,7 @@ TEST(Store, metadata_that_ask_for_more_than_there_can_be_are_refused_in_bounded_
         {"blocks.n5", "1 GiB"},
         {"packed.n5", "is a damaged gzip stream"},
         {"shards.zarr", "2^20 chunks"},
-        {"long.zarr", "more than its metadata allow"}};
+        {"long.zarr", "more bytes than its metadata allow"}};
     for (const auto& [name, reason] : wrong) {
         SCOPED_TRACE(name);
         expect_failure(palpate_in_3_gb(folder, std::string("info ") + name), 3, reason);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -70,6 +71,24 @@ TEST(Editor, a_stroke_whose_first_edit_fails_is_a_step_of_its_own) {
     editor.apply(fill(6, 3), EditStep::same);
     EXPECT_EQ(editor.undo_steps(), 2U);
     EXPECT_EQ(editor.undo(), (SampleBox{Index3::Constant(5), Index3::Constant(6)}));
+}
+
+TEST(Editor, an_edit_tells_its_progress_and_can_be_stopped_by_it) {
+    Editor editor(samples_of(noise_of(SampleType::uint8, grid(cube(100)), 1)));
+    const auto before = editor.samples();
+    const edit::Fill all{whole_box(before->geometry()), 3};
+    std::vector<double> told;
+    const auto tell = [&](double fraction) { told.push_back(fraction); };
+    const auto stop_in_the_middle = [](double fraction) {
+        if (fraction > 0.5) throw std::runtime_error("stopped");
+    };
+    EXPECT_THROW(editor.apply(all, EditStep::own, stop_in_the_middle), std::runtime_error);
+    EXPECT_EQ(editor.samples(), before);
+    EXPECT_EQ(editor.undo_steps(), 0U);
+    EXPECT_EQ(editor.apply(all, EditStep::own, tell), all.box);
+    EXPECT_GT(told.size(), 10U);
+    EXPECT_TRUE(std::ranges::is_sorted(told));
+    EXPECT_LE(told.back(), 1);
 }
 
 TEST(Editor, a_stroke_of_many_edits_is_one_step) {

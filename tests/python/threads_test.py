@@ -12,6 +12,7 @@ import threading
 import time
 
 import palpate
+import pytest
 
 import live_test
 
@@ -191,6 +192,16 @@ run.edit(palpate.Fill([195, 195, 195], [198, 198, 198], 80))
 """, serve(tmp_path, SilentAbout) + "v.zarr") < 10  # of 50
 
 
+def test_ctrl_c_ends_an_edit_in_memory():
+    for call in ("palpate.Editor(volume).apply(edit)",
+                 "palpate.Run(volume, palpate.Setup(isovalue=100, real_time=False)).edit(edit)"):
+        assert interrupted_after(f"""
+volume = palpate.load("synthetic:sphere:640x640x640").volume
+edit = palpate.Stroke(palpate.Brush(kind="smooth", radius=1000), [0, 0, 0], [0, 0, 0])
+{call}
+""") < 5  # of a minute
+
+
 def test_ctrl_c_ends_the_wait_for_a_silent_server():
     with socket.create_server(("127.0.0.1", 0)) as silent:  # connects, and never answers
         address = f"http://127.0.0.1:{silent.getsockname()[1]}/v.zarr"
@@ -206,15 +217,20 @@ class SilentAboutMost(http.server.SimpleHTTPRequestHandler):
         super().do_GET()
 
 
-def test_ctrl_c_ends_the_saving_of_edits_and_they_are_rescued_without_the_server(tmp_path):
+@pytest.mark.parametrize("how", ["option", "command"])
+def test_ctrl_c_ends_the_saving_of_edits_and_they_are_rescued_without_the_server(tmp_path, how):
     subprocess.run([os.environ["PALPATE"], "convert", "-q", "synthetic:sphere:200x200x200", tmp_path / "v.zarr",
                     "--chunk", "64"], check=True)
-    (tmp_path / "c.txt").write_text("0.1 fill 1,1,1:4,4,4 9\n0.2 save no/such/folder.zarr\n")
+    save = ["--save", "e.zarr"] if how == "option" else []
+    (tmp_path / "c.txt").write_text("0.1 fill 1,1,1:4,4,4 9\n0.2 save no/such/folder.zarr\n"
+                                    + ("" if save else "0.3 save e.zarr\n"))
     touch = subprocess.Popen([os.environ["PALPATE"], "touch", serve(tmp_path, SilentAboutMost) + "v.zarr", "--headless",
                               "--normal-priority", "--device", "simulated:hand=hold", "--isovalue", "100",
-                              "--commands", "c.txt", "--save", "e.zarr", "-q"], cwd=tmp_path,
+                              "--commands", "c.txt", *save, "-q"], cwd=tmp_path,
                              env={**os.environ, "TMPDIR": str(tmp_path)}, stderr=subprocess.PIPE, text=True)
     assert "create it first" in touch.stderr.readline()  # so the samples are filled
+    if how == "command":
+        live_test.until(lambda: list(tmp_path.glob(".palpate-*.part")))
     begin = time.monotonic()
     while touch.poll() is None:
         touch.send_signal(signal.SIGINT)

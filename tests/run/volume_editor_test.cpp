@@ -5,6 +5,7 @@
 #include <cstring>
 #include <optional>
 
+#include "palpate/stream/store.hpp"
 #include "run/run_support.hpp"
 
 namespace palpate::run {
@@ -307,6 +308,27 @@ TEST(VolumeEditor, of_too_many_edits_it_keeps_those_of_undo_and_says_that_it_for
     EXPECT_TRUE(editor.undo());
     EXPECT_EQ(editor.state().samples->sample({1, 1, 1}), 8);
     EXPECT_EQ(editor.state().version, 2999U);
+}
+
+TEST(VolumeEditor, edits_that_wait_for_their_turn_stop_when_asked_to) {
+    Pressing p;
+    p.editor.apply(edit::Fill{{{1, 1, 1}, {2, 2, 2}}, 50});
+    const auto edits = [&] {
+        const auto stop_at_second = [calls = std::make_shared<int>()](double) {
+            if (++*calls > 1) throw stream::Cancelled{};
+        };
+        const edit::Fill fill{{{5, 5, 5}, {6, 6, 6}}, 60};
+        EXPECT_THROW(p.editor.apply(fill, stop_at_second), stream::Cancelled);
+        EXPECT_THROW(p.editor.undo(stop_at_second), stream::Cancelled);
+        EXPECT_THROW(p.editor.redo(stop_at_second), stream::Cancelled);
+    };
+    const auto start = [&](const Session&, const auto&) -> std::unique_ptr<Servo> {
+        std::thread(edits).join();  // which wait until this returns
+        throw std::runtime_error("not started");
+    };
+    EXPECT_THROW(p.editor.attach({make_renderer(p.field, p.isovalue, {}), {}}, start),
+                 std::runtime_error);
+    EXPECT_EQ(p.editor.state().version, 1U);
 }
 
 TEST(VolumeEditor, refuses_brushes_that_cannot_work_and_says_why) {

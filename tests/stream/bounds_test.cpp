@@ -9,7 +9,9 @@
 #include "stream/formats/unpacking_room.hpp"
 #include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
+#include "stream/volumes_store.hpp"
 #include "stream/written_files.hpp"
+#include "support/edits.hpp"
 #include "support/random.hpp"
 #include "support/traced_process.hpp"
 
@@ -261,7 +263,8 @@ TEST(Bounds, metadata_take_no_more_memory_than_may_be_used_and_are_held_once) {
     for (const std::string name : {"large", "large.n5"}) {
         const std::string message =
             message_of<io::InputError>([&] { (void)open_store(folder / name, options); });
-        EXPECT_TRUE(contains(message, "its values take more than 30 MiB")) << message;
+        EXPECT_TRUE(contains(message, "its values take more than 30 MiB; allow more memory"))
+            << message;
         EXPECT_NO_THROW((void)open_store(folder / name)) << name;
     }
 }
@@ -292,10 +295,23 @@ TEST(Bounds, files_of_metadata_that_are_read_at_once_share_what_may_be_used) {
         const auto refused = [&](const std::string& address) {
             return message_of<io::InputError>([&] { (void)open_store(address, options); });
         };
-        const std::string here = refused(folder / name), there = refused(server.address(name));
-        EXPECT_TRUE(contains(here, "its metadata allow; copy it again, or allow more memory"))
-            << here;
-        EXPECT_TRUE(contains(there, "more bytes than the metadata allow")) << there;
+        for (const std::string& address : {std::string(folder / name), server.address(name)}) {
+            const std::string said = refused(address);
+            EXPECT_TRUE(contains(said, "its metadata allow; copy it again, or allow more memory"))
+                << said;
+        }
+    }
+}
+
+TEST(Bounds, pieces_of_few_samples_are_read_and_kept_together) {
+    for (const Index3& chunk : {Index3(1, 1, 1), Index3(3, 1, 2), Index3(1, 100, 1)}) {
+        const Volume volume = support::noise_of(SampleType::uint8, support::grid({100, 90, 80}), 5);
+        const auto store = store_in_pieces(volume, chunk);
+        EXPECT_TRUE(support::same_bits(read_level(*store, 0), volume));
+        BrickLoader loader(store, overview_of(*store), {.memory = 100 * megabyte, .threads = 1});
+        (void)loader.read({0, 0, 0}, 0);
+        (void)loader.read({1, 0, 0}, 0);
+        EXPECT_LT(store->traffic().requests, 1000U) << chunk.transpose();
     }
 }
 

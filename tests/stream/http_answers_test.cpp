@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "io/volume_support.hpp"
+#include "palpate/edit.hpp"
 #include "palpate/stream/convert.hpp"
 #include "palpate/stream/edits.hpp"
 #include "palpate/stream/loader.hpp"

@@ -19,7 +19,7 @@
 #include <thread>
 
 #include "io/process/located_chunks.hpp"
-#include "stream/formats/chunk_table.hpp"
+#include "stream/formats/located_file.hpp"
 #include "stream/store_support.hpp"
 #include "stream/written_files.hpp"
 #include "support/eventually.hpp"
@@ -230,10 +230,10 @@ TEST(LocatedFile, who_is_stopped_while_a_part_is_fetched_asks_no_more_and_the_ne
 TEST(LocatedFile, who_waits_for_its_turn_stops_while_another_one_still_reads) {
     FarFile far;
     const auto located = std::make_shared<LocatedFile>(far.file());
-    const io::ImageArray level = located->file.describe(0, 0).levels.at(0);
+    const auto objects = folder_objects(hdf5_written());
+    const ChunkedArray array = located_volume(located->file.describe(0, 0), located, {}).arrays[0];
     ASSERT_EQ(::kill(*children().begin(), SIGKILL), 0);  // the next one reads all anew
-    const ChunkTable one(located, level.id, chunks_of(level)),
-        other(located, level.id, chunks_of(level));
+    const ChunkReader one(objects, array), other(objects, array);
     std::latch reads(1), go_on(1);
     std::once_flag first;
     far.before = [&] {
@@ -243,11 +243,11 @@ TEST(LocatedFile, who_waits_for_its_turn_stops_while_another_one_still_reads) {
         });
     };
     const std::array<std::int64_t, 3> chunk{};
-    std::jthread reader([&] { EXPECT_TRUE(one.find(chunk, {})); });
+    std::jthread reader([&] { EXPECT_TRUE(one.chunk(chunk, {})); });
     reads.wait();
     std::stop_source stop;
     std::jthread waiter(
-        [&] { EXPECT_THROW((void)other.find(chunk, stop.get_token()), Cancelled); });
+        [&] { EXPECT_THROW((void)other.chunk(chunk, stop.get_token()), Cancelled); });
     stop.request_stop();
     waiter.join();
     go_on.count_down();
@@ -256,12 +256,13 @@ TEST(LocatedFile, who_waits_for_its_turn_stops_while_another_one_still_reads) {
 TEST(LocatedFile, threads_share_the_turns_of_a_file_and_the_stop_of_one_is_not_that_of_others) {
     FarFile far;
     const auto located = std::make_shared<LocatedFile>(far.file());
-    std::vector<io::ImageArray> levels = located->file.describe(0, 0).levels;
-    std::vector<std::unique_ptr<ChunkTable>> tables;
-    std::vector<std::vector<io::ChunkPlace>> right;
-    for (const io::ImageArray& level : levels) {
-        right.push_back(located->file.locate(level.id, {0, 0, 0}, chunks_of(level)));
-        tables.push_back(std::make_unique<ChunkTable>(located, level.id, chunks_of(level)));
+    std::vector<std::unique_ptr<ChunkReader>> readers;
+    std::vector<std::optional<Bytes>> right;
+    constexpr std::array<std::int64_t, 3> chunk{};
+    for (const auto& array : located_volume(located->file.describe(0, 0), located, {}).arrays) {
+        const auto objects = folder_objects(hdf5_written());
+        right.push_back(ChunkReader(objects, array).chunk(chunk, {}));
+        readers.push_back(std::make_unique<ChunkReader>(objects, array));
     }
     std::atomic<int> found{0};
     std::vector<std::jthread> threads;
@@ -272,13 +273,11 @@ TEST(LocatedFile, threads_share_the_turns_of_a_file_and_the_stop_of_one_is_not_t
             const std::jthread stopper([&] {
                 if (stops) stop.request_stop();
             });
-            for (std::size_t l = 0; l < tables.size(); ++l) {
+            for (std::size_t l = 0; l < readers.size(); ++l) {
                 try {
-                    const auto place =
-                        tables[l]->find(std::array<std::int64_t, 3>{}, stop.get_token());
-                    const io::ChunkPlace& expected = right[l].front();
-                    ASSERT_TRUE(place);
-                    EXPECT_EQ(place->offset, expected.offset);
+                    const auto samples = readers[l]->chunk(chunk, stop.get_token());
+                    ASSERT_TRUE(samples);
+                    EXPECT_EQ(samples, right[l]);
                     ++found;
                 } catch (const Cancelled&) {
                     EXPECT_TRUE(stops);
@@ -287,7 +286,7 @@ TEST(LocatedFile, threads_share_the_turns_of_a_file_and_the_stop_of_one_is_not_t
         });
     }
     threads.clear();
-    EXPECT_GE(found, 4 * static_cast<int>(tables.size()));
+    EXPECT_GE(found, 4 * static_cast<int>(readers.size()));
 }
 
 TEST(LocatedFile, a_helper_ends_with_its_caller) {

@@ -56,12 +56,13 @@ TEST(RemoteFile, hdf5_and_tiff_read_as_on_the_disk_although_answers_fail) {
     EXPECT_EQ(files, 9);
 }
 
-TEST(RemoteFile, names_with_escapes_and_a_query_are_found) {
+TEST(RemoteFile, names_with_escapes_a_query_and_a_fragment_are_found) {
     const ScratchFolder folder;
     fs::create_directories(folder.path() / "a folder");
     fs::copy_file(hdf5_written() / "image.ims", folder.path() / "a folder" / "an image 50%.ims");
     const VolumeServer server({"--folder", folder.path().string()});
-    const auto store = open_store(server.address("a%20folder/an%20image%2050%25.ims?version=1"));
+    const auto store =
+        open_store(server.address("a%20folder/an%20image%2050%25.ims?version=1#top"));
     expect_same_store(*open_store(hdf5_written() / "image.ims"), *store);
 }
 

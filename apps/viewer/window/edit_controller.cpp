@@ -98,10 +98,11 @@ void EditController::redo() {
     step(&run::VolumeEditor::redo, tr("There is nothing to redo"));
 }
 
-void EditController::step(bool (run::VolumeEditor::*take)(), const QString& if_none) {
+void EditController::step(bool (run::VolumeEditor::*take)(const OnProgress&),
+                          const QString& if_none) {
     messages_.guarded([&] {
         run::VolumeEditor* editor = content_.editor();
-        if (editor && !(editor->*take)()) messages_.show_done(if_none);
+        if (editor && !(editor->*take)({})) messages_.show_done(if_none);
     });
 }
 

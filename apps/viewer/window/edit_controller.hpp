@@ -60,7 +60,7 @@ class EditController : public Controller {
                const std::function<void()>& once_saved);
     void show();
     void write_surface(const QString& path, const std::shared_ptr<SurfaceMesh>& mesh);
-    void step(bool (run::VolumeEditor::*take)(), const QString& if_none);
+    void step(bool (run::VolumeEditor::*take)(const OnProgress&), const QString& if_none);
 
     BackgroundTask saving_;
     QString problem_;

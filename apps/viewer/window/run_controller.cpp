@@ -131,7 +131,9 @@ void RunController::open_tool(const QString& path) {
     const auto read = std::make_shared<io::ToolSpec>();
     reader_.start(
         tr("Reading the tool"),
-        [read, path](const io::Progress&) { *read = io::tool_spec_from(path.toStdString()); },
+        [read, path](const io::Progress& progress) {
+            *read = io::tool_spec_from(path.toStdString(), progress);
+        },
         [this, read, path] {
             if (content_.live()) panel_.tool_controls().add(short_name(path), *read);
         });

@@ -43,7 +43,8 @@ class Streamer;
 
 /// Any thread may call any function. state() does not wait for an edit. Only apply() waits for
 /// samples of a store: an edit without all of its samples begins again when they have loaded, and
-/// other edits may come before it meanwhile.
+/// other edits may come before it meanwhile. Functions that edit wait for edits under way. With
+/// `progress` they work on another thread, and it is called all the time.
 class VolumeEditor {
   public:
     /// Enough for a brush that works for seven minutes (30 MB).
@@ -79,13 +80,12 @@ class VolumeEditor {
     void set_brush(const std::optional<HandBrush>& brush);
     /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does and for
     /// one that takes more memory than there is, std::runtime_error for a servo that takes no
-    /// commands, and io::InputError for samples that cannot be read. Throws stream::Cancelled if it
-    /// waits for samples when `stop` is requested.
-    void apply(const Edit& edit, const std::stop_token& stop = {});
+    /// commands, io::InputError for samples that cannot be read, and what `progress` throws.
+    void apply(const Edit& edit, const OnProgress& progress = {});
     /// False if there is nothing to undo, or redo. A brush that touches then pauses until it has
     /// left the surface or set_brush() is called. Otherwise it would undo the undo.
-    bool undo();
-    bool redo();
+    bool undo(const OnProgress& progress = {});
+    bool redo(const OnProgress& progress = {});
 
     /// False after so many edits that some are no longer known. StartServo then gets only the
     /// others.
@@ -123,16 +123,18 @@ class VolumeEditor {
     VolumeEditor(std::shared_ptr<const Samples> samples, Streamer* streamer, std::uint64_t memory,
                  Pace pace, std::size_t most_versions);
     void forget_versions();
+    using Lock = std::unique_lock<std::mutex>;
+    Lock locked(const std::stop_token& stop);
     template <class Work>
-    void with_samples(std::unique_lock<std::mutex>& lock, const std::stop_token& stop, Work&& work);
+    void with_samples(Lock& lock, const std::stop_token& stop, const OnProgress& tell, Work&& work);
     void fetch(const std::shared_ptr<const Samples>& samples, const Edit& edit, Fetched& fetched,
-               const std::stop_token& stop) const;
+               const std::stop_token& stop, const OnProgress& tell) const;
     void read(const SampleBox& box, std::span<std::byte> out);
     void run(const std::stop_token& stop);
     void brush(Hand& hand, std::chrono::steady_clock::time_point now);
     bool brush_from(const Touch& from, const Touch& to, Hand& hand, double isovalue);
     Edit edit_of(const Brush& brush, const Touch& from, const Touch& to, Hand& hand);
-    void edit(const Edit& edit, EditStep step);
+    void edit(const Edit& edit, EditStep step, const OnProgress& progress = {});
     bool go_to(SampleBox changed);
     void send(const command::Samples& command);
     std::uint64_t version_of(const std::shared_ptr<const Samples>& samples) const;

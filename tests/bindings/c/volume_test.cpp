@@ -251,6 +251,23 @@ TEST(CProgress, of_a_thread_is_told_by_every_long_call_and_can_stop_it) {
     EXPECT_EQ(palpate_data_save(data, path.c_str()), PALPATE_CANCELLED);
     EXPECT_EQ(calls, 7) << "once each";
     EXPECT_EQ(field, first);
+    PALPATE_STRUCT(palpate_brush, brush);
+    brush.radius = 9;
+    brush.level = 100;
+    const double at[3] = {64, 64, 64};
+    const std::vector<double> points(std::size_t{3} * 5000);
+    std::vector<double> values(5000);
+    EXPECT_EQ(palpate_data_stroke(data, &brush, at, at), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_data_fill(data, low, high, 99), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_data_replace(data, low, volume), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_data_undo(data, nullptr), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_data_redo(data, nullptr), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_field_values(field, points.data(), 5000, values.data(), nullptr),
+              PALPATE_CANCELLED);
+    EXPECT_EQ(calls, 13) << "once each";
+    PALPATE_STRUCT(palpate_edit_state, edits);
+    EXPECT_EQ(palpate_data_edits(data, &edits), PALPATE_OK);
+    EXPECT_EQ(edits.version, 1U);
     std::thread([&] { EXPECT_EQ(palpate_volume_describe(volume, &info), PALPATE_OK); }).join();
     const auto describe = [](double, void* context) {
         PALPATE_STRUCT(palpate_volume_info, again);
