@@ -69,10 +69,10 @@ PALPATE_API const char *palpate_version(void); /* MAJOR.MINOR.PATCH, as "0.2.0" 
 /* "" after a call without error. Valid until the next call of this thread. */
 PALPATE_API const char *palpate_last_error(void);
 /* Sets a function (or null) that long calls of this thread call with 0 to 1, unless their options have
- * their own. It returns 0 to cancel the call. Calls may take long if they copy, adopt, load or describe
- * a volume, look up many values, make a field, a mesh or a run, edit or save data, read a tool or change
- * the device. A cancelled edit is made whole or not at all. Calls that are made in a callback do not
- * call it. */
+ * their own. It returns 0 to cancel the call. Long calls are those that copy, adopt, load or describe a
+ * volume, look up many values, or make a field, a mesh or a run. So are those that edit or save data,
+ * read a tool or change the device. A cancelled edit is made whole or not at all. Calls from within a
+ * callback do not call it. */
 PALPATE_API void palpate_set_progress(int32_t (*progress)(double fraction, void *context),
                                       void *context);
 
@@ -468,8 +468,8 @@ typedef struct palpate_run_options {
      * opened. Returns 0 to cancel. Since 0.3. */
     int32_t (*progress)(double fraction, void *context);
     void *context;
-    int32_t clutch_button;                /* from 1: the volume hangs on the hand while it is held; 0: 2,
-                                             or 1 where it is the only one; -1: none. Since 0.3 */
+    int32_t clutch_button;                /* from 1: moves the volume with the hand while held; 0: button 2,
+                                             or 1 if it is the only one; -1: none. Since 0.3 */
 } palpate_run_options;
 
 typedef struct palpate_snapshot {

@@ -21,7 +21,7 @@ bool names_a_mesh(const std::filesystem::path& path);
 
 /// The triangles of a mesh file, polygons cut into them, vertices as they are there (taken for mm),
 /// without normals; closed or not. Read by VTK in a process of its own (docs/io.md). Throws
-/// InputError, and what `progress` throws.
+/// InputError, and passes on exceptions of `progress`.
 SurfaceMesh read_mesh(const std::filesystem::path& path, const OnProgress& progress = {});
 
 /// Writes the mesh in the format of the path's extension, whole or not at all (PendingFile).

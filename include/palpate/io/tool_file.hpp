@@ -51,8 +51,8 @@ using ToolSpec = std::variant<PointSpec, SphereSpec, RodSpec, NeedleSpec, BurrSp
 /// "point", "sphere:RADIUS", "rod:LENGTH", "needle[:LENGTH,RADIUS]", "burr:RADIUS", "box:X,Y,Z",
 /// "fingertip", the name of a CSV file with columns x, y, z, whose points are the tool's, or that
 /// of a mesh (.stl, .ply, .obj, .vtp). Lengths in files are mm in tool axes. Throws
-/// std::invalid_argument for other text, InputError for a file that cannot be read, and what
-/// `progress` throws.
+/// std::invalid_argument for other text, InputError for a file that cannot be read. Exceptions
+/// of `progress` are passed on.
 ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress = {});
 /// The tool with neighbouring points about `spacing` [mm] apart; those of a file stay as they are.
 /// Null for a point. Throws std::invalid_argument for sizes that are none, and for more points than

@@ -43,8 +43,8 @@ class Streamer;
 
 /// Any thread may call any function. state() does not wait for an edit. Only apply() waits for
 /// samples of a store: an edit without all of its samples begins again when they have loaded, and
-/// other edits may come before it meanwhile. Functions that edit wait for edits under way. With
-/// `progress` they work on another thread, and it is called all the time.
+/// other edits may come before it meanwhile. Functions that edit wait for edits under way. If
+/// `progress` is given, another thread does the work, and `progress` is called regularly meanwhile.
 class VolumeEditor {
   public:
     /// Enough for a brush that works for seven minutes (30 MB).
@@ -80,7 +80,8 @@ class VolumeEditor {
     void set_brush(const std::optional<HandBrush>& brush);
     /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does and for
     /// one that takes more memory than there is, std::runtime_error for a servo that takes no
-    /// commands, io::InputError for samples that cannot be read, and what `progress` throws.
+    /// commands, and io::InputError for samples that cannot be read. Passes on exceptions of
+    /// `progress`.
     void apply(const Edit& edit, const OnProgress& progress = {});
     /// False if there is nothing to undo, or redo. A brush that touches then pauses until it has
     /// left the surface or set_brush() is called. Otherwise it would undo the undo.
