@@ -60,9 +60,9 @@ void add_view(CLI::App& app, const Words& words) {
     auto options = std::make_shared<ViewOptions>();
     CLI::App* command = app.add_subcommand("view", "Touch a volume and look at it, in a window");
     command->footer(
-        "Without a VOLUME it opens the CT of a head that comes with the program. Open or drop "
-        "another file there. ? lists the shortcuts.\n\nExample:\n  palpate view head.nrrd --device "
-        "mouse");
+        "Without a VOLUME the window offers the CT of a head that comes with the program. Open or "
+        "drop any file there. ? lists the shortcuts.\n\nExample:\n  palpate view head.nrrd "
+        "--device mouse");
     options->add_to(*command);
     command->callback([options, words] {
         options->settle();
