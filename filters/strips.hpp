@@ -1,4 +1,4 @@
-// The boxes of samples that a round sweeps: where bricks have terraces, and little else.
+// The boxes of samples that a round sweeps: they cover the bricks with terraces, and little else.
 #pragma once
 
 #include <vector>
@@ -12,9 +12,9 @@ struct Strip {
     int begin_x, end_x, begin_y, end_y, begin_z, end_z;
 };
 
-/// Strips that together have all samples of these bricks from slice begin_z to slice end_z - 1. One
-/// is cut where its parts are less work to sweep, because bricks between them have no terraces.
-/// What a sweep keeps of a strip fits into a second-level cache.
+/// Strips that together have all samples of these bricks from slice begin_z to slice end_z - 1. A
+/// strip is cut at bricks without terraces, if sweeping its parts is then less work. The rows that
+/// a sweep keeps fit into a second-level cache.
 std::vector<Strip> strips_of(const TerracedBricks& bricks, const MovedSamples& samples, int begin_z,
                              int end_z);
 

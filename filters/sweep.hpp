@@ -48,8 +48,8 @@ auto with_own_type(const MovedSamples& samples, const Work& work) {
     return samples.floats ? work(float{}) : work(std::uint16_t{});
 }
 
-/// a + 2b + c, four times their binomial mean. Sums are divided only at their end: factors of two
-/// change no bits.
+/// a + 2b + c, which is four times their binomial mean. The factor is divided out at the end. It is
+/// a power of two, so it changes no bits.
 PALPATE_INLINE float binomial(float a, float b, float c) {
     return a + 2 * b + c;
 }

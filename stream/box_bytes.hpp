@@ -15,11 +15,12 @@ struct ByPlace {
     }
 };
 
-/// Whether stored pieces are rows, as of a plain file: these cost nothing to read in parts.
+/// Whether stored pieces are rows, as in a plain file. Parts of rows can be read at no extra cost.
 bool is_stored_in_rows(const Level& level);
 
-/// Samples along each axis of the pieces that readers ask for and keep: the stored ones or, if
-/// those have few samples, several together. Each one costs memory beside its samples.
+/// Size of the pieces that readers request and keep [samples along each axis]. If stored pieces
+/// have few samples, a piece consists of several, because each takes memory in addition to its
+/// samples.
 Index3 piece_of(const Level& level);
 
 std::uint64_t bytes_of(const SampleBox& box, SampleType type);

@@ -10,10 +10,10 @@
 
 namespace palpate::stream {
 
-/// What work(stop) or work(stop, made) returns or throws. `tell`, an OnProgress or a function of
-/// nothing, is called first and then every 20 ms; what it throws stops the work and is thrown. It
-/// gets the part that the work has put into `made`, which begins at 0. Without `tell`, this thread
-/// works itself.
+/// Calls work(stop) or work(stop, made) on another thread, and returns or throws its result. `tell`
+/// (an OnProgress, or a function without arguments) is called on this thread before the work and
+/// then every 20 ms. An exception of `tell` stops the work and is passed on. `tell` gets `made`,
+/// the part that the work says is done, at first 0. Without `tell`, the work runs on this thread.
 template <class Tell, class Work>
 auto while_telling(const Tell& tell, Work&& work) {
     constexpr std::chrono::milliseconds between{20};

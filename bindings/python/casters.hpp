@@ -22,9 +22,9 @@
 
 namespace palpate::python {
 
-/// As py::gil_scoped_release. But if the interpreter ends meanwhile, Python would unwind this
-/// thread, through functions of C++ that abort the process then. It waits for the end of the
-/// process instead.
+/// As py::gil_scoped_release, but safe if the interpreter ends meanwhile. Python would then unwind
+/// this thread through C++ functions, which would abort the process. Instead, the thread waits
+/// until the process ends.
 class GilReleased {
   public:
     GilReleased() : thread_(PyEval_SaveThread()) {}
@@ -34,7 +34,7 @@ class GilReleased {
     GilReleased(const GilReleased&) = delete;
     GilReleased& operator=(const GilReleased&) = delete;
 
-    /// Does work that takes the GIL.
+    /// Calls work(), which takes the GIL. Does not return if the interpreter has ended.
     template <class Work>
     static void until_the_end(const Work& work) {
         try {

@@ -73,8 +73,8 @@ ReadHeader* header_reader(const std::filesystem::path& path);
 /// the first is taken.
 std::vector<std::filesystem::path> other_halves(const std::filesystem::path& path);
 
-/// What reading a header's volume reads beside it: the files that it names, the other half of a
-/// pair. None if it cannot be read.
+/// The other files that are read with this header's volume: those that it names, or the other half
+/// of a pair. None if the header cannot be read.
 std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& header);
 
 /// In lower case; of a.nii.gz both, which are packed.

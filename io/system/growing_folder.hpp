@@ -26,7 +26,7 @@ class GrowingFolder {
     /// link, a file, a folder without Palpate's marker, of another user, in use by another process,
     /// or with something in it that Palpate did not write; and if `out` itself is there.
     static GrowingFolder resumable(const std::filesystem::path& out, const std::string& job);
-    /// Throws what resumable() refuses now, and changes nothing.
+    /// Throws if resumable() would refuse now. Changes nothing.
     static void check_resumable(const std::filesystem::path& out, const std::string& job);
     ~GrowingFolder();
     GrowingFolder(const GrowingFolder&) = delete;

@@ -42,14 +42,14 @@ struct Kept {
     double moved = 0;            ///< odometers: translation [mm] ...
     double turned = 0;           ///< ... and rotation [rad] so far
     std::vector<int> suspects;   ///< room for one motion
-    /// A motion from the pose, and how far the test of its points has come. Where a budget ends,
-    /// the next update goes on from here.
+    /// A motion from the present pose, and the progress of testing its points. If a budget ends,
+    /// the next update continues from here.
     struct Pass {
         Vec3 translation = Vec3::Zero(), rotation = Vec3::Zero();  ///< [mm], [rad]
         std::optional<Pose> exact;                                 ///< the end of the whole motion
-        double part = 0;                       ///< that may be free; 0: no motion is under way
-        int next = 0;                          ///< the first point that was not looked at
-        int suspects = 0, outdated = 0;        ///< so many may meet something, and may not be free
+        double part = 0;                 ///< of the motion that may be free; 0: none is under way
+        int next = 0;                    ///< the first point that was not examined
+        int suspects = 0, outdated = 0;  ///< so many may meet something, and may not be free
         int tries = 0, again = 0, first = -1;  ///< test of those: the next one, what blocked last
         double least = 1;                      ///< what they leave of the part
     } pass;

@@ -15,12 +15,12 @@ struct Motion {
 
     /// Goes towards the pose that a translation [mm] and a rotation vector [rad] lead to; returns
     /// how far, from 0 to 1. With `exact`, that pose is the end. Small rotations only: chords are
-    /// straight. Where the budget ends, the tool has not moved, and the motion is under way
-    /// (Kept::pass).
+    /// straight. If the budget ends, the tool has not moved, and the rest of the test is left for
+    /// go_on() (Kept::pass).
     double go(const Vec3& translation, const Vec3& rotation, const Pose* exact = nullptr);
-    /// Goes on with the motion that is under way, in another update.
+    /// Continues the test of such a motion in a later update.
     double go_on();
-    /// The farthest pose to which that leads.
+    /// The farthest pose to which that motion may lead.
     Pose end() const { return pose_at(proxy.kept().pass.part); }
 
   private:

@@ -22,21 +22,22 @@
 
 namespace palpate::stream {
 
-/// A file that its arrays ask about, one thread at a time. Others wait, or are stopped.
+/// A file in which arrays look up their chunks, one thread at a time. Others wait until it is their
+/// turn or they are stopped.
 struct LocatedFile {
     explicit LocatedFile(io::ChunkFile of) : file(std::move(of)) {}
     io::ChunkFile file;
     UnpackingRoom turn{1};
 };
 
-/// Several chunks that have an index together of where each lies in its object.
+/// Groups of chunks. One index tells where each chunk of a group lies in its object.
 struct Shards {
     std::vector<std::int64_t> chunks;  ///< along each axis of the array, in a shard
     std::vector<int> axes;            ///< in the order in which the index counts, the slowest first
     std::vector<Codec> index_codecs;  ///< in the order of decoding
     bool index_at_start = false;
-    /// The one object of an array (HDF5, TIFF), in which the helper process looks up a shard when
-    /// the first chunk of it is wanted; null: each shard is an object, with its index in it.
+    /// The file of an array in HDF5 or TIFF. The helper process looks up a shard in it when its
+    /// first chunk is needed. Null: each shard is an object that contains its index.
     std::shared_ptr<LocatedFile> file = {};
     std::string id = {};  ///< of the array in that file
 };

@@ -1,4 +1,4 @@
-// A store whose samples are all finite, whatever its pieces hold. Private to stream/.
+// A store that replaces samples that are not finite. Private to stream/.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,8 @@
 
 namespace palpate::stream {
 
-/// Samples that are not finite become the least finite one, as in io::read_volume(). It is searched
-/// when it is first needed, unless the store gives the range.
+/// NaN and infinities become the least finite sample, as in io::read_volume(). This sample is
+/// searched when it is first needed, unless the store gives the range.
 class FiniteStore : public Store {
   public:
     const StoreInfo& info() const final { return info_; }
@@ -22,8 +22,8 @@ class FiniteStore : public Store {
 
     /// Where `count` samples that follow each other go, of which this index is the first.
     using Places = std::function<std::byte*(const Index3& first, std::size_t count)>;
-    /// Puts all samples of a box of a level there, run by run. Some may not be finite. Throws as
-    /// read().
+    /// Puts all samples of a box of a level to these places, run by run. Some may not be finite.
+    /// Throws as read().
     virtual void put(int level, const SampleBox& box, const Places& to,
                      const std::stop_token& stop) const = 0;
     /// Whether pieces of a level fit into the memory for unpacking.

@@ -19,8 +19,9 @@ struct DepthExtent {
 DepthExtent extent_along(const Geometry& geometry, const Vec3& towards);
 
 /// Where the surface is first met under a point of the picture, seen from `towards` (a unit vector
-/// to the viewer) [mm, physical]. `cuts` take away what lies on the side of their normals. Nothing
-/// beside the surface, and where the solid reaches out of the grid or of a cut towards the viewer.
+/// to the viewer) [mm, physical]. `cuts` remove everything on the side to which their normals
+/// point. Nothing beside the surface, and where the line of sight begins in the
+/// solid, at the border of the grid or at a cut.
 std::optional<Vec3> surface_under(const Field& field, double isovalue, const Vec3& at,
                                   const Vec3& towards, std::span<const CutPlane> cuts = {});
 

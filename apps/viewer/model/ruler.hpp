@@ -1,4 +1,4 @@
-// How positions and lengths in a volume are written.
+// Chooses unit and decimals for the positions and lengths of a volume.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct Ruler {
     double per_mm = 1;
     int decimals = 1;
 
-    /// The number alone, with at least so many decimals.
+    /// The number without its unit, with at least so many decimals.
     std::string number(double mm, int least_decimals = 1) const;
 };
 Ruler ruler_of(const Geometry& geometry);

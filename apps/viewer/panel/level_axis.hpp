@@ -1,5 +1,5 @@
-// An axis of levels or times along a widget's width, the histogram over it, and the ranges and
-// curves that are dragged there.
+// An axis of levels or times along a widget's width, with a histogram, and with ranges and curves
+// that can be dragged.
 #pragma once
 
 #include <QColor>

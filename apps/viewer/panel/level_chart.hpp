@@ -25,8 +25,8 @@ struct LevelMark {
     double high = std::numeric_limits<double>::infinity();
 };
 
-/// Keeps nothing of its own but what is seen and chosen: it emits what is asked for, and shows what
-/// it is then given.
+/// Its own state is only the visible range and the choice. A change by mouse or keys is emitted as
+/// a signal, and shown when the owner sets the new values.
 ///
 /// Mouse: press or drag in the plot moves the level; a tick on the upper edge is taken exactly;
 /// bands are moved and resized by their strip on the lower edge; shift-drag makes a new one; right
@@ -40,8 +40,8 @@ class LevelChart : public QWidget {
 
     /// New data, or none; `suggested` are levels that are worth feeling.
     void set_data(const run::Histogram& histogram, const std::vector<double>& suggested);
-    /// The isovalue. NaN: there is none, and no bands; marks are held by their whole lines, and
-    /// arrow keys are for the curve.
+    /// The isovalue. NaN: there is none, and no bands. The whole line of a mark can then be
+    /// dragged, and arrow keys move the curve's knots.
     void set_level(double level);
     double level() const { return level_; }
     /// The level felt now; NaN: none to show.
@@ -51,13 +51,13 @@ class LevelChart : public QWidget {
     const Ranges& bands() const { return bands_; }
     /// Further levels, as lines with a grip below.
     void set_marks(std::vector<LevelMark> marks);
-    /// Without knots: none. Its scale stays while the pointer holds something.
+    /// Without knots: no curve. Its scale does not change while something is dragged.
     void set_curve(const CurveLine& curve);
     const CurveLine& curve() const { return curve_; }
     /// The knot that keys move, or -1.
     int held_knot() const { return knot_; }
     void hold_knot(int knot) { choose(knot, -1); }
-    /// A knot becomes another one, as by dragging.
+    /// Changes a knot, as dragging it does.
     void put_knot(int knot, const Curve::Knot& to);
     /// Where a knot is drawn [logical pixels].
     QPointF place_of(std::size_t knot) const;
@@ -94,7 +94,7 @@ class LevelChart : public QWidget {
     void wheelEvent(QWheelEvent* event) override;
 
   private:
-    /// What the pointer takes hold of at some place, and what it then does.
+    /// Something that can be dragged, and what dragging it does.
     struct Handle {
         Qt::CursorShape cursor = Qt::ArrowCursor;
         std::function<void()> press = [] {};

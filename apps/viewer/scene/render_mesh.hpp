@@ -1,5 +1,5 @@
-// Surfaces as meshes in arrays for graphics hardware, a finer part of one in place of a coarse one,
-// and meshes of fewer triangles for files.
+// Surfaces as meshes in arrays for graphics hardware. Cutting out the part that a finer surface
+// replaces, and meshes of fewer triangles for files.
 #pragma once
 
 #include <cstddef>
@@ -28,10 +28,10 @@ struct RenderMesh {
 /// Blocks of a mesh; null: there is nothing of it.
 using MeshBlocks = std::vector<std::shared_ptr<const RenderMesh>>;
 std::size_t triangle_count(std::span<const std::shared_ptr<const RenderMesh>> blocks);
-/// All in one; the only one itself. Null if there is no triangle.
+/// All blocks as one mesh. Returns a single block itself. Null if there is no triangle.
 std::shared_ptr<const RenderMesh> joined(std::span<const std::shared_ptr<const RenderMesh>> blocks);
 
-/// A box of whole cells of a grid; infinite on a side where the data end.
+/// A box of whole cells of a grid. It is infinite on sides at the border of the data.
 struct PatchBounds {
     Geometry grid;
     /// Planes between cells, in the grid's index space.
@@ -47,26 +47,26 @@ struct PatchBounds {
 /// outside, or those with any corner inside.
 enum class Keep : std::uint8_t { outside, reaching_out, reaching_in };
 
-/// The mesh without the other triangles, itself if that is all of it. Null if no triangle is left.
-/// Positions are from the middle of the grid.
+/// The mesh with only the triangles to be kept. The mesh itself if these are all. Null if there are
+/// none. Positions are relative to the middle of the grid.
 std::shared_ptr<const RenderMesh> cut(const std::shared_ptr<const RenderMesh>& mesh,
                                       const PatchBounds& bounds, Keep keep);
 
 /// A surface that can be drawn.
 struct ExtractedSurface {
     double isovalue = 0;  ///< [data units]
-    /// Positions from the middle of the grid. Blocks that did not change are the same as before,
-    /// and in the same place.
+    /// Positions are relative to the middle of the grid. Blocks that did not change are the same
+    /// objects as before, at the same index.
     MeshBlocks blocks;
-    MeshBlocks moving;      ///< of few triangles
-    int every = 1;          ///< made from one sample for so many along each axis
-    bool finished = false;  ///< no finer one comes
-    double seconds = 0;     ///< since it was begun
-    /// The part of a coarser surface that this one replaces. Positions are from the middle of its
-    /// grid.
+    MeshBlocks moving;      ///< a coarser surface, to draw while things move
+    int every = 1;          ///< made from every so many-th sample along each axis
+    bool finished = false;  ///< no finer one follows
+    double seconds = 0;     ///< since the work began
+    /// The part of a coarser surface that this one replaces. Positions are then relative to the
+    /// middle of its grid.
     std::optional<PatchBounds> part;
 
-    /// The very same meshes, not others like them.
+    /// Compares the identity of meshes, not their content.
     bool operator==(const ExtractedSurface&) const = default;
 };
 

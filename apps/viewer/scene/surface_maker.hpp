@@ -1,5 +1,5 @@
-// Makes the surfaces of a field on a thread of its own: several levels, coarse first, the newest
-// request before older ones.
+// Makes the surfaces of a field, at several levels, on a thread of its own: coarse ones first. New
+// requests replace older ones.
 #pragma once
 
 #include <QObject>
@@ -24,11 +24,11 @@
 namespace palpate::viewer {
 
 struct SurfaceLimits {
-    std::size_t most_triangles = 6'000'000;  ///< with more it becomes coarser: some 0.5 GB
-    std::size_t moving_triangles = 150'000;  ///< in pictures of things that move
+    std::size_t most_triangles = 6'000'000;  ///< some 0.5 GB; larger surfaces are made coarser
+    std::size_t moving_triangles = 150'000;  ///< while things move
     std::size_t most_of_others = 2'000'000;  ///< of each level but the first
     std::size_t moving_of_others = 40'000;
-    bool coarse_first = true;  ///< else the full surface at once, and a coarser one where that has
+    bool coarse_first = true;  ///< false: the full surface at once, or a coarser one if that has
                                ///< too many triangles
 };
 
@@ -40,33 +40,33 @@ class SurfaceMaker : public QObject {
     /// Waits for the thread, no longer than a few blocks take.
     ~SurfaceMaker() override;
 
-    /// Other data. There are no surfaces until new ones are made, except those of another part.
-    /// `part`: of a coarser surface that is replaced.
+    /// Takes other data. There are no surfaces until new ones are made, but those of another part
+    /// stay meanwhile. `part`: the part of a coarser surface that these replace.
     void set_field(const Field& field, std::vector<double> levels,
                    const std::optional<PatchBounds>& part = {});
-    /// Another version of the data, on the same grid, of which these samples have changed. An edit
-    /// changes the surfaces that are shown, coarse or fine. If all has changed, they are shown
-    /// coarsely first, and finely once no more versions come.
+    /// Takes another version of the data, on the same grid, with these samples changed. An edit
+    /// changes the surfaces that are shown, coarse or fine. If everything has changed, coarse
+    /// surfaces are shown first, and fine ones when no more versions follow.
     void update_field(const Field& field, const SampleBox& changed);
     /// Levels that were there before keep their surfaces. Without data it does nothing.
     void set_levels(std::vector<double> levels);
     void clear();
-    /// Of the first level, from the next surface on.
+    /// Limits the first level's surface, from the next one on.
     void set_most_triangles(std::size_t triangles) { most_triangles_ = triangles; }
 
-    /// One for each level. While a new one is made, an older one stands in for it, so that a level
-    /// that is dragged is seen to move. One that was not made yet is empty.
+    /// One for each level, empty before it is first made. Until a new one is made, the older one
+    /// stays, so that a surface moves visibly while its level is dragged.
     const std::vector<ExtractedSurface>& surfaces() const { return surfaces_; }
     bool extracting() const { return answered_ < number_; }
 
   Q_SIGNALS:
-    /// surfaces() are other ones.
+    /// surfaces() have changed.
     void made();
     void problem(const QString& what);
 
   private:
     using Clock = std::chrono::steady_clock;
-    /// What the thread is told. Requests that wait are joined.
+    /// An order for the thread. Orders that wait are joined.
     struct Request {
         std::uint64_t number = 0;
         std::optional<Field> field;  ///< nothing: forget all

@@ -21,9 +21,9 @@ struct CellRange {
 
 /// Appends the contour of `isovalue` [data units] in these cells, in no particular order. Each cell
 /// is divided into `parts` times `parts` squares. The felt field is exact at their corners, and the
-/// contour is straight inside their halves; what is smaller than a square may be missing. With one
-/// part the corners are the samples, also of a smooth field, so that no sample is missed. A cell
-/// without a contour costs a few nanoseconds.
+/// contour is straight inside each half of a square. Details smaller than a square may be missing.
+/// With one part, the corners have the values of the samples, on the smooth field too, so that no
+/// sample is missed. A cell without a contour costs a few nanoseconds.
 void append_contour(const SliceSamples& samples, double isovalue, const CellRange& cells, int parts,
                     std::vector<ContourPiece>& pieces);
 

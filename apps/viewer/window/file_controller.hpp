@@ -42,8 +42,8 @@ class FileController : public Controller {
                    RecordingController& recordings, DisplayController& display,
                    MeasureController& measuring);
 
-    /// The volume that is open can be changed while a file is read. If it was, `settle` is called
-    /// before the file takes its place: it calls the action once the work is saved or given up.
+    /// The open volume can be changed while another file is read. If it was changed, `settle` is
+    /// called before that file is shown, and calls its action when the work is saved or given up.
     void guard(std::function<UnsavedWork()> unsaved,
                std::function<void(const std::function<void()>&)> settle);
 

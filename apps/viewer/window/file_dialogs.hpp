@@ -17,8 +17,8 @@ QString ask_open_raw_name(QWidget* window);
 QString ask_open_layers_name(QWidget* window);
 QString ask_open_tool_name(QWidget* window);
 /// `replaces`: the dialog asks before an existing file is replaced; false for files that are never
-/// replaced. `filter`: of the files shown, and a name without an extension gets `suffix`. Without
-/// it, files with the suffix are shown, and every name gets it that has it not.
+/// replaced. With a `filter`, the dialog shows these files, and names without an extension get
+/// `suffix`. Without it, the dialog shows files with the suffix, and all other names get it.
 QString ask_save_name(QWidget* window, const QString& title, const QString& name,
                       const QString& suffix, bool replaces = true, const QString& filter = {});
 

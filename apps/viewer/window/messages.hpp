@@ -40,8 +40,9 @@ class Messages : public QObject {
     void ask(QDialog* dialog, const QString& otherwise = {});
     /// Asks, and returns the button; QMessageBox::Discard if nobody is there.
     int answer_to(QMessageBox& question);
-    /// Asks whether to save, or to go on without it: true. `save` is called if that is the answer.
-    /// `name`: of the dialog. `without`: on the button; empty: the usual word.
+    /// Asks whether to save. True: go on without saving. Calls `save` if the answer is to save.
+    /// `name`: of the dialog. `without`: text of the button that does not save; empty: the usual
+    /// one.
     bool may_lose(const char* name, const QString& question, const QString& without,
                   const std::function<void()>& save);
     /// What dialogs belong to.
