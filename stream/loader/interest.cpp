@@ -45,6 +45,54 @@ double distance(const Segment& s, const Vec3& p) {
     return (p - s.from - t * along).norm();
 }
 
+struct Scored {
+    double score;
+    Index3 brick;
+};
+
+/// Adds the bricks within `radius` [bricks] of the way of one hand.
+void score(const Geometry& geometry, const Index3& count, const Interest& hand, double radius,
+           double seconds, std::vector<Scored>& scored) {
+    const auto in_bricks = [&](const Vec3& physical) {
+        return Vec3(index_from_physical(geometry, physical) / ResidentBricks::edge);
+    };
+    const Vec3 proxy = in_bricks(hand.proxy);
+    const Segment pull{proxy, proxy + shortened(in_bricks(hand.hand) - proxy)};
+    const Vec3 velocity = hand.velocity.allFinite() ? hand.velocity : Vec3::Zero();
+    const Vec3 soon = in_bricks(hand.proxy + look_ahead * velocity) - proxy;
+    const double behind = (pull.to - pull.from).norm();
+    const bool is_left = behind > left_behind;
+    const bool is_fast = !is_left && soon.norm() * seconds > fast * look_ahead;
+    // Where the hand will be: after all that lies between it and a proxy left behind, and of a
+    // fast hand only what can come in time.
+    Vec3 begin = proxy;
+    if (is_left) begin = pull.to;
+    if (is_fast) begin = pull.to + 0.5 * shortened(soon);
+    const Segment path{begin, begin + shortened(soon)};
+    const Vec3 low = proxy.cwiseMin(pull.to).cwiseMin(path.to) - Vec3::Constant(radius);
+    const Vec3 high = proxy.cwiseMax(pull.to).cwiseMax(path.to) + Vec3::Constant(radius);
+    const Vec3 last = (count - Index3::Ones()).cast<double>();
+    const Index3 first = low.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
+    const Index3 end = high.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
+    for_each_index({first, end}, [&](const Index3& brick) {
+        const Vec3 centre = brick.cast<double>() + Vec3::Constant(0.5);
+        const double to_proxy = (centre - proxy).norm();
+        const double to_pull = distance(pull, centre);
+        const double to_path = distance(path, centre);
+        if (std::min(to_pull, to_path) > radius + 1) return;
+        double near = to_pull + pull_factor * to_proxy;
+        double ahead = to_path;
+        if (is_fast) {
+            near += late_penalty;
+        } else if (is_left) {
+            ahead += ahead_factor + pull_factor * behind;
+        } else {
+            ahead += ahead_factor * std::min(1.0, to_proxy);
+        }
+        scored.push_back({std::min(near, ahead), brick});
+    });
+}
+
 }  // namespace
 
 void HandMotion::see(double now, const Vec3& place) {
@@ -58,54 +106,13 @@ void HandMotion::see(double now, const Vec3& place) {
 std::vector<Index3> wanted_bricks(const Geometry& geometry, const Index3& count,
                                   std::span<const Interest> hands, std::size_t most,
                                   double seconds) {
-    struct Scored {
-        double score;
-        Index3 brick;
-    };
     if (hands.empty()) return {};
     const double each = static_cast<double>(most) / static_cast<double>(hands.size());
     const double radius = std::clamp(0.5 * (std::cbrt(each) - 1), 1.0, 6.0);
     std::vector<Scored> scored;
     for (const Interest& hand : hands) {
         if (!hand.proxy.allFinite() || !hand.hand.allFinite()) continue;
-        const auto in_bricks = [&](const Vec3& physical) {
-            return Vec3(index_from_physical(geometry, physical) / ResidentBricks::edge);
-        };
-        const Vec3 proxy = in_bricks(hand.proxy);
-        const Segment pull{proxy, proxy + shortened(in_bricks(hand.hand) - proxy)};
-        const Vec3 velocity = hand.velocity.allFinite() ? hand.velocity : Vec3::Zero();
-        const Vec3 soon = in_bricks(hand.proxy + look_ahead * velocity) - proxy;
-        const double behind = (pull.to - pull.from).norm();
-        const bool is_left = behind > left_behind;
-        const bool is_fast = !is_left && soon.norm() * seconds > fast * look_ahead;
-        // Where the hand will be: after all that lies between it and a proxy left behind, and of a
-        // fast hand only what can come in time.
-        Vec3 begin = proxy;
-        if (is_left) begin = pull.to;
-        if (is_fast) begin = pull.to + 0.5 * shortened(soon);
-        const Segment path{begin, begin + shortened(soon)};
-        const Vec3 low = proxy.cwiseMin(pull.to).cwiseMin(path.to) - Vec3::Constant(radius);
-        const Vec3 high = proxy.cwiseMax(pull.to).cwiseMax(path.to) + Vec3::Constant(radius);
-        const Vec3 last = (count - Index3::Ones()).cast<double>();
-        const Index3 first = low.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
-        const Index3 end = high.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
-        for_each_index({first, end}, [&](const Index3& brick) {
-            const Vec3 centre = brick.cast<double>() + Vec3::Constant(0.5);
-            const double to_proxy = (centre - proxy).norm();
-            const double to_pull = distance(pull, centre);
-            const double to_path = distance(path, centre);
-            if (std::min(to_pull, to_path) > radius + 1) return;
-            double near = to_pull + pull_factor * to_proxy;
-            double ahead = to_path;
-            if (is_fast) {
-                near += late_penalty;
-            } else if (is_left) {
-                ahead += ahead_factor + pull_factor * behind;
-            } else {
-                ahead += ahead_factor * std::min(1.0, to_proxy);
-            }
-            scored.push_back({std::min(near, ahead), brick});
-        });
+        score(geometry, count, hand, radius, seconds, scored);
     }
     // Ties by place, so that the order does not depend on the library.
     std::ranges::sort(scored, [](const Scored& a, const Scored& b) {

@@ -231,8 +231,6 @@ TEST(CProgress, of_a_thread_is_told_by_every_long_call_and_can_stop_it) {
     ASSERT_EQ(copy(), PALPATE_OK);
     ASSERT_EQ(palpate_data_create(volume, &data), PALPATE_OK);
     ASSERT_EQ(palpate_field_create(volume, nullptr, &field), PALPATE_OK);
-    const std::int32_t low[3] = {1, 1, 1}, high[3] = {3, 3, 3};
-    ASSERT_EQ(palpate_data_fill(data, low, high, 77), PALPATE_OK);
     const palpate_field* const first = field;
     int calls = 0;
     const auto stop = [](double, void* context) {
@@ -251,23 +249,6 @@ TEST(CProgress, of_a_thread_is_told_by_every_long_call_and_can_stop_it) {
     EXPECT_EQ(palpate_data_save(data, path.c_str()), PALPATE_CANCELLED);
     EXPECT_EQ(calls, 7) << "once each";
     EXPECT_EQ(field, first);
-    PALPATE_STRUCT(palpate_brush, brush);
-    brush.radius = 9;
-    brush.level = 100;
-    const double at[3] = {64, 64, 64};
-    const std::vector<double> points(std::size_t{3} * 5000);
-    std::vector<double> values(5000);
-    EXPECT_EQ(palpate_data_stroke(data, &brush, at, at), PALPATE_CANCELLED);
-    EXPECT_EQ(palpate_data_fill(data, low, high, 99), PALPATE_CANCELLED);
-    EXPECT_EQ(palpate_data_replace(data, low, volume), PALPATE_CANCELLED);
-    EXPECT_EQ(palpate_data_undo(data, nullptr), PALPATE_CANCELLED);
-    EXPECT_EQ(palpate_data_redo(data, nullptr), PALPATE_CANCELLED);
-    EXPECT_EQ(palpate_field_values(field, points.data(), 5000, values.data(), nullptr),
-              PALPATE_CANCELLED);
-    EXPECT_EQ(calls, 13) << "once each";
-    PALPATE_STRUCT(palpate_edit_state, edits);
-    EXPECT_EQ(palpate_data_edits(data, &edits), PALPATE_OK);
-    EXPECT_EQ(edits.version, 1U);
     std::thread([&] { EXPECT_EQ(palpate_volume_describe(volume, &info), PALPATE_OK); }).join();
     const auto describe = [](double, void* context) {
         PALPATE_STRUCT(palpate_volume_info, again);
@@ -283,6 +264,43 @@ TEST(CProgress, of_a_thread_is_told_by_every_long_call_and_can_stop_it) {
     EXPECT_EQ(palpate_mesh_create(field, 100, &mesh), PALPATE_OK);
     EXPECT_EQ(palpate_data_save(data, path.c_str()), PALPATE_OK) << palpate_last_error();
     palpate_mesh_destroy(mesh);
+    palpate_field_destroy(field);
+    palpate_data_destroy(data);
+    palpate_volume_destroy(volume);
+}
+
+TEST(CProgress, is_told_by_every_edit_and_can_stop_it) {
+    palpate_volume* volume = ball();
+    palpate_data* data = nullptr;
+    palpate_field* field = nullptr;
+    ASSERT_EQ(palpate_data_create(volume, &data), PALPATE_OK);
+    ASSERT_EQ(palpate_field_create(volume, nullptr, &field), PALPATE_OK);
+    const std::int32_t low[3] = {1, 1, 1}, high[3] = {3, 3, 3};
+    ASSERT_EQ(palpate_data_fill(data, low, high, 77), PALPATE_OK);
+    int calls = 0;
+    const auto stop = [](double, void* context) {
+        ++*static_cast<int*>(context);
+        return 0;
+    };
+    palpate_set_progress(stop, &calls);
+    PALPATE_STRUCT(palpate_brush, brush);
+    brush.radius = 9;
+    brush.level = 100;
+    const double at[3] = {0, 0, 0};
+    const std::vector<double> points(std::size_t{3} * 5000);
+    std::vector<double> values(5000);
+    EXPECT_EQ(palpate_data_stroke(data, &brush, at, at), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_data_fill(data, low, high, 99), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_data_replace(data, low, volume), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_data_undo(data, nullptr), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_data_redo(data, nullptr), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_field_values(field, points.data(), 5000, values.data(), nullptr),
+              PALPATE_CANCELLED);
+    EXPECT_EQ(calls, 6) << "once each";
+    PALPATE_STRUCT(palpate_edit_state, edits);
+    EXPECT_EQ(palpate_data_edits(data, &edits), PALPATE_OK);
+    EXPECT_EQ(edits.version, 1U);
+    palpate_set_progress(nullptr, nullptr);
     palpate_field_destroy(field);
     palpate_data_destroy(data);
     palpate_volume_destroy(volume);
