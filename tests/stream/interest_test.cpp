@@ -23,7 +23,7 @@ TEST(Levels, are_the_coarser_the_more_bricks_a_hand_passes_while_one_comes) {
     EXPECT_EQ(levels_for(40, 0.4, 0), (LevelChoice{0, 0}));
 }
 
-class Wanted : public testing::Test {
+class WantedBricks : public testing::Test {
   protected:
     const Geometry geometry = grid({2000, 2000, 2000});
     const Index3 count = ResidentBricks(geometry.size).count();
@@ -41,7 +41,7 @@ class Wanted : public testing::Test {
     }
 };
 
-TEST_F(Wanted, of_a_slow_hand_what_it_is_in_comes_first_and_all_of_its_reach_is_wanted) {
+TEST_F(WantedBricks, of_a_slow_hand_what_it_is_in_comes_first_and_all_of_its_reach_is_wanted) {
     look(60);
     EXPECT_LT(place(at_proxy), 4);
     EXPECT_LT(place(at_hand), 4);
@@ -50,7 +50,7 @@ TEST_F(Wanted, of_a_slow_hand_what_it_is_in_comes_first_and_all_of_its_reach_is_
     }
 }
 
-TEST_F(Wanted, of_a_fast_hand_what_it_reaches_meanwhile_comes_before_what_it_leaves) {
+TEST_F(WantedBricks, of_a_fast_hand_what_it_reaches_meanwhile_comes_before_what_it_leaves) {
     const Interest hand{Vec3(1000, 1000, 1000), Vec3(1000, 1000, 1000), Vec3(600, 0, 0)};
     wanted = wanted_bricks(geometry, count, {&hand, 1}, 400, 0.5);
     EXPECT_LT(place(at_proxy + Index3(4, 0, 0)), 8);
@@ -58,14 +58,14 @@ TEST_F(Wanted, of_a_fast_hand_what_it_reaches_meanwhile_comes_before_what_it_lea
     EXPECT_LT(place(at_proxy), std::ptrdiff_t(wanted.size()));
 }
 
-TEST_F(Wanted, of_a_hand_that_left_its_proxy_behind_what_is_between_them_comes_first) {
+TEST_F(WantedBricks, of_a_hand_that_left_its_proxy_behind_what_is_between_them_comes_first) {
     look(600);
     EXPECT_LT(place(at_proxy), 4);
     EXPECT_LT(place(at_hand), place(at_hand + Index3(2, 0, 0)));
     EXPECT_LT(place(at_hand + Index3(2, 0, 0)), std::ptrdiff_t(wanted.size()));
 }
 
-TEST_F(Wanted, a_hand_that_is_nowhere_wants_nothing) {
+TEST_F(WantedBricks, a_hand_that_is_nowhere_wants_nothing) {
     const Interest broken{Vec3::Constant(not_a_number), Vec3(0, 0, 0)};
     EXPECT_TRUE(wanted_bricks(geometry, count, {&broken, 1}, 400, 0.5).empty());
 }
