@@ -104,7 +104,8 @@ bool PythonDevice::finish() {
         return false;
     }
     const std::string unwritten = zero.get();
-    if (!unwritten.empty()) set_problem(stuck + ", and " + unwritten);
+    set_problem(stuck +
+                (unwritten.empty() ? ", and a force of zero was written" : ", and " + unwritten));
     return false;
 }
 

@@ -79,8 +79,8 @@ void stop_session(Owner& owner) {
     owner.process.check();
     if (owner.finish()) return;
     throw devices::DeviceError("the device: " + owner.python_device->problem() +
-                               ": the session has ended, a force of zero was written, and the "
-                               "thread that hangs is left behind");
+                               ": the session has ended, and the thread that hangs is left "
+                               "behind");
 }
 
 /// What all sessions offer.
@@ -98,8 +98,8 @@ void add_session(py::class_<Owner, std::shared_ptr<Owner>>& kind) {
         .def("stop", &stop_session<Owner>, Unlocked(),
              "Zero force, for good, and the end of all threads: a device in Python is written a\n"
              "last zero and closed. Raises DeviceError if its functions do not return within 2 s:\n"
-             "the caller's thread has then written the zero. Raises RuntimeError in a forked\n"
-             "child, which has no servo.")
+             "another thread then writes the zero, and the error says whether that failed, too.\n"
+             "Raises RuntimeError in a forked child, which has no servo.")
         .def("snapshot", &Owner::snapshot, "The newest tick, a Snapshot; None before the first.")
         .def("report", &Owner::report, "ServoReport")
         .def_property_readonly(

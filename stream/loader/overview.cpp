@@ -183,7 +183,8 @@ Brick BrickLoader::Parts::read(const Index3& brick, int coarser, const std::stop
             return makings_of(brick, 0);
         };
         // Before it takes memory; and neighbours may come meanwhile, or go.
-        for (const SampleBox& part : makings().unread) blocks_->load(level, part, stop);
+        const std::vector<SampleBox> missing = makings().unread;
+        for (const SampleBox& part : missing) blocks_->load(level, part, stop);
         const std::shared_ptr<std::byte[]> samples = memory_->take();
         const SampleBox room = room_of(brick);
         const auto [held, unread] = makings();

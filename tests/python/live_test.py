@@ -117,7 +117,7 @@ def test_a_run_whose_device_hangs_ends_with_a_zero_and_says_so():
     until(lambda: run.snapshot() and run.snapshot().device.status == "ready")
     device.hangs = True
     until(lambda: run.snapshot().device.age > 0.02)
-    with pytest.raises(palpate.DeviceError, match="does not return: the session has ended"):
+    with pytest.raises(palpate.DeviceError, match="does not return, and a force of zero was written: the session"):
         run.stop()
     assert not numpy.any(device.forces[-1])
     goes_on.set()

@@ -314,13 +314,15 @@ TEST(VolumeEditor, edits_that_wait_for_their_turn_stop_when_asked_to) {
     Pressing p;
     p.editor.apply(edit::Fill{{{1, 1, 1}, {2, 2, 2}}, 50});
     const auto edits = [&] {
-        const auto stop_at_second = [calls = std::make_shared<int>()](double) {
-            if (++*calls > 1) throw stream::Cancelled{};
+        const auto stop_at_second = [] {
+            return [calls = 0](double) mutable {
+                if (++calls > 1) throw stream::Cancelled{};
+            };
         };
         const edit::Fill fill{{{5, 5, 5}, {6, 6, 6}}, 60};
-        EXPECT_THROW(p.editor.apply(fill, stop_at_second), stream::Cancelled);
-        EXPECT_THROW(p.editor.undo(stop_at_second), stream::Cancelled);
-        EXPECT_THROW(p.editor.redo(stop_at_second), stream::Cancelled);
+        EXPECT_THROW(p.editor.apply(fill, stop_at_second()), stream::Cancelled);
+        EXPECT_THROW(p.editor.undo(stop_at_second()), stream::Cancelled);
+        EXPECT_THROW(p.editor.redo(stop_at_second()), stream::Cancelled);
     };
     const auto start = [&](const Session&, const auto&) -> std::unique_ptr<Servo> {
         std::thread(edits).join();  // which wait until this returns
