@@ -79,7 +79,7 @@ TEST_F(DrawnStreaming, a_store_looks_like_the_same_volume_in_memory) {
     for (int axis = 0; axis < 3; ++axis) {
         const DetailField* const shown = window_->views().slice(axis).shown_detail();
         ASSERT_NE(shown, nullptr) << axis;
-        EXPECT_EQ(shown->level, 0);
+        EXPECT_EQ(shown->of.level, 0);
         EXPECT_EQ(shown->missing, 0U);
     }
     EXPECT_LT(differing(window_->views().slice(2).grab().toImage(), slice), 200);
