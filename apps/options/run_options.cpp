@@ -61,8 +61,8 @@ void RunOptions::add_device_options(CLI::App& command) {
     add_named(command, "--facing", given.facing, "Side of the body that faces you");
     for_each_setting<run::Buttons>([&](const auto& one) {
         const auto choose = [this, one](const std::string& text) {
-            gives_buttons = true;
             given.buttons.*one.member = run::button_from(one.option, text);
+            named_buttons.push_back(one.member);
         };
         command.add_option_function<std::string>(
             one.option, choose, fmt::format("{} (default: {})", one.about, one.left_open));

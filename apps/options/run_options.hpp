@@ -15,7 +15,8 @@ struct RunOptions {
     RenderOptions render;
     run::Setup given;                            ///< but for `render` and `device`: take setup()
     std::vector<devices::DeviceChoice> devices;  ///< of the hands; none: one with `given.device`
-    bool gives_buttons = false;                  ///< those of `given` are the command line's
+    /// Those of `given` that the command line names.
+    std::vector<run::ButtonSetup run::Buttons::*> named_buttons;
     std::string record, commands;
     double seconds = 0;  ///< 0: until the hand has finished or the run is stopped
     std::string brush;   ///< as the command's words: "carve 3"; empty: none

@@ -52,7 +52,9 @@ int show(QApplication& application, const app::ViewOptions& options) {
         request.device = devices.front();
         request.others.assign(devices.begin() + 1, devices.end());
     }
-    if (options.run.gives_buttons) request.buttons = request.setup.buttons;
+    for (const auto button : options.run.named_buttons) {
+        request.buttons.emplace_back(button, request.setup.buttons.*button);
+    }
     viewer::MainWindow window(request);
     if (const auto size = options.window_size()) window.resize((*size)[0], (*size)[1]);
     if (!options.size.empty() || !options.screenshot.empty()) window.forget_layout();

@@ -217,7 +217,7 @@ void FileController::feel_again(const run::Source& source) {
 RunRequest FileController::request_for_same() {
     RunRequest request = run_.take_request();
     request.device.reset();
-    request.buttons.reset();
+    request.buttons.clear();
     return request;
 }
 
@@ -352,7 +352,8 @@ void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionF
         for (const SessionHand& other : session.others) request.others.push_back(other.device);
     }
     setup.device = request.device.value_or(session.device);
-    setup.buttons = request.buttons.value_or(session.buttons);
+    setup.buttons = session.buttons;
+    for (const auto& [member, wanted] : request.buttons) setup.buttons.*member = wanted;
     setup.render.method = session.method;
     setup.render.layers.reset();  // the session's are in its settings
     // The usual one is smaller for a fast device.

@@ -5,6 +5,7 @@
 #include <QObject>
 #include <QString>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "apps/viewer/window/desk.hpp"
@@ -25,8 +26,8 @@ struct RunRequest {
     std::string record;  ///< recording to write; empty: none
     /// Of the hands beside the first.
     std::vector<devices::DeviceChoice> others = {};
-    /// The buttons of the command line: used instead of those in a session file.
-    std::optional<run::Buttons> buttons = {};
+    /// The buttons that the command line names: used instead of those in a session file.
+    std::vector<std::pair<run::ButtonSetup run::Buttons::*, run::ButtonSetup>> buttons = {};
 
     std::vector<run::Setup> setups() const;
     void use_devices_of(const RunRequest& other);

@@ -368,7 +368,10 @@ TEST_F(Files, a_session_keeps_its_buttons_unless_the_command_line_names_others) 
     EXPECT_EQ(feel_by(usual, scratch("day.json")), request.setup.buttons);
     // They are those of another hand or device in this window as well.
     EXPECT_EQ(window_->run().request().setup.buttons, request.setup.buttons);
-    usual.buttons = run::Buttons{};
+    // Of two, the command line may name one.
+    usual.buttons.emplace_back(&run::Buttons::deadman, run::ButtonSetup());
+    EXPECT_EQ(feel_by(usual, scratch("day.json")), request.setup.buttons);
+    usual.buttons.emplace_back(&run::Buttons::clutch, run::UsualButton{});
     EXPECT_EQ(feel_by(usual, scratch("day.json")), run::Buttons{});
 }
 
