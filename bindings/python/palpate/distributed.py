@@ -312,7 +312,9 @@ class _Conversion:
         for number in range(count - 1, -1, -1):
             if not Path(self.job.state(f"state-{number}")).exists():
                 continue
-            if all(self.each(f"state-{number}", 0, only_verify=True)):
+            there = self.each(f"state-{number}", 0, only_verify=True)
+            if all(there):
+                self.count(there)
                 return number + 1
         return 0
 
