@@ -376,11 +376,13 @@ Geometry geometry_of(const HeaderFields& fields, const Space& space, const Space
         Axis& axis = spatial[a];
         const auto i = static_cast<Eigen::Index>(a);
         g.size[i] = static_cast<int>(axis.size);
-        if (axis.spacing && axis.direction) {
-            throw Failure(
-                "its header gives both a spacing and a direction for an axis; correct the header");
+        if (axis.spacing && space.dimension > 0) {
+            throw Failure(axis.direction ? "its header gives both a spacing and a direction for an "
+                                           "axis; correct the header"
+                                         : "its header gives spacings in a space; write them as "
+                                           "space directions, or leave the space out");
         }
-        if (space.dimension == 0 || axis.spacing) {
+        if (space.dimension == 0) {
             complete(axis, notes);
             if (fields.has("spacings")) {
                 check_spacing(axis.spacing.value_or(std::nan("")), "header field 'spacings'");
@@ -404,13 +406,8 @@ Geometry geometry_of(const HeaderFields& fields, const Space& space, const Space
     complete_directions(spatial, g.direction);
     if (std::isnan(origin.place[0])) {
         add_note(notes, "its header leaves the space origin open: 0 was taken");
-    } else if (directed || fields.has("space origin")) {
+    } else if (space.dimension > 0) {
         g.origin = origin.place;
-    }
-    if (space.is_body && !directed) {
-        add_note(notes,
-                 "its header gives a space, but no directions in it: its axes were taken as those "
-                 "of LPS");
     }
     return g;
 }
