@@ -2,11 +2,7 @@
 #include "io/json_text.hpp"
 
 #include <algorithm>
-#include <set>
 #include <string>
-#include <vector>
-
-#include "palpate/io/error.hpp"
 
 namespace palpate::io {
 namespace {
@@ -27,8 +23,10 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
     return std::min(at + 1, text.size());
 }
 
-/// Why a document is not parsed; empty: it is, and `room` is less.
-std::string flaw_in(std::string_view text, bool with_comments, std::size_t& room) {
+/// Why a document is not parsed; empty: it is, and `room` is less. `members` are what its objects
+/// have, as often as they are written.
+std::string flaw_in(std::string_view text, bool with_comments, std::size_t& room,
+                    std::size_t& members) {
     int depth = 0;
     std::size_t bytes = 0;
     for (std::size_t at = 0; at < text.size();) {
@@ -39,6 +37,7 @@ std::string flaw_in(std::string_view text, bool with_comments, std::size_t& room
             continue;
         }
         const bool opens = c == '[' || c == '{';
+        members += c == ':';
         depth += opens ? 1 : c == ']' || c == '}' ? -1 : 0;
         bytes += opens ? 128 : c == '"' ? 64 : c == ',' ? 32 : 0;
         if (depth > deepest_json) {
@@ -53,22 +52,26 @@ std::string flaw_in(std::string_view text, bool with_comments, std::size_t& room
     return "";
 }
 
+/// Members of all objects in a value.
+std::size_t members_of(const json& value) {
+    std::size_t members = value.is_object() ? value.size() : 0;
+    if (value.is_structured()) {
+        for (const json& one : value) members += members_of(one);
+    }
+    return members;
+}
+
 }  // namespace
 
 json parsed_json_within(std::size_t& room, std::string_view text, bool with_comments) {
-    const std::string flaw = flaw_in(text, with_comments, room);
+    std::size_t members = 0;
+    const std::string flaw = flaw_in(text, with_comments, room, members);
     if (!flaw.empty()) throw json::other_error::create(501, flaw, nullptr);
-    std::vector<std::set<std::string>> names;  // of the objects that are open
-    const auto check = [&](int, json::parse_event_t event, const json& value) {
-        if (event == json::parse_event_t::object_start) names.emplace_back();
-        if (event == json::parse_event_t::object_end) names.pop_back();
-        if (event != json::parse_event_t::key) return true;
-        const auto& name = value.get_ref<const std::string&>();
-        if (names.back().insert(name).second) return true;
-        throw json::other_error::create(
-            501, "it has the member '" + one_line(name.substr(0, 40)) + "' twice", nullptr);
-    };
-    return json::parse(text, check, true, with_comments);
+    json value = json::parse(text, nullptr, true, with_comments);
+    if (members_of(value) != members) {
+        throw json::other_error::create(501, "an object in it has a member twice", nullptr);
+    }
+    return value;
 }
 
 json parsed_json(std::string_view text, bool with_comments) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <set>
 #include <string_view>
 
 #include "io/helper/decode.hpp"
@@ -14,16 +13,21 @@ namespace {
 
 constexpr std::size_t most_bytes = 64 << 20;
 
-/// XML does not allow an attribute twice, and pugixml takes the first.
+/// XML does not allow an attribute twice, and pugixml takes the first. Looks at the 32 before each,
+/// which takes no memory: no element that counts has more.
 class OnceEach : public pugi::xml_tree_walker {
   public:
     explicit OnceEach(const std::string& where) : where_(where) {}
     bool for_each(XmlElement& element) override {
-        std::set<std::string_view> names;
+        constexpr int reach = 32;
         for (const pugi::xml_attribute& one : element.attributes()) {
-            if (names.insert(one.name()).second) continue;
-            throw Failure(where_ + " has the attribute '" + std::string(one.name()).substr(0, 40) +
-                          "' twice in one element; remove the wrong one");
+            const std::string_view name = one.name();
+            pugi::xml_attribute before = one.previous_attribute();
+            for (int n = 0; n < reach && before; ++n, before = before.previous_attribute()) {
+                if (before.name() != name) continue;
+                throw Failure(where_ + " has the attribute '" + std::string(name.substr(0, 40)) +
+                              "' twice in one element; remove the wrong one");
+            }
         }
         return true;
     }
