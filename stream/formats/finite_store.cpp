@@ -62,7 +62,9 @@ double FiniteStore::searched(const std::stop_token& stop) const {
     };
     int level = 0;
     while (level + 1 < static_cast<int>(info_.levels.size()) && is_too_large(level)) ++level;
-    const auto& [grid, piece] = level_of(*this, level);
+    const Level& of = level_of(*this, level);
+    const Geometry& grid = of.geometry;
+    const Index3& piece = of.chunk;
     const Index3 pieces = (grid.size + piece - Index3::Ones()).cwiseQuotient(piece);
     int step = 1;
     const auto taken = [&] {
