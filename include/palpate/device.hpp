@@ -85,9 +85,9 @@ class Device {
     /// session, with stop(), when this or write() throws or does not return within 10 ms
     /// (DeviceFailure).
     virtual DeviceReading read(double time) = 0;
-    /// Servo thread, as above. A wrench (device axes; torque about the point that read() gives the
-    /// position of) holds until the next one, but no longer than `longest_force`. Then the device's
-    /// own thread sets it to zero. A device without torque renders the force alone.
+    /// Servo thread, as above. A wrench (device axes; the torque is about the point whose position
+    /// read() gives) holds until the next one, but no longer than `longest_force`. Then the
+    /// device's own thread sets it to zero. A device without torque renders the force alone.
     virtual void write(const Wrench& wrench, double time) = 0;
     static constexpr double longest_force = 0.02;  ///< [s]
 

@@ -79,8 +79,8 @@ struct Replace {
 /// All are clipped at the border of the grid.
 using Edit = std::variant<edit::Stroke, edit::Sweep, edit::Fill, edit::Replace>;
 
-/// How far from the surface of a body such a brush has an effect, outside or inside, on this grid
-/// [mm].
+/// The largest distance from the surface of a body, outside or inside, at which such a brush has an
+/// effect on this grid [mm].
 double reach_of(const Brush& brush, const Geometry& geometry);
 /// The body of a tool, fine and wide enough for sweeps of this brush on this grid. Throws
 /// std::invalid_argument as ToolBody does.

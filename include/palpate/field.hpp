@@ -96,9 +96,10 @@ class Field {
     }
     /// The sample `at` (index space) with its neighbours, less offset(); any sample in space.
     Neighbours around(const Index3& at) const;
-    /// The same samples where they lie: returns visit(centre, row, slice), where `centre` points to
-    /// the sample, its neighbours in x are beside it, those in y `row` away, in z `slice`. Samples
-    /// that lie otherwise (at the border, edited, between frames) are gathered first, as doubles.
+    /// The same samples in place: returns visit(centre, row, slice). `centre` points to the sample.
+    /// Its neighbours in x are next to it, those in y are `row` away, and those in z `slice`.
+    /// Samples that do not lie like that (at the border, edited, between frames) are first
+    /// gathered, as doubles.
     template <class Visit>
     auto visit_around(const Index3& at, Visit&& visit) const {
         Gathered gathered;
@@ -143,13 +144,13 @@ class Field {
 
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
-    /// For a block of count^3 samples, 2 or 3 along each axis: as they are stored, or null unless
-    /// they are felt like that.
+    /// The stored samples of a block of count^3 samples, 2 or 3 along each axis. Null if the field
+    /// has other values there, for example edited ones.
     template <int count>
     Run stored_run(const Index3& low) const;
     template <int count>
     Run run_of(const Index3& low) const;
-    /// One sample anywhere in space but for its label, less offset().
+    /// One sample anywhere in space, less offset(), without regard to labels.
     template <class T>
     double sample_at(const Index3& at) const;
     template <int count>
@@ -187,7 +188,8 @@ class Field {
     Vec3 voxels_per_mm_;
     double sign_ = 1;
     Index3 size_, cells_;  // samples, and cells between them
-    Index3 plain_;  // cells along each axis that lie at data_ as they are felt; none if they change
+    Index3 plain_;  // cells along each axis whose samples at data_ are those of the field; 0 if
+                    // they change
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
     Interpolation interpolation_ = Interpolation::cubic;

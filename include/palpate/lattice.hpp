@@ -137,7 +137,7 @@ struct Incident {
 };
 Incident incident_tetrahedra(const LatticePoint& point);
 
-// On the lattice that a field's interpolation lies on: for `cubic` its cubes lie round the samples
+// The same on the lattice of an interpolation. For `cubic`, its cubes are centred at the samples
 // (cubic.hpp).
 
 /// A tetrahedron that contains the point, as above.

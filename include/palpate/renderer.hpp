@@ -60,8 +60,8 @@ struct Renderer {
     /// [data units] The isovalue to return to when layers with surfaces are removed. Set while
     /// there are such layers.
     std::optional<double> isovalue_without_layers = {};
-    /// The tool's proxy, for the level `proxy.isovalue`. It has a value if there is a tool, or room
-    /// for one.
+    /// The tool's proxy, for the level `proxy.isovalue`. It has a value if there is a tool, or if
+    /// make_room_for_tools() was called.
     std::optional<ToolProxy> tool_proxy = {};
 };
 
@@ -135,11 +135,11 @@ std::string isovalue_warning(const Field& field, double isovalue);
 /// Renders one tick. A position that is not valid, not finite or extremely far does not move the
 /// proxy (UpdateStatus::refused) and gives no force. A time that is not finite or did not advance
 /// gives no force either, but the proxy follows. The same renderer and input give the same tick,
-/// bit for bit, but for `update_ns`, which is measured where a clock is given. The proxy only moves
+/// bit for bit, except for `update_ns`, which is measured if a clock is given. The proxy only moves
 /// where all samples are in memory. If the hand pulls it farther, it is held
 /// (UpdateStatus::waiting): the force falls to zero within its rate limit, and returns with the
-/// ramp when they are. Layers and penetrability need the whole way of the hand in memory.
-/// `observer` is for a point, `pose_observer` for a tool.
+/// ramp when the samples are in memory. Layers and penetrability need the whole way of the hand in
+/// memory. `observer` is for a point, `pose_observer` for a tool.
 Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {},
             Clock clock = nullptr, PoseObserver pose_observer = {});
 

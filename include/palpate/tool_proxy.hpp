@@ -40,9 +40,10 @@ struct ToolUpdate {
     Pose hand;         ///< that of the device
     Pose proxy;        ///< the same bit for bit if it was reached
     int contacts = 0;  ///< how many points hold the proxy
-    int rounds = 0;    ///< each finds a direction and moves along it
+    int rounds = 0;    ///< number of steps, each along a direction of its own
     int work = 0;      ///< of the work budget
-    /// [mm] How far from its pose recovery has searched for free space for the reference point.
+    /// [mm] The distance from the pose up to which recovery has searched free space for the
+    /// reference point.
     double searched = 0;
 };
 
@@ -111,8 +112,8 @@ struct PoseObserver {
 /// has
 ///    sign * (f - isovalue) / r > 1e-9 (recovery excepted); each pose is exactly rigid;
 /// T2 points that hold the proxy have |f - isovalue| / r <= 1e-6;
-/// T3 at rest the pose is optimal to first order: what is left of the pull, projected on what the
-///    contacts allow, is at most 3e-4 of it;
+/// T3 at rest the pose is optimal to first order: at most 3e-4 of the pull remains along directions
+/// that the contacts allow;
 /// T4 the distance to the hand, sqrt(|translation|^2 + |gyration * rotation|^2), never grows (field
 ///    and isovalue unchanged); T3 and T4 without friction;
 /// T5 bounded work, and never NaN.

@@ -19,7 +19,7 @@ struct DeviceChoice {
 /// Throws std::invalid_argument for an empty name, an empty key, or a key that is there twice.
 DeviceChoice parse_device(std::string_view text);
 
-/// Takes options out one by one; finish() refuses what nobody asked for. All errors are
+/// Takes options out one by one. finish() refuses those that were not taken. All errors are
 /// std::invalid_argument and name the device, the option and what is accepted.
 class DeviceOptions {
   public:

@@ -10,7 +10,7 @@
 
 namespace palpate::io {
 
-/// Which frames there are, at which times, and how to read one. Holds no frame in memory.
+/// The times of the frames, and a function that reads one. Holds no frame in memory.
 struct Sequence {
     std::vector<double> times;  ///< [s] of the frames, rising
     double period = 0;          ///< [s] after which the first frame follows again, if it loops
@@ -39,11 +39,11 @@ struct SequenceOptions {
     /// As for one volume. In a series they apply to each file, `time_step` too; the volumes of one
     /// 4-D file are its frames whatever `time_step` is. `progress` is for the first frame.
     ReadOptions read;
-    /// [s] from one frame to the next, instead of what the file gives or lacks; 0: the file's.
+    /// [s] from one frame to the next. Replaces that of the file. 0: the file's.
     double interval = 0;
 };
 
-/// Time between two frames where neither file nor caller give it [s].
+/// Time between two frames if neither the file nor the caller gives it [s].
 inline constexpr double assumed_frame_interval = 0.1;
 
 /// A 4-D file, a volume (a sequence of one frame), or a series: a file name with one %d or %03d in
@@ -63,8 +63,8 @@ Sequence made_sequence(int count, double interval,
                        std::function<Volume(int frame, const Progress& progress)> make);
 
 /// Frames of which the first has been read: `first.time_steps` of them, `interval` [s] apart; 0: as
-/// `first` says, and if it does not, a note tells. Throws std::invalid_argument for an interval
-/// that is none.
+/// `first` says, and if it does not, a note tells. Throws std::invalid_argument for an impossible
+/// interval.
 SequenceFile sequence_of(VolumeFile first, double interval,
                          std::function<Volume(int frame, const Progress& progress)> reader,
                          std::function<std::string(int frame)> frame_name);

@@ -24,9 +24,9 @@ struct PlayState {
     double time = 0;             ///< within begin and end
     double speed = 0;            ///< 0: paused
     bool loop = true;
-    double loaded_from = 0, loaded_to = 0;  ///< what is in memory
+    double loaded_from = 0, loaded_to = 0;  ///< the part in memory
     std::string problem;                    ///< why frames are missing
-    bool live = false;  ///< from another program: `frames` are the last ones, and seek() throws
+    bool live = false;  ///< a live source: `frames` are its last ones, and seek() throws
 };
 
 /// Any thread may call any function.

@@ -78,7 +78,7 @@ class Run {
     /// The device, if it is a mouse that the application moves; else null.
     devices::Mouse* mouse() const { return mouse_; }
 
-    // From start() on. Before, all but device_failure() throw WrongState:
+    // These are for the time after start(). Before, all but device_failure() throw WrongState.
     /// Which real-time privileges the system granted, and which not.
     const std::vector<std::string>& privileges() const { return started_servo().privileges(); }
     /// Throws std::invalid_argument, saying what is wrong, for a command that cannot be executed,
@@ -128,7 +128,7 @@ class Run {
     /// Ends the recording; the session continues. Returns the number of its ticks, 0 without a
     /// recording. Throws io::OutputError if something could not be written.
     std::int64_t stop_recording();
-    /// Null while nothing is recorded.
+    /// Null unless a recording is running.
     const io::RecordingWriter* recording() const { return recording_.get(); }
 
   private:

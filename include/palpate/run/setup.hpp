@@ -126,8 +126,8 @@ double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup,
 /// requested as well.
 double isovalue_of(const LoadedVolume& loaded, const Setup& setup, const OnProgress& progress = {});
 
-/// A warning about these layers in this volume: the volume does not declare their units, or has no
-/// densities at some levels. Empty: no warning.
+/// A warning if the volume does not declare the units of these layers, or has no densities at some
+/// of their levels. Otherwise empty.
 std::string layers_warning(const io::LayersFile& layers, const LoadedVolume& loaded);
 
 /// The requested settings. `isovalue` is the lowest level that is touched if no minimum is given,

@@ -20,7 +20,7 @@ struct Scene {
     double isovalue = 0;  ///< a suitable one [data units]
     std::string description;
     /// The analytic density [data units, not rounded] at a physical point [mm], of which the
-    /// samples are samples. Empty where there is none (noise, shepp-logan).
+    /// samples are samples. Empty if there is none (noise, shepp-logan).
     std::function<double(const Vec3& physical)> exact;
 };
 
@@ -63,14 +63,14 @@ Volume salt(const Index3& size, double fraction, std::uint64_t seed);
 /// the grid, so all degenerate cases of the lattice occur at once.
 Volume box(const Index3& size, const Index3& lo, const Index3& hi);
 
-/// A spherical sheet round the centre, falling linearly from full at `radius` [mm] to 0 at
+/// A spherical sheet around the centre, falling linearly from full at `radius` [mm] to 0 at
 /// `thickness` [mm] on both sides: `thickness` wide at half height. If it is thinner than a voxel,
 /// only some samples lie in it, so it has holes and specks, as intended.
 Volume thin_shell(const Index3& size, double radius, double thickness,
                   SampleType type = SampleType::uint8);
 
 /// A ball in a unit box (1 = the shortest axis of the grid): density 1/2 + slope (radius - r),
-/// clamped to 0..1; half height is its surface. In 8 bits the ramp has steps that can be felt.
+/// clamped to 0..1; half height is its surface. In 8 bits the ramp has steps, which a hand feels.
 Volume ball(const Index3& size, double radius = 0.35, double slope = 1.4,
             SampleType type = SampleType::uint8);
 
