@@ -101,7 +101,7 @@ void add_demo_options(CLI::App& command, DemoOptions& options) {
     add_field_options(command, options.field);
     options.render.add_to(command);
     command.option_defaults()->always_capture_default();  // of all that follow
-    command.add_option("--depth", options.hand.depth_mm, "How deep the hand presses [mm]");
+    command.add_option("--depth", options.hand.depth_mm, "Depth below the surface [mm]");
     command.add_option("--picture", options.picture_width, "Width of the picture [pixels]")
         ->check(from_to(16, 8192));
     command.add_option("-o,--output", options.output, "Folder for the results")
@@ -111,7 +111,7 @@ void add_demo_options(CLI::App& command, DemoOptions& options) {
 void add_motion_options(CLI::App& command, DemoOptions& options) {
     command.add_option("--motion", options.motion, "Motion of the hand")
         ->check(one_of(scenes::motion_names()));
-    command.add_option("--duration", options.hand.duration_s, "Length [s]");
+    command.add_option("--duration", options.hand.duration_s, "Duration of the motion [s]");
 }
 
 Demo load_demo(const DemoOptions& options) {

@@ -441,8 +441,8 @@ PALPATE_API palpate_status palpate_data_seek(palpate_data *data, double time);
 PALPATE_API void palpate_data_destroy(palpate_data *data);
 
 /* ---- Runs: a servo on a device ---------------------------------------------------------------- */
-/* Several runs on the same data are the hands of one session: each feels the edits of the others, and if
- * one device fails, the other runs continue. */
+/* Several runs on the same data are the hands of one session. Each feels the edits of the others. If one
+ * device fails, the other runs continue. */
 
 typedef struct palpate_run palpate_run;
 
