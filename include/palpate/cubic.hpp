@@ -78,8 +78,9 @@ Vec3 index_of(const LatticePoint& point);
 
 namespace detail {
 
-/// The samples around a tetrahedron's cube, in the axes of its frame: rows along s in the planes
-/// e = 0, 1 and -1 (z, p, m), at d = -1, 0 and 1 (m, 0, p).
+/// The samples around a tetrahedron's cube, in the axes of its frame, as rows along s. The first
+/// letter names the plane (z, p and m for e = 0, 1 and -1), the second the place in d (m, 0 and p
+/// for -1, 0 and 1).
 template <class T>
 struct Rows {
     // 16-bit samples times 96, and sums of some of them, fit into an int.
@@ -102,8 +103,8 @@ struct Rows {
     std::ptrdiff_t s;
 };
 
-/// What is odd along e is made of differences of the planes e = 1 and e = -1. In their names the
-/// place along d and s follows: dm0 is at d = -1, s = 0.
+/// Terms that are odd along e come from differences of the planes e = 1 and e = -1. In their names
+/// the place along d and s follows: dm0 is at d = -1, s = 0.
 template <class T>
 inline void set_odd(Piece& p, const Rows<T>& r) {
     using Sum = typename Rows<T>::Sum;
@@ -124,7 +125,7 @@ inline void set_odd(Piece& p, const Rows<T>& r) {
     p.se = {dse, sse};
 }
 
-/// What is even along e is made of the plane e = 0 and the sums of the other two.
+/// Terms that are even along e come from the plane e = 0 and the sums of the other two.
 template <class T>
 inline void set_even(Piece& p, const Rows<T>& r, double isovalue) {
     using Sum = typename Rows<T>::Sum;

@@ -77,7 +77,7 @@ class Device {
     /// Any thread but the servo thread. May change when a device connects. A running servo learns
     /// of changed limits by DeviceReading::limits.
     virtual DeviceInfo info() const = 0;
-    /// What is wrong and what to do about it, or empty. Not for the servo thread.
+    /// A problem and its remedy, or empty. Not for the servo thread.
     virtual std::string problem() const { return {}; }
 
     /// Servo thread: neither waits, allocates nor throws. `time` [s] is the session's. Simulated

@@ -96,8 +96,8 @@ struct Edited {
 /// samples of the volume's type, x fastest. May wait, and may throw anything.
 using ReadSamples = std::function<void(const SampleBox& box, std::span<std::byte> out)>;
 
-/// Throws std::invalid_argument, saying what is wrong, for an edit that cannot be made: numbers out
-/// of range or not finite, or samples that are a sequence (edit one frame of it instead).
+/// Throws std::invalid_argument, with the reason, for an impossible edit: numbers out of range or
+/// not finite, or samples that are a sequence (edit one frame of it instead).
 void check(const Edit& edit, const Samples& samples);
 /// The samples after an edit. Values outside the sample type's range are clamped. The same input
 /// gives the same bits. For a large grid, `read` gives the samples of the bricks that are edited

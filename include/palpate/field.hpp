@@ -34,7 +34,7 @@ using CellSamples = std::array<double, 8>;
 /// (x, y, z), each -1, 0 or 1, has place 13 + x + 3 y + 9 z.
 using Neighbours = std::array<double, 27>;
 
-/// The samples at one moment and their solid side: what the hand touches. A small value; copies
+/// The samples at one moment and their solid side, for the hand to touch. A small value; copies
 /// share the samples.
 class Field {
   public:
@@ -76,8 +76,8 @@ class Field {
     /// How far sign * (f - isovalue) may exceed 0 by rounding before a point counts as solid [data
     /// units]: a thousandth of the tolerance of G1 and G2 (proxy.hpp).
     double tolerance() const { return tolerance_; }
-    /// What cell() subtracts from every sample [data units]: 0, unless the data is so far from zero
-    /// that doubles have too few digits left for its range (docs/proxy.md, "Domain").
+    /// cell() subtracts this from every sample [data units]. It is 0, unless the data is so far
+    /// from zero that doubles have too few digits left for its range (docs/proxy.md, "Domain").
     double offset() const { return offset_; }
     /// A density computed from cell(), offset included.
     double with_offset(double density) const { return offset_ == 0 ? density : density + offset_; }

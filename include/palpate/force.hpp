@@ -57,7 +57,7 @@ struct ForceSettings {
     bool operator==(const ForceSettings&) const = default;
 };
 
-/// What a device can take.
+/// The limits of a device.
 struct DeviceLimits {
     double maximum_force = 3.3;  ///< [N] never exceeded (3.3: Omni, Touch)
     double rate = 1000;          ///< [Hz] of the servo loop
@@ -121,7 +121,7 @@ struct ForceInput {
     Vec3 turn = Vec3::Zero();                         ///< rotation from hand to proxy [rad]
 };
 
-/// Why a force differs from what the settings alone would give. Bits.
+/// Bits: the reasons for which a force differs from the one that follows from the settings alone.
 enum ForceFlag : std::uint16_t {
     force_limited = 1,       ///< cut to the maximum
     force_rate_limited = 2,  ///< change of force cut
@@ -160,7 +160,7 @@ struct ForceState {
     Vec3 hand = Vec3::Zero();      ///< [device mm]
     Vec3 velocity = Vec3::Zero();  ///< [device mm/s], low-pass filtered; at most 10 m/s counts
     Vec3 force = Vec3::Zero();     ///< [N] as rendered
-    bool turns = false;            ///< what follows is known
+    bool turns = false;            ///< the next members are known
     Quaternion orientation = Quaternion::Identity();
     Vec3 angular_velocity = Vec3::Zero();  ///< [rad/s], low-pass filtered; at most 100 rad/s counts
     Vec3 torque = Vec3::Zero();            ///< [N mm] as rendered

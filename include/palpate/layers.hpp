@@ -118,9 +118,10 @@ std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<con
 /// labels.
 Field labelled_space(const Layers& layers);
 
-/// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, levels out of
-/// order or not finite (labels: not whole, below 1 or given twice), names missing or given twice,
-/// knots out of order, and values that are NaN, negative or (but for puncture forces) infinite.
+/// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, and for levels out
+/// of order or not finite (labels: not whole, below 1 or given twice). The same holds for names
+/// missing or given twice, knots out of order, and values that are NaN, negative or (except for
+/// puncture forces) infinite.
 void check(const Layers& layers, Solid solid);
 
 /// A property in a layer (by number from 0; -1: outside of all), at a density [data units] and

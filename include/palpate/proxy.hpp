@@ -190,7 +190,7 @@ struct DensityRange {
     double high = std::numeric_limits<double>::infinity();
 };
 
-/// What a penetrability function sees in each constrained tick.
+/// The input of a penetrability function in each constrained tick.
 struct Pressing {
     double isovalue;  ///< level felt now [data units]
     double pull;      ///< |SCP - HIP| [device mm]

@@ -94,9 +94,9 @@ struct Tick {
     std::int64_t update_ns = 0;  ///< [ns] the proxy update alone, by the caller's clock. 0: none
 };
 
-/// Throws std::invalid_argument, saying what is wrong, for settings that cannot be rendered.
-/// Whether ranges of interest and layers are in the order of the field's solid side is left to
-/// their own check(), which make_renderer() calls as well.
+/// Throws std::invalid_argument, with the reason, for settings that cannot be rendered. Whether
+/// ranges of interest and layers are in the order of the field's solid side is left to their own
+/// check(), which make_renderer() calls as well.
 void check(const RendererSettings& settings);
 /// Throws std::invalid_argument for an isovalue that is NaN, or infinite so that all of space is
 /// solid. The other infinity leaves all of space free.
@@ -108,8 +108,8 @@ struct FieldKind {
     Interpolation interpolation = Interpolation::linear;
 };
 FieldKind kind_of(const Field& field);
-/// Throws std::invalid_argument, saying what is wrong, for a tool that cannot be used with this
-/// method on such a field. Null, a point, is always valid.
+/// Throws std::invalid_argument, with the reason, for a tool that cannot be used with this method
+/// on such a field. Null, a point, is always valid.
 void check_tool(const Tool* tool, ProxyMethod method, const FieldKind& field);
 /// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue or settings
 /// that do not pass their check.

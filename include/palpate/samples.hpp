@@ -1,7 +1,7 @@
-// Stage 2, samples: one version of the numbers on a grid, which is a volume with its edited
-// bricks, the frames of a sequence, or the part of a large grid that is in memory, perhaps with
-// edited bricks. A version never changes. A change makes a new version, published by pointer, and
-// readers pick it up between two reads (copy on write). See docs/changing_data.md.
+// Stage 2, samples: one version of the numbers on a grid. It is a volume with its edited bricks,
+// the frames of a sequence, or the part of a large grid that is in memory, perhaps with edited
+// bricks. A version never changes. A change makes a new version, published by pointer, and readers
+// pick it up between two reads (copy on write). See docs/changing_data.md.
 #pragma once
 
 #include <array>
@@ -151,7 +151,7 @@ struct Moment {
     double weight = 0;             ///< of `to`, 0 to below 1; `from` has the rest
 };
 
-/// One version. Immutable, held by shared pointers; versions share what did not change.
+/// One version. Immutable, held by shared pointers. Versions share unchanged parts.
 class Samples {
   public:
     /// A volume without edits.

@@ -93,7 +93,7 @@ struct Snapshot {
     bool forces_on = true;
 };
 
-/// What observers see of a session after a tick. Neither throws nor allocates.
+/// The state of a session after a tick, for observers. Neither throws nor allocates.
 Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64_t number,
                      std::int64_t missed) noexcept;
 

@@ -50,7 +50,7 @@ struct ToolUpdate {
 namespace tool {
 
 struct Kept;
-/// What updates store to save time. Private to the proxy. Copies are independent.
+/// Results that updates keep to save time. Private to the proxy. Copies are independent.
 class Keeper {
   public:
     Keeper();
@@ -81,11 +81,11 @@ struct ToolState {
 /// The proxy. Set `isovalue` freely between two updates. Copies are independent.
 class ToolProxy : public ToolState {
   public:
-    /// Allocates what updates need. Not null.
+    /// Allocates the memory that updates need. Not null.
     explicit ToolProxy(std::shared_ptr<const Tool> tool);
 
     const Tool& tool() const { return *tool_; }
-    /// Allocates what use() needs for tools of this many points. Changes nothing else.
+    /// Allocates the memory that use() needs for tools of this many points. Changes nothing else.
     void make_room(std::size_t points);
     /// Another tool from the next update on, at the same pose. If it is inside the solid there,
     /// recovery follows. Allocates nothing. Frees the previous tool unless it is held elsewhere.

@@ -20,7 +20,7 @@ struct DeviceChoice {
 DeviceChoice parse_device(std::string_view text);
 
 /// Takes options out one by one. finish() refuses those that were not taken. All errors are
-/// std::invalid_argument and name the device, the option and what is accepted.
+/// std::invalid_argument and name the device, the option and the accepted values.
 class DeviceOptions {
   public:
     /// `main` is the key that a value without a key stands for ("" where there is none).

@@ -35,7 +35,7 @@ class CsvReader {
   public:
     /// Called with each comment, without its #.
     using CommentSink = std::function<void(std::string_view)>;
-    /// Reads the header. `text` must outlive the reader; `name` is what errors call it.
+    /// Reads the header. `text` must outlive the reader; errors call it `name`.
     CsvReader(std::string_view text, std::string name, CommentSink comments = {});
 
     bool has_column(std::string_view column) const;

@@ -1,5 +1,5 @@
 // The two ways input and output fail. Each message is one short line that stands alone: the file,
-// what is wrong, what to do. Header only, so that every reader and writer can throw them.
+// the fault and the remedy. Header only, so that every reader and writer can throw them.
 #pragma once
 
 #include <algorithm>

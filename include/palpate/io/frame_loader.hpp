@@ -36,9 +36,8 @@ struct LoaderStatus {
 };
 
 /// Once all frames are read, if they fit, it publishes the whole sequence with its period.
-/// Otherwise, and before that, it publishes the part around the play position, without a period, in
-/// times that do not jump where the sequence begins again: the first frame of lap 3 is at 3
-/// periods.
+/// Otherwise, and before that, it publishes the part around the play position, without a period.
+/// Its times do not jump when the sequence begins again: the first frame of lap 3 is at 3 periods.
 class FrameLoader {
   public:
     /// Called from the loader's thread; must not throw.

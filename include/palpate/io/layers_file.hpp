@@ -16,7 +16,7 @@ struct LayersFile {
     /// Unit of the levels and of the curves' axis: "HU", ... "%" is percent of the data's range.
     /// Empty: the data's own.
     std::string units;
-    std::string about;  ///< for people: what it is for, and where its numbers come from
+    std::string about;  ///< for people: the purpose, and the source of the numbers
 };
 
 /// Throws InputError if there is no such file, for text that is not JSON, for members that are

@@ -49,7 +49,7 @@ struct LiveStatus {
     std::uint64_t missed = 0;  ///< overwritten before they were read
     double age = 0;            ///< [s] since the last frame, or since the file was opened
     bool ended = false;        ///< the writer has marked the file as ended
-    std::string problem;       ///< what is wrong now; empty: nothing
+    std::string problem;       ///< the present problem, or empty
 };
 
 /// Follows a live file. The status shows whether the writer stalls or has died. If a writer is

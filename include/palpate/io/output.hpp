@@ -72,7 +72,7 @@ class PendingFile {
 
     std::filesystem::path target_;
     std::filesystem::path temporary_;  // empty where the target is written directly
-    bool in_place_ = false;            // temporary_ then holds what the target held before, if any
+    bool in_place_ = false;  // temporary_ then holds the previous content of the target, if any
     int descriptor_ = -1;
     int lock_ = -1;  // held until the file is in place, so that other processes do not remove the
                      // temporary file

@@ -43,8 +43,8 @@ class Player {
     /// Follows the first servo that has not ended, and sends frames that were loaded. Its thread
     /// calls this every 5 ms.
     void step(std::chrono::steady_clock::time_point now);
-    /// Starts a servo at the play position and keeps it up to date until detach(). What `start`
-    /// throws is passed on.
+    /// Starts a servo at the play position and keeps it up to date until detach(). Exceptions of
+    /// `start` are passed on.
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     void detach(const Servo& servo);
     /// As VolumeEditor::record().

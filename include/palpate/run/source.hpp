@@ -82,7 +82,7 @@ struct StreamedVolume {
     stream::Opened opened = {};  ///< an absolute address. Its content if it is on this machine
 };
 
-/// A volume and what is known about it.
+/// A volume and the facts about it.
 struct LoadedVolume {
     /// The volume. For a sequence its first frame, for a live source the frame that it began with,
     /// for a store its overview.
@@ -91,7 +91,7 @@ struct LoadedVolume {
     std::string name;
     std::string format = {};
     std::vector<std::string> notes = {};              ///< for people, a sentence each
-    io::ValueInfo values = {};                        ///< what the header says
+    io::ValueInfo values = {};                        ///< from the header
     std::optional<double> isovalue = {};              ///< a good one, of a synthetic volume
     io::Sequence sequence = {};                       ///< empty unless there are several frames
     std::shared_ptr<const io::LiveFrames> live = {};  ///< null unless it is a live source

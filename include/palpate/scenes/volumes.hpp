@@ -33,9 +33,9 @@ std::vector<std::string> volume_names();
 /// A scene from its specification: "NAME", "NAME:WxHxD", each also with "synthetic:" in front.
 /// Spacing 1 mm (beating: 100 mm along the longest axis), physical_centre() exactly (0, 0, 0). The
 /// default of `type` is the scene's own. Density 0..1 is stored as 0..1 in float32 and as
-/// 0..largest value in an integer type; shepp-logan is in Hounsfield units in int16 and float32, HU
-/// + 1000 in uint16, and -1000..2000 HU as 0..255 in uint8. Throws std::invalid_argument that lists
-/// the names or the form, or says which size is too large.
+/// 0..largest value in an integer type. shepp-logan is in Hounsfield units in int16 and float32, in
+/// HU + 1000 in uint16, and has -1000..2000 HU as 0..255 in uint8. Throws std::invalid_argument
+/// that lists the names or the form, or says which size is too large.
 Scene make_volume(std::string_view spec, std::optional<SampleType> type = {},
                   const OnProgress& progress = {});
 

@@ -59,7 +59,7 @@ class DetailReader {
 
     DetailReader(std::shared_ptr<const Store> store, Volume overview, DetailSettings settings,
                  Made made);
-    /// Cancels what is being read, and waits for the threads.
+    /// Cancels reads under way, and waits for the threads.
     ~DetailReader();
     DetailReader(const DetailReader&) = delete;
     DetailReader& operator=(const DetailReader&) = delete;

@@ -52,7 +52,7 @@ class GrowingImage {
     /// Chunks of all levels that are stored.
     std::uint64_t stored_chunks() const;
     /// The samples of a chunk of a coarser level: means of the level before, which has to be
-    /// whole there. Throws what reading throws.
+    /// whole there. Throws as reading does.
     std::vector<std::byte> means(int level, const Index3& chunk, const std::stop_token& stop) const;
 
   private:

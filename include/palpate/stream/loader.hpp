@@ -96,7 +96,7 @@ class BrickLoader {
     /// than 64 bricks.
     BrickLoader(std::shared_ptr<const Store> store, Volume overview,
                 const BrickLoaderSettings& settings = {});
-    /// Cancels what is being read.
+    /// Cancels reads under way.
     ~BrickLoader();
     BrickLoader(const BrickLoader&) = delete;
     BrickLoader& operator=(const BrickLoader&) = delete;

@@ -75,8 +75,8 @@ class Store {
   public:
     virtual ~Store() = default;
     virtual const StoreInfo& info() const = 0;
-    /// Reads a box of samples, both corners in it, all inside the level's grid, into `out`
-    /// (size_of(type) bytes a sample, x fastest). All of them are finite. Blocks. Throws
+    /// Reads a box of samples, both corners included, all inside the level's grid, into `out`
+    /// (size_of(type) bytes per sample, x fastest). All of them are finite. Blocks. Throws
     /// io::InputError if a piece is damaged or cannot be read after all attempts, Cancelled as soon
     /// as `stop` is requested.
     virtual void read(int level, const SampleBox& box, std::span<std::byte> out,
