@@ -339,7 +339,7 @@ void check_tool(const Tool* tool, ProxyMethod method, const FieldKind& field) {
     if (!tool) return;
     if (field.interpolation != Interpolation::cubic) {
         throw std::invalid_argument(
-            "tools need the cubic field: a linear one is felt with a point");
+            "tools need the cubic field: a linear one can be touched only with a point");
     }
     if (method != &update_exact) throw std::invalid_argument("tools need the method exact");
 }
