@@ -89,7 +89,7 @@ std::string report_html(const Demo& demo, const std::string& images) {
         "<p>{} felt the surface at isovalue {:g} of <b>{}</b> ({} x {} x {} samples of {}).</p>\n"
         "<pre>{}</pre>\n{}"
         "<p>Data: <a href=\"trajectory.csv\">trajectory.csv</a> (the hand), <a "
-        "href=\"trace.csv\">trace.csv</a> (a row a tick){}.</p>\n</html>\n",
+        "href=\"trace.csv\">trace.csv</a> (one row per tick){}.</p>\n</html>\n",
         demo.hand, demo.isovalue, html_text(demo.loaded.name), size[0], size[1], size[2],
         name_of(demo.loaded.volume.type()), summary_text(demo.summary), images, path);
 }
