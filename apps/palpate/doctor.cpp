@@ -1,4 +1,4 @@
-// palpate doctor: what this machine lacks for good haptics, and what mends it.
+// palpate doctor: the faults of this machine that disturb haptics, and their remedies.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
