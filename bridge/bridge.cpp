@@ -155,7 +155,7 @@ void Bridge::serve(Peer& peer, Work&& work) noexcept {
     try {
         if (!peer.gone) work();
     } catch (const std::bad_alloc&) {
-        drop(peer, "memory does not suffice for what it sent or asked for");
+        drop(peer, "memory does not suffice for its messages and answers");
     } catch (const std::exception& e) {
         drop(peer, e.what());
     }

@@ -54,8 +54,8 @@ ImageHeader read_header(std::string_view content) {
     const unsigned endian = number_at<std::uint8_t>(content, 4);
     const unsigned space = number_at<std::uint8_t>(content, 5);
     const std::size_t bytes = bytes_of(header.scalar);
-    if (components != 1) throw WireError("an IMAGE of several components: one is felt");
-    if (bytes == 0) throw WireError("an IMAGE of a scalar type that there is not");
+    if (components != 1) throw WireError("an IMAGE of several components: only one can be touched");
+    if (bytes == 0) throw WireError("an IMAGE of an unknown scalar type");
     if (endian != 1 && endian != 2) throw WireError("an IMAGE of an unknown order of bytes");
     if (space != 1 && space != 2) throw WireError("an IMAGE in an unknown space");
     header.big_endian = endian == 1;

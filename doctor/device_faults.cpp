@@ -104,12 +104,11 @@ std::vector<Fault> device_faults(const Facts& facts) {
     for (const UsbDevice& device : facts.machine.usb) judge_plugged(device, facts, faults);
     const auto* const wanted = finding_of(facts, facts.wanted_device);
     if (wanted && !wanted->found) {
-        faults.push_back(
-            {"device-missing", true,
-             fmt::format("{} cannot be used: {}", wanted->name, wanted->missing),
-             fmt::format("see docs/devices/{}.md; plugged in, switched on, its library "
-                         "or service there?",
-                         wanted->name)});
+        faults.push_back({"device-missing", true,
+                          fmt::format("{} cannot be used: {}", wanted->name, wanted->missing),
+                          fmt::format("see docs/devices/{}.md: is it plugged in and switched on, "
+                                      "and is its library or service installed?",
+                                      wanted->name)});
     }
     return faults;
 }

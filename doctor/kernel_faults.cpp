@@ -92,14 +92,14 @@ std::vector<Fault> kernel_faults(const Facts& facts) {
         faults.push_back({"processor-load", false,
                           fmt::format("other programs compute: {:.3g} threads for {} processors",
                                       machine.load, machine.processors),
-                          "end them before you feel something (top shows them)"});
+                          "end them before a session (top shows them)"});
     }
     if (machine.memory_available > 0 && machine.memory_available < memory_needed) {
         faults.push_back({"memory-low", false,
                           fmt::format("{:.0f} MB of memory are left: the system will swap or end "
                                       "programs",
                                       machine.memory_available / 1e6),
-                          "close other programs, or feel a smaller volume"});
+                          "close other programs, or touch a smaller volume"});
     }
     return faults;
 }

@@ -18,7 +18,8 @@ std::string way_to_punctuality(const Facts& facts) {
                "busy";
     }
     if (machine.preemption != Preemption::real_time) {
-        return "mend what else is listed; then sudo apt install linux-image-rt-amd64, and reboot";
+        return "mend the other faults first; then sudo apt install linux-image-rt-amd64, and "
+               "reboot";
     }
     return "look for interruptions by the firmware: sudo apt install rt-tests; sudo hwlatdetect; "
            "switch power saving and USB legacy support off in the BIOS";
@@ -34,8 +35,8 @@ std::vector<Fault> latency_faults(const Facts& facts) {
     const char* const when = facts.latency->under_load ? " under load" : "";
     if (missed > most_missed) {
         return {{"ticks-missed", true,
-                 fmt::format("{} of {:.0f} ticks were missed{}: the force is felt to stutter",
-                             report.missed, ticks, when),
+                 fmt::format("{} of {:.0f} ticks were missed{}: the force stutters", report.missed,
+                             ticks, when),
                  way_to_punctuality(facts)}};
     }
     if (report.lateness.p999 > late_ns || report.missed > 0) {

@@ -17,7 +17,7 @@ struct Use {
     const char* without;  ///< what does not work
 };
 constexpr std::array<Use, 3> uses{{
-    {"palpate-io-helper", "helper-io", true, "no volume but synthetic ones can be read or written"},
+    {"palpate-io-helper", "helper-io", true, "only synthetic volumes can be used"},
     {"palpate-picture-helper", "helper-pictures", false, "no picture can be drawn"},
     {"palpate-explicit-helper", "helper-explicit", false,
      "the experiment `palpate evaluate scaling` does not run"},
@@ -50,8 +50,8 @@ void judge_graphics(const Facts& facts, std::vector<Fault>& faults) {
     }
     faults.push_back(
         {"graphics-software", false,
-         "there is a graphics card, but no driver for it draws: the viewer uses the "
-         "processors, which delays the servo",
+         "there is a graphics card, but no driver draws with it: the viewer uses the processors, "
+         "which delays the servo",
          "sudo apt install libgl1-mesa-dri firmware-amd-graphics firmware-misc-nonfree "
          "(or nvidia-driver); reboot"});
 }
@@ -67,8 +67,8 @@ std::vector<Fault> program_faults(const Facts& facts) {
         if (use == uses.end()) continue;
         faults.push_back({use->fault, use->essential,
                           fmt::format("{}: {}; {}", program.name, program.problem, use->without),
-                          "install Palpate again, all of the same version; of a build: build all "
-                          "targets"});
+                          "install Palpate again, all packages in the same version; in a build "
+                          "folder, build all targets"});
     }
     judge_graphics(facts, faults);
     return faults;

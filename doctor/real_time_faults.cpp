@@ -67,7 +67,7 @@ Fault refused_priority(const Facts& facts) {
             "run it outside of the container, or give its control group a cpu.rt_runtime_us";
     } else if (allowed) {
         fault.remedy =
-            "the limit would allow it, so a container or a sandbox does not: start it with "
+            "the limit allows it, so a container or a sandbox forbids it: start it with "
             "--cap-add=SYS_NICE --ulimit rtprio=90, or run it outside";
     }
     return fault;
@@ -106,8 +106,8 @@ std::vector<Fault> real_time_faults(const Facts& facts) {
     }
     if (machine.real_time_share < 0.5) {
         faults.push_back({"real-time-share", true,
-                          fmt::format("real-time threads get {:.0f} % of the time only; then they "
-                                      "stand still until the period ends",
+                          fmt::format("real-time threads get only {:.0f} % of each period, and "
+                                      "have to wait for the rest of it",
                                       100 * machine.real_time_share),
                           "sudo sysctl kernel.sched_rt_period_us=1000000 "
                           "kernel.sched_rt_runtime_us=950000"});

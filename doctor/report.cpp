@@ -109,7 +109,7 @@ std::string certificate(const Latency& latency) {
     row("compute (this program)", r.compute);
     row("work (both)", r.work);
     row("period", r.period);
-    text += fmt::format("\nTicks {}, missed {}, forces taken back {}.\n", r.ticks, r.missed,
+    text += fmt::format("\nTicks {}, missed {}, forces cancelled {}.\n", r.ticks, r.missed,
                         r.overruns);
     if (r.worst.tick >= 0) {
         text += fmt::format("Worst tick {}: woken {:.1f} us late, {:.1f} us of work; mostly {}.\n",

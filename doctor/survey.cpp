@@ -90,7 +90,7 @@ Program reader() {
         for (const char* name :
              {"palpate-io-itk", "palpate-io-images", "palpate-io-vtk", "palpate-io-dicom"}) {
             if (access((folder / name).c_str(), X_OK) == 0) continue;
-            program.problem = std::string(name) + " is not beside it or cannot be run";
+            program.problem = std::string(name) + " is missing in its folder or cannot be run";
         }
     } catch (const std::exception& e) {
         program.problem = e.what();

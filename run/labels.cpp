@@ -46,7 +46,7 @@ void require_whole_numbers(const LoadedVolume& labels) {
     });
     if (wrong == samples + count) return;
     throw std::invalid_argument(labels.name + ": labels are whole numbers below 16777216, and " +
-                                std::to_string(*wrong) + " is none");
+                                std::to_string(*wrong) + " is not");
 }
 
 std::string names_in(const LoadedVolume& labels) {

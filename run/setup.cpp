@@ -94,7 +94,8 @@ double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup,
     const std::vector<double> levels =
         suggested_isovalues(histogram_of(loaded.volume, bins, padding, progress));
     if (!levels.empty()) return levels.front();
-    throw std::invalid_argument(loaded.name + ": the data are constant, there is nothing to feel");
+    throw std::invalid_argument(loaded.name +
+                                ": the data is constant, so there is no surface to touch");
 }
 
 double isovalue_of(const LoadedVolume& loaded, const Setup& setup, const OnProgress& progress) {

@@ -204,7 +204,7 @@ LoadedVolume loaded_of(const StoreSource& from, const Source& source,
     if (from.all_times) return all_times_of(from, source, progress);
     if (source.smooth > 0 || source.dequantize > 0 || source.prefilter) {
         throw std::invalid_argument(io::without_secrets(from.address) +
-                                    ": is felt while it is read, so it cannot be smoothed, "
+                                    ": is read while it is touched, so it cannot be smoothed, "
                                     "dequantized or sharpened");
     }
     const int time = source.frame.value_or(0);
@@ -224,7 +224,8 @@ LoadedVolume loaded_of(const StoreSource& from, const Source& source,
     loaded.time_steps = info.times;
     const Index3& size = loaded.volume.geometry().size;
     loaded.notes.push_back(
-        "it is read as it is felt; histogram and suggested levels are those of an overview of " +
+        "it is read while it is touched; the histogram and the suggested isovalues are those of an "
+        "overview of " +
         std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
         std::to_string(size[2]) + " samples");
     if (from.lacks_secrets) {

@@ -141,7 +141,7 @@ const std::array<Recipe, 9>& recipes() {
          u8,
          0.3,
          sphere},
-        {"torus", "a ring round the z axis; every level is a torus", {80, 80, 40}, u8, 0.4, torus},
+        {"torus", "a ring around the z axis; every level is a torus", {80, 80, 40}, u8, 0.4, torus},
         {"plane",
          "density 1 at the bottom, 0 at the top; every level is a plane across z",
          {64, 64, 64},

@@ -287,9 +287,8 @@ static void check_with_tool(const RendererSettings& s) {
                         : s.force.texture.amplitude != 0 ? "a texture"
                                                          : nullptr;
     if (wrong) {
-        throw std::invalid_argument(
-            std::string(wrong) +
-            " can be felt with a point only: switch it off, or take the tool point");
+        throw std::invalid_argument("a tool cannot be combined with " + std::string(wrong) +
+                                    ": use only one of the two");
     }
 }
 
@@ -339,7 +338,7 @@ void check_tool(const Tool* tool, ProxyMethod method, const FieldKind& field) {
     if (!tool) return;
     if (field.interpolation != Interpolation::cubic) {
         throw std::invalid_argument(
-            "tools need the cubic field: a linear one is felt with a point");
+            "tools need the cubic field: a linear one can be touched only with a point");
     }
     if (method != &update_exact) throw std::invalid_argument("tools need the method exact");
 }
@@ -415,8 +414,8 @@ std::string isovalue_warning(const Field& field, double isovalue) {
     const double s = field.sign();
     const double most = s > 0 ? samples.maximum() : samples.minimum();
     if (s * isovalue >= s * most && s * isovalue >= s * field.background()) {
-        return "the isovalue lies outside the data's range: nothing is solid, there is nothing to "
-               "feel";
+        return "the isovalue lies outside the data's range: nothing is solid, so there is "
+               "nothing to touch";
     }
     if (s * isovalue < s * field.background()) {
         return "the background outside the data is solid at this isovalue: all of space outside "

@@ -201,7 +201,7 @@ void Servo::stop_recording() noexcept {
 
 bool Servo::send(const Command& command) {
     if (std::holds_alternative<command::Resume>(command)) {
-        throw std::invalid_argument("a session that runs goes on from where it is");
+        throw std::invalid_argument("a running session cannot resume at another point");
     }
     const CheckedCommand checked(command, start_, field_);
     if (has_ended()) {
@@ -289,7 +289,7 @@ void Servo::watch(std::int64_t cpu, bool could_run) noexcept {
 void Servo::run() noexcept {
     try {
         privileges_ = settings_.real_time ? ask_for_real_time(settings_.priority)
-                                          : std::vector<std::string>{"real time: not asked for"};
+                                          : std::vector<std::string>{"real time: not requested"};
     } catch (...) {  // no memory for the sentences; the loop needs none
     }
     begin(now_() + settle_ns);

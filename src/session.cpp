@@ -123,7 +123,7 @@ static RendererSettings changed_by(const Command& command, const RendererSetting
             if (!to.samples) throw std::invalid_argument("no samples are given");
             if (!(to.samples->geometry() == field.geometry)) {
                 throw std::invalid_argument(
-                    "the samples do not lie on the grid of those that are felt");
+                    "the samples do not lie on the grid of the present ones");
             }
         },
         [](const command::Moment& to) {

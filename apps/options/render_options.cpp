@@ -74,7 +74,7 @@ void RenderOptions::add_to(CLI::App& command) {
         ->default_str("point");
     command
         .add_option("--tool-spacing", given.tool_spacing,
-                    "Distance of the tool's points [mm] (default: half a voxel)")
+                    "Distance between the tool's points [mm] (default: half a voxel)")
         ->check(above_zero());
     add_force_to(command);
     command
@@ -84,7 +84,7 @@ void RenderOptions::add_to(CLI::App& command) {
         ->default_str("1");
     command
         .add_option("--step-budget", given.step_budget,
-                    "Largest work of an update, in steps through tetrahedra or what takes as long")
+                    "Largest work of an update, in units of about one step through a tetrahedron")
         ->default_str(std::to_string(ProxySettings{}.step_budget));
 }
 

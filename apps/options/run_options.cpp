@@ -53,8 +53,8 @@ void RunOptions::add_device_options(CLI::App& command) {
         .add_option_function<std::vector<std::string>>(
             "-d,--device",
             [this](const std::vector<std::string>& texts) { devices = choices_from(texts); },
-            "Device and its options; palpate devices lists them. Given again: one more hand, which "
-            "feels the same volume")
+            "Device and its options, which palpate devices lists. Give it again to add a hand in "
+            "the same volume")
         ->allow_extra_args(false)
         ->type_name(fmt::format("{{{}}}[:KEY=VALUE,...]", fmt::join(devices::device_names(), ",")))
         ->default_str(run::text_of(given.device));

@@ -159,12 +159,12 @@ void add_field_options(CLI::App& command, run::FieldSetup& field) {
     command.add_option_function<std::string>(
         "-i,--isovalue",
         [&field](const std::string& text) { field.isovalue = io::level_from_text(text); },
-        "Level to feel, in the data's units (300) or percent of its range (53%)");
+        "Isovalue of the surface, in the data's units (300) or percent of its range (53%)");
     add_side_options(command, field);
 }
 
 void add_side_options(CLI::App& command, run::FieldSetup& field) {
-    add_named(command, "--solid", field.solid, "Which side of the level is solid");
+    add_named(command, "--solid", field.solid, "Which side of the isovalue is solid");
     command
         .add_option_function<std::string>(
             "--field",

@@ -48,8 +48,8 @@ void ViewOptions::settle() {
 void ViewOptions::warn() const {
     if (screenshot.empty()) warn_of_no_effect(*command_, {"--after"}, "there is no --screenshot");
     if (session.empty() && play.empty()) return;
-    const std::string reason =
-        "the " + std::string(play.empty() ? "session" : "recording") + " says what is felt";
+    const std::string reason = "the " + std::string(play.empty() ? "session" : "recording") +
+                               " gives the data and the settings";
     if (has_volume()) warn_of_no_effect(*command_, {"VOLUME"}, reason);
     warn_of_no_effect(*command_,
                       {"--dims",      "--type",       "--spacing",        "--orientation",

@@ -1,5 +1,5 @@
 // The commands of the program `palpate`, one file each. Every add_*() declares a subcommand with
-// its options; what it does runs from CLI11's callback and reports problems by throwing.
+// its options. The command runs in CLI11's callback and reports problems by throwing.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -154,7 +154,7 @@ DataRequest set_brush(const std::optional<run::HandBrush>& brush) {
         data.editor().set_brush(brush);
         if (!brush) return std::string("brush: off");
         return fmt::format("brush: {}, {:g} mm{}", name_of(brush->kind), brush->radius,
-                           brush->as_tool ? " round the tool" : "");
+                           brush->as_tool ? " around the tool" : "");
     };
 }
 

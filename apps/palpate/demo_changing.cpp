@@ -199,7 +199,7 @@ CLI::App* add_changing(CLI::App& demo, const char* name, const char* what,
     options->picture_width = 480;
     CLI::App* command = demo.add_subcommand(name, what);
     add_demo_options(*command, *options);
-    command->add_option("--pictures", options->pictures, "How many pictures the animation has")
+    command->add_option("--pictures", options->pictures, "Number of pictures in the animation")
         ->check(from_to(2, 240));
     command->callback([options, run] {
         options->hand.rate_hz = options->render.given.rate.value_or(run::usual_rate);
@@ -225,7 +225,7 @@ void add_demo_sculpt(CLI::App& demo) {
     command->footer("Example:\n  palpate demo sculpt head.nrrd --isovalue 34.5 --radius 4");
     add_motion_options(*command, *options);
     command->add_option("--radius", options->brush.radius, "Radius of the brush [mm]");
-    command->add_option("--brush-rate", options->brush.rate, "How fast the brush works [1/s]");
+    command->add_option("--brush-rate", options->brush.rate, "Rate of the brush [1/s]");
 }
 
 void add_demo_beating(CLI::App& demo) {
@@ -238,7 +238,7 @@ void add_demo_beating(CLI::App& demo) {
         "Let a simulated hand rest on the moving surface of a sequence, as an animation", options,
         beating);
     command->footer("Example:\n  palpate demo beating synthetic:beating:48x48x48 --beats 2");
-    command->add_option("--beats", options->beats, "How often the sequence is played")
+    command->add_option("--beats", options->beats, "Number of times that the sequence is played")
         ->check(from_to(1, 1000));
 }
 

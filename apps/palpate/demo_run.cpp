@@ -89,7 +89,7 @@ std::string report_html(const Demo& demo, const std::string& images) {
         "<p>{} felt the surface at isovalue {:g} of <b>{}</b> ({} x {} x {} samples of {}).</p>\n"
         "<pre>{}</pre>\n{}"
         "<p>Data: <a href=\"trajectory.csv\">trajectory.csv</a> (the hand), <a "
-        "href=\"trace.csv\">trace.csv</a> (a row a tick){}.</p>\n</html>\n",
+        "href=\"trace.csv\">trace.csv</a> (one row per tick){}.</p>\n</html>\n",
         demo.hand, demo.isovalue, html_text(demo.loaded.name), size[0], size[1], size[2],
         name_of(demo.loaded.volume.type()), summary_text(demo.summary), images, path);
 }
@@ -101,7 +101,7 @@ void add_demo_options(CLI::App& command, DemoOptions& options) {
     add_field_options(command, options.field);
     options.render.add_to(command);
     command.option_defaults()->always_capture_default();  // of all that follow
-    command.add_option("--depth", options.hand.depth_mm, "How deep the hand presses [mm]");
+    command.add_option("--depth", options.hand.depth_mm, "Depth below the surface [mm]");
     command.add_option("--picture", options.picture_width, "Width of the picture [pixels]")
         ->check(from_to(16, 8192));
     command.add_option("-o,--output", options.output, "Folder for the results")
@@ -111,7 +111,7 @@ void add_demo_options(CLI::App& command, DemoOptions& options) {
 void add_motion_options(CLI::App& command, DemoOptions& options) {
     command.add_option("--motion", options.motion, "Motion of the hand")
         ->check(one_of(scenes::motion_names()));
-    command.add_option("--duration", options.hand.duration_s, "Length [s]");
+    command.add_option("--duration", options.hand.duration_s, "Duration of the motion [s]");
 }
 
 Demo load_demo(const DemoOptions& options) {

@@ -1,4 +1,5 @@
-// What all demos do: a simulated hand feels a volume offline; pictures and a report in a folder.
+// The part that all demos share: a simulated hand touches a volume offline, and a folder gets
+// pictures and a report.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// palpate doctor: what this machine lacks for good haptics, and what mends it.
+// palpate doctor: the faults of this machine that disturb haptics, and their remedies.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -71,7 +71,7 @@ void examine(const Options& options) {
 void add_doctor(CLI::App& app) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
-        "doctor", "Examine this machine, and report what to mend for good haptics");
+        "doctor", "Examine this machine, and report its faults with their remedies");
     command->footer(
         "Looks at kernel, priorities, locked memory, processors, clock, graphics, helpers and "
         "devices, and runs the servo\nwith a simulated hand to measure how late it is woken. No "

@@ -67,7 +67,7 @@ std::string report_text(const ServoReport& r, double seconds) {
     if (r.compute.count == 0)
         return fmt::format("ticks {} in {:.1f} s, unpaced\n", r.ticks, seconds);
     std::string text = fmt::format(
-        "ticks {} in {:.1f} s, missed deadlines {}, forces taken back {}\n"
+        "ticks {} in {:.1f} s, missed deadlines {}, forces cancelled {}\n"
         "compute time (ours)    {}\n"
         "lateness (the machine) {}\n"
         "period                 {}\n",

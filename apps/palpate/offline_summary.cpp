@@ -12,7 +12,7 @@ std::string summary_text(const run::OfflineSummary& s) {
         "ticks {}, in contact {} ({:.1f} %), out of step budget {}, recovering {}, refused {}\n"
         "largest |density - isovalue| in contact {:.2g} of the data's range\n"
         "largest force {:.3g} N{}\n"
-        "tetrahedra an update {:.2f}\n"
+        "tetrahedra per update {:.2f}\n"
         "proxy update [ns]: mean {:.0f}, p50 {}, p99 {}, p99.9 {}, max {}\n",
         s.ticks, s.constrained,
         100.0 * static_cast<double>(s.constrained) / static_cast<double>(s.ticks), s.out_of_budget,

@@ -45,8 +45,7 @@ int read_and_run(int argc, char** argv, const std::function<void(CLI::App&)>& ad
     app.footer(
         "First steps:\n"
         "  palpate demo                             a simulated hand explores a CT of a head\n"
-        "  palpate info head.nrrd                   describes a volume and suggests levels to "
-        "feel\n"
+        "  palpate info head.nrrd                   describes a volume and suggests isovalues\n"
         "  palpate COMMAND --help                   options and an example of each command");
     add_commands(app);
     for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {

@@ -1,4 +1,4 @@
-// What the programs that are `palpate` share: signals, the command line, failures.
+// The parts that the programs named `palpate` share: signals, the command line, failures.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -212,9 +212,10 @@ void add_render(CLI::App& app) {
         "  palpate render synthetic:torus --hip 0,-20,8 --zoom 3 --output contact.png");
     options->source.add_to(*command);
     command
-        ->add_option("-i,--isovalue", options->isovalues,
-                     "Level to draw, in the data's units (300) or percent of its range (53%). May "
-                     "be given again: the outer surfaces are translucent")
+        ->add_option(
+            "-i,--isovalue", options->isovalues,
+            "Isovalue to draw, in the data's units (300) or percent of its range (53%). May "
+            "be given again: the outer surfaces are translucent")
         ->allow_extra_args(false);
     add_side_options(*command, options->field);
     command->add_option("--scp", options->scp, "The proxy [mm, physical]")->type_name("X,Y,Z");

@@ -158,9 +158,9 @@ void add_tool(CLI::App& app) {
         ->type_name("{point,sphere:,rod:,needle,burr:,box:,fingertip}|FILE.{csv,stl,ply,obj,vtp}")
         ->required();
     command
-        ->add_option(
-            "--spacing", options->spacing,
-            "Distance of neighbouring points [mm]. When you touch, the default is half a voxel")
+        ->add_option("--spacing", options->spacing,
+                     "Distance between neighbouring points [mm]. When you touch, the default is "
+                     "half a voxel")
         ->check(above_zero())
         ->capture_default_str();
     command

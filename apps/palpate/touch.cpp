@@ -319,8 +319,8 @@ void add_session(CLI::App& app, const char* name, const char* what, bool is_reco
     if (!is_record) {
         command->add_flag("--headless", options->headless,
                           "Open no window, even if there is a display. The options --json, "
-                          "--seconds, --unpaced, --commands, --brush, --save and --igtl do the "
-                          "same, and a third --device");
+                          "--seconds, --unpaced, --commands, --brush, --save, --igtl and a third "
+                          "--device also open none");
     }
     command
         ->add_option("--igtl", options->igtl,

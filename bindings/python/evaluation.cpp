@@ -167,7 +167,7 @@ Subject subject(const std::string& text, const std::optional<std::string>& conte
 }
 
 void bind_subject(py::module_& module) {
-    py::class_<Subject>(module, "Subject", "A volume for an experiment, with a level to feel.")
+    py::class_<Subject>(module, "Subject", "A volume for an experiment, with an isovalue.")
         .def_readonly("name", &Subject::name)
         .def_property_readonly("field", [](const Subject& s) { return s.field; })
         .def_readonly("isovalue", &Subject::isovalue, "[data units]")

@@ -276,7 +276,7 @@ News take_message(ServiceState& state, std::string_view message) {
     const Json* told = member(device, "state");
     if (const Json* given = member(told, "cursor_position")) {
         const auto position = position_from(*given, state.position);
-        if (!position) return refuse(state, "a cursor_position that is none");
+        if (!position) return refuse(state, "an invalid cursor_position");
         state.position = position;
     }
     if (const Json* given = member(told, "current_cursor_force")) {

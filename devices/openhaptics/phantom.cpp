@@ -245,11 +245,11 @@ std::string Phantom::problem() const {
     }
     switch (frames_->link().read(timing_.now()).status) {
         case DeviceStatus::starting:
-            return "the driver's servo loop has not told a position yet";
+            return "the driver's servo loop has not reported a position yet";
         case DeviceStatus::stale:
             return "the driver's servo loop stands still or is too slow: its last position is more "
-                   "than 20 ms old; it may still hold the last force, which nobody else can take "
-                   "away: if that lasts, switch the device off";
+                   "than 20 ms old; it may still hold the last force, which no other thread can "
+                   "remove: if that lasts, switch the device off";
         default:
             break;
     }

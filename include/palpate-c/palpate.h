@@ -1,26 +1,26 @@
 /* The C interface of Palpate (libpalpate-c): volumes, fields, renderers, live runs on devices, edits
  * and recordings. C99. docs/c_api.md has the rules for growth and an example.
  *
- * Errors. Functions return a palpate_status; palpate_last_error() says in one line what was wrong and
- * what to do, for the last call of the same thread. No exception leaves the library. If a function
- * fails, it leaves its out-parameters unchanged. A null handle or pointer is PALPATE_INVALID.
+ * Errors. Functions return a palpate_status. palpate_last_error() returns one line with the fault and
+ * its remedy, for the last call of the same thread. No exception leaves the library. If a function
+ * fails, it leaves its out-parameters unchanged. A null handle or pointer gives PALPATE_INVALID.
  *
  * Structs. Each begins with its own size. Write PALPATE_STRUCT(palpate_run_options, options); then
  * every other member is 0, and 0 always means the default. A later library accepts structs of earlier
- * ones; an earlier library refuses members that it does not know if they are not 0. A struct inside
- * another never grows, and its size_of is not looked at. Enumerations and
- * truth values (0: no) are int32_t. Matrices are three rows of three. Quaternions are x, y, z, w.
+ * ones. An earlier library refuses members that it does not know if they are not 0. A struct inside
+ * another never grows, and its size_of is ignored. Enumerations and truth values (0: no) are int32_t.
+ * Matrices are three rows of three. Quaternions are x, y, z, w.
  *
  * Space. Lengths in mm, physical space as in the file (LPS: x to the left, y to the back, z up).
  * Device axes: x to the right, y up, z towards the person. Forces in N, torques in N mm, times in s.
  *
- * Threads. Volumes, fields and meshes never change: any threads may use one at the same time. Data
- * and runs may be used by any threads. Calls on the same run take turns. palpate_run_snapshot()
- * never waits for the servo, but for another call on the run: starting, changing the device and
- * recording may take seconds. One renderer is for one thread at a time. Destroy a handle when no other
- * call uses it. Handles made from it keep what they need. The servo has a thread of its own, at
- * real-time priority if the system grants it. It calls no function of yours. A callback may not
- * start, stop or destroy the run that it belongs to. Its other calls return PALPATE_WRONG_STATE if
+ * Threads. Volumes, fields and meshes never change, so several threads may use one at the same time.
+ * Any thread may use data and runs. Calls on the same run take turns. palpate_run_snapshot() never
+ * waits for the servo, but it may wait for another call on the same run: starting, changing the device
+ * and recording may take seconds. Only one thread at a time may use a renderer. Destroy a handle when
+ * no other call uses it. Handles that were made from it remain valid. The servo has a thread of its
+ * own, with real-time priority if the system grants it. It calls no function of yours. A callback must
+ * not start, stop or destroy the run that it belongs to. Its other calls return PALPATE_WRONG_STATE if
  * they would have to wait for the run.
  */
 #ifndef PALPATE_H
@@ -52,27 +52,27 @@ extern "C" {
 
 typedef enum palpate_status {
     PALPATE_OK = 0,
-    PALPATE_INVALID = 1,       /* an argument that cannot be */
+    PALPATE_INVALID = 1,       /* an impossible argument */
     PALPATE_INPUT = 2,         /* a file that cannot be read or is not valid */
     PALPATE_OUTPUT = 3,        /* a file that cannot be written */
     PALPATE_NO_DEVICE = 4,     /* the device is not available */
-    PALPATE_QUEUE_FULL = 5,    /* commands come faster than they are carried out: try again */
-    PALPATE_WRONG_STATE = 6,   /* not now, for example a run that was not started */
-    PALPATE_NOTHING_YET = 7,   /* no tick so far */
+    PALPATE_QUEUE_FULL = 5,    /* commands were sent faster than they are carried out: try again */
+    PALPATE_WRONG_STATE = 6,   /* not possible now, for example because the run was not started */
+    PALPATE_NOTHING_YET = 7,   /* there was no tick yet */
     PALPATE_NO_MEMORY = 8,
-    PALPATE_SYSTEM = 9,        /* the system gives no thread, ... */
+    PALPATE_SYSTEM = 9,        /* the system refused something, for example a thread */
     PALPATE_CANCELLED = 10,    /* a progress callback returned 0 */
     PALPATE_INTERNAL = 11      /* a mistake of this library: please report it */
 } palpate_status;
 
-PALPATE_API const char *palpate_version(void); /* MAJOR.MINOR.PATCH, as "0.2.0" */
+PALPATE_API const char *palpate_version(void); /* MAJOR.MINOR.PATCH, for example "0.2.0" */
 /* "" after a call without error. Valid until the next call of this thread. */
 PALPATE_API const char *palpate_last_error(void);
-/* Sets a function (or null) that long calls of this thread call with 0 to 1, unless their options have
- * their own. It returns 0 to cancel the call. Long calls are those that copy, adopt, load or describe a
- * volume, look up many values, or make a field, a mesh or a run. So are those that edit or save data,
- * read a tool or change the device. A cancelled edit is made whole or not at all. Calls from within a
- * callback do not call it. */
+/* Sets a function (or null) that reports the progress of long calls of this thread: they call it with
+ * 0 to 1, unless their options have a function of their own. It returns 0 to cancel the call. Long calls
+ * copy, adopt, load or describe a volume, look up many values, make a field, a mesh or a run, edit or
+ * save data, read a tool, or change the device. A cancelled edit is made as a whole or not at all. Calls
+ * from within a callback do not call it. */
 PALPATE_API void palpate_set_progress(int32_t (*progress)(double fraction, void *context),
                                       void *context);
 
@@ -87,16 +87,16 @@ typedef struct palpate_geometry {
     int32_t size[3];     /* samples along x, y, z; x varies fastest in memory */
     double spacing[3];   /* [mm]; all 0: 1, assumed */
     double origin[3];    /* [mm] of the first sample */
-    double direction[9]; /* columns are the grid's axes, orthonormal; all 0: identity, assumed: which
-                            side is left is not known */
+    double direction[9]; /* columns are the grid's axes, orthonormal; all 0: identity, and it is
+                            not known which side is left */
 } palpate_geometry;
 
 /* Copies the samples. */
 PALPATE_API palpate_status palpate_volume_copy(const palpate_geometry *geometry, int32_t type,
                                                const void *samples, size_t bytes,
                                                palpate_volume **out);
-/* Uses the samples where they are. They may not change. `release` (may be null) is called once, on
- * any thread but the servo's, when nothing needs them any more; not if this call fails. */
+/* Uses the samples in place, so they must not change. `release` (may be null) is called once when they
+ * are no longer needed, on any thread but the servo's. It is not called if this call fails. */
 PALPATE_API palpate_status palpate_volume_adopt(const palpate_geometry *geometry, int32_t type,
                                                 const void *samples, size_t bytes,
                                                 void (*release)(void *context), void *context,
@@ -105,9 +105,9 @@ PALPATE_API palpate_status palpate_volume_adopt(const palpate_geometry *geometry
 typedef struct palpate_load_options {
     uint32_t size_of;
     int32_t smooth;     /* passes of the binomial kernel */
-    int32_t dequantize; /* rounds by which the rounding of integer data is taken back */
-    int32_t frame;      /* of a sequence this one alone, from 1; 0: all */
-    const char *series; /* of DICOM: UID or number; null: the only one */
+    int32_t dequantize; /* rounds of the filter that removes the steps of rounded data; 0: none */
+    int32_t frame;      /* only this frame of a sequence, from 1; 0: all */
+    const char *series; /* DICOM series: its UID or number; null: the only one */
     /* Called from this thread with 0 to 1; returns 0 to cancel. */
     int32_t (*progress)(double fraction, void *context);
     void *context;
@@ -123,17 +123,17 @@ typedef struct palpate_volume_info {
     int32_t type;
     palpate_geometry geometry;
     double minimum, maximum;
-    double isovalue; /* one that is worth feeling; NaN for constant data */
-    int32_t frames;  /* of a sequence, else 1 */
+    double isovalue; /* a suggested one; NaN for constant data */
+    int32_t frames;  /* number of frames; 1 unless it is a sequence */
     int32_t unused;
 } palpate_volume_info;
 PALPATE_API palpate_status palpate_volume_describe(const palpate_volume *volume,
                                                    palpate_volume_info *out);
-/* Null for a null handle. As long as the handle lives. */
+/* Null for a null handle. Valid as long as the handle exists. */
 PALPATE_API const void *palpate_volume_samples(const palpate_volume *volume);
 PALPATE_API void palpate_volume_destroy(palpate_volume *volume);
 
-/* ---- Fields: the samples continued over all of space ------------------------------------------ */
+/* ---- Fields: a density at every point of space ------------------------------------------------ */
 
 typedef struct palpate_field palpate_field;
 typedef struct palpate_mesh palpate_mesh;
@@ -145,21 +145,21 @@ typedef struct palpate_field_options {
     uint32_t size_of;
     int32_t solid;          /* which side of the isovalue is solid */
     int32_t interpolation;
-    int32_t has_background; /* 0: the data's minimum; its maximum where the solid is below */
+    int32_t has_background; /* 0: the data's minimum, or its maximum if the solid is below */
     double background;      /* density outside the grid */
 } palpate_field_options;
 
 PALPATE_API palpate_status palpate_field_create(const palpate_volume *volume,
                                                 const palpate_field_options *options,
                                                 palpate_field **out);
-/* Densities at `count` points (x, y, z of each) and gradients [1/mm]; either may be null. */
+/* Densities and gradients [1/mm] at `count` points (x, y, z of each). Either result may be null. */
 PALPATE_API palpate_status palpate_field_values(const palpate_field *field, const double *points,
                                                 size_t count, double *densities, double *gradients);
 
 typedef struct palpate_ray_hit {
     uint32_t size_of;
     int32_t hit;
-    double point[3];  /* the segment's end without a hit */
+    double point[3];  /* without a hit, the end of the segment */
     double normal[3]; /* unit, out of the solid */
 } palpate_ray_hit;
 /* Finds the first point of a segment on the isosurface. */
@@ -168,12 +168,12 @@ PALPATE_API palpate_status palpate_field_ray(const palpate_field *field, double 
                                              palpate_ray_hit *out);
 PALPATE_API void palpate_field_destroy(palpate_field *field);
 
-/* The whole isosurface, closed, for display; triangles run counter-clockwise seen from outside. */
+/* The whole isosurface as a closed mesh, for display. Triangles run counter-clockwise seen from outside. */
 PALPATE_API palpate_status palpate_mesh_create(const palpate_field *field, double isovalue,
                                                palpate_mesh **out);
 PALPATE_API size_t palpate_mesh_vertex_count(const palpate_mesh *mesh);
 PALPATE_API size_t palpate_mesh_triangle_count(const palpate_mesh *mesh);
-/* Into the caller's arrays of 3 numbers each; either may be null. */
+/* Writes into arrays of the caller, 3 numbers per vertex or triangle. Either may be null. */
 PALPATE_API palpate_status palpate_mesh_read(const palpate_mesh *mesh, float *vertices,
                                              uint32_t *triangles);
 PALPATE_API void palpate_mesh_destroy(palpate_mesh *mesh);
@@ -186,14 +186,14 @@ typedef struct palpate_render_options {
     uint32_t size_of;
     int32_t has_isovalue;  /* 0: the volume's own or a suggested one */
     double isovalue;
-    double stiffness;      /* [N/mm] 0: what the device is rated for; renderer: 0.5 */
+    double stiffness;      /* [N/mm] 0: 0.5, or what the device is rated for if that is less */
     double damping;        /* [N s/mm] */
     double viscosity;      /* [N s/mm] */
     double force_limit;    /* [N] 0: the device's; renderer: 3.3 */
     double static_friction, dynamic_friction;
     double penetration;    /* [device mm] at which the surface gives way; 0: never; not with layers */
     double scale;          /* physical mm per device mm; 0: fits the workspace; renderer: 1 */
-    double rate;           /* [Hz] 250 to 8000; 0: 1000, without force 250 */
+    double rate;           /* [Hz] 250 to 8000; 0: 1000, or 250 if the device renders no force */
     const char *tool;      /* "sphere:5", "needle", a file, ...; null: a point */
     const char *layers;    /* a file or the name of a built-in set; null: none */
     const double *ranges;  /* low, high, low, high, ... [data units]: only these levels are touched, and
@@ -220,7 +220,7 @@ typedef struct palpate_hand {
 } palpate_hand;
 
 enum { PALPATE_FREE = 0, PALPATE_CONSTRAINED = 1 };
-/* How an update ended: done, continues in the next tick, on its way out of the solid, ... */
+/* How an update ended: done, to be continued in the next tick, on its way out of the solid, ... */
 enum {
     PALPATE_DONE = 0,
     PALPATE_OUT_OF_BUDGET = 1,
@@ -242,15 +242,15 @@ typedef struct palpate_felt {
     double hand[4];        /* orientations x, y, z, w, tool to physical axes */
     double proxy[4];
     double density, isovalue;
-    int32_t layer, inside; /* layer touched (-1: none), and how many the proxy is inside of */
+    int32_t layer, inside; /* the touched layer (-1: none), and how many layers contain the proxy */
 } palpate_felt;
 
-/* The field is linear or smooth as it was made. transform: may be null. */
+/* The interpolation is that of the field. transform: may be null. */
 PALPATE_API palpate_status palpate_renderer_create(const palpate_field *field,
                                                    const palpate_render_options *options,
                                                    const palpate_transform *transform,
                                                    palpate_renderer **out);
-/* A tick: neither allocates, locks nor waits. */
+/* Computes a tick. Does not allocate, lock or wait. */
 PALPATE_API palpate_status palpate_renderer_render(palpate_renderer *renderer,
                                                    const palpate_hand *hand, palpate_felt *out);
 PALPATE_API palpate_status palpate_renderer_set_isovalue(palpate_renderer *renderer,
@@ -259,7 +259,7 @@ PALPATE_API void palpate_renderer_destroy(palpate_renderer *renderer);
 
 /* ---- Settings by name: of renderers and runs. Since 0.3 ---------------------------------------- */
 
-/* Each setting, from the library's own table. palpate_setting_describe() gives the same.
+/* All settings, from the library's own table. palpate_setting_describe() gives the same.
  *   `force.stiffness` [N/mm] Stiffness (default: 0.5).
  *   `force.damping` [N s/mm] Damping along the contact normal (default: 0).
  *   `force.viscosity` [N s/mm] Viscosity of the medium (default: 0).
@@ -302,12 +302,12 @@ typedef struct palpate_setting {
     const char *unit;   /* "" without one */
     const char *about;
     double least, most; /* accepted */
-    double usual;       /* the default where nothing is given and no device asks for less */
+    double usual;       /* the default, if no device asks for less */
 } palpate_setting;
 
 PALPATE_API size_t palpate_setting_count(void);
 PALPATE_API palpate_status palpate_setting_describe(size_t index, palpate_setting *out);
-/* Settings of a renderer, from the next tick on. */
+/* Settings of a renderer. A change has its effect from the next tick on. */
 PALPATE_API palpate_status palpate_renderer_get(const palpate_renderer *renderer, const char *name,
                                                 double *value);
 PALPATE_API palpate_status palpate_renderer_set(palpate_renderer *renderer, const char *name,
@@ -326,7 +326,7 @@ typedef struct palpate_device_finding {
     const char *options; /* KEY=VALUE options with their defaults */
 } palpate_device_finding;
 
-/* Looks for all kinds of devices; takes up to a second. Moves nothing. */
+/* Looks for all kinds of devices, which takes up to a second. No device moves. */
 PALPATE_API palpate_status palpate_device_list_create(palpate_device_list **out);
 PALPATE_API size_t palpate_device_list_count(const palpate_device_list *list);
 PALPATE_API palpate_status palpate_device_list_get(const palpate_device_list *list, size_t index,
@@ -348,7 +348,7 @@ typedef struct palpate_reading {
     int32_t status;        /* force only while READY */
     double position[3];    /* [device mm] */
     double orientation[4]; /* x, y, z, w; tool to device axes; all 0: identity */
-    double age;            /* [s] since it was measured; beyond 0.02 it counts as stale */
+    double age;            /* [s] since the measurement; above 0.02 the reading is stale */
     uint32_t buttons;      /* bit b: button b is held */
     uint32_t unused;
     double opening;        /* [rad] of a gripper, 0: closed; with has_gripper. Since 0.3 */
@@ -363,13 +363,13 @@ typedef struct palpate_wrench {
 
 /* A device of your own. Its callbacks run on a thread of their own, never on the servo's, one after
  * the other: read, write, read, ... at `rate`. The newest reading and the newest force are exchanged
- * without waiting. The force given to write is zero once the servo is silent for 20 ms, and after the
- * run was stopped. `close` (may be null) is the last call, after a zero force; it is made for each time
- * that the device was opened, also if palpate_run_create() fails afterwards. A callback that does not
- * return keeps the last force on your device: give it limits of its own. */
+ * without waiting. write gets a force of zero when the servo has been silent for 20 ms, and after the
+ * run was stopped. `close` (may be null) is the last call, after a zero force. It is called once for
+ * each time that the device was opened, also if palpate_run_create() fails afterwards. While a callback
+ * does not return, your device keeps the last force, so give the device limits of its own. */
 typedef struct palpate_own_device {
     uint32_t size_of;
-    int32_t buttons;               /* how many */
+    int32_t buttons;               /* number of buttons */
     const char *name, *model;      /* null: "own" */
     double maximum_force;          /* [N] > 0; never exceeded */
     double maximum_torque;         /* [N mm] 0: it renders none */
@@ -380,15 +380,16 @@ typedef struct palpate_own_device {
     double rate;                   /* [Hz] of the callbacks, 50 to 8000; 0: 1000 */
     int32_t has_orientation;
     int32_t has_gripper; /* readings have an opening. Since 0.3 */
-    /* Fills in *reading (its size is set, the rest 0). Returns 0, or not 0: the device is lost. */
+    /* Fills in *reading (its size is set, the rest is 0). Returns 0, or another number if the device
+     * is lost. */
     int32_t (*read)(palpate_reading *reading, void *context);
-    /* Returns 0, or not 0: the device is lost. */
+    /* Returns 0, or another number if the device is lost. */
     int32_t (*write)(const palpate_wrench *wrench, void *context);
     void (*close)(void *context);
     void *context;
 } palpate_own_device;
 
-/* ---- Data: what one or several runs feel, and edits of it ------------------------------------- */
+/* ---- Data: the samples that one or several runs touch, and edits ------------------------------ */
 
 typedef struct palpate_data palpate_data;
 
@@ -400,28 +401,29 @@ typedef struct palpate_brush {
     double radius;         /* [mm] > 0 */
     double softness;       /* 0: a sharp edge, 1: as wide as the brush */
     double rate;           /* [1/s] of a hand's brush; 0: 10, infinity: at once */
-    double level;          /* of a stroke: whose surface carve and add shape */
-    int32_t solid;         /* of a stroke: which side of `level` is solid */
-    int32_t has_value;     /* 0: carve leaves the background, add what lies as far above the level */
-    double value;          /* what it leaves; of a stroke it always counts, and for paint */
+    double level;          /* for a stroke: carve and add shape the surface at this level */
+    int32_t solid;         /* for a stroke: which side of `level` is solid */
+    int32_t has_value;     /* 0: carve leaves the background, and add a value as far on the other
+                              side of the level */
+    double value;          /* the value that the brush leaves; always used for strokes and for paint */
 } palpate_brush;
 
 typedef struct palpate_edit_state {
     uint32_t size_of;
-    int32_t changed;    /* since the start or since it was saved */
-    uint64_t version;   /* as snapshots tell it */
+    int32_t changed;    /* since the start or the last save */
+    uint64_t version;   /* as in snapshots */
     uint64_t undo_steps, redo_steps;
 } palpate_edit_state;
 
 PALPATE_API palpate_status palpate_data_create(const palpate_volume *volume, palpate_data **out);
-/* The brush of every run on these data, which works where its proxy touches; null: none. */
+/* Sets the brush of every run on this data. It works where the proxy touches. Null: no brush. */
 PALPATE_API palpate_status palpate_data_set_brush(palpate_data *data, const palpate_brush *brush);
-/* Single edits, each a step for undo; they return once every run has been sent them. */
+/* Single edits, each a step for undo. A call returns when the edit was sent to every run. */
 PALPATE_API palpate_status palpate_data_stroke(palpate_data *data, const palpate_brush *brush,
                                                const double from[3], const double to[3]);
 PALPATE_API palpate_status palpate_data_fill(palpate_data *data, const int32_t low[3],
                                              const int32_t high[3], double value);
-/* Puts the samples of another volume into the grid, its first at `at`: for simulations. */
+/* Puts the samples of another volume into the grid, the first one at `at`, for example of a simulation. */
 PALPATE_API palpate_status palpate_data_replace(palpate_data *data, const int32_t at[3],
                                                 const palpate_volume *samples);
 /* done (may be null): 0 if there was nothing to undo or redo. */
@@ -433,14 +435,14 @@ PALPATE_API palpate_status palpate_data_field(const palpate_data *data,
                                               const palpate_field_options *options,
                                               palpate_field **out);
 PALPATE_API palpate_status palpate_data_save(palpate_data *data, const char *path);
-/* Sets the speed of a sequence (1: as recorded, 0: it stands still), and its time [s]. */
+/* Sets the speed of a sequence (1: as recorded, 0: paused), and its time [s]. */
 PALPATE_API palpate_status palpate_data_play(palpate_data *data, double speed);
 PALPATE_API palpate_status palpate_data_seek(palpate_data *data, double time);
 PALPATE_API void palpate_data_destroy(palpate_data *data);
 
 /* ---- Runs: a servo on a device ---------------------------------------------------------------- */
-/* Several runs on the same data are the hands of one session: all feel each other's edits, and where one
- * device fails the others go on. */
+/* Several runs on the same data are the hands of one session. Each feels the edits of the others. If one
+ * device fails, the other runs continue. */
 
 typedef struct palpate_run palpate_run;
 
@@ -456,15 +458,15 @@ enum {
 typedef struct palpate_run_options {
     uint32_t size_of;
     int32_t facing;                       /* side of the body that faces the person */
-    const palpate_field_options *field;   /* null: defaults; likewise below */
+    const palpate_field_options *field;   /* null: the defaults, here and below */
     const palpate_render_options *render;
     const char *device;                   /* "haply", "simulated:touchx,hand=press", ...; null: own,
                                              else simulated */
     const palpate_own_device *own;        /* found under its name; null: none */
     const char *recording;                /* a new file to record into from the start; null: none */
-    int32_t no_real_time;                 /* not 0: do not ask for real-time priority */
+    int32_t no_real_time;                 /* not 0: does not ask for real-time priority */
     int32_t deadman_button;               /* from 1: no force unless it is held; 0: none */
-    /* Called from this thread with 0 to 1 while an isovalue is looked for, and before the device is
+    /* Called from this thread with 0 to 1 during the search for an isovalue, and before the device is
      * opened. Returns 0 to cancel. Since 0.3. */
     int32_t (*progress)(double fraction, void *context);
     void *context;
@@ -477,7 +479,7 @@ typedef struct palpate_snapshot {
     int32_t device_status;
     int64_t number;            /* of the tick, from 0 */
     int64_t missed;            /* deadlines so far */
-    uint64_t version;          /* of the samples felt */
+    uint64_t version;          /* of the samples */
     palpate_felt felt;
     palpate_transform transform;
     double position[3];        /* of the device [device mm] */
@@ -503,8 +505,8 @@ enum { PALPATE_TEXT_PROBLEM = 0, PALPATE_TEXT_PRIVILEGES = 1, PALPATE_TEXT_DEVIC
 PALPATE_API palpate_status palpate_run_create(palpate_data *data, const palpate_run_options *options,
                                               palpate_run **out);
 PALPATE_API palpate_status palpate_run_start(palpate_run *run);
-/* The force goes to zero and the servo ends, for good. Returns when the device, yours too, was given the
- * zero; but after half a second where a callback does not return. */
+/* Sets the force to zero and ends the servo for good. Returns when the device (also one of your own) has
+ * got the zero, or after half a second if a callback does not return. */
 PALPATE_API palpate_status palpate_run_stop(palpate_run *run);
 /* Stops, finishes a recording, closes the device. */
 PALPATE_API void palpate_run_destroy(palpate_run *run);
@@ -512,18 +514,18 @@ PALPATE_API void palpate_run_destroy(palpate_run *run);
 /* The newest tick. PALPATE_NOTHING_YET before the first. */
 PALPATE_API palpate_status palpate_run_snapshot(const palpate_run *run, palpate_snapshot *out);
 PALPATE_API palpate_status palpate_run_report(const palpate_run *run, palpate_report *out);
-/* What is wrong with device, edits or recording ("": nothing); what was granted of real time, a line
- * each; the device's model. At most `size` bytes with the final zero; needed (may be null): how many
- * bytes it takes. */
+/* Returns a text: a problem of the device, the edits or the recording ("" if there is none), the
+ * real-time privileges that were granted (one per line), or the device's model. Writes at most `size`
+ * bytes, including the final zero. needed (may be null) gets the size of the whole text. */
 PALPATE_API palpate_status palpate_run_text(const palpate_run *run, int32_t which, char *buffer,
                                             size_t size, size_t *needed);
 
-/* A setting by its name, as asked for last. Since 0.3. */
+/* The value of a setting as it was last requested. Since 0.3. */
 PALPATE_API palpate_status palpate_run_get(const palpate_run *run, const char *name, double *value);
 
 /* Commands, carried out within a tick or two. */
-/* A setting by its name. PALPATE_INVALID for a limit that would rise: limits can only be lowered, and
- * the delay only be raised. Since 0.3. */
+/* Changes a setting. Limits can only be lowered, and the delay can only be raised: other values give
+ * PALPATE_INVALID. Since 0.3. */
 PALPATE_API palpate_status palpate_run_set(palpate_run *run, const char *name, double value);
 PALPATE_API palpate_status palpate_run_set_isovalue(palpate_run *run, double isovalue);
 PALPATE_API palpate_status palpate_run_set_forces(palpate_run *run, int32_t on);
@@ -537,28 +539,28 @@ PALPATE_API palpate_status palpate_run_set_damping(palpate_run *run, double damp
 PALPATE_API palpate_status palpate_run_set_force_limit(palpate_run *run, double newton);
 PALPATE_API palpate_status palpate_run_set_friction(palpate_run *run, double static_coefficient,
                                                     double dynamic_coefficient);
-/* [device mm] 0: the surface never gives way. Levels beyond the one felt now are felt then. */
+/* [device mm] Threshold at which the surface gives way, to the levels behind the present one; 0: never. */
 PALPATE_API palpate_status palpate_run_set_penetration(palpate_run *run, double threshold);
 /* Only `count` ranges of levels are touched, as in palpate_render_options. Since 0.3. */
 PALPATE_API palpate_status palpate_run_set_ranges(palpate_run *run, double threshold,
                                                   const double *ranges, size_t count);
-/* As in palpate_render_options; null: none. */
+/* These two: as in palpate_render_options; null: none. */
 PALPATE_API palpate_status palpate_run_set_tool(palpate_run *run, const char *tool);
 PALPATE_API palpate_status palpate_run_set_layers(palpate_run *run, const char *layers);
-/* The same for the surfaces that are felt, with other levels or properties: what was punctured stays
- * open. Since 0.3. */
+/* The same for the present surfaces with other levels or properties: surfaces that gave way stay open.
+ * Since 0.3. */
 PALPATE_API palpate_status palpate_run_change_layers(palpate_run *run, const char *layers);
 
-/* Lifts the hand off: the proxy leaves whatever holds it, such as a closed shell, and starts at the hand.
- * The force starts again. Since 0.3. */
+/* Lifts the hand off: the proxy leaves anything that holds it, such as a closed shell, and starts at the
+ * hand. The force starts again. Since 0.3. */
 PALPATE_API palpate_status palpate_run_lift(palpate_run *run);
 
-/* Goes on with another device, and with everything that was asked for. */
+/* Continues with another device and with all settings requested so far. */
 PALPATE_API palpate_status palpate_run_use_device(palpate_run *run, const char *device);
-/* Records into a new file (an existing one is never touched): the session goes on, with its force. */
+/* Records into a new file. An existing file is refused. The session and its force continue. */
 PALPATE_API palpate_status palpate_run_record(palpate_run *run, const char *path);
-/* The same for several runs on the same data, into one file: they are its hands, in this order. It is whole
- * once the last of them has stopped its recording. Since 0.3. */
+/* The same for several runs on the same data, into one file: they are its hands, in this order. The file
+ * is complete when the last of them has stopped its recording. Since 0.3. */
 PALPATE_API palpate_status palpate_run_record_together(palpate_run *const *runs, size_t count,
                                                        const char *path);
 /* ticks (may be null): how many were recorded. */

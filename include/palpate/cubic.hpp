@@ -1,6 +1,6 @@
-// Stage 6, cubic: the smooth field. On the lattice's tetrahedra, moved so that a cube lies round
-// each sample, the field is a cubic in each tetrahedron, with a continuous gradient everywhere
-// (docs/smooth.md). Its samples are the same; nothing is stored per tetrahedron.
+// Stage 6, cubic: the smooth field. It uses the lattice's tetrahedra, moved so that a cube is
+// centred at each sample. In each tetrahedron the field is a cubic polynomial, and its gradient is
+// continuous everywhere (docs/smooth.md). Nothing is stored per tetrahedron.
 //
 // A tetrahedron's `cell` is here the sample in the middle of its cube, which owns the points within
 // half a voxel of it along each axis. Walls, folded coordinates and reflections are the lattice's.
@@ -29,8 +29,7 @@ struct Symmetric {
     }
 };
 
-/// What the values below are multiplied by, so that all coefficients of integer samples are
-/// integers.
+/// The factor of all values below. It makes all coefficients of integer samples integers.
 inline constexpr double scale = 96;
 
 /// Value [data units], gradient [data units / voxel] and Hessian [data units / voxel^2] of the
@@ -44,8 +43,8 @@ struct Expansion {
 /// The cubic of a tetrahedron: its derivatives at the cube's centre, times `scale`. For integer
 /// samples all of them are exact. Value and gradient are the same for the whole cube.
 struct Piece : Expansion {
-    /// The third derivatives: how those of second order change along d and s. Along e, those that
-    /// are not among these are 0.
+    /// The third derivatives: the changes of the second derivatives along d and s. Those along e
+    /// that are not among these are 0.
     Vec2 dd = Vec2::Zero(), ds = Vec2::Zero(), de = Vec2::Zero();
     Vec2 ss = Vec2::Zero(), se = Vec2::Zero(), ee = Vec2::Zero();
 
@@ -79,8 +78,9 @@ Vec3 index_of(const LatticePoint& point);
 
 namespace detail {
 
-/// The samples round a tetrahedron's cube as its frame sees them: rows along s in the planes e = 0,
-/// 1 and -1 (z, p, m), at d = -1, 0 and 1 (m, 0, p).
+/// The samples around a tetrahedron's cube, in the axes of its frame, as rows along s. The first
+/// letter names the plane (z, p and m for e = 0, 1 and -1), the second the place in d (m, 0 and p
+/// for -1, 0 and 1).
 template <class T>
 struct Rows {
     // 16-bit samples times 96, and sums of some of them, fit into an int.
@@ -103,8 +103,8 @@ struct Rows {
     std::ptrdiff_t s;
 };
 
-/// What is odd along e is made of differences of the planes e = 1 and e = -1. In their names the
-/// place along d and s follows: dm0 is at d = -1, s = 0.
+/// Terms that are odd along e come from differences of the planes e = 1 and e = -1. In their names
+/// the place along d and s follows: dm0 is at d = -1, s = 0.
 template <class T>
 inline void set_odd(Piece& p, const Rows<T>& r) {
     using Sum = typename Rows<T>::Sum;
@@ -125,7 +125,7 @@ inline void set_odd(Piece& p, const Rows<T>& r) {
     p.se = {dse, sse};
 }
 
-/// What is even along e is made of the plane e = 0 and the sums of the other two.
+/// Terms that are even along e come from the plane e = 0 and the sums of the other two.
 template <class T>
 inline void set_even(Piece& p, const Rows<T>& r, double isovalue) {
     using Sum = typename Rows<T>::Sum;

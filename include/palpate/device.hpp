@@ -77,7 +77,7 @@ class Device {
     /// Any thread but the servo thread. May change when a device connects. A running servo learns
     /// of changed limits by DeviceReading::limits.
     virtual DeviceInfo info() const = 0;
-    /// What is wrong and what to do about it, or empty. Not for the servo thread.
+    /// A problem and its remedy, or empty. Not for the servo thread.
     virtual std::string problem() const { return {}; }
 
     /// Servo thread: neither waits, allocates nor throws. `time` [s] is the session's. Simulated
@@ -85,9 +85,9 @@ class Device {
     /// session, with stop(), when this or write() throws or does not return within 10 ms
     /// (DeviceFailure).
     virtual DeviceReading read(double time) = 0;
-    /// Servo thread, as above. A wrench (device axes; torque about the point that read() gives the
-    /// position of) holds until the next one, but no longer than `longest_force`. Then the device's
-    /// own thread sets it to zero. A device without torque renders the force alone.
+    /// Servo thread, as above. A wrench (device axes; the torque is about the point whose position
+    /// read() gives) holds until the next one, but no longer than `longest_force`. Then the
+    /// device's own thread sets it to zero. A device without torque renders the force alone.
     virtual void write(const Wrench& wrench, double time) = 0;
     static constexpr double longest_force = 0.02;  ///< [s]
 

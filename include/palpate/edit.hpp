@@ -79,8 +79,8 @@ struct Replace {
 /// All are clipped at the border of the grid.
 using Edit = std::variant<edit::Stroke, edit::Sweep, edit::Fill, edit::Replace>;
 
-/// How far from the surface of a body such a brush has an effect, outside or inside, on this grid
-/// [mm].
+/// The largest distance from the surface of a body, outside or inside, at which such a brush has an
+/// effect on this grid [mm].
 double reach_of(const Brush& brush, const Geometry& geometry);
 /// The body of a tool, fine and wide enough for sweeps of this brush on this grid. Throws
 /// std::invalid_argument as ToolBody does.
@@ -96,8 +96,8 @@ struct Edited {
 /// samples of the volume's type, x fastest. May wait, and may throw anything.
 using ReadSamples = std::function<void(const SampleBox& box, std::span<std::byte> out)>;
 
-/// Throws std::invalid_argument, saying what is wrong, for an edit that cannot be made: numbers out
-/// of range or not finite, or samples that are a sequence (edit one frame of it instead).
+/// Throws std::invalid_argument, with the reason, for an impossible edit: numbers out of range or
+/// not finite, or samples that are a sequence (edit one frame of it instead).
 void check(const Edit& edit, const Samples& samples);
 /// The samples after an edit. Values outside the sample type's range are clamped. The same input
 /// gives the same bits. For a large grid, `read` gives the samples of the bricks that are edited

@@ -168,7 +168,7 @@ class LatencyHistogram {
         return summary;
     }
 
-    /// How many were no longer than this, exact to 1/16 of it.
+    /// The number of durations up to this one, exact to 1/16 of it.
     std::uint64_t count_to(std::int64_t ns) const noexcept {
         std::uint64_t count = 0;
         for (unsigned b = 0; b < bucket_count && top_of(b) <= ns; ++b) {

@@ -34,7 +34,7 @@ using CellSamples = std::array<double, 8>;
 /// (x, y, z), each -1, 0 or 1, has place 13 + x + 3 y + 9 z.
 using Neighbours = std::array<double, 27>;
 
-/// The samples at one moment and their solid side: what the hand touches. A small value; copies
+/// The samples at one moment and their solid side, for the hand to touch. A small value; copies
 /// share the samples.
 class Field {
   public:
@@ -76,8 +76,8 @@ class Field {
     /// How far sign * (f - isovalue) may exceed 0 by rounding before a point counts as solid [data
     /// units]: a thousandth of the tolerance of G1 and G2 (proxy.hpp).
     double tolerance() const { return tolerance_; }
-    /// What cell() subtracts from every sample [data units]: 0, unless the data is so far from zero
-    /// that doubles have too few digits left for its range (docs/proxy.md, "Domain").
+    /// cell() subtracts this from every sample [data units]. It is 0, unless the data is so far
+    /// from zero that doubles have too few digits left for its range (docs/proxy.md, "Domain").
     double offset() const { return offset_; }
     /// A density computed from cell(), offset included.
     double with_offset(double density) const { return offset_ == 0 ? density : density + offset_; }
@@ -96,9 +96,10 @@ class Field {
     }
     /// The sample `at` (index space) with its neighbours, less offset(); any sample in space.
     Neighbours around(const Index3& at) const;
-    /// The same samples where they lie: returns visit(centre, row, slice), where `centre` points to
-    /// the sample, its neighbours in x are beside it, those in y `row` away, in z `slice`. Samples
-    /// that lie otherwise (at the border, edited, between frames) are gathered first, as doubles.
+    /// The same samples in place: returns visit(centre, row, slice). `centre` points to the sample.
+    /// Its neighbours in x are next to it, those in y are `row` away, and those in z `slice`.
+    /// Samples that do not lie like that (at the border, edited, between frames) are first
+    /// gathered, as doubles.
     template <class Visit>
     auto visit_around(const Index3& at, Visit&& visit) const {
         Gathered gathered;
@@ -143,13 +144,13 @@ class Field {
 
     template <class T>
     CellSamples cell_of(const Index3& cell) const;
-    /// For a block of count^3 samples, 2 or 3 along each axis: as they are stored, or null unless
-    /// they are felt like that.
+    /// The stored samples of a block of count^3 samples, 2 or 3 along each axis. Null if the field
+    /// has other values there, for example edited ones.
     template <int count>
     Run stored_run(const Index3& low) const;
     template <int count>
     Run run_of(const Index3& low) const;
-    /// One sample anywhere in space but for its label, less offset().
+    /// One sample anywhere in space, less offset(), without regard to labels.
     template <class T>
     double sample_at(const Index3& at) const;
     template <int count>
@@ -187,7 +188,8 @@ class Field {
     Vec3 voxels_per_mm_;
     double sign_ = 1;
     Index3 size_, cells_;  // samples, and cells between them
-    Index3 plain_;  // cells along each axis that lie at data_ as they are felt; none if they change
+    Index3 plain_;  // cells along each axis whose samples at data_ are those of the field; 0 if
+                    // they change
     SampleType type_ = SampleType::uint8;
     Solid solid_ = Solid::above;
     Interpolation interpolation_ = Interpolation::cubic;

@@ -57,7 +57,7 @@ struct ForceSettings {
     bool operator==(const ForceSettings&) const = default;
 };
 
-/// What a device can take.
+/// The limits of a device.
 struct DeviceLimits {
     double maximum_force = 3.3;  ///< [N] never exceeded (3.3: Omni, Touch)
     double rate = 1000;          ///< [Hz] of the servo loop
@@ -104,7 +104,7 @@ void check(const ForceSettings& settings, const DeviceLimits& limits);
 /// Input of the force stage in one tick.
 struct ForceInput {
     double time = 0;      ///< [s], strictly increasing
-    bool valid = true;    ///< false: device input stale or broken
+    bool valid = true;    ///< false: the device's input is stale or broken
     bool enabled = true;  ///< false: forces off by the user
     /// True: the force falls to zero within the rate limit, and starts again (start_below, ramp)
     /// once this is false.
@@ -121,7 +121,7 @@ struct ForceInput {
     Vec3 turn = Vec3::Zero();                         ///< rotation from hand to proxy [rad]
 };
 
-/// Why a force differs from what the settings alone would give. Bits.
+/// Bits: the reasons for which a force differs from the one that follows from the settings alone.
 enum ForceFlag : std::uint16_t {
     force_limited = 1,       ///< cut to the maximum
     force_rate_limited = 2,  ///< change of force cut
@@ -138,17 +138,17 @@ enum ForceFlag : std::uint16_t {
 /// warms them towards (f / continuous_force)^2 as 1 - exp(-t / warming_time): they are one body,
 /// and their power is the square of their current.
 struct MotorHeat {
-    double warmth = 0;  ///< 0: as the room, 1: as warm as the continuous force makes them
+    double warmth = 0;  ///< 0: room temperature, 1: the temperature with the continuous force
     double time = 0;    ///< [s] of the warmth
     double force = 0;   ///< [N] that acts since then
 };
-/// The same at a later time [s]. A force acts for `held` [s] at most, then none. A time that is not
-/// finite changes nothing. An implicit step: stable for every time, and never too cold after a
-/// pause.
+/// The same at a later time [s]. A force acts for at most `held` [s]. A time that is not finite
+/// changes nothing. The step is implicit: it is stable for every time, and after a pause never
+/// gives too little warmth.
 MotorHeat warmed(MotorHeat heat, const DeviceLimits& limits, double time, double held) noexcept;
-/// [N] that such motors may be given: the maximum up to a warmth of 0.7, then less, down to the
-/// continuous force at 1. So the warmth does not exceed 1 while a tick adds little to it, as with
-/// every device in devices/models.cpp.
+/// The largest force [N] for motors of this warmth: the maximum up to a warmth of 0.7, then less,
+/// down to the continuous force at 1. So the warmth does not exceed 1 while a tick adds little to
+/// it, as with every device in devices/models.cpp.
 double warm_limit(const DeviceLimits& limits, const MotorHeat& heat) noexcept;
 
 /// State between ticks.
@@ -160,7 +160,7 @@ struct ForceState {
     Vec3 hand = Vec3::Zero();      ///< [device mm]
     Vec3 velocity = Vec3::Zero();  ///< [device mm/s], low-pass filtered; at most 10 m/s counts
     Vec3 force = Vec3::Zero();     ///< [N] as rendered
-    bool turns = false;            ///< what follows is known
+    bool turns = false;            ///< the next members are known
     Quaternion orientation = Quaternion::Identity();
     Vec3 angular_velocity = Vec3::Zero();  ///< [rad/s], low-pass filtered; at most 100 rad/s counts
     Vec3 torque = Vec3::Zero();            ///< [N mm] as rendered
@@ -176,7 +176,7 @@ struct ForceResult {
 };
 
 /// Force and torque of one tick. Never throws. Input that is not valid gives zero at once, and the
-/// ramp starts again. Settings that check() would refuse give no force beyond `limits` either. Warm
+/// ramp starts again. Even settings that check() would refuse give no force beyond `limits`. Warm
 /// motors lower the maximum (warm_limit()). A lowered limit holds at once: that fall, and every
 /// stop, is exempt from the rate limit.
 ForceResult render_force(ForceState& state, const ForceSettings& settings,

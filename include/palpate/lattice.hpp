@@ -6,8 +6,8 @@
 // index space: the affine Coxeter group of type B3), so the neighbour across a wall is a reflection
 // and needs no table.
 //
-// Folded coordinates are measured from the cell's centre in voxels, with the axes in the order and
-// sign of the frame: (ud, us, ue), ud towards the face, us towards the edge, ue along the edge. In
+// Folded coordinates (ud, us, ue) are measured from the cell's centre in voxels, with the axes in
+// the order and sign of the frame: ud towards the face, us towards the edge, ue along the edge. In
 // these coordinates all tetrahedra are the same: 1/2 >= ud >= us >= |ue|.
 #pragma once
 
@@ -137,7 +137,7 @@ struct Incident {
 };
 Incident incident_tetrahedra(const LatticePoint& point);
 
-// On the lattice that a field's interpolation lies on: for `cubic` its cubes lie round the samples
+// The same on the lattice of an interpolation. For `cubic`, its cubes are centred at the samples
 // (cubic.hpp).
 
 /// A tetrahedron that contains the point, as above.

@@ -79,18 +79,19 @@ struct Layers {
     std::string name;
     std::array<PropertyCurves, haptic_property_count> curves;
     /// In the order in which a hand from outside meets them: levels rise, or fall where the solid
-    /// is below. None: the session's isovalue, with the properties that the curves give there.
+    /// is below. If empty, the surface is that of the session's isovalue, with the properties that
+    /// the curves give there.
     std::vector<Layer> layers;
     /// [mm, physical] A surface that gave way closes when the SCP is farther than this from the
     /// place where it gave way. Then it can be touched from its other side.
     double closing = 1;
     std::optional<Needle> needle;
-    /// Tissue by position: a layer is where the label volume has its number, whatever the density.
-    /// A surface between two layers has the properties of the later one. Curves still use the
-    /// densities.
+    /// True: the tissue depends on the position. A layer is where the label volume has its number,
+    /// whatever the density. A surface between two layers has the properties of the later one.
+    /// Curves still use the densities.
     bool by_label = false;
-    /// By label: so many of the layers, the first ones, are levels of the density nevertheless.
-    /// They apply where the label volume has none of the labels.
+    /// With by_label: this many of the layers, the first ones, are levels of the density
+    /// nevertheless. They apply where the label volume has none of the labels.
     std::size_t levels_beside_labels = 0;
     std::shared_ptr<const Field> labels;  ///< from numbered_labels()
     std::string label_volume;             ///< name of their source, for recordings
@@ -117,9 +118,10 @@ std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<con
 /// labels.
 Field labelled_space(const Layers& layers);
 
-/// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, levels out of
-/// order or not finite (labels: not whole, below 1 or given twice), names missing or given twice,
-/// knots out of order, and values that are NaN, negative or (but for puncture forces) infinite.
+/// Throws std::invalid_argument, naming layer or curve, for more than 16 layers, and for levels out
+/// of order or not finite (labels: not whole, below 1 or given twice). The same holds for names
+/// missing or given twice, knots out of order, and values that are NaN, negative or (except for
+/// puncture forces) infinite.
 void check(const Layers& layers, Solid solid);
 
 /// A property in a layer (by number from 0; -1: outside of all), at a density [data units] and
@@ -191,8 +193,9 @@ struct LayerState {
     Vec3 hip = Vec3::Zero();  ///< of the last tick [mm, physical]
 };
 
-/// Keeps a state for another set if that has the same surfaces: as many layers, as many of them
-/// levels, and the same labels. Everything else may differ. False: the surfaces are not the same.
+/// Keeps a state for another set if that set has the same surfaces: the same number of layers, the
+/// same number of levels among them, and the same labels. Everything else may differ. False if the
+/// surfaces are not the same.
 bool keep_for(LayerState& state, const Layers& before, const Layers& after) noexcept;
 /// Resets the state: the proxy stays where it is, on the lattice of the data.
 void forget_layers(LayerState& state, Proxy& proxy, const Field& data) noexcept;
@@ -223,7 +226,7 @@ struct LayersUpdate {
 
 /// One tick: moves the proxy, instead of a ProxyMethod and penetrability. The proxy never passes a
 /// surface that did not give way, from either side (G1, G2 for all of them; docs/layers.md). A
-/// surface gives way at the point of the hand's way where its spring reaches the puncture force.
+/// surface gives way at the point on the hand's path where its spring reaches the puncture force.
 /// The SCP then continues towards the hand in the same tick, through at most eight surfaces. A
 /// state of another set is reset at the proxy's position.
 LayersUpdate update_layers(const Layers& layers, LayerState& state, Proxy& proxy,

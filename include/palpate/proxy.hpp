@@ -39,8 +39,8 @@ class KeptPiece {
     double sign = 0;
     Tetrahedron tetrahedron;
     cubic::Piece piece;  // of the excess, sign * (f - isovalue)
-    // Nothing in the tetrahedron's cube lies above: the greatest excess of the samples round it,
-    // once it was looked for, times cubic::scale.
+    // An upper bound of the excess in the tetrahedron's cube, times cubic::scale: the greatest
+    // excess of the samples around it. Infinity until it was computed.
     double most = std::numeric_limits<double>::infinity();
 };
 /// A sample and its neighbours, bit for bit, with their type. Private to the proxy.
@@ -55,9 +55,9 @@ struct Proxy {
     LatticePoint scp;                  ///< surface contact point, of the lattice of `interpolation`
     Vec3 scp_physical = Vec3::Zero();  ///< the same [mm]
     double isovalue = 0;               ///< [data units]
-    /// A second level, on the free side of the isovalue: the SCP stays between the two, and touches
-    /// this one from its solid side. Nothing: the free side has no second level. For update_exact()
-    /// and update_straight().
+    /// A second level, on the free side of the isovalue. The SCP stays between the two levels, and
+    /// touches this one from its solid side. Without a value, the free side has no second level.
+    /// For update_exact() and update_straight().
     std::optional<double> behind;
     bool turned = false;  ///< the last surface touched was that of `behind`
     Mode mode = Mode::free;
@@ -117,14 +117,14 @@ struct ProxyUpdate {
     UpdateStatus status = UpdateStatus::done;
     Mode mode = Mode::free;
     Vec3 hip = Vec3::Zero();  ///< [mm, physical]
-    Vec3 scp = Vec3::Zero();  ///< [mm, physical]; equal to hip bit for bit when it was reached
+    Vec3 scp = Vec3::Zero();  ///< [mm, physical]; equal to hip bit for bit if it was reached
     double density = 0;       ///< f(SCP) [data units]
     double isovalue = 0;  ///< [data units] of the touched surface. In free space: of the one ahead
     bool behind = false;  ///< the touched surface is that of Proxy::behind
-    int tetrahedra = 0;   ///< number of them that the SCP moved through
+    int tetrahedra = 0;   ///< number of tetrahedra that the SCP moved through
     int work = 0;         ///< of the step budget
     double searched = 0;  ///< [mm] how far from the SCP recovery has looked for free space
-    int level = 0;        ///< of detail of the samples at the SCP (reach.hpp)
+    int level = 0;        ///< level of detail of the samples at the SCP (stores)
 };
 
 /// True if the spring between SCP and HIP acts: in contact, and after an update out of budget. If
@@ -190,7 +190,7 @@ struct DensityRange {
     double high = std::numeric_limits<double>::infinity();
 };
 
-/// What a penetrability function sees in each constrained tick.
+/// The input of a penetrability function in each constrained tick.
 struct Pressing {
     double isovalue;  ///< level felt now [data units]
     double pull;      ///< |SCP - HIP| [device mm]
@@ -217,8 +217,8 @@ struct Penetrability {
     int range_count = 1;
 };
 
-/// Off: the level stays as it is now. If the hand is past the last range, the level is infinity,
-/// and no surface is touched. Set `proxy.isovalue` in that case.
+/// Off: the level stays as it is now. If the hand is past the last range, the level is infinity and
+/// nothing can be touched: set `proxy.isovalue` then.
 Penetrability no_penetrability();
 /// Threshold: the surface gives way at PT [device mm]. Levels below `minimum` are not touched (with
 /// Solid::below, those above it). Throws std::invalid_argument unless PT >= 0.

@@ -60,8 +60,8 @@ struct Renderer {
     /// [data units] The isovalue to return to when layers with surfaces are removed. Set while
     /// there are such layers.
     std::optional<double> isovalue_without_layers = {};
-    /// The tool's proxy, for the level `proxy.isovalue`. It has a value if there is a tool, or room
-    /// for one.
+    /// The tool's proxy, for the level `proxy.isovalue`. It has a value if there is a tool, or if
+    /// make_room_for_tools() was called.
     std::optional<ToolProxy> tool_proxy = {};
 };
 
@@ -94,9 +94,9 @@ struct Tick {
     std::int64_t update_ns = 0;  ///< [ns] the proxy update alone, by the caller's clock. 0: none
 };
 
-/// Throws std::invalid_argument, saying what is wrong, for settings that cannot be rendered.
-/// Whether ranges of interest and layers are in the order of the field's solid side is left to
-/// their own check(), which make_renderer() calls as well.
+/// Throws std::invalid_argument, with the reason, for settings that cannot be rendered. Whether
+/// ranges of interest and layers are in the order of the field's solid side is left to their own
+/// check(), which make_renderer() calls as well.
 void check(const RendererSettings& settings);
 /// Throws std::invalid_argument for an isovalue that is NaN, or infinite so that all of space is
 /// solid. The other infinity leaves all of space free.
@@ -108,8 +108,8 @@ struct FieldKind {
     Interpolation interpolation = Interpolation::linear;
 };
 FieldKind kind_of(const Field& field);
-/// Throws std::invalid_argument, saying what is wrong, for a tool that cannot be used with this
-/// method on such a field. Null, a point, is always valid.
+/// Throws std::invalid_argument, with the reason, for a tool that cannot be used with this method
+/// on such a field. Null, a point, is always valid.
 void check_tool(const Tool* tool, ProxyMethod method, const FieldKind& field);
 /// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue or settings
 /// that do not pass their check.
@@ -135,11 +135,11 @@ std::string isovalue_warning(const Field& field, double isovalue);
 /// Renders one tick. A position that is not valid, not finite or extremely far does not move the
 /// proxy (UpdateStatus::refused) and gives no force. A time that is not finite or did not advance
 /// gives no force either, but the proxy follows. The same renderer and input give the same tick,
-/// bit for bit, but for `update_ns`, which is measured where a clock is given. The proxy only moves
+/// bit for bit, except for `update_ns`, which is measured if a clock is given. The proxy only moves
 /// where all samples are in memory. If the hand pulls it farther, it is held
 /// (UpdateStatus::waiting): the force falls to zero within its rate limit, and returns with the
-/// ramp when they are. Layers and penetrability need the whole way of the hand in memory.
-/// `observer` is for a point, `pose_observer` for a tool.
+/// ramp when the samples are in memory. Layers and penetrability need the whole way of the hand in
+/// memory. `observer` is for a point, `pose_observer` for a tool.
 Tick render(Renderer& renderer, const DeviceState& device, StepObserver observer = {},
             Clock clock = nullptr, PoseObserver pose_observer = {});
 

@@ -1,7 +1,7 @@
-// Stage 2, samples: one version of the numbers on a grid, which is a volume with its edited
-// bricks, the frames of a sequence, or the part of a large grid that is in memory, perhaps with
-// edited bricks. A version never changes. A change makes a new version, published by pointer, and
-// readers pick it up between two reads (copy on write). See docs/changing_data.md.
+// Stage 2, samples: one version of the numbers on a grid. It is a volume with its edited bricks,
+// the frames of a sequence, or the part of a large grid that is in memory, perhaps with edited
+// bricks. A version never changes. A change makes a new version, published by pointer, and readers
+// pick it up between two reads (copy on write). See docs/changing_data.md.
 #pragma once
 
 #include <array>
@@ -64,7 +64,7 @@ class SparseBricks {
                                                  const Brick& theirs)>& visit) const;
     /// Calls visit(at, brick) for each brick that is not empty.
     void for_each(const std::function<void(const Index3& at, const Brick& brick)>& visit) const;
-    /// Bytes of this table, without the bricks, that `other` does not share.
+    /// Bytes of the part of this table that `other` does not share, without the bricks.
     std::size_t table_bytes_apart(const SparseBricks& other) const;
 
   protected:
@@ -151,7 +151,7 @@ struct Moment {
     double weight = 0;             ///< of `to`, 0 to below 1; `from` has the rest
 };
 
-/// One version. Immutable, held by shared pointers; versions share what did not change.
+/// One version. Immutable, held by shared pointers. Versions share unchanged parts.
 class Samples {
   public:
     /// A volume without edits.
@@ -167,8 +167,8 @@ class Samples {
     /// bricks of another grid, and bounds that are not finite or in the wrong order.
     Samples(Volume overview, const Geometry& geometry, ResidentBricks resident, double minimum,
             double maximum);
-    /// The same with these edits; `minimum` and `maximum` [data units] bound the bricks' samples.
-    /// Throws std::invalid_argument if the bricks do not fit the grid.
+    /// The same with these edits. `minimum` and `maximum` [data units] bound the samples of the
+    /// bricks. Throws std::invalid_argument if the bricks do not fit the grid.
     Samples with(Bricks bricks, double minimum, double maximum) const;
     /// The same large grid with another part in memory. Throws std::invalid_argument for
     /// bricks of another grid.

@@ -93,7 +93,7 @@ struct Snapshot {
     bool forces_on = true;
 };
 
-/// What observers see of a session after a tick. Neither throws nor allocates.
+/// The state of a session after a tick, for observers. Neither throws nor allocates.
 Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64_t number,
                      std::int64_t missed) noexcept;
 
@@ -122,8 +122,9 @@ class Servo {
     /// Starts the thread. May be called once, and not after step(). Throws std::system_error if the
     /// system cannot create a thread.
     void start();
-    /// One tick, now, on one thread. The first one is at time 0 of the session. False once the
-    /// session has ended: stop() was called or the device has failed, and zero force was written.
+    /// One tick, now, on one thread. The first one is at time 0 of the session. False when the
+    /// session has ended, because stop() was called or the device has failed. Zero force was then
+    /// written.
     bool step() noexcept;
     /// The same at a time of the caller [ns, never backwards], without a clock: no durations are
     /// measured.

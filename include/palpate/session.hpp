@@ -105,9 +105,9 @@ struct Resume {
     std::shared_ptr<const SessionPoint> point;  ///< not null
 };
 }  // namespace command
-/// ForceSettings are lowered to what is stable within the session's device limits (stable()). A new
-/// DeviceTransform may move the HIP, so the force starts again from zero. The session keeps
-/// the smaller of DeviceLimits and its own limits, permanently (keep_within()).
+/// ForceSettings are lowered until they are stable within the session's device limits (stable()). A
+/// new DeviceTransform may move the HIP, so the force starts again from zero. The session keeps the
+/// smaller of DeviceLimits and its own limits, permanently (keep_within()).
 using Command = std::variant<command::Isovalue, command::Freeze, command::Clutch, command::Forces,
                              command::Scale, command::Samples, command::Moment, command::Speed,
                              command::UseLayers, command::UseTool, command::Resume, ForceSettings,
@@ -179,8 +179,8 @@ struct SessionTick {
 
 /// Throws std::invalid_argument for settings out of range.
 void check(const SessionSettings& settings);
-/// Throws std::invalid_argument, saying what is wrong, for a command that a session with these
-/// settings and such a field cannot carry out.
+/// Throws std::invalid_argument, with the reason, for a command that a session with these settings
+/// and such a field cannot carry out.
 void check(const Command& command, const RendererSettings& settings, const FieldKind& field);
 
 /// A command that passed check(). A session executes only such commands, so no number that is not

@@ -48,7 +48,7 @@ constexpr TetrahedronCut cut_of(unsigned solid) {
     return {};
 }
 
-/// An oriented triangle mesh. Unless it shows a part only, it is closed: every edge has exactly two
+/// An oriented triangle mesh. Unless it shows only a part, it is closed: every edge has exactly two
 /// triangles, which run along it in opposite directions.
 struct SurfaceMesh {
     std::vector<Vec3> vertices;  ///< [mm, physical]

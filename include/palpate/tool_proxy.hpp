@@ -40,16 +40,17 @@ struct ToolUpdate {
     Pose hand;         ///< that of the device
     Pose proxy;        ///< the same bit for bit if it was reached
     int contacts = 0;  ///< how many points hold the proxy
-    int rounds = 0;    ///< each finds a direction and moves along it
+    int rounds = 0;    ///< number of steps, each along a direction of its own
     int work = 0;      ///< of the work budget
-    /// [mm] How far from its pose recovery has searched for free space for the reference point.
+    /// [mm] The distance from the pose up to which recovery has searched free space for the
+    /// reference point.
     double searched = 0;
 };
 
 namespace tool {
 
 struct Kept;
-/// What updates store to save time. Private to the proxy. Copies are independent.
+/// Results that updates keep to save time. Private to the proxy. Copies are independent.
 class Keeper {
   public:
     Keeper();
@@ -80,11 +81,11 @@ struct ToolState {
 /// The proxy. Set `isovalue` freely between two updates. Copies are independent.
 class ToolProxy : public ToolState {
   public:
-    /// Allocates what updates need. Not null.
+    /// Allocates the memory that updates need. Not null.
     explicit ToolProxy(std::shared_ptr<const Tool> tool);
 
     const Tool& tool() const { return *tool_; }
-    /// Allocates what use() needs for tools of this many points. Changes nothing else.
+    /// Allocates the memory that use() needs for tools of this many points. Changes nothing else.
     void make_room(std::size_t points);
     /// Another tool from the next update on, at the same pose. If it is inside the solid there,
     /// recovery follows. Allocates nothing. Frees the previous tool unless it is held elsewhere.
@@ -111,8 +112,8 @@ struct PoseObserver {
 /// has
 ///    sign * (f - isovalue) / r > 1e-9 (recovery excepted); each pose is exactly rigid;
 /// T2 points that hold the proxy have |f - isovalue| / r <= 1e-6;
-/// T3 at rest the pose is optimal to first order: what is left of the pull, projected on what the
-///    contacts allow, is at most 3e-4 of it;
+/// T3 at rest the pose is optimal to first order: at most 3e-4 of the pull remains along directions
+/// that the contacts allow;
 /// T4 the distance to the hand, sqrt(|translation|^2 + |gyration * rotation|^2), never grows (field
 ///    and isovalue unchanged); T3 and T4 without friction;
 /// T5 bounded work, and never NaN.

@@ -50,8 +50,8 @@ constexpr SampleType sample_type_of<float>() {
     return SampleType::float32;
 }
 
-/// Calls `work` with a zero of the C++ type that `type` names, and returns what it returns, which
-/// has to be of one type for all: with_type(t, [&](auto zero) { return sizeof zero; }).
+/// Calls `work` with a zero of the C++ type that `type` names, and returns its result. The result
+/// must have one type for all: with_type(t, [&](auto zero) { return sizeof zero; }).
 template <class Work>
 constexpr decltype(auto) with_type(SampleType type, Work&& work) {
     switch (type) {
@@ -109,8 +109,8 @@ Vec3 grid_axes_from_physical(const Geometry& geometry, const Vec3& physical);
 Vec3 physical_from_grid_axes(const Geometry& geometry, const Vec3& grid);
 /// The centre of the grid [mm, physical].
 Vec3 physical_centre(const Geometry& geometry);
-/// Throws std::invalid_argument, saying what is wrong, unless every size is >= 1, every spacing
-/// from 1e-30 to 1e30 mm, the origin finite, and the direction orthonormal to 1e-4 (mirrored is
+/// Throws std::invalid_argument, with the reason, unless every size is >= 1, every spacing from
+/// 1e-30 to 1e30 mm, the origin finite, and the direction orthonormal to 1e-4 (mirrored is
 /// allowed).
 void check(const Geometry& geometry);
 /// The same with the nearest direction that is orthonormal to all digits, as volumes and samples

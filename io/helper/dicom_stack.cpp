@@ -145,7 +145,7 @@ Steps steps_of(Stack& stack, const DicomSlice& one) {
             std::to_string(count - stack.slices.size()) + " of " + std::to_string(count) +
             (are_empty ? " slices are not in the segmentation: they are empty (0)"
                        : " slices are missing: filled by interpolation between their "
-                         "neighbours, do not trust what is felt there"));
+                         "neighbours, do not trust the surface there"));
         return {spacing, count, 0.2 * spacing, are_empty};
     }
     stack.notes.push_back("its slices are not evenly spaced (" + text_of(sorted.front()) + " to " +

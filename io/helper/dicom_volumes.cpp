@@ -110,7 +110,7 @@ class DecoderWarnings {
         if (files_ == 0) return;
         const std::string more = files_ == 1 ? "" : " and " + std::to_string(files_ - 1) + " more";
         notes.push_back("the decoder warned of damage in " + first_ + more +
-                        ": do not trust what is felt there");
+                        ": do not trust the surface there");
     }
 
   private:
@@ -146,7 +146,7 @@ void note_missing_rescale(const std::vector<DicomSlice>& slices, std::vector<std
         std::to_string(count) + " of its " + std::to_string(slices.size()) +
         " slices (the first in " + quoted(first->file) + (count == 1 ? ") gives" : ") give") +
         " no slope or no intercept, and others do: a slope of 1 or an intercept of 0 was "
-        "taken, do not trust what is felt there");
+        "taken, do not trust the surface there");
 }
 
 std::string bytes_of(const fs::path& file) {

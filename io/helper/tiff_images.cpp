@@ -58,7 +58,8 @@ std::vector<std::string> codecs_of(TIFF* tiff, Stored stored) {
 
 Tiling tiling_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& notes) {
     if (TIFFIsTiled(tiff) == 0) {
-        throw Failure("it has a page in strips; only tiles are read as they are felt");
+        throw Failure(
+            "it has a page in strips; only tiled pages can be read while they are touched");
     }
     Tiling tiling;
     tiling.page = page_of(tiff, file, notes);
@@ -159,7 +160,7 @@ void tiff_places(const fs::path& path, const ChunkBox& box, std::span<ChunkPlace
     std::size_t level = 0;
     int channel = 0, time = 0;
     if (std::sscanf(box.array.c_str(), "%zu %d %d", &level, &channel, &time) != 3) {
-        throw Failure("is asked for what it has not");
+        throw Failure("got a request for an unknown image");
     }
     const Explored& file = explored(path);
     const Tiff& tiff = file.tiff;

@@ -123,7 +123,7 @@ void go_to_slice(TIFF* tiff, const Slice& slice) {
 void note_guess(const fs::path& file, std::vector<std::string>& notes) {
     const std::string what =
         " does not say, or says wrongly, how long the samples of a page are (StripByteCounts): as "
-        "many as the page has were taken from where they begin, do not trust what is felt there";
+        "many as the page has were taken from where they begin, do not trust the surface there";
     const auto is_said = [&](const std::string& note) { return note.ends_with(what); };
     if (!guessed_tiff_lengths() || std::ranges::any_of(notes, is_said)) return;
     notes.push_back(quoted(file) + what);

@@ -124,7 +124,7 @@ std::shared_ptr<const Store> open_located(const std::stop_token& stop,
     const std::string address = folder->name_of(name);
     const auto size = folder->size_of(name);
     if (!size) {
-        throw io::InputError(address + ": is not there, or the server does not tell its size");
+        throw io::InputError(address + ": does not exist, or the server does not give its size");
     }
     folder = std::make_shared<SteadyFile>(std::move(folder), name, *size, stop);
     io::ChunkFile::Read read;  // none: the helper reads it here

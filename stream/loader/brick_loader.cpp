@@ -48,7 +48,7 @@ std::size_t most_bricks(const Store& store, std::uint64_t memory) {
     if (count < fewest_bricks) {
         throw std::invalid_argument(
             "at least " + std::to_string(fewest_bricks * each * 4 / 3 / 1000000 + 1) +
-            " MB of memory are needed to feel " + io::without_secrets(store.info().address));
+            " MB of memory are needed to touch " + io::without_secrets(store.info().address));
     }
     return count;
 }
@@ -137,8 +137,7 @@ void BrickLoader::Parts::wait_for(const Vec3& centre, double radius, const std::
         throw std::invalid_argument(io::without_secrets(store_->info().address) +
                                     ": a stroke needs more samples at a time than fit into " +
                                     std::to_string(settings_.memory / 1000000) +
-                                    " MB: allow more memory or feel a "
-                                    "coarser level");
+                                    " MB: allow more memory or touch a coarser level");
     }
     std::unique_lock lock(mutex_);
     changed_.wait(lock, stop, [&] {

@@ -85,7 +85,7 @@ std::string problem_with_part(CURL* easy, const ByteRange& range) {
         return "";
     }
     return "the server gives bytes " + std::to_string(given->first) + " to " +
-           std::to_string(given->last) + ", which were not asked for";
+           std::to_string(given->last) + ", which were not requested";
 }
 
 /// What libcurl hands over; fewer bytes returned than given end the transfer.
@@ -140,10 +140,10 @@ std::string words_of(const Job& job, CURLcode code, long status) {
         return "the server gives whole files only, no parts of them; copy the store from there";
     }
     if (job.no_memory) return no_memory_words;
-    if (job.too_long) return "the server gives more bytes than were asked for";
+    if (job.too_long) return "the server gives more bytes than were requested";
     if (code != CURLE_OK) return curl_easy_strerror(code);
     if (status >= 400) return "the server answers with status " + std::to_string(status);
-    return "the server gives fewer bytes than were asked for";
+    return "the server gives fewer bytes than were requested";
 }
 
 }  // namespace

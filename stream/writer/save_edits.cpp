@@ -234,15 +234,15 @@ void check_edits_name(const fs::path& out) {
     const fs::path name = io::without_slash(out);
     if (name.extension() == ".zarr" && !name.stem().empty()) return;
     throw std::invalid_argument(out.string() +
-                                ": edits of a volume that is read as it is felt are saved as a "
-                                "folder: give a name that ends with .zarr");
+                                ": edits of a volume that is read while it is touched are saved as "
+                                "a folder: give a name that ends with .zarr");
 }
 
 void check_edits_place(const fs::path& out, const Opened& opened) {
     check_edits_name(out);
     std::error_code error;
     if (fs::equivalent(out, opened.address, error)) {
-        throw io::OutputError(out.string() + ": is felt; save under another name");
+        throw io::OutputError(out.string() + ": is the open volume; save under another name");
     }
     io::check_in_place(out, check_replaceable);
     io::check_parent(out);

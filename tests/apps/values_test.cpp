@@ -112,8 +112,8 @@ INSTANTIATE_TEST_SUITE_P(
              "--depth: '1,5' is not a number: its decimals follow a point, as in 1.5 (see palpate "
              "demo --help)"},
         Line{"extract synthetic:sphere -o a.ply --isovalue",
-             "--isovalue needs a value: Level to feel, in the data's units (300) or percent of its "
-             "range (53%) (see palpate extract --help)"},
+             "--isovalue needs a value: Isovalue of the surface, in the data's units (300) or "
+             "percent of its range (53%) (see palpate extract --help)"},
         Line{"extract synthetic:sphere -o a.ply --solid above --solid below",
              "--solid: it is given more than once (see palpate extract --help)"},
         Line{"info synthetic:sphere --dequantize=0",

@@ -107,7 +107,7 @@ struct Impatient {};
 
 TEST(HttpAnswers, a_part_that_was_not_asked_for_is_refused) {
     const std::string message = Served({"--other-range"}).refusal("s.zarr");
-    EXPECT_TRUE(contains(message, "which were not asked for")) << message;
+    EXPECT_TRUE(contains(message, "which were not requested")) << message;
 }
 
 TEST(HttpAnswers, the_end_of_a_file_is_read_by_its_place_where_a_server_knows_no_suffixes) {

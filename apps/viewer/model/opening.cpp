@@ -86,7 +86,7 @@ double first_isovalue(const Opened& opened) {
     const std::vector<double> levels = run::suggested_isovalues(opened.histogram);
     if (levels.empty()) {
         throw std::invalid_argument(opened.loaded.name +
-                                    ": the data are constant, there is nothing to feel");
+                                    ": the data is constant, so there is no surface to touch");
     }
     return levels.front();
 }

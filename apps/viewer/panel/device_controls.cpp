@@ -36,9 +36,9 @@ LoopView::LoopView() {
         grid->addWidget(new QLabel(head), row, 0, Qt::AlignTop);
         grid->addWidget(label, row, 1, 1, 4);
     };
-    add(0, tr("Rate"), "loop_rate", tr("Ticks a second, as measured [Hz]"));
+    add(0, tr("Rate"), "loop_rate", tr("Ticks per second, as measured [Hz]"));
     add(1, tr("Missed"), "loop_missed",
-        tr("Deadlines: ticks that did not happen at their time; and forces that were taken back "
+        tr("Deadlines: ticks that did not happen at their time; and forces that were cancelled "
            "because a tick took too long"));
     grid->addWidget(new QLabel(tr("Lateness")), 3, 0);
     grid->addWidget(new QLabel(tr("Compute")), 4, 0);
@@ -64,7 +64,7 @@ void LoopView::show_report(const ServoReport& report, double rate) {
     put("loop_rate", tr("%1 Hz").arg(rate, 0, 'f', 0));
     QStringList missed{tr("%1 of %2 ticks").arg(report.missed).arg(report.missed + report.ticks)};
     if (report.overruns > 0) {
-        missed << tr("%n forces taken back", nullptr, static_cast<int>(report.overruns));
+        missed << tr("%n forces cancelled", nullptr, static_cast<int>(report.overruns));
     }
     if (report.unrecorded > 0) {
         missed << tr("%n not recorded", nullptr, static_cast<int>(report.unrecorded));

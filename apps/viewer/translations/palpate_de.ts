@@ -1959,11 +1959,11 @@ Die Vorlage noch einmal wählen macht rückgängig. Strg+Rad zoomt, Umschalt+Rad
 <context>
     <name>palpate::viewer::LoopView</name>
     <message>
-        <source>Ticks a second, as measured [Hz]</source>
+        <source>Ticks per second, as measured [Hz]</source>
         <translation>Takte je Sekunde, gemessen [Hz]</translation>
     </message>
     <message>
-        <source>Deadlines: ticks that did not happen at their time; and forces that were taken back because a tick took too long</source>
+        <source>Deadlines: ticks that did not happen at their time; and forces that were cancelled because a tick took too long</source>
         <translation>Fristen: Takte, die nicht zu ihrer Zeit stattfanden; und Kräfte, die zurückgenommen wurden, weil ein Takt zu lange dauerte</translation>
     </message>
     <message>
@@ -2001,7 +2001,7 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>%1 von %2 Takten</translation>
     </message>
     <message numerus="yes">
-        <source>%n forces taken back</source>
+        <source>%n forces cancelled</source>
         <translation>
             <numerusform>%n Kraft zurückgenommen</numerusform>
             <numerusform>%n Kräfte zurückgenommen</numerusform>

@@ -34,10 +34,10 @@
 <context>
     <name>palpate::viewer::LoopView</name>
     <message numerus="yes">
-        <source>%n forces taken back</source>
+        <source>%n forces cancelled</source>
         <translation>
-            <numerusform>%n force taken back</numerusform>
-            <numerusform>%n forces taken back</numerusform>
+            <numerusform>%n force cancelled</numerusform>
+            <numerusform>%n forces cancelled</numerusform>
         </translation>
     </message>
     <message numerus="yes">

@@ -263,7 +263,7 @@ PARSER = Parser("study", "Find the least difference that people can feel, by tri
     "head.nrrd@34.5 p01.csv --standard 0.3 --difference 0.5",
     "head.nrrd@34.5 p02.csv --setting friction.static_coefficient --standard 0.2 --differences 0.5 1 --repeats 10",
     "--analyse p01.csv p02.csv"))
-PARSER.add("volume", kind=Kind("VOLUME@ISOVALUE"), optional=True, help="Volume and level to feel, such as head.nrrd@34.5 or head.nrrd@20%. Without @ the suggested level")
+PARSER.add("volume", kind=Kind("VOLUME@ISOVALUE"), optional=True, help="Volume and isovalue, such as head.nrrd@34.5 or head.nrrd@20%. Without @ it is the suggested one")
 PARSER.add("file", kind=Kind("FILE.csv"), optional=True, help="Table of the session. The same command continues an interrupted session")
 PARSER.add("--analyse", kind=Kind("FILE.csv"), nargs="+", help="Fit a psychometric function to each of these sessions instead")
 PARSER.add("--setting", kind=Kind("NAME"), default="stiffness", help="Number in RenderSetup that differs, such as force.damping")

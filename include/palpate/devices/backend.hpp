@@ -15,7 +15,7 @@
 
 namespace palpate::devices {
 
-/// What a device may need to know about the run it is opened for.
+/// Facts about the run for which a device is opened.
 struct DeviceScene {
     const Field& field;
     double isovalue;  ///< [data units]
@@ -29,7 +29,7 @@ struct DeviceScene {
 struct DeviceFinding {
     std::string name;     ///< for --device
     bool found = false;   ///< it could be opened now
-    std::string what;     ///< what was found: model, version, address
+    std::string what;     ///< the device that was found: model, version, address
     std::string missing;  ///< which file, service or device was looked for, and what to install
     std::string options;  ///< KEY=VALUE options with their defaults, one line
 };

@@ -5,7 +5,7 @@
 
 namespace palpate::devices {
 
-/// The device is not available: what was looked for, and what to install or do. One line.
+/// The device is not available. The message names the missing part and the remedy. One line.
 class DeviceError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;

@@ -19,8 +19,8 @@ struct DeviceChoice {
 /// Throws std::invalid_argument for an empty name, an empty key, or a key that is there twice.
 DeviceChoice parse_device(std::string_view text);
 
-/// Takes options out one by one; finish() refuses what nobody asked for. All errors are
-/// std::invalid_argument and name the device, the option and what is accepted.
+/// Takes options out one by one. finish() refuses those that were not taken. All errors are
+/// std::invalid_argument and name the device, the option and the accepted values.
 class DeviceOptions {
   public:
     /// `main` is the key that a value without a key stands for ("" where there is none).

@@ -20,7 +20,7 @@ inline constexpr int greatest_step = 32;
 /// The most rounds of step 1.
 inline constexpr int most_rounds = 1000;
 
-/// What rounding does to the surfaces of a volume.
+/// The effect of rounding on the surfaces of a volume.
 struct Terraces {
     double level = 1;   ///< distance between levels [data units]
     bool mask = false;  ///< two values only: every surface is made of stair steps
@@ -64,10 +64,10 @@ struct DequantizeOptions {
 /// A round: b = B u, with B the binomial (1 2 1)/4 along each axis; u = 2b - Bb, kept within half a
 /// level of the volume's sample. Rounds are done on the grids of every s-th sample, s from 1 to the
 /// coarsest step and back. On the way back, a finer grid is first interpolated from the coarser
-/// one. Beyond the border, samples go on as a straight line. 2B - B^2 (Kaiser and Hamming 1977,
-/// "twicing" after Tukey) keeps quadratics, so curved surfaces stay where they are. The box is that
-/// of Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces of binary volumes", for any
-/// number of levels.
+/// one. Beyond the border, samples are continued as a straight line. 2B - B^2 (Kaiser and Hamming
+/// 1977, "twicing" after Tukey) keeps quadratics, so curved surfaces stay where they are. The box
+/// is that of Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces of binary volumes", for
+/// any number of levels.
 ///
 /// Takes 4 bytes per sample, the result's own, and an eighth of that. The volume is released at the
 /// beginning if the caller has moved it here (not if its samples are floats). Throws

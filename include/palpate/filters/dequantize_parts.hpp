@@ -1,5 +1,5 @@
-// Dequantization part by part, for volumes that do not fit into memory, with the bits of
-// dequantized(): what it has to know of the whole volume, and rounds on a part. See
+// Dequantization part by part, for volumes that do not fit into memory, with the same bits as
+// dequantized(): the facts about the whole volume that it needs, and rounds on a part. See
 // docs/dequantize.md.
 #pragma once
 
@@ -25,18 +25,18 @@ struct VolumePart {
     Index3 whole;  ///< size of the whole volume [samples]
 };
 
-/// A place that the choice of the coarsest step looks at; `step` as in a round.
+/// A place that counts in the choice of the coarsest step. `step` as in a round.
 struct SurfaceSite {
     Index3 at;         ///< in the whole volume
-    double slope = 0;  ///< [data units a sample]
-    double bend = 0;   ///< how much the data bend over a step [data units]
+    double slope = 0;  ///< [data units / sample]
+    double bend = 0;   ///< bend of the data over a step [data units]
 };
 /// Those of the whole volume that lie in `core`, at most some 30,000 in all, in the order of the
 /// samples. The part has to reach 2 max(step, 1) samples farther than the core, or to the volume's
 /// border.
 std::vector<SurfaceSite> sites_of(const VolumePart& part, const SampleBox& core, int step);
 
-/// The rounds of a whole volume, and what each of them has to know of it.
+/// The rounds of a whole volume, and the facts about it that each of them needs.
 struct DequantizePlan {
     struct Rounds {
         enum class Way {
@@ -47,7 +47,7 @@ struct DequantizePlan {
         int step = 1;  ///< their grid has the samples whose indices are multiples of it
         int count = 1;
         Way way = Way::stay;
-        /// A sample depends on others as far away as this, along each axis [samples].
+        /// A sample depends on samples up to this distance along each axis [samples].
         int reach() const { return 2 * step * count + (way == Way::up ? 5 * step : 0); }
     };
     double level = 1;                 ///< distance between levels [data units]
@@ -55,13 +55,13 @@ struct DequantizePlan {
     bool mask = false;                ///< samples of two values
     std::vector<Rounds> rounds;       ///< in their order
 };
-/// `sites(step)`: those of the whole volume, asked for until the coarsest step is found. Uses
-/// the options rounds and coarsest. Throws std::invalid_argument as dequantized() does.
+/// `sites(step)` returns those of the whole volume. It is called until the coarsest step is found.
+/// Uses the options rounds and coarsest. Throws std::invalid_argument as dequantized() does.
 DequantizePlan plan_of(double level, double minimum, double maximum,
                        const DequantizeOptions& options,
                        const std::function<std::vector<SurfaceSite>(int step)>& sites);
 
-/// Which samples are dequantized depends on others as far away as this, along each axis.
+/// Whether a sample is dequantized depends on samples up to this distance along each axis.
 inline constexpr int terrace_reach = 2 * 16 + 2;
 
 /// Takes the samples of a part through some rounds, on `threads` threads (0: all cores). `moved`

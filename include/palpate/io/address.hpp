@@ -1,4 +1,4 @@
-// Web addresses: which names are some, and how files may keep them, without what gives access.
+// Web addresses: recognises them, and removes the parts that give access before files store them.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@ inline bool is_web_address(std::string_view name) {
     });
 }
 
-/// A web address as files may keep it: without user, password and query, which may give access; of
-/// a query, the version of an object stays. Other names stay as they are.
+/// A web address as files may store it: without user, password and query, which may give access.
+/// The version of an object in a query stays. Other names are returned unchanged.
 inline std::string address_to_keep(const std::string& address) {
     const std::size_t query = address.find('?');
     if (address.find("://") == address.npos) return address;

@@ -21,11 +21,11 @@ using Waiting = std::function<void()>;
 /// The whole text of a file, a pipe or a device, without a byte order mark. Throws InputError, also
 /// for a zero byte, a line of more than 16 MiB, a file of more than 4 GiB or a stream of more than
 /// 256 MiB.
-/// Without `waiting`, a signal that the program handles ends the wait for a stream, and so do 10 s
-/// in which nothing came; both are InputErrors.
+/// Without `waiting`, the wait for a stream ends with an InputError at a signal that the program
+/// handles, or when nothing was received for 10 s.
 std::string read_text(const std::filesystem::path& path, const Waiting& waiting = {});
 
-/// The text without a last line that lacks its line end (a file cut off while it was written).
+/// The text without an incomplete last line (of a file that was cut off while it was written).
 std::string_view whole_lines(std::string_view text);
 
 /// Reads the rows of a CSV text. Blank lines and lines that start with # are skipped,
@@ -35,11 +35,11 @@ class CsvReader {
   public:
     /// Called with each comment, without its #.
     using CommentSink = std::function<void(std::string_view)>;
-    /// Reads the header. `text` must outlive the reader; `name` is what errors call it.
+    /// Reads the header. `text` must outlive the reader; errors call it `name`.
     CsvReader(std::string_view text, std::string name, CommentSink comments = {});
 
     bool has_column(std::string_view column) const;
-    /// The number of the column; one that is missing or there twice is an error.
+    /// The number of the column. A column that is missing or given twice is an error.
     std::size_t column(std::string_view column) const;
 
     /// Goes to the next row; false at the end. A row must have as many cells as the header.
@@ -70,7 +70,7 @@ class CsvReader {
     std::vector<std::string_view> cells_;
 };
 
-/// Text from a file made fit for a one-line message: short, in quotes, printable.
+/// Text from a file for use in a one-line message: shortened, in quotes, printable.
 std::string quoted(std::string_view text);
 
 }  // namespace palpate::io

@@ -1,5 +1,5 @@
 // The two ways input and output fail. Each message is one short line that stands alone: the file,
-// what is wrong, what to do. Header only, so that every reader and writer can throw them.
+// the fault and the remedy. Header only, so that every reader and writer can throw them.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace palpate::io {
 
-/// A message as one line of at most 900 characters, whatever a file made it quote: control
-/// characters become blanks, and of a longer text the beginning and the end are kept.
+/// A message as one line of at most 900 characters, whatever text of a file it quotes. Control
+/// characters become blanks. A longer text keeps its beginning and its end.
 inline std::string one_line(std::string text) {
     constexpr std::size_t beginning = 640, end = 250;
     if (text.size() > beginning + end) {
@@ -22,8 +22,8 @@ inline std::string one_line(std::string text) {
     return text;
 }
 
-/// Addresses in a text without what gives access: user and password, and the query, which may be a
-/// signature. "https://me:pw@host/a?sig=b" becomes "https://host/a?...".
+/// The text without the parts of its addresses that give access: user, password, and the query,
+/// which may be a signature. "https://me:pw@host/a?sig=b" becomes "https://host/a?...".
 inline std::string without_secrets(std::string text) {
     constexpr const char* ends = " \t\r\n'\"<>,;)";
     for (std::size_t at = 0; (at = text.find("://", at)) != text.npos;) {

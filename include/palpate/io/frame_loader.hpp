@@ -19,8 +19,8 @@
 namespace palpate::io {
 
 struct LoaderSettings {
-    /// [bytes] Most that frames may take: those in the loader, the one being read, and those that
-    /// only versions it handed out still hold.
+    /// [bytes] Memory limit of all frames: those in the loader, the one being read, and those that
+    /// are held only by versions that it has published.
     std::uint64_t memory_bytes = std::uint64_t{1} << 30;
     bool loop = true;  ///< the first frame follows the last
 };
@@ -28,7 +28,7 @@ struct LoaderSettings {
 struct LoaderStatus {
     int frames = 0;           ///< in the loader
     std::uint64_t bytes = 0;  ///< of all frames, wherever they are held
-    /// Every frame that was wanted when look() was last called is loaded, or cannot be read.
+    /// True if every frame that was needed at the last call of look() is loaded or cannot be read.
     bool settled = false;
     /// Why frames are missing: the error of the last frame that could not be read. Empty if there
     /// is none.
@@ -36,9 +36,8 @@ struct LoaderStatus {
 };
 
 /// Once all frames are read, if they fit, it publishes the whole sequence with its period.
-/// Otherwise, and before that, it publishes the part around the play position, without a period, in
-/// times that do not jump where the sequence begins again: the first frame of lap 3 is at 3
-/// periods.
+/// Otherwise, and before that, it publishes the part around the play position, without a period.
+/// Its times do not jump when the sequence begins again: the first frame of lap 3 is at 3 periods.
 class FrameLoader {
   public:
     /// Called from the loader's thread; must not throw.
@@ -57,12 +56,13 @@ class FrameLoader {
     /// speed. At speed 0 the last direction counts. Any thread; never waits for a read.
     void look(double time, double speed) noexcept;
     /// The newest version; null before the first frame is read. Any thread. The player should take
-    /// each soon and drop the one before: frames that only old versions hold take memory.
+    /// each one soon and release the one before, because frames that only old versions hold take
+    /// memory.
     std::shared_ptr<const Samples> newest() const;
     LoaderStatus status() const;
     /// LoaderStatus::problem.
     std::string problem() const { return status().problem; }
-    /// Tries frames again that could not be read.
+    /// Tries again to read the frames that could not be read.
     void retry();
 
   private:

@@ -16,15 +16,16 @@ struct LayersFile {
     /// Unit of the levels and of the curves' axis: "HU", ... "%" is percent of the data's range.
     /// Empty: the data's own.
     std::string units;
-    std::string about;  ///< for people: what it is for, and where its numbers come from
+    std::string about;  ///< for people: the purpose, and the source of the numbers
 };
 
-/// Throws InputError: no such file, no JSON, a member that there is not or of the wrong kind, or
-/// layers that check() refuses on either side.
+/// Throws InputError if there is no such file, for text that is not JSON, for members that are
+/// unknown or of the wrong kind, and for layers that check() refuses. The order of the levels
+/// decides for which solid side they are checked.
 LayersFile read_layers(const std::filesystem::path& path);
 /// The same from text that errors call `name`.
 LayersFile layers_from_text(std::string_view text, const std::string& name);
-/// Reads back as the same, bit for bit.
+/// Text that reads back as the same layers, bit for bit.
 std::string text_of(const LayersFile& file);
 /// Throws OutputError.
 void write_layers(const std::filesystem::path& path, const LayersFile& file);
@@ -34,12 +35,12 @@ Layers layers_for(const LayersFile& file, const Volume& volume);
 
 /// A set that comes with Palpate.
 struct LayersPreset {
-    std::string name;  ///< as it is asked for: "ct-soft-tissue-and-bone"
+    std::string name;  ///< the name that selects it: "ct-soft-tissue-and-bone"
     LayersFile file;
 };
-/// All of them, by name. Throws InputError if their folder is not found.
+/// All built-in sets, by name. Throws InputError if their folder is not found.
 std::vector<LayersPreset> layers_presets();
-/// Their names alone. Empty if their folder is not found.
+/// Only their names. Empty if their folder is not found.
 std::vector<std::string> layers_names();
 /// A file, or the name of a built-in set. Throws InputError.
 LayersFile layers_named(const std::string& file_or_name);

@@ -1,5 +1,5 @@
-// Live sources: frames that arrive while they are felt, from this process or, through a file, from
-// another one. See docs/sequences.md.
+// Live sources: frames that arrive while they are touched, from this process or, through a file,
+// from another one. See docs/sequences.md.
 #pragma once
 
 #include <chrono>
@@ -38,8 +38,8 @@ class LiveWindow {
 };
 
 struct LiveSettings {
-    double poll_interval = 0.002;                         ///< [s] 0.0001 to 1
-    int frames = 4;                                       ///< how many a version holds, from 2
+    double poll_interval = 0.002;  ///< [s] 0.0001 to 1
+    int frames = 4;                ///< number of frames that a version holds, from 2
     std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< most that one frame may take
 };
 
@@ -49,11 +49,11 @@ struct LiveStatus {
     std::uint64_t missed = 0;  ///< overwritten before they were read
     double age = 0;            ///< [s] since the last frame, or since the file was opened
     bool ended = false;        ///< the writer has marked the file as ended
-    std::string problem;       ///< what is wrong now; empty: nothing
+    std::string problem;       ///< the present problem, or empty
 };
 
-/// Follows a live file. The status shows a writer that stalls or dies; one
-/// that is started again on the same grid is followed further.
+/// Follows a live file. The status shows whether the writer stalls or has died. If a writer is
+/// started again on the same grid, its frames follow.
 class LiveFrames {
   public:
     /// Called from step(), and from the constructor for frames that exist already. Must not

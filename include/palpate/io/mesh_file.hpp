@@ -8,8 +8,8 @@
 namespace palpate::io {
 
 /// Written as binary little-endian PLY, binary STL, OBJ text, VTP with raw appended data. Vertices
-/// are doubles in all but STL, which has 32-bit floats only. Normals go along where the mesh has
-/// them, but for STL.
+/// are doubles in all but STL, which has 32-bit floats only. Normals are written if the mesh has
+/// them, except in STL.
 enum class MeshFormat : std::uint8_t { ply, stl, obj, vtp };
 
 /// The format of an extension, upper or lower case. Throws std::invalid_argument, naming the four,
@@ -19,9 +19,9 @@ MeshFormat mesh_format_from(const std::filesystem::path& path);
 /// Whether the extension is one of the four, upper or lower case.
 bool names_a_mesh(const std::filesystem::path& path);
 
-/// The triangles of a mesh file, polygons cut into them, vertices as they are there (taken for mm),
-/// without normals; closed or not. Read by VTK in a process of its own (docs/io.md). Throws
-/// InputError, and passes on exceptions of `progress`.
+/// The triangles of a mesh file, closed or not. Polygons are cut into triangles, vertices are
+/// unchanged and taken as mm, and normals are ignored. Read by VTK in a process of its own
+/// (docs/io.md). Throws InputError, and passes on exceptions of `progress`.
 SurfaceMesh read_mesh(const std::filesystem::path& path, const OnProgress& progress = {});
 
 /// Writes the mesh in the format of the path's extension, whole or not at all (PendingFile).

@@ -23,7 +23,7 @@ struct GivenGrid {
     std::optional<Vec3> spacing = {};  ///< [mm]
     std::string orientation = {};      ///< three letters, or empty for that of the file
 };
-/// Applies them. The first sample stays where it is. Throws as direction_from().
+/// Applies them. The first sample stays where it is. Throws as direction_from() does.
 void put_in(const GivenGrid& given, Geometry& geometry);
 
 }  // namespace palpate::io

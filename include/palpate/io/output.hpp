@@ -12,18 +12,19 @@
 
 namespace palpate::io {
 
-/// The reader of standard output has ended, because it has enough.
+/// The program that reads standard output has ended, for example `head`.
 class ReaderGone : public OutputError {
     using OutputError::OutputError;
 };
 
-/// A signal came while a pipe was waited for that nobody reads.
+/// A signal arrived during the wait for the reader of a pipe.
 class WaitEnded : public OutputError {
     using OutputError::OutputError;
 };
 
-/// Throws OutputError if a file cannot be written here: no such folder, no permission, a folder has
-/// its name. Makes and opens nothing, so a long run can begin with it; a PendingFile does so, too.
+/// Throws OutputError if a file cannot be written here: no such folder, no permission, or a folder
+/// has its name. It makes and opens nothing, so a long run can begin with this check. PendingFile
+/// does it, too.
 void check_output(const std::filesystem::path& path);
 
 /// True for two names of one file, through links and relative paths. Neither need exist. Devices
@@ -44,7 +45,7 @@ inline std::filesystem::path without_slash(const std::filesystem::path& path) {
 /// Everything here throws OutputError.
 class PendingFile {
   public:
-    /// Opens the temporary file, so what cannot be written is known before the work is done.
+    /// Opens the temporary file, so that errors are known before the work is done.
     explicit PendingFile(const std::filesystem::path& target);
     ~PendingFile();
     PendingFile(const PendingFile&) = delete;
@@ -54,8 +55,8 @@ class PendingFile {
     void write(std::string_view bytes);
     /// Flushes to the disk and puts the file in its target's place. Nothing can be written after.
     void commit();
-    /// The same for several outputs of one run: all appear, or none. On an error, what a target
-    /// held before is there again, except what went to a stream. Every file is closed then.
+    /// The same for several outputs of one run: all appear, or none. After an error, each target
+    /// has its previous content again, except for streams. All files are closed then.
     static void commit_together(const std::vector<PendingFile*>& files);
 
   private:
@@ -71,9 +72,10 @@ class PendingFile {
 
     std::filesystem::path target_;
     std::filesystem::path temporary_;  // empty where the target is written directly
-    bool in_place_ = false;            // temporary_ then holds what the target held before, if any
+    bool in_place_ = false;  // temporary_ then holds the previous content of the target, if any
     int descriptor_ = -1;
-    int lock_ = -1;  // until it is in place: other processes leave the temporary file alone
+    int lock_ = -1;  // held until the file is in place, so that other processes do not remove the
+                     // temporary file
     std::string buffer_;
 };
 

@@ -24,7 +24,7 @@ namespace palpate::io {
 
 /// The volume of a recording.
 struct VolumeIdentity {
-    /// How to open it again: "volume" is its name as it was given, the rest are options of the
+    /// How to open it again: "volume" is its name as it was given. The others are options of the
     /// command line without their dashes.
     std::map<std::string, std::string> options;
     Index3 size = Index3::Zero();
@@ -76,13 +76,13 @@ class RecordingWriter {
     /// Adds commands before the content of the hand's queue. Call it before the servo uses the
     /// queue.
     void begin_with(std::vector<Command> commands, int hand = 1);
-    /// When the hand's time 0 was [ns, of a clock that all hands have]. A recording in which every
-    /// hand has told it says how far apart they began.
+    /// Sets the moment of the hand's time 0 [ns, of a clock that all hands share]. If every hand
+    /// has one, the recording stores how far apart they began.
     void set_begin(std::int64_t ns, int hand = 1);
     /// The queue into which the hand's servo puts its ticks. It has room for eight seconds.
     Queue<SessionEvent>& queue(int hand = 1) { return of(hand).queue; }
-    /// Why nothing is written any more (for example a full disk), or empty. Everything written
-    /// before remains. Any thread.
+    /// The reason why nothing is written any more (for example a full disk), or empty. Everything
+    /// written before remains. Any thread.
     std::string problem() const;
     /// Ticks of the hand that were written or are being written.
     std::int64_t ticks(int hand = 1) const;
@@ -117,7 +117,7 @@ class RecordingWriter {
     std::size_t ended_ = 0;  // hands
     std::int64_t lost_ = 0;
     mutable std::mutex
-        mutex_;  // of problem_, Hand::first and Hand::begin. The servo never comes near
+        mutex_;  // of problem_, Hand::first and Hand::begin. The servo never takes it
     std::string problem_;
     std::jthread thread_, syncer_;
 };
@@ -149,12 +149,13 @@ class RecordingReader {
     /// After the last event: the recording was finished, not cut off.
     bool complete() const;
     /// After the last event: how long after time 0 of the first hand that of this one was [s].
-    /// Nothing: the recording does not say it.
+    /// Nothing if the recording does not contain it.
     std::optional<double> begin() const;
-    /// Ticks are numbered and carry a checksum of all events up to them. Without (format 1), only
-    /// ticks missing from a complete recording are noticed.
+    /// True if ticks are numbered and have a checksum of all events up to them. Otherwise (format
+    /// 1), only ticks that are missing from a complete recording are noticed.
     bool has_checksums() const;
-    /// After the last event: events, of all hands, that the recording lost while it was made.
+    /// After the last event: the number of events, of all hands, that were lost while the recording
+    /// was made.
     std::int64_t lost() const;
 
   private:

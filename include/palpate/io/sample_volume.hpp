@@ -1,5 +1,5 @@
 // The volume that comes with Palpate: the head of a person, a CT scan of the Visible Human Project.
-// What it is and whom to credit: data/README.md.
+// data/README.md describes it and its origin.
 #pragma once
 
 #include <filesystem>

@@ -10,7 +10,7 @@
 
 namespace palpate::io {
 
-/// Which frames there are, at which times, and how to read one. Holds no frame in memory.
+/// The times of the frames, and a function that reads one. Holds no frame in memory.
 struct Sequence {
     std::vector<double> times;  ///< [s] of the frames, rising
     double period = 0;          ///< [s] after which the first frame follows again, if it loops
@@ -39,18 +39,18 @@ struct SequenceOptions {
     /// As for one volume. In a series they apply to each file, `time_step` too; the volumes of one
     /// 4-D file are its frames whatever `time_step` is. `progress` is for the first frame.
     ReadOptions read;
-    /// [s] from one frame to the next, instead of what the file gives or lacks; 0: the file's.
+    /// [s] from one frame to the next. Replaces that of the file. 0: the file's.
     double interval = 0;
 };
 
-/// Time between two frames where neither file nor caller give it [s].
+/// Time between two frames if neither the file nor the caller gives it [s].
 inline constexpr double assumed_frame_interval = 0.1;
 
-/// A 4-D file, a volume (a sequence of one frame), or a series: a file name with one %d or %03d in
-/// place of a number. %d is any number of digits, %03d a number as printf writes it; the files that
-/// match are the frames, by number. The least step between two numbers is one interval, so that
-/// a missing file leaves a gap in time (and a note says so). Reads the first frame. Throws
-/// InputError, std::invalid_argument for an invalid interval.
+/// A 4-D file, a volume (a sequence of one frame), or a series, which is a file name with one %d or
+/// %03d in place of a number. %d is any number of digits, and %03d a number as printf writes it.
+/// The files that match are the frames, in the order of their numbers. The least step between two
+/// numbers is one interval, so that a missing file leaves a gap in time (and a note says so). Reads
+/// the first frame. Throws InputError, std::invalid_argument for an invalid interval.
 SequenceFile open_sequence(const std::filesystem::path& path, const SequenceOptions& options = {});
 
 /// True if reading `source` reads the file `path`: itself, a slice, a frame or a part of a store.
@@ -63,18 +63,18 @@ Sequence made_sequence(int count, double interval,
                        std::function<Volume(int frame, const Progress& progress)> make);
 
 /// Frames of which the first has been read: `first.time_steps` of them, `interval` [s] apart; 0: as
-/// `first` says, and if it does not, a note tells. Throws std::invalid_argument for an interval
-/// that is none.
+/// `first` says, and if it does not, a note tells. Throws std::invalid_argument for an impossible
+/// interval.
 SequenceFile sequence_of(VolumeFile first, double interval,
                          std::function<Volume(int frame, const Progress& progress)> reader,
                          std::function<std::string(int frame)> frame_name);
 
-/// A frame, on the grid and of the type that the sequence promises. Throws what its reader throws,
-/// and InputError that names the frame and what differs.
+/// A frame, on the grid and of the type that the sequence promises. Passes on exceptions of its
+/// reader, and throws InputError with the frame and the difference.
 Volume read_frame(const Sequence& sequence, int frame, const Progress& progress = {});
 
-/// Throws std::invalid_argument, saying what is wrong, unless there is a frame and a reader, times
-/// are finite and rising, and the period ends after the last frame.
+/// Throws std::invalid_argument, with the reason, unless there is a frame and a reader, times are
+/// finite and rising, and the period ends after the last frame.
 void check(const Sequence& sequence);
 
 /// Whether a path names a series: its file name has a place for a number, and no file has exactly

@@ -1,4 +1,4 @@
-// The DICOM series that a file or folder holds, where one has to be chosen.
+// The DICOM series in a file or folder, from which one has to be chosen.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct Thumbnail {
     std::vector<std::uint8_t> grey;
 };
 
-/// A series, or one stack of a series. Texts are empty where the header does not say.
+/// A series, or one stack of a series. Texts are empty if the header does not give them.
 struct SeriesInfo {
     std::string uid;
     std::string patient, study, description, modality;
@@ -26,13 +26,13 @@ struct SeriesInfo {
     int slices = 0;               ///< or frames
     std::array<int, 2> size{};    ///< columns and rows
     Vec3 spacing = Vec3::Zero();  ///< [mm] between columns, rows and slices; 0: not known
-    Thumbnail picture;            ///< of the middle slice, if it was asked for
+    Thumbnail picture;            ///< of the middle slice, if requested
 };
 /// "3 slices of 512x512, CT 'HEAD', 0.5 x 0.5 x 5 mm, patient 'A', study 'B', UID"
 std::string text_of(const SeriesInfo& series);
 
-/// Thrown where a file or folder has several series and none, or none of them, was named. They are
-/// counted from 1.
+/// Thrown if a file or folder has several series, and the caller named none or an unknown one. They
+/// are counted from 1.
 class SeriesChoice : public InputError {
   public:
     SeriesChoice(const std::string& message, std::vector<SeriesInfo> series)

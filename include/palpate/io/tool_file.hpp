@@ -44,7 +44,7 @@ struct MeshSpec {
     std::shared_ptr<const ToolShape> mesh;  ///< not null
 };
 
-/// What a tool is to be; its points follow from their spacing.
+/// The description of a tool. Its points follow from their spacing.
 using ToolSpec = std::variant<PointSpec, SphereSpec, RodSpec, NeedleSpec, BurrSpec, BoxSpec,
                               FingertipSpec, PointsSpec, MeshSpec>;
 
@@ -55,11 +55,11 @@ using ToolSpec = std::variant<PointSpec, SphereSpec, RodSpec, NeedleSpec, BurrSp
 /// of `progress` are passed on.
 ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress = {});
 /// The tool with neighbouring points about `spacing` [mm] apart; those of a file stay as they are.
-/// Null for a point. Throws std::invalid_argument for sizes that are none, and for more points than
-/// a tool may have.
+/// Null for a point. Throws std::invalid_argument for impossible sizes, and for more points than a
+/// tool may have.
 std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing);
-/// The same tool, `factor` times as large. Throws std::invalid_argument for one that is not above
-/// 0.
+/// The same tool, `factor` times as large. Throws std::invalid_argument for a factor that is not
+/// above 0.
 ToolSpec scaled(const ToolSpec& spec, double factor);
 /// Half of the smallest distance of samples [mm].
 double usual_spacing(const Geometry& geometry);

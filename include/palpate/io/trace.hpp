@@ -24,7 +24,7 @@ struct TraceRow {
     double density = 0;          ///< f(SCP) [data units]
     double isovalue = 0;         ///< [data units]
     bool constrained = false;    ///< mode: constrained or free
-    int tetrahedra = 0;          ///< how many the SCP moved through
+    int tetrahedra = 0;          ///< number of tetrahedra that the SCP moved through
     std::int64_t update_ns = 0;  ///< time of this proxy update alone
     LayersFelt layers = {};      ///< of a session without layers: none
     ToolFelt tool = {};          ///< of a point: nothing turns
@@ -40,8 +40,8 @@ struct TraceExtras {
     /// `layer` (the touched one) and `inside` (those that contain the SCP, outermost first, joined
     /// by +; _ replaces characters that would break a table). Empty: neither.
     std::vector<std::string> layer_names = {};
-    /// So many of the layers, the first ones, are levels, which are nested. The others are labels,
-    /// and the SCP is in one of them at a time.
+    /// The number of layers, from the first on, that are levels, which are nested. The others are
+    /// labels, and the SCP is in one of them at a time.
     std::size_t nested_layers = 0;
     /// `qw` to `qz` (hand), `proxy_qw` to `proxy_qz`, `torque_x` to `torque_z`, `contacts`.
     bool tool = false;

@@ -30,9 +30,9 @@ struct RawLayout {
 struct ReadOptions {
     /// Read the file as headerless samples, whatever its name. Gzip is unpacked.
     std::optional<RawLayout> raw;
-    /// Used instead of the spacing that the file gives or lacks [mm].
+    /// Replaces the spacing of the file [mm].
     std::optional<Vec3> spacing;
-    /// Used instead of the orientation that the file gives or lacks: direction_from().
+    /// Replaces the orientation of the file: direction_from().
     std::string orientation = {};
     /// Which DICOM series: its UID, or its number in the list that the error message gives.
     std::string series;
@@ -44,7 +44,7 @@ struct ReadOptions {
     /// The program palpate-io-helper. Empty: the environment variable PALPATE_IO_HELPER, or else
     /// the places in docs/package.md.
     std::filesystem::path helper;
-    /// Most memory the samples may take [bytes]. 0: what this machine has.
+    /// Memory limit of the samples [bytes]. 0: the memory of this machine.
     std::uint64_t memory_limit_bytes = 0;
     /// The helper is ended after this time [s], and after the same processor time. 0: it depends on
     /// the size of the file or folder: 600 s (120 s of processor time) and 2 s for each MB.
@@ -55,10 +55,10 @@ struct ReadOptions {
 struct VolumeFile {
     Volume volume;
     std::string format;  ///< "NRRD", "DICOM series", ...
-    int time_steps = 1;  ///< how many volumes the file holds
+    int time_steps = 1;  ///< number of volumes in the file
     std::vector<std::string>
         notes;                  ///< one sentence each: conversions, gaps, tilt, missing spacing
-    double frame_interval = 0;  ///< [s] from one volume to the next. 0: the file does not say
+    double frame_interval = 0;  ///< [s] from one volume to the next. 0: not in the file
     double first_time = 0;      ///< [s] of the first volume
     ValueInfo values = {};
 };

@@ -17,9 +17,9 @@ std::span<const std::string_view> written_extensions();
 /// formats' libraries change the names of files with other extensions.
 std::string_view written_extension_of(const std::filesystem::path& path);
 
-/// Why a volume on this grid cannot be written as `path`, one line that begins with the path: an
-/// unknown extension, a format that cannot store the origin or directions, or a data file of
-/// another volume that would be replaced. Empty if it can be written.
+/// The reason why a volume on this grid cannot be written as `path`, in one line that begins with
+/// the path. The extension may be unknown, the format may be unable to store the origin or
+/// directions, or a data file of another volume would be replaced. Empty if it can be written.
 std::string why_not_written(const std::filesystem::path& path, const Geometry& geometry);
 
 }  // namespace palpate::io

@@ -29,7 +29,7 @@ HandBrush usual_brush(const Geometry& geometry);
 /// A brush that carves with the tool's own shape, a voxel beyond its surface. With less, material
 /// at sharp corners remains, because the grid cannot represent such a narrow cavity.
 HandBrush tool_brush(const Geometry& geometry);
-/// Throws std::invalid_argument, saying what is wrong, for a brush that cannot work.
+/// Throws std::invalid_argument, with the reason, for a brush that cannot work.
 void check(const HandBrush& brush);
 
 /// The Brush for a proxy in contact during `dt` [s] at this level, with the strength for that time.

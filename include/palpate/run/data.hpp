@@ -41,7 +41,7 @@ class Data {
     bool is_streamed() const { return streamer_ != nullptr; }
     /// State of the samples of a store in memory; empty for other data.
     stream::BrickLoaderStatus streaming() const;
-    /// They throw std::invalid_argument, saying what to do, for data of the other kind.
+    /// For data of another kind, these throw std::invalid_argument with the remedy.
     VolumeEditor& editor() const;
     Player& player() const;
 
@@ -49,7 +49,7 @@ class Data {
     const std::shared_ptr<const Samples>& start() const { return start_; }
     /// Updates a field of this data: edits, or frames and moment.
     void update(Field& field) const;
-    /// Throws io::OutputError where a recording that begins now could not be rendered again.
+    /// Throws io::OutputError if a recording that begins now could not be rendered again.
     void check_recording() const;
     /// Starts a servo on the data as they are now and keeps it up to date until detach().
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
@@ -67,16 +67,16 @@ class Data {
     void release(const std::filesystem::path& path);
     /// Throws io::OutputError for a file that is in use: of the volume, or given to keep().
     void require_unused(const std::filesystem::path& path) const;
-    /// Throws std::invalid_argument for a name that save() cannot write to, io::OutputError for a
-    /// place: no such folder, no permission, something else that has this name, and as
-    /// require_unused().
+    /// Throws std::invalid_argument for a name that save() cannot write to. Throws io::OutputError
+    /// if there is no such folder, no permission, or something else of this name, and as
+    /// require_unused() does.
     void check_save_name(const std::string& path) const;
-    /// Throws std::invalid_argument, saying why, where save() has nothing to write.
+    /// Throws std::invalid_argument, with the reason, if save() has nothing to write.
     void require_saving() const;
-    /// Writes the samples as they are now (of a sequence, at its moment) to a file or a folder
-    /// *.zarr, whole or not at all; of a store what was edited (stream::save_edits()). Returns a
-    /// sentence: "saved FILE", and for a raw file how to open it again. Throws io::OutputError, and
-    /// as require_saving() and require_unused().
+    /// Writes the samples as they are now (for a sequence, those of its moment) to a file or a
+    /// folder *.zarr, as a whole or not at all. For a store it writes only the edits
+    /// (stream::save_edits()). Returns a sentence: "saved FILE", and for a raw file how to open it
+    /// again. Throws io::OutputError, and as require_saving() and require_unused() do.
     std::string save(const std::filesystem::path& path, const io::Progress& progress);
 
     /// Saves when other ways have failed: in a new folder that only this user can enter, in the

@@ -15,11 +15,11 @@ namespace palpate::run {
 /// layers_by_label() adds the label volume.
 io::LayersFile layers_of(std::span<const io::LabelName> labels);
 
-/// Layers by the labels of this volume. With `like`, the layers are those of `like`. They are
-/// matched by the numbers that they have as levels if it is by label, else by the names in the
-/// label volume. Without `like`, there is a layer for each label, with its name and colour, and a
-/// puncture force of 1.5 N. Throws std::invalid_argument, naming the volume, for labels that it
-/// does not have, and for more than 16.
+/// Layers by the labels of this volume. With `like`, the layers are those of `like`. If `like` is
+/// by label, its layers are matched by the numbers that they have as levels, and otherwise by the
+/// names in the label volume. Without `like`, there is a layer for each label, with its name and
+/// colour, and a puncture force of 1.5 N. Throws std::invalid_argument, naming the volume, for
+/// labels that it does not have, and for more than 16.
 io::LayersFile layers_by_label(const LoadedVolume& labels,
                                const std::optional<io::LayersFile>& like = std::nullopt);
 

@@ -61,8 +61,8 @@ std::function<void(Renderer&, std::int64_t)> keep_pace(
 /// Renders each position of the trajectory (physical space) in order. The proxy begins at the first
 /// position if that is free, else where recovery finds free space. With layers, it begins in the
 /// tissue there if its surface can give way. A tool begins at the first pose, and recovers if it is
-/// inside the solid. Throws std::invalid_argument if all of space is solid. What a sink throws is
-/// passed on.
+/// inside the solid. Throws std::invalid_argument if all of space is solid. Exceptions of a sink
+/// are passed on.
 OfflineSummary render_offline(Renderer& renderer, const io::Trajectory& trajectory,
                               const OfflineSinks& sinks);
 

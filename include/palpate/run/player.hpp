@@ -24,9 +24,9 @@ struct PlayState {
     double time = 0;             ///< within begin and end
     double speed = 0;            ///< 0: paused
     bool loop = true;
-    double loaded_from = 0, loaded_to = 0;  ///< what is in memory
+    double loaded_from = 0, loaded_to = 0;  ///< the part in memory
     std::string problem;                    ///< why frames are missing
-    bool live = false;  ///< from another program: `frames` are the last ones, and seek() throws
+    bool live = false;  ///< a live source: `frames` are its last ones, and seek() throws
 };
 
 /// Any thread may call any function.
@@ -43,8 +43,8 @@ class Player {
     /// Follows the first servo that has not ended, and sends frames that were loaded. Its thread
     /// calls this every 5 ms.
     void step(std::chrono::steady_clock::time_point now);
-    /// Starts a servo at the play position and keeps it up to date until detach(). What `start`
-    /// throws is passed on.
+    /// Starts a servo at the play position and keeps it up to date until detach(). Exceptions of
+    /// `start` are passed on.
     std::unique_ptr<Servo> attach(Session session, const StartServo& start);
     void detach(const Servo& servo);
     /// As VolumeEditor::record().

@@ -1,5 +1,4 @@
-// Makes the samples again that were felt in a recorded run, from the edits and frames in the
-// recording.
+// Restores the samples of a recorded run from the edits and frames in the recording.
 #pragma once
 
 #include <deque>
@@ -12,15 +11,15 @@
 
 namespace palpate::run {
 
-/// Reads the frames of a sequence. Null for a volume that is none.
+/// Reads the frames of a sequence. Null for a volume that is no sequence.
 std::function<Volume(int)> frames_of(const LoadedVolume& loaded);
 
 /// Reads a large grid. Both null for other data.
 struct GridReader {
     std::function<Brick(const Index3& brick, int level)> brick;  ///< of a level of detail
-    ReadSamples box;  ///< of the level felt, before all edits
+    ReadSamples box;  ///< of the level that was touched, before all edits
 };
-/// `tell` is called all the time while it reads, and may throw to stop.
+/// `tell` is called repeatedly while it reads, and may throw to stop.
 GridReader grid_of(const LoadedVolume& loaded, std::function<void()> tell = {});
 
 class RecordedSamples {
@@ -57,7 +56,7 @@ class RecordedSamples {
     std::shared_ptr<const Samples> made_again(std::uint64_t version);
     void remember(std::uint64_t version, const std::shared_ptr<const Samples>& samples);
 
-    // Not every version of minutes of brushing fits into memory, but every edit does.
+    // The versions of minutes of brushing do not all fit into memory, but the edits do.
     std::map<std::uint64_t, Version> versions_;
     std::map<std::uint64_t, std::shared_ptr<const Samples>> kept_;  // every sixteenth edit
     std::deque<std::pair<std::uint64_t, std::shared_ptr<const Samples>>> recent_;

@@ -54,10 +54,10 @@ class Run {
     /// no thread.
     void start();
     bool started() const { return servo_ != nullptr; }  ///< also after stop()
-    /// On data with Pace::by_steps, whose servo has no thread: one tick, a period after the one
-    /// before, and what is due for the data and the recording. The same steps and commands give the
-    /// same ticks, as far as the data is in memory. Throws WrongState for other data, and before
-    /// start().
+    /// On data with Pace::by_steps, whose servo has no thread: computes one tick, a period after
+    /// the one before, and does the work that is due for the data and the recording. The same steps
+    /// and commands give the same ticks, as far as the data is in memory. Throws WrongState for
+    /// other data, and before start().
     void step();
     double period() const { return period_; }  ///< [s] of its ticks; from start() on
     /// Forces go to zero and the servo ends permanently. Waits until the device has sent the zero,
@@ -73,18 +73,17 @@ class Run {
     const std::shared_ptr<Data>& shared_data() const { return data_; }
     const Setup& setup() const { return setup_; }
     DeviceInfo device() const { return device_->info(); }
-    /// What is wrong with the device and what to do; usually empty.
+    /// A problem of the device and its remedy; usually empty.
     std::string device_problem() const;
     /// The device, if it is a mouse that the application moves; else null.
     devices::Mouse* mouse() const { return mouse_; }
 
-    // From start() on. Before, all but device_failure() throw WrongState:
+    // These are for the time after start(). Before, all but device_failure() throw WrongState.
     /// Which real-time privileges the system granted, and which not.
     const std::vector<std::string>& privileges() const { return started_servo().privileges(); }
-    /// Throws std::invalid_argument, saying what is wrong, for a command that cannot be executed,
-    /// and for DeviceLimits that lower nothing; QueueFull if commands come too fast. While there
-    /// are layers with surfaces, an isovalue has no effect. The last one applies when they are
-    /// removed.
+    /// Throws std::invalid_argument, with the reason, for a command that cannot be executed, and
+    /// for DeviceLimits that lower nothing; QueueFull if commands come too fast. While there are
+    /// layers with surfaces, an isovalue has no effect. The last one applies when they are removed.
     void send(const Command& command);
     /// Commands that were sent and not carried out yet.
     std::int64_t waiting() const { return started_servo().waiting(); }
@@ -128,7 +127,7 @@ class Run {
     /// Ends the recording; the session continues. Returns the number of its ticks, 0 without a
     /// recording. Throws io::OutputError if something could not be written.
     std::int64_t stop_recording();
-    /// Null while nothing is recorded.
+    /// Null unless a recording is running.
     const io::RecordingWriter* recording() const { return recording_.get(); }
 
   private:

@@ -52,10 +52,11 @@ struct RenderSetup {
     std::optional<Friction> friction;
     ForceSettings force;          ///< `limit` and `stiffness` only where the next two are absent
     std::optional<double> limit;  ///< [N] nothing: the device's
-    std::optional<double> stiffness;  ///< [N/mm] nothing: at most what the device is rated for
-    std::optional<int> step_budget;   ///< nothing: ProxySettings', less above 1 kHz
-    std::optional<double> scale;      ///< physical mm per device mm. Nothing: fits the workspace
-    std::optional<double> rate;       ///< [Hz] nothing: rate_of()
+    std::optional<double>
+        stiffness;  ///< [N/mm] nothing: the default, or the device's rated one if that is less
+    std::optional<int> step_budget;  ///< nothing: ProxySettings', less above 1 kHz
+    std::optional<double> scale;     ///< physical mm per device mm. Nothing: fits the workspace
+    std::optional<double> rate;      ///< [Hz] nothing: rate_of()
 };
 
 /// Default rate of the loop [Hz].
@@ -126,13 +127,13 @@ double isovalue_of(const LoadedVolume& loaded, const FieldSetup& setup,
 /// requested as well.
 double isovalue_of(const LoadedVolume& loaded, const Setup& setup, const OnProgress& progress = {});
 
-/// A warning about these layers in this volume: the volume does not declare their units, or has no
-/// densities at some levels. Empty: no warning.
+/// A warning if the volume does not declare the units of these layers, or has no densities at some
+/// of their levels. Otherwise empty.
 std::string layers_warning(const io::LayersFile& layers, const LoadedVolume& loaded);
 
 /// The requested settings. `isovalue` is the lowest level that is touched if no minimum is given,
-/// `limits` are the device's. Throws std::invalid_argument, through check(), for what cannot be
-/// rendered.
+/// `limits` are the device's. Throws std::invalid_argument, through check(), for settings that
+/// cannot be rendered.
 RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
                                  const DeviceLimits& limits = {});
 /// The same for rendering without a device: only the requested force limit applies, and no time

@@ -21,7 +21,7 @@ namespace palpate::run {
 struct FileSource {
     std::string path;
     std::optional<io::RawLayout> raw;  ///< of a file without a header
-    std::optional<Vec3> spacing;       ///< [mm] instead of what the file gives or lacks
+    std::optional<Vec3> spacing;       ///< [mm] replaces the spacing of the file
     std::string series;                ///< DICOM series: UID or number. Empty: the only one
     std::string orientation = {};      ///< instead of the file's: io::direction_from()
 };
@@ -43,14 +43,14 @@ struct StoreSource {
     stream::BrickLoaderSettings loader;
     /// A sequence of all its times, each read whole at the loader's level when it is due.
     bool all_times = false;
-    /// The address comes from a file, which does not keep password and query (to_names()).
+    /// The address comes from a file, in which passwords and queries are left out (to_names()).
     bool lacks_secrets = false;
 };
 
 struct Source {
     std::variant<FileSource, SyntheticSource, LiveSource, StoreSource> from;
-    std::optional<int> frame;              ///< of a sequence this one alone, from 0
-    std::optional<double> frame_interval;  ///< [s] instead of what the file gives or lacks
+    std::optional<int> frame;              ///< only this frame of a sequence, from 0
+    std::optional<double> frame_interval;  ///< [s] replaces that of the file
     int smooth = 0;                        ///< passes of the binomial kernel, see smoothed()
     int dequantize = 0;      ///< before that: rounds, see filters::dequantized(). 0: none
     bool prefilter = false;  ///< after all that, see sharpened()
@@ -58,9 +58,9 @@ struct Source {
 
 /// As a user writes it: "head.nrrd", "synthetic:torus", "live:frames.shm".
 std::string name_of(const Source& source);
-/// The file, folder or numbered series of a source; empty if it is none.
+/// The file, folder or numbered series of a source. Empty for sources of other kinds.
 std::filesystem::path place_of(const Source& source);
-/// The inverse, with everything else as its default.
+/// The inverse. Everything else has its default.
 Source source_named(const std::string& name);
 
 /// The names and values under which recordings and session files keep a source. "volume" is its
@@ -82,7 +82,7 @@ struct StreamedVolume {
     stream::Opened opened = {};  ///< an absolute address. Its content if it is on this machine
 };
 
-/// A volume and what is known about it.
+/// A volume and the facts about it.
 struct LoadedVolume {
     /// The volume. For a sequence its first frame, for a live source the frame that it began with,
     /// for a store its overview.
@@ -91,7 +91,7 @@ struct LoadedVolume {
     std::string name;
     std::string format = {};
     std::vector<std::string> notes = {};              ///< for people, a sentence each
-    io::ValueInfo values = {};                        ///< what the header says
+    io::ValueInfo values = {};                        ///< from the header
     std::optional<double> isovalue = {};              ///< a good one, of a synthetic volume
     io::Sequence sequence = {};                       ///< empty unless there are several frames
     std::shared_ptr<const io::LiveFrames> live = {};  ///< null unless it is a live source

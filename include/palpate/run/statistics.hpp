@@ -32,8 +32,8 @@ Histogram histogram_of(const Volume& volume, int bins, std::optional<double> pad
 Histogram gradients_of(const Volume& volume, int bins);
 
 /// Two levels between the three classes that explain most of the variance (Otsu 1979, three
-/// classes). Fewer for data with fewer values. In CT of a head: skin and bone. The best is first:
-/// the lower one, unless it bounds what an object was put into (resin, gel).
+/// classes). Fewer for data with fewer values. In CT of a head: skin and bone. The best is first.
+/// It is the lower one, unless that bounds the material around an object (resin, gel).
 std::vector<double> suggested_isovalues(const Histogram& histogram);
 
 }  // namespace palpate::run

@@ -1,5 +1,5 @@
-// Follows the hands of one or several runs that feel a store, and sends their servos the bricks
-// round them as they come into memory, with the edits on top.
+// Follows the hands of one or several runs that touch a store, and sends their servos the bricks
+// around the hands when these are in memory, with the edits.
 #pragma once
 
 #include <chrono>
@@ -25,32 +25,32 @@ class Streamer {
     Streamer(const Streamer&) = delete;
     Streamer& operator=(const Streamer&) = delete;
 
-    /// Follows the hands and sends what has come. Its thread calls this every 5 ms.
+    /// Follows the hands and sends the bricks that have arrived. Its thread calls this every 5 ms.
     void step(std::chrono::steady_clock::time_point now);
-    /// Starts a servo with what is in memory and keeps it up to date until detach(). `edits`: what
-    /// a recording needs of them before its first tick (StartServo). What `start` throws is passed
-    /// on.
+    /// Starts a servo with the bricks in memory and keeps it up to date until detach(). `edits`:
+    /// the edits that a recording needs before its first tick (StartServo). Exceptions of `start`
+    /// are passed on.
     std::unique_ptr<Servo> attach(Session session, const StartServo& start,
                                   std::vector<Command> edits = {});
     void detach(const Servo& servo);
     /// As VolumeEditor::record().
     void record(const Servo& servo, const BeginRecording& begin, std::vector<Command> edits);
-    /// The number for the next edit. Those of bricks and edits are of one row.
+    /// The number for the next edit. Versions of bricks and of edits are numbered together.
     std::uint64_t next_version() const;
-    /// From now on these edits are felt; `edits.samples` has no bricks in memory. A servo that
-    /// takes no commands at the moment gets them later.
+    /// Applies these edits from now on. `edits.samples` has no bricks in memory. A servo that takes
+    /// no commands at the moment gets them later.
     void use(const command::Samples& edits);
     /// Samples before all edits, see stream::BrickLoader.
     void read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop) {
         loader_.read(box, out, std::move(stop));
     }
     void leave_room(std::uint64_t bytes) { loader_.leave_room(bytes); }
-    /// What the servos feel now.
+    /// The samples that the servos use now.
     std::shared_ptr<const Samples> samples() const;
     stream::BrickLoaderStatus status() const { return loader_.status(); }
 
   private:
-    /// An attached servo, how many of the versions it has got, and how its hand moves.
+    /// An attached servo, the number of versions that it has got, and the motion of its hand.
     struct Hand {
         Servo* servo;
         std::uint64_t got = 0;

@@ -113,7 +113,7 @@ class VolumeEditor {
         bool lacks = false;     // it took no command when the newest version was sent
         std::shared_ptr<const ToolBody> body = {};  // of the tool, for the last sweep
     };
-    /// What an edit reads, by the low corner of the box.
+    /// The samples that an edit reads, by the low corner of the box.
     using Fetched = std::map<std::array<int, 3>, std::vector<std::byte>>;
     static constexpr std::size_t first_forgetting = 1024;
     struct Version {

@@ -13,9 +13,9 @@ inline constexpr double beating_length = 100;  ///< [mm] the longest axis of bea
 /// The grid of "synthetic:beating": beating_length along its longest axis, physical centre 0.
 Geometry beating_grid(const Index3& size = {64, 64, 64});
 
-/// The density, 0..1, at a point [mm, from the grid's centre, its axes] where the heart fits into a
-/// cube of `length` [mm]: 1 in the middle of the walls, falling linearly to 0 through them on both
-/// sides. Phase 0 (and 1) is the fullest, about 0.4 the emptiest; any real number.
+/// The density, 0..1, at a point [mm, from the grid's centre, in its axes]. The heart fits into a
+/// cube of `length` [mm]. The density is 1 in the middle of the walls and falls linearly to 0 on
+/// both sides. Phase 0 (and 1) is the fullest, about 0.4 the emptiest; any real number.
 double beating_density(const Vec3& point, double phase, double length = beating_length);
 
 /// The scene at a phase of the beat.

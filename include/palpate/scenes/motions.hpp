@@ -17,7 +17,7 @@ struct MotionSettings {
     double duration_s = 10;  ///< t runs from 0 to this
     double speed_mm_s = 50;  ///< never above it (but for random). 50 is a hand at ease
     double depth_mm = 2;     ///< how deep the hand presses below the surface, >= 0
-    std::uint64_t seed = 1;  ///< where from, which way, in which order
+    std::uint64_t seed = 1;  ///< chooses the start, the directions and their order
 };
 
 struct HandSample {
@@ -36,8 +36,8 @@ std::vector<std::string> motion_names();
 /// A motion needs about 0.2 s + depth_mm / speed_mm_s before it is at depth. A shorter one ends
 /// on its way.
 /// Same arguments, same bits, on every compiler (no libm beyond sqrt).
-/// `progress` is called all the time with the part that is done, and may throw to stop.
-/// Throws std::invalid_argument listing the names, or saying which setting is not usable.
+/// `progress` is called repeatedly with the part that is done, and may throw to stop. Throws
+/// std::invalid_argument listing the names, or saying which setting is not usable.
 std::vector<HandSample> make_motion(std::string_view name, const Field& field, double isovalue,
                                     const MotionSettings& settings = {},
                                     const OnProgress& progress = {});

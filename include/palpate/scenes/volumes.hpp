@@ -20,7 +20,7 @@ struct Scene {
     double isovalue = 0;  ///< a suitable one [data units]
     std::string description;
     /// The analytic density [data units, not rounded] at a physical point [mm], of which the
-    /// samples are samples. Empty where there is none (noise, shepp-logan).
+    /// samples are samples. Empty if there is none (noise, shepp-logan).
     std::function<double(const Vec3& physical)> exact;
 };
 
@@ -33,9 +33,9 @@ std::vector<std::string> volume_names();
 /// A scene from its specification: "NAME", "NAME:WxHxD", each also with "synthetic:" in front.
 /// Spacing 1 mm (beating: 100 mm along the longest axis), physical_centre() exactly (0, 0, 0). The
 /// default of `type` is the scene's own. Density 0..1 is stored as 0..1 in float32 and as
-/// 0..largest value in an integer type; shepp-logan is in Hounsfield units in int16 and float32, HU
-/// + 1000 in uint16, and -1000..2000 HU as 0..255 in uint8. Throws std::invalid_argument that lists
-/// the names or the form, or says which size is too large.
+/// 0..largest value in an integer type. shepp-logan is in Hounsfield units in int16 and float32, in
+/// HU + 1000 in uint16, and has -1000..2000 HU as 0..255 in uint8. Throws std::invalid_argument
+/// that lists the names or the form, or says which size is too large.
 Scene make_volume(std::string_view spec, std::optional<SampleType> type = {},
                   const OnProgress& progress = {});
 
@@ -63,14 +63,14 @@ Volume salt(const Index3& size, double fraction, std::uint64_t seed);
 /// the grid, so all degenerate cases of the lattice occur at once.
 Volume box(const Index3& size, const Index3& lo, const Index3& hi);
 
-/// A spherical sheet round the centre, falling linearly from full at `radius` [mm] to 0 at
+/// A spherical sheet around the centre, falling linearly from full at `radius` [mm] to 0 at
 /// `thickness` [mm] on both sides: `thickness` wide at half height. If it is thinner than a voxel,
 /// only some samples lie in it, so it has holes and specks, as intended.
 Volume thin_shell(const Index3& size, double radius, double thickness,
                   SampleType type = SampleType::uint8);
 
 /// A ball in a unit box (1 = the shortest axis of the grid): density 1/2 + slope (radius - r),
-/// clamped to 0..1; half height is its surface. In 8 bits the ramp has steps that can be felt.
+/// clamped to 0..1; half height is its surface. In 8 bits the ramp has steps, which a hand feels.
 Volume ball(const Index3& size, double radius = 0.35, double slope = 1.4,
             SampleType type = SampleType::uint8);
 

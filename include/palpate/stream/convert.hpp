@@ -31,23 +31,24 @@ struct Converted {
 /// A volume as a store of one level.
 std::shared_ptr<const Store> store_of(Volume volume, std::string name);
 
-/// Throws io::OutputError where convert_to_zarr() would, before there is anything to write: `out`
-/// is there, or its folder is not or cannot be written.
+/// Throws io::OutputError in the cases in which convert_to_zarr() would, before there is anything
+/// to write: `out` exists, or its folder does not exist or cannot be written.
 void check_zarr_place(const std::filesystem::path& out);
 
 /// Writes a level of `from` and coarser ones below it, each the mean of 2 samples along the axes
 /// with the smaller spacing, until one chunk holds the whole. Works in OUT.partial, whose result
 /// becomes OUT when all is written and on the disk. Each chunk is read back and compared when it is
-/// written. A run that was interrupted is continued by the next one with the same content of the
-/// source and the same options: what is complete, seen by its checksum or by unpacking it, is kept.
-/// Other work begins anew. OUT must not exist, and OUT.partial must be of such a run, if it does.
-/// Throws io::OutputError, std::invalid_argument for options, and what the store throws.
+/// written. The next run with the same content of the source and the same options continues an
+/// interrupted run. It keeps complete chunks, which it recognises by their checksum or by unpacking
+/// them. Any other run begins anew. OUT must not exist. If OUT.partial exists, it must be of such a
+/// run. Throws io::OutputError, std::invalid_argument for options, and passes on exceptions of the
+/// store.
 Converted convert_to_zarr(const Store& from, int level, const std::filesystem::path& out,
                           const ConvertOptions& options);
 
-/// Writes a level as one file. A .raw, or an .nrrd without compression, in bounded memory; every
-/// other of io::written_extensions() through a volume in memory, as io::write_volume(). Throws as
-/// that, and what the store throws.
+/// Writes a level as one file. A .raw, or an .nrrd without compression, is written in bounded
+/// memory. The other io::written_extensions() need the volume in memory. Throws as
+/// io::write_volume() does, and passes on exceptions of the store.
 void write_plain(const Store& from, int level, const std::filesystem::path& out,
                  const io::WriteOptions& options);
 

@@ -26,7 +26,7 @@ class GrowingImage {
     /// them taken for dead) need different ones. Throws std::invalid_argument for options.
     GrowingImage(std::filesystem::path folder, SampleType type, const Geometry& finest,
                  const ConvertOptions& options, std::string temporary = ".part");
-    /// The same with levels of one's own, the finest first.
+    /// The same with given levels, the finest first.
     GrowingImage(std::filesystem::path folder, SampleType type, std::vector<CoarserGrid> levels,
                  const ConvertOptions& options, std::string temporary = ".part");
     ~GrowingImage();
@@ -41,18 +41,18 @@ class GrowingImage {
     /// The samples of a chunk that lie in the grid.
     SampleBox box(int level, const Index3& chunk) const;
 
-    /// Writes the metadata of all levels, which readers need first. `range` of the finest level, if
-    /// it is known. Throws io::OutputError, like all that writes here.
+    /// Writes the metadata of all levels, which readers need first. `range` is that of the finest
+    /// level, if it is known. Throws io::OutputError, like all functions here that write.
     void write_metadata(const std::optional<Range>& range) const;
     /// The samples of box(level, chunk), x fastest. Read back and compared. False: all are 0, and
     /// the chunk is not stored.
     bool write(int level, const Index3& chunk, std::span<const std::byte> samples) const;
-    /// What was written before. Nothing if it is not there or not whole.
+    /// The samples of a chunk that was written before. Nothing if it is missing or incomplete.
     std::optional<std::vector<std::byte>> written(int level, const Index3& chunk) const;
     /// Chunks of all levels that are stored.
     std::uint64_t stored_chunks() const;
     /// The samples of a chunk of a coarser level: means of the level before, which has to be
-    /// whole there. Throws what reading throws.
+    /// whole there. Throws as reading does.
     std::vector<std::byte> means(int level, const Index3& chunk, const std::stop_token& stop) const;
 
   private:

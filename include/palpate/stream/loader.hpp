@@ -1,5 +1,5 @@
-// Brings bricks of a store into memory round the hands that feel it, within a memory bound, with
-// threads of its own. What is in memory is published as versions of samples (samples.hpp).
+// Loads bricks of a store around the hands that touch it, within a memory limit, with threads of
+// its own. It publishes the bricks in memory as versions of samples (samples.hpp).
 #pragma once
 
 #include <chrono>
@@ -16,8 +16,8 @@ namespace palpate::stream {
 
 class Loader;
 
-/// The threads of one store and the pieces that they have decoded. Its readers for hands and for
-/// eyes share them, so that each piece is fetched once, those for hands first.
+/// The threads of one store and the pieces that they have decoded. The readers for hands and for
+/// pictures share them, so that each piece is fetched once, those for hands first.
 std::shared_ptr<Loader> shared_loader(int threads);
 
 inline constexpr std::int64_t overview_samples = std::int64_t{1} << 21;
@@ -29,14 +29,14 @@ Volume overview_of(const Store& store, std::int64_t samples = overview_samples,
                    std::stop_token stop = {});
 
 struct BrickLoaderSettings {
-    int level = 0;                                  ///< of the store that is felt
+    int level = 0;                                  ///< the level of the store that is touched
     std::uint64_t memory = std::uint64_t{1} << 29;  ///< [bytes] most that bricks and pieces take
     int threads = 32;                               ///< that read at a time
-    /// Feel a coarser level until the bricks of `level` are there, and while a hand is too fast for
-    /// them (ProxyUpdate::level says so).
+    /// Use a coarser level until the bricks of `level` are loaded, and while a hand is too fast for
+    /// them (ProxyUpdate::level reports it).
     bool coarse_first = false;
-    /// `memory` bounds all that the process takes, the program itself included; but a hand always
-    /// has 64 bricks.
+    /// `memory` limits the whole process, including the program itself. A hand always has 64
+    /// bricks.
     bool whole_process = false;
     std::shared_ptr<Loader> shared = {};  ///< of this store. Empty: its own, with `threads`
 };
@@ -47,14 +47,14 @@ struct BrickLoaderSettings {
 std::shared_ptr<const Samples> empty_samples(const Store& store, const Volume& overview, int level,
                                              std::uint64_t memory = BrickLoaderSettings{}.memory);
 
-/// A hand and where it goes. Points in mm, physical.
+/// A hand and its predicted motion. Points in mm, physical.
 struct Interest {
     Vec3 proxy = Vec3::Zero();
     Vec3 hand = Vec3::Zero();
     Vec3 velocity = Vec3::Zero();  ///< of the hand [mm/s]
 };
 
-/// How a hand moves, by the places where it was seen.
+/// The motion of a hand, from its latest positions.
 struct HandMotion {
     std::optional<double> time = {};  ///< [s] when it was seen last
     Vec3 at = Vec3::Zero();           ///< [mm, physical]
@@ -63,14 +63,14 @@ struct HandMotion {
     void see(double now, const Vec3& place);
 };
 
-/// A brick that came, or with level -1 went.
+/// A brick that was loaded or, with level -1, dropped.
 struct BrickEvent {
     Index3 brick;
     int level = 0;
     bool operator==(const BrickEvent&) const = default;
 };
 
-/// Samples with what came and went since the version before.
+/// Samples, and the bricks that were loaded and dropped since the version before.
 struct BrickVersion {
     std::shared_ptr<const Samples> samples;
     std::vector<BrickEvent> events;
@@ -86,7 +86,7 @@ struct BrickLoaderStatus {
     std::uint64_t loaded = 0;      ///< bricks so far
     std::uint64_t dropped = 0;     ///< bricks so far, to make room
     Traffic traffic;               ///< of the store
-    std::string problem = {};      ///< why bricks do not come; usually empty
+    std::string problem = {};      ///< the reason why bricks are missing; usually empty
 };
 
 /// Any thread may call any function.
@@ -96,36 +96,37 @@ class BrickLoader {
     /// than 64 bricks.
     BrickLoader(std::shared_ptr<const Store> store, Volume overview,
                 const BrickLoaderSettings& settings = {});
-    /// Cancels what is being read.
+    /// Cancels reads under way.
     ~BrickLoader();
     BrickLoader(const BrickLoader&) = delete;
     BrickLoader& operator=(const BrickLoader&) = delete;
 
     /// Samples without any brick, for a field to begin with.
     const std::shared_ptr<const Samples>& empty() const;
-    /// What the hands need from `now` on; never waits for a read. Their speed is smoothed over
-    /// time.
+    /// Sets the positions of the hands at `now`. Never waits for a read. Their speed is smoothed
+    /// over time.
     void look(std::span<const Interest> hands,
               std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now());
-    /// What is in memory now; nothing if that did not change since the last call. Reading slows
-    /// down while more than a few bricks that were dropped are still in use, by who has older
-    /// versions.
+    /// The bricks in memory now, or nothing if they are the same as in the last call. Reading slows
+    /// down while readers of older versions still use more than a few dropped bricks.
     std::optional<BrickVersion> take();
-    /// Waits until all samples within `radius` [mm] of a point are in memory at the level felt, and
-    /// before that while others wait for so many that these do not fit beside them. Throws
-    /// std::invalid_argument if they do not fit at all, io::InputError for the first that cannot be
-    /// had, Cancelled as soon as `stop` is requested.
+    /// Waits until all samples within `radius` [mm] of a point are in memory at the level that is
+    /// touched. First waits for other callers, if their samples and these do not fit together.
+    /// Throws std::invalid_argument if these do not fit at all, io::InputError for the first that
+    /// cannot be read, Cancelled as soon as `stop` is requested.
     void wait_for(const Vec3& centre, double radius, std::stop_token stop = {});
     BrickLoaderStatus status() const;
 
-    /// Samples of the level felt, x fastest: from memory where one brick has them all, else from
-    /// the store. The box lies inside the grid. Blocks; throws as Store::read().
+    /// Samples of the level that is touched, x fastest. They come from memory if one brick has them
+    /// all, and otherwise from the store. The box lies inside the grid. Blocks; throws as
+    /// Store::read().
     void read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop = {});
-    /// So many bytes of the memory are used otherwise, for edits: bricks get less, but at least
-    /// those that a hand cannot do without.
+    /// Reserves this many bytes of the memory for edits. Bricks get less, but at least those that a
+    /// hand needs.
     void leave_room(std::uint64_t bytes);
 
-    /// One brick as it is loaded; of a coarser level interpolated. Throws as Store::read().
+    /// One brick as it is loaded, or interpolated from a coarser level. Throws as Store::read()
+    /// does.
     Brick read(const Index3& brick, int coarser, std::stop_token stop = {});
 
   private:

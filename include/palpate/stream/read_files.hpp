@@ -1,4 +1,4 @@
-// Which files a volume is read from, so that no output takes the place of one.
+// The files from which a volume is read, so that no output replaces one of them.
 #pragma once
 
 #include <filesystem>

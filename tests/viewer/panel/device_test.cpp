@@ -162,7 +162,7 @@ TEST_F(Devices, the_loops_figures_are_shown_with_their_units) {
     report.worst = {17, 2100000, 50000, 30000, TickCause::machine};
     panel.loop_view().show_report(report, 998.6);
     EXPECT_EQ(find<QLabel>("loop_rate")->text(), "999 Hz");
-    EXPECT_EQ(find<QLabel>("loop_missed")->text(), "3 of 5003 ticks, 1 forces taken back");
+    EXPECT_EQ(find<QLabel>("loop_missed")->text(), "3 of 5003 ticks, 1 forces cancelled");
     EXPECT_EQ(find<QLabel>("lateness_p50")->text(), "12 µs");
     EXPECT_EQ(find<QLabel>("lateness_p999")->text(), "150 µs");
     EXPECT_EQ(find<QLabel>("lateness_max")->text(), "2.1 ms");

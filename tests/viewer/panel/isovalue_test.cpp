@@ -133,7 +133,7 @@ TEST_F(Isovalue, a_typed_number_is_requested_as_it_is_even_outside_the_data) {
     EXPECT_TRUE(find<QLabel>("isovalue_warning")->text().isEmpty());
     type("isovalue_box", "9000");
     EXPECT_EQ(levels().back(), 9000);
-    EXPECT_TRUE(find<QLabel>("isovalue_warning")->text().contains("nothing to feel"));
+    EXPECT_TRUE(find<QLabel>("isovalue_warning")->text().contains("nothing to touch"));
 }
 
 TEST_F(Isovalue, a_text_that_is_no_number_is_not_accepted) {
