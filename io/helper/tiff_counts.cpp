@@ -13,14 +13,21 @@
 namespace palpate::io {
 namespace {
 
-void check_product(const CountedPages& told, std::size_t planes) {
+bool fits(const CountedPages& told, std::size_t planes) {
     const auto [slices, channels, times] = told.sizes;
-    const double count =
-        static_cast<double>(slices) * static_cast<double>(channels) * static_cast<double>(times);
-    if (count == static_cast<double>(planes)) return;
+    return static_cast<double>(slices) * static_cast<double>(channels) *
+               static_cast<double>(times) ==
+           static_cast<double>(planes);
+}
+
+void check_product(const CountedPages& told, std::size_t planes) {
+    if (fits(told, planes)) return;
+    const auto [slices, channels, times] = told.sizes;
     throw Failure("tells of " + std::to_string(slices) + " slices, " + std::to_string(channels) +
                   " channels and " + std::to_string(times) + " times, but has " +
-                  std::to_string(planes) + " pages; save it again, one position in each file");
+                  std::to_string(planes) +
+                  " pages: it is cut off, or has several positions; copy it again, or save one of "
+                  "them");
 }
 
 /// Channels are in each page, so that only slices and times are counted.
@@ -103,8 +110,9 @@ std::optional<CountedPages> told_by_scan_image(TIFF* tiff, const std::string& de
     return told;
 }
 
-/// Of a description with axes such as "TCZYX".
-std::optional<CountedPages> told_by_axes(const nlohmann::json& told) {
+/// Of a description with axes such as "TCZYX". It may be that of the first page alone, to which
+/// others were added.
+std::optional<CountedPages> told_by_axes(const nlohmann::json& told, std::size_t planes) {
     const nlohmann::json names = told.is_null() ? told : told.value("axes", nlohmann::json());
     if (!names.is_string() || names.get<std::string>().size() != told["shape"].size()) return {};
     std::string axes = names.get<std::string>();
@@ -122,6 +130,7 @@ std::optional<CountedPages> told_by_axes(const nlohmann::json& told) {
     for (const char letter : letters) {
         if (counted.order.find(letter) == std::string::npos) counted.order += letter;
     }
+    if (!fits(counted, planes)) return {};
     return counted;
 }
 
@@ -173,7 +182,7 @@ std::optional<CountedPages> counted_pages(TIFF* tiff, const std::string& descrip
     auto told = told_by_lsm(tiff);
     if (!told) told = told_by_scan_image(tiff, description, planes, notes);
     if (!told) {
-        told = told_by_axes(by_tifffile);
+        told = told_by_axes(by_tifffile, planes);
         check_shape(by_tifffile, first, planes, told.has_value(), notes);
     }
     if (told) check_product(*told, planes);

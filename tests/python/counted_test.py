@@ -106,6 +106,14 @@ def test_axes_of_other_meanings_are_noted(tmp_path):
         assert noted(tmp_path / "a.tif", "all its pages were taken as slices").array.shape == (6, *PLANE)
 
 
+@pytest.mark.parametrize("metadata", ({"axes": "YX"}, {}))
+def test_pages_that_were_added_one_by_one_are_slices(tmp_path, metadata):
+    with tifffile.TiffWriter(tmp_path / "a.tif") as file:
+        for plane in ramp("u2"):
+            file.write(plane, photometric="minisblack", contiguous=False, metadata=metadata)
+    assert numpy.array_equal(palpate.load(tmp_path / "a.tif").volume.array, ramp("u2"))
+
+
 def test_a_type_of_ome_xml_that_is_not_that_of_the_pages_is_noted(tmp_path):
     tifffile.imwrite(tmp_path / "a.tif", ramp("u2"), ome=True, metadata={"axes": "ZYX"})
     text = tifffile.TiffFile(tmp_path / "a.tif").pages[0].description
