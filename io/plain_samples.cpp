@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 bool is_plain_name(const fs::path& path) {
     const std::string name = lower(path.filename().string());
     return std::ranges::any_of(
-        std::array{".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".mgh", ".mgz", ".mgh.gz"},
+        std::array{".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".mgh", ".mgz", ".mgh.gz",
+                   ".mrc", ".map", ".rec", ".ccp4"},
         [&](const char* end) { return name.ends_with(end); });
 }
 

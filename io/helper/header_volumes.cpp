@@ -1,5 +1,5 @@
-// Reads NRRD, MetaImage, NIfTI and MGH: their headers say all that it takes, so that no library is
-// needed.
+// Reads NRRD, MetaImage, NIfTI, MGH and MRC: their headers say all that it takes, so that no
+// library is needed.
 #include <functional>
 
 #include "io/helper/headers.hpp"

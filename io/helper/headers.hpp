@@ -1,4 +1,4 @@
-// Headers of NRRD, MetaImage, NIfTI and MGH files: each format has one function here that turns a
+// Headers of NRRD, MetaImage, NIfTI, MGH and MRC files: each format has one function here that turns a
 // file into a description, which reading it whole and reading it by the box both use. Every
 // function throws Failure.
 #pragma once
@@ -67,6 +67,7 @@ VolumeHeader nrrd_header(const Request& request);
 VolumeHeader meta_image_header(const Request& request);
 VolumeHeader nifti_header(const Request& request);
 VolumeHeader mgh_header(const Request& request);
+VolumeHeader mrc_header(const Request& request);
 /// One of these, by a file's extension; null for a file of another format.
 using ReadHeader = VolumeHeader(const Request& request);
 ReadHeader* header_reader(const std::filesystem::path& path);

@@ -372,3 +372,81 @@ def test_an_mgh_without_a_place_is_noted_and_a_damaged_one_refused(tmp_path):
                            (whole[:30] + bytes(4) + whole[34:], "spacing of 0")):
         path.write_bytes(damaged)
         refused(path, words)
+
+
+# MRC, by its format -------------------------------------------------------------------------------------
+
+
+def mrc(path, data, mode, order="<", cell=(12, 12, 15), samples=None, axes=(1, 2, 3), start=(0, 0, 0), origin=(0, 0, 0), angles=(90,) * 3,
+        kind=1, extended=b"", greatest=0, imod=None, letters=b"MAP ", stamp=None):
+    """`cell` [Angstrom] and `samples` along x, y and z."""
+    size = data.shape[::-1]
+    head = bytearray(1024)
+    struct.pack_into(f"{order}10i3f3f3i3f2i", head, 0, *size, mode, *start, *(samples or size), *cell, *angles, *axes, 0, greatest, 0,
+                     kind, len(extended))
+    if imod is not None:
+        struct.pack_into(f"{order}2i", head, 152, 1146047817, imod)
+    struct.pack_into(f"{order}3f", head, 196, *origin)
+    head[208:212] = letters
+    head[212:214] = stamp if stamp is not None else b"\x44\x44" if order == "<" else b"\x11\x11"
+    path.write_bytes(bytes(head) + extended + data.astype(data.dtype.newbyteorder(order)).tobytes())
+    return path
+
+
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("dtype, mode", (("i1", 0), ("i2", 1), ("f4", 2), ("u2", 6)))
+def test_mrc_of_every_mode_and_byte_order(tmp_path, dtype, mode, order):
+    data = (ramp("i4") - (125 if dtype == "i1" else 0)).astype(dtype)
+    for stamp in (None, b"\0\0"):  # older files have none
+        path = mrc(tmp_path / "a.mrc", data, mode, order, extended=b"x" * 80, stamp=stamp)
+        loaded = palpate.load(path)
+        assert numpy.array_equal(loaded.volume.array, data)
+        assert numpy.allclose(loaded.volume.geometry.spacing, (2e-7, 3e-7, 3e-7)) and not loaded.volume.geometry.oriented
+    (tmp_path / "b.map.gz").write_bytes(gzip.compress(path.read_bytes()))
+    assert numpy.array_equal(palpate.load(tmp_path / "b.map.gz").volume.array, data)
+
+
+def test_bytes_of_mrc_have_a_sign_unless_the_header_says_otherwise(tmp_path):
+    data = ramp("u1")
+    assert palpate.load(mrc(tmp_path / "a.mrc", data, 0)).volume.array.min() < 0
+    for imod, signed in ((0, False), (1, True)):
+        assert numpy.array_equal(palpate.load(mrc(tmp_path / "a.mrc", data, 0, imod=imod)).volume.array, data.view("i1") if signed else data)
+    assert numpy.array_equal(noted(mrc(tmp_path / "a.mrc", data, 0, greatest=249), "unsigned").array, data)
+
+
+@pytest.mark.parametrize("axes", ((1, 2, 3), (3, 2, 1), (2, 1, 3), (2, 3, 1), (0, 0, 0)))
+def test_columns_of_mrc_may_lie_along_any_axis(tmp_path, axes):
+    data, cell, samples = ramp("i2"), (60, 80, 90), (30, 20, 30)  # the map is a part of its cell
+    spacing = numpy.divide(cell, samples)
+    order = [axis - 1 for axis in axes] if any(axes) else [0, 1, 2]
+    for origin in ((0, 0, 0), (10, 20, 30)):
+        volume = palpate.load(mrc(tmp_path / "a.rec", data, 1, cell=cell, samples=samples, axes=axes, start=(1, 2, 3), origin=origin)).volume
+        index, begin = (4, 2, 3), numpy.zeros(3)
+        for column, axis in enumerate(order):
+            begin[axis] = (origin[axis] if any(origin) else (1, 2, 3)[column] * spacing[axis])
+        expected = begin.copy()
+        for column, axis in enumerate(order):
+            expected[axis] += index[column] * spacing[axis]
+        assert numpy.allclose(volume.geometry.origin, begin * 1e-7)
+        assert numpy.allclose(volume.geometry.physical(index), expected * 1e-7)
+        assert numpy.array_equal(volume.array, data)
+
+
+def test_volumes_of_an_mrc_are_frames_and_one_without_a_cell_is_noted(tmp_path):
+    data = ramp("i2", (6, 4, 6))
+    path = mrc(tmp_path / "a.mrc", data, 1, samples=(6, 4, 3), cell=(6, 4, 3), kind=401)
+    for frame in range(2):
+        assert numpy.array_equal(palpate.load(path, frame=frame).volume.array, data[3 * frame:3 * frame + 3])
+    assert numpy.array_equal(noted(mrc(path, data, 1, cell=(0, 0, 0)), "size of its cell").geometry.spacing, (1, 1, 1))
+
+
+def test_an_mrc_that_is_not_read_is_refused(tmp_path):
+    path, data = tmp_path / "a.mrc", ramp("i2")
+    for changes, words in (({"mode": 12}, "mode 12"), ({"mode": 4}, "mode 4"), ({"angles": (90, 90, 120)}, "right angles"),
+                           ({"axes": (1, 1, 3)}, "MAPC"), ({"letters": bytes(4), "axes": (9, 2, 3)}, "no MRC file")):
+        refused(mrc(path, data, **({"mode": 1} | changes)), words)
+    mrc(path, data, 1)
+    path.write_bytes(path.read_bytes()[:-10])
+    refused(path, "cut off")
+    path.write_bytes(b"PAR and REC of another program")
+    refused(path, "too short")

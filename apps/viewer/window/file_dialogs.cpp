@@ -26,7 +26,8 @@ QString last_folder() {
 }
 
 constexpr const char* volumes =
-    "*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.hdr *.mgh *.mgz *.dcm *.tif *.tiff *.vti *.ims "
+    "*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.hdr *.mgh *.mgz *.mrc *.dcm *.tif *.tiff *.vti "
+    "*.ims "
     "*.h5 *.hdf5";
 
 QString ask_file(QWidget* window, const QString& title, const QString& filter) {
