@@ -22,8 +22,10 @@ namespace fs = std::filesystem;
 /// Formats whose samples may lie in a file as they are.
 bool is_plain_name(const fs::path& path) {
     const std::string name = lower(path.filename().string());
-    return std::ranges::any_of(std::array{".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz"},
-                               [&](const char* end) { return name.ends_with(end); });
+    return std::ranges::any_of(
+        std::array{".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".mgh", ".mgz", ".mgh.gz",
+                   ".mrc", ".map", ".rec", ".ccp4"},
+        [&](const char* end) { return name.ends_with(end); });
 }
 
 PlainSamples raw_samples(const fs::path& path, const ReadOptions& options) {

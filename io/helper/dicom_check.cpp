@@ -51,7 +51,7 @@ class Walk {
             const std::string syntax = meta_information();
             begin_data_set(syntax);
             walk(data_set_, UINT64_MAX, syntax != "1.2.840.10008.1.2", 0);
-            if (extent_.sop_class.empty()) fail("is cut off in its first lines, or damaged there");
+            if (extent_.sop_class.empty()) note_no_class();
             if (extent_.rows > 0 && extent_.columns > 0) check_pixels(syntax);
             take_header(syntax);
         } catch (const DamagedStream& e) {
@@ -121,6 +121,15 @@ class Walk {
         if (syntax != deflated_syntax) return;
         bytes_.deflated_from(data_set_, most_beside_pixels);
         extent_.compression = "deflate";
+    }
+
+    /// As in files of ACR-NEMA, before DICOM, and of programs that leave it out.
+    void note_no_class() {
+        if (extent_.rows < 1 || extent_.columns < 1 || !extent_.has_image) {
+            fail("is cut off in its first lines, or damaged there");
+        }
+        extent_.notes.emplace_back(
+            "it does not say of which class it is (SOPClassUID): it was taken as an image");
     }
 
     template <class T>

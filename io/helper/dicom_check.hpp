@@ -35,7 +35,8 @@ struct DicomExtent {
 };
 
 /// Throws Failure, which names the file, if
-/// - an element reaches beyond the end of the file, or there is no class of object at the start,
+/// - an element reaches beyond the end of the file, or neither a class of object nor an image is
+///   there,
 /// - there are fewer bytes of pixels than rows, columns, frames and bits ask for, or many more,
 /// - a compressed image has another size, no end, or is not there for every frame,
 /// - the deflated data are damaged, or unpack to more than the header declares.

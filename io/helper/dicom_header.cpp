@@ -390,7 +390,7 @@ std::vector<DicomSlice> plain_frames(DicomSlice file, const DicomGroup& data) {
 void note_overlays(DicomSlice& s, const DicomGroup& data) {
     for (std::uint16_t group = 0x6000; group < 0x6020; group += 2) {
         if (!data.has({group, 0x0010}) || data.has({group, 0x3000})) continue;
-        add_note(s.notes, "overlays in unused bits of its samples were ignored");
+        add_note(s.notes, overlays_note);
     }
 }
 

@@ -5,6 +5,9 @@
 
 namespace palpate::io {
 
+/// Of slices whose files have overlays among their samples.
+inline constexpr const char* overlays_note = "overlays in unused bits of its samples were ignored";
+
 /// The slices of a file, after check_dicom(); none if it has no image. Each frame of a file with
 /// several is a slice, with the place, the stack and the moment that its functional groups give it
 /// (PS3.3 C.7.6.16); without these, frames that the header counts by time are moments of one slice,

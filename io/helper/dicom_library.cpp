@@ -115,17 +115,23 @@ std::vector<std::byte> in_our_order(std::span<const std::byte> bytes, std::size_
     return samples;
 }
 
-/// Moves samples to the lowest bits of their words, clears the others, and extends the sign.
+/// Moves samples to the lowest bits of their words, clears the others, and extends the sign. Says
+/// whether that changes a number, other than by the move.
 template <class Word>
-void tidy_bits(std::vector<std::byte>& bytes, int stored, int shift, bool is_signed) {
+bool tidy_bits(std::vector<std::byte>& bytes, int stored, int shift, bool is_signed) {
     auto* const samples = reinterpret_cast<Word*>(bytes.data());
     const auto mask = static_cast<Word>((std::uint64_t{1} << stored) - 1);
     const auto sign = static_cast<Word>(std::uint64_t{1} << (stored - 1));
+    bool changes = false;
     for (std::size_t i = 0; i < bytes.size() / sizeof(Word); ++i) {
-        auto value = static_cast<Word>(samples[i] >> shift & mask);
+        const auto moved = static_cast<Word>(samples[i] >> shift);
+        const auto plain = static_cast<Word>(moved & mask);
+        auto value = plain;
         if (is_signed && (value & sign) != 0) value = static_cast<Word>(value | ~mask);
+        changes = changes || (shift == 0 && moved != plain && moved != value);
         samples[i] = value;
     }
+    return changes;
 }
 
 /// As many bytes as its kind of samples has: what follows trusts it.
@@ -159,9 +165,12 @@ Decoded frame_from(const DicomExtent& extent, std::span<const std::byte> bytes) 
         stored_named((is_signed ? "int" : "uint") + std::to_string(word)).value_or(Stored::uint32);
     frame = checked(std::move(frame), pixels);
     if (used == word && shift == 0) return frame;
-    if (word == 8) tidy_bits<std::uint8_t>(frame.samples, used, shift, is_signed);
-    if (word == 16) tidy_bits<std::uint16_t>(frame.samples, used, shift, is_signed);
-    if (word == 32) tidy_bits<std::uint32_t>(frame.samples, used, shift, is_signed);
+    const auto tidy = [&](auto zero) {
+        return tidy_bits<decltype(zero)>(frame.samples, used, shift, is_signed);
+    };
+    frame.has_more_bits = (word == 8 && tidy(std::uint8_t{})) ||
+                          (word == 16 && tidy(std::uint16_t{})) ||
+                          (word == 32 && tidy(std::uint32_t{}));
     return frame;
 }
 

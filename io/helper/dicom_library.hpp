@@ -10,7 +10,8 @@ namespace palpate::io {
 struct Decoded {
     Stored stored = Stored::uint8;
     std::vector<std::byte> samples;
-    std::string decoder_said;  ///< warnings of the decoder of a compressed image, one line
+    bool has_more_bits = false;  ///< bits other than the stored ones are set in some samples
+    std::string decoder_said;    ///< warnings of the decoder of a compressed image, one line
 };
 
 /// The samples of some slices, each with its own slope and intercept, or its table, applied. A file

@@ -149,6 +149,19 @@ void note_missing_rescale(const std::vector<DicomSlice>& slices, std::vector<std
         "taken, do not trust the surface there");
 }
 
+/// Bits beyond BitsStored do not count (PS3.5, 8.1.1): overlays, but also numbers that do not fit.
+void note_more_bits(const std::vector<DicomSlice>& slices, const std::vector<Decoded>& decoded,
+                    std::vector<std::string>& notes) {
+    const auto has_more = [](const Decoded& d) { return d.has_more_bits; };
+    const auto first = std::ranges::find_if(decoded, has_more);
+    const auto& about = slices.front().notes;
+    if (first == decoded.end() || std::ranges::find(about, overlays_note) != about.end()) return;
+    notes.push_back(
+        "samples have bits beyond the stored ones (BitsStored), the first in " +
+        quoted(slices[static_cast<std::size_t>(first - decoded.begin())].file) +
+        ": these bits were not counted; if the values are wrong, correct BitsStored and HighBit");
+}
+
 std::string bytes_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -200,6 +213,7 @@ Result read_series(const DicomSeries& given, const Request& request) {
     take_step(request, stack.time_steps, {stack.seconds, 0}, result);
     note_files(taken, result.notes);
     note_missing_rescale(taken, result.notes);
+    note_more_bits(taken, decoded, result.notes);
     warnings.note(result.notes);
     result.type = common_type(decoded, result.notes);
     const auto pixels = static_cast<std::size_t>(one.columns) * static_cast<std::size_t>(one.rows);

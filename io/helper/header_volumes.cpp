@@ -1,4 +1,5 @@
-// Reads NRRD, MetaImage and NIfTI: their headers say all that it takes, so no library is needed.
+// Reads NRRD, MetaImage, NIfTI, MGH and MRC: their headers say all that it takes, so that no
+// library is needed.
 #include <functional>
 
 #include "io/helper/headers.hpp"

@@ -47,6 +47,23 @@ std::optional<FilePattern> pattern_in(const std::string& name) {
     return pattern;
 }
 
+/// Where the file of that name is: where the header says, or beside it, which is where files are
+/// put that come from another folder or system ("C:\\scan\\a.raw").
+std::filesystem::path data_file(const std::string& name, const std::filesystem::path& header,
+                                std::vector<std::string>& notes) {
+    const std::filesystem::path told = header.parent_path() / name;
+    const std::filesystem::path beside =
+        header.parent_path() / name.substr(name.find_last_of("/\\") + 1);
+    std::error_code error;
+    if (std::filesystem::exists(told, error) || !std::filesystem::is_regular_file(beside, error) ||
+        beside == header) {
+        return told;
+    }
+    add_note(notes, "its header names a data file that is not there ('" + name.substr(0, 200) +
+                        "'): that of the same name beside it was taken");
+    return beside;
+}
+
 }  // namespace
 
 std::string HeaderFields::value(const std::string& name) const {
@@ -76,6 +93,21 @@ std::string extension_of(const std::filesystem::path& path) {
     return last == ".gz" ? lower(path.stem().extension().string()) + last : last;
 }
 
+std::vector<std::byte> start_of(const std::filesystem::path& file, std::size_t bytes) {
+    std::vector<std::byte> start(bytes);
+    if (is_gzip(file)) {
+        try {
+            return inflate_start(file, bytes);
+        } catch (const DamagedStream& e) {
+            throw Failure(std::string(e.what()) + "; copy or download it again");
+        }
+    }
+    std::ifstream in(file, std::ios::binary);
+    in.read(reinterpret_cast<char*>(start.data()), std::ssize(start));
+    start.resize(static_cast<std::size_t>(in.gcount()));
+    return start;
+}
+
 std::vector<std::filesystem::path> other_halves(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
     const bool is_header = extension == ".hdr" || extension == ".hdr.gz";
@@ -97,6 +129,10 @@ ReadHeader* header_reader(const std::filesystem::path& path) {
     if (extension == ".nrrd" || extension == ".nhdr") return &nrrd_header;
     if (extension == ".mha" || extension == ".mhd") return &meta_image_header;
     if (extension == ".nii" || extension == ".nii.gz") return &nifti_header;
+    if (extension == ".mgh" || extension == ".mgz" || extension == ".mgh.gz") return &mgh_header;
+    for (const char* end : {".mrc", ".map", ".rec", ".ccp4"}) {
+        if (extension == end || extension == end + std::string(".gz")) return &mrc_header;
+    }
     if (!other_halves(path).empty()) return &nifti_header;
     return nullptr;
 }
@@ -158,10 +194,11 @@ bool is_list(const std::string& name) {
 }
 
 std::vector<std::filesystem::path> data_files(const std::string& name, const HeaderFields& fields,
-                                              const std::filesystem::path& header) {
+                                              const std::filesystem::path& header,
+                                              std::vector<std::string>& notes) {
     std::vector<std::filesystem::path> files;
     const auto add = [&](const std::string& file) {
-        files.push_back(header.parent_path() / file);
+        files.push_back(data_file(file, header, notes));
         if (file.size() > longest_path || files.back().filename().string().size() > longest_name) {
             throw Failure("the name of a data file is too long; correct the header");
         }

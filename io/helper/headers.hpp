@@ -1,6 +1,6 @@
-// Headers of NRRD, MetaImage and NIfTI files: each format has one function here that turns a file
-// into a description, which reading it whole and reading it by the box both use. Every function
-// throws Failure.
+// Headers of NRRD, MetaImage, NIfTI, MGH and MRC files: each format has one function here that turns a
+// file into a description, which reading it whole and reading it by the box both use. Every
+// function throws Failure.
 #pragma once
 
 #include <map>
@@ -37,7 +37,8 @@ struct DataPlace {
     std::uint64_t length = UINT64_MAX;  ///< bytes of a compressed stream, if the header says
     std::uint64_t skip = 0;             ///< bytes before the samples, after unpacking
     enum class Encoding { raw, compressed, text } encoding = Encoding::raw;
-    bool swapped = false;  ///< the bytes of a sample are in the other order than the machine's
+    bool has_footer = false;  ///< something else may follow the samples
+    bool swapped = false;     ///< the bytes of a sample are in the other order than the machine's
 };
 
 /// All that reading the samples of one volume takes.
@@ -65,9 +66,15 @@ struct VolumeHeader {
 VolumeHeader nrrd_header(const Request& request);
 VolumeHeader meta_image_header(const Request& request);
 VolumeHeader nifti_header(const Request& request);
+VolumeHeader mgh_header(const Request& request);
+VolumeHeader mrc_header(const Request& request);
 /// One of these, by a file's extension; null for a file of another format.
 using ReadHeader = VolumeHeader(const Request& request);
 ReadHeader* header_reader(const std::filesystem::path& path);
+
+/// So many bytes from the beginning of a file, unpacked if it is packed; fewer if it has no more.
+/// Throws Failure.
+std::vector<std::byte> start_of(const std::filesystem::path& file, std::size_t bytes);
 
 /// The other file of a pair of NIfTI or Analyze, a.hdr and a.img, which may be packed. Of several,
 /// the first is taken.
@@ -100,9 +107,11 @@ std::int64_t whole_number_in(const std::string& text, const std::string& field, 
 /// Whether the name of a data file says that a list of them follows.
 bool is_list(const std::string& name);
 /// The data files that a header names: one, those of a pattern such as "a%03d.raw 1 9 2", or after
-/// "LIST" those of the lines in the header from `fields.data_offset` on.
+/// "LIST" those of the lines in the header from `fields.data_offset` on. One that is not there is
+/// looked for beside the header, with a note.
 std::vector<std::filesystem::path> data_files(const std::string& name, const HeaderFields& fields,
-                                              const std::filesystem::path& header);
+                                              const std::filesystem::path& header,
+                                              std::vector<std::string>& notes);
 /// A place like this one in each file.
 std::vector<DataPlace> places_in(const std::vector<std::filesystem::path>& files,
                                  const DataPlace& like);

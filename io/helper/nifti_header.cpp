@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <map>
 
 #include "io/byte_order.hpp"
@@ -61,19 +60,7 @@ struct Header {
 
 Header read_header(const std::filesystem::path& path) {
     Header header;
-    std::vector<std::byte> start;
-    if (is_gzip(path)) {
-        try {
-            start = inflate_start(path, header.bytes.size());
-        } catch (const DamagedStream& e) {
-            throw Failure(std::string(e.what()) + "; copy or download it again");
-        }
-    } else {
-        start.resize(header.bytes.size());
-        std::ifstream in(path, std::ios::binary);
-        in.read(reinterpret_cast<char*>(start.data()), std::ssize(start));
-        start.resize(static_cast<std::size_t>(in.gcount()));
-    }
+    const std::vector<std::byte> start = start_of(path, header.bytes.size());
     header.size = start.size();
     std::copy(start.begin(), start.end(), header.bytes.begin());
     return header;
@@ -284,11 +271,14 @@ bool is_placed(const Header& header) {
     return header.code(qform_code) > 0 || header.code(sform_code) > 0;
 }
 
+/// Whether it has nothing but zeros, or something that is no number.
 bool is_empty_sform(const Header& header) {
+    bool has_direction = false, is_finite = true;
     for (std::size_t i = 0; i < 12; ++i) {
-        if (i % 4 != 3 && header.real(srow, i) != 0) return false;
+        has_direction = has_direction || (i % 4 != 3 && header.real(srow, i) != 0);
+        is_finite = is_finite && std::isfinite(header.real(srow, i));
     }
-    return true;
+    return !has_direction || !is_finite;
 }
 
 /// The sform goes before the qform, unless it is sheared, which a grid cannot be.
@@ -297,7 +287,8 @@ Transform transform_of(const Header& header, std::vector<std::string>& notes) {
     const bool has_qform = header.code(qform_code) > 0;
     bool has_sform = header.code(sform_code) > 0;
     if (has_sform && has_qform && is_empty_sform(header)) {
-        notes.emplace_back("its sform has nothing but zeros: its qform was taken");
+        notes.emplace_back(
+            "its sform has nothing but zeros, or what is no number: its qform was taken");
         has_sform = false;
     }
     if (!is_placed(header)) {
@@ -425,7 +416,9 @@ VolumeHeader nifti_header(const Request& request) {
     header.stored = stored_from(bytes.type(datatype));
     const int bits = bytes.type(bitpix);  // some programs leave it out
     if (bits != 0 && bits != static_cast<int>(8 * size_of(header.stored))) {
-        throw Failure("its header's bits a sample do not fit its type; the header is damaged");
+        header.notes.push_back("its header gives " + std::to_string(bits) +
+                               " bits per sample (bitpix), " + name_of(header.stored) + " has " +
+                               std::to_string(8 * size_of(header.stored)) + ": the type was taken");
     }
     header.sizes = sizes_of(bytes);
     const std::uint64_t sample_bytes = checked_bytes(header.sizes, size_of(header.stored),

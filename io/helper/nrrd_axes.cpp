@@ -102,28 +102,35 @@ struct Space {
     std::string time_unit = {};  ///< of the fourth dimension
 };
 
+/// Teem reads the names with hyphens, with blanks or with neither between their words.
+std::string space_name(const HeaderFields& fields) {
+    std::string name = lower(fields.value("space"));
+    std::erase_if(name, [](char c) { return c == '-' || c == ' '; });
+    return name;
+}
+
 Space named_space(const HeaderFields& fields) {
     static const std::map<std::string, Space> spaces = {
-        {"right-anterior-superior", {3, {-1, -1, 1}, true}},
+        {"rightanteriorsuperior", {3, {-1, -1, 1}, true}},
         {"ras", {3, {-1, -1, 1}, true}},
-        {"left-anterior-superior", {3, {1, -1, 1}, true}},
+        {"leftanteriorsuperior", {3, {1, -1, 1}, true}},
         {"las", {3, {1, -1, 1}, true}},
-        {"left-posterior-superior", {3, {1, 1, 1}, true}},
+        {"leftposteriorsuperior", {3, {1, 1, 1}, true}},
         {"lps", {3, {1, 1, 1}, true}},
-        {"right-anterior-superior-time", {4, {-1, -1, 1}, true}},
+        {"rightanteriorsuperiortime", {4, {-1, -1, 1}, true}},
         {"rast", {4, {-1, -1, 1}, true}},
-        {"left-anterior-superior-time", {4, {1, -1, 1}, true}},
+        {"leftanteriorsuperiortime", {4, {1, -1, 1}, true}},
         {"last", {4, {1, -1, 1}, true}},
-        {"left-posterior-superior-time", {4, {1, 1, 1}, true}},
+        {"leftposteriorsuperiortime", {4, {1, 1, 1}, true}},
         {"lpst", {4, {1, 1, 1}, true}},
-        {"scanner-xyz", {3, {1, 1, 1}}},
-        {"scanner-xyz-time", {4, {1, 1, 1}}},
-        {"3d-right-handed", {3, {1, 1, 1}}},
-        {"3d-left-handed", {3, {1, 1, 1}}},
-        {"3d-right-handed-time", {4, {1, 1, 1}}},
-        {"3d-left-handed-time", {4, {1, 1, 1}}}};
+        {"scannerxyz", {3, {1, 1, 1}}},
+        {"scannerxyztime", {4, {1, 1, 1}}},
+        {"3drighthanded", {3, {1, 1, 1}}},
+        {"3dlefthanded", {3, {1, 1, 1}}},
+        {"3drighthandedtime", {4, {1, 1, 1}}},
+        {"3dlefthandedtime", {4, {1, 1, 1}}}};
     if (fields.has("space")) {
-        const auto found = spaces.find(lower(fields.value("space")));
+        const auto found = spaces.find(space_name(fields));
         if (found != spaces.end()) return found->second;
         throw Failure("its header field 'space' is '" + fields.value("space") +
                       "', which is not known; correct the header");
@@ -144,7 +151,7 @@ Space space_of(const HeaderFields& fields, std::vector<std::string>& notes) {
     Space space = named_space(fields);
     const std::string name = lower(fields.value("space"));
     // Right-handed axes say no more than that the sides are not known (Geometry::oriented).
-    if (!name.empty() && !space.is_body && !name.starts_with("3d-right-handed")) {
+    if (!name.empty() && !space.is_body && !space_name(fields).starts_with("3drighthanded")) {
         notes.push_back("its space is '" + name +
                         "', which is not the patient's: its axes were taken as those of LPS");
     }

@@ -111,7 +111,8 @@ Stored stored_from(const std::string& type) {
     return found->first;
 }
 
-std::vector<DataPlace> places_of(const HeaderFields& fields, const std::filesystem::path& path) {
+std::vector<DataPlace> places_of(const HeaderFields& fields, const std::filesystem::path& path,
+                                 std::vector<std::string>& notes) {
     DataPlace place;
     place.offset = fields.has("data file") ? 0 : fields.data_offset;
     const std::string encoding = lower(fields.needed("encoding"));
@@ -124,7 +125,7 @@ std::vector<DataPlace> places_of(const HeaderFields& fields, const std::filesyst
                       "' is not read; save it with gzip or raw (unu save -e gzip)");
     }
     if (!fields.has("data file")) return places_in({path}, place);
-    return places_in(data_files(fields.value("data file"), fields, path), place);
+    return places_in(data_files(fields.value("data file"), fields, path, notes), place);
 }
 
 /// "line skip" and "byte skip"; a byte skip of -1 means that the samples are the file's end.
@@ -204,7 +205,7 @@ VolumeHeader nrrd_header(const Request& request) {
         header.sizes.empty()) {
         throw Failure("its header's dimension and sizes do not agree; correct the header");
     }
-    header.places = places_of(fields, request.path);
+    header.places = places_of(fields, request.path, header.notes);
     checked_bytes(header.sizes, size_of(header.stored), file_bytes(header), request);
     for (DataPlace& place : header.places) {
         apply_skips(fields, header.bytes_each(), place);

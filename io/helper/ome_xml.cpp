@@ -81,6 +81,14 @@ void put_pages(OmeImage& image, const PlaneOrder& order, std::array<std::int64_t
     }
 }
 
+/// The type of its samples in our words; empty for those that have none (bit, complex).
+std::string type_in(const XmlElement& pixels) {
+    const std::string type = pixels.attribute("Type").value();
+    if (type == "float") return "float32";
+    if (type == "double") return "float64";
+    return stored_named(type) ? type : "";
+}
+
 /// Files that planes lie in, by their UUID and perhaps their name. One of another name is this one,
 /// renamed.
 class FilesOfPlanes {
@@ -149,6 +157,7 @@ void set_spacing(OmeImage& image, const Vec3& spacings, const std::array<std::st
                z = millimetres_in(units[2]);
     const auto is_length = [](double length) { return std::isfinite(length) && length > 0; };
     const bool has_distance = is_length(spacings[2]);
+    image.spacing_note.clear();
     const bool measured = x && y && (z || !has_distance);
     const bool alike = units[0] == units[1] && (units[0] == units[2] || !has_distance);
     if (!is_length(spacings[0]) || !is_length(spacings[1]) || (!measured && (x || !alike))) {
@@ -168,6 +177,16 @@ void set_spacing(OmeImage& image, const Vec3& spacings, const std::array<std::st
     } else if (!has_distance && image.sizes[0] > 1) {
         image.spacing_note =
             source + " does not tell the distance between slices: that of pixels was taken";
+    }
+}
+
+void order_pages(OmeImage& image, const std::string& order, std::array<std::int64_t, 3> sizes) {
+    const std::vector<std::uint32_t> in_file = image.pages;
+    image.sizes = sizes;
+    put_pages(image, PlaneOrder(order), {0, 0, 0}, 0, std::ssize(in_file));
+    for (std::uint32_t& page : image.pages) page = in_file[page];
+    for (std::int64_t c = 0; sizes[1] > 1 && c < sizes[1]; ++c) {
+        image.channels.push_back("channel " + std::to_string(c));
     }
 }
 
@@ -195,6 +214,7 @@ OmeImage ome_image(const std::string& xml, std::vector<std::string>& notes) {
     image.format = "OME-TIFF";
     image.sizes = {whole(pixels, "SizeZ", 1), whole(pixels, "SizeC", 1), whole(pixels, "SizeT", 1)};
     image.plane_size = {whole(pixels, "SizeX", 0), whole(pixels, "SizeY", 0)};
+    image.type = type_in(pixels);
     const double planes = static_cast<double>(image.sizes[0]) *
                           static_cast<double>(image.sizes[1]) * static_cast<double>(image.sizes[2]);
     if (planes > static_cast<double>(most_planes)) throw Failure("it has more than 2^20 planes");

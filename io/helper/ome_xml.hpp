@@ -15,6 +15,7 @@ struct OmeImage {
     std::string format;
     std::array<std::int64_t, 3> sizes = {1, 1, 1};  ///< of z, channels, times
     std::array<std::int64_t, 2> plane_size{};       ///< x, y; 0: it does not say
+    std::string type;                               ///< of the samples; empty: it does not say
     std::array<double, 3> spacing = {1, 1, 1};      ///< z, y, x [mm]
     std::string spacing_note;                       ///< what was chosen; to be said if it is used
     std::vector<std::string> channels;              ///< names; empty: one
@@ -31,6 +32,10 @@ struct OmeImage {
 /// unit is a known length, their ratio is kept. `source` of them: "its OME-XML".
 void set_spacing(OmeImage& image, const Vec3& spacings, const std::array<std::string, 3>& units,
                  const std::string& source);
+
+/// Gives its planes the pages that it has, which the file counts in an order such as "XYCZT".
+/// `sizes`: of z, channels and times, whose product is the number of pages.
+void order_pages(OmeImage& image, const std::string& order, std::array<std::int64_t, 3> sizes);
 
 bool is_ome_xml(const std::string& description);
 

@@ -1,7 +1,7 @@
 // palpate-io-helper: reads or writes one volume, or reads a mesh, and reports as described in
 // protocol.hpp. It exists so that a crash of a format's library does not crash the caller. It reads
-// NRRD, MetaImage and NIfTI itself. For all other formats it becomes the program that has the
-// library, so that only needed libraries are loaded.
+// NRRD, MetaImage, NIfTI, MGH and MRC itself. For all other formats it becomes the program that has
+// the library, so that only needed libraries are loaded.
 #include <unistd.h>
 
 #include <algorithm>
@@ -88,8 +88,8 @@ const char* program_for_file(const fs::path& path) {
         throw Failure("is packed; unpack it and give what is in it");
     }
     throw Failure(
-        "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, dcm, tif, vti); if "
-        "it holds nothing but samples, give its dims and type");
+        "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, mgh, mgz, mrc, "
+        "dcm, tif, vti); if it holds nothing but samples, give its dims and type");
 }
 
 const char* program_for(Job job, const fs::path& path) {

@@ -1,4 +1,4 @@
-// Reads the samples that a NRRD or MetaImage header describes: raw, compressed or as text.
+// Reads the samples that a header describes: raw, compressed or as text.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -14,7 +14,7 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::uint64_t padding_allowed = 4096;
+constexpr std::uint64_t padding_allowed = 4096, longest_footer = 1 << 24;
 constexpr std::size_t chunk_bytes = 1 << 20;
 constexpr int longest_word = 512;  // a double has up to some 320 digits
 
@@ -74,9 +74,10 @@ void compare(std::uint64_t have, std::uint64_t need, const std::string& what, st
 }
 
 /// The same for samples, where as much again or more is no padding: their type is twice as wide as
-/// the header says, or there are other samples.
+/// the header says, or there are other samples. A footer is left alone.
 void compare_samples(std::uint64_t have, std::uint64_t need, const std::string& what,
-                     std::vector<std::string>& notes) {
+                     const DataPlace& place, std::vector<std::string>& notes) {
+    if (place.has_footer && have > need) return;
     const bool doubled = have >= need && have - need >= need;
     compare(have, need, what, doubled ? 0 : padding_allowed, notes);
 }
@@ -165,7 +166,7 @@ void read_text(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
         throw Failure(
             "its numbers have decimal commas, which are not read; write them with points");
     }
-    compare_samples(count, wanted, "numbers", header.notes);
+    compare_samples(count, wanted, "numbers", place, header.notes);
     samples(bytes);
 }
 
@@ -183,7 +184,7 @@ std::uint64_t available_at(const DataPlace& place) {
 void check_length(VolumeHeader& header, const DataPlace& place) {
     const std::uint64_t available = available_at(place);
     compare_samples(available - std::min(place.skip, available), header.bytes_each(),
-                    "bytes of samples", header.notes);
+                    "bytes of samples", place, header.notes);
 }
 
 void read_raw_bytes(VolumeHeader& header, const DataPlace& place, const ByteSink& sink) {
@@ -210,14 +211,15 @@ void read_compressed(VolumeHeader& header, const DataPlace& place, const ByteSin
     SampleBytes samples(header, place, sink);
     std::uint64_t unpacked = 0;
     try {
-        const std::uint64_t at_most = place.skip + header.bytes_each() + padding_allowed;
+        const std::uint64_t behind = place.has_footer ? longest_footer : padding_allowed;
+        const std::uint64_t at_most = place.skip + header.bytes_each() + behind;
         unpacked =
             inflate_checked(place.file, {place.offset, place.length, at_most}, std::ref(samples));
     } catch (const DamagedStream& e) {
         throw Failure(std::string(e.what()) + "; copy or download it again");
     }
     compare_samples(unpacked - std::min(place.skip, unpacked), header.bytes_each(),
-                    "bytes of samples", header.notes);
+                    "bytes of samples", place, header.notes);
 }
 
 void stream_file(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {

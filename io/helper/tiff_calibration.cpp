@@ -164,9 +164,9 @@ Moments image_j_moments(const std::string& text, std::size_t pages,
     return moments;
 }
 
-bool set_image_j_spacing(OmeImage& image, TIFF* tiff, const std::string& text) {
+void set_image_j_spacing(OmeImage& image, TIFF* tiff, const std::string& text) {
     const Description description = fields_of(text);
-    if (description.empty()) return false;
+    if (description.empty()) return;
     const std::array units = {unit_in(description, "unit"), unit_in(description, "yunit"),
                               unit_in(description, "zunit")};
     Vec3 spacings(0, 0, slice_distance(description));
@@ -178,7 +178,6 @@ bool set_image_j_spacing(OmeImage& image, TIFF* tiff, const std::string& text) {
         spacings[1] = 1 / resolution_of(tiff, TIFFTAG_YRESOLUTION, units[1]);
     }
     set_spacing(image, spacings, units, "its description");
-    return true;
 }
 
 ValueMap image_j_values(const std::string& text, Stored stored, std::vector<std::string>& notes) {

@@ -12,9 +12,9 @@
 
 namespace palpate::io {
 
-/// Enters the spacing of the current page. False unless ImageJ wrote its description. An axis may
-/// have a unit of its own.
-bool set_image_j_spacing(OmeImage& image, TIFF* tiff, const std::string& description);
+/// Enters the spacing of the current page, if ImageJ wrote its description. An axis may have a unit
+/// of its own.
+void set_image_j_spacing(OmeImage& image, TIFF* tiff, const std::string& description);
 
 /// What a stored number means. ImageJ keeps signed 16-bit images as unsigned samples with such a
 /// calibration. Notes a calibration that is not a straight line, which is ignored.

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "io/helper/tiff_calibration.hpp"
+#include "io/helper/tiff_counts.hpp"
 #include "io/helper/tiff_page.hpp"
 
 namespace palpate::io {
@@ -23,6 +23,10 @@ OmeImage told_by_ome(const std::string& description, const TiffPages& pages, con
                         std::to_string(height) + ", its pages are " + text_of(first) +
                         ": the pages were taken");
     }
+    if (!image.type.empty() && image.type != name_of(first.stored)) {
+        notes.push_back("its OME-XML tells of samples of type " + image.type + ", its pages are " +
+                        text_of(first) + ": the pages were taken");
+    }
     const std::size_t known = pages.whole.size() + pages.reduced.size();
     for (const std::uint32_t page : image.pages) {
         if (page < known) continue;
@@ -34,46 +38,6 @@ OmeImage told_by_ome(const std::string& description, const TiffPages& pages, con
                         std::to_string(pages.whole.size()) + " pages: the others were ignored");
     }
     return image;
-}
-
-/// tifffile's description, such as {"shape": [5, 7, 8], "axes": "ZYX"}; null if it is another one.
-nlohmann::json told_by_tifffile(const std::string& description) {
-    nlohmann::json told = nlohmann::json::parse(description, nullptr, false);
-    if (!told.is_object() || !told.contains("shape") || !told["shape"].is_array()) return nullptr;
-    const auto is_size = [](const nlohmann::json& size) { return size.is_number_unsigned(); };
-    return std::ranges::all_of(told["shape"], is_size) ? told : nullptr;
-}
-
-double samples_in(const nlohmann::json& told) {
-    if (told.is_null()) return 0;
-    double samples = 1;
-    for (const nlohmann::json& size : told["shape"]) samples *= size.get<double>();
-    return samples;
-}
-
-/// Of a file of one page, tifffile's shape may be the only word of the rest.
-void check_shape(const nlohmann::json& told, const TiffPage& page, std::size_t pages,
-                 std::vector<std::string>& notes) {
-    if (told.is_null()) return;
-    std::string text;
-    int axes = 0;
-    for (const nlohmann::json& size : told["shape"]) {
-        text += (text.empty() ? "" : "x") + std::to_string(size.get<std::uint64_t>());
-        axes += size.get<std::uint64_t>() > 1 ? 1 : 0;
-    }
-    if (samples_in(told) > static_cast<double>(pages) * page.width * page.height) {
-        throw Failure("its description gives it the shape " + text.substr(0, 60) + ", but it has " +
-                      std::to_string(pages) +
-                      " pages as TIFF counts them; save each slice as a page");
-    }
-    const nlohmann::json names = told.value("axes", nlohmann::json());  // such as "TYX"
-    const bool has_others =
-        names.is_string() && names.get<std::string>().find_first_of("TC") != std::string::npos;
-    if (axes > 3 || (axes > 2 && has_others)) {
-        notes.push_back("its description gives it the shape " + text.substr(0, 60) +
-                        (has_others ? " of axes " + names.get<std::string>().substr(0, 20) : "") +
-                        ": all its pages were taken as slices");
-    }
 }
 
 /// ImageJ above 4 GB, and tifffile if asked to, write the planes one behind the other, of which a
@@ -97,20 +61,23 @@ std::size_t planes_behind(TIFF* tiff, const fs::path& file, const TiffPage& page
     return static_cast<std::size_t>(told);
 }
 
-/// ImageJ's channels are the pages of a slice.
-void take_channels(const Moments& moments, OmeImage& image) {
-    const auto pages = static_cast<std::int64_t>(image.pages.size());
-    image.sizes = {pages / (moments.count * moments.channels), moments.channels, moments.count};
-    if (moments.channels == 1) return;
-    const std::vector<std::uint32_t> in_file = image.pages;
-    for (std::int64_t i = 0; i < pages; ++i) {
-        const std::int64_t slice = i / moments.channels, channel = i % moments.channels;
-        const std::int64_t z = slice % image.sizes[0], time = slice / image.sizes[0];
-        image.pages[image.plane(z, channel, time)] = in_file[static_cast<std::size_t>(i)];
+/// Divides the pages as LSM, ScanImage, tifffile or ImageJ count them; an order of channels, then
+/// slices, then times is ImageJ's.
+void take_counts(TIFF* tiff, const std::string& description, const TiffPage& first, OmeImage& image,
+                 std::vector<std::string>& notes) {
+    const std::size_t planes = image.pages.size();
+    if (const auto told = counted_pages(tiff, description, first, planes, notes)) {
+        image.format = told->format;
+        order_pages(image, told->order, told->sizes);
+        if (told->metres != Vec3::Zero()) set_spacing(image, told->metres, {"m", "m", "m"}, "it");
+        if (told->sizes[2] > 1) image.frame_interval = std::max(told->seconds, 0.0);
+        return;
     }
-    for (std::int64_t c = 0; c < moments.channels; ++c) {
-        image.channels.push_back("channel " + std::to_string(c));
-    }
+    const Moments moments = image_j_moments(description, planes, notes);
+    order_pages(image, "XYCZT",
+                {static_cast<std::int64_t>(planes) / (moments.count * moments.channels),
+                 moments.channels, moments.count});
+    image.frame_interval = moments.times.interval;
 }
 
 }  // namespace
@@ -162,27 +129,23 @@ TiffLayout layout_of(TIFF* tiff, const fs::path& file, std::vector<std::string>&
     OmeImage& image = layout.image;
     image.format = "TIFF";
     image.pages = pages.whole;
-    const nlohmann::json by_tifffile = told_by_tifffile(description);
     if (pages.whole.size() == 1) {
         const double plane = static_cast<double>(first.width) * first.height;
-        const double told = std::max(image_j_planes(description), samples_in(by_tifffile) / plane);
+        const double told = std::max(image_j_planes(description),
+                                     samples_in(told_by_tifffile(description)) / plane);
         image.pages.resize(planes_behind(tiff, file, first, told));
         if (image.pages.size() > 1) {
             std::iota(image.pages.begin(), image.pages.end(), 0U);
             layout.plain_from = TIFFGetStrileOffset(tiff, 0);
         }
     }
-    check_shape(by_tifffile, first, image.pages.size(), notes);
-    const Moments moments = image_j_moments(description, image.pages.size(), notes);
+    image.spacing_note =
+        "it does not tell its spacing (as ImageJ and OME-XML would): 1 mm was taken along every "
+        "axis; give the spacing";
+    take_counts(tiff, description, first, image, notes);
     layout.values = image_j_values(description, first.stored, notes);
-    take_channels(moments, image);
-    image.frame_interval = moments.times.interval;
+    set_image_j_spacing(image, tiff, description);
     if (pages.whole.size() == 1 && coarser_levels(tiff).empty()) layout.reduced = pages.reduced;
-    if (!set_image_j_spacing(image, tiff, description)) {
-        image.spacing_note =
-            "it does not tell its spacing (as ImageJ and OME-XML would): 1 mm was taken along "
-            "every axis; give the spacing";
-    }
     return layout;
 }
 

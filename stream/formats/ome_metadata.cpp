@@ -1,4 +1,5 @@
-// Metadata of OME-Zarr images, versions 0.1 to 0.5: https://ngff.openmicroscopy.org.
+// Metadata of OME-Zarr images, versions 0.1 to 0.6: https://ngff.openmicroscopy.org.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -42,7 +43,12 @@ Placement placement_of(const Json& object, std::size_t axes) {
     if (!list.is_array() || list.size() > 8)
         throw BadMetadata("its transformations are not sensible");
     bool translated = false;
-    for (const Json& one : list) {
+    // Version 0.6 puts several into one.
+    const bool is_sequence = list.size() == 1 && member(list[0], "type") == "sequence";
+    const Json& steps = is_sequence ? list[0].at("transformations") : list;
+    if (!steps.is_array() || steps.size() > 8)
+        throw BadMetadata("its transformations are not sensible");
+    for (const Json& one : steps) {
         const std::string type = one.at("type").get<std::string>();
         if (type == "identity") continue;
         const bool is_scale = type == "scale";
@@ -61,11 +67,30 @@ Placement placement_of(const Json& object, std::size_t axes) {
     return place;
 }
 
-/// Version 0.4 and later give objects, earlier ones names or nothing (then t, c, z, y, x).
+/// From version 0.6 on, a coordinate system has the axes: the one that the levels lie in, which
+/// their transformations name as their output. Earlier versions have no systems.
+const Json& system_of(const Json& image) {
+    static const Json none;
+    const Json& systems = member(image, "coordinateSystems");
+    if (!systems.is_array() || systems.empty()) return none;
+    const Json& levels = member(image, "datasets");
+    const Json& steps = levels.is_array() && !levels.empty()
+                            ? member(levels[0], "coordinateTransformations")
+                            : levels;
+    const Json& output = steps.is_array() && !steps.empty() ? member(steps[0], "output") : steps;
+    const Json& name = output.is_object() ? member(output, "name") : output;
+    const auto named =
+        std::ranges::find_if(systems, [&](const Json& one) { return member(one, "name") == name; });
+    return named == systems.end() ? systems[0] : *named;
+}
+
+/// Version 0.4 and 0.5 give objects, earlier ones names or nothing (then t, c, z, y, x).
 std::vector<ImageAxis> axes_of(const Json& image) {
     std::vector<ImageAxis> axes;
     static const Json usual = {"t", "c", "z", "y", "x"};
-    const Json& list = image.contains("axes") ? image["axes"] : usual;
+    const Json& system = system_of(image);
+    const Json& given = member(system.is_null() ? image : system, "axes");
+    const Json& list = given.is_null() ? usual : given;
     if (!list.is_array() || list.empty() || list.size() > 8) {
         throw BadMetadata("its axes are not sensible");
     }
@@ -106,9 +131,9 @@ std::vector<std::string> notes_on(const Json& attributes, const Json& images) {
     int major = 0, minor = 0;
     const char* const dot = std::from_chars(text.data(), end, major).ptr;
     if (dot != end) std::from_chars(dot + 1, end, minor);
-    if (major > 0 || minor > 5) {
+    if (major > 0 || minor > 6) {
         notes.push_back("its version of OME-Zarr is " + io::one_line(text.substr(0, 20)) +
-                        ": it was read as 0.5");
+                        ": it was read as 0.6");
     }
     if (images.size() > 1) {
         notes.push_back("it has " + std::to_string(images.size()) +
@@ -157,7 +182,9 @@ std::optional<Image> ome_image(const Json& given) {
     Image found;
     found.axes = axes_of(image);
     const std::size_t axes = found.axes.size();
-    const Placement whole = placement_of(image, axes);
+    // From version 0.6 on, these lead from the space of the levels to others.
+    const bool leads_on = !system_of(image).is_null();
+    const Placement whole = placement_of(leads_on ? Json() : image, axes);
     const Json& datasets = image.at("datasets");
     if (!datasets.is_array() || datasets.empty() || datasets.size() > most_levels) {
         throw BadMetadata("it has no levels, or more than 64");
@@ -176,6 +203,11 @@ std::optional<Image> ome_image(const Json& given) {
     found.channels = channel_names(attributes);
     found.range = range_of(given);
     found.notes = notes_on(attributes, all);
+    if (leads_on && !member(image, "coordinateTransformations").empty()) {
+        found.notes.emplace_back(
+            "it has further transformations, from the space of its levels to others: they were "
+            "not applied");
+    }
     take_direction(given, found);
     if (!found.scaled) {
         found.measured = false;

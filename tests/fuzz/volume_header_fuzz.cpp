@@ -30,6 +30,8 @@ void read_volume(char format, const std::string& path) {
     }
     VolumeHeader header = format == 'm'   ? meta_image_header(request)
                           : format == 'n' ? nifti_header(request)
+                          : format == 'g' ? mgh_header(request)
+                          : format == 'c' ? mrc_header(request)
                                           : nrrd_header(request);
     check_geometry(header.geometry);
     require(header.bytes() <= memory_limit * std::uint64_t(header.steps));

@@ -115,7 +115,7 @@ void mutate_dicom(Bytes& bytes, Random& random, std::size_t room) {
     bytes.insert(bytes.begin() + std::ptrdiff_t(one.value), value.begin(), value.end());
 }
 
-/// NIfTI: the header's numbers, or the stream that all of it is packed in.
+/// NIfTI, MGH and MRC: the header's numbers, or the stream that all of it is packed in.
 void mutate_nifti(Bytes& bytes, std::size_t room) {
     const auto inside = unpacked(bytes);
     if (!inside) return mutate(bytes, room);
@@ -137,6 +137,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
             mutate_dicom(bytes, random, room);
             break;
         case 'n':
+        case 'g':
+        case 'c':
             mutate_nifti(bytes, room);
             break;
         case 'm':

@@ -8,8 +8,10 @@ import struct
 import subprocess
 
 import h5py
+import nibabel
 import numpy
 import palpate
+import pydicom
 import pytest
 import tifffile
 import zarr
@@ -231,3 +233,220 @@ def test_tiles_that_are_not_read_one_by_one_are_converted_as_a_whole(tmp_path):
     assert (palpate.load(tmp_path / "a.nrrd").volume.array == samples).all()
     status, said = run("info", tmp_path / "a.tif", "--level", 0)
     assert status == 3 and "not read by the tile" in said
+
+
+# Headers that say something in another way --------------------------------------------------------------
+
+
+@pytest.mark.parametrize("told", ("C:\\scan\\a.raw", "sub\\a.raw", "/media/disc/scan/a.raw", "sub/a.raw"))
+def test_a_data_file_that_was_moved_beside_its_header_is_found(tmp_path, told):
+    (tmp_path / "a.raw").write_bytes(ramp("i2").tobytes())
+    path = meta_image(tmp_path / "a.mhd", file=told)
+    assert numpy.array_equal(noted(path, "not there").array, ramp("i2"))
+    header = nrrd(tmp_path / "b.nhdr", ramp("i2"), f"data file: {told}")
+    header.write_bytes(header.read_bytes()[:-ramp("i2").nbytes])
+    assert numpy.array_equal(noted(header, "not there").array, ramp("i2"))
+    (tmp_path / "b").mkdir()
+    status, said = run("convert", path, tmp_path / "a.raw")  # it is the one that is read
+    assert status != 0 and (tmp_path / "a.raw").read_bytes() == ramp("i2").tobytes(), said
+    (tmp_path / "a.raw").unlink()
+    refused(path, "a.raw", "cannot be read")
+
+
+def test_a_data_file_is_first_where_its_header_says(tmp_path):
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "a.raw").write_bytes(bytes(ramp("i2").nbytes))
+    (tmp_path / "sub" / "a.raw").write_bytes(ramp("i2").tobytes())
+    loaded = palpate.load(meta_image(tmp_path / "a.mhd", file="sub/a.raw"))
+    assert numpy.array_equal(loaded.volume.array, ramp("i2")) and not any("not there" in note for note in loaded.notes)
+
+
+@pytest.mark.parametrize("space", ("right anterior superior", "RightAnteriorSuperior", "right-anterior-superior", "RAS"))
+def test_the_name_of_a_space_may_have_blanks_as_teem_reads_it(tmp_path, space):
+    path = nrrd(tmp_path / "a.nrrd", ramp("i2"), f"space: {space}", "space directions: (1,0,0) (0,2,0) (0,0,3)",
+                "space origin: (1,2,3)")
+    geometry = palpate.load(path).volume.geometry
+    assert numpy.array_equal(geometry.origin, (-1, -2, 3)) and geometry.oriented
+    subprocess.run(["teem-unu", "save", "-f", "nrrd", "-i", path, "-o", tmp_path / "b.nrrd"], check=True)
+    assert b"space: right-anterior-superior" in (tmp_path / "b.nrrd").read_bytes()
+
+
+def nifti(path, change):
+    image = nibabel.Nifti1Image(ramp("i2").transpose(2, 1, 0), numpy.diag([2, 2, 3, 1]))
+    image.set_qform(numpy.diag([2, 2, 3, 1]), 1)
+    image.set_sform(numpy.diag([2, 2, 3, 1]), 1)
+    image.to_filename(path)
+    header = bytearray(path.read_bytes())
+    change(header)
+    path.write_bytes(header)
+    return path
+
+
+@pytest.mark.parametrize("bits", (8, 12, 32))
+def test_bits_that_do_not_fit_the_type_of_a_nifti_are_noted(tmp_path, bits):
+    path = nifti(tmp_path / "a.nii", lambda header: header.__setitem__(slice(72, 74), struct.pack("<h", bits)))
+    assert numpy.array_equal(noted(path, f"{bits} bits per sample").array, ramp("i2"))
+
+
+def test_a_nifti_whose_sform_is_no_number_has_its_qform(tmp_path):
+    path = nifti(tmp_path / "a.nii", lambda header: header.__setitem__(slice(280, 328), struct.pack("<12f", *[numpy.nan] * 12)))
+    assert numpy.array_equal(noted(path, "its qform was taken").geometry.spacing, (2, 2, 3))
+
+
+@pytest.mark.parametrize("syntax", ("explicit", "implicit"))
+def test_a_dicom_image_without_a_class_is_read(tmp_path, syntax):
+    save(tmp_path / "a", stack(ramp("i2")), syntax)
+    for path in (tmp_path / "a").iterdir():
+        data = pydicom.dcmread(path)
+        del data.SOPClassUID, data.file_meta.MediaStorageSOPClassUID
+        data.save_as(path)
+    assert numpy.array_equal(noted(tmp_path / "a", "SOPClassUID").array, ramp("i2"))
+
+
+def test_bits_beyond_the_stored_ones_are_noted(tmp_path):
+    data = ramp("u2")
+    fitting = [slice_of(plane, i, (0, 0, 2 * i), BitsStored=10, HighBit=9) for i, plane in enumerate(data)]
+    loaded = palpate.load(save(tmp_path / "a", fitting))
+    assert numpy.array_equal(loaded.volume.array, data) and not any("BitsStored" in note for note in loaded.notes)
+    beyond = [slice_of(plane + 2000, i, (0, 0, 2 * i), BitsStored=10, HighBit=9) for i, plane in enumerate(data)]
+    volume = noted(save(tmp_path / "b", beyond), "beyond the stored ones")
+    assert numpy.array_equal(volume.array, data + 2000 & 1023)
+    signed = (ramp("i2") - 300).view("u2")  # with and without an extended sign
+    for name, mask in (("c", 0xffff), ("d", 0x3ff)):
+        slices = [slice_of(plane & mask, i, (0, 0, 2 * i), BitsStored=10, HighBit=9, PixelRepresentation=1)
+                  for i, plane in enumerate(signed)]
+        loaded = palpate.load(save(tmp_path / name, slices))
+        assert numpy.array_equal(loaded.volume.array, ramp("i2") - 300) and not any("BitsStored" in n for n in loaded.notes)
+
+
+# MGH, compared with nibabel -----------------------------------------------------------------------------
+
+CORONAL = [[-1, 0, 0, 90.5], [0, 0, 1.5, -120], [0, -2, 0, 80], [0, 0, 0, 1]]
+
+
+def mgh(path, data, affine=None):
+    image = nibabel.MGHImage(data.transpose(2, 1, 0), numpy.array(CORONAL if affine is None else affine, float))
+    image.to_filename(path)
+    return image
+
+
+@pytest.mark.parametrize("dtype", ("u1", "i2", "i4", "f4"))
+@pytest.mark.parametrize("name", ("a.mgh", "a.mgz"))
+def test_mgh_is_read_as_nibabel_reads_it(tmp_path, name, dtype):
+    image = mgh(tmp_path / name, ramp(dtype))
+    volume = palpate.load(tmp_path / name).volume
+    assert numpy.array_equal(volume.array, ramp(dtype)) and volume.geometry.oriented
+    for index in ((0, 0, 0), (5, 3, 4)):
+        x, y, z, _ = image.affine @ (*index, 1)
+        assert numpy.allclose(volume.geometry.physical(index), (-x, -y, z), rtol=1e-6)
+
+
+def test_an_oblique_mgh_with_footer_and_frames(tmp_path):
+    angle = numpy.deg2rad(20)
+    affine = numpy.diag([1.0, 2, 3, 1])
+    affine[:3, :3] = [[numpy.cos(angle), -numpy.sin(angle), 0], [numpy.sin(angle), numpy.cos(angle), 0], [0, 0, 1]] @ affine[:3, :3]
+    data = ramp("i2", (2, *SHAPE))
+    image = nibabel.MGHImage(data.transpose(3, 2, 1, 0), affine)
+    image.to_filename(path := tmp_path / "a.mgh")
+    path.write_bytes(path.read_bytes() + bytes(10000))  # tags of FreeSurfer
+    for packed in (False, True):
+        if packed:
+            (path := tmp_path / "b.mgz").write_bytes(gzip.compress((tmp_path / "a.mgh").read_bytes()))
+        for frame, expected in enumerate(data):
+            loaded = palpate.load(path, frame=frame)
+            assert numpy.array_equal(loaded.volume.array, expected) and not any("ignored" in note for note in loaded.notes)
+        x, y, z, _ = image.affine @ (1, 2, 3, 1)
+        assert numpy.allclose(loaded.volume.geometry.physical((1, 2, 3)), (-x, -y, z), rtol=1e-5)
+    store_ = palpate.open_store(str(tmp_path / "a.mgh"), time=1)
+    assert numpy.array_equal(store_.read((0, 0, 0), store_.levels[0].size).array, data[1])
+
+
+def test_an_mgh_without_a_place_is_noted_and_a_damaged_one_refused(tmp_path):
+    mgh(path := tmp_path / "a.mgh", ramp("i2"))
+    whole = path.read_bytes()
+    path.write_bytes(whole[:28] + bytes(2) + whole[30:])
+    geometry = noted(path, "goodRASFlag").geometry
+    assert not geometry.oriented and numpy.array_equal(geometry.spacing, (1, 1, 1))
+    for damaged, words in ((whole[:400], "cut off"), (whole[:200], "no MGH file"), (b"\0\0\0\2" + whole[4:], "no MGH file"),
+                           (whole[:20] + b"\0\0\0\7" + whole[24:], "type 7"), (whole[:4] + b"\xff" * 4 + whole[8:], "size"),
+                           (whole[:30] + bytes(4) + whole[34:], "spacing of 0")):
+        path.write_bytes(damaged)
+        refused(path, words)
+
+
+# MRC, by its format -------------------------------------------------------------------------------------
+
+
+def mrc(path, data, mode, order="<", cell=(12, 12, 15), samples=None, axes=(1, 2, 3), start=(0, 0, 0), origin=(0, 0, 0), angles=(90,) * 3,
+        kind=1, extended=b"", greatest=0, imod=None, letters=b"MAP ", stamp=None):
+    """`cell` [Angstrom] and `samples` along x, y and z."""
+    size = data.shape[::-1]
+    head = bytearray(1024)
+    struct.pack_into(f"{order}10i3f3f3i3f2i", head, 0, *size, mode, *start, *(samples or size), *cell, *angles, *axes, 0, greatest, 0,
+                     kind, len(extended))
+    if imod is not None:
+        struct.pack_into(f"{order}2i", head, 152, 1146047817, imod)
+    struct.pack_into(f"{order}3f", head, 196, *origin)
+    head[208:212] = letters
+    head[212:214] = stamp if stamp is not None else b"\x44\x44" if order == "<" else b"\x11\x11"
+    path.write_bytes(bytes(head) + extended + data.astype(data.dtype.newbyteorder(order)).tobytes())
+    return path
+
+
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("dtype, mode", (("i1", 0), ("i2", 1), ("f4", 2), ("u2", 6)))
+def test_mrc_of_every_mode_and_byte_order(tmp_path, dtype, mode, order):
+    data = (ramp("i4") - (125 if dtype == "i1" else 0)).astype(dtype)
+    for stamp in (None, b"\0\0"):  # older files have none
+        path = mrc(tmp_path / "a.mrc", data, mode, order, extended=b"x" * 80, stamp=stamp)
+        loaded = palpate.load(path)
+        assert numpy.array_equal(loaded.volume.array, data)
+        assert numpy.allclose(loaded.volume.geometry.spacing, (2e-7, 3e-7, 3e-7)) and not loaded.volume.geometry.oriented
+    (tmp_path / "b.map.gz").write_bytes(gzip.compress(path.read_bytes()))
+    assert numpy.array_equal(palpate.load(tmp_path / "b.map.gz").volume.array, data)
+
+
+def test_bytes_of_mrc_have_a_sign_unless_the_header_says_otherwise(tmp_path):
+    data = ramp("u1")
+    assert palpate.load(mrc(tmp_path / "a.mrc", data, 0)).volume.array.min() < 0
+    for imod, signed in ((0, False), (1, True)):
+        assert numpy.array_equal(palpate.load(mrc(tmp_path / "a.mrc", data, 0, imod=imod)).volume.array, data.view("i1") if signed else data)
+    assert numpy.array_equal(noted(mrc(tmp_path / "a.mrc", data, 0, greatest=249), "unsigned").array, data)
+
+
+@pytest.mark.parametrize("axes", ((1, 2, 3), (3, 2, 1), (2, 1, 3), (2, 3, 1), (0, 0, 0)))
+def test_columns_of_mrc_may_lie_along_any_axis(tmp_path, axes):
+    data, cell, samples = ramp("i2"), (60, 80, 90), (30, 20, 30)  # the map is a part of its cell
+    spacing = numpy.divide(cell, samples)
+    order = [axis - 1 for axis in axes] if any(axes) else [0, 1, 2]
+    for origin in ((0, 0, 0), (10, 20, 30)):
+        volume = palpate.load(mrc(tmp_path / "a.rec", data, 1, cell=cell, samples=samples, axes=axes, start=(1, 2, 3), origin=origin)).volume
+        index, begin = (4, 2, 3), numpy.zeros(3)
+        for column, axis in enumerate(order):
+            begin[axis] = (origin[axis] if any(origin) else (1, 2, 3)[column] * spacing[axis])
+        expected = begin.copy()
+        for column, axis in enumerate(order):
+            expected[axis] += index[column] * spacing[axis]
+        assert numpy.allclose(volume.geometry.origin, begin * 1e-7)
+        assert numpy.allclose(volume.geometry.physical(index), expected * 1e-7)
+        assert numpy.array_equal(volume.array, data)
+
+
+def test_volumes_of_an_mrc_are_frames_and_one_without_a_cell_is_noted(tmp_path):
+    data = ramp("i2", (6, 4, 6))
+    path = mrc(tmp_path / "a.mrc", data, 1, samples=(6, 4, 3), cell=(6, 4, 3), kind=401)
+    for frame in range(2):
+        assert numpy.array_equal(palpate.load(path, frame=frame).volume.array, data[3 * frame:3 * frame + 3])
+    assert numpy.array_equal(noted(mrc(path, data, 1, cell=(0, 0, 0)), "size of its cell").geometry.spacing, (1, 1, 1))
+
+
+def test_an_mrc_that_is_not_read_is_refused(tmp_path):
+    path, data = tmp_path / "a.mrc", ramp("i2")
+    for changes, words in (({"mode": 12}, "mode 12"), ({"mode": 4}, "mode 4"), ({"angles": (90, 90, 120)}, "right angles"),
+                           ({"axes": (1, 1, 3)}, "MAPC"), ({"letters": bytes(4), "axes": (9, 2, 3)}, "no MRC file")):
+        refused(mrc(path, data, **({"mode": 1} | changes)), words)
+    mrc(path, data, 1)
+    path.write_bytes(path.read_bytes()[:-10])
+    refused(path, "cut off")
+    path.write_bytes(b"PAR and REC of another program")
+    refused(path, "too short")

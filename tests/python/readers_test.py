@@ -320,9 +320,6 @@ def test_every_unit_of_length(tmp_path, write):
 
 def test_tiff_planes_that_are_no_slices_are_noted_or_refused(tmp_path):
     path = tmp_path / "a.tif"
-    for axes, is_noted in (("ZYX", False), ("TYX", True), ("CYX", True)):
-        tifffile.imwrite(path, ramp("u2"), photometric="minisblack", metadata={"axes": axes})
-        assert any("taken as slices" in note for note in palpate.load(path).notes) == is_noted
     planes = [(33628, "I", 1, 0, True), (33629, "2I", 5, (1, 1) * 5, True)]  # MetaMorph
     tifffile.imwrite(path, ramp("u2")[0], photometric="minisblack", extratags=planes)
     refused(path, "MetaMorph", "5 planes")

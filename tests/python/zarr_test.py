@@ -195,10 +195,30 @@ def test_a_translation_comes_after_the_scale(tmp_path, steps, taken):
     assert list(opened(path)[0].levels[0].origin) == ([1, 1, 1] if moved(1, 1, 1) in steps else [0, 0, 0])
 
 
-@pytest.mark.parametrize("version, known", (("0.4", True), ("0.5", True), ("0.6", False), ("0.10", False), ("1.0", False)))
-def test_versions_after_0_5_are_noted(tmp_path, version, known):
+@pytest.mark.parametrize("version, known", (("0.4", True), ("0.6", True), ("0.7", False), ("0.10", False), ("1.0", False)))
+def test_versions_after_0_6_are_noted(tmp_path, version, known):
     notes = opened(image(tmp_path, [ramp()], [[scaled(1, 1, 1)]], version=version))[0].notes
     assert any(f"is {version}" in note for note in notes) != known
+
+
+@pytest.mark.parametrize("named", (True, False))
+def test_axes_of_version_0_6_are_those_of_the_coordinate_system_of_the_levels(tmp_path, named):
+    steps = [scaled(3, 2, 1), moved(10, 20, 30)]
+    path = image(tmp_path, [ramp()], [[{"type": "sequence", "input": {"path": "0"}, "transformations": steps,
+                                        "output": {"name": "physical"} if named else "physical"}]])
+    attributes = json.loads((path / ".zattrs").read_text())
+    one = attributes["multiscales"][0]
+    systems = [{"name": "other", "axes": [{"name": name, "type": "space", "unit": "meter"} for name in "xyz"]},
+               {"name": "physical", "axes": one.pop("axes")}]
+    one["coordinateSystems"] = systems
+    put(path / ".zattrs", {"ome": attributes | {"version": "0.6"}})
+    store, array = opened(path)
+    assert numpy.array_equal(array, ramp()) and list(store.levels[0].origin) == [30, 20, 10]
+    assert list(store.levels[0].spacing) == [1, 2, 3] and not any("further" in note for note in store.notes)
+    one["coordinateTransformations"] = [{"type": "affine", "affine": [], "input": "physical", "output": "other"}]
+    put(path / ".zattrs", {"ome": attributes | {"version": "0.6"}})
+    store, array = opened(path)
+    assert list(store.levels[0].spacing) == [1, 2, 3] and any("further transformations" in note for note in store.notes)
 
 
 def test_a_second_image_is_noted(tmp_path):

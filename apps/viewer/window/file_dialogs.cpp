@@ -26,7 +26,9 @@ QString last_folder() {
 }
 
 constexpr const char* volumes =
-    "*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.hdr *.dcm *.tif *.tiff *.vti *.ims *.h5 *.hdf5";
+    "*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.hdr *.mgh *.mgz *.mrc *.dcm *.tif *.tiff *.vti "
+    "*.ims "
+    "*.h5 *.hdf5";
 
 QString ask_file(QWidget* window, const QString& title, const QString& filter) {
     return QFileDialog::getOpenFileName(window, title, last_folder(), filter);

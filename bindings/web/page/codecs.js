@@ -150,4 +150,5 @@ const codecs = {
   crc32c,
 };
 
-export const codecNamed = (name) => codecs[name] ?? refuse(`chunks packed with ${name} are not read in the browser`);
+/** zarr-python calls them as numcodecs does, with a prefix. */
+export const codecNamed = (name) => codecs[name.replace(/^numcodecs\./, "")] ?? refuse(`chunks packed with ${name} are not read in the browser`);

@@ -1,4 +1,4 @@
-// Reads a level of an OME-Zarr (0.4, 0.5), or a Zarr array, into samples and a geometry. `get(path, isMetadata)` gives
+// Reads a level of an OME-Zarr (0.4 to 0.6), or a Zarr array, into samples and a geometry. `get(path, isMetadata)` gives
 // the bytes of an object below the root, or null: from dropped files, or from a server. What is not known to be read as
 // the native program reads it is refused.
 import { codecNamed, crc32c } from "./codecs.js";
@@ -207,8 +207,20 @@ function namesOfArray({ array, attributes }) {
   return names ? names.map((name) => String(name).toLowerCase()) : usual;
 }
 
-/** A scale, and a translation after it. */
-function transformed({ coordinateTransformations: list = [] }, count) {
+/** An image of version 0.6, whose axes are in a coordinate system, in the words of earlier versions. Transformations of
+ * the whole image lead to other systems there, and are left out. */
+function withAxes(image, notes) {
+  const systems = image?.coordinateSystems;
+  if (!Array.isArray(systems) || systems.length === 0) return image;
+  const output = image.datasets?.[0]?.coordinateTransformations?.[0]?.output;
+  const system = systems.find(({ name }) => name === (output?.name ?? output)) ?? systems[0];
+  if (image.coordinateTransformations?.length > 0) notes.push("it has further transformations, from the space of its levels to others: they were not applied");
+  return { ...image, axes: system.axes, coordinateTransformations: undefined };
+}
+
+/** A scale, and a translation after it. Version 0.6 puts both into a sequence. */
+function transformed({ coordinateTransformations: given = [] }, count) {
+  const list = given.length === 1 && given[0].type === "sequence" ? given[0].transformations : given;
   if (!Array.isArray(list)) refuse("the transformations of this OME-Zarr are no list");
   const steps = list.filter(({ type }) => type !== "identity");
   const kinds = steps.map(({ type }) => type).join();
@@ -271,7 +283,7 @@ async function levelsOf(get, path, { array: alone }, image, names, notes) {
 function chosenOf(levels, image, columns, notes) {
   const isSmall = ({ array, space }) => product(space.map((axis) => array.shape[axis] ?? 1)) <= mostSamples;
   const [finest] = levels;
-  const isScaled = levels.some(({ level }) => level.coordinateTransformations?.some(({ type }) => type === "scale"));
+  const isScaled = levels.some(({ level }) => level.coordinateTransformations?.some(({ type }) => type === "scale" || type === "sequence"));
   if (!isSmall(finest) && levels.length > 1 && !isScaled) refuse("this OME-Zarr does not tell the scales of its levels, and the finest is too large");
   const placed = levels.map((one) => ({ ...one, geometry: geometryOfLevel(one, image, columns, notes) }));
   const agreeing = placed.filter(({ geometry }) => agree(geometry, placed[0].geometry));
@@ -288,7 +300,7 @@ async function read(get, path, notes) {
   if (!root.array && metadata["bioformats2raw.layout"] !== undefined && !metadata.multiscales) {
     return read(get, `${path}0/`, ["of the series in it, 0 was taken"]);
   }
-  const image = root.array ? null : metadata.multiscales?.[0];
+  const image = root.array ? null : withAxes(metadata.multiscales?.[0], notes);
   if (!root.array && !image) refuse("this is no Zarr array and no OME-Zarr", "choose the folder that has one, or a file named .nrrd, .nii, .nii.gz or .dcm");
   if (image && metadata.multiscales.length > 1) notes.push(`of ${metadata.multiscales.length} images in it, the first was taken`);
   const names = image ? namesOfImage(image) : namesOfArray(root);

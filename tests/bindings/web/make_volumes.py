@@ -164,6 +164,16 @@ def image3(steps=({"type": "scale", "scale": [1, 2, 3]},), unit="millimeter", na
     return {"zarr.json": group, **{f"0/{path}": content for path, content in array3().items()}}
 
 
+def systems3():
+    """Of OME-Zarr 0.6, whose axes are in a coordinate system."""
+    objects = image3()
+    [image] = objects["zarr.json"]["attributes"]["ome"]["multiscales"]
+    image["coordinateSystems"] = [{"name": "physical", "axes": image.pop("axes")}]
+    steps = [{"type": "scale", "scale": [1, 2, 3]}, translation(1, 2, 3)]
+    image["datasets"][0]["coordinateTransformations"] = [{"type": "sequence", "input": "0", "output": "physical", "transformations": steps}]
+    return objects
+
+
 def pyramid(*levels, **changes):
     """Levels of a path, a shape and transformations, in the order of their list."""
     image = {"axes": [{"name": name, "type": "space", "unit": "millimeter"} for name in "zyx"],
@@ -178,6 +188,11 @@ def pyramid(*levels, **changes):
 def array2(attributes=None, **changes):
     array = {"zarr_format": 2, "shape": [2, 2, 2], "chunks": [2, 2, 2], "dtype": "<i2", "compressor": None, "filters": None, "fill_value": 0, "order": "C"}
     return {".zarray": {**array, **changes}, ".zattrs": attributes or {}, "0.0.0": EIGHT}
+
+
+def mgh():
+    head = struct.pack(">7ih15f", 1, 2, 2, 2, 1, 4, 0, 1, 1, 2, 3, -1, 0, 0, 0, 0, -1, 0, 1, 0, 5, 6, 7)
+    return head + bytes(284 - len(head)) + np.frombuffer(EIGHT, "<i2").astype(">i2").tobytes()
 
 
 def meta(data=EIGHT, samples="LOCAL", **changes):
@@ -225,7 +240,7 @@ SAME_ZARR = {
     "coarse_first": pyramid(("half", COARSE, HALF), ("whole", FINE, [SCALE])), "understood": array3(extra={"must_understand": False}),
     "zstd_sum": array3(codecs=[BYTES, {"name": "zstd"}]) | {"c/0/0/0": ZSTD},
     "bytes": array3(data_type="uint8", codecs=[{"name": "bytes"}]) | {"c/0/0/0": EIGHT[:8]},
-    "shards": shards(), "image": image3(), "inches": image3(unit="inch"), "kilometers": image3(unit="kilometer"),
+    "shards": shards(), "image": image3(), "systems": systems3(), "prefixed": array3(codecs=[BYTES, {"name": "numcodecs.gzip"}]) | {"c/0/0/0": gzip.compress(EIGHT)}, "inches": image3(unit="inch"), "kilometers": image3(unit="kilometer"),
     "no_unit": image3(unit=None), "packed": array2({"add_offset": 5, "scale_factor": 2}), "turned": image3(palpate={"direction": [0, 1, 0, 1, 0, 0, 0, 0, -1]}),
     "outer": image3([SCALE, translation(1, 2, 3)], outer=[{"type": "scale", "scale": [2, 2, 2]}, translation(5, 6, 7)]),
     "named": array2({"_ARRAY_DIMENSIONS": ["x", "y", "z"]}), "capitals": array3(dimension_names=["X", "Y", "Z"]),
@@ -234,7 +249,7 @@ SAME_ZARR = {
 }
 # Read, or refused in the same words, as by the native program. What is in a folder is opened with all beside it.
 FILES = {
-    "plain.nrrd": nrrd(), "longer.nrrd": nrrd(data=EIGHT + EIGHT[:4]), "magic.nrrd": nrrd(data=b"\x1f\x8b" + EIGHT[2:]), "uint.nrrd": nrrd(type="uint", data=2 * EIGHT),
+    "plain.mgh": mgh(), "plain.mgz": gzip.compress(mgh()), "plain.nrrd": nrrd(), "longer.nrrd": nrrd(data=EIGHT + EIGHT[:4]), "magic.nrrd": nrrd(data=b"\x1f\x8b" + EIGHT[2:]), "uint.nrrd": nrrd(type="uint", data=2 * EIGHT),
     "ras.nrrd": nrrd("space: RAS", LPS[1], "space origin: (1,2,3)"), "las.nrrd": nrrd("space: left-anterior-superior", LPS[1]),
     "dimension.nrrd": nrrd("space dimension: 3", LPS[1], 'space units: "m" "m" "m"'), "key.nrrd": nrrd("type:=none"),
     "holes.nrrd": nrrd(type="float", data=HOLES), "holes.nii": nifti(16, data=HOLES), "plain.nii": nifti(),
