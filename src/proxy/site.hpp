@@ -171,7 +171,7 @@ struct WalledCone {
         return mask;
     }
 
-    HalfSpaces half_spaces;
+    HalfSpaces<4> half_spaces;
     std::array<unsigned, 4> wall_of;
     int walls = 0;
 };
