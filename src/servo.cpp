@@ -122,12 +122,13 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
       held_{session_.renderer.field.shared_samples(), session_.renderer.settings.layers,
             session_.renderer.settings.tool} {
     // What no device can render is refused, not lowered.
-    check(session_.renderer.settings);
+    check(session_.renderer);
     keep_device_limits(device.info().limits);
     start_ = session_.renderer.settings;
     check(start_);
     limits_ = start_.device;
     check(session_.settings);
+    check(command::Speed{session_.speed}, start_, field_);
     make_room_for_tools(session_.renderer);
     if (!(settings.rate >= 250 && settings.rate <= 8000)) {
         throw std::invalid_argument("the servo's rate must be 250 to 8000 Hz");
