@@ -1,7 +1,6 @@
 // Renderer: one tick, from the device's state by HIP, proxy and penetrability to the force.
 #include "palpate/renderer.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -315,10 +314,7 @@ void check(const RendererSettings& s) {
         }
     }
     if (s.proxy.step_budget < 1) throw std::invalid_argument("the step budget must be at least 1");
-    const Mat3 r = s.transform.rotation.transpose() * s.transform.rotation - Mat3::Identity();
-    // maxCoeff() alone may pass over a NaN.
-    if (!r.allFinite() || r.cwiseAbs().maxCoeff() >= 1e-6 ||
-        !(s.transform.rotation.determinant() > 0)) {
+    if (!is_rotation(s.transform.rotation)) {
         throw std::invalid_argument(
             "device transform: rotation must be orthonormal and must not mirror");
     }

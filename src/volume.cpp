@@ -1,7 +1,6 @@
 // Volume: geometry of a sampled grid, its samples and their range.
 #include "palpate/volume.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>

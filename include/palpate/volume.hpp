@@ -77,6 +77,27 @@ struct SampleBox {
 };
 /// The smallest box around both; if one is empty, the other one.
 SampleBox united(const SampleBox& a, const SampleBox& b);
+/// Whether test(index) holds for an index of a box, x fastest. Stops at the first one.
+template <class Test>
+bool any_index(const SampleBox& box, Test&& test) {
+    Index3 at;
+    for (at[2] = box.low[2]; at[2] <= box.high[2]; ++at[2]) {
+        for (at[1] = box.low[1]; at[1] <= box.high[1]; ++at[1]) {
+            for (at[0] = box.low[0]; at[0] <= box.high[0]; ++at[0]) {
+                if (test(std::as_const(at))) return true;
+            }
+        }
+    }
+    return false;
+}
+/// Calls visit(index) for each index of a box, x fastest.
+template <class Visit>
+void for_each_index(const SampleBox& box, Visit&& visit) {
+    any_index(box, [&](const Index3& at) {
+        visit(at);
+        return false;
+    });
+}
 
 /// The grid in physical space (LPS, millimetres).
 /// Sample (i, j, k) lies at origin + direction * (spacing * (i, j, k)); points given in such

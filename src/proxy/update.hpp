@@ -75,6 +75,12 @@ inline std::optional<double> held_share(const Friction& friction, Proxy& proxy, 
     return share < 1 ? share : 1;
 }
 
+/// A site at another point (index space) that takes the solid of this one for free.
+template <class AnySite>
+AnySite turned_at(const AnySite& site, const Vec3& index) {
+    return {site.field, site.isovalue, -site.sign, AnySite::located(index)};
+}
+
 /// How a method's own part ended.
 enum class Rest { at_target, on_surface, out_of_budget, recovering };
 
