@@ -153,7 +153,8 @@ double passive_stiffness(double rate, double physical_damping, double damping) {
     return std::max(0.0, rate * (physical_damping - damping));
 }
 
-/// One factor <= 1 for a spring and its dampers, with which that holds: 1, or by more than rounding.
+/// One factor <= 1 for a spring and its dampers, with which that holds: 1, or by more than
+/// rounding.
 double stable_part(double stiffness, double damping, double rate, double physical_damping) {
     if (damping < physical_damping &&
         stiffness <= passive_stiffness(rate, physical_damping, damping)) {
@@ -174,9 +175,9 @@ double rotational_stiffness(const ForceSettings& s, const DeviceLimits& limits, 
     const double wanted =
         s.rotational_stiffness > 0 ? s.rotational_stiffness : s.stiffness * gyration * gyration;
     if (!(limits.maximum_torque > 0)) return wanted;
-    return std::min(wanted, passive_stiffness(passive_rate(limits),
-                                              limits.physical_rotational_damping,
-                                              s.rotational_damping));
+    return std::min(wanted,
+                    passive_stiffness(passive_rate(limits), limits.physical_rotational_damping,
+                                      s.rotational_damping));
 }
 
 DeviceLimits smaller(const DeviceLimits& one, const DeviceLimits& other) noexcept {

@@ -31,9 +31,9 @@ template <>
 inline constexpr auto names_of<TickCause> = enum_names("cause", "none", "the machine", "the device",
                                                        "the proxy update", "the rest of the tick");
 template <>
-inline constexpr auto names_of<DeviceFailure> = enum_names(
-    "failure", "", "a call of its driver failed with an exception",
-    "a call of its driver does not return");
+inline constexpr auto names_of<DeviceFailure> =
+    enum_names("failure", "", "a call of its driver failed with an exception",
+               "a call of its driver does not return");
 
 const char* name_of(TickCause cause) {
     return enum_name(cause);

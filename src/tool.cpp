@@ -102,7 +102,8 @@ constexpr double right_angle = std::numbers::pi / 2;
 /// Of arcs that are looked at, in radii.
 constexpr double fine = 0.1;
 
-/// An arc round (0, z) from the tip on -z to an angle, and on to the end of a shaft: turned round z.
+/// An arc round (0, z) from the -z axis to an angle, and on to the end of a shaft, turned round z.
+/// Its depth along y is `depth` times as large.
 Tool turned_tool(double radius, double z, double angle, const Eigen::Vector2d& end, double spacing,
                  double depth = 1) {
     const auto profile = [&](double step) {

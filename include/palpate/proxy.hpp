@@ -24,8 +24,8 @@ enum class UpdateStatus : std::uint8_t {
     /// HIP not finite or farther than `farthest_hip`, or friction below 0 or NaN: nothing was
     /// changed
     refused,
-    not_finite,     ///< the SCP would be NaN or infinite: nothing was changed, render no force
-    waiting,        ///< held, because samples that it needs are not in memory: render no force
+    not_finite,  ///< the SCP would be NaN or infinite: nothing was changed, render no force
+    waiting,     ///< held, because samples that it needs are not in memory: render no force
 };
 
 /// Farthest HIP outside the grid [voxel] that an update accepts. The rounding error of a step grows

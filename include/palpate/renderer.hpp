@@ -111,8 +111,8 @@ FieldKind kind_of(const Field& field);
 /// Throws std::invalid_argument, saying what is wrong, for a tool that cannot be used with this
 /// method on such a field. Null, a point, is always valid.
 void check_tool(const Tool* tool, ProxyMethod method, const FieldKind& field);
-/// Throws std::invalid_argument, saying what is wrong, for settings, an isovalue or a tool that
-/// cannot be rendered with the renderer's field.
+/// Throws std::invalid_argument, with the reason, for settings, an isovalue or a tool that cannot
+/// be rendered with the renderer's field.
 void check(const Renderer& renderer);
 /// A renderer ready for its first tick. Throws as its check().
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings = {});

@@ -8,8 +8,8 @@
 namespace palpate {
 
 /// {d : normal_i . d <= 0 for all i}. Normals need not have unit length, but must not be zero. The
-/// compiler unrolls loops over four of them. Where it could not, for up to 48, updates in noise took
-/// 3 % more instructions.
+/// compiler unrolls loops over four of them. Where it could not, for up to 48, updates in noise
+/// took 3 % more instructions.
 template <int Most>
 struct HalfSpaces {
     std::array<Vec3, Most> normal;

@@ -87,8 +87,8 @@ TEST(Friction, that_is_below_0_or_no_number_is_refused_and_moves_nothing) {
     for (const Field* field : {&linear, &cubic}) {
         Proxy proxy;
         ASSERT_TRUE(place(proxy, *field, Vec3(12, 12, 18), 15.3));
-        for (const Friction& friction : {Friction{-0.1, 0}, Friction{0.3, -0.1}, Friction{nan, 0},
-                                         Friction{0.3, nan}}) {
+        for (const Friction& friction :
+             {Friction{-0.1, 0}, Friction{0.3, -0.1}, Friction{nan, 0}, Friction{0.3, nan}}) {
             for (Friction ProxySettings::*which :
                  {&ProxySettings::friction, &ProxySettings::behind}) {
                 ProxySettings settings;
