@@ -11,8 +11,8 @@ namespace palpate::baselines {
 namespace {
 
 /// The constraint planes of every tetrahedron that contains the SCP, normals in mm, index axes.
-HalfSpaces constraint_planes(const Site& site, const Incident& incident, const Vec3& spacing) {
-    HalfSpaces planes;
+HalfSpaces<48> constraint_planes(const Site& site, const Incident& incident, const Vec3& spacing) {
+    HalfSpaces<48> planes;
     for (int i = 0; i < incident.count; ++i) {
         const Tetrahedron& t = incident.tetrahedra[i];
         const Vec3 normal = unfold(t, site.excess_gradient_in(t)).cwiseQuotient(spacing);
@@ -42,7 +42,7 @@ const Tetrahedron& tetrahedron_towards(const Incident& incident, unsigned on,
 bool step_constrained(Site& site, Progress& progress) {
     const Vec3& spacing = progress.geometry.spacing;
     const Incident incident = incident_tetrahedra(site.point);
-    const HalfSpaces planes = constraint_planes(site, incident, spacing);
+    const HalfSpaces<48> planes = constraint_planes(site, incident, spacing);
     // Each pair of planes is tried, and compared with all.
     progress.charge(incident.count + planes.count * planes.count * planes.count / 200);
     const Vec3 h_mm = progress.to_target(site).cwiseProduct(spacing);

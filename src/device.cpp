@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 
 #include "palpate/names.hpp"
 
@@ -12,32 +13,12 @@ namespace {
 /// Columns: what lies along the device's right, up and towards the person, in physical axes.
 Mat3 axes_facing(Facing facing) {
     const Vec3 left(1, 0, 0), back(0, 1, 0), up(0, 0, 1);
+    // Right and up, in the order of Facing.
+    const std::array<std::array<Vec3, 2>, 6> sides{
+        {{left, up}, {-left, up}, {back, up}, {-back, up}, {-left, -back}, {left, -back}}};
+    const auto& [right_hand, top] = sides[static_cast<std::size_t>(facing)];
     Mat3 axes;
-    const auto set = [&](const Vec3& right_hand, const Vec3& top) {
-        axes.col(0) = right_hand;
-        axes.col(1) = top;
-        axes.col(2) = right_hand.cross(top);
-    };
-    switch (facing) {
-        case Facing::anterior:
-            set(left, up);
-            break;
-        case Facing::posterior:
-            set(-left, up);
-            break;
-        case Facing::left:
-            set(back, up);
-            break;
-        case Facing::right:
-            set(-back, up);
-            break;
-        case Facing::superior:
-            set(-left, -back);
-            break;
-        case Facing::inferior:
-            set(left, -back);
-            break;
-    }
+    axes << right_hand, top, right_hand.cross(top);
     return axes;
 }
 

@@ -86,15 +86,11 @@ class Rewriting {
         constexpr std::size_t between = 4;  // each may take milliseconds
         const auto bricks_along = (last - first + Index3::Ones()).cast<std::size_t>();
         ReportedItems told(progress_, bricks_along.prod(), between);
-        for (int k = first[2]; k <= last[2]; ++k) {
-            for (int j = first[1]; j <= last[1]; ++j) {
-                for (int i = first[0]; i <= last[0]; ++i) {
-                    told.done();
-                    if (before_.is_large() && !prepare({i, j, k}, around, reaches)) continue;
-                    rewrite<T>({i, j, k}, value);
-                }
-            }
-        }
+        for_each_index({first, last}, [&](const Index3& brick) {
+            told.done();
+            if (before_.is_large() && !prepare(brick, around, reaches)) return;
+            rewrite<T>(brick, value);
+        });
         if (changed_.empty()) return {samples, {}};
         const Bricks bricks =
             samples->bricks() ? *samples->bricks() : Bricks(samples->geometry().size);
@@ -112,15 +108,7 @@ class Rewriting {
 
     /// Of a large grid: fetches what a brick needs; false if the edit does not reach it.
     bool prepare(const Index3& brick, int around, auto&& reaches) {
-        bool reached = false;
-        const SampleBox part = part_of(brick);
-        for (int k = part.low[2]; k <= part.high[2] && !reached; ++k) {
-            for (int j = part.low[1]; j <= part.high[1] && !reached; ++j) {
-                for (int i = part.low[0]; i <= part.high[0] && !reached; ++i) {
-                    reached = reaches(Index3(i, j, k));
-                }
-            }
-        }
+        const bool reached = any_index(part_of(brick), reaches);
         const bool held = before_.samples().bricks() && before_.samples().bricks()->at(brick);
         if (!reached || (held && around == 0)) return reached;
         const Index3 low = brick * Bricks::edge;
@@ -152,7 +140,6 @@ class Rewriting {
     template <class T>
     void rewrite(const Index3& brick, auto&& value) {
         const Index3 low = brick * Bricks::edge;
-        const SampleBox part = part_of(brick);
         const Bricks* before = before_.samples().bricks();
         const Brick* const held = before ? before->at(brick) : nullptr;
         std::shared_ptr<std::byte[]> fresh;
@@ -164,20 +151,15 @@ class Rewriting {
         }
         SampleBox changed;
         T* const samples = reinterpret_cast<T*>(fresh.get());
-        for (int k = part.low[2]; k <= part.high[2]; ++k) {
-            for (int j = part.low[1]; j <= part.high[1]; ++j) {
-                for (int i = part.low[0]; i <= part.high[0]; ++i) {
-                    const Index3 at(i, j, k);
-                    T& sample = samples[place(at, low)];
-                    const T now = value(at, sample);
-                    if (now == sample) continue;
-                    sample = now;
-                    minimum_ = std::min(minimum_, double(now));
-                    maximum_ = std::max(maximum_, double(now));
-                    changed = united(changed, {at, at});
-                }
-            }
-        }
+        for_each_index(part_of(brick), [&](const Index3& at) {
+            T& sample = samples[place(at, low)];
+            const T now = value(at, sample);
+            if (now == sample) return;
+            sample = now;
+            minimum_ = std::min(minimum_, double(now));
+            maximum_ = std::max(maximum_, double(now));
+            changed = united(changed, {at, at});
+        });
         if (changed.empty()) return;
         changes_.push_back({brick, {std::move(fresh)}});
         changed_ = united(changed_, changed);

@@ -148,8 +148,18 @@ double passive_rate(const DeviceLimits& limits) {
     return 2 * limits.rate / (1 + 2 * limits.rate * limits.delay);
 }
 
-/// One factor <= 1 for a spring and its dampers, with which that holds by more than rounding.
+/// The largest k with this damping.
+double passive_stiffness(double rate, double physical_damping, double damping) {
+    return std::max(0.0, rate * (physical_damping - damping));
+}
+
+/// One factor <= 1 for a spring and its dampers, with which that holds: 1, or by more than
+/// rounding.
 double stable_part(double stiffness, double damping, double rate, double physical_damping) {
+    if (damping < physical_damping &&
+        stiffness <= passive_stiffness(rate, physical_damping, damping)) {
+        return 1;
+    }
     const double used = stiffness / rate + damping;
     const double part = physical_damping / used * (1 - 1e-9);
     return part > 0 && part < 1 ? part : 0;
@@ -158,19 +168,16 @@ double stable_part(double stiffness, double damping, double rate, double physica
 }  // namespace
 
 double greatest_stiffness(const DeviceLimits& limits, double damping) {
-    return std::max(0.0, passive_rate(limits) * (limits.physical_damping - damping));
-}
-
-/// [N mm/rad] with this damping [N mm s/rad].
-static double greatest_rotational_stiffness(const DeviceLimits& limits, double damping) {
-    return std::max(0.0, passive_rate(limits) * (limits.physical_rotational_damping - damping));
+    return passive_stiffness(passive_rate(limits), limits.physical_damping, damping);
 }
 
 double rotational_stiffness(const ForceSettings& s, const DeviceLimits& limits, double gyration) {
     const double wanted =
         s.rotational_stiffness > 0 ? s.rotational_stiffness : s.stiffness * gyration * gyration;
     if (!(limits.maximum_torque > 0)) return wanted;
-    return std::min(wanted, greatest_rotational_stiffness(limits, s.rotational_damping));
+    return std::min(wanted,
+                    passive_stiffness(passive_rate(limits), limits.physical_rotational_damping,
+                                      s.rotational_damping));
 }
 
 DeviceLimits smaller(const DeviceLimits& one, const DeviceLimits& other) noexcept {
@@ -217,22 +224,16 @@ void restart(ForceState& state) noexcept {
 }
 
 ForceSettings stable(ForceSettings s, const DeviceLimits& limits) noexcept {
-    const double damping = s.damping + s.viscosity;
-    if (!(damping < limits.physical_damping) ||
-        !(s.stiffness <= greatest_stiffness(limits, damping))) {
-        const double factor =
-            stable_part(s.stiffness, damping, passive_rate(limits), limits.physical_damping);
-        s.stiffness *= factor;
-        s.damping *= factor;
-        s.viscosity *= factor;
-    }
-    if (!(s.rotational_damping < limits.physical_rotational_damping) ||
-        !(s.rotational_stiffness <= greatest_rotational_stiffness(limits, s.rotational_damping))) {
-        const double factor = stable_part(s.rotational_stiffness, s.rotational_damping,
-                                          passive_rate(limits), limits.physical_rotational_damping);
-        s.rotational_stiffness *= factor;
-        s.rotational_damping *= factor;
-    }
+    const double rate = passive_rate(limits);
+    const double part =
+        stable_part(s.stiffness, s.damping + s.viscosity, rate, limits.physical_damping);
+    s.stiffness *= part;
+    s.damping *= part;
+    s.viscosity *= part;
+    const double turning = stable_part(s.rotational_stiffness, s.rotational_damping, rate,
+                                       limits.physical_rotational_damping);
+    s.rotational_stiffness *= turning;
+    s.rotational_damping *= turning;
     const double peak = greatest_stiffness(limits, s.damping + s.viscosity) * s.magnet.distance / 4;
     if (s.magnet.distance > 0 && !(s.magnet.peak <= peak)) s.magnet.peak = peak;
     return s;

@@ -28,16 +28,8 @@ bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept
         low[a] = static_cast<int>(std::max(at[a] - reach, 0.0));
         high[a] = std::min(static_cast<int>(std::min(at[a] + reach, last)) + 1, size[a] - 1);
     }
-    low = ResidentBricks::brick_of(low);
-    high = ResidentBricks::brick_of(high);
-    for (int k = low[2]; k <= high[2]; ++k) {
-        for (int j = low[1]; j <= high[1]; ++j) {
-            for (int i = low[0]; i <= high[0]; ++i) {
-                if (!resident->at({i, j, k})) return false;
-            }
-        }
-    }
-    return true;
+    return !any_index({ResidentBricks::brick_of(low), ResidentBricks::brick_of(high)},
+                      [&](const Index3& brick) { return !resident->at(brick); });
 }
 
 double part_within_reach(const Field& field, const Pull& pull) noexcept {
@@ -58,16 +50,12 @@ int level_at(const Field& field, const Vec3& physical) noexcept {
     const Vec3 at = index_from_physical(field.geometry(), physical);
     const Index3 low = at.cwiseMax(Vec3::Zero()).cwiseMin(last).cast<int>();
     const Index3 high = (low + Index3::Ones()).cwiseMin(last.cast<int>());
-    const Index3 first = ResidentBricks::brick_of(low), end = ResidentBricks::brick_of(high);
     int level = 0;
-    for (int k = first[2]; k <= end[2]; ++k) {
-        for (int j = first[1]; j <= end[1]; ++j) {
-            for (int i = first[0]; i <= end[0]; ++i) {
-                const Brick* brick = resident->at({i, j, k});
-                if (brick) level = std::max<int>(level, brick->level);
-            }
-        }
-    }
+    for_each_index({ResidentBricks::brick_of(low), ResidentBricks::brick_of(high)},
+                   [&](const Index3& at) {
+                       const Brick* brick = resident->at(at);
+                       if (brick) level = std::max<int>(level, brick->level);
+                   });
     return level;
 }
 

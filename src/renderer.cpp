@@ -1,7 +1,6 @@
 // Renderer: one tick, from the device's state by HIP, proxy and penetrability to the force.
 #include "palpate/renderer.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -305,18 +304,16 @@ void check(const RendererSettings& s) {
     const auto& ranges = s.penetrability.ranges;
     const bool falling = s.penetrability.range_count > 1 && ranges[1].low < ranges[0].low;
     check(s.penetrability, falling ? Solid::below : Solid::above);
-    const Friction& friction = s.proxy.friction;
-    if (!(friction.dynamic_coefficient >= 0) ||
-        !(friction.static_coefficient >= friction.dynamic_coefficient) ||
-        !std::isfinite(friction.static_coefficient)) {
-        throw std::invalid_argument(
-            "friction: needs 0 <= dynamic coefficient <= static coefficient");
+    for (const Friction& friction : {s.proxy.friction, s.proxy.behind}) {
+        if (!(friction.dynamic_coefficient >= 0) ||
+            !(friction.static_coefficient >= friction.dynamic_coefficient) ||
+            !std::isfinite(friction.static_coefficient)) {
+            throw std::invalid_argument(
+                "friction: needs 0 <= dynamic coefficient <= static coefficient");
+        }
     }
     if (s.proxy.step_budget < 1) throw std::invalid_argument("the step budget must be at least 1");
-    const Mat3 r = s.transform.rotation.transpose() * s.transform.rotation - Mat3::Identity();
-    // maxCoeff() alone may pass over a NaN.
-    if (!r.allFinite() || r.cwiseAbs().maxCoeff() >= 1e-6 ||
-        !(s.transform.rotation.determinant() > 0)) {
+    if (!is_rotation(s.transform.rotation)) {
         throw std::invalid_argument(
             "device transform: rotation must be orthonormal and must not mirror");
     }
@@ -351,14 +348,20 @@ void check_isovalue(double isovalue, Solid solid) {
     }
 }
 
-Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings) {
+void check(const Renderer& renderer) {
+    const RendererSettings& settings = renderer.settings;
+    const Solid solid = renderer.field.solid();
     check(settings);
-    check(settings.penetrability, field.solid());
-    if (settings.layers) check(*settings.layers, field.solid());
-    check_isovalue(isovalue, field.solid());
-    check_tool(settings.tool.get(), settings.method, kind_of(field));
+    check(settings.penetrability, solid);
+    if (settings.layers) check(*settings.layers, solid);
+    check_isovalue(renderer.isovalue_without_layers.value_or(renderer.proxy.isovalue), solid);
+    check_tool(settings.tool.get(), settings.method, kind_of(renderer.field));
+}
+
+Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings) {
     Renderer renderer{std::move(field), settings, {}, {}};
     renderer.proxy.isovalue = isovalue;
+    check(renderer);
     if (settings.tool) renderer.tool_proxy.emplace(settings.tool);
     return renderer;
 }

@@ -40,8 +40,7 @@ void copy_brick(const std::byte* brick, const Index3& low, const Geometry& geome
     for (int k = low[2]; k <= last[2]; ++k) {
         for (int j = low[1]; j <= last[1]; ++j) {
             const auto from = static_cast<std::size_t>((k - low[2]) * Bricks::row + j - low[1]);
-            const auto to =
-                (static_cast<std::size_t>(k) * geometry.size[1] + j) * geometry.size[0] + low[0];
+            const auto to = static_cast<std::size_t>(sample_place({low[0], j, k}, geometry.size));
             std::memcpy(whole + to * bytes, brick + from * Bricks::row * bytes, run);
         }
     }

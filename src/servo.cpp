@@ -6,6 +6,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "palpate/names.hpp"
 #include "servo/clocks.hpp"
 #include "servo/privileges.hpp"
 #include "servo/watched_device.hpp"
@@ -26,32 +27,20 @@ void add(std::atomic<std::int64_t>& counter, std::int64_t amount) {
 
 }  // namespace
 
+template <>
+inline constexpr auto names_of<TickCause> = enum_names("cause", "none", "the machine", "the device",
+                                                       "the proxy update", "the rest of the tick");
+template <>
+inline constexpr auto names_of<DeviceFailure> =
+    enum_names("failure", "", "a call of its driver failed with an exception",
+               "a call of its driver does not return");
+
 const char* name_of(TickCause cause) {
-    switch (cause) {
-        case TickCause::none:
-            return "none";
-        case TickCause::machine:
-            return "the machine";
-        case TickCause::device:
-            return "the device";
-        case TickCause::proxy:
-            return "the proxy update";
-        case TickCause::other:
-            return "the rest of the tick";
-    }
-    return "unknown";
+    return enum_name(cause);
 }
 
 const char* name_of(DeviceFailure failure) {
-    switch (failure) {
-        case DeviceFailure::none:
-            return "";
-        case DeviceFailure::threw:
-            return "a call of its driver failed with an exception";
-        case DeviceFailure::hung:
-            return "a call of its driver does not return";
-    }
-    return "unknown";
+    return enum_name(failure);
 }
 
 Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64_t number,
@@ -122,12 +111,13 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
       held_{session_.renderer.field.shared_samples(), session_.renderer.settings.layers,
             session_.renderer.settings.tool} {
     // What no device can render is refused, not lowered.
-    check(session_.renderer.settings);
+    check(session_.renderer);
     keep_device_limits(device.info().limits);
     start_ = session_.renderer.settings;
     check(start_);
     limits_ = start_.device;
     check(session_.settings);
+    check(command::Speed{session_.speed}, start_, field_);
     make_room_for_tools(session_.renderer);
     if (!(settings.rate >= 250 && settings.rate <= 8000)) {
         throw std::invalid_argument("the servo's rate must be 250 to 8000 Hz");

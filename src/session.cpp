@@ -2,7 +2,6 @@
 #include "palpate/session.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 #include <string>

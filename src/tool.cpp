@@ -1,6 +1,7 @@
 // Tools: their points and built-in shapes.
 #include "palpate/tool.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -98,8 +99,25 @@ ToolShape turned_shape(const std::vector<Eigen::Vector2d>& profile) {
 }
 
 constexpr double right_angle = std::numbers::pi / 2;
-/// Of arcs that are looked at.
+/// Of arcs that are looked at, in radii.
 constexpr double fine = 0.1;
+
+/// An arc round (0, z) from the -z axis to an angle, and on to the end of a shaft, turned round z.
+/// Its depth along y is `depth` times as large.
+Tool turned_tool(double radius, double z, double angle, const Eigen::Vector2d& end, double spacing,
+                 double depth = 1) {
+    const auto profile = [&](double step) {
+        std::vector<Eigen::Vector2d> line;
+        add_arc(line, radius, z, 0, angle, step);
+        line.push_back(end);
+        return line;
+    };
+    std::vector<Vec3> points = turned_profile(profile(spacing), spacing);
+    ToolShape shape = turned_shape(profile(fine * radius));
+    for (Vec3& point : points) point[1] *= depth;
+    for (Vec3& vertex : shape.vertices) vertex[1] *= depth;
+    return Tool(std::move(points), std::nullopt, true, std::move(shape));
+}
 
 /// Of a tool's points [mm]: beyond the one no volume lies, below the other turning moves nothing.
 constexpr double longest_arm = 1e6, shortest_arm = 1e-6;
@@ -204,45 +222,23 @@ Tool needle_tool(double length, double radius, double spacing) {
     require_length(radius);
     require_length(spacing);
     if (!(length > radius)) throw std::invalid_argument("a needle must be longer than thick");
-    const auto profile = [&](double step) {
-        std::vector<Eigen::Vector2d> line;
-        add_arc(line, radius, radius, 0, right_angle, step);
-        line.emplace_back(radius, length);
-        return line;
-    };
-    return Tool(turned_profile(profile(spacing), spacing), std::nullopt, true,
-                turned_shape(profile(fine * radius)));
+    return turned_tool(radius, radius, right_angle, {radius, length}, spacing);
 }
 
 Tool burr_tool(double radius, double spacing) {
     require_length(radius);
     require_length(spacing);
     constexpr double thin = 0.4;
-    const auto profile = [&](double step) {
-        std::vector<Eigen::Vector2d> line;
-        add_arc(line, radius, 0, 0, std::numbers::pi - std::asin(thin), step);
-        line.emplace_back(thin * radius, 4 * radius);
-        return line;
-    };
-    return Tool(turned_profile(profile(spacing), spacing), std::nullopt, true,
-                turned_shape(profile(fine * radius)));
+    return turned_tool(radius, 0, std::numbers::pi - std::asin(thin), {thin * radius, 4 * radius},
+                       spacing);
 }
 
 Tool fingertip_tool(double spacing, double scale) {
     require_length(spacing);
     require_length(scale);
     const double half_width = 8 * scale, half_depth = 6 * scale, length = 12 * scale;
-    const auto profile = [&](double step) {
-        std::vector<Eigen::Vector2d> line;
-        add_arc(line, half_width, 0, 0, right_angle, step);
-        line.emplace_back(half_width, length);
-        return line;
-    };
-    std::vector<Vec3> points = turned_profile(profile(spacing), spacing);
-    ToolShape shape = turned_shape(profile(fine * half_width));
-    for (Vec3& point : points) point[1] *= half_depth / half_width;
-    for (Vec3& vertex : shape.vertices) vertex[1] *= half_depth / half_width;
-    return Tool(std::move(points), std::nullopt, true, std::move(shape));
+    return turned_tool(half_width, 0, right_angle, {half_width, length}, spacing,
+                       half_depth / half_width);
 }
 
 Vec3 rotation_between(const Quaternion& from, const Quaternion& to) {
@@ -258,6 +254,11 @@ Quaternion turned(const Quaternion& from, const Vec3& rotation) {
     const double share = angle < 1e-8 ? 0.5 : std::sin(0.5 * angle) / angle;
     const Vec3 v = rotation * share;
     return (Quaternion(std::cos(0.5 * angle), v[0], v[1], v[2]) * from).normalized();
+}
+
+bool is_rotation(const Mat3& m) {
+    return m.allFinite() && (m.transpose() * m - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-6 &&
+           m.determinant() > 0;
 }
 
 }  // namespace palpate

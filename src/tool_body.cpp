@@ -121,12 +121,7 @@ struct Places {
     }
     template <class Visit>
     void visit(const Vec3& low, const Vec3& high, Visit&& visit) const {
-        const Index3 from = above(low), to = below(high);
-        for (int k = from[2]; k <= to[2]; ++k) {
-            for (int j = from[1]; j <= to[1]; ++j) {
-                for (int i = from[0]; i <= to[0]; ++i) visit(Index3(i, j, k));
-            }
-        }
+        for_each_index({above(low), below(high)}, visit);
     }
 };
 

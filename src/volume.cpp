@@ -1,7 +1,6 @@
 // Volume: geometry of a sampled grid, its samples and their range.
 #include "palpate/volume.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -192,9 +191,9 @@ template std::span<const std::uint16_t> Volume::samples() const;
 template std::span<const float> Volume::samples() const;
 
 double Volume::sample(const Index3& i) const {
-    const auto at = (std::int64_t{i[2]} * geometry_.size[1] + i[1]) * geometry_.size[0] + i[0];
     return with_type(type_, [&](auto s) {
-        return static_cast<double>(static_cast<const decltype(s)*>(samples_.get())[at]);
+        const auto* const samples = static_cast<const decltype(s)*>(samples_.get());
+        return static_cast<double>(samples[sample_place(i, geometry_.size)]);
     });
 }
 

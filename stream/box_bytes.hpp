@@ -27,16 +27,6 @@ std::uint64_t bytes_of(const SampleBox& box, SampleType type);
 
 Volume volume_from(const Geometry& geometry, SampleType type, std::vector<std::byte> bytes);
 
-/// Calls visit(index) for each index in a box, x fastest.
-template <class Visit>
-void for_each_index(const SampleBox& box, Visit&& visit) {
-    for (int k = box.low[2]; k <= box.high[2]; ++k) {
-        for (int j = box.low[1]; j <= box.high[1]; ++j) {
-            for (int i = box.low[0]; i <= box.high[0]; ++i) visit(Index3(i, j, k));
-        }
-    }
-}
-
 /// Calls visit(place, part) for each piece of `size` samples that a box has samples of, with these.
 template <class Visit>
 void for_each_piece(const Index3& size, const SampleBox& box, Visit&& visit) {

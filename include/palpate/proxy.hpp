@@ -21,9 +21,11 @@ enum class UpdateStatus : std::uint8_t {
     done,           ///< the SCP has its final place for this HIP
     out_of_budget,  ///< step budget used up: the SCP is valid, the next update continues from it
     recovering,     ///< the SCP is still inside the solid: render no force
-    refused,        ///< HIP not finite or farther than `farthest_hip`: nothing was changed
-    not_finite,     ///< the SCP would be NaN or infinite: nothing was changed, render no force
-    waiting,        ///< held, because samples that it needs are not in memory: render no force
+    /// HIP not finite or farther than `farthest_hip`, or friction below 0 or NaN: nothing was
+    /// changed
+    refused,
+    not_finite,  ///< the SCP would be NaN or infinite: nothing was changed, render no force
+    waiting,     ///< held, because samples that it needs are not in memory: render no force
 };
 
 /// Farthest HIP outside the grid [voxel] that an update accepts. The rounding error of a step grows

@@ -96,7 +96,7 @@ struct Tick {
 
 /// Throws std::invalid_argument, with the reason, for settings that cannot be rendered. Whether
 /// ranges of interest and layers are in the order of the field's solid side is left to their own
-/// check(), which make_renderer() calls as well.
+/// check(), and to that of a renderer.
 void check(const RendererSettings& settings);
 /// Throws std::invalid_argument for an isovalue that is NaN, or infinite so that all of space is
 /// solid. The other infinity leaves all of space free.
@@ -111,8 +111,10 @@ FieldKind kind_of(const Field& field);
 /// Throws std::invalid_argument, with the reason, for a tool that cannot be used with this method
 /// on such a field. Null, a point, is always valid.
 void check_tool(const Tool* tool, ProxyMethod method, const FieldKind& field);
-/// A renderer ready for its first tick. Throws std::invalid_argument for an isovalue or settings
-/// that do not pass their check.
+/// Throws std::invalid_argument, with the reason, for settings, an isovalue or a tool that cannot
+/// be rendered with the renderer's field.
+void check(const Renderer& renderer);
+/// A renderer ready for its first tick. Throws as its check().
 Renderer make_renderer(Field field, double isovalue, const RendererSettings& settings = {});
 /// Another level from the next tick on or, while there are layers with surfaces, as soon as they
 /// are removed. It has to pass check_isovalue().

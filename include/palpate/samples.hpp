@@ -224,9 +224,7 @@ double Samples::sample_as(const Index3& at, const Moment& moment) const {
     if (resident_) {
         return in(resident_->of_sample(at)->samples.get(), ResidentBricks::place_of(at));
     }
-    const Index3& size = geometry_.size;
-    const std::ptrdiff_t place =
-        (std::ptrdiff_t{at[2]} * size[1] + at[1]) * std::ptrdiff_t{size[0]} + at[0];
+    const std::ptrdiff_t place = sample_place(at, geometry_.size);
     const double from = in(frames_[moment.from].volume.data(), place);
     if (!(moment.weight > 0)) return from;
     return (1 - moment.weight) * from + moment.weight * in(frames_[moment.to].volume.data(), place);

@@ -118,7 +118,7 @@ struct PoseObserver {
 ///    and isovalue unchanged); T3 and T4 without friction;
 /// T5 bounded work, and never NaN.
 /// Refused: a field that is not cubic, a pose that is not finite or farther than `farthest_hip`, a
-/// tool whose radius is more than `farthest_hip` voxels, a gyration out of range.
+/// tool whose radius is more than `farthest_hip` voxels, a gyration out of range, friction below 0.
 ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
                        const ToolSettings& settings = {}, PoseObserver observer = {});
 

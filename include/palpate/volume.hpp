@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -32,22 +33,11 @@ std::string_view name_of(SampleType type);
 SampleType sample_type_from(std::string_view name);
 
 template <class T>
-constexpr SampleType sample_type_of();
-template <>
-constexpr SampleType sample_type_of<std::uint8_t>() {
-    return SampleType::uint8;
-}
-template <>
-constexpr SampleType sample_type_of<std::int16_t>() {
-    return SampleType::int16;
-}
-template <>
-constexpr SampleType sample_type_of<std::uint16_t>() {
-    return SampleType::uint16;
-}
-template <>
-constexpr SampleType sample_type_of<float>() {
-    return SampleType::float32;
+constexpr SampleType sample_type_of() {
+    if constexpr (std::is_same_v<T, std::uint8_t>) return SampleType::uint8;
+    if constexpr (std::is_same_v<T, std::int16_t>) return SampleType::int16;
+    if constexpr (std::is_same_v<T, std::uint16_t>) return SampleType::uint16;
+    if constexpr (std::is_same_v<T, float>) return SampleType::float32;
 }
 
 /// Calls `work` with a zero of the C++ type that `type` names, and returns its result. The result
@@ -77,6 +67,27 @@ struct SampleBox {
 };
 /// The smallest box around both; if one is empty, the other one.
 SampleBox united(const SampleBox& a, const SampleBox& b);
+/// Whether test(index) holds for an index of a box, x fastest. Stops at the first one.
+template <class Test>
+bool any_index(const SampleBox& box, Test&& test) {
+    Index3 at;
+    for (at[2] = box.low[2]; at[2] <= box.high[2]; ++at[2]) {
+        for (at[1] = box.low[1]; at[1] <= box.high[1]; ++at[1]) {
+            for (at[0] = box.low[0]; at[0] <= box.high[0]; ++at[0]) {
+                if (test(std::as_const(at))) return true;
+            }
+        }
+    }
+    return false;
+}
+/// Calls visit(index) for each index of a box, x fastest.
+template <class Visit>
+void for_each_index(const SampleBox& box, Visit&& visit) {
+    any_index(box, [&](const Index3& at) {
+        visit(at);
+        return false;
+    });
+}
 
 /// The grid in physical space (LPS, millimetres).
 /// Sample (i, j, k) lies at origin + direction * (spacing * (i, j, k)); points given in such
@@ -100,6 +111,10 @@ struct Geometry {
 SampleBox whole_box(const Geometry& geometry);
 /// Number of samples, as 64 bit.
 std::int64_t sample_count(const Geometry& geometry);
+/// Place of a sample among those of a grid of this size, x fastest.
+inline std::ptrdiff_t sample_place(const Index3& at, const Index3& size) {
+    return (std::ptrdiff_t{at[2]} * size[1] + at[1]) * size[0] + at[0];
+}
 /// index -> physical [mm].
 Vec3 physical_from_index(const Geometry& geometry, const Vec3& index);
 /// physical [mm] -> index. The direction is orthonormal, so its transpose is its inverse.

@@ -28,30 +28,23 @@ class Before {
     double sample(const Index3& at) const {
         if (!is_large_ || is_edited(at)) return samples_.sample(at);
         return with_type(samples_.type(), [&](auto zero) {
-            return double(reinterpret_cast<const decltype(zero)*>(bytes_.data())[place_of(at)]);
+            return double(reinterpret_cast<const decltype(zero)*>(bytes_.data())[fetched(at)]);
         });
     }
     /// So many samples from one on along x, before all edits.
     const std::byte* row(const Index3& at) const {
-        const std::size_t each = size_of(samples_.type());
-        if (is_large_) return bytes_.data() + place_of(at) * each;
-        const Index3& size = samples_.geometry().size;
-        const auto from = (std::size_t(at[2]) * std::size_t(size[1]) + std::size_t(at[1])) *
-                              std::size_t(size[0]) +
-                          std::size_t(at[0]);
-        return static_cast<const std::byte*>(samples_.volume().data()) + from * each;
+        const auto each = static_cast<std::ptrdiff_t>(size_of(samples_.type()));
+        if (is_large_) return bytes_.data() + fetched(at) * each;
+        return static_cast<const std::byte*>(samples_.volume().data()) +
+               sample_place(at, samples_.geometry().size) * each;
     }
 
   private:
     bool is_edited(const Index3& at) const {
         return samples_.bricks() && samples_.bricks()->of_sample(at);
     }
-    std::size_t place_of(const Index3& at) const {
-        const Index3 in = at - box_.low;
-        return (std::size_t(in[2]) * std::size_t(size_[1]) + std::size_t(in[1])) *
-                   std::size_t(size_[0]) +
-               std::size_t(in[0]);
-    }
+    /// Place among the fetched samples.
+    std::ptrdiff_t fetched(const Index3& at) const { return sample_place(at - box_.low, size_); }
 
     const Samples& samples_;
     const ReadSamples& read_;

@@ -23,14 +23,6 @@ double drag_up_to(const NeedleState& needle, const Layers& layers, double tip) {
 
 }  // namespace
 
-void insert(NeedleState& needle, const Vec3& entry, const Vec3& axis) {
-    needle = {};
-    needle.inserted = true;
-    needle.slipping = true;
-    needle.entry = entry;
-    needle.axis = axis;
-}
-
 double along_line(const NeedleState& needle, const Vec3& point) {
     return needle.axis.dot(point - needle.entry);
 }

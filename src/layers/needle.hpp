@@ -5,8 +5,6 @@
 
 namespace palpate {
 
-/// Puts the needle in at a point of its first surface.
-void insert(NeedleState& needle, const Vec3& entry, const Vec3& axis);
 /// The hand's place along the line [mm, physical].
 double along_line(const NeedleState& needle, const Vec3& point);
 Vec3 on_line(const NeedleState& needle, double at);

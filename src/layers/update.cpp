@@ -211,8 +211,11 @@ class LayersTick {
         const Vec3 pull = (update_.hip - update_.scp).normalized();
         // A tool that points along the surface or out of it says nothing.
         const bool points = input_.pointing.dot(-out) > 0.2;
-        insert(state_.needle, update_.scp, points ? input_.pointing : pull);
         NeedleState& needle = state_.needle;
+        needle = {};
+        needle.inserted = needle.slipping = true;
+        needle.entry = update_.scp;
+        needle.axis = points ? input_.pointing : pull;
         needle.hand = along_line(needle, state_.moved ? state_.hip : input_.hip);
         needle.anchor = along_line(needle, input_.hip);
         // Of what the surface's spring has stored this takes on its part, and no more.

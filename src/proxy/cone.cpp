@@ -11,7 +11,9 @@ constexpr double slack_of_feasible = 1e-13;
 /// Two normals with a smaller sine between them count as one plane.
 constexpr double least_sine = 1e-12;
 
-bool feasible(const Vec3& p, const HalfSpaces& cone, double h_length, int skip_a, int skip_b) {
+template <int Most>
+bool feasible(const Vec3& p, const HalfSpaces<Most>& cone, double h_length, int skip_a,
+              int skip_b) {
     for (int i = 0; i < cone.count; ++i) {
         if (i == skip_a || i == skip_b) continue;
         const Vec3& n = cone.normal[i];
@@ -23,8 +25,9 @@ bool feasible(const Vec3& p, const HalfSpaces& cone, double h_length, int skip_a
 
 }  // namespace
 
-ConeProjection project_on_cone(const Vec3& h, const HalfSpaces& cone) {
-    std::array<double, HalfSpaces::most> pull;  // n . h
+template <int Most>
+ConeProjection project_on_cone(const Vec3& h, const HalfSpaces<Most>& cone) {
+    std::array<double, Most> pull;  // n . h
     bool inside = true;
     for (int i = 0; i < cone.count; ++i) {
         pull[i] = dot(cone.normal[i], h);
@@ -71,5 +74,8 @@ ConeProjection project_on_cone(const Vec3& h, const HalfSpaces& cone) {
     }
     return best;
 }
+
+template ConeProjection project_on_cone(const Vec3&, const HalfSpaces<4>&);
+template ConeProjection project_on_cone(const Vec3&, const HalfSpaces<48>&);
 
 }  // namespace palpate

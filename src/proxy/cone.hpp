@@ -7,11 +7,12 @@
 
 namespace palpate {
 
-/// {d : normal_i . d <= 0 for all i}. Normals need not have unit length, but must not be zero.
+/// {d : normal_i . d <= 0 for all i}. Normals need not have unit length, but must not be zero. The
+/// compiler unrolls loops over four of them. Where it could not, for up to 48, updates in noise
+/// took 3 % more instructions.
+template <int Most>
 struct HalfSpaces {
-    static constexpr int most = 48;  ///< tetrahedra that meet at a sample (method paper)
-
-    std::array<Vec3, most> normal;  // those beyond `count` are not even set
+    std::array<Vec3, Most> normal;
     int count = 0;
 
     void add(const Vec3& n) { normal[count++] = n; }
@@ -28,6 +29,11 @@ inline constexpr int work_of_projection = 2;
 /// The projection of h. In three dimensions it lies in the interior, on one border, on the line of
 /// two, or at the apex: each candidate is tried, the longest feasible one is the projection (for a
 /// projection p on a cone, |h|^2 = |p|^2 + |h - p|^2).
-ConeProjection project_on_cone(const Vec3& h, const HalfSpaces& cone);
+template <int Most>
+ConeProjection project_on_cone(const Vec3& h, const HalfSpaces<Most>& cone);
+
+/// The most tetrahedra meet at a sample: 48 constraint planes (method paper).
+extern template ConeProjection project_on_cone(const Vec3&, const HalfSpaces<4>&);
+extern template ConeProjection project_on_cone(const Vec3&, const HalfSpaces<48>&);
 
 }  // namespace palpate

@@ -55,10 +55,6 @@ struct CubicSite : BoundPoint {
     bool reaches(double at) const { return kept.most > at; }
     bool reaches_behind() const { return room < -level(); }
     void turn();
-    CubicSite at(const Vec3& index) const { return {field, isovalue, sign, located(index)}; }
-    CubicSite turned_at(const Vec3& index) const {
-        return {field, isovalue, -sign, located(index)};
-    }
     void move_to(const LatticePoint& at);
     /// Back to where a copy of this site was made, without the work of move_to().
     void return_to(const CubicSite& before);

@@ -133,8 +133,7 @@ bool search_out(AnySite& site, Progress& progress, double& reach) {
             if (direction == 13) continue;
             const Vec3 per_unit = (axes / std::sqrt(dot(axes, axes))).cwiseQuotient(spacing) * unit;
             const Vec3 start = from + reach * per_unit;
-            // The solid is the free side of the field with its sign turned.
-            AnySite probe = site.turned_at(start);
+            AnySite probe = turned_at(site, start);
             Progress silent{progress.geometry, {}, start, most};
             // Not past the nearest that another direction has found.
             silent.least_left =

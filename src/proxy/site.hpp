@@ -91,10 +91,6 @@ struct Site : BoundPoint {
         if (t.cell == point.tetrahedron.cell) return sign * piece_of(t, samples).gradient;
         return sign * piece_of(t, field.cell(t.cell)).gradient;
     }
-    /// The site of another point (index space), and the same with its solid and its free side
-    /// exchanged.
-    Site at(const Vec3& index) const { return {field, isovalue, sign, locate(index)}; }
-    Site turned_at(const Vec3& index) const { return {field, isovalue, -sign, locate(index)}; }
     /// Moves to another point.
     void move_to(const LatticePoint& at) {
         point = at;
@@ -171,7 +167,7 @@ struct WalledCone {
         return mask;
     }
 
-    HalfSpaces half_spaces;
+    HalfSpaces<4> half_spaces;
     std::array<unsigned, 4> wall_of;
     int walls = 0;
 };

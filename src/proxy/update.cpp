@@ -31,7 +31,7 @@ void prefer_free_hip(AnySite& site, Progress& progress, const Vec3& start_index)
     const Vec3 out = (site.index() - start_index).cwiseProduct(spacing);
     const Vec3 to_hip = (progress.target - start_index).cwiseProduct(spacing);
     if (!(dot(out, out) > dot(to_hip, to_hip))) return;
-    AnySite at_hip = site.at(progress.target);
+    AnySite at_hip(site.field, site.isovalue, site.sign, AnySite::located(progress.target));
     const double excess = at_hip.excess();
     if (excess > site.level() || excess < -site.thickness) return;
     site.move_to(at_hip.point);
@@ -50,8 +50,7 @@ bool push_ahead(AnySite& site, Progress& progress, const Vec3& start_index, cons
     const Vec3 out = (site.index() - start_index).cwiseProduct(spacing);
     const double farthest = farthest_push * spacing.maxCoeff();
     if (dot(out, normal) >= 0) return dot(out, out) <= farthest * farthest;
-    // The solid is the free side of the field with its sign turned.
-    AnySite probe = site.turned_at(start_index);
+    AnySite probe = turned_at(site, start_index);
     Progress silent{progress.geometry, {}, start_index, progress.budget};
     const Vec3 push = (farthest * normal).cwiseQuotient(spacing);
     const WalkEnd end = walk_out(probe, push, silent);

@@ -11,16 +11,23 @@
 
 namespace palpate {
 
-/// False for a HIP (index space) that is not finite or too far from the grid (farthest_hip), and
-/// for an isovalue that is NaN or at which all of space is solid. For a point and a tool.
-inline bool accepts(double isovalue, const Field& field, const Vec3& hip_index) {
+/// False for a coefficient that is NaN or below 0.
+inline bool is_possible(const Friction& friction) {
+    return friction.static_coefficient >= 0 && friction.dynamic_coefficient >= 0;
+}
+/// False for a HIP (index space) that is not finite or too far from the grid (farthest_hip), for
+/// an isovalue that is NaN or at which all of space is solid, and for friction that is not
+/// possible. For a point and a tool.
+inline bool accepts(double isovalue, const Field& field, const Vec3& hip_index,
+                    const Friction& friction) {
     const auto near = [&](int a) {
         // Mostly the first comparison is enough: the grid begins at 0.
         return std::abs(hip_index[a]) <= farthest_hip ||
                (hip_index[a] > 0 && hip_index[a] <= field.geometry().size[a] + farthest_hip);
     };
     return near(0) && near(1) && near(2) &&
-           field.sign() * isovalue > -std::numeric_limits<double>::infinity();
+           field.sign() * isovalue > -std::numeric_limits<double>::infinity() &&
+           is_possible(friction);
 }
 /// The result of an update that changed nothing.
 ProxyUpdate refuse_update(const Proxy& proxy, const Field& field, const Vec3& hip,
@@ -68,6 +75,12 @@ inline std::optional<double> held_share(const Friction& friction, Proxy& proxy, 
     return share < 1 ? share : 1;
 }
 
+/// A site at another point (index space) that takes the solid of this one for free.
+template <class AnySite>
+AnySite turned_at(const AnySite& site, const Vec3& index) {
+    return {site.field, site.isovalue, -site.sign, AnySite::located(index)};
+}
+
 /// How a method's own part ended.
 enum class Rest { at_target, on_surface, out_of_budget, recovering };
 
@@ -82,7 +95,10 @@ template <class AnySite, class Own>
                                                     const Vec3& hip, const ProxySettings& settings,
                                                     StepObserver observer, Own&& own) {
     const Vec3 target = index_from_physical(field.geometry(), hip);
-    if (!accepts(proxy.isovalue, field, target)) return refuse_update(proxy, field, hip);
+    if (!accepts(proxy.isovalue, field, target, settings.friction) ||
+        !is_possible(settings.behind)) {
+        return refuse_update(proxy, field, hip);
+    }
     Update<AnySite> update(proxy, field, target, settings, observer);
     const Rest rest = update.recovering ? Rest::recovering : own(update.site, update.progress);
     return finish_update(proxy, update, hip, rest);

@@ -68,15 +68,13 @@ std::shared_ptr<const Samples> ShownEdits::of(const Samples& edited) {
     now.for_each_apart(*from_, [&](const Index3& brick, const auto&, const auto&) {
         changed = true;
         const SampleBox box = samples_near(here, there, brick);
-        if ((box.low.array() > box.high.array()).any()) return;
+        if (box.empty()) return;
         // The first samples of a brick are the last of the one before, too.
         const Index3 first = (box.low - Index3::Ones()).cwiseMax(0) / Bricks::edge;
         const Index3 last = (box.high / Bricks::edge).cwiseMin(bricks_.count() - Index3::Ones());
-        for (int k = first[2]; k <= last[2]; ++k) {
-            for (int j = first[1]; j <= last[1]; ++j) {
-                for (int i = first[0]; i <= last[0]; ++i) touched.insert({i, j, k});
-            }
-        }
+        for_each_index({first, last}, [&](const Index3& at) {
+            touched.insert({at[0], at[1], at[2]});
+        });
     });
     if (changed) from_ = now;
     if (touched.empty()) return with_edits_;
@@ -101,17 +99,13 @@ Brick ShownEdits::brick_of(const Index3& brick, const Samples& edited) const {
         const std::shared_ptr<std::byte[]> made(new std::byte[Bricks::per_brick * sizeof(T)]{});
         T* out = reinterpret_cast<T*>(made.get());
         bool any = false;
-        for (int k = 0; k < Bricks::row; ++k) {
-            for (int j = 0; j < Bricks::row; ++j) {
-                for (int i = 0; i < Bricks::row; ++i, ++out) {
-                    const Index3 at = low + Index3(i, j, k);
-                    if ((at.array() >= size.array()).any()) continue;
-                    const std::optional<double> edit = nearest(at);
-                    *out = static_cast<T>(edit ? *edit : plain_->sample(at));
-                    any = any || edit;
-                }
-            }
-        }
+        for_each_index({low, low + Index3::Constant(Bricks::edge)}, [&](const Index3& at) {
+            T& sample = *out++;
+            if ((at.array() >= size.array()).any()) return;
+            const std::optional<double> edit = nearest(at);
+            sample = static_cast<T>(edit ? *edit : plain_->sample(at));
+            any = any || edit;
+        });
         return any ? Brick{made} : Brick{};
     });
 }

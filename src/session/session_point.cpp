@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +13,11 @@
 
 namespace palpate {
 namespace {
+
+/// The first ones of an array, which are in use.
+auto in_use(const auto& array, int count) {
+    return std::span(array).first(static_cast<std::size_t>(count));
+}
 
 /// Drops the results of a tool's proxy that only save time.
 void halt_tool(ToolProxy& proxy) noexcept {
@@ -29,8 +35,9 @@ void resume_tool(ToolProxy& proxy, const ToolState& state) noexcept {
     const auto is_of_tool = [&](const ToolContact& contact) {
         return static_cast<std::size_t>(contact.point) < proxy.tool().points().size();
     };
-    const auto end = state.contacts.begin() + state.contact_count;
-    if (!std::all_of(state.contacts.begin(), end, is_of_tool)) proxy.contact_count = 0;
+    if (!std::ranges::all_of(in_use(state.contacts, state.contact_count), is_of_tool)) {
+        proxy.contact_count = 0;
+    }
 }
 
 void require(bool is_so, const char* what) {
@@ -78,8 +85,7 @@ bool is_possible(const ToolState& state, const Tool* tool, const Geometry& grid)
                is_within(contact.normal, 2) && std::isfinite(contact.pressure);
     };
     return state.contact_count >= 0 && state.contact_count <= most_tool_contacts &&
-           std::all_of(state.contacts.begin(), state.contacts.begin() + state.contact_count,
-                       is_contact) &&
+           std::ranges::all_of(in_use(state.contacts, state.contact_count), is_contact) &&
            state.trust > 0 && state.trust <= 1 && state.stride > 0 && state.stride <= 64 &&
            is_unit(state.pose.orientation) && (!state.placed || is_near(state.pose.position, grid));
 }
@@ -100,8 +106,7 @@ bool is_of(const NeedleState& needle, int layers) {
         return is_number(c.at) && c.surface >= 0 && c.surface < layers && c.layer >= -1 &&
                c.layer < layers;
     };
-    return std::all_of(needle.crossings.begin(), needle.crossings.begin() + needle.crossing_count,
-                       is_crossing) &&
+    return std::ranges::all_of(in_use(needle.crossings, needle.crossing_count), is_crossing) &&
            needle.entry.allFinite() && needle.axis.allFinite() && std::isfinite(needle.hand) &&
            std::isfinite(needle.anchor) && std::isfinite(needle.aside.stiffness) &&
            std::isfinite(needle.aside.rest);
@@ -117,8 +122,8 @@ bool is_of(const LayerState& state, const Layers* layers) {
            state.inner <= state.level_count && state.touched >= -1 && state.touched < count &&
            state.label_opening.allFinite() && state.hip.allFinite() &&
            // The others are not set.
-           std::all_of(state.opening.begin(), state.opening.begin() + state.inner,
-                       [](const Vec3& at) { return at.allFinite(); }) &&
+           std::ranges::all_of(in_use(state.opening, state.inner),
+                               [](const Vec3& at) { return at.allFinite(); }) &&
            std::isfinite(state.spring.stiffness) && std::isfinite(state.spring.rest) &&
            std::isfinite(state.time) && is_of(state.needle, count);
 }

@@ -1,18 +1,12 @@
 // Stops a session at a point and goes on from one.
 #pragma once
 
-#include <Eigen/LU>
-
 #include "palpate/session.hpp"
 
 namespace palpate {
 
 /// No device reaches farther from its origin [device mm].
 inline constexpr double farthest_hand = 1e4;
-inline bool is_rotation(const Mat3& m) {
-    return m.allFinite() && (m.transpose() * m - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-6 &&
-           m.determinant() > 0;
-}
 
 /// Throws std::invalid_argument, saying what is wrong, for a point that no session with these
 /// settings and such a field comes to.

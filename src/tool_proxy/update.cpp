@@ -59,7 +59,7 @@ class Rounds {
           hand_(hand),
           target_(hand),
           friction_(settings.friction),
-          friction_pending_(friction_.static_coefficient > 0 || friction_.dynamic_coefficient > 0),
+          friction_pending_(has_friction(friction_)),
           gyration_(settings.gyration > 0 ? settings.gyration : proxy.tool().gyration()),
           reach_(proxy.tool().radius()),
           voxel_(around.shortest()),
@@ -423,13 +423,16 @@ class Rounds {
     int added_ = 0;
 };
 
-bool accepts(const Tool& tool, const Field& field, double isovalue, const Pose& hand,
-             double gyration) {
+bool accepts(const ToolProxy& proxy, const Field& field, const Pose& hand,
+             const ToolSettings& settings) {
+    const double gyration = settings.gyration;
     return field.interpolation() == Interpolation::cubic &&
            (gyration == 0 || (gyration >= 1e-10 && gyration <= 1e10)) &&
-           tool.radius() <= farthest_hip * field.geometry().spacing.minCoeff() &&
+           proxy.tool().radius() <= farthest_hip * field.geometry().spacing.minCoeff() &&
            std::abs(hand.orientation.squaredNorm() - 1) < 1e-6 &&
-           palpate::accepts(isovalue, field, index_from_physical(field.geometry(), hand.position));
+           palpate::accepts(proxy.isovalue, field,
+                            index_from_physical(field.geometry(), hand.position),
+                            settings.friction);
 }
 
 }  // namespace
@@ -439,7 +442,7 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
                        const ToolSettings& settings, PoseObserver observer) {
     ToolUpdate result{.mode = proxy.mode, .hand = hand, .proxy = proxy.pose};
     Quaternion& turn = result.hand.orientation;
-    if (!tool::accepts(proxy.tool(), field, proxy.isovalue, hand, settings.gyration)) {
+    if (!tool::accepts(proxy, field, hand, settings)) {
         result.status = UpdateStatus::refused;
         return result;
     }

@@ -16,8 +16,9 @@ using palpate::support::scaled;
 
 namespace {
 
-HalfSpaces half_spaces(const std::vector<Vec3>& normals) {
-    HalfSpaces cone;
+template <int Most>
+HalfSpaces<Most> half_spaces(const std::vector<Vec3>& normals) {
+    HalfSpaces<Most> cone;
     for (const Vec3& n : normals) cone.add(n);
     return cone;
 }
@@ -106,7 +107,7 @@ TEST(Cone, projection_is_the_nearest_point_of_the_cone) {
     for (int i = 0; i < scaled(40000); ++i) {
         const auto normals = random_normals(random);
         const Vec3 h = random.direction() * std::pow(10, random.uniform(-3, 3));
-        const ConeProjection p = project_on_cone(h, half_spaces(normals));
+        const ConeProjection p = project_on_cone(h, half_spaces<4>(normals));
         const Vec3 expected = by_all_subsets(h, normals);
         SCOPED_TRACE("seed 71 cone " + std::to_string(i));
         ASSERT_TRUE(is_in(p.point, normals, 1e-12 * h.norm()));
@@ -137,7 +138,7 @@ TEST(Cone, projection_agrees_with_alternating_projections) {
         const Vec3 slower = by_dykstra(h, normals, 4000);
         if ((slow - slower).norm() > 1e-9) continue;  // not converged
         ++compared;
-        const Vec3 p = project_on_cone(h, half_spaces(normals)).point;
+        const Vec3 p = project_on_cone(h, half_spaces<4>(normals)).point;
         ASSERT_LE((p - slower).norm(), 1e-6) << "seed 72 cone " << i;
     }
     EXPECT_GT(compared, scaled(4000) * 8 / 10);
@@ -149,12 +150,12 @@ TEST(Cone, projection_leaves_a_point_of_the_cone_where_it_is) {
         const auto normals = random_normals(random);
         const Vec3 h = by_all_subsets(random.direction(), normals);
         if (!is_in(h, normals, 0)) continue;
-        const ConeProjection p = project_on_cone(h, half_spaces(normals));
+        const ConeProjection p = project_on_cone(h, half_spaces<4>(normals));
         ASSERT_EQ(p.point, h);
         ASSERT_EQ(p.active[0], -1);
     }
-    EXPECT_EQ(project_on_cone(Vec3(1, 2, 3), HalfSpaces{}).point, Vec3(1, 2, 3));
-    EXPECT_EQ(project_on_cone(Vec3(0, 0, 0), half_spaces({Vec3::UnitX()})).point, Vec3::Zero());
+    EXPECT_EQ(project_on_cone(Vec3(1, 2, 3), HalfSpaces<4>{}).point, Vec3(1, 2, 3));
+    EXPECT_EQ(project_on_cone(Vec3(0, 0, 0), half_spaces<4>({Vec3::UnitX()})).point, Vec3::Zero());
 }
 
 TEST(Cone, projection_on_up_to_48_half_spaces_is_feasible_and_no_sampled_point_is_nearer) {
@@ -165,7 +166,7 @@ TEST(Cone, projection_on_up_to_48_half_spaces_is_feasible_and_no_sampled_point_i
         const int count = 1 + random.below(48);
         for (int k = 0; k < count; ++k) normals.push_back((axis + random.direction()).normalized());
         const Vec3 h = random.direction();
-        const Vec3 p = project_on_cone(h, half_spaces(normals)).point;
+        const Vec3 p = project_on_cone(h, half_spaces<48>(normals)).point;
         ASSERT_TRUE(is_in(p, normals, 1e-12));
         // Moreau: h - p is at a right angle to p, and no point of the cone has a positive product.
         ASSERT_NEAR(p.dot(h - p), 0, 1e-12);

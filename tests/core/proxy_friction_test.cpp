@@ -81,6 +81,26 @@ TEST(Friction, with_a_dynamic_coefficient_alone_keeps_them_too) {
     }
 }
 
+TEST(Friction, that_is_below_0_or_no_number_is_refused_and_moves_nothing) {
+    const double nan = std::nan("");
+    const Field linear = plane_field(), cubic = smooth(linear);
+    for (const Field* field : {&linear, &cubic}) {
+        Proxy proxy;
+        ASSERT_TRUE(place(proxy, *field, Vec3(12, 12, 18), 15.3));
+        for (const Friction& friction :
+             {Friction{-0.1, 0}, Friction{0.3, -0.1}, Friction{nan, 0}, Friction{0.3, nan}}) {
+            for (Friction ProxySettings::*which :
+                 {&ProxySettings::friction, &ProxySettings::behind}) {
+                ProxySettings settings;
+                settings.*which = friction;
+                const ProxyUpdate r = update_exact(proxy, *field, Vec3(13, 12, 14), settings);
+                EXPECT_EQ(r.status, UpdateStatus::refused);
+                EXPECT_EQ(r.scp, Vec3(12, 12, 18));
+            }
+        }
+    }
+}
+
 TEST(Friction, holds_the_proxy_below_the_static_angle_and_lets_go_above_it) {
     const Field field = plane_field();
     const ProxySettings settings = with_friction(0.5, 0.25);

@@ -250,6 +250,7 @@ TEST(Renderer, refuses_settings_that_cannot_be_rendered) {
     for (const Friction& bad : {Friction{-1, 0}, Friction{0.1, 0.2}, Friction{not_a_number, 0},
                                 Friction{0.5, not_a_number}, Friction{infinity, 0}}) {
         expect_refused("friction", [&](RendererSettings& s) { s.proxy.friction = bad; });
+        expect_refused("friction", [&](RendererSettings& s) { s.proxy.behind = bad; });
     }
     for (const double bad : {not_a_number, infinity, 0.0, -1.0}) {
         expect_refused("scale", [=](RendererSettings& s) { s.transform.scale = bad; });

@@ -374,6 +374,11 @@ TEST(ToolProxy, refuses_what_it_cannot_follow) {
         EXPECT_EQ(update_tool(proxy, cubic, at(12, 12, 18), {.gyration = gyration}).status,
                   UpdateStatus::refused);
     }
+    for (const Friction& friction :
+         {Friction{-0.1, 0}, Friction{0.3, -0.1}, Friction{nan, 0}, Friction{0.3, nan}}) {
+        EXPECT_EQ(update_tool(proxy, cubic, at(12, 12, 18), {.friction = friction}).status,
+                  UpdateStatus::refused);
+    }
     EXPECT_EQ(proxy.pose.position, first.proxy.position);
 }
 

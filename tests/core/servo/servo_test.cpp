@@ -285,8 +285,29 @@ TEST(Servo, settings_that_cannot_be_run_are_refused) {
     EXPECT_THROW(Servo(ramp_session(), device, {.rate = 8001}), std::invalid_argument);
     EXPECT_THROW(Servo(ramp_session(), device, {.priority = 0}), std::invalid_argument);
     EXPECT_THROW(Servo(ramp_session(), device, {.rate = 500}), std::invalid_argument);
+    const auto refuses = [&](auto&& change) {
+        Session session = ramp_session();
+        change(session.renderer);
+        EXPECT_THROW(Servo(session, device), std::invalid_argument);
+    };
+    refuses([](Renderer& r) { r.settings.force.stiffness = -1; });
+    // What depends on the field, too.
+    refuses([](Renderer& r) { r.proxy.isovalue = -HUGE_VAL; });
+    refuses([](Renderer& r) {
+        const std::array<DensityRange, 2> falling{DensityRange{0, 10}, {20, 30}};
+        r.settings.penetrability = penetrability_ranges(1, falling, Solid::below);
+    });
+    refuses([](Renderer& r) {
+        Layers falling;
+        falling.layers = {{.name = "bone", .level = 40}, {.name = "skin", .level = 30}};
+        r.settings.layers = std::make_shared<const Layers>(falling);
+    });
+    refuses([](Renderer& r) {
+        r.field.set_interpolation(Interpolation::linear);
+        r.settings.tool = std::make_shared<const Tool>();
+    });
     Session session = ramp_session();
-    session.renderer.settings.force.stiffness = -1;
+    session.speed = std::nan("");
     EXPECT_THROW(Servo(session, device), std::invalid_argument);
 }
 
