@@ -12,6 +12,10 @@ namespace palpate::viewer {
 namespace {
 
 constexpr int rest_ms = 150;  // without a change: a fine picture
+// So many quick pictures in succession that take longer than this need a coarser surface: 15
+// pictures per second leave 66 ms, and the window needs the processor as well.
+constexpr int many_slow_pictures = 5;
+constexpr double slow_seconds = 0.05;
 
 /// The part of the look that is rendered here; the window draws the rest over it.
 Look rendered_part(Look look) {
@@ -152,6 +156,7 @@ void BackgroundRenderer::set_field(const Field& field, double isovalue) {
     request_.field = field;
     isovalue_ = isovalue;
     set_patch({});
+    whole_.set_moving_triangles(SurfaceLimits().moving_triangles);
     whole_.set_field(field, levels());
     announce_ = true;
     paint();
@@ -207,10 +212,7 @@ void BackgroundRenderer::take(RenderedImage image) {
     const bool coarser = shown_ && image.number == shown_->number && !shown_->moving;
     if (older || (coarser && image.moving)) return;
     if (image.hardware && !image.moving && image.number == request_.number) rest_.stop();
-    if (image.moving || image.hardware) {
-        frame_seconds_ =
-            frame_seconds_ > 0 ? 0.8 * frame_seconds_ + 0.2 * image.seconds : image.seconds;
-    }
+    observe_speed(image);
     shown_ = std::make_shared<const RenderedImage>(std::move(image));
     Q_EMIT painted();
     if (!announce_ || !settled()) return;
@@ -219,6 +221,18 @@ void BackgroundRenderer::take(RenderedImage image) {
     if (!surfaces.empty() && surfaces[0].finished) {
         Q_EMIT surface_ready(surfaces[0].isovalue, surfaces[0].seconds);
     }
+}
+
+void BackgroundRenderer::observe_speed(const RenderedImage& image) {
+    if (!image.moving && !image.hardware) return;
+    frame_seconds_ =
+        frame_seconds_ > 0 ? 0.8 * frame_seconds_ + 0.2 * image.seconds : image.seconds;
+    // A volume has its own ways to become quicker.
+    const bool slow = image.seconds > slow_seconds && !image.hardware && !request_.look.volume;
+    slow_pictures_ = slow ? slow_pictures_ + 1 : 0;
+    if (slow_pictures_ < many_slow_pictures) return;
+    slow_pictures_ = 0;
+    whole_.set_moving_triangles(SurfaceLimits().moving_of_others);
 }
 
 bool BackgroundRenderer::shows_whole() const {

@@ -64,6 +64,7 @@ class BackgroundRenderer : public QObject {
     void collect_surfaces();
     void paint();
     void take(RenderedImage image);
+    void observe_speed(const RenderedImage& image);
 
     MakePainter make_painter_;
     RenderRequest request_;
@@ -72,7 +73,8 @@ class BackgroundRenderer : public QObject {
     double isovalue_ = 0;
     bool announce_ = false;  // the felt surface was asked for, not by a version of the data
     double frame_seconds_ = 0;
-    bool broken_ = false;  // no painter can draw
+    int slow_pictures_ = 0;  // in succession
+    bool broken_ = false;    // no painter can draw
     QTimer rest_;
     SurfaceMaker whole_, finer_;  // of all data, of the patch; the felt level first
     std::vector<DrawnSurface> overlay_;

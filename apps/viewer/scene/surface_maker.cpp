@@ -45,6 +45,7 @@ std::vector<int> steps_for(const Index3& size) {
 SurfaceMaker::SurfaceMaker(const SurfaceLimits& limits)
     : limits_(limits),
       most_triangles_(limits.most_triangles),
+      moving_triangles_(limits.moving_triangles),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 SurfaceMaker::~SurfaceMaker() {
@@ -87,6 +88,10 @@ void SurfaceMaker::set_levels(std::vector<double> levels) {
     if (levels == levels_) return;
     levels_ = std::move(levels);
     if (field_) ask(false, {});
+}
+
+void SurfaceMaker::set_moving_triangles(std::size_t triangles) {
+    if (moving_triangles_.exchange(triangles) != triangles && field_) ask(false, {});
 }
 
 void SurfaceMaker::clear() {
@@ -202,8 +207,14 @@ void SurfaceMaker::take_up_levels() {
     for (std::size_t i = 0; i < levels.size(); ++i) {
         Growing& one = growing_[i];
         one.most = i == 0 ? most_triangles_.load() : limits_.most_of_others;
-        one.quick = i == 0 ? limits_.moving_triangles : limits_.moving_of_others;
-        if (one.shown && one.level == levels[i]) continue;
+        const std::size_t before =
+            std::exchange(one.quick, i == 0 ? moving_triangles_.load() : limits_.moving_of_others);
+        if (one.shown && one.level == levels[i]) {
+            // A level that only has another place keeps its meshes.
+            const bool limited = i == 0 && one.quick < before;
+            one.due = one.due || (limited && !is_quick(one, one.moving ? *one.moving : *one.shown));
+            continue;
+        }
         one.level = levels[i];
         restart(one, streaming_ ? streaming_step_ : steps().front());
     }

@@ -53,6 +53,8 @@ class SurfaceMaker : public QObject {
     void clear();
     /// Limits the first level's surface, from the next one on.
     void set_most_triangles(std::size_t triangles) { most_triangles_ = triangles; }
+    /// Limits it while things move, from now on.
+    void set_moving_triangles(std::size_t triangles);
 
     /// One for each level, empty before it is first made. Until a new one is made, the older one
     /// stays, so that a surface moves visibly while its level is dragged.
@@ -112,7 +114,7 @@ class SurfaceMaker : public QObject {
     SurfaceBlocks blocks_of(int every) const;
 
     const SurfaceLimits limits_;
-    std::atomic<std::size_t> most_triangles_;
+    std::atomic<std::size_t> most_triangles_, moving_triangles_;
     // Of the window's thread.
     std::optional<Field> field_;
     std::vector<double> levels_;

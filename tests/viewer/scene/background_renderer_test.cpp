@@ -73,5 +73,54 @@ TEST(BackgroundRenderer, draws_an_overlay_whose_surfaces_have_changed) {
     EXPECT_FALSE(draws());
 }
 
+/// Says that each quick picture took so long [s], and keeps how many triangles it had.
+struct Slow final : Painter {
+    Slow(Results results, double seconds, std::size_t& triangles)
+        : results_(std::move(results)), seconds_(seconds), triangles_(triangles) {}
+    void draw(RenderRequest request) override {
+        if (request.moving && !request.surfaces.empty()) {
+            triangles_ = triangle_count(request.surfaces[0].surface.moving);
+        }
+        RenderedImage image;
+        image.number = request.number;
+        image.moving = request.moving;
+        image.seconds = seconds_;
+        results_.drawn(std::move(image));
+    }
+    void give_up() override {}
+
+    Results results_;
+    double seconds_;
+    std::size_t& triangles_;
+};
+
+/// Of the pictures of a large ball that turns.
+std::size_t triangles_in_motion(double seconds) {
+    std::size_t triangles = 0;
+    BackgroundRenderer renderer([&](Painter::Priority, Painter::Results results) {
+        return std::make_unique<Slow>(std::move(results), seconds, triangles);
+    });
+    const Field field = linear_field(scenes::ball(support::cube(100)));
+    RenderRequest wanted;
+    wanted.width = wanted.height = 32;
+    wanted.camera = {physical_centre(field.geometry()), Vec3(0, -1, 0), Vec3(0, 0, 1), 10};
+    renderer.request(wanted);
+    renderer.set_field(field, 128);
+    wait_until([&] { return renderer.settled(); });
+    for (int i = 0; i < 10; ++i) {
+        wanted.camera.half_height += 1;
+        renderer.request(wanted);
+        wait_until([&] { return renderer.settled(); });
+    }
+    return triangles;
+}
+
+TEST(BackgroundRenderer, surface_in_motion_becomes_coarser_where_its_pictures_are_slow) {
+    const std::size_t quick = triangles_in_motion(0.02), slow = triangles_in_motion(0.08);
+    EXPECT_GT(quick, 40'000U);
+    EXPECT_LE(slow, 40'000U);
+    EXPECT_GT(slow, 1'000U);
+}
+
 }  // namespace
 }  // namespace palpate::viewer

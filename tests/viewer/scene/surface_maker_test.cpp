@@ -133,6 +133,20 @@ TEST(SurfaceMaker, what_moves_has_few_triangles_even_of_noise) {
     }
 }
 
+TEST(SurfaceMaker, what_moves_becomes_coarser_on_request) {
+    Made made;
+    made.maker.set_field(ball(64), {128});
+    const ExtractedSurface before = made.last().at(0);
+    ASSERT_GT(triangle_count(before.moving), 2'000U);
+    made.maker.set_moving_triangles(2'000);
+    const ExtractedSurface after = made.last().at(0);
+    EXPECT_LE(triangle_count(after.moving), 2'000U);
+    EXPECT_GT(triangle_count(after.moving), 100U);
+    EXPECT_EQ(after.blocks, before.blocks);
+    made.maker.set_levels({120});
+    EXPECT_LE(triangle_count(made.last().at(0).moving), 2'000U);
+}
+
 TEST(SurfaceMaker, an_edit_makes_only_blocks_that_it_touches_of_both_meshes) {
     SurfaceLimits limits;
     limits.moving_triangles = 30'000;
