@@ -10,8 +10,9 @@ namespace {
 /// Samples round a point on which the field there depends, and those across the wall that it is on
 /// [voxel].
 constexpr double around = 3;
-/// How often a pull is halved.
-constexpr int most_halvings = 6;
+/// A pull is halved this often, a long one until it is no longer than this [voxel].
+constexpr int fewest_halvings = 6;
+constexpr double shortest = 1;
 
 }  // namespace
 
@@ -36,8 +37,10 @@ double part_within_reach(const Field& field, const Pull& pull) noexcept {
     const Vec3 way = pull.to - pull.from;
     const double length = pull.turn == 0 ? way.norm() : std::hypot(way.norm(), pull.turn);
     if (!field.samples().resident() || !std::isfinite(length)) return 1;  // the update refuses it
+    const double voxels = length * field.voxels_per_mm().maxCoeff();
     double part = 1;
-    for (int halvings = 0; halvings <= most_halvings; ++halvings, part /= 2) {
+    for (int halvings = 0; halvings <= fewest_halvings || 2 * part * voxels > shortest;
+         ++halvings, part /= 2) {
         if (is_resident(field, pull.from + part * way, part * length + pull.arm)) return part;
     }
     return 0;

@@ -14,10 +14,11 @@ struct Pull {
     double arm = 0;            ///< of a tool: its farthest point from its reference point [mm]
 };
 
-/// The part of the pull, 1, 1/2, ... 1/64 or 0, that needs only samples that are in memory. An
-/// update never comes farther from its goal than it was (G4, T4), so all that it looks at lies in a
-/// ball round the goal. If the proxy rests on a surface, a part of the pull finds the same
-/// place. 1 where all samples are in memory. Neither allocates nor throws.
+/// The part of the pull, 1, 1/2, ... or 0, that needs only samples that are in memory. The least
+/// that is tried is 1/64, or a voxel of a long pull. An update never comes farther from its goal
+/// than it was (G4, T4), so all that it looks at lies in a ball round the goal. If the proxy rests
+/// on a surface, a part of the pull finds the same place. 1 where all samples are in memory.
+/// Neither allocates nor throws.
 double part_within_reach(const Field& field, const Pull& pull) noexcept;
 
 }  // namespace palpate

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <vector>
 
 #include "io/process/helper_process.hpp"
@@ -96,30 +97,47 @@ bool is_hexadecimal(const std::string& name, std::size_t digits) {
     return name.size() == digits && name.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// Files that lie and are called as entries are: other files in the folder are not ours.
-std::vector<Entry> entries_in(const fs::path& folder) {
-    std::vector<Entry> entries;
-    const auto now = fs::file_time_type::clock::now();
-    std::error_code error;
-    constexpr auto past_others = fs::directory_options::skip_permission_denied;
-    for (fs::recursive_directory_iterator file(folder, past_others, error), end;
-         file != end && !error; file.increment(error)) {
-        const bool in_folder = file.depth() == 1;
-        const auto digits = in_folder ? name_digits - folder_digits : folder_digits;
-        const bool is_ours = is_hexadecimal(file->path().filename().string(), digits);
-        if (in_folder || !is_ours) file.disable_recursion_pending();
-        std::error_code of_entry;
-        if (!in_folder || !is_ours || !fs::is_regular_file(file->symlink_status(of_entry)))
-            continue;
-        const auto used = file->last_write_time(of_entry);
-        const auto bytes = file->file_size(of_entry);
-        if (of_entry) continue;
+/// What the cache's folder holds. Files that lie and are called as entries are: others are not
+/// ours.
+struct Scan {
+    std::vector<Entry> entries = {};
+    std::set<fs::path> unread = {};  ///< folders of which not all could be read
+    fs::file_time_type now = fs::file_time_type::clock::now();
+
+    void add(const fs::directory_entry& file) {
+        std::error_code error;
+        if (!is_hexadecimal(file.path().filename().string(), name_digits - folder_digits) ||
+            !fs::is_regular_file(file.symlink_status(error))) {
+            return;
+        }
+        const auto used = file.last_write_time(error);
+        const auto bytes = error ? 0 : file.file_size(error);
+        if (error) return;
         // Of before the clock was set back: otherwise they would outlive all that is used now.
         const bool of_the_future = used > now + std::chrono::seconds(2);
-        entries.push_back({file->path(), of_the_future ? fs::file_time_type::min() : used, bytes});
+        entries.push_back({file.path(), of_the_future ? fs::file_time_type::min() : used, bytes});
     }
-    return entries;
-}
+
+    /// `take` is called with each file in a folder that can be read.
+    void read(const fs::path& folder, const std::function<void(const fs::directory_entry&)>& take) {
+        std::error_code error;
+        for (fs::directory_iterator file(folder, error), end; !error && file != end;
+             file.increment(error)) {
+            take(*file);
+        }
+        if (error && error != std::errc::no_such_file_or_directory) unread.insert(folder);
+    }
+
+    explicit Scan(const fs::path& cache) {
+        read(cache, [&](const fs::directory_entry& folder) {
+            std::error_code error;
+            if (is_hexadecimal(folder.path().filename().string(), folder_digits) &&
+                fs::is_directory(folder.symlink_status(error))) {
+                read(folder.path(), [&](const fs::directory_entry& file) { add(file); });
+            }
+        });
+    }
+};
 
 /// Removes an entry, unless it does not begin as one does.
 void remove_entry(const fs::path& path) {
@@ -173,8 +191,7 @@ std::optional<Bytes> DiskCache::find(const std::string& name) const noexcept {
 void DiskCache::put(const std::string& name, const Bytes& bytes) const noexcept {
     if (bytes.size() > most_ / 8) return;
     try {
-        make_room(bytes.size());
-        write(name, bytes);
+        if (make_room(path_of(name).parent_path(), bytes.size())) write(name, bytes);
     } catch (const std::exception&) {  // then it is not kept
     }
 }
@@ -198,26 +215,40 @@ void DiskCache::write(const std::string& name, const Bytes& bytes) const {
 }
 
 /// Another process may add a sixteenth of the limit before this one sees it, so two stay below it.
-void DiskCache::make_room(std::uint64_t bytes) const {
+/// False for a folder that could not be read. It counts with what was known of it and gets no more,
+/// because nothing in it can be removed.
+bool DiskCache::make_room(const fs::path& folder, std::uint64_t bytes) const {
     const std::lock_guard lock(mutex_);
     const std::uint64_t full = most_ - most_ / 16, after = most_ - most_ / 8;
     const bool count_again = !known_ || added_ > most_ / 16 || counted_ + added_ + bytes > full;
     if (count_again) {
-        std::vector<Entry> entries = entries_in(folder_);
+        Scan scan(folder_);
+        std::map<fs::path, std::uint64_t> held;
+        for (const fs::path& unread : scan.unread) held[unread] = held_[unread];
+        for (const Entry& entry : scan.entries) {
+            const fs::path in = entry.path.parent_path();
+            if (!scan.unread.contains(in)) held[in] += entry.bytes;
+        }
         counted_ = 0;
-        for (const Entry& entry : entries) counted_ += entry.bytes;
+        for (const auto& [in, all] : held) counted_ += all;
+        held_ = std::move(held);
         if (counted_ + bytes > full) {
-            std::ranges::sort(entries, {}, &Entry::used);
-            for (const Entry& entry : entries) {
+            std::ranges::sort(scan.entries, {}, &Entry::used);
+            for (const Entry& entry : scan.entries) {
                 if (counted_ + bytes <= after) break;
                 remove_entry(entry.path);
                 counted_ -= entry.bytes;
             }
         }
+        unread_ = std::move(scan.unread);
         added_ = 0;
         known_ = true;
     }
-    added_ += bytes + sizeof(EntryHead) + 256;
+    const std::uint64_t whole = bytes + sizeof(EntryHead) + 256;
+    added_ += whole;
+    if (unread_.contains(folder_) || unread_.contains(folder)) return false;
+    held_[folder] += whole;
+    return true;
 }
 
 }  // namespace palpate::stream

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "stream/objects/objects.hpp"
@@ -26,7 +28,7 @@ class DiskCache {
   private:
     std::filesystem::path path_of(const std::string& name) const;
     void write(const std::string& name, const Bytes& bytes) const;
-    void make_room(std::uint64_t bytes) const;
+    bool make_room(const std::filesystem::path& folder, std::uint64_t bytes) const;
 
     std::filesystem::path folder_;
     std::uint64_t most_;
@@ -35,6 +37,8 @@ class DiskCache {
     mutable std::uint64_t counted_ = 0;  ///< bytes when last counted
     mutable std::uint64_t added_ = 0;    ///< bytes since then, by this process
     mutable bool known_ = false;         ///< false: not yet counted
+    mutable std::map<std::filesystem::path, std::uint64_t> held_;  ///< bytes in each folder
+    mutable std::set<std::filesystem::path> unread_;  ///< folders that could not be read
 };
 
 }  // namespace palpate::stream

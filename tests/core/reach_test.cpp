@@ -138,6 +138,22 @@ TEST_P(ReachOnFields, a_free_hand_waits_at_the_border_without_a_force_and_goes_o
     EXPECT_EQ(now.proxy.scp, now.proxy.hip);
 }
 
+TEST_P(ReachOnFields, a_proxy_goes_as_near_to_the_border_if_its_hand_is_far_away) {
+    const Volume volume = wall();
+    PartOf part(volume);
+    part.add({0, 0, 0});
+    for (const double far : {75.0, 3000.0, 90000.0}) {
+        Renderer renderer =
+            make_renderer(Field(part.samples(), Solid::above, {}, GetParam()), 0, {});
+        Tick now = render(renderer, hand_at({20, 30, 30}, 0));
+        for (int tick = 1; tick < 100; ++tick) now = render(renderer, hand_at({far, 30, 30}, tick));
+        EXPECT_EQ(now.proxy.status, UpdateStatus::waiting);
+        EXPECT_EQ(now.force, Vec3::Zero());
+        EXPECT_GT(now.proxy.scp[0], 57) << far;
+        EXPECT_LT(now.proxy.scp[0], 64);
+    }
+}
+
 TEST_P(ReachOnFields, a_hand_deep_in_a_solid_whose_inside_is_missing_rests_where_it_would) {
     const Volume volume = wall();
     PartOf part(volume);

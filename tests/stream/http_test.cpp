@@ -219,14 +219,6 @@ TEST(Http, endless_redirections_other_protocols_and_silent_hosts_are_errors_in_o
     }
 }
 
-std::uint64_t bytes_in(const fs::path& folder) {
-    std::uint64_t bytes = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (entry.is_regular_file()) bytes += entry.file_size();
-    }
-    return bytes;
-}
-
 StoreOptions cached(const fs::path& folder, std::uint64_t bytes) {
     StoreOptions options = quick();
     options.cache_folder = folder;

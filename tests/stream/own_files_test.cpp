@@ -1,5 +1,5 @@
 // Palpate deletes and continues what it made itself, and nothing else: OUT.partial of others,
-// links, other sources and settings, originals of edits, caches in folders with other files.
+// links, other sources and settings, originals of edits.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -436,25 +436,6 @@ TEST(OwnFiles, paths_that_are_not_utf8_are_written_and_read_again) {
     const auto again = open_store(there / "e\xfe.zarr");
     EXPECT_EQ(read_box(*again, 0, {{5, 5, 5}, {5, 5, 5}})[0], std::byte{7});
     expect_same_boxes(*open_store(there / "c\xfd.zarr"), volume, 8);
-}
-
-TEST(OwnFiles, a_disk_cache_removes_no_file_that_it_did_not_write) {
-    const ScratchFolder folder, precious;
-    const std::string name(30, 'a');
-    const std::vector<fs::path> foreign = {folder / "thesis.txt", folder / "ab/notes.txt",
-                                           folder / "ab" / name, precious / name};
-    fs::create_directory(folder / "ab");
-    fs::create_directory_symlink(precious.path(), folder / "cd");
-    for (const fs::path& file : foreign) {
-        put_bytes(file, std::string(200'000, 'x'));
-        fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(1000));
-    }
-    const DiskCache cache(folder.path(), 400'000);
-    const Bytes bytes(40'000);
-    for (int i = 0; i < 40; ++i) cache.put("piece " + std::to_string(i), bytes);
-    for (const fs::path& file : foreign) EXPECT_EQ(fs::file_size(file), 200'000U) << file;
-    EXPECT_FALSE(cache.find("piece 0")) << "the oldest entries went";
-    EXPECT_TRUE(cache.find("piece 39"));
 }
 
 TEST(OwnFiles, a_content_is_known_by_any_sample_and_by_the_grid) {

@@ -40,6 +40,15 @@ inline std::vector<std::byte> read_box(const Store& store, int level, const Samp
     return samples;
 }
 
+/// Of all files in a folder.
+inline std::uint64_t bytes_in(const std::filesystem::path& folder) {
+    std::uint64_t bytes = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) bytes += entry.file_size();
+    }
+    return bytes;
+}
+
 /// The same samples out of a volume.
 inline std::vector<std::byte> box_of(const Volume& volume, const SampleBox& box) {
     std::vector<std::byte> samples;

@@ -1,0 +1,83 @@
+// The disk cache in folders that hold other files, or that cannot be read.
+#include "stream/objects/disk_cache.hpp"
+
+#include <dirent.h>
+#include <dlfcn.h>
+#include <sys/stat.h>
+
+#include <atomic>
+#include <cerrno>
+
+#include "stream/store_support.hpp"
+
+namespace palpate::stream::test {
+namespace {
+
+std::atomic<ino_t> unreadable{0};  // the number of a folder, 0: none
+
+}  // namespace
+
+/// Takes the place of the system's function: one folder has a read error.
+extern "C" dirent* readdir(DIR* folder) {
+    struct stat about {};
+    if (unreadable != 0 && ::fstat(::dirfd(folder), &about) == 0 && about.st_ino == unreadable) {
+        errno = EIO;
+        return nullptr;
+    }
+    static const auto system =
+        reinterpret_cast<decltype(&::readdir)>(::dlsym(RTLD_NEXT, "readdir"));
+    return system(folder);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+using support::put_bytes;
+using support::ScratchFolder;
+
+TEST(DiskCache, removes_no_file_that_it_did_not_write) {
+    const ScratchFolder folder, precious;
+    const std::string name(30, 'a');
+    const std::vector<fs::path> foreign = {folder / "thesis.txt", folder / "ab/notes.txt",
+                                           folder / "ab" / name, precious / name};
+    fs::create_directory(folder / "ab");
+    fs::create_directory_symlink(precious.path(), folder / "cd");
+    for (const fs::path& file : foreign) {
+        put_bytes(file, std::string(200'000, 'x'));
+        fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(1000));
+    }
+    const DiskCache cache(folder.path(), 400'000);
+    const Bytes bytes(40'000);
+    for (int i = 0; i < 40; ++i) cache.put("piece " + std::to_string(i), bytes);
+    for (const fs::path& file : foreign) EXPECT_EQ(fs::file_size(file), 200'000U) << file;
+    EXPECT_FALSE(cache.find("piece 0")) << "the oldest entries went";
+    EXPECT_TRUE(cache.find("piece 39"));
+}
+
+TEST(DiskCache, stays_within_its_bound_although_one_of_its_folders_cannot_be_read) {
+    const ScratchFolder folder;
+    constexpr std::uint64_t bound = 400'000;
+    const DiskCache cache(folder.path(), bound);
+    const Bytes bytes(4'000);
+    const auto put = [&](int first, int end) {
+        for (int i = first; i < end; ++i) cache.put("piece " + std::to_string(i), bytes);
+    };
+    put(0, 60);
+    const fs::path broken = fs::directory_iterator(folder.path())->path();
+    const std::uint64_t before = bytes_in(broken);
+    ASSERT_GT(before, 0U);
+    struct stat about {};
+    ASSERT_EQ(::stat(broken.c_str(), &about), 0);
+    unreadable = about.st_ino;
+    put(60, 400);
+    unreadable = 0;
+    EXPECT_EQ(bytes_in(broken), before);
+    EXPECT_LE(bytes_in(folder.path()), bound);
+    EXPECT_TRUE(cache.find("piece 399"));
+    put(400, 800);
+    EXPECT_LE(bytes_in(folder.path()), bound);
+    EXPECT_NE(bytes_in(broken), before) << "it is used again once it can be read";
+}
+
+}  // namespace
+}  // namespace palpate::stream::test
