@@ -8,9 +8,9 @@
 
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
-#include "apps/viewer/panel/session_bar.hpp"
 #include "apps/viewer/panel/tool_controls.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"

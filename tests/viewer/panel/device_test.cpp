@@ -5,9 +5,9 @@
 #include <QToolButton>
 
 #include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/session_bar.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {
