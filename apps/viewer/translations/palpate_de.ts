@@ -516,6 +516,13 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     </message>
 </context>
 <context>
+    <name>Units</name>
+    <message>
+        <source>voxel</source>
+        <translation>Voxel</translation>
+    </message>
+</context>
+<context>
     <name>palpate::viewer::BackgroundTask</name>
     <message>
         <source>Cancel</source>
