@@ -289,14 +289,17 @@ void Run::close_device() {
     device_.reset();
 }
 
+/// The level that was asked for, or one of the volume where none was.
+double Run::some_isovalue(const OnProgress& progress) const {
+    return std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_, progress);
+}
+
 void Run::use_device(const devices::DeviceChoice& device, const OnProgress& progress) {
     started_servo();  // throws before anything has changed
     Setup setup = setup_;
     setup.device = device;
     const DeviceInfo old = device_->info();
-    // A simulated hand goes for the surface that is felt now.
-    const double isovalue =
-        std::isfinite(isovalue_) ? isovalue_ : isovalue_of(data_->loaded(), setup_, progress);
+    const double isovalue = some_isovalue(progress);  // a simulated hand goes for its surface
     if (progress) progress(1);
     try {
         auto opened = open_for(field_, isovalue, setup, this, [this] { close_device(); });
@@ -337,6 +340,18 @@ void Run::reopen(double isovalue, const DeviceInfo& old) {
     }
     launch(session_stopped());
     if (frozen) send(command::Freeze{true});
+}
+
+void Run::use_buttons(const Buttons& buttons) {
+    started_servo();
+    Setup setup = setup_;
+    setup.buttons = buttons;
+    const Session fitted = make_session(field_, some_isovalue({}), device_->info(), setup);
+    stop_recording();
+    stop_servo();
+    session_settings_ = fitted.settings;
+    setup_ = std::move(setup);
+    launch(session_stopped());
 }
 
 void Run::use_field(Solid solid, Interpolation interpolation, std::optional<double> background) {

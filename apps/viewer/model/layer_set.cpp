@@ -165,11 +165,6 @@ double property_at(const Layers& layers, std::size_t layer, HapticProperty prope
     return of_session(property, settings);
 }
 
-ValueFrom value_from(const Layers& layers, std::size_t layer, HapticProperty property) {
-    if (layers.layers[layer][property]) return ValueFrom::layer;
-    return layers[property].density.knots.empty() ? ValueFrom::session : ValueFrom::curve;
-}
-
 Curve::Knot first_knot(HapticProperty property, double at, const RendererSettings& settings) {
     const double value = of_session(property, settings);
     return {at, std::isfinite(value) ? value : 1};

@@ -60,10 +60,6 @@ LevelRoom room_of(const Layers& layers, std::size_t layer, double gap);
 double property_at(const Layers& layers, std::size_t layer, HapticProperty property,
                    const RendererSettings& settings);
 
-/// What gives a property of a layer its value.
-enum class ValueFrom { layer, curve, session };
-ValueFrom value_from(const Layers& layers, std::size_t layer, HapticProperty property);
-
 /// A knot from which a curve begins, with the value that counts so far; of a puncture force that is
 /// never 1 N.
 Curve::Knot first_knot(HapticProperty property, double at, const RendererSettings& settings);

@@ -21,10 +21,11 @@ enum class LengthUnit : std::uint8_t {
 };
 /// What is preferred, but voxels where nothing gives the spacing.
 LengthUnit unit_in(const Geometry& geometry, LengthUnit preferred = LengthUnit::millimetres);
-/// "mm", or "voxel" where nothing gives the spacing.
+/// "mm", or "voxel" where nothing gives the spacing. Windows translate this word, in the context
+/// "Units".
 const char* unit_word(const Geometry& geometry);
-/// "12.3 mm".
-std::string length_text(double mm, LengthUnit unit);
+/// "12.3 mm". `voxel` is the word for that unit.
+std::string length_text(double mm, LengthUnit unit, const std::string& voxel = "voxel");
 
 /// A length between two points, or the angle at the middle one of three.
 struct Measurement {
@@ -36,6 +37,7 @@ struct Measurement {
 
 std::size_t points_of(Measure kind);
 /// "12.3 mm", "45.0°". Empty before all points are there, and for an angle without a side.
-std::string text_of(const Measurement& measurement, LengthUnit unit = LengthUnit::automatic);
+std::string text_of(const Measurement& measurement, LengthUnit unit = LengthUnit::automatic,
+                    const std::string& voxel = "voxel");
 
 }  // namespace palpate::viewer

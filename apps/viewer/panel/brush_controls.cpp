@@ -48,7 +48,7 @@ QString in_words(std::size_t steps) {
 }  // namespace
 
 BrushControls::BrushControls(Effect& effect)
-    : effect_(effect),
+    : EffectForm(effect),
       body_(new QWidget),
       reason_(new Note("brush_reason", Note::Kind::plain)),
       on_(button({"brush", "", tr("While it is on, the probe edits the samples where it is")},
@@ -67,14 +67,10 @@ BrushControls::BrushControls(Effect& effect)
     column->addWidget(make_history());
     column->addWidget(state_);
     column_in(this, {reason_, body_});
-    connect(&effect, &Effect::begun, this, [this] {
-        use_grid();
-        reset();
-    });
-    connect(&effect, &Effect::ended, this, &BrushControls::reset);
     connect(&effect, &Effect::changed, this,
             [this] { set_tool(effect_.settings().tool != nullptr); });
-    reset();
+    clear();
+    refresh();
 }
 
 QWidget* BrushControls::make_kinds() {
@@ -253,7 +249,7 @@ double BrushControls::fitting() const {
 }
 
 /// Some room also in a thin slab.
-void BrushControls::use_grid() {
+void BrushControls::begin() {
     const Geometry& geometry = effect_.field().geometry();
     const double voxel = geometry.spacing.maxCoeff();
     const double side = geometry.size.cast<double>().cwiseProduct(geometry.spacing).minCoeff();
@@ -261,6 +257,7 @@ void BrushControls::use_grid() {
     ball_ = std::clamp(ball_, radius_->low(), radius_->high());
     beyond_ = voxel;
     choice_.radius = choice_.as_tool ? beyond_ : ball_;
+    clear();
 }
 
 void BrushControls::set_tool(bool there) {
@@ -274,13 +271,12 @@ void BrushControls::set_tool(bool there) {
     refresh();
 }
 
-void BrushControls::reset() {
+void BrushControls::clear() {
     values_ = {};
     choice_.value.reset();
     choice_.on = false;
     set_history(0, 0, false);
     set_reason({});
-    refresh();
 }
 
 void BrushControls::set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed) {

@@ -20,7 +20,7 @@ struct BrushChoice : run::HandBrush {
 /// Remembers a typed value for each kind of brush, as a value that carves cannot add. Setters emit
 /// nothing. With each session the brush is off, its values are automatic, there are no edits and no
 /// reason. Its radius goes from the largest spacing of the grid to a quarter of the shortest side.
-class BrushControls : public Form {
+class BrushControls : public EffectForm {
     Q_OBJECT
 
   public:
@@ -54,11 +54,10 @@ class BrushControls : public Form {
     Quantity* limited(const Words& words, const Span& span, double BrushChoice::*member,
                       const QString& limits);
     void change(const std::function<void(BrushChoice&)>& how);
-    void reset();
-    void use_grid();
+    void begin() override;
+    void clear() override;
     double fitting() const;
 
-    Effect& effect_;
     BrushChoice choice_;
     std::array<std::optional<double>, 4> values_;  // by kind
     double ball_ = 3, beyond_ = 1;  // [mm] the radius of a ball, and beyond the skin of a tool

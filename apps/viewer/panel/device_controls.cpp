@@ -113,7 +113,7 @@ QString length_text(const Vec3& size) {
 }  // namespace
 
 DeviceControls::DeviceControls(Effect& effect)
-    : effect_(effect),
+    : EffectForm(effect),
       picker_(named(new QComboBox, "devices",
                     tr("Devices; grey: not found, the tip says what was looked for"))),
       options_(named(new QLineEdit, "device_options")),
@@ -134,10 +134,6 @@ DeviceControls::DeviceControls(Effect& effect)
     make_controls();
     connect(picker_, qOverload<int>(&QComboBox::currentIndexChanged), this,
             &DeviceControls::choose);
-    connect(&effect, &Effect::begun, this,
-            [this] { show_device(effect_.device(), DeviceStatus::starting, {}); });
-    connect(&effect, &Effect::ended, this, &DeviceControls::clear);
-    connect(&effect, &Effect::changed, this, &DeviceControls::refresh);
     connect(&effect, &Effect::observed, this, [this](const Snapshot& now) {
         show_status(now.session.device.status);
         // A number that is being typed is left alone.
@@ -145,6 +141,7 @@ DeviceControls::DeviceControls(Effect& effect)
     });
     set_devices({}, {});
     set_hands(1);
+    set_buttons({});
 }
 
 void DeviceControls::make_controls() {
@@ -177,9 +174,47 @@ void DeviceControls::make_controls() {
     form->addRow(tr("Model"), model_);
     form->addRow(tr("Reach"), workspace_);
     form->addRow(tr("Scale of the hand"), scale);
+    clutch_ = make_button(
+        {"clutch_button", "", tr("While this button is held, the volume hangs on the hand"),
+         tr("Clutch button")},
+        &run::Buttons::clutch);
+    deadman_ =
+        make_button({"deadman_button", "", tr("There is a force only while this button is held"),
+                     tr("Dead-man button")},
+                    &run::Buttons::deadman);
+    form->addRow(tr("Clutch button"), clutch_);
+    form->addRow(tr("Dead-man button"), deadman_);
     column_in(this, {row_of({picker_, look}, 0), row_of({options_, use}, 0),
                      row_of({add_, remove_}), missing_, problem_})
         ->addLayout(form);
+}
+
+QComboBox* DeviceControls::make_button(const Words& words,
+                                       run::ButtonSetup run::Buttons::*purpose) {
+    return choice(words, std::vector<std::string>(),
+                  {[this, purpose] { return run::text_of(purposes_.*purpose); },
+                   [this, purpose](const std::string& text) {
+                       run::Buttons wanted = purposes_;
+                       wanted.*purpose = run::button_from("", text);
+                       Q_EMIT buttons_wanted(wanted);
+                   }});
+}
+
+/// Lists the buttons of the device.
+void DeviceControls::set_buttons(const run::Buttons& buttons) {
+    purposes_ = buttons;
+    const int count = effect_.there() ? effect_.device().buttons : 0;
+    for (QComboBox* box : {clutch_, deadman_}) {
+        box->clear();
+        box->addItem(tr("none"), "none");
+        // A dead-man switch is one by choice only.
+        if (box == clutch_) box->addItem(tr("the second, or the only one"), "auto");
+        for (int number = 1; number <= count; ++number) {
+            box->addItem(tr("button %1").arg(number), QString::number(number));
+        }
+        allow(*box, count > 0 ? QString() : tr("The device has no buttons"));
+    }
+    refresh();
 }
 
 void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& findings,
@@ -269,6 +304,10 @@ void DeviceControls::show_device(const DeviceInfo& info, DeviceStatus status,
                              : tr("gives no force");
     workspace_->setText(
         QString("%1, %2").arg(length_text(info.workspace_high - info.workspace_low), most));
+}
+
+void DeviceControls::begin() {
+    show_device(effect_.device(), DeviceStatus::starting, {});
 }
 
 void DeviceControls::clear() {

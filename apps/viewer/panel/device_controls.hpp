@@ -10,6 +10,7 @@
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "palpate/devices/backend.hpp"
+#include "palpate/run/setup.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::viewer {
@@ -28,7 +29,7 @@ class LoopView : public QWidget {
     void put(const QString& name, const QString& text);
 };
 
-class DeviceControls : public Form {
+class DeviceControls : public EffectForm {
     Q_OBJECT
 
   public:
@@ -38,6 +39,8 @@ class DeviceControls : public Form {
     /// ("haply:port=10001").
     void set_devices(const std::vector<devices::DeviceFinding>& findings, const QString& current);
     void show_device(const DeviceInfo& info, DeviceStatus status, const QString& problem);
+    /// The purposes of the device's buttons.
+    void set_buttons(const run::Buttons& buttons);
     /// How many hands there are: one can be added, or one of them removed.
     void set_hands(int hands);
 
@@ -48,22 +51,26 @@ class DeviceControls : public Form {
     /// The hand whose device this is.
     void removed();
     void refresh_wanted();
+    void buttons_wanted(const palpate::run::Buttons& buttons);
 
   private:
     void make_controls();
+    QComboBox* make_button(const Words& words, run::ButtonSetup run::Buttons::*purpose);
     void show_status(DeviceStatus status);
-    void clear();
+    void begin() override;
+    void clear() override;
     void choose(int row);
     void ask_for_device(void (DeviceControls::*signal)(const QString&));
 
-    Effect& effect_;
     QComboBox* picker_;
     QLineEdit* options_;
     QPushButton *add_ = nullptr, *remove_ = nullptr;
+    QComboBox *clutch_ = nullptr, *deadman_ = nullptr;
     Note* missing_;
     QLabel *dot_, *state_, *model_, *workspace_;
     Note* problem_;
     DeviceStatus status_ = DeviceStatus::starting;
+    run::Buttons purposes_;
     std::vector<devices::DeviceFinding> findings_;  // by row
 };
 

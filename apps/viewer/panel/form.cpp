@@ -95,4 +95,13 @@ QPushButton* Form::button(const Words& words, std::function<void()> press,
     });
 }
 
+EffectForm::EffectForm(Effect& effect) : effect_(effect) {
+    connect(&effect, &Effect::begun, this, [this] { begin(); });
+    connect(&effect, &Effect::changed, this, &Form::refresh);
+    connect(&effect, &Effect::ended, this, [this] {
+        clear();
+        refresh();
+    });
+}
+
 }  // namespace palpate::viewer

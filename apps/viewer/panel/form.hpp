@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "apps/viewer/panel/colours.hpp"
+#include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
 
@@ -30,6 +31,33 @@ template <class T>
 struct Value {
     std::function<T()> get;
     std::function<void(const T&)> set;
+};
+
+/// A whole, whose parts controls show and change.
+template <class Whole>
+struct Parts {
+    std::function<const Whole&()> get;
+    std::function<void(const std::function<void(Whole&)>&)> change;
+
+    template <class T>
+    Value<T> operator[](T Whole::*member) const {
+        return {[whole = get, member] { return whole().*member; },
+                [alter = change, member](const T& to) {
+                    alter([&](Whole& whole) { whole.*member = to; });
+                }};
+    }
+    /// An item of a list. One that is not there has the usual values.
+    template <class Item>
+    Parts<Item> at(std::vector<Item> Whole::*list, std::size_t place) const {
+        return {[whole = get, list, place]() -> const Item& {
+                    static const Item usual{};
+                    const std::vector<Item>& all = whole().*list;
+                    return place < all.size() ? all[place] : usual;
+                },
+                [alter = change, list, place](const std::function<void(Item&)>& how) {
+                    alter([&](Whole& whole) { how((whole.*list).at(place)); });
+                }};
+    }
 };
 
 /// Changes are brought to `low` to `high`.
@@ -91,6 +119,18 @@ class Form : public QWidget {
     }
 
     std::vector<std::function<void()>> showing_;
+};
+
+/// A form for the session in effect. It is shown again after each change.
+class EffectForm : public Form {
+  protected:
+    explicit EffectForm(Effect& effect);
+    /// Another session has begun.
+    virtual void begin() {}
+    /// There is none any more.
+    virtual void clear() {}
+
+    Effect& effect_;
 };
 
 }  // namespace palpate::viewer

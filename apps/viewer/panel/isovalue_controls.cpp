@@ -15,7 +15,7 @@ constexpr int snapshots_of_grace = 3;
 }  // namespace
 
 IsovalueControls::IsovalueControls(Effect& effect)
-    : effect_(effect),
+    : EffectForm(effect),
       chart_(new LevelChart),
       level_(quantity({"isovalue", "", tr("Isovalue [data units]: the level whose surface is felt"),
                        tr("Isovalue")},
@@ -50,13 +50,11 @@ IsovalueControls::IsovalueControls(Effect& effect)
                      make_overruled()})
         ->setSpacing(3);
     connect(chart_, &LevelChart::level_moved, level_, &Quantity::ask);
-    connect(&effect_, &Effect::begun, this, &IsovalueControls::begin);
-    connect(&effect_, &Effect::ended, this, &IsovalueControls::clear);
-    connect(&effect_, &Effect::changed, this, &IsovalueControls::refresh);
     connect(&effect_, &Effect::observed, this, [this](const Snapshot& now) {
         show_felt(now.session.tick.proxy.isovalue, now.penetrability_on);
     });
     clear();
+    refresh();
 }
 
 bool IsovalueControls::layered() const {
@@ -125,7 +123,6 @@ void IsovalueControls::clear() {
     chart_->set_data({}, {});
     chart_->set_felt(std::nan(""));
     felt_->clear();
-    refresh();
     set_dequantized(false, false, {});
 }
 

@@ -9,7 +9,7 @@
 
 namespace palpate::viewer {
 
-class IsovalueControls : public Form {
+class IsovalueControls : public EffectForm {
     Q_OBJECT
 
   public:
@@ -27,12 +27,11 @@ class IsovalueControls : public Form {
   private:
     QWidget* make_field();
     QWidget* make_overruled();
-    void begin();
-    void clear();
+    void begin() override;
+    void clear() override;
     bool layered() const;
     void show_felt(double isovalue, bool penetrability_on);
 
-    Effect& effect_;
     LevelChart* chart_;
     Quantity* level_;
     QCheckBox* dequantize_ = nullptr;

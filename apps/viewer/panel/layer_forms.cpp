@@ -19,41 +19,39 @@ QWidget* LayersControls::make_layer() {
     connect(name, &QLineEdit::editingFinished, this, [this, name] {
         if (!name->isModified()) return;
         name->setModified(false);
-        const std::string text = name->text().trimmed().toStdString();
-        change_layer("name", [&](Layer& layer) { layer.name = text; });
+        chosen_part("name")[&Layer::name].set(name->text().trimmed().toStdString());
     });
-    each_time(name, [this](QLineEdit& edit) {
-        const QString text = QString::fromStdString(layer().name);
+    each_time(name, [get = chosen_part({})[&Layer::name].get](QLineEdit& edit) {
+        const QString text = QString::fromStdString(get());
         if (edit.text() != text && !(edit.hasFocus() && edit.isModified())) edit.setText(text);
     });
-    auto* its_colour = colour(
-        {"layer_colour", "", tr("Colour of the layer")},
-        {[this] { return colour_of(layer()); },
-         [this](const Colour& c) {
-             change_layer("colour", [&](Layer& one) { one.colour = {c.red, c.green, c.blue}; });
-         }});
+    const auto its = chosen_part("colour");
+    auto* its_colour =
+        colour({"layer_colour", "", tr("Colour of the layer")},
+               {[its] { return colour_of(its.get()); },
+                [its](const Colour& c) {
+                    its.change([&](Layer& one) { one.colour = {c.red, c.green, c.blue}; });
+                }});
     add_row(*form, tr("Name"), row_of({name, its_colour}, 0), tr("Name and colour of the layer"));
     auto* level = number(
-        {"layer_level", "", tr("Its level [data units]; also a line to drag on the histogram"),
-         tr("Level of the layer")},
-        {[this] { return layer().level; }, [this](double to) { move_level(chosen(), to); }});
-    add_row(*form, tr("Level"), level, level->toolTip());
+        {"layer_level", "", {}, tr("Level of the layer")},
+        {chosen_part({})[&Layer::level].get, [this](double to) { move_level(chosen(), to); }});
+    add_row(*form, tr("Level"), level, {});
     each_time(level, [this, head = qobject_cast<QLabel*>(form->labelForField(level))](auto& box) {
         const bool label = chosen() >= 0 && is_label(all(), static_cast<std::size_t>(chosen()));
         box.setSingleStep(rounded_to(gap(), 1e-6));
         box.setEnabled(!label);
         head->setText(label ? tr("Label") : tr("Level"));
-        box.setToolTip(label ? tr("Its label: the number that its samples have in the label map")
-                             : tr("Its level [data units]; also a line to drag on the histogram"));
+        for (QWidget* one : std::initializer_list<QWidget*>{&box, head}) {
+            one->setToolTip(
+                label ? tr("Its label: the number that its samples have in the label map")
+                      : tr("Its level [data units]; also a line to drag on the histogram"));
+        }
     });
     quantity_in(*form,
                 {"layer_opacity", tr("Opacity"), tr("Opacity of the layer in the scene, 0 to 1"),
                  tr("Opacity of the layer")},
-                parts_span,
-                as_part({[this] { return layer().opacity; },
-                         [this](double opacity) {
-                             change_layer("opacity", [=](Layer& one) { one.opacity = opacity; });
-                         }}));
+                parts_span, as_part(chosen_part("opacity")[&Layer::opacity]));
     for (const PropertyWords& words : property_words) add_property(*form, words);
     return editor;
 }
@@ -68,97 +66,91 @@ void LayersControls::add_property(QFormLayout& form, const PropertyWords& words)
              if (chosen() < 0) return 0.0;
              return property_at(all(), std::size_t(chosen()), property, effect_.settings());
          },
-         [this, property, name](double to) {
-             change_layer(name, [=](Layer& one) { one[property] = to; });
+         [part = chosen_part(name), property](double to) {
+             part.change([=](Layer& one) { one[property] = to; });
          }});
     auto* clear = named(new QToolButton, name + "_clear", tr("Clear the layer's own value"));
     clear->setText("×");
     clear->setAutoRaise(true);
     clear->setFocusPolicy(Qt::TabFocus);
     clear->setAccessibleName(tr("Clear the layer's own value: %1").arg(label));
-    connect(clear, &QToolButton::clicked, this,
-            [this, property] { change_layer({}, [=](Layer& one) { one[property].reset(); }); });
+    connect(clear, &QToolButton::clicked, this, [this, property] {
+        last_key_.clear();
+        chosen_part({}).change([=](Layer& one) { one[property].reset(); });
+    });
     QWidget* both = row_of({value, clear}, 0);
     both->layout()->setSpacing(2);
     both->setFocusProxy(value);
     add_row(form, label, both, tip);
-    if (property == HapticProperty::puncture_force) form.addRow("", make_never(value));
+    if (property == HapticProperty::puncture_force) form.addRow("", make_never(*value));
     if (property == HapticProperty::drag) {
         each_time(value, [this](QWidget& one) { one.setEnabled(all().needle.has_value()); });
     }
     each_time(both, [this, property, tip, value, clear](QWidget& row) {
         if (chosen() < 0) return;
         const auto at = static_cast<std::size_t>(chosen());
-        const ValueFrom from = value_from(all(), at, property);
-        QFont font = value->box().font();
-        font.setItalic(from != ValueFrom::layer);
-        value->box().setFont(font);
-        row.setToolTip(from == ValueFrom::layer ? tip
-                       : from == ValueFrom::curve
-                           ? tr("%1.\nNow from its curve over density").arg(tip)
-                           : tr("%1.\nNow from the session's value (Force)").arg(tip));
-        clear->setEnabled(from == ValueFrom::layer);
         Layers cleared = all();
         cleared.layers[at][property].reset();
+        const bool own = all().layers[at][property].has_value();
+        const bool curve = !all()[property].density.knots.empty();
+        QFont font = value->box().font();
+        font.setItalic(!own);
+        value->box().setFont(font);
+        row.setToolTip(own     ? tip
+                       : curve ? tr("%1.\nNow from its curve over density").arg(tip)
+                               : tr("%1.\nNow from the session's value (Force)").arg(tip));
+        clear->setEnabled(own);
         const double without = property_at(cleared, at, property, effect_.settings());
         clear->setToolTip(
-            (value_from(cleared, at, property) == ValueFrom::curve
-                 ? tr("Clear the layer's own value: then its curve over density, "
-                      "%1, counts")
-                 : tr("Clear the layer's own value: then the session's value "
-                      "(Force), %1, counts"))
+            (curve ? tr("Clear the layer's own value: then its curve over density, %1, counts")
+                   : tr("Clear the layer's own value: then the session's value (Force), %1, "
+                        "counts"))
                 .arg(std::isfinite(without) ? number_text(without, 3) : tr("never gives way")));
     });
 }
 
-QWidget* LayersControls::make_never(Quantity* puncture) {
-    puncture->box().set_infinite(true);
-    each_time(puncture, [this](Quantity& one) {
+QWidget* LayersControls::make_never(Quantity& puncture) {
+    puncture.box().set_infinite(true);
+    each_time(&puncture, [this](Quantity& one) {
         if (std::isfinite(one.value())) last_puncture_ = one.value();
         one.setEnabled(std::isfinite(one.value()));
     });
-    return check(
-        {"layer_never", tr("never gives way"),
-         tr("The surface holds, however hard the hand presses")},
-        {[puncture] { return !std::isfinite(puncture->value()); },
-         [this](bool never) {
-             const double most = never ? std::numeric_limits<double>::infinity() : last_puncture_;
-             change_layer("never", [=](Layer& one) { one[HapticProperty::puncture_force] = most; });
-         }});
+    return check({"layer_never", tr("never gives way"),
+                  tr("The surface holds, however hard the hand presses")},
+                 {[&puncture] { return !std::isfinite(puncture.value()); },
+                  [this, part = chosen_part("never")](bool never) {
+                      const double most =
+                          never ? std::numeric_limits<double>::infinity() : last_puncture_;
+                      part.change([=](Layer& one) { one[HapticProperty::puncture_force] = most; });
+                  }});
 }
 
 QWidget* LayersControls::make_needle() {
-    auto *whole = new QWidget, *numbers = new QWidget;
-    auto *form = form_in(whole), *rows = form_in(numbers);
+    auto *both = new QWidget, *numbers = new QWidget;
+    auto *form = form_in(both), *rows = form_in(numbers);
     quantity_in(*form,
                 {"layers_closing", tr("Closes after"),
                  tr("A surface that gave way closes when the proxy is farther than this from where "
                     "it did [mm of the data]"),
                  tr("Distance at which surfaces close")},
-                {"mm", 0.1, 20, 0.1, Quantity::Scale::factors},
-                {[this] { return all().closing; },
-                 [this](double value) {
-                     change("closing", [=](Layers& layers) { layers.closing = value; });
-                 }});
-    form->addRow(
-        check({"needle", tr("Needle"),
-               tr("The hand holds a needle: after the first puncture it moves along a line")},
-              {[this] { return all().needle.has_value(); },
-               [this](bool on) {
-                   change("needle", [=](Layers& layers) {
-                       layers.needle = on ? std::optional<Needle>(Needle{}) : std::nullopt;
-                   });
-               }}));
+                {"mm", 0.1, 20, 0.1, Quantity::Scale::factors}, whole("closing")[&Layers::closing]);
+    const auto needle = whole("needle")[&Layers::needle];
+    form->addRow(check(
+        {"needle", tr("Needle"),
+         tr("The hand holds a needle: after the first puncture it moves along a line")},
+        {[needle] { return needle.get().has_value(); },
+         [needle](bool on) { needle.set(on ? std::optional<Needle>(Needle{}) : std::nullopt); }}));
     form->addRow(numbers);
-    each_time(numbers, [this](QWidget& one) { one.setVisible(all().needle.has_value()); });
-    const auto add = [&](const Words& words, double Needle::*of, const Span& span) {
-        const auto set = [this, of, name = words.name](double value) {
-            change(name, [=](Layers& layers) {
-                if (layers.needle) (*layers.needle).*of = value;
-            });
-        };
-        const auto get = [this, of] { return all().needle.value_or(Needle{}).*of; };
-        quantity_in(*rows, words, span, {get, set});
+    each_time(numbers, [needle](QWidget& one) { one.setVisible(needle.get().has_value()); });
+    const auto add = [&](const Words& words, double Needle::*member, const Span& span) {
+        const auto its = whole(words.name)[&Layers::needle];
+        quantity_in(*rows, words, span,
+                    {[its, member] { return its.get().value_or(Needle{}).*member; },
+                     [its, member](double value) {
+                         Needle next = its.get().value_or(Needle{});
+                         next.*member = value;
+                         its.set(next);
+                     }});
     };
     add({"needle_lateral", tr("Lateral stiffness"),
          tr("How stiffly the needle is drawn to its line [N/mm]")},
@@ -169,26 +161,26 @@ QWidget* LayersControls::make_needle() {
     add({"needle_stick_speed", tr("Stick speed"),
          tr("Slower than this along its line, the shaft sticks [mm/s]")},
         &Needle::stick_speed, {"mm/s", 0, 10, 0.5});
-    return whole;
+    return both;
 }
 
-/// Of which one is possible.
-QWidget* LayersControls::make_ends(const QString& label, const Words& start, const Words& remove,
-                                   std::function<const Knots&()> knots, std::function<void()> begin,
-                                   std::function<void()> end) {
-    return row_of(
-        {new QLabel(label), button(start, std::move(begin), [knots] { return knots().empty(); }),
-         button(remove, std::move(end), [knots] { return !knots().empty(); })},
-        0);
+/// Buttons to begin a curve with one knot, and to remove it.
+QWidget* LayersControls::make_curve(Curve PropertyCurves::*curve, const QString& label,
+                                    const Words& start, const Words& remove,
+                                    std::function<Curve::Knot()> first) {
+    const auto there = [this, curve] { return !(all()[property_].*curve).knots.empty(); };
+    auto* begin = button(
+        start, [this, curve, first] { set_knots(curve, {first()}); }, [there] { return !there(); });
+    auto* end = button(
+        remove, [this, curve] { set_knots(curve, {}); }, there);
+    return row_of({new QLabel(label), begin, end}, 0);
 }
 
 /// Over density, which lies on the histogram, and over the gradient, on a chart of its own.
 QWidget* LayersControls::make_curves() {
-    const auto density = [this]() -> const Knots& { return all()[property_].density.knots; };
-    const auto gradient = [this]() -> const Knots& { return all()[property_].gradient.knots; };
     auto* own = new Note("curve_note", Note::Kind::plain);
-    each_time(own, [this, density](Note& note) {
-        const bool hidden = !density().empty() && count() > 0 &&
+    each_time(own, [this](Note& note) {
+        const bool hidden = !all()[property_].density.knots.empty() && count() > 0 &&
                             std::ranges::all_of(all().layers, [this](const Layer& one) {
                                 return one[property_].has_value();
                             });
@@ -196,17 +188,20 @@ QWidget* LayersControls::make_curves() {
                              "count.")
                         : "");
     });
-    auto* over_density = make_ends(
-        tr("over density"),
+    auto* over_density = make_curve(
+        &PropertyCurves::density, tr("over density"),
         {"start_curve", tr("Start"),
          tr("Begin a curve of this property: one point, with the value that counts so far.\nOn "
             "the histogram: double click for another point, drag it, right click or Del to delete "
             "it"),
          tr("Start the curve")},
-        {"remove_curve", tr("Remove"), tr("Remove this curve"), tr("Remove the curve")}, density,
-        [this] { begin_curve(); }, [this] { set_curve({}); });
-    auto* over_gradient = make_ends(
-        tr("over the gradient"),
+        {"remove_curve", tr("Remove"), tr("Remove this curve"), tr("Remove the curve")}, [this] {
+            const double middle = rounded_to(0.5 * (low_ + high_), gap());
+            const double at = std::clamp(chosen_level().value_or(middle), low_, high_);
+            return first_knot(property_, at, effect_.settings());
+        });
+    auto* over_gradient = make_curve(
+        &PropertyCurves::gradient, tr("over the gradient"),
         {"start_gradient", tr("Start"),
          tr("Begin a factor over the gradient's magnitude: the property, wherever it comes from, "
             "is multiplied by it.\nSteep places, where two tissues meet, then feel different from "
@@ -214,24 +209,33 @@ QWidget* LayersControls::make_curves() {
          tr("Start the factor over the gradient")},
         {"remove_gradient", tr("Remove"), tr("Remove the factor over the gradient"),
          tr("Remove the factor over the gradient")},
-        gradient,
         [this] {
             const LevelAxis axis = factors_->whole_axis();
-            set_factors({{rounded_to(0.5 * (axis.low + axis.high), axis.step()), 1}});
-        },
-        [this] { set_factors({}); });
-    auto* whole = new QWidget;
-    column_in(whole, {make_property(), over_density, own, over_gradient, factors_})->setSpacing(2);
-    connect(factors_, &LevelChart::curve_changed, this, &LayersControls::set_factors);
-    each_time(factors_, [gradient](LevelChart& chart) {
-        chart.set_curve({gradient()});
-        chart.setVisible(!gradient().empty());
+            return Curve::Knot{rounded_to(0.5 * (axis.low + axis.high), axis.step()), 1};
+        });
+    factors_->setObjectName("gradient_chart");
+    factors_->setAccessibleName(tr("Factor over the gradient"));
+    factors_->setToolTip(
+        tr("Factor over the gradient's magnitude [data units / mm]; behind it, how often there is "
+           "which (logarithm).\nPoints: drag; double click adds one, right click or Del deletes. "
+           "By keys:\nPage keys choose a point, arrows move it, Insert adds one.\n"
+           "Ctrl-wheel zooms, shift-wheel moves, Ctrl+0 shows all again."));
+    connect(factors_, &LevelChart::curve_changed, this,
+            [this](const Knots& knots) { set_knots(&PropertyCurves::gradient, knots); });
+    each_time(factors_, [this](LevelChart& chart) {
+        const Knots& knots = all()[property_].gradient.knots;
+        chart.set_curve({knots});
+        chart.setVisible(!knots.empty());
     });
-    return whole;
+    auto* which = make_property();
+    auto* column = column_of({row_of({label_for(tr("Curve"), which), which}, 1), over_density, own,
+                              over_gradient, factors_});
+    column->layout()->setSpacing(2);
+    return column;
 }
 
 /// The one whose curves are shown.
-QWidget* LayersControls::make_property() {
+QComboBox* LayersControls::make_property() {
     QStringList labels;
     for (const PropertyWords& words : property_words) labels << tr(words.label);
     auto* which = choice({"curve_property", "",
@@ -248,7 +252,7 @@ QWidget* LayersControls::make_property() {
                           }});
     which->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     which->setMinimumContentsLength(8);
-    each_time(which, [this, labels](QComboBox& box) {
+    return each_time(which, [this, labels](QComboBox& box) {
         for (int i = 0; i < haptic_property_count; ++i) {
             const PropertyCurves& curves = all()[static_cast<HapticProperty>(i)];
             const auto points = curves.density.knots.size() + curves.gradient.knots.size();
@@ -256,7 +260,6 @@ QWidget* LayersControls::make_property() {
                 i, points == 0 ? labels[i] : QString("%1 (%2)").arg(labels[i]).arg(points));
         }
     });
-    return row_of({label_for(tr("Curve"), which), which}, 1);
 }
 
 }  // namespace palpate::viewer

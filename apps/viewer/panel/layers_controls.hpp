@@ -71,29 +71,26 @@ struct LayersChoice {
 /// for the properties, layer_never; with _clear, the button that clears a property. Of their
 /// curves: curve_property, start_curve, remove_curve, curve_note; start_gradient, remove_gradient,
 /// gradient_chart. layers_closing, needle, needle_lateral, needle_static_ratio, needle_stick_speed.
-class LayersControls : public Form {
+class LayersControls : public EffectForm {
     Q_OBJECT
 
   public:
     explicit LayersControls(Effect& effect);
 
     void set_choices(std::vector<LayersChoice> choices);
-    /// As they are shown: those in effect, or asked for in a moment.
-    const SharedLayers& layers() const { return layers_; }
+    const SharedLayers& layers() const { return effect_.settings().layers; }
     /// They were changed, and are in no file.
     bool unsaved() const;
-    void set_saved() { saved_ = layers_; }
+    void set_saved() { saved_ = layers(); }
     /// Of the layer that is chosen; nothing: there is none, or layers are by label.
     std::optional<double> chosen_level() const;
     /// What a file that was opened says; shown until another set is chosen.
-    void say(const QString& note);
+    void say(const QString& note) { note_->say(note); }
     /// As by hand.
     void use(const SharedLayers& layers);
     void move_level(int layer, double level);
     /// Of the property that is chosen.
-    void set_curve(const std::vector<Curve::Knot>& knots);
-    /// The same, over the gradient.
-    void set_factors(const std::vector<Curve::Knot>& knots);
+    void set_curve(const Knots& knots);
     HapticProperty curve_property() const { return property_; }
     void choose_layer(int layer);
     LevelRoom room(int layer) const;
@@ -112,43 +109,40 @@ class LayersControls : public Form {
 
   private:
     QWidget* make_choice();
-    QWidget* make_stroke();
     QWidget* make_list();
     QWidget* make_layer();
     void add_property(QFormLayout& form, const PropertyWords& words);
-    QWidget* make_never(Quantity* puncture);
+    QWidget* make_never(Quantity& puncture);
     QWidget* make_needle();
     QWidget* make_curves();
-    QWidget* make_property();
-    QWidget* make_ends(const QString& label, const Words& start, const Words& remove,
-                       std::function<const Knots&()> knots, std::function<void()> begin,
-                       std::function<void()> end);
-    void begin();
-    void clear();
+    QComboBox* make_property();
+    QWidget* make_curve(Curve PropertyCurves::*curve, const QString& label, const Words& start,
+                        const Words& remove, std::function<Curve::Knot()> first);
+    void begin() override;
+    void clear() override;
     void choose_set(int at);
-    void request(const SharedLayers& layers);
-    void edit(const SharedLayers& next, const QString& key);
+    void edit(const SharedLayers& next, const QString& key = {});
+    void request(const SharedLayers& next);
     void change(const QString& key, const std::function<void(Layers&)>& how);
-    void change_layer(const QString& key, const std::function<void(Layer&)>& how);
+    /// Changes by this key continue each other.
+    Parts<Layers> whole(const QString& key);
+    Parts<Layer> chosen_part(const QString& key);
+    void set_knots(Curve PropertyCurves::*curve, const Knots& knots);
     void add_layer();
     void remove_layer();
     void shift_layer(int by);
-    void begin_curve();
     void step(bool back);
-    void show();
     void show_choice();
     void show_list();
-    void show_item(int row);
     int chosen() const;
-    bool by_label() const { return layers_ && layers_->by_label; }
+    bool by_label() const { return layers() && layers()->by_label; }
     int count() const { return static_cast<int>(all().layers.size()); }
+    int levels() const { return static_cast<int>(levels_in(layers())); }
     /// Empty ones where there are none.
     const Layers& all() const;
-    const Layer& layer() const;
     double gap() const;
 
-    Effect& effect_;
-    SharedLayers layers_, saved_;
+    SharedLayers saved_;
     double low_ = 0, high_ = 1;
     std::vector<LayersChoice> choices_;
     LayersHistory history_;

@@ -12,41 +12,20 @@
 
 namespace palpate::viewer {
 
-template <class T>
-Value<T> LookControls::of(T Look::*member) {
-    return {[this, member] { return look_.*member; },
-            [this, member](const T& value) { change([&](Look& look) { look.*member = value; }); }};
-}
-
-/// Rows of surfaces that there are not are hidden.
-template <class T>
-Value<T> LookControls::of_surface(std::size_t at, T SeenSurface::*member) {
-    return {[this, at, member] {
-                return at < look_.surfaces.size() ? look_.surfaces[at].*member : T{};
-            },
-            [this, at, member](const T& value) {
-                change([&](Look& look) { look.surfaces.at(at).*member = value; });
-            }};
-}
-
 /// The chosen one, as its numbers were typed; it stays between its neighbours.
-template <class T>
-Value<T> LookControls::of_point(T ControlPoint::*member) {
-    return {[this, member] { return held_point() ? held_point()->*member : T{}; },
-            [this, member](const T& value) {
-                if (!held_point()) return;
-                ControlPoint point = *held_point();
-                point.*member = value;
-                const auto at = static_cast<std::size_t>(editor_->held_knot());
-                CurveLine line = editor_->curve();
-                line.put(at, {point.level, point.opacity}, editor_->axis().step());
-                line.colours[at] = point.colour;
-                take_transfer(line.knots, line.colours);
-            }};
+void LookControls::change_point(const std::function<void(ControlPoint&)>& how) {
+    if (!held_point()) return;
+    ControlPoint point = *held_point();
+    how(point);
+    const auto at = static_cast<std::size_t>(editor_->held_knot());
+    CurveLine line = editor_->curve();
+    line.put(at, {point.level, point.opacity}, editor_->axis().step());
+    line.colours[at] = point.colour;
+    take_transfer(line.knots, line.colours);
 }
 
 LookControls::LookControls(Effect& effect)
-    : effect_(effect),
+    : EffectForm(effect),
       editor_(named(
           new LevelChart, "transfer_editor",
           tr("Opacity (upwards, 0 to 1) and colour by level [data units].\n"
@@ -55,14 +34,14 @@ LookControls::LookControls(Effect& effect)
              "chooses its colour.\nChoose the preset again to undo. Ctrl-wheel zooms, shift-wheel "
              "moves, Ctrl+0 shows all again."))) {
     editor_->setAccessibleName(tr("Transfer function"));
-    auto* felt = row_of(
-        {check({"show_surface", tr("Surface"), tr("The isosurface that is felt")},
-               of(&Look::surface)),
-         colour({"surface_colour", "", tr("Colour of the isosurface")}, of(&Look::surface_colour)),
-         quantity({"surface_opacity", "", tr("Opacity of the isosurface, 0 to 1"),
-                   tr("Opacity of the isosurface")},
-                  parts_span, as_part(of(&Look::surface_opacity)))},
-        2);
+    auto* felt = row_of({check({"show_surface", tr("Surface"), tr("The isosurface that is felt")},
+                               its_[&Look::surface]),
+                         colour({"surface_colour", "", tr("Colour of the isosurface")},
+                                its_[&Look::surface_colour]),
+                         quantity({"surface_opacity", "", tr("Opacity of the isosurface, 0 to 1"),
+                                   tr("Opacity of the isosurface")},
+                                  parts_span, as_part(its_[&Look::surface_opacity]))},
+                        2);
     auto* others = column_of({});
     for (std::size_t i = 0; i < most_surfaces; ++i) others->layout()->addWidget(make_surface(i));
     others->layout()->addWidget(button(
@@ -83,25 +62,21 @@ LookControls::LookControls(Effect& effect)
     connect(editor_, &LevelChart::knot_held, this, &LookControls::refresh);
     connect(editor_, &LevelChart::knot_activated, findChild<ColourButton*>("point_colour"),
             &ColourButton::choose);
-    connect(&effect_, &Effect::begun, this, &LookControls::begin);
-    connect(&effect_, &Effect::changed, this, &LookControls::refresh);
-    connect(&effect_, &Effect::ended, this, [this] {
-        editor_->set_data({}, {});
-        refresh();
-    });
     refresh();
 }
 
+/// Rows of surfaces that there are not are hidden.
 QWidget* LookControls::make_surface(std::size_t at) {
     const int number = static_cast<int>(at) + 1;
     const QString name = QString("surface_%1").arg(number);
+    const Parts<SeenSurface> surface = its_.at(&Look::surfaces, at);
     auto* level = this->number(
         {name + "_level", "", tr("Its level [data units]; also a line to drag on the histogram"),
          tr("Level of surface %1").arg(number)},
-        of_surface(at, &SeenSurface::level));
+        surface[&SeenSurface::level]);
     auto* opacity = this->number(
         {name + "_opacity", "", tr("Its opacity, 0 to 1"), tr("Opacity of surface %1").arg(number)},
-        as_part(of_surface(at, &SeenSurface::opacity)));
+        as_part(surface[&SeenSurface::opacity]));
     auto* felt = button(
         {name + "_feel", tr("Feel"), tr("Feel this one; the one felt now takes its place here"),
          tr("Feel surface %1").arg(number)},
@@ -125,9 +100,9 @@ QWidget* LookControls::make_surface(std::size_t at) {
     });
     QWidget* row = row_of(
         {check({name, "", tr("Surface %1 is seen").arg(number), tr("Surface %1").arg(number)},
-               of_surface(at, &SeenSurface::shown)),
+               surface[&SeenSurface::shown]),
          colour({name + "_colour", "", tr("Colour of surface %1").arg(number)},
-                of_surface(at, &SeenSurface::colour)),
+                surface[&SeenSurface::colour]),
          level, opacity, felt, remove},
         2);
     return each_time(row, [this, at](QWidget& one) { one.setVisible(at < look_.surfaces.size()); });
@@ -197,14 +172,20 @@ QWidget* LookControls::make_volume() {
         }
         editor.set_curve(line);
     });
+    const Parts<ControlPoint> point{
+        [this]() -> const ControlPoint& {
+            static const ControlPoint none;
+            return held_point() ? *held_point() : none;
+        },
+        [this](const std::function<void(ControlPoint&)>& how) { change_point(how); }};
     auto* level = number({"point_level", "", tr("Level of the chosen point [data units]")},
-                         of_point(&ControlPoint::level));
+                         point[&ControlPoint::level]);
     auto* opacity = number({"point_opacity", "",
                             tr("Opacity of the chosen point, 0 to 1, of a layer as thick as the "
                                "smallest spacing")},
-                           as_part(of_point(&ControlPoint::opacity)));
+                           as_part(point[&ControlPoint::opacity]));
     auto* its_colour = colour({"point_colour", "", tr("Colour of the chosen point")},
-                              of_point(&ControlPoint::colour));
+                              point[&ControlPoint::colour]);
     opacity->setSingleStep(0.05);
     each_time(level, [this](NumberBox& box) { box.setSingleStep(editor_->fine_step()); });
     for (NumberBox* box : {level, opacity}) {
@@ -216,13 +197,13 @@ QWidget* LookControls::make_volume() {
     return column_of(
         {row_of(
              {check({"show_volume", tr("Volume"), tr("Volume rendering by the transfer function")},
-                    of(&Look::volume)),
+                    its_[&Look::volume]),
               check({"show_shading", tr("Shading"), tr("Light on the volume, by its gradients")},
-                    of(&Look::shading)),
+                    its_[&Look::shading]),
               check({"show_maximum", tr("Maximum"),
                      tr("Maximum intensity projection: the brightest sample along each line of "
                         "sight, black to white over the levels below")},
-                    of(&Look::maximum))}),
+                    its_[&Look::maximum])}),
          preset_, editor_, row_of({new QLabel(tr("Point")), level, opacity, its_colour})});
 }
 
@@ -250,10 +231,10 @@ QWidget* LookControls::make_rest() {
     grid->setVerticalSpacing(2);
     for (const auto& [shown, name, text, tip] : switches) {
         const int at = grid->count();
-        grid->addWidget(check({QString("show_") + name, text, tip}, of(shown)), at / 2, at % 2);
+        grid->addWidget(check({QString("show_") + name, text, tip}, its_[shown]), at / 2, at % 2);
     }
     auto* colours = choice({"colours", "", tr("Colour map of the slices")}, colour_map_names(),
-                           of(&Look::colours));
+                           its_[&Look::colours]);
     return column_of({all, row_of({label_for(tr("Slices' colours"), colours), colours}, 1)});
 }
 

@@ -11,7 +11,7 @@ namespace palpate::viewer {
 
 /// Object names: show_..., and of the surfaces beside the felt one, from N = 1, surface_N (shown or
 /// not), surface_N_colour, _level, _opacity, _feel, _remove; add_surface.
-class LookControls : public Form {
+class LookControls : public EffectForm {
     Q_OBJECT
 
   public:
@@ -30,23 +30,20 @@ class LookControls : public Form {
     void cut_wanted(palpate::viewer::Cut cut);
 
   private:
-    template <class T>
-    Value<T> of(T Look::*member);
-    template <class T>
-    Value<T> of_surface(std::size_t at, T SeenSurface::*member);
-    template <class T>
-    Value<T> of_point(T ControlPoint::*member);
     QWidget* make_surface(std::size_t at);
     QWidget* make_volume();
     QWidget* make_rest();
-    void begin();
+    void begin() override;
+    void clear() override { editor_->set_data({}, {}); }
     void add_surface();
     void feel(std::size_t at);
     void take_transfer(const Knots& knots, const std::vector<Colour>& colours);
     const ControlPoint* held_point() const;
+    void change_point(const std::function<void(ControlPoint&)>& how);
 
-    Effect& effect_;
     Look look_;
+    const Parts<Look> its_{[this]() -> const Look& { return look_; },
+                           [this](const std::function<void(Look&)>& how) { change(how); }};
     QComboBox* preset_ = nullptr;
     LevelChart* editor_;
 };

@@ -9,19 +9,16 @@
 
 namespace palpate::viewer {
 
-template <class T>
-Value<T> OverlayControls::of(T OverlayLook::*member) {
-    return {[this, member] { return its_look().*member; },
-            [this, member](const T& value) {
-                look_.change([&](Look& look) { look.overlay.*member = value; });
-            }};
-}
-
 OverlayControls::OverlayControls(Effect& effect, LookControls& look)
-    : look_(look),
+    : EffectForm(effect),
+      look_(look),
       name_(named(new QLabel, "overlay_name")),
       labels_(named(new QListWidget, "overlay_labels",
                     tr("Labels; a double click goes to where one lies"))) {
+    const Parts<OverlayLook> its{[this]() -> const OverlayLook& { return its_look(); },
+                                 [&look](const std::function<void(OverlayLook&)>& how) {
+                                     look.change([&](Look& all) { how(all.overlay); });
+                                 }};
     auto* open = button({"open_overlay", tr("Open…"),
                          tr("A label map or another image of the same body, on a grid of its own")},
                         [this] { Q_EMIT open_wanted(); });
@@ -30,27 +27,27 @@ OverlayControls::OverlayControls(Effect& effect, LookControls& look)
         {"feel_labels", tr("Feel these labels"),
          tr("Layers by label: each label that is shown becomes one, with its name and "
             "colour; change them on the page Feel")},
-        [this] { Q_EMIT feel_wanted(); }, [&effect] { return effect.there(); });
+        [this] { Q_EMIT feel_wanted(); }, [this] { return effect_.there(); });
     auto* slices =
         row_of({check({"overlay_shown", tr("In slices"), tr("Over the grey of the slices")},
-                      of(&OverlayLook::shown)),
+                      its[&OverlayLook::shown]),
                 quantity({"overlay_opacity", "", {}, tr("Opacity of the overlay in slices")},
-                         parts_span, as_part(of(&OverlayLook::opacity)))},
+                         parts_span, as_part(its[&OverlayLook::opacity]))},
                1);
     auto* scene = row_of(
         {check({"overlay_surface", tr("In the scene"),
                 tr("Surfaces of the labels, or of the image's level")},
-               of(&OverlayLook::surface)),
+               its[&OverlayLook::surface]),
          quantity({"overlay_surface_opacity", "", {}, tr("Opacity of the overlay's surfaces")},
-                  parts_span, as_part(of(&OverlayLook::surface_opacity)))},
+                  parts_span, as_part(its[&OverlayLook::surface_opacity]))},
         1);
     auto* colours = choice(
         {"overlay_colours", "", tr("Colour map of the image"), tr("Colour map of the overlay")},
-        colour_map_names(), of(&OverlayLook::colours));
-    const auto of_level = of(&OverlayLook::level);
-    auto* level = number({"overlay_level", "", tr("Level of the image's surface [its units]"),
-                          tr("Level of the overlay's surface")},
-                         {[this] { return its_look().level.value_or(suggested_); }, of_level.set});
+        colour_map_names(), its[&OverlayLook::colours]);
+    auto* level = number(
+        {"overlay_level", "", tr("Level of the image's surface [its units]"),
+         tr("Level of the overlay's surface")},
+        {[this] { return its_look().level.value_or(suggested_); }, its[&OverlayLook::level].set});
     name_->setTextFormat(Qt::PlainText);
     image_ = row_of(
         {label_for(tr("Colours"), colours), colours, label_for(tr("Level"), level), level}, 3);
@@ -59,8 +56,6 @@ OverlayControls::OverlayControls(Effect& effect, LookControls& look)
     column_in(this, {row_of({open, close_, name_}, 2), body_});
     connect(&look, &LookControls::look_changed, this, &OverlayControls::refresh);
     connect(&look, &LookControls::look_set, this, &OverlayControls::refresh);
-    connect(&effect, &Effect::begun, this, &OverlayControls::refresh);
-    connect(&effect, &Effect::ended, this, &OverlayControls::refresh);
     set_overlay(nullptr);
 }
 

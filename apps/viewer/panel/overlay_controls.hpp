@@ -10,7 +10,7 @@
 namespace palpate::viewer {
 
 /// They show and change the overlay's part of the look.
-class OverlayControls : public Form {
+class OverlayControls : public EffectForm {
     Q_OBJECT
 
   public:
@@ -29,8 +29,6 @@ class OverlayControls : public Form {
 
   private:
     const OverlayLook& its_look() const { return look_.look().overlay; }
-    template <class T>
-    Value<T> of(T OverlayLook::*member);
     void make_labels();
 
     LookControls& look_;

@@ -13,13 +13,12 @@
 
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
-#include "apps/viewer/panel/force_controls.hpp"
+#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/look_controls.hpp"
 #include "apps/viewer/panel/overlay_controls.hpp"
-#include "apps/viewer/panel/penetrability_controls.hpp"
-#include "apps/viewer/panel/session_bar.hpp"
+#include "apps/viewer/panel/sections.hpp"
 #include "apps/viewer/panel/tool_controls.hpp"
 
 namespace palpate::viewer {
@@ -94,7 +93,7 @@ void Panel::build() {
         return section;
     };
     column->addWidget(hands_);
-    column->addWidget(part(tr("Session"), "session_part", new SessionBar(effect_)));
+    column->addWidget(part(tr("Session"), "session_part", session_section(effect_)));
     column->addWidget(part(tr("Isovalue"), "isovalue_part", isovalue_));
     column->addWidget(tabs_, 1);
     tabs_->setDocumentMode(true);
@@ -105,9 +104,9 @@ void Panel::build() {
     };
     add(tr("Fee&l"), {part(tr("Layers"), "layers_part", layers_),
                       part(tr("Pressing through (penetrability)"), "penetrability_part",
-                           new PenetrabilityControls(effect_, isovalue_->chart())),
+                           penetrability_section(effect_, isovalue_->chart())),
                       part(tr("Tool"), "tool_part", tool_),
-                      part(tr("Force"), "force_part", new ForceControls(effect_))});
+                      part(tr("Force"), "force_part", force_section(effect_))});
     add(tr("L&ook"), {part(tr("Look"), "look_part", look_)});
     add(tr("D&ata"),
         {part(tr("Edit"), "edit_part", edit_), part(tr("Overlay"), "overlay_part", overlay_)});

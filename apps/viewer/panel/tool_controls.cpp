@@ -66,15 +66,15 @@ MadeTool made_tool(const io::ToolSpec& spec, double scale, const Geometry& geome
 
 }  // namespace
 
-ToolControls::ToolControls(Effect& effect)
-    : effect_(effect),
-      choice_(choice({"tool", "",
-                      tr("What touches. No point of a tool ever goes through the surface; it "
-                         "pushes and turns the hand. With the mouse, Ctrl and drag in the scene "
-                         "turn it."),
-                      tr("Tool")},
-                     QStringList(),
-                     {[this] { return shown_.row; }, [this](int row) { choose(row, 1); }})) {
+ToolControls::ToolControls(Effect& effect) : EffectForm(effect) {
+    each_time(this, [this](QWidget&) { show_tool(); });
+    choice_ =
+        choice({"tool", "",
+                tr("What touches. No point of a tool ever goes through the surface; it "
+                   "pushes and turns the hand. With the mouse, Ctrl and drag in the scene "
+                   "turn it."),
+                tr("Tool")},
+               QStringList(), {[this] { return shown_.row; }, [this](int row) { choose(row, 1); }});
     auto* open = button({"open_tool", tr("Open…"),
                          tr("A tool from a file: a mesh (STL, PLY, OBJ, VTP) or points (CSV: x, y, "
                             "z), in mm from the point that is held"),
@@ -95,14 +95,12 @@ ToolControls::ToolControls(Effect& effect)
     choice_->setMinimumContentsLength(8);
     column_in(this, {row_of({choice_, open}, 0)})->addLayout(form);
     layout()->addWidget(words);
-    connect(&effect, &Effect::begun, this, [this] { set_grid(effect_.field().geometry()); });
-    connect(&effect, &Effect::ended, this, [this] { show_tool(); });
-    connect(&effect, &Effect::changed, this, &ToolControls::show_tool);
     refresh();
 }
 
 /// Of another volume: sizes suit it. Tools of files stay.
-void ToolControls::set_grid(const Geometry& geometry) {
+void ToolControls::begin() {
+    const Geometry& geometry = effect_.field().geometry();
     if (geometry.size == geometry_.size && geometry.spacing == geometry_.spacing) return;
     const QString names[] = {tr("Point"), tr("Ball"), tr("Rod"),      tr("Needle"),
                              tr("Burr"),  tr("Box"),  tr("Fingertip")};
@@ -148,7 +146,6 @@ void ToolControls::show_tool() {
     }
     choice_->clear();
     for (const Choice& choice : choices_) choice_->addItem(choice.name);
-    refresh();
 }
 
 QString ToolControls::about() const {

@@ -10,7 +10,7 @@
 
 namespace palpate::viewer {
 
-class ToolControls : public Form {
+class ToolControls : public EffectForm {
     Q_OBJECT
 
   public:
@@ -34,17 +34,16 @@ class ToolControls : public Form {
         std::shared_ptr<const Tool> tool;
         double spacing = 0;  // [mm] 0: as given
     };
-    void set_grid(const Geometry& geometry);
+    void begin() override;
     void choose(int row, double scale);
     void show_tool();
     QString about() const;
 
-    Effect& effect_;
     Geometry geometry_{Index3::Zero()};
     std::size_t built_in_ = 0;     // of the choices, the first ones
     std::vector<Choice> choices_;  // then those of files and sessions
     Made shown_, asked_;           // in effect, and last asked for, whatever became of it
-    QComboBox* choice_;
+    QComboBox* choice_ = nullptr;
 };
 
 }  // namespace palpate::viewer

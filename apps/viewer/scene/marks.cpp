@@ -6,6 +6,7 @@
 #include <vtkProperty2D.h>
 #include <vtkRenderWindow.h>
 #include <vtkTextProperty.h>
+#include <QCoreApplication>
 
 #include <algorithm>
 #include <cmath>
@@ -120,9 +121,11 @@ void Annotations::show_words(const Content& what) {
         writing_->AddActor2D(text);
         words_.push_back(text);
     }
+    const std::string voxel = QCoreApplication::translate("Units", "voxel").toStdString();
     for (std::size_t i = 0; i < words_.size(); ++i) {
         const bool there = i < what.measurements.size();
-        const std::string words = there ? text_of(what.measurements[i], what.unit) : std::string();
+        const std::string words =
+            there ? text_of(what.measurements[i], what.unit, voxel) : std::string();
         words_[i]->SetVisibility(!words.empty());
         if (words.empty()) continue;
         const auto& [kind, p] = what.measurements[i];

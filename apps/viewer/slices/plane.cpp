@@ -1,6 +1,7 @@
 // Chooses the orientation in which a slice is shown.
 #include "apps/viewer/slices/plane.hpp"
 
+#include <QCoreApplication>
 #include <QtGlobal>
 
 #include <algorithm>
@@ -114,7 +115,7 @@ std::string position_text(const SlicePlane& plane, const Vec3& physical) {
     const std::string number = ruler.number(std::abs(at), 2);
     if (number.find_first_not_of("0.") == std::string::npos) at = 0;  // as it is shown
     return std::string(end_of(plane.grid, plane.anatomical, at >= 0)) + " " + number + " " +
-           ruler.unit;
+           QCoreApplication::translate("Units", ruler.unit).toStdString();
 }
 
 SliceMap slice_map(const SlicePlane& plane, const SliceView& view, const QSizeF& size,

@@ -1,6 +1,7 @@
 // Draws crosshair, hand, proxy and texts over a slice.
 #include "apps/viewer/slices/slice_marks.hpp"
 
+#include <QCoreApplication>
 #include <QFontMetricsF>
 #include <QLineF>
 #include <QPainterPath>
@@ -181,7 +182,8 @@ void paint_measurement(QPainter& painter, const SliceSheet& sheet, const Measure
         colour.setAlphaF(opacity_of(sheet, p));
         dot(painter, sheet.pixel(p), colour, 3);
     }
-    const std::string words = text_of(m, unit);
+    const std::string words =
+        text_of(m, unit, QCoreApplication::translate("Units", "voxel").toStdString());
     if (!words.empty()) {
         const QPointF at = m.kind == Measure::length
                                ? 0.5 * (sheet.pixel(m.points[0]) + sheet.pixel(m.points[1]))

@@ -1,6 +1,7 @@
 // The slice pane: its data, and how it is painted.
 #include "apps/viewer/slices/slice_pane.hpp"
 
+#include <QCoreApplication>
 #include <QFontMetrics>
 #include <QHelpEvent>
 #include <QKeyEvent>
@@ -337,7 +338,8 @@ std::vector<SliceWords> SlicePane::words_in() const {
     const Ruler ruler = ruler_of(plane().grid);
     const auto number = [&](double mm) { return QString::fromStdString(ruler.number(mm)); };
     QStringList words{QString("(%1, %2, %3) %4")
-                          .arg(number(at[0]), number(at[1]), number(at[2]), QString(ruler.unit)),
+                          .arg(number(at[0]), number(at[1]), number(at[2]),
+                               QCoreApplication::translate("Units", ruler.unit)),
                       QString::number(value_there(at), 'g', 6)};
     if (shown_.overlay && shown_.look.overlay.shown) {
         const QString there = overlay_words(*shown_.overlay, at);

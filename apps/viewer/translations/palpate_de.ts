@@ -516,6 +516,13 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     </message>
 </context>
 <context>
+    <name>Units</name>
+    <message>
+        <source>voxel</source>
+        <translation>Voxel</translation>
+    </message>
+</context>
+<context>
     <name>palpate::viewer::BackgroundTask</name>
     <message>
         <source>Cancel</source>
@@ -813,6 +820,38 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     <message>
         <source>Its force ends; the other hand goes on</source>
         <translation>Ihre Kraft endet; die andere Hand fühlt weiter</translation>
+    </message>
+    <message>
+        <source>While this button is held, the volume hangs on the hand</source>
+        <translation>Solange diese Taste gehalten wird, hängt das Volumen an der Hand</translation>
+    </message>
+    <message>
+        <source>Clutch button</source>
+        <translation>Kupplungstaste</translation>
+    </message>
+    <message>
+        <source>There is a force only while this button is held</source>
+        <translation>Nur solange diese Taste gehalten wird, gibt es eine Kraft</translation>
+    </message>
+    <message>
+        <source>Dead-man button</source>
+        <translation>Totmanntaste</translation>
+    </message>
+    <message>
+        <source>none</source>
+        <translation>keine</translation>
+    </message>
+    <message>
+        <source>the second, or the only one</source>
+        <translation>die zweite, oder die einzige</translation>
+    </message>
+    <message>
+        <source>button %1</source>
+        <translation>Taste %1</translation>
+    </message>
+    <message>
+        <source>The device has no buttons</source>
+        <translation>Das Gerät hat keine Tasten</translation>
     </message>
 </context>
 <context>

@@ -1,6 +1,7 @@
 // Opens and closes runs and playbacks, and notifies the controllers.
 #include "apps/viewer/window/content.hpp"
 
+#include <stdexcept>
 #include <utility>
 
 namespace palpate::viewer {
@@ -106,6 +107,22 @@ void Content::set_session(const QString& path) {
 
 void Content::use_device(const devices::DeviceChoice& device) {
     live()->use_device(device);
+    Q_EMIT run_changed();
+}
+
+void Content::use_buttons(const run::Buttons& buttons) {
+    const run::Buttons before = live()->setup().buttons;
+    const auto use = [this](const run::Buttons& wanted) {
+        for (const auto& run : runs_) {
+            if (run->setup().buttons != wanted) run->use_buttons(wanted);
+        }
+    };
+    try {
+        use(buttons);
+    } catch (const std::invalid_argument&) {
+        use(before);  // where another hand has a button that this one has not
+        throw;
+    }
     Q_EMIT run_changed();
 }
 

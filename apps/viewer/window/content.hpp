@@ -30,9 +30,10 @@ class Content : public QObject {
     void start_run(std::shared_ptr<Opened> volume, const std::vector<run::Setup>& hands);
     void start_playback(std::shared_ptr<Opened> volume, std::vector<Playback> hands);
     void close();
-    /// As run::Run::use_device, of the chosen hand, and use_field, of all. If they throw, the runs
-    /// are unchanged.
+    /// As run::Run::use_device, of the chosen hand, and use_buttons and use_field, of all. If they
+    /// throw, the runs have what they had.
     void use_device(const devices::DeviceChoice& device);
+    void use_buttons(const run::Buttons& buttons);
     void use_field(Solid solid, Interpolation interpolation);
 
     /// None if nothing is open. They are numbered from 1.

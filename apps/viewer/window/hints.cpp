@@ -214,7 +214,8 @@ void Hints::show_depth(const std::optional<Snapshot>& now) {
     const Ruler ruler = ruler_of(content_.live()->field().geometry());
     const std::string depth = ruler.number((proxy.hip - proxy.scp).norm());
     const QString words = layer + tr("%1 %2 deep, %3 N")
-                                      .arg(QString::fromStdString(depth), QString(ruler.unit))
+                                      .arg(QString::fromStdString(depth),
+                                           QCoreApplication::translate("Units", ruler.unit))
                                       .arg(now->session.tick.force.norm(), 0, 'f', 1);
     const Pixel hand = pixel_of(scene_.camera(), scene_.view_size(), proxy.hip);
     const int line = scene_.fontMetrics().height();

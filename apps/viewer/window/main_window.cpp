@@ -8,6 +8,7 @@
 #include <QBoxLayout>
 #include <QBuffer>
 #include <QCloseEvent>
+#include <QCoreApplication>
 #include <QDockWidget>
 #include <QDragEnterEvent>
 #include <QKeyEvent>
@@ -321,7 +322,7 @@ void MainWindow::show_readout(const Snapshot& now) {
     const auto number = [&](double mm) { return QString::fromStdString(ruler.number(mm)); };
     QString words = felt_text(now.session.tick.layers, content_.layers());
     if (!words.isEmpty()) words += "   ";
-    const QString unit = ruler.unit;
+    const QString unit = QCoreApplication::translate("Units", ruler.unit);
     words += QString("%1, %2, %3 %4").arg(number(at[0]), number(at[1]), number(at[2]), unit);
     if (const auto field = content_.felt_round(now, at)) {
         const double slope = gradient_at(*field, at).norm() / ruler.per_mm;

@@ -1,6 +1,7 @@
 // Collects points, and shows what they measure.
 #include "apps/viewer/window/measure_controller.hpp"
 
+#include <QCoreApplication>
 #include <utility>
 
 #include "apps/viewer/window/content.hpp"
@@ -41,7 +42,9 @@ void MeasureController::add_point(const Vec3& at) {
     if (made_->points.size() == points_of(made_->kind)) {
         done_.push_back(*std::exchange(made_, std::nullopt));
         set(views_, &Shown::measuring, false);
-        messages_.show_done(QString::fromStdString(text_of(done_.back(), views_.shown().unit)));
+        const QString voxel = QCoreApplication::translate("Units", "voxel");
+        messages_.show_done(QString::fromStdString(
+            text_of(done_.back(), views_.shown().unit, voxel.toStdString())));
     }
     show();
 }

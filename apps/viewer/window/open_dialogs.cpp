@@ -3,6 +3,7 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QCoreApplication>
 #include <QDialogButtonBox>
 #include <QFileInfo>
 #include <QFormLayout>
@@ -260,7 +261,7 @@ QString level_words(const stream::StoreInfo& info, int level) {
     const double bytes = double(sample_count(grid)) * double(size_of(info.type));
     return StoreDialog::tr("%1: %2 samples, every %3 %4, %5")
         .arg(QString::number(level), product(grid.size), product(grid.spacing),
-             QString(unit_word(grid)), bytes_text(bytes));
+             QCoreApplication::translate("Units", unit_word(grid)), bytes_text(bytes));
 }
 
 StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time, QWidget* parent)

@@ -8,9 +8,9 @@
 
 #include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/panel.hpp"
-#include "apps/viewer/panel/session_bar.hpp"
 #include "apps/viewer/panel/tool_controls.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
@@ -34,7 +34,12 @@ void RunRequest::use_devices_of(const RunRequest& other) {
 
 RunController::RunController(const Desk& desk, const RunRequest& request)
     : Controller(desk), request_(request), search_(messages_), reader_(messages_) {
-    connect(&content_, &Content::run_changed, this, &RunController::show_terraces);
+    connect(&content_, &Content::run_changed, this, [this] {
+        show_terraces();
+        panel_.device_controls().set_buttons(content_.live()->setup().buttons);
+    });
+    connect(&panel_.device_controls(), &DeviceControls::buttons_wanted, this,
+            &RunController::use_buttons);
     connect(&panel_.device_controls(), &DeviceControls::chosen, this, &RunController::use_device);
     connect(&panel_.device_controls(), &DeviceControls::added, this, &RunController::add_hand);
     connect(&panel_.device_controls(), &DeviceControls::removed, this, &RunController::remove_hand);
@@ -237,6 +242,17 @@ void RunController::use_field(Solid solid, Interpolation interpolation) {
     const Field& now = content_.live()->field();
     if (now.solid() == solid && now.interpolation() == interpolation) return;
     messages_.guarded([&] { content_.use_field(solid, interpolation); });
+}
+
+void RunController::use_buttons(const run::Buttons& buttons) {
+    if (!content_.live()) return;
+    const auto use = [&] {
+        content_.use_buttons(buttons);
+        request_.setup.buttons = buttons;
+    };
+    if (!messages_.guarded(use)) {
+        panel_.device_controls().set_buttons(content_.live()->setup().buttons);
+    }
 }
 
 void RunController::observe(const Snapshot& now) {

@@ -76,6 +76,8 @@ class RunController : public Controller {
     void choose_hand(int hand);
     void choose_next_hand();
     void use_field(Solid solid, Interpolation interpolation);
+    /// Of all hands.
+    void use_buttons(const run::Buttons& buttons);
 
     /// Shows the device in the panel where it has changed, and what is wrong with any hand's; a few
     /// times a second.

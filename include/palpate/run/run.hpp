@@ -105,6 +105,10 @@ class Run {
     /// the new options. If that fails, it is opened as it was, and if that fails, too, it counts as
     /// lost. Throws WrongState before start(), as does use_field().
     void use_device(const devices::DeviceChoice& device, const OnProgress& progress = {});
+    /// Continues with other buttons of the same device. The session starts anew with all settings
+    /// requested so far. A recording is finished first. Throws std::invalid_argument for a button
+    /// that the device does not have, and for one with both purposes. Then nothing has changed.
+    void use_buttons(const Buttons& buttons);
     /// Continues with this solid side, this interpolation, and this background outside the grid.
     /// The session starts anew with all settings requested so far, except penetrability and, if the
     /// solid side changes, layers. A recording is finished first; if that fails, io::OutputError
@@ -135,6 +139,7 @@ class Run {
     void hold(std::unique_ptr<Device> device);
     void close_device();
     void reopen(double isovalue, const DeviceInfo& old);
+    double some_isovalue(const OnProgress& progress) const;
     void take(const Session& session);
     void launch(Session session);
     void stop_servo();

@@ -5,9 +5,9 @@
 #include <QToolButton>
 
 #include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/session_bar.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {
@@ -149,6 +149,35 @@ TEST_F(Devices, the_scale_of_the_hand_is_requested_and_followed) {
         EXPECT_EQ(find<NumberBox>("scale")->value(), scale);
     }
     EXPECT_EQ(of<command::Scale>().size(), 1U);
+}
+
+TEST_F(Devices, each_purpose_takes_one_of_the_devices_buttons_or_none) {
+    set();
+    std::vector<run::Buttons> wanted;
+    QObject::connect(&panel.device_controls(), &DeviceControls::buttons_wanted,
+                     [&](const run::Buttons& buttons) { wanted.push_back(buttons); });
+    auto *clutch = find<QComboBox>("clutch_button"), *deadman = find<QComboBox>("deadman_button");
+    panel.device_controls().set_buttons({});
+    EXPECT_FALSE(clutch->isEnabled());
+    EXPECT_EQ(deadman->toolTip(), "The device has no buttons");
+    DeviceInfo info = desktop_device();
+    info.buttons = 3;
+    effect.begin(*field, 300, {}, info, histogram, [](const Command&) {});
+    panel.device_controls().set_buttons({});
+    EXPECT_EQ(clutch->currentText(), "the second, or the only one");
+    EXPECT_EQ(deadman->currentText(), "none");
+    EXPECT_EQ(deadman->count(), 4);
+    find<QComboBox>("deadman_button")->setFocus();
+    QTest::keyClick(deadman, Qt::Key_Down);
+    ASSERT_EQ(wanted.size(), 1U);
+    EXPECT_EQ(wanted[0], (run::Buttons{run::UsualButton{}, run::Button{1}}));
+    EXPECT_EQ(deadman->currentText(), "none") << "nobody has carried it out";
+    panel.device_controls().set_buttons(wanted[0]);
+    EXPECT_EQ(deadman->currentText(), "button 1");
+    clutch->setFocus();
+    QTest::keyClick(clutch, Qt::Key_End);
+    ASSERT_EQ(wanted.size(), 2U);
+    EXPECT_EQ(wanted[1], (run::Buttons{run::Button{3}, run::Button{1}}));
 }
 
 TEST_F(Devices, the_loops_figures_are_shown_with_their_units) {

@@ -3,15 +3,16 @@
 
 #include <set>
 
+#include <QProgressBar>
 #include <QPushButton>
 #include <QSlider>
 
 #include <functional>
 #include <limits>
 
-#include "apps/viewer/panel/force_controls.hpp"
+#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/session_bar.hpp"
+#include "apps/viewer/panel/sections.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -99,7 +100,7 @@ std::vector<std::string> names_of_rows() {
     std::vector<std::string> names;
     RendererSettings settings;
     const auto add = [&](const std::string&, const auto& setting, double) {
-        names.push_back(row_name(setting.title).toStdString());
+        names.push_back(QString(setting.title).replace(' ', '_').toStdString());
     };
     for_each_number("force", settings.force, add);
     for_each_number("friction", settings.proxy.friction, add);
@@ -117,19 +118,6 @@ TEST_F(Forces, each_number_in_the_tables_has_a_row_with_words_of_its_own) {
         EXPECT_TRUE(labels.insert(box->accessibleName()).second);
         EXPECT_NE(box->parentWidget()->toolTip(), "");
     }
-}
-
-TEST(ForceRows, a_setting_that_is_added_to_a_table_has_a_row) {
-    const ForceRow row =
-        row_of({"wobble height", "mm, physical", "How far it wobbles"}, ranges::positive, 0.5);
-    EXPECT_EQ(row.name, "wobble_height");
-    EXPECT_EQ(row.label, "Wobble height");
-    EXPECT_EQ(row.tip, "How far it wobbles [mm, physical]");
-    EXPECT_EQ(row.unit, "mm");
-    EXPECT_EQ(row.high, 2);
-    EXPECT_GT(row.low, 0);
-    EXPECT_FALSE(row.infinite);
-    EXPECT_GT(row.place, row_of({"force limit", "N", ""}, ranges::limit, 3).place);
 }
 
 TEST_F(Forces, every_slider_end_can_be_rendered) {
@@ -196,32 +184,34 @@ TEST_F(Forces, the_wheel_over_a_number_without_focus_scrolls_the_panel) {
 
 TEST_F(Forces, snapshots_move_the_gauge_and_say_what_holds_the_force_back) {
     set(unusual());
-    auto* gauge = find<ForceGauge>("force_gauge");
+    auto* bar = find<QProgressBar>("force_bar");
+    const auto reduced = [this] { return find<QLabel>("force_reduced")->text(); };
     Snapshot now;
     now.session.tick.force = Vec3(0, 1.2, 0.5);
     effect.observe(now);
-    EXPECT_DOUBLE_EQ(gauge->force(), 1.3);
-    EXPECT_EQ(gauge->limit(), 2.5);
-    EXPECT_DOUBLE_EQ(gauge->filled(), 1.3 / 2.5);
-    EXPECT_EQ(gauge->words(), "");
-    const QImage before = gauge->grab().toImage();
+    EXPECT_EQ(find<QLabel>("force_number")->text(), "1.30 N");
+    EXPECT_EQ(find<QLabel>("force_most")->text(), "of 2.5 N");
+    EXPECT_EQ(bar->value(), 520);
+    EXPECT_EQ(bar->maximum(), 1000);
+    EXPECT_EQ(reduced(), "");
+    const QImage before = bar->grab().toImage();
     now.session.tick.force = Vec3(0, 2.5, 0);
     now.session.tick.force_flags = force_limited;
     effect.observe(now);
-    EXPECT_EQ(gauge->filled(), 1);
-    EXPECT_EQ(gauge->words(), "limit");
-    EXPECT_NE(gauge->grab().toImage(), before);
+    EXPECT_EQ(bar->value(), 1000);
+    EXPECT_EQ(reduced(), "limit");
+    EXPECT_NE(bar->grab().toImage(), before);
     now.session.tick.force_flags = force_waiting;
     effect.observe(now);
-    EXPECT_EQ(gauge->words(), "waiting");
+    EXPECT_EQ(reduced(), "waiting");
     now.session.tick.force_flags = force_stale;
     now.forces_on = true;
     effect.observe(now);
-    EXPECT_EQ(gauge->words(), "no input");
+    EXPECT_EQ(reduced(), "no input");
     EXPECT_EQ(find<QPushButton>("forces")->text(), "Forces WAIT\nno input from the device");
     now.session.tick.force_flags = force_off;
     effect.observe(now);
-    EXPECT_EQ(gauge->words(), "off");
+    EXPECT_EQ(reduced(), "off");
 }
 
 TEST_F(Forces, the_gauge_ends_at_the_devices_limit_where_that_is_less) {
@@ -229,7 +219,7 @@ TEST_F(Forces, the_gauge_ends_at_the_devices_limit_where_that_is_less) {
     settings.force.limit = 8;
     set(settings);
     effect.observe({});
-    EXPECT_EQ(find<ForceGauge>("force_gauge")->limit(), 3.3);
+    EXPECT_EQ(find<QLabel>("force_most")->text(), "of 3.3 N");
 }
 
 TEST_F(Forces, the_pull_is_shown_in_millimetres_of_hand_and_volume) {

@@ -1,9 +1,9 @@
 // The switch that says which hand's settings the panel shows.
 
+#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/session_bar.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {

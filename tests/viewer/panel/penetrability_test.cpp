@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "apps/viewer/panel/level_chart.hpp"
-#include "apps/viewer/panel/penetrability_controls.hpp"
+#include "apps/viewer/panel/sections.hpp"
 
 namespace palpate::viewer {
 namespace {

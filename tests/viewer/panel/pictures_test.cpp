@@ -6,15 +6,17 @@
 #include <QPalette>
 
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <vector>
 
 #include "apps/viewer/model/transfer.hpp"
 #include "apps/viewer/panel/device_controls.hpp"
-#include "apps/viewer/panel/force_controls.hpp"
+#include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/icons.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/panel/sections.hpp"
 #include "palpate/run/source.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
@@ -150,11 +152,12 @@ TEST_F(Pictures, show_a_session_in_dark_colours) {
 }
 
 TEST_F(Pictures, show_every_row_of_the_force) {
-    ForceControls rows(effect);
+    const std::unique_ptr<Form> form(force_section(effect));
+    QWidget& rows = *form;
     full();
     rows.findChild<Section*>("force_advanced")->set_open(true);
     rows.resize(440, rows.sizeHint().height());
-    static_cast<QWidget&>(rows).show();
+    rows.show();
     QApplication::processEvents();
     rows.resize(440, rows.sizeHint().height());
     QDir().mkpath(PALPATE_PICTURES);

@@ -2,9 +2,9 @@
 #include <QComboBox>
 
 #include "apps/viewer/panel/device_controls.hpp"
+#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/session_bar.hpp"
 #include "apps/viewer/panel/tool_controls.hpp"
 #include "viewer/panel/panel_fixture.hpp"
 

@@ -12,11 +12,16 @@
 #include <QPushButton>
 #include <QScrollArea>
 #include <QSet>
+#include <QStatusBar>
 #include <QTabWidget>
 #include <QTableWidget>
 #include <QToolButton>
 
+#include <fstream>
+
 #include "apps/viewer/panel/inputs.hpp"
+#include "apps/viewer/slices/plane.hpp"
+#include "apps/viewer/slices/slice_pane.hpp"
 #include "apps/viewer/window/open_dialogs.hpp"
 #include "apps/viewer/window/preferences.hpp"
 #include "apps/viewer/window/welcome.hpp"
@@ -278,6 +283,26 @@ TEST_F(German, plurals_are_right_in_both_languages) {
     const Translation german(Language::german);
     EXPECT_EQ(ticks(1), "1 Takt fällt anders aus, als er aufgezeichnet wurde");
     EXPECT_EQ(ticks(2), "2 Takte fallen anders aus, als sie aufgezeichnet wurden");
+}
+
+TEST_F(German, lengths_are_in_Voxel_where_nothing_gives_the_spacing) {
+    std::ofstream(scratch_.path() / "a.nrrd", std::ios::binary)
+        << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\n\n"
+        << std::string(32, '\0') << std::string(32, '\xff');
+    open_german();
+    feel(scratch("a.nrrd").toStdString());
+    SlicePane& pane = window_->views().slice(2);
+    press(Qt::Key_M);
+    for (const int x : {0, 20}) {
+        QTest::mouseClick(&pane, Qt::LeftButton, {}, pane.rect().center() + QPoint(x, 5));
+    }
+    EXPECT_TRUE(window_->statusBar()->currentMessage().endsWith(" Voxel"));
+    wait_until([&] {
+        return part<QLabel>("contact").text().contains(" Voxel im Vol") &&
+               part<QLabel>("readout").text().endsWith("/Voxel");
+    });
+    const SlicePlane plane = slice_plane(window_->live()->field().geometry(), 2);
+    EXPECT_TRUE(QString::fromStdString(position_text(plane, Vec3::Constant(3))).endsWith(" Voxel"));
 }
 
 }  // namespace
