@@ -366,7 +366,8 @@ typedef struct palpate_wrench {
  * without waiting. The force given to write is zero once the servo is silent for 20 ms, and after the
  * run was stopped. `close` (may be null) is the last call, after a zero force; it is made for each time
  * that the device was opened, also if palpate_run_create() fails afterwards. A callback that does not
- * return keeps the last force on your device: give it limits of its own. */
+ * return keeps the last force on your device: give it limits of its own. `read` and `context` tell one
+ * device from another: one that serves a run is refused (NO_DEVICE) for another run. */
 typedef struct palpate_own_device {
     uint32_t size_of;
     int32_t buttons;               /* how many */
