@@ -56,15 +56,16 @@ def refused(change):
 
 
 @pytest.mark.parametrize("kind, name", FIELDS, ids=[f"{kind.__name__}.{name}" for kind, name in FIELDS])
-@pytest.mark.parametrize("group", WRONG)
-def test_a_value_that_cannot_be_is_refused_where_it_is_set(kind, name, group):
-    for value in WRONG[group]:
-        made = kind()
-        told = refused(lambda: setattr(made, name, value))
-        assert (told is None) == (f"{kind.__name__}.{name}" in ACCEPTED.get(group, ())), (value, told)
-        if told:
-            assert made == kind()
-            assert refused(lambda: kind(**{name: value}))
+def test_a_value_that_cannot_be_is_refused_where_it_is_set(kind, name):
+    full = f"{kind.__name__}.{name}"
+    for group, values in WRONG.items():
+        for value in values:
+            made = kind()
+            told = refused(lambda: setattr(made, name, value))
+            assert (told is None) == (full in ACCEPTED.get(group, ())), (group, value, told)
+            if told:
+                assert made == kind()
+                assert refused(lambda: kind(**{name: value}))
 
 
 @pytest.mark.parametrize("kind, name", FIELDS, ids=[f"{kind.__name__}.{name}" for kind, name in FIELDS])
