@@ -1,6 +1,7 @@
 // Exceptions to exit status.
 #include "apps/options/exit_status.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <stdexcept>
@@ -28,11 +29,19 @@ std::string list_of(const std::vector<io::SeriesInfo>& series) {
 
 }  // namespace
 
+std::string one_line(std::string text) {
+    constexpr std::size_t longest = 6000, end = 500;  // a path has up to 4096 bytes
+    const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
+    std::ranges::replace_if(text, is_control, ' ');
+    if (text.size() > longest) text.replace(longest - end, text.size() - longest, "...");
+    return text;
+}
+
 Failure failure_of(const std::exception& exception) {
     if (is<std::bad_alloc>(exception)) {
         return {bad_input, "not enough memory: use a smaller volume, or one of fewer bits"};
     }
-    const std::string text = exception.what();
+    const std::string text = one_line(exception.what());
     if (is<devices::DeviceError>(exception)) return {no_device, text};
     if (is<io::OutputError>(exception)) return {bad_output, text};
     if (is<std::invalid_argument>(exception)) return {wrong_use, text};

@@ -19,6 +19,10 @@ struct Failure {
     std::string text;  ///< one line for people
 };
 
+/// Without line ends and other control characters, and not as long as the words of a command line
+/// may be.
+std::string one_line(std::string text);
+
 /// What an exception that nobody caught means.
 Failure failure_of(const std::exception& exception);
 

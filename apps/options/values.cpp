@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/options/exit_status.hpp"
 #include "io/system/number.hpp"
 #include "palpate/names.hpp"
 
@@ -96,6 +97,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
 }
 
 std::string meant(const std::string& word, const std::vector<std::string>& names) {
+    if (word.find_first_not_of('-') == std::string::npos) return {};
     const std::string near = nearest_name(word, names);
     return near.empty() ? near : ": did you mean " + near + "?";
 }
@@ -179,30 +181,40 @@ std::string file_of(std::span<const std::string_view> endings) {
     return endings.size() == 1 ? "FILE." + all : "FILE.{" + all + "}";
 }
 
-void refuse_impossible_values(CLI::App& command, int argc, const char* const* argv) {
-    refuse_in(command);
-    for (int i = 1; i < argc; ++i) {
-        const std::string_view word = argv[i];
-        if (word == "--") return;
-        if (word.starts_with("--") && word.ends_with("=")) {
-            throw CLI::ValidationError(std::string(word.substr(0, word.size() - 1)), empty_value);
+void refuse_impossible_values(CLI::App& app, int argc, const char* const* argv) {
+    refuse_in(app);
+    const auto refuse_empty = [=](const CLI::App& command) {
+        for (int i = 1; i < argc && argv[i] != std::string_view("--"); ++i) {
+            const std::string word = argv[i], name = word.substr(0, word.find('='));
+            if (!word.ends_with('=') || name.size() + 1 != word.size()) continue;
+            if (command.get_option_no_throw(name)) throw CLI::ValidationError(name, empty_value);
         }
+    };
+    const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
+    if (commands.empty()) refuse_empty(app);
+    for (CLI::App* command : commands) {  // once it is known which one is meant
+        command->preparse_callback([=](std::size_t) { refuse_empty(*command); });
     }
 }
 
 std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
     const CLI::App* command = &app;
     while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
-    const auto left = app.remaining(true);
+    auto left = app.remaining(true);
+    const bool has_end = !left.empty() && left.front() == "--";  // of the options
+    if (has_end) left.erase(left.begin());
     // CLI11 calls a misspelt command or option a missing one.
     const bool misnamed = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
                           dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
     std::string text = error.what();
     if (misnamed && !left.empty()) {
         const std::string& word = left.front();
-        if (word.size() > 1 && word[0] == '-') {
-            text = "there is no option " + word +
-                   meant(word.substr(0, word.find('=')), option_names(*command));
+        if (word.size() > 1 && word[0] == '-' && !has_end) {
+            const std::string name = word.substr(0, word.find('='));
+            const bool is_before = command != &app && command->get_option_no_throw(name);
+            text = is_before ? name + " is an option of " + command->get_name() +
+                                   ": write it after " + command->get_name()
+                             : "there is no option " + word + meant(name, option_names(*command));
         } else if (command == &app) {
             text = "there is no command '" + word + "'" + meant(word, command_names(app));
         } else {
@@ -219,7 +231,7 @@ std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
     for (; command != nullptr; command = command->get_parent()) {
         path = command->get_name() + " " + path;
     }
-    return text + " (see " + path + "--help)";
+    return one_line(text) + " (see " + path + "--help)";
 }
 
 }  // namespace palpate::app

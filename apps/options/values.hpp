@@ -43,10 +43,9 @@ std::string file_of(std::span<const std::string_view> endings);
 
 /// '' is what a script gives for a variable that is not set. Taken for "not given", --save '' would
 /// lose what was to be saved, and --save= would take the word that follows. So every option of
-/// `command` and of the commands below it refuses it, and numbers refuse what is none: NaN, 1,5, or
-/// 1e400. Call it once all options are added, before they are parsed. Throws CLI::ValidationError
-/// for --save=.
-void refuse_impossible_values(CLI::App& command, int argc, const char* const* argv);
+/// `app` and of its commands refuses it, and numbers refuse what is none: NaN, 1,5, or 1e400. Call
+/// it once all options are added, before they are parsed.
+void refuse_impossible_values(CLI::App& app, int argc, const char* const* argv);
 
 /// What is wrong with the command line, in one line without "palpate: ". Names a word that is
 /// unknown, and the command or option that was probably meant.

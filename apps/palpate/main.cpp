@@ -2,6 +2,8 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <string_view>
+#include <utility>
 
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/program.hpp"
@@ -12,6 +14,10 @@ int main(int argc, char** argv) {
     // Bricks and pieces that are dropped go back to the system, whatever lies behind them.
     mallopt(M_MMAP_THRESHOLD, 128 << 10);
     using namespace palpate::app;
+    if (argc > 1 && argv[1] == std::string_view("--")) {  // there are no options before it
+        std::swap(argv[0], argv[1]);
+        ++argv, --argc;
+    }
     become_python(argc, argv);
     // What follows the command's name, for a command that becomes another program.
     const Words words{std::max(argc - 2, 0), argv + std::min(argc, 2)};

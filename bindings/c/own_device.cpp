@@ -2,6 +2,9 @@
 // meets the newest reading and the newest force.
 #include "bindings/c/own_device.hpp"
 
+#include <array>
+#include <cstdio>
+
 #include "bindings/c/handles.hpp"
 #include "bindings/c/runtimes.hpp"
 #include "bindings/c/structs.hpp"
@@ -52,6 +55,14 @@ palpate_own_device with_defaults(palpate_own_device asked) {
     return asked;
 }
 
+/// Two devices of an application have two contexts, or functions of their own.
+std::string claim_of(const palpate_own_device& own) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "' (read %p, context %p)",
+                  reinterpret_cast<void*>(own.read), own.context);
+    return "the device '" + name_of(own) + text.data();
+}
+
 }  // namespace
 
 std::string name_of(const palpate_own_device& asked) {
@@ -61,6 +72,7 @@ std::string name_of(const palpate_own_device& asked) {
 OwnDevice::OwnDevice(const palpate_own_device& asked)
     : callbacks_(with_defaults(asked)), info_(info_from(asked)) {
     check(callbacks_, info_);
+    claim_.emplace(claim_of(asked));
     thread_ = std::thread([this] { run(); });
 }
 

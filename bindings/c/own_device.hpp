@@ -3,9 +3,11 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 #include <thread>
 
+#include "devices/claim.hpp"
 #include "devices/linked_device.hpp"
 #include "palpate-c/palpate.h"
 
@@ -13,8 +15,8 @@ namespace palpate::c {
 
 class OwnDevice final : public devices::LinkedDevice {
   public:
-    /// Throws std::invalid_argument for numbers that no device has, std::system_error without a
-    /// thread.
+    /// Throws std::invalid_argument for numbers that no device has, DeviceError for a device that
+    /// serves another run, std::system_error without a thread.
     explicit OwnDevice(const palpate_own_device& asked);
     /// Waits for a callback that runs.
     ~OwnDevice() override;
@@ -28,6 +30,7 @@ class OwnDevice final : public devices::LinkedDevice {
 
     const palpate_own_device callbacks_;
     DeviceInfo info_;
+    std::optional<devices::Claim> claim_;
     std::atomic<bool> lost_{false}, done_{false};
     std::thread thread_;  // last: it uses all of the above
 };

@@ -9,6 +9,8 @@
 #include <cxxabi.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -117,7 +119,8 @@ struct type_caster<palpate::io::Level> {
         make_caster<double> number;
         if (!number.load(source, convert)) return false;
         value = cast_op<double>(number);
-        return true;
+        if (!std::isnan(cast_op<double>(number))) return true;
+        throw std::invalid_argument("a level must be a number, not nan");
     }
     static handle cast(const palpate::io::Level& from, return_value_policy, handle) {
         if (const auto* part = std::get_if<palpate::io::PercentOfRange>(&from)) {

@@ -4,6 +4,7 @@
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/progress.hpp"
+#include "bindings/python/record.hpp"
 #include "bindings/python/renderer.hpp"
 #include "devices/simulated/profiles.hpp"
 #include "palpate/devices/devices.hpp"
@@ -15,6 +16,8 @@ using devices::DeviceProfile;
 
 std::unique_ptr<Device> simulated(const std::string& text, const Field& field, double isovalue,
                                   double rate) {
+    check_numbers("isovalue", isovalue, ranges::finite);
+    check_numbers("rate", rate, ranges::rate);
     const devices::DeviceChoice choice = devices::parse_device(text);
     if (choice.name != "simulated") throw std::invalid_argument("a simulated device is needed");
     return devices::open_device(choice, {field, isovalue, rate, [&](const DeviceInfo& info) {

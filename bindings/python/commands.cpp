@@ -2,6 +2,7 @@
 #include "bindings/python/commands.hpp"
 
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/record.hpp"
 #include "palpate/io/layers_file.hpp"
 
 namespace palpate::python {
@@ -22,9 +23,10 @@ struct MakeCommand {
 /// A command of one value.
 template <class C, class Value>
 void bind(py::module_& names, const char* name, const char* argument, Value C::*member,
-          const char* about) {
+          const char* about, const ValueRange& range = ranges::any) {
     py::class_<C>(names, name, about)
-        .def(py::init([member](Value value) {
+        .def(py::init([=](Value value) {
+                 if constexpr (HasNumbers<Value>) check_numbers(argument, value, range);
                  C command{};
                  command.*member = value;
                  return command;
@@ -47,10 +49,11 @@ void bind_commands(py::module_& module) {
     bind(names, "Clutch", "on", &command::Clutch::on, "As if a clutch button was held.");
     bind(names, "Forces", "on", &command::Forces::on, "Forces on or off.");
     bind(names, "Scale", "scale", &command::Scale::scale,
-         "Scales the volume about the SCP: physical mm per device mm.");
-    bind(names, "Moment", "time", &command::Moment::time, "Goes to a time of a sequence [s].");
+         "Scales the volume about the SCP: physical mm per device mm.", ranges::scale);
+    bind(names, "Moment", "time", &command::Moment::time, "Goes to a time of a sequence [s].",
+         ranges::finite);
     bind(names, "Speed", "speed", &command::Speed::speed,
-         "Seconds of a sequence per second; negative: backwards; 0: paused.");
+         "Seconds of a sequence per second; negative: backwards; 0: paused.", ranges::speed);
     py::class_<command::Lift>(names, "Lift",
                               "Lifts the hand off: the proxy starts at the hand with the next "
                               "tick, whatever holds it. The force starts again.")

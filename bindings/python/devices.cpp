@@ -20,10 +20,10 @@ std::vector<py::dict> found_devices() {
     return list;
 }
 
-/// Throws std::invalid_argument. What is not finite is refused where it is read.
+/// Throws std::invalid_argument.
 void turn(DeviceReading& reading, const Quaternion& to) {
     const double length = to.norm();
-    if (std::abs(length - 1) > 1e-3) {
+    if (!(std::abs(length - 1) <= 1e-3)) {
         throw std::invalid_argument("orientation_xyzw must have length 1, not " +
                                     std::string(py::str(py::float_(length))));
     }
@@ -39,24 +39,26 @@ void bind_devices(py::module_& module) {
         .field("name", &I::name, "Of the backend.")
         .field("model", &I::model, "As the device reports it.")
         .field("limits", &I::limits, "DeviceLimits: never exceeded by a servo.")
-        .field("stiffness", &I::stiffness, "[N/mm] it is rated for")
-        .field("workspace_low", &I::workspace_low, "[device mm]")
-        .field("workspace_high", &I::workspace_high, "[device mm] corners of the usable box")
+        .field("stiffness", &I::stiffness, {"[N/mm] it is rated for", ranges::not_negative})
+        .field("workspace_low", &I::workspace_low, {"[device mm]", ranges::finite})
+        .field("workspace_high", &I::workspace_high,
+               {"[device mm] corners of the usable box", ranges::finite})
         .field("renders_force", &I::renders_force, "False: position only.")
         .field("renders_torque", &I::renders_torque, "False: torque is ignored.")
         .field("has_orientation", &I::has_orientation, "Readings turn.")
         .field("has_gripper", &I::has_gripper, "Readings have an opening.")
-        .field("buttons", &I::buttons, "How many.")
+        .field("buttons", &I::buttons, {"How many.", {0, 32, false, "from 0 to 32"}})
         .done();
     using R = DeviceReading;
     Record<R>(module, "DeviceReading", "The newest measurement of a device.")
-        .field("position", &R::position, "[device mm]")
+        .field("position", &R::position, {"[device mm]", ranges::finite})
         .property(
             "orientation_xyzw", [](const R& r) { return Quaternion(r.orientation); }, &turn,
             "Unit quaternion, tool axes to device axes.")
-        .field("buttons", &R::buttons, "Bit b is set while button b is held.")
-        .field("opening", &R::opening, "[rad] of a gripper, 0: closed. None: it has none.")
-        .field("age", &R::age, "[s] since it was measured")
+        .field("buttons", &R::buttons, {"Bit b is set while button b is held.", ranges::any})
+        .field("opening", &R::opening,
+               {"[rad] of a gripper, 0: closed. None: it has none.", ranges::finite})
+        .field("age", &R::age, {"[s] since it was measured", ranges::limit_or_zero})
         .field("status", &R::status,
                "'starting', 'ready', 'uncalibrated', 'stale', 'lost', 'fault', 'finished'.")
         .done();

@@ -19,23 +19,37 @@ std::optional<Box> box_of(const SampleBox& box) {
 void bind_brushes(py::module_& module) {
     Record<Brush>(module, "Brush", "A round brush.")
         .field("kind", &Brush::kind, "'carve', 'add', 'smooth' or 'paint'.")
-        .field("radius", &Brush::radius, "[mm, physical] > 0")
-        .field("hardness", &Brush::hardness, "1: an edge two voxels wide; 0: as wide as the brush.")
-        .field("strength", &Brush::strength, "Part of the way to its target, above 0 to 1.")
-        .field("level", &Brush::level, "carve, add: the level that it shapes [data units].")
+        .field("radius", &Brush::radius, {"[mm, physical]", ranges::positive})
+        .field("hardness", &Brush::hardness,
+               {"1: an edge two voxels wide; 0: as wide as the brush.", ranges::part})
+        .field(
+            "strength", &Brush::strength,
+            {"Part of the way to its target, above 0 to 1.", {0, 1, true, "above 0 and at most 1"}})
+        .field("level", &Brush::level,
+               {"carve, add: the level that it shapes [data units].", ranges::finite})
         .field("solid", &Brush::solid, "'above' or 'below' that level.")
-        .field("value", &Brush::value, "That a full touch leaves [data units].")
+        .field("value", &Brush::value, {"That a full touch leaves [data units].", ranges::finite})
         .done();
     using H = run::HandBrush;
     Record<H>(module, "HandBrush", "A brush that follows the proxy while it touches.")
         .field("kind", &H::kind, "'carve', 'add', 'smooth' or 'paint'.")
-        .field("radius", &H::radius, "[mm, physical]")
-        .field("hardness", &H::hardness, "As of Brush.")
-        .field("rate", &H::rate, "[1/s] after a second 1 - exp(-rate) of the change is done")
-        .field("value", &H::value, "That it leaves [data units]; None: the usual one.")
+        .field("radius", &H::radius, {"[mm, physical]", ranges::positive})
+        .field("hardness", &H::hardness, {"As of Brush.", ranges::part})
+        .field("rate", &H::rate,
+               {"[1/s] after a second 1 - exp(-rate) of the change is done",
+                {0, ranges::infinity, true, "above 0 (inf: at once)"}})
+        .field("value", &H::value,
+               {"That it leaves [data units]; None: the usual one.", ranges::finite})
         .done();
-    module.def("brush_for", &brush_for, py::arg("kind"), py::arg("field"), py::arg("isovalue"),
-               py::arg("radius"), "A Brush for the level that is felt; radius [mm].");
+    module.def(
+        "brush_for",
+        [](BrushKind kind, const Field& field, double isovalue, double radius) {
+            check_numbers("isovalue", isovalue, ranges::finite);
+            check_numbers("radius", radius, ranges::positive);
+            return brush_for(kind, field, isovalue, radius);
+        },
+        py::arg("kind"), py::arg("field"), py::arg("isovalue"), py::arg("radius"),
+        "A Brush for the level that is felt; radius [mm].");
 }
 
 }  // namespace
@@ -43,13 +57,18 @@ void bind_brushes(py::module_& module) {
 void bind_edits(py::module_& module) {
     bind_brushes(module);
     py::class_<edit::Stroke>(module, "Stroke", "A brush swept along a straight line.")
-        .def(py::init<Brush, Vec3, Vec3>(), py::arg("brush"), py::arg("start"), py::arg("end"),
-             "start and end [mm, physical].")
+        .def(py::init([](const Brush& brush, const Vec3& start, const Vec3& end) {
+                 check_numbers("start", start, ranges::finite);
+                 check_numbers("end", end, ranges::finite);
+                 return edit::Stroke{brush, start, end};
+             }),
+             py::arg("brush"), py::arg("start"), py::arg("end"), "start and end [mm, physical].")
         .def_readonly("brush", &edit::Stroke::brush)
         .def_readonly("start", &edit::Stroke::from, "[mm, physical]")
         .def_readonly("end", &edit::Stroke::to, "[mm, physical]");
     py::class_<edit::Fill>(module, "Fill", "Sets all samples of a box to one value.")
         .def(py::init([](const Index3& low, const Index3& high, double value) {
+                 check_numbers("value", value, ranges::finite);
                  return edit::Fill{{low, high}, value};
              }),
              py::arg("low"), py::arg("high"), py::arg("value"),

@@ -6,6 +6,7 @@
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/hands.hpp"
 #include "bindings/python/progress.hpp"
+#include "bindings/python/record.hpp"
 #include "evaluation/explicit_surface.hpp"
 #include "evaluation/exploring_hand.hpp"
 #include "evaluation/stroke.hpp"
@@ -87,6 +88,10 @@ py::dict explicit_surface(const Field& field, double isovalue, const Doubles& st
                           const Doubles& ends, int repeats, const ProgressFunction& progress) {
     const std::vector<Vec3> from = points_from(starts, "starts"), to = points_from(ends, "ends");
     if (from.size() != to.size()) throw std::invalid_argument("as many starts as ends are needed");
+    for (const Vec3& one : from) check_numbers("starts", one, ranges::finite);
+    for (const Vec3& one : to) check_numbers("ends", one, ranges::finite);
+    check_numbers("isovalue", isovalue, ranges::finite);
+    check_numbers("repeats", repeats, ranges::at_least_1);
     std::vector<evaluation::Segment> segments(from.size());
     for (std::size_t i = 0; i < segments.size(); ++i) segments[i] = {from[i], to[i]};
     auto answer = without_gil([&] {

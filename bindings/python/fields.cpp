@@ -91,7 +91,10 @@ void bind_samples(py::module_& module) {
             "Of the frames [s].")
         .def(
             "volume",
-            [](const Samples& self, double time) { return flattened(self, self.moment_at(time)); },
+            [](const Samples& self, double time) {
+                check_numbers("time", time, ranges::finite);
+                return flattened(self, self.moment_at(time));
+            },
             py::arg("time") = 0.0, py::call_guard<GilReleased>(),
             "As one Volume, with all edits, at a time of a sequence [s].")
         .def(py::pickle(

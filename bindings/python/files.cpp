@@ -85,6 +85,7 @@ py::dict values_of(const run::LoadedVolume& loaded) {
 run::LoadedVolume loaded_as(const Volume& volume, const fs::path& name,
                             std::optional<double> isovalue) {
     run::LoadedVolume loaded{volume, run::source_named(name.string()), name.string()};
+    check_numbers("isovalue", isovalue, ranges::finite);
     loaded.isovalue = isovalue;
     return loaded;
 }
@@ -166,10 +167,10 @@ void bind_loaded(py::module_& module) {
 
 void bind_load(py::module_& module) {
     Record<io::RawLayout>(module, "RawLayout", "Layout of a file without a header, x fastest.")
-        .field("size", &io::RawLayout::size, "Samples along x, y, z.")
+        .field("size", &io::RawLayout::size, {"Samples along x, y, z.", ranges::not_negative})
         .field("type", &io::RawLayout::type, "'uint8', 'int16', 'uint16' or 'float32'.")
-        .field("spacing", &io::RawLayout::spacing, "[mm]")
-        .field("skip", &io::RawLayout::skip, "Bytes before the first sample.")
+        .field("spacing", &io::RawLayout::spacing, {"[mm]", ranges::spacing})
+        .field("skip", &io::RawLayout::skip, {"Bytes before the first sample.", ranges::any})
         .field("big_endian", &io::RawLayout::big_endian, "The highest byte of a sample is first.")
         .done();
     module.def(

@@ -113,9 +113,10 @@ void bind_layers_class(py::module_& module) {
 void bind_layers(py::module_& module) {
     Record<Layer>(module, "Layer", "A surface and what lies behind it.")
         .field("name", &Layer::name, "")
-        .field("level", &Layer::level, "Isovalue [data units]; by label: the label's number.")
-        .field("colour", &Layer::colour, "Red, green and blue, 0 to 1.")
-        .field("opacity", &Layer::opacity, "0 to 1")
+        .field("level", &Layer::level,
+               {"Isovalue [data units]; by label: the label's number.", ranges::finite})
+        .field("colour", &Layer::colour, {"Red, green and blue, 0 to 1.", ranges::part})
+        .field("opacity", &Layer::opacity, {"0 to 1", ranges::part})
         .property(
             "properties", &properties_of, &set_properties,
             "{name: value}: stiffness [N/mm], static_friction, dynamic_friction, damping and\n"

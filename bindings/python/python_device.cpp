@@ -10,18 +10,6 @@ namespace {
 
 constexpr std::int64_t rest = 50'000'000;  // [ns]
 
-/// Throws std::invalid_argument for what is no reading.
-DeviceReading reading_from(const py::object& returned) {
-    const auto reading = returned_by<DeviceReading>("read()", returned);
-    for (const char* part : {"position", "orientation_xyzw"}) {
-        const py::object numbers = returned.attr(part);
-        if (numbers.cast<Eigen::MatrixXd>().allFinite()) continue;
-        throw std::invalid_argument(std::string(part) + " is not finite: " +
-                                    std::string(py::str(numbers.attr("tolist")())));
-    }
-    return reading;
-}
-
 /// Empty, or the problem in one line: what the device's function raised.
 template <class Work>
 std::string tried(const std::string& function, Work&& work) {
@@ -65,6 +53,9 @@ PythonDevice::PythonDevice(py::object self, DeviceInfo info, double rate)
         throw std::invalid_argument("a device in Python is asked 1 to 8000 times a second");
     }
     check(info_.limits);
+    claim_.emplace(
+        "the device " + std::string(py::str(py::type::of(self_).attr("__name__"))) + " (object " +
+        std::string(py::str(py::int_(py::module_::import("builtins").attr("id")(self_)))) + ")");
     thread_ = std::thread([this] { run(); });
 }
 
@@ -140,6 +131,7 @@ void PythonDevice::run() {
         std::this_thread::sleep_until(next);
     }
     end();
+    claim_.reset();
     ended_ = true;
 }
 
@@ -148,8 +140,8 @@ void PythonDevice::run() {
 void PythonDevice::step() {
     const py::gil_scoped_acquire gil;
     DeviceReading reading;
-    const std::string unread =
-        tried("read()", [&] { reading = reading_from(self_.attr("read")()); });
+    const std::string unread = tried(
+        "read()", [&] { reading = returned_by<DeviceReading>("read()", self_.attr("read")()); });
     const std::int64_t now = devices::monotonic_ns();
     if (!unread.empty()) {
         set_problem(unread);  // before the servo sees the fault

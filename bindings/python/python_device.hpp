@@ -5,12 +5,14 @@
 
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
 #include "bindings/python/casters.hpp"
 #include "bindings/python/own_process.hpp"
 #include "bindings/python/without_gil.hpp"
+#include "devices/claim.hpp"
 #include "devices/linked_device.hpp"
 #include "palpate/devices/error.hpp"
 
@@ -33,7 +35,8 @@ T returned_by(const char* function, const py::object& returned) {
 class PythonDevice final : public devices::LinkedDevice {
   public:
     /// `self` has read() and may have write(force, torque) and close(). Starts the thread, which
-    /// calls them `rate` [Hz] times a second. With the GIL. Throws std::invalid_argument.
+    /// calls them `rate` [Hz] times a second. With the GIL. Throws std::invalid_argument, and
+    /// DeviceError for an object that serves another session.
     PythonDevice(py::object self, DeviceInfo info, double rate);
     /// finish(), and waits for the thread however long it takes. Not on that thread.
     ~PythonDevice() override;
@@ -67,7 +70,8 @@ class PythonDevice final : public devices::LinkedDevice {
     bool left_behind_ = false;             // under finish_
     std::atomic<std::thread::id> asking_;  // the device's thread
     std::mutex finish_;
-    std::thread thread_;  // last: it uses all of the above
+    std::optional<devices::Claim> claim_;  // until the thread ends
+    std::thread thread_;                   // last: it uses all of the above
 };
 
 // An `Owner` of a device has `process`, `python_device` (null: another kind of device) and

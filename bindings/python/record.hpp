@@ -3,6 +3,12 @@
 // come from palpate/settings.py.
 #pragma once
 
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "bindings/python/casters.hpp"
 #include "palpate/settings.hpp"
 
@@ -17,15 +23,73 @@ std::string text_of(const Setting<Owner, Value>& setting) {
     return text;
 }
 
-/// Throws std::invalid_argument for a number that the setting can never have.
-template <class Owner>
-void check_range(const Setting<Owner, double>& setting, double value) {
-    if (setting.range.has(value)) return;
-    const std::string unit = *setting.unit != '\0' ? std::string(" [") + setting.unit + "]" : "";
-    throw std::invalid_argument(setting.title + unit + " = " +
-                                std::string(py::str(py::float_(value))) + ": must be " +
-                                setting.range.words);
+namespace ranges {
+using namespace palpate::ranges;
+inline constexpr ValueRange finite{-greatest, greatest, false, "finite"};
+inline constexpr ValueRange spacing{1e-30, 1e30, false, "from 1e-30 to 1e30"};
+inline constexpr ValueRange scale = spacing;
+inline constexpr ValueRange speed{-1000, 1000, false, "from -1000 to 1000"};
+inline constexpr ValueRange part{0, 1, false, "from 0 to 1"};
+}  // namespace ranges
+
+/// Calls visit(number) for each number of a value. Values of other types have none.
+template <class T>
+requires(std::is_arithmetic_v<T> && !std::same_as<T, bool>) void each_number(T number,
+                                                                             const auto& visit) {
+    visit(static_cast<double>(number));
 }
+template <class Derived>
+void each_number(const Eigen::DenseBase<Derived>& matrix, const auto& visit) {
+    for (const auto number : matrix.reshaped()) visit(static_cast<double>(number));
+}
+void each_number(const io::Level& level, const auto& visit) {
+    const auto* part = std::get_if<io::PercentOfRange>(&level);
+    visit(part ? part->percent : std::get<double>(level));
+}
+template <class T, std::size_t size>
+void each_number(const std::array<T, size>& values, const auto& visit) {
+    for (const T& value : values) each_number(value, visit);
+}
+void each_number(const std::vector<std::pair<io::Level, io::Level>>& ranges, const auto& visit) {
+    for (const auto& [low, high] : ranges) {
+        each_number(low, visit);
+        each_number(high, visit);
+    }
+}
+template <class T>
+concept HasNumbers = requires(const T& value) {
+    each_number(value, [](double) {});
+};
+template <HasNumbers T>
+void each_number(const std::optional<T>& value, const auto& visit) {
+    if (value) each_number(*value, visit);
+}
+
+/// Throws std::invalid_argument for a number out of range, and for axes that are not orthonormal.
+template <HasNumbers Value>
+void check_numbers(const std::string& name, const Value& value, const ValueRange& range) {
+    each_number(value, [&](double number) {
+        if (range.has(number)) return;
+        const py::gil_scoped_acquire gil;
+        throw std::invalid_argument(name + " = " + std::string(py::str(py::float_(number))) +
+                                    ": must be " + range.words);
+    });
+    if constexpr (std::same_as<Value, Mat3>) {
+        if (!value.isUnitary(1e-4)) throw std::invalid_argument(name + " must be orthonormal");
+    }
+}
+template <class Owner, class Value>
+void check_range(const Setting<Owner, Value>& setting, const Value& value) {
+    const std::string unit = *setting.unit != '\0' ? std::string(" [") + setting.unit + "]" : "";
+    constexpr bool is_number = std::same_as<Value, double>;  // else a place or a rotation
+    check_numbers(setting.title + unit, value, is_number ? setting.range : ranges::finite);
+}
+
+/// What a field is, and the range of its numbers.
+struct Ranged {
+    const char* about;
+    ValueRange range;
+};
 
 /// Reads a member of a member: member_of(&Tick::proxy, &ProxyUpdate::scp)(tick).
 template <class Owner, class First, class... Path>
@@ -45,12 +109,18 @@ class Record {
     Record(py::module_& module, const char* name, const char* about)
         : class_(module, name, about, py::dynamic_attr()) {}
 
-    /// A member, with its unit in `about`.
+    /// A member that has no numbers.
     template <class Owner, class Member>
     Record& field(const char* name, Member Owner::*member, const char* about) {
+        static_assert(!HasNumbers<Member>, "numbers need a range");
         class_.def_readwrite(name, member, about);
         names_.append(name);
         return *this;
+    }
+    /// A member with numbers, with its unit in `about`.
+    template <class Owner, HasNumbers Member>
+    Record& field(const char* name, Member Owner::*member, const Ranged& ranged) {
+        return part(name, ranged, member);
     }
     /// All fields of a struct that has a table, as the table describes them.
     template <class Owner = T>
@@ -61,25 +131,32 @@ class Record {
     /// A field as its setting describes it, which refuses numbers out of range.
     template <class Owner, class Value>
     Record& setting(const Setting<Owner, Value>& one) {
-        return field(one.name, one.member, text_of(one).c_str());
-    }
-    template <class Owner>
-    Record& setting(const Setting<Owner, double>& one) {
-        return property(
-            one.name, [=](const T& whole) { return whole.*one.member; },
-            [=](T& whole, double value) {
-                check_range(one, value);
-                whole.*one.member = value;
-            },
-            text_of(one).c_str());
+        if constexpr (HasNumbers<Value>) {
+            return property(
+                one.name, [=](const T& whole) { return whole.*one.member; },
+                [=](T& whole, const Value& value) {
+                    check_range(one, value);
+                    whole.*one.member = value;
+                },
+                text_of(one).c_str());
+        } else {
+            return field(one.name, one.member, text_of(one).c_str());
+        }
     }
     /// A member of a member: part("solid", "Side", &Setup::field, &FieldSetup::solid).
     template <class Owner, class First, class... Path>
     Record& part(const char* name, const char* about, First Owner::*first, Path... path) {
         using Value = decltype(member_of(first, path...)(std::declval<const T&>()));
-        return property(
-            name, [=](const T& whole) { return member_of(first, path...)(whole); },
-            [=](T& whole, Value value) { ((whole.*first).*....*path) = std::move(value); }, about);
+        static_assert(!HasNumbers<Value>, "numbers need a range");
+        return part_with(
+            name, about, [](const Value&) {}, first, path...);
+    }
+    template <class Owner, class First, class... Path>
+    Record& part(const char* name, const Ranged& ranged, First Owner::*first, Path... path) {
+        const auto check = [name, range = ranged.range](const auto& value) {
+            check_numbers(name, value, range);
+        };
+        return part_with(name, ranged.about, check, first, path...);
     }
     /// A field that looks otherwise in Python: get(const T&), set(T&, value).
     template <class Get, class Set>
@@ -102,6 +179,19 @@ class Record {
     }
 
   private:
+    template <class Check, class Owner, class First, class... Path>
+    Record& part_with(const char* name, const char* about, Check check, First Owner::*first,
+                      Path... path) {
+        using Value = decltype(member_of(first, path...)(std::declval<const T&>()));
+        return property(
+            name, [=](const T& whole) { return member_of(first, path...)(whole); },
+            [=](T& whole, Value value) {
+                check(value);
+                ((whole.*first).*....*path) = std::move(value);
+            },
+            about);
+    }
+
     py::class_<T> class_;
     py::list names_;
 };

@@ -14,6 +14,7 @@ namespace palpate::python {
 namespace {
 
 using Unlocked = py::call_guard<GilReleased>;
+constexpr double usual_device_rate = 1000;  // [Hz]
 namespace fs = std::filesystem;
 
 struct Setup : run::Setup {
@@ -56,24 +57,36 @@ void bind_setup(py::module_& module) {
     using F = run::FieldSetup;
     Record<S> record(module, "Setup", "How a volume is felt live; what is None is filled in.");
     record.part("solid", "'above' or 'below' the isovalue.", &S::field, &F::solid)
-        .part("background", "Level outside the data, or None.", &S::field, &F::background)
-        .part("isovalue", "A number [data units], '53%', or None: a suggested one.", &S::field,
-              &F::isovalue)
+        .part("background", Ranged{"Level outside the data, or None.", ranges::finite}, &S::field,
+              &F::background)
+        .part("isovalue",
+              Ranged{"A number [data units], '53%', or None: a suggested one.", ranges::any},
+              &S::field, &F::isovalue)
         .part("interpolation", "'linear', 'cubic' or None: as the method.", &S::field,
               &F::interpolation)
         .field("render", &S::asked, "RenderSetup")
         .property(
             "device", [](const S& s) { return run::text_of(s.device); },
-            [](S& s, const std::string& text) { s.device = devices::parse_device(text); },
+            [](S& s, const std::string& text) {
+                const devices::DeviceChoice choice = devices::parse_device(text);
+                const std::vector<std::string> names = devices::device_names();
+                if (std::ranges::find(names, choice.name) == names.end()) {
+                    throw std::invalid_argument("there is no device '" + choice.name +
+                                                "': " + use_one_of(names, choice.name));
+                }
+                s.device = choice;
+            },
             "As for --device: 'simulated', 'haply:port=10001', ...")
         .field("facing", &S::facing, "The side of the body that faces the person.");
     for_each_setting<run::Buttons>([&](const auto& one) { add_button(record, one); });
     using P = run::PlaybackSetup;
     using L = io::LoaderSettings;
-    record.part("speed", "Of a sequence, at the start.", &S::playback, &P::speed)
+    record
+        .part("speed", Ranged{"Of a sequence, at the start.", ranges::speed}, &S::playback,
+              &P::speed)
         .part("loop", "A sequence begins again.", &S::playback, &P::loader, &L::loop)
-        .part("memory_bytes", "For frames of a sequence.", &S::playback, &P::loader,
-              &L::memory_bytes)
+        .part("memory_bytes", Ranged{"For frames of a sequence.", ranges::any}, &S::playback,
+              &P::loader, &L::memory_bytes)
         .field("real_time", &S::real_time, "Ask for real-time priority.")
         .done();
 }
@@ -157,6 +170,9 @@ std::shared_ptr<LiveRun> make(const Feelable& what, const std::optional<Setup>& 
     std::shared_ptr<run::Data> data = data_from(what, setup.playback);
     if (given) check_playback(*given, what, *data);
     PythonDevice* python_device = nullptr;
+    if (device.is_none() && device_rate != usual_device_rate) {
+        throw std::invalid_argument("device_rate does nothing without a device in Python");
+    }
     if (!device.is_none()) {
         // Made here, with the GIL: copies of the setup must not hold a Python object.
         const auto made = std::make_shared<std::unique_ptr<PythonDevice>>(
@@ -233,7 +249,7 @@ void bind_run(py::module_& module) {
         "A live run: a servo with its device, data and recording. Use it as a context manager.\n"
         "By one thread at a time.");
     live.def(py::init(&make), py::arg("loaded"), py::arg("setup") = py::none(), py::kw_only(),
-             py::arg("device") = py::none(), py::arg("device_rate") = 1000.0,
+             py::arg("device") = py::none(), py::arg("device_rate") = usual_device_rate,
              "loaded: from load(), a Volume, a Store, or another Run: then both are hands in the\n"
              "same data, and each feels what the other edits. setup: Setup, by default Setup().\n"
              "device: one that is written in Python, as for a Servo, in place of the setup's;\n"

@@ -131,10 +131,11 @@ void bind_device_settings(py::module_& module) {
         .def("device", &device_from_physical, py::arg("physical"), "The inverse of physical().");
     Record<PressThrough>(module, "Penetrability",
                          "Pressing through surfaces: beyond a threshold, or from range to range.")
-        .field("threshold", &PressThrough::threshold, "PT [device mm]")
+        .field("threshold", &PressThrough::threshold, {"PT [device mm]", ranges::limit_or_zero})
         .field("minimum", &PressThrough::minimum,
-               "Least level felt (a number or '53%'); None: the isovalue.")
-        .field("ranges", &PressThrough::ranges, "Pairs (low, high) of levels, only these are felt.")
+               {"Least level felt (a number or '53%'); None: the isovalue.", ranges::any})
+        .field("ranges", &PressThrough::ranges,
+               {"Pairs (low, high) of levels, only these are felt.", ranges::any})
         .done();
 }
 
@@ -183,15 +184,18 @@ void bind_render_setup(py::module_& module) {
                 s = changed;
             },
             "A Tool, or text: 'point', 'sphere:RADIUS', 'needle', a mesh file, ... [mm]")
-        .field("tool_spacing", &S::tool_spacing, "Of a tool's points [mm]; None: half a voxel.")
+        .field("tool_spacing", &S::tool_spacing,
+               {"Of a tool's points [mm]; None: half a voxel.", ranges::positive})
         .field("friction", &S::friction, "Friction or None.")
         .field("force", &S::asked_force, "ForceSettings")
         .alias("limit")
         .alias("stiffness")
         .field("step_budget", &S::step_budget,
-               "Work that an update may do, in steps through tetrahedra.")
-        .field("scale", &S::scale, "physical mm per device mm; None: fits the workspace.")
-        .field("rate", &S::rate, "[Hz] None: 1000, live 250 with a device that renders no force.")
+               {"Work that an update may do, in steps through tetrahedra.", ranges::at_least_1})
+        .field("scale", &S::scale,
+               {"physical mm per device mm; None: fits the workspace.", ranges::scale})
+        .field("rate", &S::rate,
+               {"[Hz] None: 1000, live 250 with a device that renders no force.", ranges::rate})
         .done()
         .def_static(
             "offline",

@@ -34,6 +34,7 @@ SurfaceMesh mesh_from(const Doubles& vertices, const Indices& triangles) {
     }
     SurfaceMesh mesh;
     mesh.vertices = points_from(vertices, "vertices");
+    for (const Vec3& vertex : mesh.vertices) check_numbers("vertices", vertex, ranges::finite);
     for (py::ssize_t i = 0; i < triangles.shape(0); ++i) {
         for (const int corner : {0, 1, 2}) {
             if (triangles.at(i, corner) >= mesh.vertices.size()) {

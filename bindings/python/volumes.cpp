@@ -38,11 +38,14 @@ void bind_geometry(py::module_& module) {
     Record<Geometry>(module, "Geometry",
                      "The grid in physical space (LPS, mm): sample (i, j, k) lies at\n"
                      "origin + direction @ (spacing * (i, j, k)).")
-        .field("size", &Geometry::size, "Samples along x, y and z: int, shape (3,).")
-        .field("spacing", &Geometry::spacing, "Between neighbouring samples [mm], shape (3,).")
-        .field("origin", &Geometry::origin, "Physical position of sample (0, 0, 0) [mm].")
+        .field("size", &Geometry::size,
+               {"Samples along x, y and z: int, shape (3,).", ranges::not_negative})
+        .field("spacing", &Geometry::spacing,
+               {"Between neighbouring samples [mm], shape (3,).", ranges::spacing})
+        .field("origin", &Geometry::origin,
+               {"Physical position of sample (0, 0, 0) [mm].", ranges::finite})
         .field("direction", &Geometry::direction,
-               "Columns: unit vectors of the index axes, shape (3, 3).")
+               {"Columns: unit vectors of the index axes, shape (3, 3).", ranges::finite})
         .field(
             "oriented", &Geometry::oriented,
             "The axes are those of the body (LPS); False: the file does not say, left and right\n"

@@ -366,7 +366,9 @@ typedef struct palpate_wrench {
  * without waiting. write gets a force of zero when the servo has been silent for 20 ms, and after the
  * run was stopped. `close` (may be null) is the last call, after a zero force. It is called once for
  * each time that the device was opened, also if palpate_run_create() fails afterwards. While a callback
- * does not return, your device keeps the last force, so give the device limits of its own. */
+ * does not return, your device keeps the last force, so give the device limits of its own. `read` and
+ * `context` tell one device from another. A device that serves a run is refused (NO_DEVICE) for another
+ * run. */
 typedef struct palpate_own_device {
     uint32_t size_of;
     int32_t buttons;               /* number of buttons */

@@ -51,6 +51,14 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Case{"", "a command is needed"}, Case{"feel", "no command 'feel'"},
         Case{"INFO synthetic:noise:4x4x4", "no command 'INFO'"}, Case{"--fast", "no option --fast"},
+        Case{"--", "a command is needed"}, Case{"-- info", "VOLUME is required (see palpate info"},
+        Case{"info --", "VOLUME is required (see palpate info"}, Case{"-", "no command '-'"},
+        Case{"render -- synthetic:noise --isovalue 1", "'--isovalue' is one argument too many"},
+        Case{"--quiet info synthetic:noise", "--quiet is an option of info: write it after info"},
+        Case{"render synthetic:noise --isovalue=", "empty (see palpate render --help)"},
+        Case{"info synthetic:noise --=", "there is no option --= (see palpate info"},
+        Case{"info synthetic:noise ---", "there is no option --- (see palpate info"},
+        Case{"info synthetic:noise --time-step 1 --time-step 2", "it is given more than once"},
         Case{"info", "VOLUME is required"}, Case{"info --fast", "no option --fast"},
         Case{"info synthetic:noise:4x4x4 --fast 3", "palpate info --help"},
         Case{"info synthetic:noise:4x4x4 second", "'second' is one argument too many"},
@@ -88,6 +96,28 @@ TEST(Usage, refuses_an_empty_value_of_an_option) {
           Words{"demo", "sculpt", ball, "-o", ""}, Words{"view", ball, "--screenshot", ""}}) {
         expect_failure(palpate(folder, words), 2, "the value is empty");
     }
+}
+
+TEST(Usage, a_word_of_any_bytes_and_any_length_is_refused_in_one_line) {
+    const ScratchFolder folder;
+    const std::string ball = "synthetic:sphere:8x8x8", longest(100000, 'a');
+    for (const std::string& word : {std::string("a\nb"), std::string("a\x1b[31m"), longest}) {
+        for (const Words& words :
+             {Words{word}, Words{"info", ball, "--" + word}, Words{"info", ball, word},
+              Words{"evaluate", word}, Words{"evaluate", "drift", "--" + word}}) {
+            const Outcome outcome = palpate(folder, words);
+            expect_failure(outcome, 2, "palpate: ");
+            EXPECT_LT(outcome.err.size(), 7000U);
+            EXPECT_EQ(outcome.err.find('\x1b'), std::string::npos);
+        }
+    }
+}
+
+TEST(Usage, a_command_may_follow_the_end_of_the_options) {
+    const ScratchFolder folder;
+    const Outcome info = palpate(folder, "-- info synthetic:noise:4x4x4");
+    EXPECT_EQ(info.status, 0) << info.err;
+    EXPECT_EQ(info.out, palpate(folder, "info synthetic:noise:4x4x4").out);
 }
 
 class WrongSettings : public testing::TestWithParam<Case> {};

@@ -135,7 +135,7 @@ def raising_without_a_word(reading):
 
 WRONG = {"raised RuntimeError: cable pulled": raising, "raised TimeoutError$": raising_without_a_word, "DeviceReading, not None": lambda reading: None,
          r"DeviceReading, not \(1, 2, 3\)": lambda reading: (1, 2, 3),
-         r"position is not finite: \[0\.0, nan, 0\.0\]": lambda reading: palpate.DeviceReading(position=(0, numpy.nan, 0), status="ready")}
+         "raised ValueError: position = nan: must be finite": lambda reading: palpate.DeviceReading(position=(0, numpy.nan, 0), status="ready")}
 
 
 @pytest.mark.parametrize("message", WRONG)

@@ -16,16 +16,8 @@ def changed(kind):
     made = kind()
     for name in kind._fields:
         value = getattr(made, name)
-        if isinstance(value, bool):
-            setattr(made, name, not value)
-        elif name.endswith("_xyzw"):  # of length 1
-            setattr(made, name, numpy.roll(value, 1))
-        elif isinstance(value, numpy.ndarray):
-            setattr(made, name, value + 1)
-        elif isinstance(value, (int, float)) and numpy.isfinite(value):
-            setattr(made, name, type(value)(value + 1))
-        elif value is None and name == "rate":
-            setattr(made, name, 500.0)
+        if isinstance(value, (bool, int, float, numpy.ndarray)) or name == "rate":
+            setattr(made, name, another(name, value))
     return made
 
 
@@ -138,7 +130,7 @@ def at(owner, path):
 NAMES = {"solid": "below", "interpolation": "linear", "method": "paper", "kind": "add", "tool": "sphere:2",
          "facing": "left", "type": "uint16", "status": "ready", "curves": {"drag": ([(0, 1)], [(0, 2)])},
          "properties": {"drag": 0.5}, "ranges": [(3, "50%")], "background": 3.0, "isovalue": 0.5,
-         "minimum": 5.0, "clutch": 2, "deadman": 1, "step_budget": 77}
+         "minimum": 5.0, "clutch": 2, "deadman": 1, "step_budget": 77, "rate": 500.0, "device": "recorded:file.csv"}
 
 
 def equal(one, other):

@@ -45,6 +45,22 @@ print("end")
     assert words == ["closed", "False", "True", "end"]
 
 
+def test_a_device_serves_one_session_at_a_time():
+    ball = palpate.load("synthetic:sphere:16x16x16")
+    device, other = live_test.Still(60), live_test.Still(60)
+    run = palpate.Run(ball, palpate.Setup(real_time=False), device=device)
+    for again in (lambda: palpate.Run(ball, palpate.Setup(real_time=False), device=device),
+                  lambda: palpate.Servo(live_test.renderer(), device, real_time=False)):
+        with pytest.raises(palpate.DeviceError, match="^the device Still .* serves another hand: [^\n]*$"):
+            again()
+    assert not device.closed
+    palpate.Servo(live_test.renderer(), other, real_time=False)
+    run.start()
+    run.stop()
+    with palpate.Servo(live_test.renderer(), device, real_time=False) as servo:
+        live_test.until(lambda: servo.snapshot() and servo.snapshot().device.status == "ready")
+
+
 def test_a_device_that_hangs_is_written_zero_and_stopping_says_so():
     words = run_program("""
 class Hanging(live_test.Still):

@@ -9,10 +9,12 @@ import functools
 import numbers
 import os
 import re
+from typing import SupportsIndex
 
 import numpy
 
 _MARK = re.compile(r"incompatible (function|constructor) arguments")
+_STRICT = re.compile(r"\b(bool|int)\b")
 _ARRAY = re.compile(r"numpy\.ndarray\[(?:numpy\.)?(\w+)(?:\[(.*)\])?\]")
 
 
@@ -102,8 +104,8 @@ def _fits(value, kind):
         shape = shape[:1] if shape[1:] == ["1"] else shape
         return not shape or (len(shape) == got.ndim and all(
             not side.isdigit() or int(side) == size for side, size in zip(shape, got.shape)))
-    plain = {"numpy.ndarray": numpy.ndarray, "str": str, "bool": bool, "float": numbers.Real,
-             "int": numbers.Integral, "None": type(None), "dict": dict, "list": list, "tuple": tuple}
+    plain = {"numpy.ndarray": numpy.ndarray, "str": str, "bool": (bool, numpy.bool_), "float": numbers.Real,
+             "int": SupportsIndex, "None": type(None), "dict": dict, "list": list, "tuple": tuple}
     if kind == "os.PathLike":
         return isinstance(value, (str, bytes, os.PathLike)) and "\0" not in os.fsdecode(value)
     if kind in plain:
@@ -201,12 +203,27 @@ def _problem(function, args, keywords):
     return f"it does not take ({', '.join(values)})"
 
 
+def _strict(function):
+    """(place, parameter) of those for which pybind11 takes too much: the truth of any object, and the whole
+    part of any number."""
+    overloads = signatures(function)
+    return [(at, one) for at, one in enumerate(overloads[0]) if _STRICT.search(one.type)] if len(overloads) == 1 else []
+
+
 def _told(function, name, is_method):
     """The function, with errors about its arguments in one line."""
+    strict = _strict(function)
+
     @functools.wraps(function)
     def call(*args, **keywords):
         try:
-            return function(*args, **keywords)
+            for at, one in strict:
+                at += is_method
+                if not (_fits(args[at], one.type) if at < len(args) else
+                        one.name not in keywords or _fits(keywords[one.name], one.type)):
+                    break
+            else:
+                return function(*args, **keywords)
         except TypeError as error:
             if not _MARK.search(str(error)):
                 raise
@@ -215,10 +232,13 @@ def _told(function, name, is_method):
 
 
 def _told_setter(setter, name):
+    strict = _strict(setter)
+
     @functools.wraps(setter)
     def change(self, value):
         try:
-            return setter(self, value)
+            if not strict or _fits(value, strict[0][1].type):
+                return setter(self, value)
         except TypeError as error:
             if not _MARK.search(str(error)):
                 raise

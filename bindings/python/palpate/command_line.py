@@ -17,6 +17,7 @@ ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 STATUS = ((InputError, 3), (DeviceError, 4), (OSError, 5))  # docs/command_line.md
 READER_GONE = 141
 EMPTY = "the value is empty"
+_CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf)", re.IGNORECASE)
 
 
@@ -215,7 +216,9 @@ def remark(text: str, end: str = "\n") -> None:
 
 def tell(text: object) -> None:
     """On standard error, in a line."""
-    remark(f"palpate: {text}")
+    shown = str(text).encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")  # words may be any bytes
+    shown = _CONTROL.sub(" ", shown)
+    remark(f"palpate: {shown if len(shown) <= 6000 else f'{shown[:5500]}...{shown[-500:]}'}")
 
 
 def _end(number: int, frame: Any) -> NoReturn:

@@ -137,8 +137,10 @@ static class FeelsABall
                 SizeOf = Native.SizeOf<RunOptions>(), Render = unmanagedRender.Pointer,
                 Own = unmanagedOwn.Pointer, NoRealTime = 1
             };
-            IntPtr run;
+            IntPtr run, another;
             Native.Check(Native.palpate_run_create(data, ref options, out run));
+            Require(Native.palpate_run_create(data, ref options, out another) == Status.NoDevice,
+                    "a device serves one run at a time");
             return run;
         }
     }

@@ -112,6 +112,23 @@ class CRun : public testing::Test {
     palpate_run* run_ = nullptr;
 };
 
+TEST_F(CRun, an_own_device_serves_one_run_at_a_time) {
+    const palpate_own_device own = device_of(hand_);
+    ASSERT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+    palpate_run* const first = std::exchange(run_, nullptr);
+    EXPECT_EQ(create(&own), PALPATE_NO_DEVICE);
+    const std::string refusal = palpate_last_error();
+    EXPECT_NE(refusal.find("the device 'own'"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("serves another hand"), std::string::npos) << refusal;
+    EXPECT_EQ(hand_.closes, 0);
+    Hand other;
+    const palpate_own_device second = device_of(other);
+    EXPECT_EQ(create(&second), PALPATE_OK) << palpate_last_error();
+    palpate_run_destroy(std::exchange(run_, nullptr));
+    palpate_run_destroy(first);
+    EXPECT_EQ(create(&own), PALPATE_OK) << palpate_last_error();
+}
+
 TEST_F(CRun, a_button_that_cannot_be_is_refused_by_name) {
     PALPATE_STRUCT(palpate_run_options, options);
     options.no_real_time = 1;
