@@ -109,8 +109,8 @@ std::string certificate(const Latency& latency) {
     row("compute (this program)", r.compute);
     row("work (both)", r.work);
     row("period", r.period);
-    text += fmt::format("\nTicks {}, missed {}, forces cancelled {}.\n", r.ticks, r.missed,
-                        r.overruns);
+    text +=
+        fmt::format("\nTicks {}, missed {}, forces cancelled {}.\n", r.ticks, r.missed, r.overruns);
     if (r.worst.tick >= 0) {
         text += fmt::format("Worst tick {}: woken {:.1f} us late, {:.1f} us of work; mostly {}.\n",
                             r.worst.tick, us(r.worst.lateness_ns), us(r.worst.work_ns),

@@ -1,5 +1,5 @@
-// Headers of NRRD, MetaImage, NIfTI, MGH and MRC files: each format has one function here that turns a
-// file into a description, which reading it whole and reading it by the box both use. Every
+// Headers of NRRD, MetaImage, NIfTI, MGH and MRC files: each format has one function here that
+// turns a file into a description, which reading it whole and reading it by the box both use. Every
 // function throws Failure.
 #pragma once
 
