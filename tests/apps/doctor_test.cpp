@@ -70,7 +70,7 @@ TEST(Doctor, finds_a_reader_that_was_copied_without_those_of_other_formats) {
                 folder.path(), Stdout::captured, "/bin/sh")
             .finish();
     EXPECT_EQ(outcome.status, 4);
-    EXPECT_TRUE(contains(outcome.out, "palpate-io-dicom is not beside it")) << outcome.out;
+    EXPECT_TRUE(contains(outcome.out, "palpate-io-dicom is missing in its folder")) << outcome.out;
 }
 
 TEST(Doctor, leaves_no_report_when_it_is_interrupted) {

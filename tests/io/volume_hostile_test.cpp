@@ -57,6 +57,7 @@ TEST(hostile_file, a_nifti_transform_without_bounds_never_reaches_the_library) {
     const ScratchFolder folder;
     const auto with_transform = [&](const std::string& numbers) {
         return refusal_of_bytes(folder / "a.nii", nifti([&](std::string& header) {
+                                    put_at(header, 252, little<std::int16_t>(0));
                                     put_at(header, 254, little<std::int16_t>(1));
                                     put_at(header, 280, numbers);
                                 }));

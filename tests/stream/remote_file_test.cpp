@@ -142,7 +142,7 @@ TEST(RemoteFile, what_cannot_be_read_is_one_line) {
         {server.address("none.h5"), "HDF5"},
         {server.address("none.tif"), "TIFF"},
         {server.address("empty.ims"), ""},
-        {server.address("absent.ims"), "not there"},
+        {server.address("absent.ims"), "does not exist"},
         {whole.address("cut.ims"), "whole files only"}};
     for (const auto& pair : wrong) {
         const std::string& address = pair.first;
