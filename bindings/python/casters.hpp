@@ -120,7 +120,7 @@ struct type_caster<palpate::io::Level> {
         if (!number.load(source, convert)) return false;
         value = cast_op<double>(number);
         if (!std::isnan(cast_op<double>(number))) return true;
-        throw std::invalid_argument("a level must be a number, not nan");
+        throw std::invalid_argument("a level or isovalue must be a number, not nan");
     }
     static handle cast(const palpate::io::Level& from, return_value_policy, handle) {
         if (const auto* part = std::get_if<palpate::io::PercentOfRange>(&from)) {

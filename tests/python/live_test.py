@@ -94,7 +94,7 @@ def test_a_run_takes_a_device_in_python_too_and_records_it(tmp_path):
 def test_a_run_that_cannot_begin_lets_go_of_its_device_in_python():
     device = Still(60)
     with pytest.raises(ValueError):
-        palpate.Run(palpate.load("synthetic:sphere:8x8x8"), palpate.Setup(isovalue=numpy.nan), device=device)
+        palpate.Run(palpate.load("synthetic:sphere:8x8x8"), palpate.Setup(isovalue=-numpy.inf), device=device)
     assert device.closed
     with pytest.raises(TypeError, match="needs the functions info"):
         palpate.Run(palpate.load("synthetic:sphere:8x8x8"), device=object())
