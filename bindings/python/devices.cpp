@@ -58,7 +58,7 @@ void bind_devices(py::module_& module) {
         .field("buttons", &R::buttons, {"Bit b is set while button b is held.", ranges::any})
         .field("opening", &R::opening,
                {"[rad] of a gripper, 0: closed. None: it has none.", ranges::finite})
-        .field("age", &R::age, {"[s] since it was measured", ranges::limit_or_zero})
+        .field("age", &R::age, {"[s] since it was measured; below 0 or inf: stale.", ranges::any})
         .field("status", &R::status,
                "'starting', 'ready', 'uncalibrated', 'stale', 'lost', 'fault', 'finished'.")
         .done();

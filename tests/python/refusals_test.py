@@ -27,10 +27,9 @@ FROM_ZERO = {"MotionSettings.duration_s", "MotionSettings.depth_mm", "DeviceInfo
              "Texture.amplitude", "Friction.static_coefficient", "Friction.dynamic_coefficient"} | {
              f"ForceSettings.{name}" for name in ("stiffness", "damping", "viscosity", "limit", "ramp", "rotational_stiffness",
                                                   "rotational_damping")}
-FROM_ZERO_OR_INFINITE = {"Needle.stick_speed", "ForceSettings.torque_limit", "ForceSettings.start_below", "Penetrability.threshold",
-                         "DeviceReading.age"}
+FROM_ZERO_OR_INFINITE = {"Needle.stick_speed", "ForceSettings.torque_limit", "ForceSettings.start_below", "Penetrability.threshold"}
 FINITE = {"DeviceReading.opening", "Brush.level", "Brush.value", "HandBrush.value", "Layer.level", "Setup.background"}
-ANY = {"Setup.isovalue", "Penetrability.minimum"}
+ANY = {"Setup.isovalue", "Penetrability.minimum", "DeviceReading.age"}
 COUNTS = {"RawLayout.skip", "DeviceInfo.buttons", "DeviceReading.buttons", "Setup.memory_bytes", "MotionSettings.seed"}
 PARTS = {"Layer.opacity", "Brush.hardness", "HandBrush.hardness"}
 PLACES = {"DeviceTransform.translation", "Geometry.origin", "DeviceInfo.workspace_low", "DeviceInfo.workspace_high",
