@@ -12,7 +12,7 @@ namespace {
 constexpr double around = 3;
 /// A pull is halved this often, a long one until it is no longer than this [voxel].
 constexpr int fewest_halvings = 6;
-constexpr double shortest = 1;
+constexpr double short_pull = 1;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ double part_within_reach(const Field& field, const Pull& pull) noexcept {
     if (!field.samples().resident() || !std::isfinite(length)) return 1;  // the update refuses it
     const double voxels = length * field.voxels_per_mm().maxCoeff();
     double part = 1;
-    for (int halvings = 0; halvings <= fewest_halvings || 2 * part * voxels > shortest;
+    for (int halvings = 0; halvings <= fewest_halvings || 2 * part * voxels > short_pull;
          ++halvings, part /= 2) {
         if (is_resident(field, pull.from + part * way, part * length + pull.arm)) return part;
     }
