@@ -14,7 +14,8 @@ int main(int argc, char** argv) {
     // Bricks and pieces that are dropped go back to the system, whatever lies behind them.
     mallopt(M_MMAP_THRESHOLD, 128 << 10);
     using namespace palpate::app;
-    if (argc > 1 && argv[1] == std::string_view("--")) {  // there are no options before it
+    // In `palpate -- info`, the hyphens end the options, of which there are none.
+    if (argc > 1 && argv[1] == std::string_view("--")) {
         std::swap(argv[0], argv[1]);
         ++argv, --argc;
     }

@@ -271,7 +271,7 @@ bool is_placed(const Header& header) {
     return header.code(qform_code) > 0 || header.code(sform_code) > 0;
 }
 
-/// Whether it has nothing but zeros, or something that is no number.
+/// Whether its directions are all zero, or a number of it is not finite.
 bool is_empty_sform(const Header& header) {
     bool has_direction = false, is_finite = true;
     for (std::size_t i = 0; i < 12; ++i) {
@@ -287,8 +287,7 @@ Transform transform_of(const Header& header, std::vector<std::string>& notes) {
     const bool has_qform = header.code(qform_code) > 0;
     bool has_sform = header.code(sform_code) > 0;
     if (has_sform && has_qform && is_empty_sform(header)) {
-        notes.emplace_back(
-            "its sform has nothing but zeros, or what is no number: its qform was taken");
+        notes.emplace_back("its sform is all zeros or not finite: its qform was taken");
         has_sform = false;
     }
     if (!is_placed(header)) {
