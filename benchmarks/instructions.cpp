@@ -34,7 +34,7 @@ Touch cylinder() {
     return cylinder_touch(type, 0.1 * tenths_voxel_per_mm, depth);
 }
 
-/// What the loop round the updates costs, to be taken off the others.
+/// The cost of the loop around the updates, which is subtracted from the other cases.
 ProxyUpdate no_update(Proxy&, const Field&, const Vec3& hip, const ProxySettings&, StepObserver) {
     return {.scp = hip};
 }

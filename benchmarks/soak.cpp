@@ -80,7 +80,7 @@ Scene make_scene(const Options& options) {
     return with(io::read_volume(options.volume, read).volume);
 }
 
-/// What the machine says of this program and of itself.
+/// The machine's figures about this program and about itself.
 struct Usage {
     std::int64_t resident_kb = 0, major_faults = 0;
     double load = 0;  ///< programs that want to run, mean of the last minute

@@ -23,7 +23,7 @@ constexpr std::int64_t period = 1'000'370;  // [ns] moves through the cycle, pla
 constexpr std::size_t places = 100;
 constexpr int multiplications = 5000;  // some 8 us
 
-/// Nothing in memory, nothing that depends on what came before.
+/// Uses no memory, and does not depend on earlier calls.
 std::uint64_t multiply(std::uint64_t x) {
     for (int i = 0; i < multiplications; ++i) x = x * 6364136223846793005U + 1442695040888963407U;
     return x;

@@ -12,7 +12,7 @@ double quantile(const std::vector<double>& sorted, double share) {
     return sorted[static_cast<std::size_t>(share * last)];
 }
 
-/// What timing nothing shows: the median of an empty interval.
+/// The time of an empty interval (median).
 double clock_cost() {
     std::vector<double> empty(10001);
     for (double& ns : empty) {

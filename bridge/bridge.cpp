@@ -149,7 +149,7 @@ void Bridge::drop(Peer& peer, const std::string& why) noexcept {
     note(peer.who + " was disconnected: " + why);
 }
 
-/// What fails for one peer, such as memory, ends that one and no other.
+/// If work for one peer fails, for example for lack of memory, only that peer is disconnected.
 template <class Work>
 void Bridge::serve(Peer& peer, Work&& work) noexcept {
     try {

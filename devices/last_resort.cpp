@@ -20,11 +20,11 @@ namespace {
 
 /// Faults of the program itself: handled whatever was set up before.
 constexpr std::array crashes{SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGTRAP, SIGSYS};
-/// What cannot be caught, and what does not end or suspend a program.
+/// Signals that cannot be caught, or that do not end or suspend a program.
 constexpr std::array harmless{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGURG, SIGWINCH};
 
 std::array<std::atomic<Device*>, LastResort::most> guarded{};
-/// Those that a handler has told to stop.
+/// Devices that a handler has told to stop.
 std::array<std::atomic<Device*>, LastResort::most> told{};
 
 /// How long a handler waits [ms]: at least, for devices that cannot tell, and at most.
@@ -70,7 +70,7 @@ void on_signal(int number, siginfo_t* info, void* context) {
         return;
     }
     if (wait) wait_for_zeros();
-    // What the signal does goes on: signals are held back here until this returns.
+    // The signal's default action follows, because signals are held back until this returns.
     std::signal(number, SIG_DFL);
     ::raise(number);
 }

@@ -16,7 +16,7 @@ namespace palpate::devices {
 namespace {
 
 std::array<std::atomic<Device*>, LastResort::most> guarded{};
-/// Those that were told to stop.
+/// Devices that were told to stop.
 std::array<std::atomic<Device*>, LastResort::most> told{};
 
 /// How long is waited for the zero [ms]: at least, for devices that cannot tell, and at most.

@@ -9,7 +9,7 @@ namespace {
 constexpr double most_missed = 1e-3;       // of the ticks
 constexpr std::int64_t late_ns = 250'000;  // a quarter of a period
 
-/// What to try, for a machine that is late: first what it lacks anyway.
+/// The remedy for a machine that is late. Its other faults come first.
 std::string way_to_punctuality(const Facts& facts) {
     const Machine& machine = facts.machine;
     if (facts.limits.priority_error != 0) return "mend real-time-priority first, and measure again";

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t longest = 1 << 20;  // bytes of a file that are read
 
-/// Nothing if it cannot be read.
+/// Returns an empty text if the file cannot be read.
 std::string text_of(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::string text(longest, '\0');

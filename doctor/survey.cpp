@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int servo_priority = 80;
-/// Of address space: about what a session with a large volume has.
+/// Address space of about a session with a large volume.
 constexpr std::size_t session_bytes = std::size_t{1} << 30;
 
 std::uint64_t limit_of(int what) {

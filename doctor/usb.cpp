@@ -28,7 +28,7 @@ constexpr const char* dimension_firmware =
     "run the SDK's own example (HapticInit) first: a device that it cannot initialise needs the "
     "vendor's firmware update";
 
-// Of two rows for a vendor, the one with a product comes first.
+// If there are two rows for a vendor, the one with a product comes first.
 constexpr std::array<KnownUsb, 20> table{{
     {"1451", "0402", "forcedimension", "Force Dimension omega", Through::usb, dimension_firmware},
     {"1451", "0403", "forcedimension", "Force Dimension sigma", Through::usb, dimension_firmware},
@@ -57,7 +57,7 @@ std::string first_line(const fs::path& path) {
     std::string line;
     std::getline(file, line);
     line.resize(std::min<std::size_t>(line.size(), 200));
-    // What a device calls itself is foreign text, and goes to a terminal.
+    // The name of a device is foreign text, and is printed on a terminal.
     std::erase_if(line, [](unsigned char c) { return c < ' ' || c == 0x7F; });
     return line;
 }

@@ -53,7 +53,7 @@ std::optional<Vec3> solid_sample(const Subject& subject, Random& random) {
     return {};
 }
 
-/// Where a hand from outside first meets the body on a straight line to a solid sample.
+/// The first contact of a hand from outside, on a straight line to a solid sample.
 struct Place {
     Vec3 point, outward;  // [mm, physical]; outward is where it came from
 };
@@ -139,7 +139,7 @@ class Steering {
         if (!constrained_) return unit(lag - hand_.depth_mm * normal_, -normal_);
         const Vec3 across = normal_.cross(along_);
         along_ += turn_per_s_ / hand_.rate_hz * across;
-        // Where the proxy is held back, the hand goes back for it.
+        // If the proxy is held back, the hand returns to it.
         if (lag.norm() > 4 * hand_.depth_mm) along_ = lag;
         along_ = unit(along_ - along_.dot(normal_) * normal_, normal_.unitOrthogonal());
         keep_to_the_body();

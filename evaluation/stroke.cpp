@@ -12,9 +12,9 @@
 namespace palpate::evaluation {
 namespace {
 
-/// What rounding to levels of two voxels may take, at a coarser level twice (it is interpolated),
-/// and there what straight lines between samples cut off a ball of 256 voxels (and the smooth field
-/// once more) [voxel].
+/// The allowed error [voxel]: rounding to levels of two voxels, twice at a coarser level (which is
+/// interpolated). There, straight lines between samples also cut off a part of a ball of 256
+/// voxels, and so does the smooth field.
 double allowance(int level) {
     return (level > 0 ? 2.5 : 1.5) + std::ldexp(1.0, 2 * level) / 256;
 }
@@ -55,7 +55,7 @@ class Judge {
         const bool not_placed = waiting && update.scp == update.hip;
         const double depth = ball_depth(update.scp);
         const int level = level_near(renderer_.field, update.scp);
-        // Where finer samples came over a proxy, the coarser ones count until it is out.
+        // If finer samples came over a proxy, the coarser ones count until it is out.
         level_ = depth <= allowance(level) ? level : std::max(level_, level);
         // A hand may be in a ball when the first samples come; its proxy feels nothing and goes
         // out, as one does over which a surface came.

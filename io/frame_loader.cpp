@@ -46,8 +46,8 @@ std::int64_t room_for(const Sequence& sequence, const LoaderSettings& settings) 
 
 }  // namespace
 
-/// What other threads tell the loader's thread: the play position, and that memory is free. Frames
-/// that outlive the loader keep it alive.
+/// Messages of other threads to the loader's thread: the play position, and that memory is free.
+/// Frames that outlive the loader keep this alive.
 struct FrameLoader::Control {
     std::mutex mutex;
     std::condition_variable changed;

@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Where a comment that begins at `at` ends; `at` if none does.
+/// End of a comment that begins at `at`. `at` if none does.
 std::size_t end_of_comment(std::string_view text, std::size_t at) {
     const std::string_view begin = text.substr(at, 2);
     if (begin == "//") return std::min(text.find('\n', at), text.size());

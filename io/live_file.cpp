@@ -291,7 +291,7 @@ void LiveReader::read_at(std::uint64_t at, std::span<std::byte> to) const {
     }
 }
 
-/// Nothing if the writer changed the slot meanwhile.
+/// Returns nothing if the writer changed the slot meanwhile.
 std::optional<Frame> LiveReader::frame(std::uint64_t number) const {
     const std::uint64_t slot = header_.slot_at(number);
     const std::uint64_t whole = 2 * number + 2;

@@ -59,7 +59,7 @@ PlainSamples plain_from(const nlohmann::json& done) {
     return plain;
 }
 
-/// What the helper finds in the header.
+/// Facts that the helper finds in the header.
 nlohmann::json located(const fs::path& path, const ReadOptions& options) {
     nlohmann::json request = {{"caller", getpid()}, {"own_memory", own_memory(0, 0)}};
     add_to(request, {options.spacing, options.orientation});

@@ -225,7 +225,7 @@ std::string name_of_frame(const Sequence& sequence, int frame) {
     return sequence.frame_name ? sequence.frame_name(frame) : "frame " + std::to_string(frame);
 }
 
-/// What differs between a frame and the first one; empty if nothing does.
+/// The difference between a frame and the first one. Empty if there is none.
 std::string difference(const Volume& frame, const Sequence& sequence) {
     const Geometry& here = frame.geometry();
     const Geometry& there = sequence.geometry;

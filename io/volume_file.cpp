@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the helper says about the file; it may quote its header.
+/// Notes of the helper on the file. They may quote its header.
 std::vector<std::string> notes_of(const nlohmann::json& done) {
     auto notes = done.at("notes").get<std::vector<std::string>>();
     for (std::string& note : notes) note = one_line(std::move(note));

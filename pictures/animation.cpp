@@ -38,7 +38,7 @@ void append_chunk(std::string& file, std::string_view kind, std::string_view dat
         static_cast<std::uint32_t>(crc32(0, bytes, static_cast<uInt>(file.size() - begin))));
 }
 
-/// What a PNG is made of.
+/// The parts of a PNG.
 struct Picture {
     std::string_view header;
     std::vector<std::string_view> data;

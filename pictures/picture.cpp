@@ -88,7 +88,7 @@ void check(const PictureScene& scene) {
     for (const Arrow& a : scene.arrows) check_object(std::array{a.from, a.to}, a.radius);
 }
 
-/// Where the arrays go, behind a text of `text` bytes, and the end of them.
+/// Lays out the arrays behind a text of `text` bytes, and returns their end.
 std::size_t lay_out(const PictureScene& scene, std::size_t text,
                     std::vector<SurfaceArrays>& arrays) {
     std::size_t at = sizeof(std::uint64_t) + text;

@@ -31,7 +31,7 @@ const std::array<NamedView, 7>& named_views() {
     return views;
 }
 
-/// What the scene's objects but the surfaces reach to.
+/// Points of the scene's objects other than the surfaces.
 std::vector<Vec3> points_of(const PictureScene& scene) {
     std::vector<Vec3> points;
     for (const Ball& b : scene.balls) points.push_back(b.centre);

@@ -190,7 +190,7 @@ std::string Data::save(const std::filesystem::path& path, const io::Progress& pr
 }
 
 std::filesystem::path Data::rescue(const io::Progress& progress) {
-    // Nothing of the original is read: a silent server would keep the edits waiting.
+    // Reads nothing of the original, because a silent server would keep the edits waiting.
     if (loaded_.streamed) loaded_.streamed->opened.is_rescue = true;
     std::string problems;
     for (const std::filesystem::path& place : places_of_rescue()) {
@@ -215,7 +215,7 @@ std::filesystem::path Data::rescue(const io::Progress& progress) {
     throw io::OutputError(problems);
 }
 
-/// What was edited of a store, beside it.
+/// Saves the edits of a store, beside it.
 std::string Data::save_edits(const std::filesystem::path& path, const io::Progress& progress) {
     const auto& from = std::get<StoreSource>(loaded_.source.from);
     const std::shared_ptr<const Samples> edits = editor_->state().samples;

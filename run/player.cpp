@@ -191,7 +191,7 @@ void Player::apply_position(Field& field) const {
     field.set_time(time_);
 }
 
-/// What a recording needs before its first tick.
+/// Commands that a recording needs before its first tick.
 std::vector<Command> Player::history() const {
     std::vector<Command> history;
     if (sent_.samples) history.push_back(command::Samples{nullptr, sent_.version, sent_.recipe});

@@ -48,7 +48,7 @@ Command RecordedSamples::whole(const Command& recorded) {
                       recorded);
 }
 
-/// Of a large grid: edits with what is in memory.
+/// For a large grid: edits together with the samples in memory.
 std::shared_ptr<const Samples> RecordedSamples::felt(std::shared_ptr<const Samples> edits) const {
     return bricks_ ? std::make_shared<const Samples>(edits->with(*bricks_)) : edits;
 }

@@ -32,7 +32,7 @@ std::string utc_now() {
     return text.data();
 }
 
-/// What simulated hands see: of a store, of which little may be in memory, the
+/// The field that simulated hands see. For a store, of which little may be in memory, this is the
 /// overview.
 Field seen(const Field& field) {
     if (!field.samples().resident()) return field;
@@ -74,7 +74,7 @@ class Gone final : public Device {
     const std::string problem_;
 };
 
-/// Of data and recording, with Pace::by_steps [s].
+/// Interval between steps of data and recording, with Pace::by_steps [s].
 constexpr double between_steps = 0.004;
 /// How long stop() waits for a device that hangs.
 constexpr std::chrono::milliseconds longest_stop{500};

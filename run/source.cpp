@@ -248,7 +248,7 @@ io::Progress part(const io::Progress& progress, double from, double to) {
     return [&progress, from, to](double done) { progress(from + (to - from) * done); };
 }
 
-/// What is done to every frame before anything else sees it.
+/// Filters every frame before anything else sees it.
 class Preparation {
   public:
     explicit Preparation(const Source& source)

@@ -69,7 +69,7 @@ void add_names(Names& names, const StoreSource& store) {
     names["volume"] = kept;
 }
 
-/// What only files have.
+/// Options that only files have.
 FileSource with_layout(FileSource file, const Names& names) {
     const std::string dims = value_of(names, "dims"), type = value_of(names, "type");
     const std::string spacing = value_of(names, "spacing");

@@ -66,7 +66,7 @@ void Streamer::use(const command::Samples& edits) {
     send();
 }
 
-/// What a recording that begins now needs: the edits and all that is in memory. The last one has
+/// Commands for a recording that begins now: the edits, and all that is in memory. The last one has
 /// the number of the newest version.
 std::vector<Command> Streamer::history(std::vector<Command> edits) const {
     std::vector<Command> all = std::move(edits);

@@ -24,7 +24,7 @@ constexpr auto rest = 500ms;
 constexpr double longest_step = 0.1;
 /// How often a full queue of commands is tried again, a millisecond apart.
 constexpr int attempts = 200;
-/// Of the memory of a volume that is read as it is felt: for edits, and for what undo needs.
+/// Parts of a store's memory limit: for edits, and for undo.
 constexpr std::uint64_t edits_part = 4, history_part = 8;
 
 /// Samples that an edit needs have to be fetched first.

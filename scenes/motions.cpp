@@ -16,7 +16,7 @@
 namespace palpate::scenes {
 namespace {
 
-/// What every motion starts from.
+/// The start of every motion.
 struct Hand {
     const Field& field;
     double isovalue;
@@ -169,8 +169,8 @@ std::vector<double> without_gaps(const std::vector<std::optional<double>>& found
     return filled;
 }
 
-/// Round the grid's z axis through its centre (for the cylinder: round its axis). Empty if fewer
-/// than half of the reaches towards the centre meet data.
+/// Around the grid's z axis through its centre (for the cylinder: around its axis). Empty if fewer
+/// than half of the rays towards the centre meet data.
 std::vector<Vec3> ring_round_centre(const Hand& hand) {
     const Mat3& axes = hand.field.geometry().direction;
     const auto outward = directions_round(axes.col(0), axes.col(1), 64);
@@ -192,7 +192,7 @@ std::vector<Vec3> ring_round_centre(const Hand& hand) {
     return points;
 }
 
-/// A circle on the face of the surface round the first contact.
+/// A circle on the face of the surface around the first contact.
 std::vector<Vec3> ring_round_contact(Hand& hand) {
     const Vec3 u = unit_vector_across(hand.contact.inward, hand.random);
     const Vec3 v = hand.contact.inward.cross(u);
@@ -319,7 +319,7 @@ Plan explore(Hand& hand) {
     return {Track({track.points().front()}), track, Then::there_and_back, hand.settings.speed_mm_s};
 }
 
-/// Where the hand would be at a time, turning as sharply as the tracks do.
+/// The place of the hand at a time. It turns as sharply as the tracks do.
 class Course {
   public:
     Course(const Plan& plan, double speed_mm_s)
@@ -341,7 +341,7 @@ class Course {
     Journey in_, on_;
 };
 
-/// One of `count` samples is done.
+/// Reports that one of `count` samples is done.
 void tell(const OnProgress& progress, std::size_t done, std::size_t count) {
     constexpr std::size_t between = 4096;
     if (progress && done % between == 0) {

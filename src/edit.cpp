@@ -106,7 +106,7 @@ class Rewriting {
         return {box_.low.cwiseMax(low), box_.high.cwiseMin(low + Index3::Constant(Bricks::edge))};
     }
 
-    /// Of a large grid: fetches what a brick needs; false if the edit does not reach it.
+    /// For a large grid: fetches samples for a brick. False if the edit does not reach it.
     bool prepare(const Index3& brick, int around, auto&& reaches) {
         const bool reached = any_index(part_of(brick), reaches);
         const bool held = before_.samples().bricks() && before_.samples().bricks()->at(brick);

@@ -148,7 +148,7 @@ Field::Run Field::stored_run(const Index3& low) const {
             slice_, true};
 }
 
-/// Of a sample, from the labels that cover it.
+/// Label of a sample, from the labels that cover it.
 std::uint8_t Field::label_at(const Index3& at) const noexcept {
     if (!has_sample(at)) return 0;
     const Field& labels = *cover_.labels;
@@ -162,7 +162,7 @@ std::uint8_t Field::label_at(const Index3& at) const noexcept {
         labels.data_)[there[0] + there[1] * labels.row_ + there[2] * labels.slice_];
 }
 
-/// Of a block of samples.
+/// Labels of a block of samples.
 template <int count>
 std::array<std::uint8_t, std::size_t{count} * count * count> Field::labels_of(
     const Index3& low) const noexcept {
@@ -280,7 +280,7 @@ std::array<double, std::size_t{count} * count * count> Field::gathered(const Ind
     }
     return samples;
 }
-// What the header and layers use.
+// Used by the header and by layers.
 template Field::Run Field::run_of<3>(const Index3&) const;
 template std::array<double, 27> Field::gathered<3>(const Index3&) const;
 template std::array<std::uint8_t, 27> Field::labels_of<3>(const Index3&) const noexcept;

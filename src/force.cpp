@@ -73,7 +73,7 @@ double most_of(double limit, double maximum) {
     return least > 0 && maximum > 0 ? least : 0;
 }
 
-/// What a force or a torque may be.
+/// Limits of a force or a torque.
 struct Bounds {
     double most;
     double rate;  // a second
@@ -283,7 +283,7 @@ ForceResult render_force(ForceState& state, const ForceSettings& settings,
     if (!std::isfinite(force.squaredNorm()) || !std::isfinite(torque.squaredNorm())) {
         return stop(state, force_not_finite);
     }
-    // What counts is the force without a limit.
+    // The force without a limit decides.
     const bool strong = part > 0 && !(force.norm() <= part * settings.start_below);
     if (waits(state, input, strong)) {
         force.setZero();

@@ -7,8 +7,8 @@
 namespace palpate {
 namespace {
 
-/// Samples round a point on which the field there depends, and those across the wall that it is on
-/// [voxel].
+/// Samples around a point on which the field there depends, with those across the wall that it is
+/// on [voxel].
 constexpr double around = 3;
 /// A pull is halved this often, a long one until it is no longer than this [voxel].
 constexpr int fewest_halvings = 6;
@@ -25,7 +25,7 @@ bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept
     for (int a = 0; a < 3; ++a) {
         const double reach = radius * field.voxels_per_mm()[a] + around, last = size[a] - 1;
         if (!(at[a] - reach <= last && at[a] + reach >= 0)) return true;  // background
-        // Not below 0, so that cutting the digits off is rounding down.
+        // Not below 0, so that truncation rounds down.
         low[a] = static_cast<int>(std::max(at[a] - reach, 0.0));
         high[a] = std::min(static_cast<int>(std::min(at[a] + reach, last)) + 1, size[a] - 1);
     }

@@ -44,7 +44,7 @@ bool counts(UpdateStatus status) {
            status == UpdateStatus::waiting;
 }
 
-/// What moved the proxy in a tick, and what the force is made of.
+/// The result of moving the proxy in a tick, from which the force follows.
 struct Moved {
     ProxyUpdate proxy;
     std::optional<LayersUpdate> layers;
@@ -56,7 +56,7 @@ double turning_of(const RendererSettings& settings) {
     return rotational_stiffness(settings.force, settings.device, gyration);
 }
 
-/// What the force is made of, with a point, with layers or with a tool.
+/// Input of the force, with a point, with layers or with a tool.
 ForceInput force_input(const Renderer& renderer, const DeviceState& device, const Tick& tick,
                        const std::optional<LayersUpdate>& layers) {
     const ProxyUpdate& at = tick.proxy;
@@ -253,7 +253,7 @@ void feel_with_tool(Renderer& renderer, const DeviceState& device, Tick& tick,
     tick.tool = {update.hand.orientation, update.proxy.orientation, update.contacts};
 }
 
-/// The same of a point, with layers or without.
+/// The same for a point, with layers or without.
 std::optional<LayersUpdate> feel_with_point(Renderer& renderer, const DeviceState& device,
                                             Tick& tick, StepObserver observer) {
     const RendererSettings& settings = renderer.settings;

@@ -70,7 +70,7 @@ Snapshot snapshot_of(const Session& session, const SessionTick& tick, std::int64
     return snapshot;
 }
 
-/// Of one tick: when it began, and how long its parts took [ns].
+/// Times of one tick: its start, and how long its parts took [ns].
 struct Servo::Stamps {
     std::int64_t start;
     std::int64_t compute;  // CPU time of all of it
@@ -90,7 +90,7 @@ struct Servo::Stamps {
     }
 };
 
-/// What times the parts of a tick [ns]; without a clock all of them happen at `start`.
+/// The clock for the parts of a tick [ns]. Without a clock, all of them happen at `start`.
 struct Servo::TickClock {
     std::int64_t start;
     Clock now = nullptr, cpu_now = nullptr;
@@ -110,7 +110,7 @@ Servo::Servo(Session session, Device& device, const ServoSettings& settings)
       recorder_(settings.recorder),
       held_{session_.renderer.field.shared_samples(), session_.renderer.settings.layers,
             session_.renderer.settings.tool} {
-    // What no device can render is refused, not lowered.
+    // Refuses settings that no device can render, instead of lowering them.
     check(session_.renderer);
     keep_device_limits(device.info().limits);
     start_ = session_.renderer.settings;
@@ -154,8 +154,8 @@ void Servo::start() {
     while (!ready_.load(std::memory_order_acquire)) std::this_thread::sleep_for(poll);
 }
 
-/// Polls, too: the servo thread then need not wake those who wait, and nobody joins it but the
-/// destructor.
+/// Polls, too, so that the servo thread need not wake waiting threads. Only the destructor joins
+/// it, and no other function.
 void Servo::stop() noexcept {
     stops_.fetch_add(1, std::memory_order_relaxed);
     stopping_.store(true, std::memory_order_release);
@@ -310,7 +310,7 @@ bool Servo::step(const TickClock& clock) noexcept {
     return !over;
 }
 
-/// Of the thread that steps.
+/// Called by the thread that steps.
 void Servo::begin(std::int64_t first_tick) noexcept {
     thread_id_.store(std::this_thread::get_id());
     device_->watch_this_thread();
@@ -429,8 +429,8 @@ void Servo::record(const SessionEvent& event) noexcept {
     in_recorder_.store(false);
 }
 
-/// Of the tick before. Uses nothing outside the servo: nobody waits for a thread that hangs, so it
-/// may be gone.
+/// Shows the tick before. Uses nothing outside the servo, which may be gone, because no thread
+/// waits for one that hangs.
 void Servo::show_failure() noexcept {
     Snapshot last = snapshot_.get().value_or(Snapshot{});
     last.session.device.status = DeviceStatus::fault;

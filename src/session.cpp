@@ -242,7 +242,7 @@ bool keep_within(Session& session, const DeviceLimits& limits) noexcept {
 SessionTick advance(Session& session, double time, const DeviceReading& reading,
                     Clock clock) noexcept {
     const SessionSettings& settings = session.settings;
-    // Of nothing else is it known that it was measured lately.
+    // Only such an age shows that the reading was measured lately.
     const bool fresh = std::isfinite(reading.age) && reading.age >= 0 &&
                        reading.age <= session.renderer.settings.force.stale_after;
     DeviceState state;

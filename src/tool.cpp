@@ -99,7 +99,7 @@ ToolShape turned_shape(const std::vector<Eigen::Vector2d>& profile) {
 }
 
 constexpr double right_angle = std::numbers::pi / 2;
-/// Of arcs that are looked at, in radii.
+/// Step of arcs for pictures, in radii.
 constexpr double fine = 0.1;
 
 /// An arc round (0, z) from the -z axis to an angle, and on to the end of a shaft, turned round z.
@@ -119,7 +119,7 @@ Tool turned_tool(double radius, double z, double angle, const Eigen::Vector2d& e
     return Tool(std::move(points), std::nullopt, true, std::move(shape));
 }
 
-/// Of a tool's points [mm]: beyond the one no volume lies, below the other turning moves nothing.
+/// Limits of a tool's points [mm]: no volume is larger, and below the other, turning moves nothing.
 constexpr double longest_arm = 1e6, shortest_arm = 1e-6;
 
 void check_shape(const ToolShape& shape) {

@@ -144,7 +144,7 @@ void RenderOptions::add_force_to(CLI::App& command) {
         if (one.option[0] == '\0') return;
         auto& value = force.*one.member;
         if constexpr (std::same_as<double&, decltype(value)>) {
-            // What depends on the device is set where it is given only.
+            // Values that depend on the device are set only if the user gave them.
             std::optional<double>* const left_open = &value == &force.stiffness ? &given.stiffness
                                                      : &value == &force.limit   ? &given.limit
                                                                                 : nullptr;

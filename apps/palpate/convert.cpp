@@ -57,7 +57,7 @@ std::optional<run::StoreSource> store_of(const run::Source& source) {
     return store;
 }
 
-/// Nothing for a file that may be read whole all the same, as TIFF with tiles of some kinds.
+/// Null for files that are read as a whole, such as TIFF with some kinds of tiles.
 std::shared_ptr<const stream::Store> opened_store(const ConvertWords& words,
                                                   const run::Source& source,
                                                   const run::StoreSource& from) {
@@ -71,7 +71,7 @@ std::shared_ptr<const stream::Store> opened_store(const ConvertWords& words,
     }
 }
 
-/// What is read by the box stays where it is; all else is loaded.
+/// Leaves a source where it is if it can be read box by box, and loads any other one.
 Taken opened(const ConvertWords& words) {
     const run::Source source = words.source.source();
     auto from = store_of(source);
@@ -90,7 +90,7 @@ Taken opened(const ConvertWords& words) {
     return {stream::store_of(loaded.volume, loaded.name), 0, loaded.time_steps};
 }
 
-/// What the source has and the output has not, unless the user chose it.
+/// Notes what the output lacks of the source, unless the user chose it.
 void note_losses(const CLI::App& command, const ConvertWords& words, const Taken& taken) {
     if (words.source.quiet) return;
     const auto note = [&](const std::string& text) {

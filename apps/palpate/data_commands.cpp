@@ -89,7 +89,7 @@ DataRequest save(const CommandWords& words, const Volume& volume) {
     const std::string path = words.expect(2)[1];
     run::check_volume_name(path, volume.geometry());
     return [path](run::Data& data, const Field&, double, const io::Progress&) {
-        // What has begun is completed after the end of the session, unless Ctrl-C is pressed again.
+        // A save that has begun is completed after the session, unless Ctrl-C is pressed again.
         return data.save(path, [before = interruptions()](double) {
             if (interruptions() > before + 1) throw io::OutputError("saving was interrupted");
         });

@@ -59,7 +59,7 @@ void feel(Demo& demo, const DemoOptions& options, const fs::path& folder) {
     if (path) path->commit();
 }
 
-/// Nothing in it is markup any more.
+/// Escapes all markup.
 std::string html_text(std::string_view text) {
     std::string html;
     for (const char c : text) {

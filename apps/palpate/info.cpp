@@ -23,7 +23,7 @@ constexpr int fine_bins = 256;  // for the suggestions and JSON
 constexpr int text_bins = 16;
 constexpr int bar_width = 40;
 
-/// Where each index axis runs to in the body: "L P S" for an axis-aligned LPS grid.
+/// Side of the body to which each index axis runs: "L P S" for an axis-aligned LPS grid.
 std::string orientation(const Geometry& geometry) {
     const std::string letters = io::orientation_of(geometry);
     return fmt::format("{}", fmt::join(letters, " "));
@@ -78,12 +78,12 @@ nlohmann::ordered_json json_of(const io::ValueInfo& values) {
     return json;
 }
 
-/// Of all samples of the grid.
+/// Memory of all samples of the grid.
 std::size_t bytes_of(const Samples& samples) {
     return static_cast<std::size_t>(sample_count(samples.geometry())) * size_of(samples.type());
 }
 
-/// Of a store: size and spacing of each level, the finest first; of other volumes nothing.
+/// Size and spacing of each level of a store, the finest first. Empty for other volumes.
 nlohmann::ordered_json levels_json(const run::LoadedVolume& loaded) {
     auto levels = nlohmann::ordered_json::array();
     if (!loaded.streamed) return levels;

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
         ++argv, --argc;
     }
     become_python(argc, argv);
-    // What follows the command's name, for a command that becomes another program.
+    // The words after the command's name, for a command that becomes another program.
     const Words words{std::max(argc - 2, 0), argv + std::min(argc, 2)};
     return run_program(argc, argv, [&words](CLI::App& app) {
         add_info(app);

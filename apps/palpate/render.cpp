@@ -81,8 +81,8 @@ std::vector<double> levels_of(const RenderPictureOptions& options, const run::Lo
     return levels;
 }
 
-/// What is asked for, completed: a hand alone meets the surface where its proxy does, and hand and
-/// proxy have a spring between them.
+/// Completes the contact: for a hand alone, computes its proxy. Between hand and proxy there is a
+/// spring.
 pictures::Contact contact_of(const RenderPictureOptions& options, const Field& field,
                              double isovalue) {
     pictures::Contact contact{point_from("--scp", options.scp), point_from("--hip", options.hip),
@@ -106,8 +106,8 @@ pictures::Contact contact_of(const RenderPictureOptions& options, const Field& f
     return contact;
 }
 
-/// From where one sees what is touched: out of the surface, or at least away from the middle; zero
-/// where nothing is.
+/// The direction from which the contact is visible: out of the surface, or at least away from the
+/// middle. Zero if there is no contact.
 Vec3 side_of(const pictures::Contact& contact, const io::ProxyPath& path, const Vec3& middle) {
     if (contact.scp && contact.hip && *contact.scp != *contact.hip) {
         return *contact.scp - *contact.hip;

@@ -74,7 +74,7 @@ bool RunTerminal::are_all_over() const {
     return true;
 }
 
-/// Of the session [s]. Where a device has failed, time goes on with the others'.
+/// Time of a hand's session [s]. If its device has failed, the time of the other hands counts.
 double RunTerminal::time_of(std::size_t hand) const {
     if (!hands_[hand].has_failed()) return now_[hand]->session.tick.time;
     double time = 0;
@@ -109,7 +109,7 @@ bool RunTerminal::obey_due(std::size_t number) {
     return true;
 }
 
-/// What others asked for; false for another volume.
+/// Carries out requests of other programs. False if one of them is another volume.
 bool RunTerminal::serve(const Snapshot& now) {
     if (!remote_) return true;
     for (const std::string& text : remote_->notes()) note(text);

@@ -54,7 +54,7 @@ void announce(const std::vector<LiveHand>& hands) {
     for (const std::string& sentence : first.privileges()) say("{}\n", sentence);
 }
 
-/// Of one hand its own object; of several a list of them.
+/// One hand has an object of its own. Several hands have a list of objects.
 nlohmann::ordered_json reports_json(const std::vector<LiveHand>& hands, double seconds) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const LiveHand& hand : hands) {
@@ -138,7 +138,7 @@ std::string save_at_end(run::Data& data, const RunOptions& options, std::string 
     return unsaved.empty() ? unsaved : unsaved + rescued(data);
 }
 
-/// The same after a session that failed: without words of success, and only what was edited.
+/// The same after a session that failed: saves edits only, and reports no success.
 void save_after_failure(run::Data& data, const RunOptions& options) {
     if (data.is_sequence() || !data.editor().state().changed) return;
     std::string told = "the session failed";
@@ -233,7 +233,7 @@ std::string feel(std::vector<LiveHand>& hands, const RunOptions& options, Remote
     return terminal.finish();
 }
 
-/// What this command reads stays as it is.
+/// Refuses to overwrite files that this command reads.
 void check_saving(run::Data& data, const TouchOptions& options) {
     data.keep(options.commands);
     for (const std::string& input : options.render.inputs()) data.keep(input);

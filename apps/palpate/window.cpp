@@ -50,7 +50,7 @@ void become_viewer(const Words& words) {
     std::vector<char*> arguments{const_cast<char*>(program.c_str())};
     arguments.insert(arguments.end(), words.words, words.words + words.count);
     arguments.push_back(nullptr);
-    // What this program ignores or catches, the viewer decides for itself.
+    // The viewer decides itself which signals to ignore or catch.
     for (const int s : {SIGPIPE, SIGXFSZ}) std::signal(s, SIG_DFL);
     ::execv(program.c_str(), arguments.data());
     throw std::runtime_error(program.string() + " could not be started: " + std::strerror(errno));

@@ -29,7 +29,7 @@ using viewer::test::quantile;
 using viewer::test::run_until;
 using viewer::test::seconds;
 
-/// Of all threads of this program [s]: on a busy machine it tells more than the clock.
+/// Time of all threads of this program [s]. On a busy machine it tells more than the clock.
 double processor_seconds() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

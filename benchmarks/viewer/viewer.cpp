@@ -101,7 +101,7 @@ ServoReport drawing(const Options& options, double& frame) {
     look.surface = !options.volume_rendering;
     set(window.views(), &Shown::look, look);
     run_until([&] { return window.settled(); });
-    // The same stretch of the session is compared: from its beginning.
+    // Compares the same stretch of the session, from its beginning.
     window.files().open_volume(run::source_named(options.volume));
     run_until([&] { return window.live() && window.settled(); });
     set(window.views(), &Shown::look, look);

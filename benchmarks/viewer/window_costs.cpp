@@ -41,7 +41,7 @@ double processor_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Of this process [MB].
+/// Memory of this process [MB].
 double resident() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {

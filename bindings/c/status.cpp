@@ -24,7 +24,7 @@ palpate_status keep(palpate_status status, const char* text) noexcept {
     return status;
 }
 
-/// Of palpate_set_progress().
+/// Progress function of palpate_set_progress().
 thread_local OnProgress thread_progress;
 
 struct InCallback {

@@ -12,8 +12,8 @@ namespace py = pybind11;
 
 namespace {
 
-/// Where the helper programs are: inside the package, as pip installs it, or in the prefix that it
-/// is installed in.
+/// Folder of the helper programs: inside the package if pip installed it, or in the prefix of the
+/// installation.
 std::string folder_of_helpers() {
     Dl_info info;
     if (!dladdr(reinterpret_cast<const void*>(&folder_of_helpers), &info) || !info.dli_fname) {

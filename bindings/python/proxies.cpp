@@ -22,7 +22,7 @@ namespace palpate::python {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-/// Of follow_each(), whatever it is asked for.
+/// Largest number of threads of follow_each(), whatever the caller asks for.
 constexpr std::size_t most_threads = 256;
 using Firsts = Numbers<std::int64_t>;
 
@@ -44,7 +44,7 @@ struct ProxyTrace {
     std::optional<py::dict> steps = {};
 };
 
-/// Where the rows of a ProxyTrace are written; usable without the GIL.
+/// Destination of the rows of a ProxyTrace. Can be used without the GIL.
 struct Rows {
     explicit Rows(ProxyTrace& trace)
         : scp(trace.scp.mutable_data()),
@@ -96,7 +96,7 @@ py::dict dict_of(const std::vector<NumberedStep>& steps) {
                     py::arg("sign") = three([](const Tetrahedron& t) { return t.sign; }));
 }
 
-/// What a proxy moves in, and how.
+/// The field in which a proxy moves, and its method.
 struct Way {
     Field field;
     double isovalue;
@@ -229,7 +229,7 @@ ProxyTrace follow_each(const Field& field, const io::Level& level, const Doubles
     return trace;
 }
 
-/// What a call times.
+/// How a call measures times.
 struct Timed {
     std::size_t batch = 1;  ///< updates between two readings of the clock; 0: only the clock
     std::size_t cold = 0;   ///< only every so many updates, after the caches were emptied; 0: all
@@ -279,7 +279,7 @@ py::array_t<double> update_times(const Field& field, const io::Level& level, con
     }));
 }
 
-/// What the process has from the heap [bytes].
+/// Heap memory of the process [bytes].
 double heap_in_use() {
     const auto info = mallinfo2();
     return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);

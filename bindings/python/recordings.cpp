@@ -55,7 +55,7 @@ void compare(const run::Replay::Tick& tick, const std::string& recording) {
                          ", now " + differs->again);
 }
 
-/// What was rendered again of all hands.
+/// Counts of the rendered ticks of all hands.
 struct Counted {
     std::int64_t ticks = 0, commands = 0;
 };

@@ -25,7 +25,7 @@ SharedRenderer live_renderer(const Field& field, const io::Level& level, const R
     return SharedRenderer(make_renderer(field, isovalue, settings));
 }
 
-/// What can be rendered, or std::invalid_argument and nothing has changed.
+/// Makes the change, or throws std::invalid_argument and changes nothing.
 template <class Change>
 void change(SharedRenderer& renderer, const Change& how) {
     renderer.changeable();

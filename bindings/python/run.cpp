@@ -121,7 +121,7 @@ bool can_be_felt(PyObject* what) {
 
 }  // namespace
 
-/// What a Run is of. A Store is not converted by itself: what its reading raises would be lost.
+/// The data of a Run. A Store is not converted implicitly, because errors in reading would be lost.
 struct Feelable : py::object {
     PYBIND11_OBJECT(Feelable, py::object, can_be_felt)
 };
@@ -138,7 +138,7 @@ struct pybind11::detail::handle_type_name<palpate::python::Feelable> {
 namespace palpate::python {
 namespace {
 
-/// Of a Run its data, which are then shared.
+/// For a Run, returns its data, which is then shared.
 std::shared_ptr<run::Data> data_from(const Feelable& what, const run::PlaybackSetup& playback) {
     if (py::isinstance<LiveRun>(what)) {
         const auto& other = what.cast<const LiveRun&>();

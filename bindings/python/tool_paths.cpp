@@ -15,7 +15,7 @@ struct NumberedPose {
     std::int64_t tick;
     Pose pose;
 };
-/// What an update made, and every pose on its way.
+/// The result of an update, and every pose on its way.
 struct ToolPath {
     std::vector<ToolUpdate> updates;
     std::vector<NumberedPose> poses;

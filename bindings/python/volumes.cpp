@@ -6,7 +6,7 @@
 namespace palpate::python {
 namespace {
 
-/// What is not given is assumed, and the geometry says so.
+/// Missing arguments are assumed, and the geometry records this.
 Geometry geometry_of(const std::optional<Vec3>& spacing, const Vec3& origin,
                      const std::optional<Mat3>& direction) {
     Geometry geometry;

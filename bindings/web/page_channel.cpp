@@ -64,7 +64,7 @@ Address look_up(const std::string& host, std::uint16_t port) {
 
 namespace palpate::io {
 
-/// Of the simulated hand's option `file`.
+/// Reads the file of the simulated hand's option `file`.
 Trajectory read_trajectory(const std::filesystem::path& path) {
     throw InputError(path.string() + ": a page has no files; choose one of the hand's motions");
 }

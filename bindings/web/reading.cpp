@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 29;  // of samples
 
-/// Where what is unpacked from a place lies.
+/// Name of the data that is unpacked from this place.
 std::string unpacked_name(const std::filesystem::path& file, std::uint64_t offset) {
     return file.string() + ".unpacked-" + std::to_string(offset);
 }

@@ -168,7 +168,7 @@ ToDevice FalconDevice::next_message(std::int64_t now) {
     return message;
 }
 
-/// None: one of a few answers that are missing.
+/// Returns nothing if only a few answers are missing.
 std::optional<Trouble> FalconDevice::converse(DeviceReading& reading) {
     const auto answer = port_->exchange(next_message(timing_.now()), waits);
     if (answer) {

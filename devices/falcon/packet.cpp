@@ -9,7 +9,7 @@ namespace {
 
 constexpr unsigned char zero = 0x41;
 constexpr std::size_t bits_at = 13;
-// Of the bits to and from the device.
+// Bits in packets to and from the device.
 constexpr unsigned homing_bit = 1;
 constexpr unsigned homed_shift = 4;
 
@@ -29,7 +29,7 @@ Packet packet_of(const std::array<int, 3>& numbers, unsigned bits) {
     return packet;
 }
 
-/// None for bytes that no device sends.
+/// Returns nothing for bytes that no device sends.
 std::optional<FromDevice> answer_of(const Packet& packet) {
     FromDevice answer;
     std::size_t at = 1;

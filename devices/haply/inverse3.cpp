@@ -298,8 +298,8 @@ void Inverse3::take(const Received& received, Clock::time_point asked, Clock::ti
             break;
         case News::none:
             if (!state.error.empty()) {
-                // Nothing but this comes from a service that refuses commands with the wrong key.
-                // The first answer may complain of the preset.
+                // A service that refuses commands with the wrong key sends nothing else. The first
+                // answer may complain about the preset.
                 const bool is_refused = !mapping_ && asked != pinned_at_;
                 if (is_refused && !settings_.force_key && keys_tried_ == 1) {
                     try_other_key(now);
@@ -324,7 +324,7 @@ void Inverse3::take(const Received& received, Clock::time_point asked, Clock::ti
     }
 }
 
-/// What the service does not tell is taken for pinned.
+/// Settings that the service does not report count as unchanged.
 bool Inverse3::is_as_pinned() const {
     const Mapping& told = talk_.state.mapping;
     const auto is = [](const std::string& part, std::string_view wanted) {

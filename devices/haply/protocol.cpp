@@ -96,7 +96,7 @@ std::optional<Vec3> position_from(const Json& given, const std::optional<Vec3>& 
     return position.norm() <= farthest_position ? std::optional(position) : std::nullopt;
 }
 
-/// Nothing for a quaternion that turns nothing: a sleeping grip gives zeros.
+/// Returns nothing for a quaternion of zeros, which a sleeping grip sends.
 std::optional<Mat3> rotation_from(const Json* given) {
     const auto w = number(member(given, "w")), x = number(member(given, "x"));
     const auto y = number(member(given, "y")), z = number(member(given, "z"));
@@ -150,7 +150,7 @@ void take_grip(Grip& grip, const Json& message) {
     }
 }
 
-/// What the service complains of; its form is not documented.
+/// The complaint of the service. Its form is not documented.
 std::string complaint_in(const Json* object) {
     for (const char* key : {"error", "errors", "error_message"}) {
         const Json* error = member(object, key);
@@ -185,7 +185,7 @@ const Json* choose(ServiceState& state, const std::string& key, const Json& list
     return nullptr;
 }
 
-/// What a transform leaves out is as in the identity.
+/// Missing members of a transform are those of the identity.
 void take_transform(Mapping::Transform& known, const Json* given) {
     if (!given || !given->is_object()) return;
     known = Mapping::identity;

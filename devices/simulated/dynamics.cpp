@@ -17,7 +17,7 @@ Vec3 in_steps(const Vec3& v, double step, Rounding rounding) {
     return Vec3(rounding(v[0] / step), rounding(v[1] / step), rounding(v[2] / step)) * step;
 }
 
-/// What a motor gives for a commanded force or torque.
+/// The force or torque that a motor gives for a command.
 Vec3 limited_in_steps(Vec3 wanted, double maximum, double step) {
     if (!wanted.allFinite()) return Vec3::Zero();  // stableNorm() of (0, NaN, 0) is 0
     const double strength = wanted.stableNorm();

@@ -14,7 +14,7 @@
 namespace palpate::devices {
 namespace {
 
-/// Of a model, what data sheets rarely say: the mechanics and the electronics.
+/// Mechanics and electronics of a model, which data sheets rarely contain.
 struct Row {
     const char* name;
     const char* model;
@@ -22,7 +22,7 @@ struct Row {
     double encoder_step, force_step;  // mm, N
 };
 
-/// Of those that measure the orientation.
+/// Rows of the models that measure the orientation.
 struct TurningRow {
     const char* name;
     double inertia, damping, friction;  // kg mm^2, N mm s/rad, N mm
@@ -106,7 +106,7 @@ const std::vector<DeviceProfile>& profiles() {
 
 const std::vector<std::pair<std::string, HandGrip>>& grips() {
     static const std::vector<std::pair<std::string, HandGrip>> all{
-        // Of rotation: the same mass, damper and spring at a lever of 20 mm.
+        // For rotation, the same mass, damper and spring act at a lever of 20 mm.
         {"light",
          {.mass = 0.05,
           .damping = 2e-3,

@@ -25,7 +25,7 @@ constexpr double longest_simulated = 0.05;
 
 const char* const usual_profile = "omni";
 
-/// What the hand does. Lengths in device mm.
+/// Options of the hand. Lengths are in device mm.
 struct HandOptions {
     std::string motion = "explore";
     std::string file;
@@ -239,7 +239,7 @@ class Simulated final : public Device {
         return reading;
     }
 
-    /// What the thread of a device does that has a servo of its own.
+    /// The work of the thread of a device with a servo of its own.
     void tick_if_due() noexcept {
         if (!device_.jitter || now_ < next_tick_) return;
         const std::int64_t now = nanoseconds(now_);

@@ -263,7 +263,7 @@ std::vector<DicomSlice> enhanced_frames(const DicomSlice& file, const DicomGroup
     return slices;
 }
 
-/// What FrameIncrementPointer counts the frames by.
+/// The quantity by which FrameIncrementPointer counts the frames.
 enum class Counted { by_nothing, by_time, by_slice, by_offset, by_location, otherwise };
 
 constexpr DicomTag grid_offsets{0x3004, 0x000c}, locations{0x0018, 0x2005}, pages{0x0018, 0x2001};
@@ -287,7 +287,7 @@ Counted counted(const DicomGroup& data) {
     return Counted::otherwise;
 }
 
-/// Where each frame lies among the slices, from 0, as SliceVector says it.
+/// The place of each frame among the slices, from 0, according to SliceVector.
 std::vector<int> order_of(const DicomSlice& file, const DicomGroup& data) {
     const auto told = data.counts({0x0054, 0x0080});
     std::vector<int> order;

@@ -60,8 +60,8 @@ Segments segments_in(const DicomGroup& data) {
     return names;
 }
 
-/// What tells images of one place in one series apart: magnitude or phase (the third value of
-/// ImageType), the echo and the weighting by diffusion; and the further values of ImageType.
+/// Properties that distinguish images of one place in one series: magnitude or phase (the third
+/// value of ImageType), the echo, the weighting by diffusion, and further values of ImageType.
 void set_kind(DicomSlice& s, const DicomGroup& data) {
     std::istringstream values(data.text({0x0008, 0x0008}));
     std::string value;
@@ -74,7 +74,7 @@ void set_kind(DicomSlice& s, const DicomGroup& data) {
     add_kind(s, "b-value ", data.real({0x0018, 0x9087}), " s/mm2");
 }
 
-/// What orders the images of one place in one series.
+/// Properties that order the images of one place in one series.
 void set_moment(DicomSlice& s, const DicomGroup& data) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     const auto number_of = [&](DicomTag tag) {
@@ -98,7 +98,7 @@ void set_moment(DicomSlice& s, const DicomGroup& data) {
     s.keys[frame_number] = number;
 }
 
-/// What the frames of one place differ in, other than their moment.
+/// Properties, other than their moment, that distinguish the frames of one place.
 void set_kind(DicomSlice& s, const FunctionalGroups& groups, const Segments& segments) {
     s.kind.clear();
     // Frame types of MR, CT, PET, X-ray 3D, parametric maps and ultrasound.
@@ -123,7 +123,7 @@ void set_kind(DicomSlice& s, const FunctionalGroups& groups, const Segments& seg
     });
 }
 
-/// What orders the frames of one place.
+/// Properties that order the frames of one place.
 void set_moment(DicomSlice& s, const FunctionalGroups& groups) {
     groups.with({0x0020, 0x9111}, [&](const DicomGroup& g) {
         s.stack = g.text({0x0020, 0x9056});

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a decoder prints while this lives: some go on after damage and only warn.
+/// Messages that a decoder prints while this lives. Some go on after damage and only warn.
 class DecoderWords {
   public:
     DecoderWords() : memory_(memfd_create("palpate-words", MFD_CLOEXEC)) {

@@ -118,7 +118,7 @@ class DecoderWarnings {
     std::string first_;
 };
 
-/// What is to be said of the files of a series, each thing once.
+/// Notes on the files of a series, each thing once.
 void note_files(const std::vector<DicomSlice>& slices, std::vector<std::string>& notes) {
     std::set<std::string> said;
     for (const DicomSlice& slice : slices) {

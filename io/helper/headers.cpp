@@ -47,8 +47,8 @@ std::optional<FilePattern> pattern_in(const std::string& name) {
     return pattern;
 }
 
-/// Where the file of that name is: where the header says, or beside it, which is where files are
-/// put that come from another folder or system ("C:\\scan\\a.raw").
+/// Finds a data file at the place that the header names, or beside the header. Files that come from
+/// another folder or system ("C:\\scan\\a.raw") are usually put there.
 std::filesystem::path data_file(const std::string& name, const std::filesystem::path& header,
                                 std::vector<std::string>& notes) {
     const std::filesystem::path told = header.parent_path() / name;

@@ -9,7 +9,7 @@
 namespace palpate::io {
 namespace {
 
-/// What the readers share with their caller; elsewhere a process lies between the two.
+/// Data that the readers share with their caller. Elsewhere, a process separates the two.
 struct Reading {
     std::shared_ptr<std::byte> samples;
     Progress progress;

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What a writer leaves in its folder, for the signal handler, which may not allocate.
+// Names of unfinished files, for the signal handler, which may not allocate.
 char unfinished[4][4096];
 char unfinished_folder[4096];
 

@@ -15,7 +15,7 @@
 namespace palpate::io {
 namespace {
 
-/// Where a field lies in NIfTI-1 and in NIfTI-2, whose numbers are wider.
+/// Place of a field in NIfTI-1 and in NIfTI-2, whose numbers are wider.
 struct NiftiField {
     std::size_t first, second;
 };
@@ -45,7 +45,7 @@ struct Header {
     double real(NiftiField field, std::size_t index = 0) const {
         return number<float, double>(field, index);
     }
-    /// Of a transform.
+    /// Code of a transform.
     int code(NiftiField field) const {
         return is_analyze ? 0 : number<std::int16_t, std::int32_t>(field);
     }
@@ -212,7 +212,7 @@ Transform sform_of(const Header& header, double unit) {
         const bool measures = size_of_axis(header, static_cast<std::size_t>(axis)) > 1;
         if (measures || length != 0) check_spacing(length, "header field 'srow'");
     }
-    // Where only an axis of one sample has no direction, the other two tell it.
+    // If only an axis of one sample has no direction, the other two determine it.
     for (int axis = 0; axis < 3; ++axis) {
         if (!lps.col(axis).isZero(0)) continue;
         const Vec3 across = lps.col((axis + 1) % 3).cross(Vec3(lps.col((axis + 2) % 3)));
@@ -227,7 +227,7 @@ bool is_sheared(const Transform& lps) {
     return !((axes.transpose() * axes - Mat3::Identity()).cwiseAbs().array() < 1e-4).all();
 }
 
-/// Where the corners of the grid lie farthest apart [mm].
+/// Greatest distance between the two places of a corner of the grid [mm].
 double distance_between(const Transform& a, const Transform& b, const Header& header) {
     double most = 0;
     for (unsigned corner = 0; corner < 8; ++corner) {

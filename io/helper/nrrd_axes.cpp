@@ -365,7 +365,7 @@ void complete_directions(const std::vector<Axis>& spatial, Mat3& direction) {
         direction.col((last + 1) % 3).cross(direction.col((last + 2) % 3)).normalized();
 }
 
-/// Where the first sample lies; 0 where the header does not say.
+/// Place of the first sample. 0 if the header does not give it.
 SpaceVector origin_of(const HeaderFields& fields, const Space& space) {
     const std::string field = "space origin";
     SpaceVector none;

@@ -165,9 +165,9 @@ bool is_swapped(const HeaderFields& fields, Stored stored, const DataPlace& plac
     return (endian == "little") != (std::endian::native == std::endian::little);
 }
 
-/// Of 3D Slicer's segmentations: "Segment0_LabelValue:=1", "Segment0_Name:=liver",
-/// "Segment0_Color:=0.5 0.2 0.1". Those that say no value, or nonsense, are passed over. Segments
-/// that overlap are in several layers, which are the file's frames: "Segment0_Layer:=1".
+/// Labels of 3D Slicer's segmentations: "Segment0_LabelValue:=1", "Segment0_Name:=liver",
+/// "Segment0_Color:=0.5 0.2 0.1". Labels without a value, or with nonsense, are ignored.
+/// Overlapping segments are in several layers, which are the file's frames: "Segment0_Layer:=1".
 std::vector<LabelName> labels_of(const HeaderFields& fields, int frame) {
     constexpr int most = 4096;
     std::vector<LabelName> labels;

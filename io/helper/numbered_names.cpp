@@ -80,7 +80,7 @@ bool comes_before(const NamedFile& a, const NamedFile& b) {
     return !std::ranges::lexicographical_compare(b.name, a.name, is_before) && a.path < b.path;
 }
 
-/// What a number counts.
+/// The quantity that a number counts.
 enum class Counts { slices, channels, times, unknown };
 
 /// By the letters before it.
@@ -111,8 +111,8 @@ struct Field {
     bool is_of_others() const { return counts == Counts::channels || counts == Counts::times; }
 };
 
-/// None if the names are not alike: some have more parts than others, or text where others have
-/// a number.
+/// Empty if the names are not alike: if some have more parts than others, or text in place of a
+/// number.
 std::vector<Field> fields_of(const std::vector<NamedFile>& files) {
     const Name& first = files.front().name;
     std::vector<Field> fields;

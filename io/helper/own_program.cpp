@@ -55,7 +55,7 @@ const char* program_for_folder(const fs::path& folder) {
         folders |= entry.is_directory();
         if (!is_shown_file(entry)) continue;
         if (names_a_volume(entry.path())) volumes.push_back(entry.path().filename().string());
-        // Not every one of ten thousand has to be looked into.
+        // Two are enough, so that not all of ten thousand entries are examined.
         dicoms += dicoms < 2 && looks_like_dicom(entry.path());
         tiffs += dicoms == 0 && tiffs < 2 && is_tiff_name(entry.path());
     }

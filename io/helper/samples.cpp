@@ -73,8 +73,8 @@ void compare(std::uint64_t have, std::uint64_t need, const std::string& what, st
     if (have > need) notes.push_back(numbers + "; the rest was ignored");
 }
 
-/// The same for samples, where as much again or more is no padding: their type is twice as wide as
-/// the header says, or there are other samples. A footer is left alone.
+/// The same for samples. As many additional bytes again, or more, are no padding: the type is twice
+/// as wide as the header says, or there are other samples. A footer is ignored.
 void compare_samples(std::uint64_t have, std::uint64_t need, const std::string& what,
                      const DataPlace& place, std::vector<std::string>& notes) {
     if (place.has_footer && have > need) return;

@@ -18,7 +18,7 @@ namespace {
 
 using Corner = std::array<double, 3>;
 
-/// Where "solid" begins the line of a text, after comments; the size of the text if it does not.
+/// Where "solid" begins a line of the text, after comments. The text's size if nowhere.
 std::size_t begin_of_solid(const std::string& text) {
     std::size_t at = 0;
     while (at < text.size()) {
@@ -68,7 +68,7 @@ std::vector<Corner> corners_in_text(const std::string& text, std::size_t begin) 
     return corners;
 }
 
-/// The same of a binary file. It says how many triangles it has, but some programs count too few.
+/// The same for a binary file. It gives its number of triangles, but some programs count too few.
 std::vector<Corner> corners_in_binary(const std::string& bytes) {
     constexpr std::size_t head = 84, triangle = 50, normal = 12;
     if (bytes.size() < head) throw Failure("is too short for an STL file; copy it again");

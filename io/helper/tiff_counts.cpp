@@ -52,7 +52,7 @@ std::optional<CountedPages> told_by_lsm(TIFF* tiff) {
                         real(112)};
 }
 
-/// What stands behind "KEY = " in a line; empty if there is none.
+/// The text behind "KEY = " in a line. Empty if there is none.
 std::string value_of(const std::string& lines, const std::string& key) {
     const auto at = lines.find(key + " = ");
     if (at == std::string::npos) return "";
@@ -110,8 +110,8 @@ std::optional<CountedPages> told_by_scan_image(TIFF* tiff, const std::string& de
     return told;
 }
 
-/// Of a description with axes such as "TCZYX". It may be that of the first page alone, to which
-/// others were added.
+/// Counts of a description with axes such as "TCZYX". It may describe the first page alone, to
+/// which others were added.
 std::optional<CountedPages> told_by_axes(const nlohmann::json& told, std::size_t planes) {
     const nlohmann::json names = told.is_null() ? told : told.value("axes", nlohmann::json());
     if (!names.is_string() || names.get<std::string>().size() != told["shape"].size()) return {};

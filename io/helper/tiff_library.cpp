@@ -26,7 +26,7 @@ extern "C" void keep_warning(const char*, const char* format, va_list) {
     guessed_lengths = guessed_lengths || std::strstr(format, "StripByteCounts") != nullptr;
 }
 
-/// Where libtiff reads next.
+/// The place at which libtiff reads next.
 struct Reading {
     std::uint64_t at = 0;
 };

@@ -119,7 +119,7 @@ void go_to_slice(TIFF* tiff, const Slice& slice) {
     if (!there) fail_damaged_tiff(slice.file);
 }
 
-/// Of the first file where libtiff guessed.
+/// Notes the first file for which libtiff guessed.
 void note_guess(const fs::path& file, std::vector<std::string>& notes) {
     const std::string what =
         " does not say, or says wrongly, how long the samples of a page are (StripByteCounts): as "
@@ -197,7 +197,7 @@ void note_stick(Result& result) {
                            "(ImageJ: Image > Properties, frames) and it is a sequence");
 }
 
-/// What the first file of a folder says of spacing and values; the files' names say the order.
+/// Spacing and values from the first file of a folder. The names of the files give the order.
 TiffLayout layout_of_folder(const fs::path& first, std::vector<std::string>& notes) {
     const Tiff tiff = open_to_read(first);
     if (!is_ome_xml(description_of(tiff.get()))) {

@@ -23,7 +23,7 @@ int format_of(SampleType type) {
                   "); is the disk full?");
 }
 
-/// Of some 256 KB: few enough to be packed well, small enough to be read piece by piece.
+/// Rows of some 256 KB: large enough to be packed well, small enough to be read piece by piece.
 std::uint32_t rows_per_strip(std::uint32_t height, std::size_t row_bytes) {
     const std::size_t rows = std::max<std::size_t>(1, (256 << 10) / row_bytes);
     return static_cast<std::uint32_t>(std::min<std::size_t>(height, rows));

@@ -47,7 +47,7 @@ std::string image_tag(const std::string& head) {
     return at == std::string::npos ? "" : head.substr(at + 1, head.find('>', at) - at - 1);
 }
 
-/// Of a tag without its brackets. Empty if there is no such attribute.
+/// Attribute of a tag without its brackets. Empty if there is no such attribute.
 std::string attribute(const std::string& tag, const std::string& name) {
     pugi::xml_document element;
     element.load_string(("<" + tag + ">").c_str());  // it has no end, but its attributes

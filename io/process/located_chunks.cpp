@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a file elsewhere, what the helper gets for one question [bytes].
+/// Most bytes of a file elsewhere that the helper gets for one question.
 constexpr std::uint64_t most_given = std::uint64_t{512} << 20;
 
 std::vector<ChunkPlace> places_from(const nlohmann::json& numbers, std::size_t count) {

@@ -230,7 +230,7 @@ struct RecordingReader::Rows {
         return value;
     }
 
-    /// None is touched: -1.
+    /// -1 if no layer is touched.
     std::int8_t layer_number(std::size_t column, int least) const {
         const std::int64_t value = csv.integer(column);
         if (value < least || value > Layers::most_layers) {
@@ -243,7 +243,7 @@ struct RecordingReader::Rows {
                 layer_number((*layers)[2], 0)};
     }
 
-    /// None: NaN.
+    /// Empty for NaN, which means that there is none.
     std::optional<double> number_if_any(std::size_t column) const {
         const double value = csv.number(column);
         return std::isnan(value) ? std::nullopt : std::optional(value);
@@ -301,7 +301,7 @@ RecordingHead read_recording_head(const std::filesystem::path& path) {
         head += std::string_view(line).substr(1);
         head += '\n';
     }
-    // What cannot be read, is no recording or too long is refused as the whole is.
+    // The complete reader reports a file that cannot be read, is no recording, or is too long.
     if (file.bad() || head.empty() || head.size() >= longest_head) {
         return RecordingReader(path).head();
     }

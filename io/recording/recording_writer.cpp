@@ -173,7 +173,7 @@ void RecordingWriter::flush() {
     const std::string_view done(buffer.data(), buffer.size() - rest.size());
     written_ += static_cast<std::int64_t>(done.rfind('\n') + 1);  // npos + 1 is 0
     if (!rest.empty()) {
-        // What is there ends with a whole line. Should that fail, readers leave a torn line out.
+        // Ends the file with a whole line. If that fails, readers leave the torn line out.
         if (seekable_) (void)truncate(descriptor_, written_);
         const std::scoped_lock lock(mutex_);
         problem_ = path_.string() + ": recording stopped: " + reason(error) +

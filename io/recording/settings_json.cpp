@@ -111,7 +111,7 @@ void from_value(const Json& json, const std::string&, Layers& layers) {
     layers = layers_from_json(json);
 }
 
-/// Of a shape: finer ones are left out.
+/// Shapes with more triangles are left out.
 constexpr std::size_t most_triangles_kept = 20'000;
 
 Json to_value(const Tool& tool) {
@@ -126,7 +126,7 @@ Json to_value(const Tool& tool) {
     return json;
 }
 
-/// What a tool looks like; may be missing.
+/// The shape of a tool, which may be missing.
 ToolShape shape_from(const Json& json, const std::string& name) {
     ToolShape shape;
     if (!json.contains("triangles")) return shape;

@@ -30,7 +30,7 @@ Quaternion orientation_from(const CsvReader& rows, const QuaternionColumns& colu
     return *q;
 }
 
-/// What is wrong with a row; empty if nothing is.
+/// The problem with a row. Empty if there is none.
 std::string problem_of(const Trajectory& t, std::size_t row) {
     if (!std::isfinite(t.time[row])) return "the time is not finite";
     if (row > 0 && !(t.time[row] > t.time[row - 1])) {
@@ -49,7 +49,7 @@ Trajectory parse_trajectory(std::string_view text, const std::string& name) {
     const std::size_t x = rows.column(prefix + "x");
     const std::size_t y = rows.column(prefix + "y");
     const std::size_t z = rows.column(prefix + "z");
-    // One of them alone is a mistake, which column() tells.
+    // If only some of these columns exist, column() reports it.
     std::optional<QuaternionColumns> turn;
     for (const char* part : {"qw", "qx", "qy", "qz"}) {
         if (!turn && rows.has_column(part)) turn.emplace(rows, "");

@@ -188,7 +188,7 @@ struct GrowingFolder::Earlier {
     std::string job = {};
 };
 
-/// What an earlier run has left. Throws if it must not be continued or removed.
+/// Checks the remains of an earlier run. Throws if they must not be continued or removed.
 GrowingFolder::Earlier GrowingFolder::earlier_run(const fs::path& folder) {
     Earlier found{::open(folder.c_str(), as_folder)};
     if (found.folder < 0) {
@@ -280,7 +280,7 @@ GrowingFolder::~GrowingFolder() {
     let_go();
 }
 
-/// What stays gets a name that people see.
+/// If files of others remain, the folder gets a name that people see.
 void GrowingFolder::remove_own() noexcept {
     if (stays_ || lock_ < 0) return;
     try {
@@ -364,7 +364,7 @@ bool GrowingFolder::exchange_with_out(const MayReplace& may_replace) {
     return replace_in_steps(may_replace, looked_at);
 }
 
-/// What must not be replaced lies at `at` and cannot go back.
+/// A folder that must not be replaced is at `at` and cannot be moved back.
 void GrowingFolder::keep_replaced(const fs::path& at, const std::string& problem,
                                   bool is_replaced) {
     const fs::path aside = at == result() ? free_name(out_, ".previous") : at;
@@ -374,8 +374,8 @@ void GrowingFolder::keep_replaced(const fs::path& at, const std::string& problem
                       (is_replaced ? ", and the new result is in its place" : ""));
 }
 
-/// Where names cannot be exchanged: nothing has the name OUT between two renames, so that nothing
-/// is looked at in between but which folder it is. False if another process was quicker.
+/// For file systems that cannot exchange names. Nothing has the name OUT between two renames, so
+/// only the identity of the folder is checked in between. False if another process was quicker.
 bool GrowingFolder::replace_in_steps(const MayReplace& may_replace, const struct stat& looked_at) {
     const fs::path aside = free_name(out_, ".previous");
     if (!rename_new(out_, aside)) {

@@ -110,7 +110,7 @@ fs::path temporary_in(const fs::path& folder) {
 fs::path make_temporary_folder(const fs::path& folder, std::error_code& error) {
     while (true) {
         fs::path path = temporary_in(folder);
-        // Not there: a folder that another process has made in this moment is not ours.
+        // If the folder exists, another process has just made it, and it is not ours.
         if (fs::create_directory(path, error) || error) return path;
     }
 }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 
-/// What to do about common errors.
+/// The remedy for common errors.
 std::string remedy(int error) {
     if (means_full(error)) return ": free some space or write elsewhere";
     switch (error) {
@@ -207,8 +207,8 @@ void PendingFile::complete() {
     if (::close(closing) != 0 && errno != EINTR) fail_to_write(errno);
 }
 
-/// Not for good: what the target held before is kept under the temporary name. Where names cannot
-/// be exchanged, a copy of it, so that the target is there all the time.
+/// If not for good, the previous target is kept under the temporary name. If names cannot be
+/// exchanged, a copy of it is kept, so that the target exists all the time.
 void PendingFile::put_in_place(bool for_good) {
     if (temporary_.empty()) return;
     in_place_ = true;

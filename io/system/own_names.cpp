@@ -102,7 +102,7 @@ bool is_file_in(Place place, const std::string& whole) {
 
 std::string walk(int folder, Place place, bool removes);
 
-/// The same for one name in an open folder; true if it is ours, and if asked for, has gone.
+/// The same for one name in an open folder. True if it is ours and, if `removes`, is removed.
 bool is_ours(int folder, const std::string& name, Place place, bool removes, std::string& below) {
     struct stat about {};
     if (::fstatat(folder, name.c_str(), &about, AT_SYMLINK_NOFOLLOW) != 0) return errno == ENOENT;

@@ -58,8 +58,8 @@ EGLContext context_of(const Egl& egl, EGLDisplay display) {
 }  // namespace
 
 void make_surfaceless_context(Driver driver) {
-    // The same picture on every machine, and no graphics driver to fail. Who wants the processor
-    // for graphics sets it to 0.
+    // Gives the same picture on every machine, and needs no graphics driver. Set it to 0 to use a
+    // graphics card.
     if (driver == Driver::software) setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
     const Egl egl;
     const auto address = egl.function<decltype(&eglGetProcAddress)>("eglGetProcAddress");

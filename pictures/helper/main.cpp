@@ -28,8 +28,8 @@
 namespace palpate::pictures {
 namespace {
 
-/// What VTK complains about goes to standard error and is an error here: a picture that it is not
-/// content with may lack anything.
+/// Complaints of VTK go to standard error and are errors here, because the picture may lack
+/// anything.
 class Complaints : public vtkOutputWindow {
   public:
     // As vtkStandardNewMacro has it, whose semicolons a pedantic compiler refuses.

@@ -19,7 +19,7 @@ SampleBox samples_within(const Vec3& low, const Vec3& high) {
             high.cwiseMin(most).cwiseMax(-most).array().floor().cast<int>()};
 }
 
-/// Of the farthest point that a brush with this body changes, from the reference point [mm].
+/// Farthest point that a brush with this body changes, from the reference point [mm].
 double arm_of(const edit::Sweep& sweep, const Geometry& geometry) {
     const Vec3 far = sweep.body->low().cwiseAbs().cwiseMax(sweep.body->high().cwiseAbs());
     return far.norm() + reach_of(sweep.brush, geometry);

@@ -7,7 +7,7 @@
 namespace palpate {
 namespace {
 
-/// What rubs on the shaft up to `tip` [N]: the drag of each layer times the length in it.
+/// Friction on the shaft up to `tip` [N]: the drag of each layer times the length in it.
 double drag_up_to(const NeedleState& needle, const Layers& layers, double tip) {
     double sum = 0;
     for (int i = 0; i < needle.crossing_count; ++i) {

@@ -119,7 +119,7 @@ bool Tissues::is_free() const {
     const Field& now = field();
     const Bounds bound = bounds();
     const bool cubic = now.interpolation() == Interpolation::cubic;
-    // Where a cubic site counts as inside, a hair less.
+    // A hair less than the excess at which a cubic site counts as inside.
     const double most = cubic ? 1.9e-11 * now.range() : now.tolerance();
     const double value = value_at(now, scp_in(now, proxy_));
     return now.sign() * (value - bound.ahead) <= most &&
@@ -167,7 +167,7 @@ Tissues::Shares Tissues::shares_at(const Vec3& physical) const {
     return shares;
 }
 
-/// Of these tissues (bits as in LayerState::open) the one with the largest share; -1: none has any.
+/// The one of these tissues (bits as in LayerState::open) with the largest share. -1: none has any.
 int Tissues::largest(const Shares& shares, std::uint32_t among) const {
     int best = -1;
     double most = 0;

@@ -36,7 +36,7 @@ class LayersTick {
             const std::optional<double> share = gives_way(from);
             if (!share || !open()) break;
             ++felt_.punctured;
-            // What comes next is met from where the hand was at that moment.
+            // From here on, the hand is where it was at that moment.
             from += *share * (input_.hip - from);
             move_to(from);
             move_to(input_.hip);
@@ -81,7 +81,7 @@ class LayersTick {
         const Proxy& proxy = tissues_.proxy();
         return asked && proxy.placed ? gradient_at(density_, proxy.scp_physical).norm() : 0;
     }
-    /// Of a surface; without layers, of the level that the session feels.
+    /// Property of a surface, or without layers of the session's level.
     double of_surface(int layer, HapticProperty property, double otherwise) const {
         const bool asks = !layers_[property].density.knots.empty();
         return property_of(layers_, layer, property, asks ? tissues_.density_at_surface(layer) : 0,
@@ -99,7 +99,7 @@ class LayersTick {
                      of_surface(layer, dynamic_friction, usual.dynamic_coefficient));
         return friction;
     }
-    /// What the hand feels of the surface touched and of what the SCP is in.
+    /// Settings of the force at the touched surface and in the tissue of the SCP.
     ForceSettings force_now() const {
         ForceSettings force = input_.force;
         force.stiffness = of_surface(state_.touched, stiffness, force.stiffness);
@@ -111,7 +111,7 @@ class LayersTick {
         return stable(force, input_.limits);
     }
 
-    /// The same, kept while what it depends on stays.
+    /// The same, kept while surface and tissue stay the same.
     const ForceSettings& force() {
         const int inside = tissues_.inside(update_);
         if (!has_force_ || force_touched_ != state_.touched || force_inside_ != inside) {
@@ -131,7 +131,7 @@ class LayersTick {
         return settings;
     }
 
-    /// Where the tip heads for: on the line of a needle, else the hand.
+    /// Target of the tip: on the line of a needle, otherwise the hand.
     Vec3 target_of(const Vec3& hand) const {
         const NeedleState& needle = state_.needle;
         return needle.inserted ? on_line(needle, along_line(needle, hand)) : hand;
@@ -218,7 +218,7 @@ class LayersTick {
         needle.axis = points ? input_.pointing : pull;
         needle.hand = along_line(needle, state_.moved ? state_.hip : input_.hip);
         needle.anchor = along_line(needle, input_.hip);
-        // Of what the surface's spring has stored this takes on its part, and no more.
+        // The needle takes over its share of the energy in the surface's spring, and no more.
         const double part = aside_of(input_.hip).norm() / distance_;
         needle.aside = {true, state_.spring.stiffness, part * state_.spring.rest};
     }
@@ -263,7 +263,7 @@ class LayersTick {
         const double stiffness = r.force.stiffness;
         if (needle) {
             r.force = stable(r.force, input_.limits);
-            // What is not stable is lowered after the limit.
+            // The limit holds before unstable settings are lowered.
             const double limit = std::min(input_.force.limit, input_.limits.maximum_force);
             force = needle_force(force, limit * stiffness / r.force.stiffness);
         }

@@ -22,7 +22,7 @@ double rising_root(const Bernstein& b, double tolerance) {
     const double a2 = 3 * ((b[2] - b[1]) - (b[1] - b[0]));
     const double a3 = (b[3] - b[0]) - 3 * (b[2] - b[1]);
     double low = 0, high = 1;
-    // That of the parabola at the start is near; the chord's if there is none.
+    // The root of the parabola at the start is near. If it has none, takes that of the chord.
     const double square = a1 * a1 - 4 * a2 * b[0];
     double t =
         square > 0 ? std::min(1.0, -2 * b[0] / (a1 + std::sqrt(square))) : -b[0] / (b[3] - b[0]);
@@ -269,7 +269,7 @@ WalkEnd walk(CubicSite& site, const Vec3& displacement, double level, Progress& 
         const double hair = site.excess() < 1.5e-11 * site.range ? 4e-14 * site.range : 0;
         level = std::max(level, site.excess() + hair);
     }
-    // Where something reaches the level there is more than background.
+    // If samples reach the level, there is more than background.
     const bool outside = !site.reaches(level) && CubicCourse::is_outside(site);
     return walk_straight(site, displacement, CubicCourse{{progress}, level, outside}).end;
 }

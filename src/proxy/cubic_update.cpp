@@ -10,21 +10,21 @@ namespace {
 
 /// Tangential distance to the target, relative to its depth, below which the proxy rests.
 constexpr double resting_slope = 1e-4;
-/// The same in voxels of the smallest spacing.
+/// The same limit in voxels of the smallest spacing.
 constexpr double least_distance = 1e-7;
 /// Below this slope [range / voxel] the normal says nothing.
 constexpr double least_slope = 1e-5;
 /// Bend across the way to the target, relative to the way, above which the target's foot lies in
 /// another direction.
 constexpr double least_twist = 0.1;
-/// Of the squared distance to the target, below which a round counts as a failure. Where the proxy
-/// does not rest, a slide can gain ten times that.
+/// Gain, relative to the squared distance to the target, below which a round counts as a failure.
+/// If the proxy does not rest, a slide can gain ten times that.
 constexpr double least_progress = 1e-9;
-/// Tries before the proxy looks round in all directions.
+/// Attempts before the proxy tries all directions.
 constexpr int most_failures = 6;
 
-/// Whether the `i`-th of 125 places round a point is a direction of its own: those with three even
-/// axes are twice another one.
+/// Whether the `i`-th of 125 places around a point is a direction of its own: places with three
+/// even axes are twice another one.
 constexpr bool is_direction(int i) {
     return i % 5 % 2 == 1 || i / 5 % 5 % 2 == 1 || i / 25 % 2 == 1;
 }
@@ -57,7 +57,7 @@ struct Contact {
     }
 };
 
-/// The same, and how the surface bends on the way aside.
+/// The same, with the bend of the surface on the way aside.
 struct BentContact : Contact {
     Vec3 turn;    ///< of the slope along `aside`
     double bend;  ///< turn . aside; > 0 where the surface rises towards the free side
@@ -108,7 +108,7 @@ Slide slide_by_both(const BentContact& c, const cubic::Symmetric& hessian, const
     const double greatest = mean + radius, least = mean - radius;
     const double at_greatest = length / std::max(1 + c.depth * greatest, 1.0);
     const double at_least = length / std::max(1 + c.depth * least, 1.0);
-    // Of a function of a symmetric matrix only its values at the two eigenvalues matter.
+    // A function of a symmetric matrix depends on its values at the two eigenvalues only.
     const double rate = radius > 0 ? 0.5 * (at_greatest - at_least) / radius : 0;
     const double forth = at_greatest + rate * (tt - greatest), sideways = rate * ta;
     return {forth * t + sideways * across,
@@ -189,7 +189,7 @@ class CubicDescent {
         const Frame& f = frame();
         return (f.target - site_.point.folded).cwiseProduct(f.mm);
     }
-    /// Of the tetrahedron in which h_mm() was asked for last.
+    /// Scale of the tetrahedron for which h_mm() was called last.
     const Vec3& per_mm() const { return frame_.per_mm; }
 
     /// One round: a straight motion through free space, or a slide and a fall. `h` leads to the
@@ -221,7 +221,7 @@ class CubicDescent {
                  std::max(resting_slope * resting_slope * c.depth * into, least * least));
     }
 
-    /// Where the gradient says nothing.
+    /// Whether the gradient is too small to give a direction.
     bool is_flat(const Vec3& slope) const {
         const double flat = least_slope * range_ / shortest_;
         return !(dot(slope, slope) > flat * flat);
@@ -316,8 +316,8 @@ class CubicDescent {
         return true;
     }
 
-    /// Where the normal does not show a way: of 49 directions the one in which a small step leads
-    /// closest, and along it as far as a voxel. All of them are tried in one update or none.
+    /// If the normal gives no direction: tries 49 directions with a small step, and follows the
+    /// best one for up to a voxel. One update tries all of them or none.
     bool look_round() {
         constexpr double step = 1e-3;  // [voxel]
         constexpr int directions = 49;

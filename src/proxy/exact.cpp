@@ -33,7 +33,7 @@ bool apply_friction(const Friction& friction, Proxy& proxy, const Site& site, co
 /// looks from the corner of the walls nearer than this [voxel]; f changes by at most 4 ranges a
 /// voxel, so moving to the corner keeps G1 and G2.
 constexpr double hair = 1e-10;
-/// What it must gain there: much more than moving there can cost, so that it cannot cycle.
+/// The least gain from there: much more than moving there can cost, so that it cannot cycle.
 constexpr double least_corner_gain = 1e-12;
 
 /// Puts the SCP, which is on the walls `on`, on all walls within a hair of it, if from there it can

@@ -14,7 +14,7 @@ Vec3 normal_of(const Field& field, const LatticePoint& point) {
     return physical_from_grid_axes(field.geometry(), out / length);
 }
 
-/// Where straight motion from one point (index space) to another meets the surface.
+/// The place where straight motion from one point (index space) to another meets the surface.
 template <class AnySite>
 std::optional<LatticePoint> first_hit(const Field& field, double isovalue, const Vec3& start,
                                       const Vec3& target, int step_budget) {
@@ -54,7 +54,7 @@ Vec3 normal_at(const Proxy& proxy, const Field& field) {
 }
 
 void field_will_change(Proxy& proxy, const Field& field) {
-    // Of several changes before the next update, the first one had the surface that was felt.
+    // If there are several changes before the next update, the first one had the touched surface.
     if (proxy.mode == Mode::constrained && proxy.ahead.isZero(0)) {
         proxy.ahead = normal_at(proxy, field);
     }
@@ -66,7 +66,7 @@ bool place(Proxy& proxy, const Field& field, const Vec3& hip, double isovalue,
     proxy.isovalue = isovalue;
     const int patience = 1000 + static_cast<int>(field.geometry().size.cast<double>().norm());
     for (int i = 0; i < patience; ++i) {
-        // Where the hand is in the solid, recovery leads to the surface, and no way on.
+        // If the hand is in the solid, recovery leads to the surface and no farther.
         const ProxyUpdate update = update_straight(proxy, field, hip, {}, observer);
         if (update.status != UpdateStatus::recovering) return proxy.placed;
     }

@@ -62,9 +62,9 @@ bool descend_out(Site& site, Progress& progress) {
     return false;
 }
 
-/// The same on the smooth field, along its gradient: no farther at a time than a quarter of a
-/// voxel, and only where the excess falls. With half of the budget: what creeps along a valley or
-/// where the slope says next to nothing is out sooner by the search.
+/// The same on the smooth field, along its gradient: at most a quarter of a voxel at a time, and
+/// only while the excess falls. Uses half of the budget, because the search is faster along a
+/// valley or where the slope is tiny.
 bool descend_out(CubicSite& site, Progress& progress) {
     const double shortest = progress.geometry.spacing.minCoeff();
     constexpr double farthest = 64;  // [voxel] to where such a slope would lead out
@@ -135,7 +135,7 @@ bool search_out(AnySite& site, Progress& progress, double& reach) {
             const Vec3 start = from + reach * per_unit;
             AnySite probe = turned_at(site, start);
             Progress silent{progress.geometry, {}, start, most};
-            // Not past the nearest that another direction has found.
+            // Stops at the distance of the nearest point that another direction has found.
             silent.least_left =
                 1 - (std::sqrt(least) / unit - reach) / shell_thickness - rounding_of_part;
             const bool free_already = probe.excess() >= -site.level();

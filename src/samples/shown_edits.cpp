@@ -18,7 +18,7 @@ class Nearest {
         zero_ = there(Vec3::Zero());
         for (int a = 0; a < 3; ++a) axes_.col(a) = there(Vec3::Unit(a)) - zero_;
     }
-    /// Nothing where the nearest sample is not in an edited brick of its own.
+    /// Returns nothing if the nearest sample is not in an edited brick of its own.
     std::optional<double> operator()(const Index3& index) const {
         const Vec3 at = zero_ + axes_ * index.cast<double>();
         const Vec3 end = edited_.geometry().size.cast<double>();

@@ -68,7 +68,7 @@ bool CubicNodes::enter(const Index3& cell) {
     const std::uint8_t* const first = either_.data() +
                                       static_cast<std::size_t>(cell[1] - box_.low[1]) * row +
                                       static_cast<std::size_t>(cell[0] - box_.low[0]);
-    // The field stays between the least and the greatest of the samples round the cell.
+    // The field stays between the least and the greatest of the samples around the cell.
     if ((first[0] | first[1] | first[row] | first[row + 1]) != 3) return false;
     samples_ = field_.around(cell);
     for (double& sample : samples_) sample = field_.sign() * (sample - isovalue_);
@@ -89,7 +89,7 @@ double corners(const double* c, int s, int e) {
     return (c[-s - e] + c[s + e]) + (c[s - e] + c[e - s]);
 }
 
-/// The lowest of the eight samples round a corner.
+/// The lowest of the eight samples around a corner.
 int first_of(int corner) {
     return (corner & 1) + 3 * (corner >> 1 & 1) + 9 * (corner >> 2 & 1);
 }

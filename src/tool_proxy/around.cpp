@@ -239,7 +239,7 @@ Around::Probe Around::probe(const Vec3& from, const Vec3& to) {
     const Index3 sample(int(std::floor(at[0] + 0.5)), int(std::floor(at[1] + 0.5)),
                         int(std::floor(at[2] + 0.5)));
     const Index3 brick = brick_of(sample);
-    // To the border of the bricks round the point's own.
+    // To the border of the bricks around the point's own.
     double border = std::numeric_limits<double>::infinity();
     for (int a = 0; a < 3; ++a) {
         const double low = brick[a] * brick_size - 0.5;

@@ -11,7 +11,7 @@ namespace palpate::tool {
 
 namespace {
 
-/// Of a motion: less counts as none.
+/// A smaller part of a motion counts as none.
 constexpr double least_part = 1e-12;
 constexpr int most_tries = 16;
 

@@ -14,7 +14,7 @@ namespace palpate {
 namespace tool {
 namespace {
 
-/// What is left of the pull at rest, relative to it, and in voxels.
+/// The remaining pull at rest, relative to the whole pull, and in voxels.
 constexpr double resting_pull = 3e-4, least_pull = 5e-7;
 /// Smallest eigenvalue with which curvature enters.
 constexpr double least_curvature = 0.55;
@@ -24,7 +24,7 @@ constexpr double sagitta = 1e-3;
 constexpr int most_idle = 12;
 constexpr int most_failures = 8;
 constexpr int most_rounds = 60;
-/// Of a motion with nothing near [voxel].
+/// Longest motion with nothing near [voxel].
 constexpr double longest_stride = 64;
 /// Slope of the field [range / voxel] below which its normal says nothing.
 constexpr double least_slope = 1e-9;
@@ -446,7 +446,7 @@ ToolUpdate update_tool(ToolProxy& proxy, const Field& field, const Pose& hand,
         result.status = UpdateStatus::refused;
         return result;
     }
-    // What is unit to all digits stays as it is, to the bit.
+    // A quaternion that is unit to all digits keeps its bits.
     if (std::abs(turn.squaredNorm() - 1) > 1e-14) turn.normalize();
     tool::Kept& kept = proxy.kept();
     const bool others = tool::renew(kept.surroundings, field) || !proxy.placed ||

@@ -17,7 +17,7 @@ constexpr std::size_t most_axes = 8;
 constexpr double most_chunk_bytes = 1 << 30;
 constexpr double most_chunks_in_shard = 1 << 20;
 constexpr std::size_t most_held = 1 << 20;  // places in all indices that are kept
-// What was damaged on its way may come whole the next time.
+// Data that was damaged in transfer may be intact the next time.
 constexpr int attempts_at_damage = 3, attempts_at_change = 3;
 constexpr std::uint64_t not_stored = UINT64_MAX;
 
@@ -183,7 +183,7 @@ std::optional<Bytes> ChunkReader::chunk_at(const Place& place, std::string* iden
                     });
 }
 
-/// Of a file, shards end where the array does.
+/// In a file, shards end where the array ends.
 std::int64_t ChunkReader::chunks_of(const Shard& shard, std::size_t axis) const {
     const std::int64_t most = array_.shards->chunks[axis];
     const std::int64_t all = (array_.shape[axis] - 1) / array_.chunk[axis] + 1;

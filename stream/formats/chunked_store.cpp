@@ -10,7 +10,7 @@
 namespace palpate::stream {
 namespace {
 
-/// Where the samples of a chunk lie in its bytes: strides [samples] along x, y, z, and the place of
+/// Layout of the samples of a chunk in its bytes: strides [samples] along x, y, z, and the place of
 /// the fixed indices.
 struct ChunkLayout {
     std::array<std::size_t, 3> stride = {0, 0, 0};
@@ -67,7 +67,7 @@ class ChunkedStore : public FiniteStore {
         return readers_[std::size_t(level)]->array().bytes_to_read_chunk() <= room_.most();
     }
 
-    /// Of the part of a chunk.
+    /// Puts the rows of the part of a chunk.
     void put_rows(int level, const Index3& chunk, const SampleBox& part, const Places& to,
                   const std::stop_token& stop) const {
         if (stop.stop_requested()) throw Cancelled{};
@@ -123,7 +123,7 @@ class ChunkedStore : public FiniteStore {
         return index;
     }
 
-    /// Of samples that are not stored. NaN where the fill value is not finite.
+    /// Fills samples that are not stored. NaN if the fill value is not finite.
     void put_fill(double fill, std::size_t count, std::byte* to) const {
         with_type(info_.type, [&](auto zero) {
             const auto value = static_cast<decltype(zero)>(fill);

@@ -76,7 +76,7 @@ void take_whole(ContentHash& hash, const Store& store, int level, const std::sto
     }
 }
 
-/// One of each of `count` runs of pieces, at a place in the run that looks like chance.
+/// Takes one piece of each of `count` runs, at a pseudo-random place in the run.
 void take_pieces(ContentHash& hash, const Store& store, int level, std::uint64_t count,
                  const std::stop_token& stop) {
     constexpr int longest = 64;  // [samples]

@@ -129,7 +129,7 @@ EditsNote read_note(const fs::path& folder, const StoreOptions& options) {
     const auto bytes = folder_objects(folder)->get({io::edits_note, {}, longest_note}, {});
     if (!bytes) throw io::InputError(path.string() + ": is not there");
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    // Of large edits the list of chunks is longer than io::parsed_json() allows.
+    // The list of chunks of large edits is longer than io::parsed_json() allows.
     const auto check_depth = [](int depth, Json::parse_event_t, Json&) {
         if (depth > io::deepest_json) throw std::invalid_argument("nested too deeply");
         return true;

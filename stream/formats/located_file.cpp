@@ -12,7 +12,7 @@
 namespace palpate::stream {
 namespace {
 
-/// Of HDF5 and TIFF: with these they say where everything else lies.
+/// The first bytes of HDF5 and TIFF, which say where everything else lies.
 constexpr std::uint64_t bytes_of_head = 64;
 /// Chunks along each axis whose places are looked up together.
 constexpr std::int64_t page_side = 16;

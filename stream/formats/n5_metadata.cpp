@@ -102,7 +102,7 @@ std::optional<Numbers> factors_of(std::span<const Json> groups, const Json& leve
     return at == 0 ? std::optional(Numbers(axes, 1)) : std::nullopt;
 }
 
-/// Where a level lies along axes that have names.
+/// Place of a level along axes that have names.
 struct NamedPlace {
     std::vector<ImageAxis> axes;
     Numbers scale, translation;

@@ -22,7 +22,7 @@ class N5Opening {
     N5Opening(const Objects& objects, const StoreOptions& options)
         : objects_(objects), options_(options), room_(room_for_metadata(options)) {}
 
-    /// Nothing if there is no N5.
+    /// Returns nothing if there is no N5.
     std::optional<ChunkedVolume> volume(const std::string& address) {
         volume_.info.address = address;
         volume_.info.format = "N5";
@@ -55,7 +55,7 @@ class N5Opening {
     }
 
   private:
-    /// Of several folders at once; null where there are none.
+    /// Attributes of several folders at once. Null if a folder has none.
     std::vector<Json> attributes_of(const std::vector<std::string>& folders) {
         return metadata_in(objects_, folders, "attributes.json", room_);
     }

@@ -150,7 +150,7 @@ std::optional<Range> range_of(const Json& attributes) {
     return Range{range[0], range[1]};
 }
 
-/// What OME-Zarr has no place for.
+/// Reads values for which OME-Zarr has no place.
 void take_direction(const Json& attributes, Image& image) {
     const Json& ours = member(attributes, "palpate");
     const auto holds = [&](const char* name) {

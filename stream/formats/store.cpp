@@ -80,7 +80,7 @@ std::string without_escapes(const std::string& text) {
     return plain;
 }
 
-/// Nothing if the name is not that of HDF5 or TIFF.
+/// Returns nothing if the name is not that of HDF5 or TIFF.
 std::optional<RemoteFile> remote_file(const std::string& address) {
     const std::size_t question = std::min(address.find('?'), address.size());
     const std::string place = address.substr(0, question);
@@ -114,7 +114,7 @@ bool is_store(const std::string& address, const StoreOptions& options) {
 std::shared_ptr<const Store> open_until(const std::stop_token& stop, const std::string& address,
                                         const StoreOptions& options) {
     if (io::is_web_address(address)) {
-        // What a browser adds to an address is not for the server.
+        // Text that a browser adds to an address is not for the server.
         const bool is_s3 = address.find("://") == 2;  // where it is a part of the name
         const std::size_t fragment = is_s3 ? address.npos : address.find('#');
         if (fragment != address.npos) return open_until(stop, address.substr(0, fragment), options);

@@ -43,7 +43,7 @@ class CodeTable {
   public:
     void clear() { next_ = first_free; }
     unsigned next() const { return next_; }
-    /// What a code needs; it grows one code earlier than it would have to.
+    /// Width of the next code. It grows one code earlier than it would have to.
     unsigned width() const {
         unsigned width = 9;
         while (width < 12 && next_ >= (1U << width) - 1) ++width;

@@ -155,7 +155,7 @@ void transpose(const Json& codec, ChunkedArray& array) {
     array.stored_axes = stored;
 }
 
-/// What needs no configuration may be given by its name alone (Zarr 3.1).
+/// A codec without configuration may be given by its name alone (Zarr 3.1).
 std::string name_of(const Json& json) {
     return (json.is_string() ? json : json.at("name")).get<std::string>();
 }

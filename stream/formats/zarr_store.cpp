@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 constexpr std::size_t most_series = 16;  // that are looked for
 
-/// What the metadata of a folder say, of either version.
+/// Metadata of a folder, of either version.
 struct Node {
     Json metadata;    ///< of an array, or of a group of Zarr 3
     Json attributes;  ///< null if there are none
@@ -66,7 +66,7 @@ class Opening {
           options_(options),
           room_(room_for_metadata(options)) {}
 
-    /// Nothing if there is no Zarr.
+    /// Returns nothing if there is no Zarr.
     std::optional<ChunkedVolume> volume(const std::string& address) {
         volume_.info.address = address;
         Node root = std::move(nodes_in(objects_, std::array{folder_}, room_)[0]);

@@ -20,22 +20,22 @@ constexpr std::size_t most_free_bricks = 16;
 /// Just made, or dropped and still in use.
 constexpr std::size_t most_left_bricks = 32;
 constexpr std::chrono::milliseconds pause_when_behind{2}, time_to_let_go{20};
-/// Of the memory, the part of decoded pieces.
+/// Part of the memory for decoded pieces.
 constexpr std::uint64_t pieces_part = 4;
-/// Bricks that the hands need first: a cube of three round one.
+/// Bricks that the hands need first: a cube of three around one.
 constexpr std::size_t most_urgent = 27;
-/// Of the mean time that a brick takes, the part of the last one.
+/// Weight of the last brick in the mean time that a brick takes.
 constexpr double newest_part = 0.2;
 /// With coarse_first: of the hands' speed [s].
 constexpr double speed_smoothing = 0.2;
-/// And the greatest that counts [bricks/s].
+/// The greatest speed that counts [bricks/s].
 constexpr double most_speed = 1e6;
 /// With coarse_first: bricks that come at both levels before all others.
 constexpr std::size_t most_soon = 125;
-/// Of the memory of the process.
+/// Interval between measurements of the memory of the process.
 constexpr std::chrono::milliseconds between_counts{5};
-/// Of it, the part that is left for what is dropped but not given back yet, and for reads under
-/// way.
+/// Part of it that is left for dropped memory that the system still counts, and for reads that are
+/// under way.
 constexpr std::uint64_t spare_part = 10;
 
 std::uint64_t bytes_of_brick(SampleType type) {
@@ -53,7 +53,7 @@ std::size_t most_bricks(const Store& store, std::uint64_t memory) {
     return count;
 }
 
-/// Of metadata of a kilobyte, a table of bricks can have gigabytes.
+/// A kilobyte of metadata can declare a table of bricks of gigabytes.
 void check_table(const Store& store, int level, std::uint64_t memory) {
     constexpr double along = ResidentBricks::edge * 16, bytes = 16;  // of a page and its pointer
     constexpr std::uint64_t table_part = 16;
@@ -189,7 +189,7 @@ void BrickLoader::Parts::choose_levels(std::span<const Interest> hands, Clock::t
         if (bricks.allFinite()) speed = std::max(speed, std::min(bricks.norm(), most_speed));
     }
     const int coarsest = static_cast<int>(store_->info().levels.size()) - 1 - settings_.level;
-    // A hand that a force lets go of jumps for a moment.
+    // If a force releases a hand, the hand jumps for a moment.
     const double passed = std::chrono::duration<double>(now - looked_).count();
     speed_ += std::min(1.0, passed / speed_smoothing) * (speed - speed_);
     looked_ = now;
@@ -263,8 +263,8 @@ void BrickLoader::Parts::want(std::vector<Index3> bricks) {
     begun_ = {};
 }
 
-/// Needs the lock. Older versions are let go when the next one comes, so it never waits for long.
-/// Who waits for bricks gets them first.
+/// Needs the lock. Older versions are released when the next one comes, so it never waits
+/// long.
 bool BrickLoader::Parts::is_behind() const {
     return waiting_.empty() && memory_->used() > held_.size() + most_left_bricks &&
            Clock::now() - newest_ < time_to_let_go;
@@ -332,7 +332,7 @@ void BrickLoader::Parts::fail(const Index3& brick, const std::string& problem,
     problem_ = problem;
 }
 
-/// What fails here fails for the thread that makes the brick, too, which says so.
+/// Errors are ignored here, because the thread that makes the brick meets and reports them.
 void BrickLoader::Parts::help(const Job& job, const std::stop_token& stop) {
     try {
         Makings makings;
@@ -360,7 +360,7 @@ void BrickLoader::Parts::put(const Job& job, const Brick& brick) {
     most_bytes_ = std::max(most_bytes_, bytes());
 }
 
-/// Needs the lock. Drops bricks that nobody wants, the farthest from what is wanted most first.
+/// Needs the lock. Drops bricks that no hand wants, the farthest from the most wanted one first.
 void BrickLoader::Parts::make_room() {
     count_process();
     if (held_.size() <= most_bricks_) return;

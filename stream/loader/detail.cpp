@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds look_again{30}, idle{500};
 /// Pieces of a viewer that are read and not copied yet.
 constexpr std::size_t most_read = 16;
-/// Of rows, which have no pieces worth keeping: samples along each axis that are read at a time.
+/// Pieces of levels that are stored in rows: samples along each axis that are read at a time.
 constexpr int piece_of_rows = 64;
 
 void check(const Store& store, const DetailBox& of) {
@@ -54,13 +54,13 @@ struct Piece {
     State state = State::waiting;
     Clock::time_point again = {};  // failed: not tried before
     StoredPiece stored = {};       // read
-    // Of the reader's thread:
+    // For the reader's thread:
     bool copied = false;  // its samples are in the box
     bool based = false;   // samples interpolated from the newest base are
 };
 
-/// What one viewer wants. But for what is of the reader's thread alone, its members need the mutex
-/// of Parts.
+/// The request of one viewer. Except for members of the reader's thread alone, its members need the
+/// mutex of Parts.
 struct Work {
     struct Stage {
         DetailBox of;
@@ -77,7 +77,7 @@ struct Work {
     std::size_t stage = 0;      // whose pieces are read, once those of the last that are kept are
     bool has_new = false;       // not published yet
     bool looked = false;        // for pieces of the last stage that are kept
-    // Of the reader's thread:
+    // For the reader's thread:
     Clock::time_point published = Clock::now();
     std::optional<Volume> base;  // of a coarser stage; none: the overview
     SampleBox changed;           // of the last stage's box, since it was published
@@ -291,7 +291,7 @@ struct DetailReader::Parts {
         problem_ = std::move(problem);
     }
 
-    /// Of a piece that was read.
+    /// Copies a piece that was read.
     void put(Work& work, Work::Stage& stage, Piece& piece) const {
         const StoredPiece stored = std::move(piece.stored);
         stage.samples.resize(bytes_of(stage.of.box, store_->info().type));
@@ -305,7 +305,7 @@ struct DetailReader::Parts {
         return geometry_of(level_of(*store_, of.level).geometry, of.box);
     }
 
-    /// What is missing of the last stage is made of the coarse one.
+    /// Makes the missing parts of the last stage from the coarse one.
     void make_base(Work& work) const {
         Work::Stage& stage = work.stages[work.stage];
         fill(work, stage);
@@ -315,8 +315,8 @@ struct DetailReader::Parts {
             if (!piece.copied) work.changed = united(work.changed, piece.box);
         }
     }
-    /// What is missing of a stage is interpolated from the base, which is coarser. Returns how many
-    /// pieces are missing.
+    /// Interpolates the missing parts of a stage from the base, which is coarser. Returns the
+    /// number of missing pieces.
     std::size_t fill(const Work& work, Work::Stage& stage) const {
         const Geometry grid = grid_of(stage.of);
         const Index3 low = stage.of.box.low;

@@ -12,12 +12,12 @@ namespace {
 /// A hand is followed this far ahead [s], and no farther than this [bricks].
 constexpr double look_ahead = 0.5;
 constexpr double farthest = 16;
-/// Of a hand's velocity [s].
+/// Time over which a hand's velocity is smoothed [s].
 constexpr double smoothing = 0.05;
 /// Bricks ahead of a moving hand count as this much farther than those it is in.
 constexpr double ahead_factor = 0.5;
-/// And those on a long way from proxy to hand by this: where the proxy waits, all round it is
-/// needed before it can go on.
+/// Bricks between proxy and hand count as farther by this factor: where the proxy waits, all bricks
+/// around it are needed first.
 constexpr double pull_factor = 0.2;
 /// A proxy that is farther from its hand than this has been left behind: it waits for samples, or
 /// a surface holds it [bricks].
@@ -26,7 +26,7 @@ constexpr double left_behind = 1;
 /// that can come: then what it reaches comes first, and what it is in counts as this much farther
 /// [bricks].
 constexpr double fast = 1, late_penalty = 1;
-/// Samples round a ball that an update may look at, more than reach.cpp's [voxel].
+/// Samples around a ball that an update may read, more than reach.cpp's [voxel].
 constexpr double margin = 5;
 
 struct Segment {
@@ -63,8 +63,8 @@ void score(const Geometry& geometry, const Index3& count, const Interest& hand, 
     const double behind = (pull.to - pull.from).norm();
     const bool is_left = behind > left_behind;
     const bool is_fast = !is_left && soon.norm() * seconds > fast * look_ahead;
-    // Where the hand will be: after all that lies between it and a proxy left behind, and of a
-    // fast hand only what can come in time.
+    // The predicted way. It begins at the hand if the proxy was left behind, and ahead of a fast
+    // hand, with the bricks that can come in time.
     Vec3 begin = proxy;
     if (is_left) begin = pull.to;
     if (is_fast) begin = pull.to + 0.5 * shortened(soon);

@@ -11,7 +11,7 @@
 namespace palpate::stream {
 namespace {
 
-/// Where a fine sample lies between two coarse ones along an axis.
+/// Place of a fine sample between two coarse ones along an axis.
 struct Between {
     std::ptrdiff_t low, high;  // offsets in the coarse samples
     float part;                // of the higher

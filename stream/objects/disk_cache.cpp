@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t name_digits = 32, folder_digits = 2;  // of FOLDER/NAME
 
-/// What an entry begins with; its name and bytes follow.
+/// The beginning of an entry. Its name and bytes follow.
 struct EntryHead {
     std::array<char, 8> magic = {'p', 'a', 'l', 'p', 'c', 'a', 'c', '1'};
     std::uint64_t bytes = 0;
@@ -97,8 +97,8 @@ bool is_hexadecimal(const std::string& name, std::size_t digits) {
     return name.size() == digits && name.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// What the cache's folder holds. Files that lie and are called as entries are: others are not
-/// ours.
+/// Entries in the cache's folder. Only files with the place and name of an entry count, because
+/// others are not ours.
 struct Scan {
     std::vector<Entry> entries = {};
     std::set<fs::path> unread = {};  ///< folders of which not all could be read
@@ -113,7 +113,7 @@ struct Scan {
         const auto used = file.last_write_time(error);
         const auto bytes = error ? 0 : file.file_size(error);
         if (error) return;
-        // Of before the clock was set back: otherwise they would outlive all that is used now.
+        // The clock was set back. Without this, such entries would outlive all that is used now.
         const bool of_the_future = used > now + std::chrono::seconds(2);
         entries.push_back({file.path(), of_the_future ? fs::file_time_type::min() : used, bytes});
     }

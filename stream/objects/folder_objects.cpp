@@ -77,7 +77,7 @@ class FolderObjects : public Objects {
         throw io::InputError(name_of(key) + ": " + what);
     }
 
-    /// Where a disk has gone, no chunk is there; none of them is just not stored.
+    /// If the disk is gone, all chunks are missing. None of them must count as not stored.
     void require_folder(const std::string& key) const {
         std::error_code error;
         if (!std::filesystem::is_directory(folder_, error)) {

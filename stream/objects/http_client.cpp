@@ -51,7 +51,7 @@ std::string header_of(CURL* easy, const char* name) {
     return found ? header->value : "";
 }
 
-/// Of the header "Content-Range: bytes 0-63/1000"; nothing where it is another one.
+/// From the header "Content-Range: bytes 0-63/1000". Nothing for any other form.
 struct ContentRange {
     std::uint64_t first = 0, last = 0;
     std::optional<std::uint64_t> whole;  ///< a server may say "*"
@@ -69,8 +69,8 @@ std::optional<ContentRange> content_range_of(CURL* easy) {
     return ContentRange{*first, *last, io::number_from<std::uint64_t>(text.substr(slash + 1))};
 }
 
-/// What is wrong with the headers of a part; empty: nothing. Other bytes than those that were asked
-/// for would be taken for samples.
+/// The problem with the headers of a part. Empty if there is none. Bytes that were not requested
+/// would be taken for samples.
 std::string problem_with_part(CURL* easy, const ByteRange& range) {
     const std::string encoding = header_of(easy, "Content-Encoding");
     if (!encoding.empty() && encoding != "identity") {
@@ -88,7 +88,7 @@ std::string problem_with_part(CURL* easy, const ByteRange& range) {
            std::to_string(given->last) + ", which were not requested";
 }
 
-/// What libcurl hands over; fewer bytes returned than given end the transfer.
+/// Takes bytes from libcurl. Returning fewer bytes than given ends the transfer.
 std::size_t take_body(char* bytes, std::size_t one, std::size_t count, void* of) {
     constexpr std::uint64_t longest_page = std::uint64_t{64} << 10;
     Job& job = *static_cast<Job*>(of);
@@ -154,7 +154,7 @@ class HttpClient::Worker {
         static const CURLcode ready = curl_global_init(CURL_GLOBAL_DEFAULT);
         multi_ = curl_multi_init();
         if (ready != CURLE_OK || multi_ == nullptr) throw std::bad_alloc();
-        // What takes no memory cannot lose a request.
+        // Memory is reserved now, so that no request can be lost later.
         running_.reserve(static_cast<std::size_t>(limits.requests));
         idle_.reserve(static_cast<std::size_t>(limits.requests));
         curl_multi_setopt(multi_, CURLMOPT_MAX_HOST_CONNECTIONS,
@@ -307,7 +307,7 @@ class HttpClient::Worker {
         // for the first answer to see whether it does would cost plain HTTP a round trip.
         if (job.request.url.starts_with("https:")) curl_easy_setopt(easy, CURLOPT_PIPEWAIT, 1L);
         curl_easy_setopt(easy, CURLOPT_USERAGENT, "palpate");
-        // Nothing is to be compressed for the way; what lies there compressed is unpacked.
+        // Asks for no compression in transfer. Compressed answers are unpacked all the same.
         curl_easy_setopt(easy, CURLOPT_ACCEPT_ENCODING, "");
         curl_easy_setopt(easy, CURLOPT_HTTPHEADER, headers_.get());
         const double bytes =

@@ -71,7 +71,7 @@ class HttpObjects : public Objects {
         return body_of({.key = key}, std::move(answer)) ? size : std::nullopt;
     }
 
-    /// Of the query, only a version is one of the object; signatures are other ones each time.
+    /// Only a version in the query belongs to the object. Signatures change each time.
     std::string version() const override {
         std::string all;
         const std::size_t at = query_.find("versionId=");

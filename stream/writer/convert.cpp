@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 /// series, filters).
 nlohmann::json source_of(const Store& from, int level, const std::stop_token& stop) {
     nlohmann::json source = {{"content", content_of(from, level, stop)}};
-    // Of what is not read whole, files that were written anew show what its samples may not.
+    // Of stores, only parts of the samples are hashed. Rewritten files show further changes.
     if (from.info().format == "memory") return source;
     source["files"] = files_at(from.info().address, stop);
     if (const auto* edits = dynamic_cast<const EditedStore*>(&from)) {

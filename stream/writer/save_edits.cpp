@@ -125,7 +125,7 @@ class Saving {
         }
     }
 
-    /// Of an edited brick.
+    /// Samples of an edited brick.
     Bytes edited(const SampleBox& box) const {
         Bytes samples(bytes_of(box, type()));
         with_type(type(), [&](auto zero) {
@@ -139,7 +139,7 @@ class Saving {
         return samples;
     }
 
-    /// Of the finer level, of which all that changed is written.
+    /// Means of the finer level, in which all changes are written already.
     Bytes means(std::size_t level, const SampleBox& box) const {
         const CoarserGrid& grid = levels_[level];
         const Geometry& finer = levels_[level - 1].geometry;
@@ -173,7 +173,7 @@ class Saving {
     const std::stop_token stop_;
 };
 
-/// Of the original, which must be the one that was opened.
+/// Content of the original, which must be the one that was opened.
 std::string checked_content(const Store& from, const Opened& opened, int level,
                             const std::stop_token& stop) {
     if (opened.is_rescue) return opened.content;
@@ -184,7 +184,7 @@ std::string checked_content(const Store& from, const Opened& opened, int level,
                           "put it back and save them again");
 }
 
-/// What the note says before anything is written: with what the store has of edits itself.
+/// The note before anything is written, with the edits that the store itself has.
 EditsNote note_for(const Store& from, const Opened& opened, int level, const Samples& edits,
                    const std::stop_token& stop) {
     const auto* edited = dynamic_cast<const EditedStore*>(&from);

@@ -15,7 +15,7 @@ namespace {
 
 /// A sample may be so many pixels wide before a finer level is worth it.
 constexpr double coarse_enough = 1.4;
-/// Of what is seen of a slice, beyond each edge.
+/// Margin beyond each edge of the visible part of a slice, relative to its size.
 constexpr double wider = 0.25;
 /// Layers of a slice's box: at least those that a smooth field needs, at most this many.
 constexpr int fewest_layers = 4, most_layers = 16;
@@ -132,7 +132,7 @@ bool has_slice(const SeenStore& store, const stream::DetailBox& box, const SeenB
 namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
-/// Of what is seen, beyond each side, so that a small move needs nothing new.
+/// Margin on each side of the visible part, so that a small move needs nothing new.
 constexpr double room_around = 0.1;
 /// Fine samples beyond the planes: the cells and normals of a smooth surface need them.
 constexpr int beyond = 2;
@@ -184,7 +184,7 @@ bool is_inside(const PatchChoice& patch, const Bounds& bounds) {
            (bounds.high.array() <= patch.high.array()).all();
 }
 
-/// What is wanted, without the margin for small moves.
+/// The wanted part, without the margin for small moves.
 struct Wanted {
     int level;
     Bounds bounds;

@@ -31,7 +31,7 @@ void put_first(std::vector<SeenSurface>& surfaces, const Layers& layers, std::si
     surfaces.insert(surfaces.begin(), all.begin(), all.end());
 }
 
-/// What counts where neither a layer nor a curve says it.
+/// The value that holds if neither a layer nor a curve gives one.
 double of_session(HapticProperty property, const RendererSettings& settings) {
     using enum HapticProperty;
     switch (property) {

@@ -17,7 +17,7 @@ constexpr std::size_t most_unnamed = 64;
 /// Nor can so many be shown.
 constexpr std::size_t most_labels = 512;
 
-/// Where each whole number but 0 lies; empty where the samples are no such, or too many.
+/// The place of each whole number but 0. Empty if samples are not whole, or differ too much.
 template <class T>
 std::map<int, SampleBox> boxes_of(const Volume& volume, std::size_t most) {
     std::map<int, SampleBox> boxes;

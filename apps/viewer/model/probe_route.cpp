@@ -23,7 +23,7 @@ double front_of(const DepthExtent& extent) {
     return extent.front + 0.02 * (extent.front - extent.back);
 }
 
-/// What the cuts leave of the line through `at` between these depths. Nothing: nothing.
+/// The part of the line through `at`, between these depths, that the cuts leave. Or nothing.
 std::optional<DepthExtent> part_seen(DepthExtent line, const Vec3& at, const Vec3& towards,
                                      std::span<const CutPlane> cuts) {
     for (const CutPlane& cut : cuts) {

@@ -154,7 +154,7 @@ namespace {
 using Row = Eigen::ArrayXf;
 using RowView = Eigen::Map<const Row>;
 
-/// Of samples, times the sign of what is solid, that go into the same coarse ones.
+/// Sums of the samples that form one coarse sample, times the sign of the solid side.
 struct Sums {
     Row mean, most;
 

@@ -251,7 +251,7 @@ std::string name_from(const std::string& volume, const std::filesystem::path& fo
     return (outside ? whole : below).string();
 }
 
-/// The same settings with another name of the label volume, where there is one.
+/// The same settings with another name of the label volume, if they have one.
 RendererSettings with_label_volume(RendererSettings settings,
                                    const std::function<std::string(const std::string&)>& name) {
     if (!settings.layers || settings.layers->label_volume.empty()) return settings;
@@ -312,7 +312,7 @@ SessionHand hand_from(const Json& json, const std::filesystem::path& folder) {
     return hand;
 }
 
-/// Those beside the first.
+/// The hands in addition to the first one.
 std::vector<SessionHand> others_from(const Json& json, const std::filesystem::path& folder) {
     std::vector<SessionHand> others;
     const auto hands = json.find("hands");

@@ -14,7 +14,7 @@
 namespace palpate::viewer {
 namespace {
 
-/// What the table of settings does not say.
+/// Words that the table of settings does not contain.
 struct RowWords {
     const char* name;   // of the row: "force_limit" for the title "force limit"
     double high, step;  // of the slider, the box
@@ -73,7 +73,7 @@ struct ForceRows {
          QT_TR_NOOP("Greatest change of the torque [N mm/s]; a stop may drop it at once")}};
 };
 
-/// What the table says of a number.
+/// The facts of the table about a number.
 struct TableNumber {
     std::string path;  // "force.limit"
     const char* unit;

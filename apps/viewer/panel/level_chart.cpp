@@ -246,7 +246,7 @@ LevelChart::Handle LevelChart::band_handle(double x) {
     const int end = nearest(2 * bands_.size(), reach, [&](std::size_t i) {
         const bool low = i % 2 == 0;
         const double level = low ? bands_[i / 2].low : bands_[i / 2].high, at = a.x_of(level);
-        // Of two ends in one place the one on the pointer's side, or a closed band could not open.
+        // Of equal ends, takes the one on the pointer's side, so that a closed band can open.
         const bool outside = low ? x < at : x > at;
         return std::isfinite(level) ? std::abs(x - at) - (outside ? 0.01 : 0) : infinity;
     });

@@ -121,7 +121,7 @@ void Panel::raise_page(const QWidget& section) {
     }
 }
 
-/// Where a command is asked for.
+/// Shows the answer in the section that the command belongs to.
 void Panel::answer(const Command& command, const QString& why) {
     const char* const part =
         std::visit(Overloaded{[](const command::Isovalue&) { return "isovalue_part"; },

@@ -18,7 +18,7 @@
 namespace palpate::viewer {
 namespace {
 
-/// What is shown; while it is off, it is kept for later.
+/// The values that are shown. While penetrability is off, they are kept for later.
 struct Pressing {
     bool on = false;
     double threshold = 1;  ///< PT [device mm]
@@ -151,7 +151,7 @@ class PenetrabilityControls : public EffectForm {
         std::ranges::sort(shown_.ranges, {}, &DensityRange::low);
     }
 
-    /// What cannot be is refused there, or here in words.
+    /// Invalid values are refused by the effect, or here with a message.
     void request() {
         if (!effect_.there()) return;
         try {

@@ -103,7 +103,7 @@ bool TimelineTrack::event(QEvent* event) {
     return QAbstractSlider::event(event);
 }
 
-/// What is in memory, and one line for each frame; fewer where they would run together.
+/// Paints the frames in memory, and a line for each frame, or for fewer if lines would touch.
 void TimelineTrack::paint_frames(QPainter& painter) const {
     constexpr double least_between = 3;  // pixels
     const QRectF box = plot();

@@ -40,9 +40,9 @@ struct MadeTool {
     double spacing = 0;                ///< [mm] of its points
 };
 
-/// Of the tool `scale` times as large. Points are half a voxel apart, or farther where that would
-/// be more than two thousand, which a tick has time for. Throws std::invalid_argument for what is
-/// no tool.
+/// Makes the tool, `scale` times as large. Its points are half a voxel apart, or farther if there
+/// would be more than two thousand, for which a tick has no time. Throws std::invalid_argument if
+/// the file is no tool.
 MadeTool made_tool(const io::ToolSpec& spec, double scale, const Geometry& geometry) {
     constexpr std::size_t most_points = 2000;
     if (std::holds_alternative<io::PointSpec>(spec)) return {};
@@ -98,7 +98,7 @@ ToolControls::ToolControls(Effect& effect) : EffectForm(effect) {
     refresh();
 }
 
-/// Of another volume: sizes suit it. Tools of files stay.
+/// For another volume: offers sizes that suit it, and keeps tools of files.
 void ToolControls::begin() {
     const Geometry& geometry = effect_.field().geometry();
     if (geometry.size == geometry_.size && geometry.spacing == geometry_.spacing) return;

@@ -20,8 +20,8 @@ constexpr double slow_seconds = 0.05;
 /// The part of the look that is rendered here; the window draws the rest over it.
 Look rendered_part(Look look) {
     look.contact = look.tetrahedra = look.planes = look.orientation = look.scale_bar = false;
-    // Of the slices beside the scene: those in it are grey, and an overlay's surfaces come with
-    // set_overlay(), coloured already.
+    // These colours are for the slices beside the scene. Slices in the scene are grey, and the
+    // surfaces of an overlay already have colours (set_overlay()).
     look.colours = {};
     look.overlay = {};
     if (!look.volume) {

@@ -121,7 +121,7 @@ void add_planes(std::vector<Mark>& marks, const std::vector<LocalTetrahedron>& a
     marks.back().faint = 0;
 }
 
-/// Of what is felt at the proxy, as in the paper's figures.
+/// Marks for the lattice at the proxy, as in the paper's figures.
 void add_lattice(std::vector<Mark>& marks, const SeenHand& hand, const Look& look,
                  const Field& field, const MarkView& view, const Colour& ink) {
     if (!look.tetrahedra && !look.planes) return;

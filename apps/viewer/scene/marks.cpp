@@ -109,7 +109,7 @@ void Annotations::show_bar(const Content& what) {
     text_->SetPosition(bar.middle, 1.6 * em);
 }
 
-/// Beside the middle of a length, and the corner of an angle.
+/// Shows words beside the middle of a length, and beside the corner of an angle.
 void Annotations::show_words(const Content& what) {
     while (words_.size() < what.measurements.size()) {
         auto text = vtkSmartPointer<vtkTextActor>::New();

@@ -73,7 +73,7 @@ class OffscreenRenderer {
     OffscreenRenderer(const std::atomic<bool>& give_up, bool hardware);
     ~OffscreenRenderer();
 
-    /// Nothing if it was cancelled. Throws std::runtime_error if OpenGL fails.
+    /// Returns nothing if it was cancelled. Throws std::runtime_error if OpenGL fails.
     std::optional<RenderedImage> draw(const RenderRequest& request);
 
   private:

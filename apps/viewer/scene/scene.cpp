@@ -234,8 +234,8 @@ void Scene::refresh() {
     refresh_.start(0);
 }
 
-/// Where a hand presses through the surface: it stays until the proxy has moved by a part of a
-/// voxel.
+/// Shows a piece of the surface at a hand that presses through. It stays until the proxy has moved
+/// by a part of a voxel.
 void Scene::show_patch(const Field& field) {
     for (SeenHand& hand : parts_->hands) hand.patch = nullptr;
     const std::optional<double>& pressed = parts_->shown.pressed;

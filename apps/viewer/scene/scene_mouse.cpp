@@ -34,7 +34,7 @@ Scene::Drag Scene::drag_of(const QMouseEvent& event) const {
     }
 }
 
-/// Of the cut, near the pointer.
+/// The handle of the cut that is near the pointer.
 std::optional<std::size_t> Scene::handle_at(const QPointF& at) const {
     constexpr double reach_px = 10;
     const auto& field = parts_->background.field();

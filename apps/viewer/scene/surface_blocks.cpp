@@ -64,7 +64,7 @@ struct Placing {
     }
 };
 
-/// Of each vertex of the mesh in index space, by the area of the facets round it.
+/// Normals of the vertices of a mesh in index space, weighted by the areas of the facets around.
 std::vector<Vector3f> facet_normals(SurfaceMesh mesh, const Placing& place) {
     for (Vec3& v : mesh.vertices) v = place(v);
     return pictures::mesh_normals(mesh);

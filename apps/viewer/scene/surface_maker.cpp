@@ -142,7 +142,7 @@ bool SurfaceMaker::is_due() const {
     return std::ranges::any_of(growing_, &Growing::due);
 }
 
-/// What is due, and then what grows.
+/// Overdue work comes first, then growing surfaces.
 SurfaceMaker::Growing* SurfaceMaker::next_work() {
     auto found = std::ranges::find_if(growing_, &Growing::due);
     if (found == growing_.end()) {

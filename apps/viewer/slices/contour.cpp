@@ -14,7 +14,7 @@ struct Node {
     double u = 0, v = 0, depth = 0;
 };
 
-/// Of a field that is linear in the triangle.
+/// Cuts a triangle in which the field is linear.
 void cut_triangle(const Node& a, const Node& b, const Node& c, std::vector<ContourPiece>& pieces) {
     const bool in_a = a.depth > 0, in_b = b.depth > 0, in_c = c.depth > 0;
     if (in_a == in_b && in_b == in_c) return;

@@ -116,13 +116,13 @@ SliceStyle SlicePane::style() const {
             look.overlay};
 }
 
-/// Of the slice through the crosshair, along the grid axis. The samples follow when it is painted.
-/// Farther out than two layers all is the same.
+/// Layer of the slice through the crosshair, along the grid axis. The samples follow when it is
+/// painted. Beyond two layers outside of the grid, all layers are the same.
 double SlicePane::layer() const {
     return std::clamp(plane().point(shown_.crosshair)[2], -2.0, plane().layers() + 1.0);
 }
 
-/// The same in another grid; whole where it is but for rounding.
+/// The same in another grid. A layer that is whole except for rounding becomes whole.
 double SlicePane::layer_in(const SlicePlane& other) const {
     if (other.grid == plane().grid) return layer();
     constexpr double hair = 1e-6;
@@ -189,9 +189,9 @@ void SlicePane::picture_changed() {
     update();
 }
 
-/// Where need be. A hand moves all the time, data may change all the time, and a slice of a large
-/// volume takes milliseconds: as long as only these have changed, most of the time is left to
-/// others, and it is drawn a little later.
+/// Draws the picture if needed. Hand and data may change all the time, and a slice of a large
+/// volume takes milliseconds. If only these have changed, the picture is drawn a little later, so
+/// that most of the time remains for others.
 void SlicePane::make_picture(const SliceMap& where) {
     Content& c = *content_;
     const double scale = devicePixelRatioF();
@@ -247,8 +247,8 @@ const DetailField* SlicePane::shown_detail() const {
     return begins && ends ? content_->finer.get() : nullptr;
 }
 
-/// Where the finer part is drawn: not at its edges, where samples that a contour needs are outside,
-/// but up to the end of the data and beyond.
+/// The part with finer samples. It excludes its edges, because a contour needs samples beyond them,
+/// but reaches to the end of the data and beyond.
 std::optional<FinerSlice> SlicePane::finer_slice(const SliceMap& where) {
     const DetailField* const finer = shown_detail();
     if (!finer) return std::nullopt;
@@ -267,7 +267,7 @@ std::optional<FinerSlice> SlicePane::finer_slice(const SliceMap& where) {
     return FinerSlice{&samples, map, drawn & QRectF(rect())};
 }
 
-/// Of the finest data that are there.
+/// Value of the finest data that is loaded.
 double SlicePane::value_there(const Vec3& physical) const {
     const DetailField* const finer = shown_detail();
     if (!finer) return value_at(content_->samples.field(), physical);

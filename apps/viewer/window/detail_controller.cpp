@@ -13,7 +13,7 @@
 namespace palpate::viewer {
 namespace {
 
-/// What decoded pieces may take: a quarter of what the hand has, but enough for a screen.
+/// Memory for decoded pieces: a quarter of the hand's, but enough for a screen.
 constexpr std::uint64_t least_memory = std::uint64_t{1} << 27, memory_part = 4;
 constexpr std::int64_t most_slice_samples = 1 << 21, most_patch_samples = 1 << 24;
 constexpr std::int64_t most_pieces = 1 << 16;
@@ -112,7 +112,7 @@ std::optional<int> DetailController::level_of_slice(const std::optional<SeenBox>
     return seen ? level_for(store_, *seen, limits) : std::nullopt;
 }
 
-/// What is wanted for this slice is what it needs.
+/// Whether the part that was requested is the one that this slice needs.
 bool DetailController::has(int axis, const std::optional<SeenBox>& seen) const {
     const auto& wanted = wanted_[static_cast<std::size_t>(axis)];
     const auto level = level_of_slice(seen);

@@ -22,8 +22,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Of a stack thinner than this part of its next longer side, as it lies on a screen: rows to the
-/// right, and down or towards the head. 0: of a single slice.
+/// The view of a stack that is thinner than this part of its next longer side, face on: rows to the
+/// right, and down or towards the head. 0 is for a single slice.
 std::optional<pictures::View> face_on(const Geometry& geometry, double is_thin) {
     int thin = 0;
     Vec3 sides = (geometry.size.cast<double>() - Vec3::Ones()).cwiseProduct(geometry.spacing);
@@ -161,7 +161,7 @@ void DisplayController::use_usual_look() {
     const Volume& volume = opened.loaded.volume;
     Look look = panel_.look_controls().look();
     look.transfer = preset(suggested_preset(opened.histogram, volume), opened.histogram, volume);
-    // Of the volume before.
+    // These belong to the previous volume.
     look.surfaces.clear();
     look.cut = Cut::nothing;
     look.overlay = {};

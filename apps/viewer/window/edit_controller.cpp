@@ -24,7 +24,7 @@
 namespace palpate::viewer {
 namespace {
 
-/// What opens such a file or folder again.
+/// The source that opens this file or folder again.
 run::Source source_of(const QString& path, const Volume& volume) {
     run::Source source =
         run::source_from({{"volume", QFileInfo(path).absoluteFilePath().toStdString()}});
@@ -154,7 +154,7 @@ void EditController::save(const QString& path, std::function<void()> then) {
         [file, data](const io::Progress& progress) { data->save(file, progress); },
         [this, path, words, data, then = std::move(then)] {
             if (content_.editor()) {  // of a sequence only one frame was saved
-                // What it is can be seen only now.
+                // The source can be determined only now.
                 content_.set_saved(source_of(path, data->loaded().volume));
                 remember_file(path);
             }

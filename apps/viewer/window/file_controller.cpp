@@ -26,7 +26,7 @@ std::filesystem::path path_of(const QString& name) {
     return std::filesystem::path(name.toStdString());
 }
 
-/// The same source, its grid lying otherwise.
+/// The same source with another place of its grid.
 run::Source with_grid(run::Source source, const io::GivenGrid& grid) {
     const auto put_into = [&](auto& options) {
         options.spacing = grid.spacing;
@@ -183,7 +183,7 @@ void FileController::feel(std::shared_ptr<Opened> opened, const RunRequest& requ
     tell_choices(*opened);
 }
 
-/// Of a store with several channels or times one is felt.
+/// Says how many channels and times a store has, of which one is touched.
 void FileController::tell_choices(const Opened& opened) {
     if (!opened.loaded.streamed) return;
     const stream::StoreInfo& info = opened.loaded.streamed->store->info();

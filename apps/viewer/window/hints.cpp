@@ -173,7 +173,7 @@ void Hints::observe(const HandSnapshots& hands, bool brush) {
     say(*recording_, clock, {scene_.width() - 3 * line, line});
 }
 
-/// What is wrong with a device, and whose it is, where there are several; empty: nothing.
+/// The problem of a device, with its hand if there are several. Empty if there is none.
 QString Hints::problem_of_hands() const {
     QStringList words;
     for (int hand = 1; hand <= content_.hands() && content_.hands() > 1 && content_.live();
@@ -185,7 +185,7 @@ QString Hints::problem_of_hands() const {
     return words.join('\n');
 }
 
-/// Beside each hand, where there are several.
+/// Shows a number beside each hand, if there are several.
 void Hints::show_numbers(const HandSnapshots& hands) {
     for (int hand = 1; hand <= most_hands; ++hand) {
         const auto& now = hands[hand];
@@ -202,7 +202,7 @@ void Hints::show_numbers(const HandSnapshots& hands) {
     }
 }
 
-/// Beside the hand, while it presses with the mouse.
+/// Shows the depth beside the hand, while it presses with the mouse.
 void Hints::show_depth(const std::optional<Snapshot>& now) {
     const bool presses = now && content_.live()->mouse() &&
                          now->session.tick.proxy.mode == Mode::constrained &&

@@ -195,7 +195,7 @@ void MainWindow::show_title() {
     setWindowTitle(tr("%1[*]%2 – Palpate").arg(volume, session));
 }
 
-/// What the file does not say of its grid, and the names of the views that depend on it.
+/// Shows which facts about the grid are missing, and names the views accordingly.
 void MainWindow::show_grid() {
     const Geometry& grid = content_.volume()->loaded.volume.geometry();
     name_views(grid.oriented);
@@ -261,7 +261,7 @@ void MainWindow::restore_layout() {
     restoreState(settings.value("state").toByteArray());
 }
 
-/// But for the appearance, which is the application's.
+/// Uses all preferences but the appearance, which belongs to the application.
 void MainWindow::use(const Preferences& preferences) {
     const auto& volume = content_.volume();
     Shown next = views_->shown();
@@ -333,7 +333,7 @@ void MainWindow::show_readout(const Snapshot& now) {
     readout_->setText(words);
 }
 
-/// Of a store: levels, and what is missing. Words that stay the same cost nothing.
+/// Shows levels and missing data of a store. Unchanged words are not drawn again.
 void MainWindow::show_streaming() {
     streaming_->setVisible(details_.active());
     if (!details_.active()) return;

@@ -243,7 +243,7 @@ QString product(const Vec3& spacing) {
     return number(spacing[0]) + " x " + number(spacing[1]) + " x " + number(spacing[2]);
 }
 
-/// Of a request, while somebody waits before a dialog.
+/// Attempts of a request while somebody waits for a dialog.
 constexpr int most_attempts = 2;
 constexpr double timeout_s = 5;
 

@@ -21,7 +21,7 @@ namespace {
 
 /// So near to the probe a click takes hold of it where it is [pixels].
 constexpr double grab_px = 14;
-/// And no farther than this before or behind the surface that is clicked.
+/// Farthest distance before or behind the clicked surface.
 constexpr double grab_voxels = 3;
 /// A click presses with this force, and no deeper than this [device mm].
 constexpr double touch_newtons = 0.3, deepest_touch = 3;
@@ -195,7 +195,7 @@ void ProbeController::touch(const Vec3& at) {
     const double stiffness = content_.live()->settings().force.stiffness;
     const double depth = transform.scale * std::min(touch_newtons / stiffness, deepest_touch);
     send_to(transform, *surface - depth * towards);
-    // What is cut away would stop the proxy: it is put down behind that, just off what is seen.
+    // Parts that are cut away would stop the proxy: it starts behind them, off the visible part.
     behind_cut_ = !cuts.empty();
     if (behind_cut_) route_.insert(route_.begin() + 1, *surface + off_voxels * voxel * towards);
 }

@@ -202,7 +202,7 @@ QDialog* make_first_steps_dialog(QWidget* window) {
 
 QDialog* make_shortcuts_dialog(QWidget* window) {
     QString text = heading(Help::tr("Keys"));
-    // Those of the menus before those that need the focus in the scene.
+    // Actions of the menus come before those that need the focus in the scene.
     auto actions = window->findChildren<QAction*>();
     std::stable_partition(actions.begin(), actions.end(), [](const QAction* action) {
         return action->shortcutContext() == Qt::WindowShortcut;
