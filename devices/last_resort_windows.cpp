@@ -56,14 +56,14 @@ struct Before {
 std::mutex changes;
 Before before;
 
-/// Every exception that nobody handles: access violations, divisions by zero, stacks that run out,
+/// Every unhandled exception: access violations, divisions by zero, stacks that run out,
 /// those that a program raises itself.
 LONG WINAPI on_exception(EXCEPTION_POINTERS* exception) {
     let_go();
     return before.filter ? before.filter(exception) : EXCEPTION_CONTINUE_SEARCH;
 }
 
-/// abort(), and with it a C++ exception that nobody catches.
+/// abort(), and with it an uncaught C++ exception.
 void on_abort(int number) {
     let_go();
     std::signal(number, before.abort);

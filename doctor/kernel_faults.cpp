@@ -10,7 +10,7 @@
 namespace palpate::doctor {
 namespace {
 
-/// Later than this is felt at 1000 Hz.
+/// A hand feels a greater lateness at 1000 Hz.
 constexpr double slow_exit_us = 100;
 constexpr double memory_needed = 512.0 * 1024 * 1024;  // bytes
 

@@ -1,6 +1,6 @@
 // Reads /sys/bus/usb/devices, and has the table of the devices that Palpate can use. The numbers
 // are those of the vendors' udev rules and of the drivers named in docs/devices; no Haply device is
-// in it: nobody has published its numbers.
+// in it, because its numbers are not published.
 #include "doctor/usb.hpp"
 
 #include <sys/stat.h>

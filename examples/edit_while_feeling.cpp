@@ -1,5 +1,5 @@
-// An application that edits the data while it is felt: it drills, fills a box and undoes an edit
-// while a servo runs.
+// An application that edits the data while a hand touches it: it drills, fills a box and undoes an
+// edit while a servo runs.
 #include <chrono>
 #include <cstdio>
 #include <thread>

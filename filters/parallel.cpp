@@ -1,4 +1,4 @@
-// Pieces of work on several threads: each thread takes the next piece that nobody has taken.
+// Pieces of work on several threads: each thread takes the next piece that is not taken yet.
 #include "filters/parallel.hpp"
 
 #include <algorithm>

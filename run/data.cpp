@@ -34,7 +34,7 @@ std::vector<std::filesystem::path> places_of_rescue() {
     return places;
 }
 
-/// For nobody else: in a folder of temporary files, others could put links in our way.
+/// With access for this user only: in a folder of temporary files, others could put links.
 std::filesystem::path new_folder_in(const std::filesystem::path& place) {
     std::random_device random;
     std::filesystem::path folder;

@@ -89,7 +89,7 @@ FileSource with_layout(FileSource file, const Names& names) {
     return file;
 }
 
-/// A plain file of at least this size is read as it is felt [bytes].
+/// A plain file of at least this size is read while it is touched [bytes].
 constexpr std::uintmax_t large_file = std::uintmax_t{2} << 30;
 
 bool is_large(const std::string& path) {

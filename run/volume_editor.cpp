@@ -46,7 +46,7 @@ std::uint64_t bytes_of_edits(const Samples& samples) {
     return bricks ? bricks->size() * Bricks::per_brick * size_of(samples.type()) : 0;
 }
 
-/// One more to the bytes that edits take of a volume that is read as it is felt.
+/// Adds a brick to the bytes that the edits of a store take.
 void count_brick(std::uint64_t& bytes, const Samples& samples, std::uint64_t memory) {
     bytes += Bricks::per_brick * size_of(samples.type());
     if (bytes > memory / edits_part) {

@@ -1,5 +1,5 @@
-// Field: reads samples anywhere: in runs where they lie in one array as they are felt, else one by
-// one, from background, labels, edits, bricks of a large grid and two frames.
+// Field: reads samples anywhere. Samples in one plain array are read in rows, others one by one:
+// from background, labels, edits, bricks of a large grid and two frames.
 #include "palpate/field.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace palpate {
 namespace {
 
-/// Data at most this many times their range from zero are felt as they are: there the tolerance is
+/// Data at most this many times their range from zero are used as they are: there the tolerance is
 /// 9.3e-10 of the range, just within what G1 and G2 grant. From others an offset is taken.
 constexpr double most_ranges_from_zero = 1 << 19;
 

@@ -1,4 +1,4 @@
-// Reach: balls round the hand's goal, and the bricks that they touch.
+// Reach: balls around the hand's goal, and the bricks that they touch.
 #include "reach.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ bool is_resident(const Field& field, const Vec3& centre, double radius) noexcept
     if (!resident) return true;
     const Vec3 at = index_from_physical(field.geometry(), centre);
     const Index3& size = field.geometry().size;
-    Index3 low, high;  // samples round the ball, and the bricks that they lie in
+    Index3 low, high;  // samples around the ball, and the bricks that they lie in
     for (int a = 0; a < 3; ++a) {
         const double reach = radius * field.voxels_per_mm()[a] + around, last = size[a] - 1;
         if (!(at[a] - reach <= last && at[a] + reach >= 0)) return true;  // background

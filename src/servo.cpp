@@ -227,7 +227,7 @@ bool Servo::push(const CheckedCommand& checked) {
     return false;
 }
 
-/// Drops objects that nobody else holds any more, and holds this one: once, however often it is
+/// Drops objects that nothing else holds any more, and holds this one: once, however often it is
 /// sent, because with two entries it would never look unused.
 void Servo::hold(const std::shared_ptr<const void>& sent) {
     if (!sent) return;

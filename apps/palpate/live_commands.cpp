@@ -157,7 +157,7 @@ std::optional<Request> LiveCommands::from_key(char key, const Snapshot& now) {
             return command::Scale{now.session.transform.scale * 1.1};
         case 'p':
             if (now.penetrability_on) return Command(no_penetrability());
-            // From what is felt now, unless something else was asked for before.
+            // From the present isovalue on, unless penetrability was set before.
             return Command(
                 penetrability_.value_or(penetrability_threshold(1, isovalue, field_.solid())));
         case 'l':

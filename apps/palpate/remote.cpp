@@ -16,7 +16,7 @@
 namespace palpate::app {
 namespace {
 
-/// Commands that change what is felt, and nothing beyond the run.
+/// Commands that change the settings of touch, and nothing beyond the run.
 constexpr std::array allowed{"isovalue", "stiffness",     "damping", "viscosity", "friction",
                              "freeze",   "penetrability", "clutch",  "scale",     "undo",
                              "redo",     "play",          "pause",   "step",      "seek"};

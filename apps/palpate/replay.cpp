@@ -96,7 +96,7 @@ void validate(const std::string& recording, const std::string& volume, bool quie
     }
 }
 
-/// A recording says itself how it was felt.
+/// A recording contains its own settings.
 void refuse_other_options(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();

@@ -1,4 +1,4 @@
-// The program palpate-viewer: a window in which a volume is seen and felt.
+// The program palpate-viewer: a window in which you see and touch a volume.
 #include <QVTKOpenGLNativeWidget.h>
 #include <vtkObject.h>
 
@@ -61,7 +61,7 @@ int show(QApplication& application, const app::ViewOptions& options) {
     if (!options.screenshot.empty()) window.messages().set_unattended();
     window.show();
     open(window, options);
-    // A signal ends the window at once: forces go to zero, nobody is asked.
+    // A signal ends the window at once: forces go to zero, without a question.
     QTimer signals;
     QObject::connect(&signals, &QTimer::timeout, [&] {
         if (stop_signal != 0) window.end();

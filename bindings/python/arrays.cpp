@@ -34,7 +34,7 @@ std::string why_not_shared(const py::array& array) {
     return {};
 }
 
-/// Keeps a Python object while somebody holds the pointer, whatever thread lets go of it.
+/// Keeps a Python object while the pointer is held. Any thread may release the pointer.
 std::shared_ptr<const void> kept_by(py::object owner, const void* data) {
     PyObject* const held = owner.release().ptr();
     return {data, [held](const void*) {

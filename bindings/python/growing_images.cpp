@@ -82,7 +82,7 @@ void make_coarser(const stream::GrowingImage& image, int level, const Index3& lo
     });
 }
 
-/// Python does not say when an object goes, so a folder is let go explicitly.
+/// Python does not say when an object is deleted, so a folder is released explicitly.
 struct Folder {
     std::unique_ptr<io::GrowingFolder> grown;
 

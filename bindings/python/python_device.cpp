@@ -149,7 +149,7 @@ void PythonDevice::step() {
     }
     const bool rests = now < rests_until_;
     // Taken after the GIL was waited for, so that an old force is not sent, and before the servo
-    // knows this reading: after a silence the first force is that of a servo that has let go.
+    // knows this reading: after a silence the first force is that of a servo that has released it.
     const Wrench newest = link_.wrench(now);
     if (rests) {
         link_.report(DeviceStatus::fault, now);

@@ -90,7 +90,7 @@ std::optional<FromDevice> Port::exchange(const ToDevice& message, int most_waits
     if (!is_answered_) forget_late_answer();
     is_answered_ = false;
     write(packed(message));
-    // More than one packet may have come while nobody read: the newest counts.
+    // More than one packet may have come since the last reading: the newest counts.
     std::array<unsigned char, most_at_once> bytes{};
     std::size_t count = 0;
     for (int waits = 0; waits < most_waits;) {

@@ -266,7 +266,7 @@ void note_spacings(const Transform& sform, const Header& header, double unit,
     }
 }
 
-/// False where the header says nothing of the grid's place in the body.
+/// False if the header does not give the grid's place in the body.
 bool is_placed(const Header& header) {
     return header.code(qform_code) > 0 || header.code(sform_code) > 0;
 }

@@ -28,7 +28,7 @@ std::string field_named(const std::string& name) {
     return found == names.end() ? name : found->second;
 }
 
-/// Fields that say something of the samples but are not used.
+/// Fields that describe the samples but are not used.
 void note_ignored(const HeaderFields& fields, std::vector<std::string>& notes) {
     static const std::set<std::string> known = {
         // of the file

@@ -21,7 +21,7 @@ extern "C" void keep_error(const char*, const char* format, va_list arguments) {
     first_error = text;
 }
 
-/// Most warnings are about tags that nobody knows.
+/// Most warnings are about unknown tags.
 extern "C" void keep_warning(const char*, const char* format, va_list) {
     guessed_lengths = guessed_lengths || std::strstr(format, "StripByteCounts") != nullptr;
 }

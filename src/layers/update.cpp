@@ -209,7 +209,7 @@ class LayersTick {
     /// `out`: unit normal of the surface.
     void insert_needle(const Vec3& out) {
         const Vec3 pull = (update_.hip - update_.scp).normalized();
-        // A tool that points along the surface or out of it says nothing.
+        // A tool that points along the surface or out of it gives no direction.
         const bool points = input_.pointing.dot(-out) > 0.2;
         NeedleState& needle = state_.needle;
         needle = {};

@@ -12,7 +12,7 @@ namespace {
 constexpr double resting_slope = 1e-4;
 /// The same limit in voxels of the smallest spacing.
 constexpr double least_distance = 1e-7;
-/// Below this slope [range / voxel] the normal says nothing.
+/// Below this slope [range / voxel] the normal gives no direction.
 constexpr double least_slope = 1e-5;
 /// Bend across the way to the target, relative to the way, above which the target's foot lies in
 /// another direction.

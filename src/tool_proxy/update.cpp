@@ -26,7 +26,7 @@ constexpr int most_failures = 8;
 constexpr int most_rounds = 60;
 /// Longest motion with nothing near [voxel].
 constexpr double longest_stride = 64;
-/// Slope of the field [range / voxel] below which its normal says nothing.
+/// Slope of the field [range / voxel] below which its normal gives no direction.
 constexpr double least_slope = 1e-9;
 
 Six six(const Vec3& a, const Vec3& b) {

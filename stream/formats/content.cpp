@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// XXH64, seed 0 (https://github.com/Cyan4973/xxHash): fast, well spread, no protection against
-/// somebody who wants two contents to look alike.
+/// a person who wants two contents to look alike.
 class ContentHash {
   public:
     ContentHash() { XXH64_reset(&state_, 0); }

@@ -1,4 +1,4 @@
-// A store with edits on top, and the note that says of what it is. See the header.
+// A store with edits on top, and the note that names its original. See the header.
 #include "stream/formats/edited_store.hpp"
 
 #include <nlohmann/json.hpp>

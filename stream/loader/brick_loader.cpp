@@ -253,7 +253,7 @@ bool BrickLoader::Parts::has(const Index3& brick, int level) const {
     return held != held_.end() && held->second.level <= level;
 }
 
-/// Needs the lock. What somebody waits for comes first, whatever the hands need.
+/// Needs the lock. Bricks that a caller waits for come first, whatever the hands need.
 void BrickLoader::Parts::want(std::vector<Index3> bricks) {
     wanted_.clear();
     for (const Waiting& waiting : waiting_) {

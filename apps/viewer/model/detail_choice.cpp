@@ -155,7 +155,7 @@ Bounds bounds_of(const SeenStore& store, const SeenPoints& seen, double radius) 
     return bounds;
 }
 
-/// Whole cells round the bounds, and one more on each side, in which the fields become one.
+/// Whole cells around the bounds, and one more on each side, in which the fields become one.
 PatchChoice cells_round(const SeenStore& store, int level, const Bounds& bounds,
                         Interpolation interpolation) {
     const double begin = interpolation == Interpolation::cubic ? -0.5 : 0;

@@ -14,7 +14,7 @@ namespace {
 /// reaches two, and a sample of the overview shows edits up to a half away.
 constexpr double overview_reach = 2.5;
 
-/// The samples, of the grid that is felt, whose edits differ; null has none.
+/// The samples of the touched grid whose edits differ. Null has none.
 SampleBox edited_since(const Samples* before, const Samples& now) {
     if (before) return edited_between(*before, now);
     if (!now.bricks()) return {};

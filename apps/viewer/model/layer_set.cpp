@@ -177,7 +177,7 @@ std::optional<double> lowered_stiffness(const Layers& layers, std::size_t layer,
     force.stiffness = property_at(layers, layer, stiffness, settings);
     force.damping = property_at(layers, layer, damping, settings);
     force.viscosity = property_at(layers, layer, viscosity, settings);
-    // A label may have any other beside it.
+    // A label may have any other label as its neighbour.
     const std::size_t first = layers.by_label || layer == 0 ? 0 : layer - 1;
     const std::size_t end = layers.by_label ? layers.layers.size() : layer;
     if (first == 0) force.viscosity = std::max(force.viscosity, settings.force.viscosity);

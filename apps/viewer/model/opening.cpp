@@ -74,7 +74,7 @@ Opened open(const run::Source& source, const io::Progress& progress) {
     run::Histogram histogram = run::histogram_of(
         loaded.volume, bins, run::padding_of(loaded.volume, loaded.values.padding, counting),
         counting);
-    // An overview's rounding says nothing about the samples that are felt.
+    // The rounding of an overview differs from that of the touched samples.
     const bool none = source.dequantize > 0 || loaded.streamed;
     auto terraces = none ? std::nullopt : filters::terraces_of(loaded.volume, counting);
     progress(1);

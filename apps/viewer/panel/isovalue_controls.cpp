@@ -61,7 +61,7 @@ bool IsovalueControls::layered() const {
     return have_surfaces(effect_.settings().layers);
 }
 
-/// The isovalue does nothing while layers are felt, and follows the hand that presses through.
+/// The isovalue does nothing while layers are used, and follows the hand that presses through.
 QWidget* IsovalueControls::make_overruled() {
     auto* note = new Note("isovalue_overruled", Note::Kind::plain);
     QSizePolicy keeps_room = note->sizePolicy();  // so that what is below does not jump

@@ -183,7 +183,7 @@ void LevelChart::add_knot(const QPointF& at) {
     if (const int added = next.add(knot_of(at)); added >= 0) ask_curve(next, added);
 }
 
-/// The last ones stay: a curve without knots says nothing.
+/// The last ones stay, because a curve needs knots.
 void LevelChart::remove_knot(int knot) {
     CurveLine next = curve_;
     if (next.remove(knot)) ask_curve(next, -1);

@@ -137,7 +137,7 @@ void LookControls::add_surface() {
     });
 }
 
-/// The level of a surface becomes the isovalue, and the felt one takes its place.
+/// The level of a surface becomes the isovalue, and the previous isovalue takes its place.
 void LookControls::feel(std::size_t at) {
     if (!effect_.there()) return;
     const double felt = effect_.isovalue();

@@ -119,7 +119,7 @@ class PenetrabilityControls : public EffectForm {
         });
     }
 
-    /// First all is felt from the level into the solid.
+    /// At first, all levels from this one into the solid can be touched.
     void begin() override {
         constexpr double infinity = std::numeric_limits<double>::infinity();
         const Volume& volume = effect_.field().volume();
@@ -136,7 +136,7 @@ class PenetrabilityControls : public EffectForm {
         shown_ = {};
     }
 
-    /// While layers are felt, this rests.
+    /// While layers are used, this has no effect.
     void show_effect() {
         allow(*this, have_surfaces(effect_.settings().layers)
                          ? tr("Layers are felt: their surfaces give way by puncture forces. Choose "

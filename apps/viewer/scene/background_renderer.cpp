@@ -39,7 +39,7 @@ bool same_picture(const RenderRequest& a, const RenderRequest& b) {
            a.pixel_ratio == b.pixel_ratio;
 }
 
-/// The finer part comes at once as it is: coarser ones would not fit what is round it.
+/// The finer part is drawn at once as it is: coarser ones would not fit the parts around it.
 SurfaceLimits limits_of_patch() {
     SurfaceLimits limits;
     limits.most_triangles = 4'000'000;

@@ -99,7 +99,7 @@ void Scene::set_field(const Field& field, double isovalue) {
 
 void Scene::update_field(const Field& field) {
     parts_->background.update_field(field);
-    // The lattice round a proxy is that of the new version.
+    // The lattice around a proxy is that of the new version.
     if (std::ranges::any_of(parts_->hands, [](const auto& h) { return h.snapshot.has_value(); })) {
         refresh();
     }

@@ -75,7 +75,7 @@ std::vector<Vector3f> facet_normals(SurfaceMesh mesh, const Placing& place) {
 std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue,
                                              const Index3& cell, int edge, const Vec3& middle,
                                              const SurfaceBounds& bounds) {
-    // One more cell on every side; a cubic one, round a sample, has samples on both sides.
+    // One more cell on every side. A cubic one, around a sample, has samples on both sides.
     const bool is_smooth = field.interpolation() == Interpolation::cubic;
     const int more = is_smooth ? 2 : 1;
     const double begin = is_smooth ? -0.5 : 0;
@@ -103,7 +103,7 @@ std::shared_ptr<const RenderMesh> block_mesh(const Field& field, double isovalue
     const auto add_vertex = [&](std::uint32_t v) {
         const Vec3& index = mesh.vertices[v];
         const Vec3 slope = place.direction * slope_at(local, index).cwiseQuotient(place.spacing);
-        // The facet's where the slope says nothing (plateaus) or something else (thin sheets).
+        // The facet's normal, if the slope is zero (plateaus) or misleading (thin sheets).
         const Vector3f smooth = (-field.sign() * slope).normalized().cast<float>();
         const Vector3f normal = smooth.dot(facets[v]) > 0.3F ? smooth : facets[v];
         const Vector3f position =

@@ -325,7 +325,7 @@ std::vector<SliceWords> SlicePane::words_in() const {
     const int beside = width() / 2 - fontMetrics().height();  // the letter of the upper edge
     if (fontMetrics().horizontalAdvance(title()) > beside) corner.push_front("");
     all.push_back({Qt::AlignLeft | Qt::AlignTop, corner.join('\n')});
-    // Above the letter of the lower edge where there is no room beside it.
+    // Above the letter of the lower edge if there is no room beside it.
     const auto [low, high] = grey_window();
     QStringList grey{tr("W %1", "window, in the corner").arg(high - low, 0, 'g', 5),
                      tr("L %1", "level, in the corner").arg(0.5 * (low + high), 0, 'g', 5)};

@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint64_t least_memory = std::uint64_t{1} << 27, memory_part = 4;
 constexpr std::int64_t most_slice_samples = 1 << 21, most_patch_samples = 1 << 24;
 constexpr std::int64_t most_pieces = 1 << 16;
-/// Between two versions of what has not come as a whole: drawing and extracting take time.
+/// Interval between two incomplete versions, because drawing and extracting take time.
 constexpr std::chrono::milliseconds slice_interval{250}, patch_interval{1500};
 /// A view that is still for so long is worth a finer surface.
 constexpr qint64 rest_ms = 200;

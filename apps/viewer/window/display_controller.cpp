@@ -1,4 +1,4 @@
-// Keeps scene and slices at the snapshot, the data and the level that are felt or played.
+// Keeps scene and slices at the snapshot, the data and the level that are touched or played.
 #include "apps/viewer/window/display_controller.hpp"
 
 #include <Eigen/Geometry>

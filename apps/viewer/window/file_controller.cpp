@@ -116,7 +116,7 @@ void FileController::open_path(const QString& path) {
     if (path.endsWith(".json", Qt::CaseInsensitive)) return open_session(path);
     if (path.endsWith(".csv", Qt::CaseInsensitive)) return open_recording(path);
     messages_.guarded([&] {
-        // Looks at what it is: a store is felt while it is read.
+        // Finds out the kind of source: a store is touched while it is read.
         const run::Source source = run::source_from({{"volume", path.toStdString()}});
         lacks_layout(source) ? ask_layout(source) : open_volume(source);
     });

@@ -156,7 +156,7 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::run_started, this, &MainWindow::show_grid);
     connect(&content_, &Content::playback_started, this, &MainWindow::show_grid);
     connect(views_, &Views::grid_asked, actions_.find("choose_grid"), &QAction::trigger);
-    // Once the threads that draw have let go of it.
+    // Once the threads that draw have released it.
     connect(&content_, &Content::closed, this,
             [this] { QTimer::singleShot(give_back_ms, this, [] { malloc_trim(0); }); });
     const auto refresh = [this] { actions_.refresh(); };

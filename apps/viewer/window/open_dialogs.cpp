@@ -394,7 +394,7 @@ run::Source StoreDialog::source() const {
     store.options.channel = std::max(0, channel_->currentIndex());
     store.options.forbidden_is_missing = forbidden_->isChecked();
     store.all_times = time_->maximum() > 0 && all_times_->isChecked();
-    // They are for what is read as it is felt.
+    // They are for volumes that are read while they are touched.
     if (store.all_times) store.loader.whole_process = store.loader.coarse_first = false;
     run::Source source;
     source.from = std::move(store);

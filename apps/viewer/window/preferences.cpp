@@ -166,7 +166,7 @@ class PreferencesDialog : public Form {
                 choice({"preferred_theme", ""}, {tr("as the system"), tr("light"), tr("dark")},
                        of<int>(&Preferences::appearance)),
                 tr("Colours of the window"));
-        // Each language by its own name: whoever looks for it may not read the others.
+        // Each language by its own name, because people who need it may not read the others.
         add_row(*rows, tr("Language, from the next start"),
                 choice({"preferred_language", ""}, {tr("as the system"), "English", "Deutsch"},
                        of<int>(&Preferences::language)),

@@ -73,7 +73,7 @@ void Views::set_missing(const QString& words) {
     missing_->setVisible(!words.isEmpty());
 }
 
-/// The picture is coarser than the surface that is felt.
+/// The picture is coarser than the touched surface.
 Vec3 Views::on_surface(const Vec3& seen) const {
     const Vec3 near =
         1.5 * field_->geometry().spacing.maxCoeff() * axes_of(scene_->camera()).towards_viewer;
