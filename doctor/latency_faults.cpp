@@ -12,13 +12,13 @@ constexpr std::int64_t late_ns = 250'000;  // a quarter of a period
 /// The remedy for a machine that is late. Its other faults come first.
 std::string way_to_punctuality(const Facts& facts) {
     const Machine& machine = facts.machine;
-    if (facts.limits.priority_error != 0) return "mend real-time-priority first, and measure again";
+    if (facts.limits.priority_error != 0) return "fix real-time-priority first, and measure again";
     if (machine.is_virtual) {
-        return "run it on the machine itself: a virtual one waits for its host whenever that is "
+        return "run it on a physical machine: a virtual one has to wait when its host is "
                "busy";
     }
     if (machine.preemption != Preemption::real_time) {
-        return "mend the other faults first; then sudo apt install linux-image-rt-amd64, and "
+        return "fix the other faults first; then sudo apt install linux-image-rt-amd64, and "
                "reboot";
     }
     return "look for interruptions by the firmware: sudo apt install rt-tests; sudo hwlatdetect; "

@@ -195,7 +195,7 @@ std::string summary_of(const Facts& facts, const std::vector<Fault>& faults) {
         text += fmt::format("{:<10} {}\n", name, line);
     }
     for (const Fault& fault : faults) {
-        text += fmt::format("\n{} {}: {}\n  mend it: {}\n", fault.essential ? "MISSING" : "hint   ",
+        text += fmt::format("\n{} {}: {}\n  remedy: {}\n", fault.essential ? "MISSING" : "hint   ",
                             fault.name, fault.meaning, fault.remedy);
     }
     return text + "\n" + verdict(faults) + "\n";
@@ -209,7 +209,7 @@ std::string report_of(const Facts& facts, const std::vector<Fault>& faults,
     text += fmt::format("- kernel version: {}\n\n## Faults: {}\n\n", facts.machine.version,
                         verdict(faults));
     for (const Fault& fault : faults) {
-        text += fmt::format("- {}{}: {}\n  - mend it: `{}`\n", fault.name,
+        text += fmt::format("- {}{}: {}\n  - remedy: `{}`\n", fault.name,
                             fault.essential ? " (essential)" : "", fault.meaning, fault.remedy);
     }
     text += "\n## Devices\n\n" + devices_table(facts);

@@ -137,7 +137,7 @@ void LiveFrames::reopen() {
         auto reader = std::make_unique<LiveReader>(path_, settings_.memory_bytes);
         const LiveHeader& header = reader->header();
         if (!(header.geometry == header_.geometry) || header.type != header_.type) {
-            tell(path_.string() + ": was replaced by a source on another grid; open it anew");
+            tell(path_.string() + ": was replaced by a source on another grid; open it again");
             return;
         }
         missed_before_ += reader_->missed();

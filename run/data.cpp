@@ -100,7 +100,7 @@ void Data::update(Field& field) const {
 void Data::check_recording() const {
     if (!editor_ || editor_->knows_history()) return;
     throw io::OutputError(
-        "more edits were made than a recording can begin with: save them, open what was saved, and "
+        "more edits were made than a recording can begin with: save them, open the result, and "
         "record that");
 }
 

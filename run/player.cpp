@@ -163,7 +163,7 @@ void Player::show_live(PlayState& state) const {
     state.problem = status.problem;
     if (state.problem.empty() && status.ended) state.problem = "the live source has ended";
     if (state.problem.empty() && status.age > longest_silence) {
-        state.problem = "the live source is silent: no frame came for more than 2 s";
+        state.problem = "the live source is silent: no frame for more than 2 s";
     }
     if (!sent_.samples) return;
     for (const Frame& frame : sent_.samples->frames()) state.frames.push_back(frame.time);

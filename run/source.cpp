@@ -76,7 +76,7 @@ LoadedVolume loaded_of(const LiveSource& live, const Source& source, const io::P
     const std::shared_ptr<const Samples> samples = frames->wait(longest_wait, progress);
     if (!samples) {
         throw io::InputError(live.path +
-                             ": no frame has come yet; start the program that writes it");
+                             ": there is no frame yet; start the program that writes it");
     }
     LoadedVolume loaded = loaded_from(samples->volume(), source);
     loaded.format = "live source";

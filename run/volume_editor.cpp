@@ -52,7 +52,7 @@ void count_brick(std::uint64_t& bytes, const Samples& samples, std::uint64_t mem
     if (bytes > memory / edits_part) {
         throw std::invalid_argument(
             "the edits take more than " + std::to_string(memory / edits_part / 1000000) +
-            " MB, a quarter of the memory: allow more, or save them and open what was saved");
+            " MB, a quarter of the memory: allow more memory, or save them and open the result");
     }
 }
 

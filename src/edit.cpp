@@ -257,7 +257,7 @@ void check_sweep(const edit::Sweep& sweep, const Geometry& geometry) {
             "the tool's body does not reach as far as the brush: make it with body_for()");
     }
     if (!(poses_of(sweep, geometry) <= most_poses)) {
-        throw std::invalid_argument("a sweep is too long: make several of it");
+        throw std::invalid_argument("a sweep is too long: divide it into several");
     }
 }
 

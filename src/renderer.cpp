@@ -422,7 +422,7 @@ std::string isovalue_warning(const Field& field, double isovalue) {
     }
     if (s * isovalue < s * field.background()) {
         return "the background outside the data is solid at this isovalue: all of space outside "
-               "the data will be felt as solid (choose another isovalue or background)";
+               "the data will be solid (choose another isovalue or background)";
     }
     return {};
 }

@@ -142,7 +142,7 @@ static RendererSettings changed_by(const Command& command, const RendererSetting
             changed.tool = to.tool;
         },
         [&](const command::Resume& to) {
-            if (!to.point) throw std::invalid_argument("no point to go on from is given");
+            if (!to.point) throw std::invalid_argument("the point at which to continue is missing");
             check(*to.point, settings, field);
         },
         [&](const ForceSettings& to) { changed.force = to; },

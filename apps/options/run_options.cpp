@@ -41,7 +41,7 @@ void RunOptions::add_to(CLI::App& command, For purpose) {
         "no force)");
     command.get_option("--scale")->default_str("fits the device");
     command.get_option("--force-limit")->default_str("the device's");
-    command.get_option("--stiffness")->default_str("0.5, or what the device is rated for");
+    command.get_option("--stiffness")->default_str("0.5, or the device's rated stiffness");
     command.get_option("--step-budget")->default_str("4096, less above 1 kHz");
     command.add_flag(
         "--normal-priority", [this](std::int64_t) { given.real_time = false; },

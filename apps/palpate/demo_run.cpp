@@ -86,7 +86,8 @@ std::string report_html(const Demo& demo, const std::string& images) {
         "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>Palpate demo</title>\n"
         "<style>body{{font-family:sans-serif;max-width:60em;margin:2em auto}}img{{max-width:100%}}"
         "</style>\n<h1>Palpate demo</h1>\n"
-        "<p>{} felt the surface at isovalue {:g} of <b>{}</b> ({} x {} x {} samples of {}).</p>\n"
+        "<p>{} touched the surface at isovalue {:g} of <b>{}</b> ({} x {} x {} samples of "
+        "{}).</p>\n"
         "<pre>{}</pre>\n{}"
         "<p>Data: <a href=\"trajectory.csv\">trajectory.csv</a> (the hand), <a "
         "href=\"trace.csv\">trace.csv</a> (one row per tick){}.</p>\n</html>\n",

@@ -186,7 +186,7 @@ void RunTerminal::watch_device(const LiveHand& hand, Told& told, DeviceStatus st
     if (options_.source.quiet || status == DeviceStatus::finished) return;
     const bool go_on = hand.has_failed() && hands_.size() > 1;
     note(fmt::format("{}: {}{}{}{}", hand.name, name_of(status), problem.empty() ? "" : ": ",
-                     problem, go_on ? "; the session goes on without it" : ""));
+                     problem, go_on ? "; the session continues without it" : ""));
 }
 
 void RunTerminal::print_messages() {

@@ -80,7 +80,7 @@ class Recorded final : public Device {
 DeviceFinding find_recorded() {
     return {.name = "recorded",
             .found = true,
-            .what = "a trajectory or a recording (CSV), played back; takes any force, feels none",
+            .what = "a trajectory or a recording (CSV), played back; ignores forces",
             .missing = "",
             .options = "file=FILE.csv,speed=1,loop=no,hand=1"};
 }

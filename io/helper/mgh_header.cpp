@@ -39,7 +39,7 @@ Geometry grid_of(Bytes header, std::vector<std::string>& notes) {
     if (big_endian<std::int16_t>(header.subspan(28)) <= 0) {
         g.oriented = g.measured = false;
         notes.emplace_back(
-            "its header says nothing of its place (goodRASFlag): 1 mm was taken along every axis, "
+            "its header does not give its place (goodRASFlag): 1 mm was taken along every axis, "
             "and its axes as those of LPS");
         return g;
     }

@@ -113,7 +113,7 @@ Stored stored_from(int type) {
                                  : type == 32 || type == 1792
                                      ? "complex numbers"
                                      : "samples of type " + std::to_string(type);
-        throw Failure("it has " + what + ", which cannot be felt; save it as int16 or float32");
+        throw Failure("it has " + what + ", which cannot be touched; save it as int16 or float32");
     }
     return found->second;
 }

@@ -85,7 +85,7 @@ const char* program_for_file(const fs::path& path) {
     }
     for (const char* packed : {".zip", ".gz", ".bz2", ".xz", ".7z", ".tar", ".ozx"}) {
         if (!extension.ends_with(packed)) continue;
-        throw Failure("is packed; unpack it and give what is in it");
+        throw Failure("is packed; unpack it and open its contents");
     }
     throw Failure(
         "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, mgh, mgz, mrc, "

@@ -67,8 +67,8 @@ pugi::xml_document parse_xml(const std::string& text, const std::string& where) 
     const auto status = is_long ? pugi::status_out_of_memory
                                 : document.load_buffer(text.data(), text.size(), flags).status;
     if (status == pugi::status_out_of_memory) {
-        throw Failure(where + " is too large for the memory that may be used; save it without " +
-                      "what is not needed, or allow more memory");
+        throw Failure(where + " is too large for the memory that may be used; save it with " +
+                      "less metadata, or allow more memory");
     }
     const XmlElement root = document.first_child();
     if (status != pugi::status_ok || root.type() != pugi::node_element || root.next_sibling()) {

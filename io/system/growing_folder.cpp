@@ -389,7 +389,7 @@ bool GrowingFolder::replace_in_steps(const MayReplace& may_replace, const struct
     const int problem = is_other ? EEXIST : errno;
     if (!done && problem != EEXIST && problem != ENOTEMPTY) {
         if (rename_new(aside, out_)) refuse(out_, reason(problem) + what_to_do);
-        refuse(out_, reason(problem) + "; what was there before is in " + aside.string());
+        refuse(out_, reason(problem) + "; its previous content is in " + aside.string());
     }
     try {
         may_replace(aside);  // something may have been put into it since it was looked at

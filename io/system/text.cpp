@@ -73,7 +73,7 @@ class TextSource {
             } else if (ready < 0 && errno == EINTR) {
                 fail("reading it was interrupted");
             } else if (std::chrono::steady_clock::now() - start > patience) {
-                fail("nothing came for 10 s: start the program that writes to it first");
+                fail("no data for 10 s: start the program that writes to it first");
             }
         }
         if (waiting) waiting();  // a source that never runs dry must not keep a signal waiting
@@ -81,7 +81,7 @@ class TextSource {
 
     void check_total(std::uint64_t bytes) const {
         if (is_stream_ && bytes > largest_stream) {
-            fail("more than 256 MiB of text came: write it to a file and give that");
+            fail("more than 256 MiB of text: write it to a file and use the file");
         }
         if (bytes > largest_file) {
             fail("has " + std::to_string(bytes) +

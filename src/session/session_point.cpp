@@ -41,7 +41,7 @@ void resume_tool(ToolProxy& proxy, const ToolState& state) noexcept {
 }
 
 void require(bool is_so, const char* what) {
-    if (!is_so) throw std::invalid_argument(std::string("the point to go on from: ") + what);
+    if (!is_so) throw std::invalid_argument(std::string("the point at which to continue: ") + what);
 }
 
 bool is_number(double value) {

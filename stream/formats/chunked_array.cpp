@@ -170,7 +170,7 @@ std::optional<Bytes> ChunkReader::chunk_at(const Place& place, std::string* iden
     if (range && (range->length > most || range->offset > UINT64_MAX / 2)) {
         throw io::InputError(
             objects_->name_of(place.key) +
-            ": a chunk of it lies where none can be; it is damaged: copy it again");
+            ": a chunk of it has an impossible place; it is damaged: copy it again");
     }
     return unpacked({.key = place.key,
                      .range = range,

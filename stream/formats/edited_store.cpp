@@ -195,8 +195,8 @@ EditedStore::EditedStore(std::shared_ptr<const Store> original, std::shared_ptr<
     }
     if (note_.content.empty()) {
         info_.notes.push_back(
-            "the edits do not tell what the original held: they were rescued without it, or "
-            "are of an earlier version");
+            "the edits do not identify their original: they were rescued without it, or are "
+            "of an earlier version");
     }
     info_.address = ours.address;
     info_.channels.clear();

@@ -62,7 +62,7 @@ void check_table(const Store& store, int level, std::uint64_t memory) {
     if (table <= static_cast<double>(memory / table_part)) return;
     throw io::InputError(store.info().address + ": level " + std::to_string(level) + " has " +
                          std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
-                         std::to_string(size[2]) + " samples, too many to be felt with " +
+                         std::to_string(size[2]) + " samples, too many to touch with " +
                          std::to_string(memory / 1000000) +
                          " MB of memory; allow more, or take a coarser level");
 }

@@ -81,7 +81,7 @@ class FolderObjects : public Objects {
     void require_folder(const std::string& key) const {
         std::error_code error;
         if (!std::filesystem::is_directory(folder_, error)) {
-            fail(key, "its folder is not there any more; put it back");
+            fail(key, "its folder does not exist any more; restore it");
         }
     }
 
