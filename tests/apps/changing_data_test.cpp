@@ -295,7 +295,7 @@ TEST(PacedTouch, feels_frames_that_another_program_pushes) {
         before = tick->moment;
     }
     EXPECT_GT(versions, 10U);
-    // What came from outside is not in the recording, and that is said.
+    // Samples from outside are not in the recording, and the command says so.
     expect_failure(palpate(folder, "replay r.csv --validate"), 3, "from outside");
 }
 

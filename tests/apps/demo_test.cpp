@@ -106,7 +106,7 @@ TEST(Demo, uses_an_existing_folder_and_keeps_other_files) {
     const ScratchFolder folder;
     std::filesystem::create_directory(folder / "out");
     support::put_bytes(folder / "out/mine.txt", "mine");
-    // Of runs that were killed. No process has such a number.
+    // A folder of a run that was killed. No process has such a number.
     std::filesystem::create_directory(folder / "out/.palpate-999999999.part");
     support::put_bytes(folder / "out/.palpate-999999999.part/.palpate-temporary", "");
     support::put_bytes(folder / "out/.palpate-999999999.part/surface.png", "half");

@@ -144,7 +144,7 @@ TEST(BadOutput, standard_output_that_is_closed_or_full_is_a_failure) {
                 << line << ": " << outcome.err;
         }
     }
-    // What was asked for besides is whole all the same.
+    // The other requested output is whole all the same.
     EXPECT_EQ(io::read_trace(folder / "a.csv").size(), 6U);
 }
 

@@ -131,7 +131,7 @@ TEST(Info, takes_orientation_and_spacing_from_the_command_line_where_the_file_ha
     EXPECT_TRUE(contains(wrong.err, "orientation LRA: three letters are needed")) << wrong.err;
     const Outcome made = palpate(folder, "info synthetic:sphere --orientation LPS");
     EXPECT_TRUE(contains(made.err, "orientation are for files")) << made.err;
-    // What is not known is not claimed by the file it is converted to.
+    // Unknown facts stay unknown in the converted file.
     for (const std::string out : {"a.nrrd", "a.mha", "a.zarr"}) {
         ASSERT_EQ(palpate(folder, Words{"convert"} + raw + Words{out}).status, 0) << out;
         EXPECT_EQ(info(folder, {out})["orientation"], nullptr) << out;

@@ -70,7 +70,7 @@ TEST(LayersOption, names_in_a_trace_what_is_touched_and_what_the_hand_is_in) {
         rows, {}, [](const Row& r) { return r.layer == "shell" ? std::abs(r.force) : 0; });
     EXPECT_LT(std::abs(most.force), 0.5 + 1e-9);
     EXPECT_GT(std::abs(most.force), 0.4);
-    // What reads traces reads these as well.
+    // Readers of traces read these as well.
     EXPECT_EQ(io::read_trace(folder / "a.csv").size(), rows.size());
 }
 

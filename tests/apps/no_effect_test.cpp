@@ -97,7 +97,7 @@ TEST(NoEffect, ranges_of_a_file_need_no_isovalue) {
     expect_failure(palpate(folder, line), 2, "--isovalue is needed");
 }
 
-/// What a shell sees of a pipe whose reader takes one line: statuses and standard error.
+/// A shell's view of a pipe whose reader takes one line: statuses and standard error.
 Outcome piped(const ScratchFolder& folder, const std::string& line) {
     return Running({"-c", "\"$0\" " + line + " | head -n 1 > line; echo ${PIPESTATUS[0]}",
                     PALPATE_PROGRAM},

@@ -93,7 +93,7 @@ TEST(Replay, repeats_the_positions_of_the_hand_bit_for_bit) {
         in_contact += out[i].constrained;
     }
     EXPECT_GT(in_contact, 100);
-    // What the demo felt is what a replay feels.
+    // A replay gives the forces of the demo.
     const auto demo = io::read_trace(folder / "demo/trace.csv");
     ASSERT_EQ(demo.size(), out.size());
     for (std::size_t i = 0; i < out.size(); ++i) ASSERT_EQ(demo[i].scp, out[i].scp);

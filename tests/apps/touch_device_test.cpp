@@ -46,8 +46,8 @@ class PressedSphere {
     std::atomic<std::int64_t> asked_{0};
 };
 
-/// What the program handles itself: it completes its files. Everything else goes on as it would
-/// have without a session.
+/// Signals that the program handles itself: it completes its files. All others end it as they would
+/// without a session.
 int expected_status(int signal) {
     const bool handled =
         signal == SIGINT || signal == SIGTERM || signal == SIGHUP || signal == SIGQUIT;

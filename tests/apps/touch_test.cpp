@@ -158,7 +158,7 @@ TEST(Touch, carries_out_and_records_commands) {
     EXPECT_EQ(done.status, 0) << done.err;
     const Ticks ticks = ticks_of(folder / "r.csv");
     EXPECT_EQ(ticks.commands, 9);
-    // What the transform was follows from the commands; that the scale changed, from the ways of
+    // The transform follows from the commands. The change of the scale follows from the ways of
     // hand and HIP.
     EXPECT_NEAR(ticks.last_way / ticks.last_device_way, 1.5, 1e-6);
     EXPECT_NE(ticks.last.tick.force_flags & force_off, 0);

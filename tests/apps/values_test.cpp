@@ -45,7 +45,7 @@ TEST(Values, that_are_no_numbers_are_refused_in_one_short_line) {
         numbers += number;
         for (const std::string value : {"-3", "nan", "1e400", "1,5", "inf", "0x10", ""}) {
             if (!number && value != "") continue;
-            // What is accepted fails at the end of the line, before anything is done.
+            // An accepted value fails at the end of the line, before anything is done.
             const Outcome outcome =
                 palpate(folder, words_of(option.command) + Words{name, value, "--no-such-option"});
             const std::string line = option.command + ' ' + name + " '" + value + "'";

@@ -49,7 +49,7 @@ TEST(ChangingSession, plays_a_sequence_by_the_times_of_the_ticks) {
         const SessionTick tick = live.next(dt);
         expected += 0.5 * dt;
         ASSERT_NEAR(tick.moment, expected, 1e-12);
-        // What is felt is the field of this moment.
+        // The field of this moment is touched.
         const double shift = expected < 1 ? 2 * expected : 2 - 4 * (expected - 1);
         ASSERT_NEAR(tick.tick.proxy.scp[2], 30 - shift, 1e-4);
     }

@@ -81,7 +81,7 @@ struct Block {
     Brush brush(double radius) const {
         return brush_for(BrushKind::carve, linear_field(samples, Solid::above, 0), level, radius);
     }
-    /// Where a ray from a point of the carved room leaves it [mm].
+    /// Distance at which a ray from a point of the carved room leaves it [mm].
     double way_to_surface(const Samples& after, const Vec3& from, const Vec3& direction) const {
         const Field field = linear_field(std::make_shared<const Samples>(after), Solid::above, 0);
         const RayHit hit = cast_ray(field, level, from, from + 100 * direction);
@@ -112,7 +112,7 @@ TEST(Edit, carving_leaves_the_surface_at_the_radius) {
         {Vec3::Constant(0.3), 2.4, 200, 0.08, 0.025, oblique_direction()},
         {{0.5, 0.5, 2}, 12, 200, 0.08, 0.025},
         {{0.7, 1.1, 0.9}, 9, 200, 0.08, 0.025, oblique_direction()},
-        // Where the solid lies much farther from the level than what is carved, or much nearer, the
+        // If the solid is much farther from the level than the carved value, or much nearer, the
         // edge is cut off on one side.
         {Vec3::Ones(), 8, 1000, 0.4, 0.06},
         {Vec3::Ones(), 8, 130, 0.25, 0.1},

@@ -20,8 +20,8 @@ using namespace palpate::support;
 namespace {
 
 enum class Kind { levels, labels, both };
-/// Of the samples: as they were read, edited now and then, at moments between frames, or bricks of
-/// a large grid that come and go.
+/// Kinds of samples: as they were read, edited now and then, at moments between frames, or bricks
+/// of a large grid that come and go.
 enum class Data { plain, edited, moments, resident };
 
 struct Life {
@@ -56,7 +56,7 @@ Layers layers_for(const Life& life, Random& random) {
     return layers;
 }
 
-/// What the samples are, and how they change.
+/// The samples, and their changes.
 class Source {
   public:
     Source(Data kind, std::uint64_t seed)

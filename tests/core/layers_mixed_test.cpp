@@ -61,8 +61,8 @@ struct MixedHand {
     }
 };
 
-/// Where the density's line from 43 to the solid value of a label crosses the level 70: between the
-/// levels 30 and 70 labels are 50 or 90.
+/// Part of the way at which the density's line from 43 to the solid value of a label crosses the
+/// level 70: between the levels 30 and 70, labels are 50 or 90.
 constexpr double into_label = 43 + (70.0 - 43) / (90 - 43);
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST(MotorHeat, a_force_that_is_held_falls_to_what_the_motors_can_give_for_hours
     }
     EXPECT_NEAR(last, 0.88, 0.01);
     EXPECT_GE(last, 0.88 - 1e-9);
-    // What they can give for hours, they give, and a light touch is not cut.
+    // The force that the motors can give for hours remains, and a light touch is not cut.
     const ForceResult light = hand.press_for(60, 0.5);
     EXPECT_NEAR(light.force.norm(), 0.5, 1e-9);
     EXPECT_FALSE(light.flags & force_warm);

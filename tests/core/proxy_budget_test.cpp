@@ -157,7 +157,7 @@ TEST(Proxy, changes_nothing_for_a_hip_that_is_not_finite_or_absurdly_far) {
                     ASSERT_EQ(hash_of(unplaced), fresh);
                 }
             }
-            // And goes on as if nothing had been.
+            // It continues as if nothing had happened.
             Proxy other = before;
             method.update(proxy, test.field, hip, {}, {});
             method.update(other, test.field, hip, {}, {});

@@ -47,7 +47,7 @@ std::vector<TestField> golden_fields() {
     return {noise_field(), anisotropic_field(), oblique_field(), offset_field(), box_field()};
 }
 
-/// The same fields, felt smoothly.
+/// The same volumes on the smooth field.
 std::vector<TestField> smooth_golden_fields() {
     std::vector<TestField> fields = golden_fields();
     for (TestField& test : fields) test.field = smooth(test.field);

@@ -30,7 +30,7 @@ Tally run(const TestField& test, ProxyMethod method, std::uint64_t seed, int cou
     return checked.tally();
 }
 
-/// Not idle: much contact, motion through several tetrahedra, walls and edges met.
+/// The test is not idle: much contact, motion through several tetrahedra, walls and edges met.
 void expect_substantial(const Tally& t, double constrained = 0.3) {
     EXPECT_GT(t.constrained_share(), constrained);
     EXPECT_GT(t.long_moves, t.updates / 12);

@@ -107,7 +107,7 @@ TEST(Ray, passes_far_background_in_a_few_pieces) {
         ASSERT_TRUE(ray.hit);
         ASSERT_NEAR(excess_at(test, ray.point), 0, 1e-9);
         EXPECT_LE((ray.point - centre).norm(), 6.1 * std::sqrt(3));
-        // Beside the volume nothing is met.
+        // Beside the volume, a ray meets nothing.
         const Vec3 aside = far.unitOrthogonal() * 60;
         const RayHit past =
             cast_ray(test.field, test.isovalue, centre + far + aside, centre - far + aside, 200);
@@ -134,7 +134,7 @@ TEST(Ray, from_any_distance_meets_what_lies_on_its_line) {
                 cast_ray(test.field, test.isovalue, centre + far + aside, centre + aside).hit);
         }
     }
-    // Where the background is solid, a ray is in it from its start.
+    // If the background is solid, a ray is in it from its start.
     const Field solid = linear_field(test.field.volume(), Solid::above, 1e9);
     for (const Vec3& from : {Vec3(1e12, 0, 0), Vec3(1e12, 1e12, 0)}) {
         const RayHit ray = cast_ray(solid, test.isovalue, from, Vec3(0, 1e12, 0));

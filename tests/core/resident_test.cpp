@@ -79,7 +79,7 @@ TEST(Resident, samples_that_are_missing_are_solid_on_either_side) {
     }
 }
 
-/// Of each level the same grid with other samples; bricks come at any of them.
+/// The same grid for each level, with other samples. Bricks arrive at any of the levels.
 struct Levels {
     std::vector<Volume> volumes;
     ResidentBricks bricks{volumes.front().geometry().size};
@@ -328,7 +328,7 @@ TEST(Resident, the_overview_shows_edits_that_its_samples_lie_in) {
     });
 }
 
-/// What a grid shows of edits, sample by sample.
+/// The value that a grid shows with edits, sample by sample.
 double shown_at(const Volume& plain, const Samples& edited, const Index3& at) {
     const Vec3 there = index_from_physical(
         edited.geometry(), physical_from_index(plain.geometry(), at.cast<double>()));

@@ -16,7 +16,7 @@ Session pressing() {
     return {make_renderer(ramp_field(), 30), {}};
 }
 
-/// Of a step, as the servo is told it [ns] and as the session gets it [s].
+/// Time of a step, for the servo [ns] and for the session [s].
 std::int64_t ns_of(int step) {
     return std::int64_t{1'000'000} * step;
 }

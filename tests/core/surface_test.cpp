@@ -200,7 +200,7 @@ TEST(Surface, has_every_vertex_on_the_isosurface_within_the_margin) {
                 ASSERT_LE(off, surface_margin);
                 exact += off < 1e-12;
             }
-            // What is not exact was held off the end of its edge: few, and those only.
+            // The other vertices were held off the ends of their edges: few, and those only.
             EXPECT_GT(exact, mesh.vertices.size() * 97 / 100);
         }
     }

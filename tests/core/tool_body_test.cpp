@@ -70,8 +70,8 @@ TEST(ToolBody, gives_the_distance_from_the_skin_up_to_its_reach) {
         EXPECT_GT(near, scaled(20000) / 10);
         std::printf("[ evidence ] %zu points: off by %.3f mm at most\n", known.tool.points().size(),
                     most);
-        // Where distances bend (the middle, edges) linear interpolation is off by at most half of
-        // a place's diagonal.
+        // Near bends of the distance (the middle, edges), linear interpolation is off by at most
+        // half of a place's diagonal.
         EXPECT_LT(most, known.error + 0.5 * 0.25 * std::sqrt(3.0));
     }
 }

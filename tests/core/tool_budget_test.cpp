@@ -38,8 +38,8 @@ TEST(ToolBudget, does_no_more_work_than_its_budget_in_noise_in_the_solid_and_wit
     EXPECT_GT(out_of_budget, 0);
 }
 
-/// Where a tool can hardly move, its points look about as far as it can go, and not to the end of
-/// the step that it would like to make: that took 4.9 cubes per point and round.
+/// If a tool can hardly move, its points are examined about as far as it can go, not to the end of
+/// the wanted step. That took 4.9 cubes per point and round.
 TEST(ToolBudget, looks_in_noise_no_farther_than_it_can_go) {
     const Field field = support::smooth(support::noise_field().field);
     const auto tool = std::make_shared<const Tool>(box_tool({6, 6, 6}, 0.5));

@@ -182,7 +182,7 @@ TEST(ToolProxy, is_the_point_proxy_for_a_single_point) {
             ++all;
             same += (a.proxy.position - b.scp).norm() < 0.02;
         }
-        // Where a surface falls in two both are right, and stay apart for a while.
+        // If a surface falls in two, both places are right, and stay apart for a while.
         EXPECT_GT(same, 0.75 * all) << test.name;
         EXPECT_GT(all, 0.9 * support::scaled(4000));
     }
@@ -337,7 +337,7 @@ TEST(ToolProxy, feels_the_other_side_and_other_samples_at_once) {
         ASSERT_EQ(r.status, UpdateStatus::done);
         EXPECT_NEAR(r.proxy.position[2], height + 1, 1e-5);
     }
-    // What was free is solid now.
+    // Free space is solid now.
     const Field below(field.shared_samples(), Solid::below, std::nullopt, Interpolation::cubic);
     ToolUpdate r;
     int ticks = 0;

@@ -102,7 +102,7 @@ TEST(ToolSession, a_point_tool_feels_what_the_point_feels) {
         const Tick a = render(point, {i * period, hand});
         const Tick b = render(tool, {i * period, hand});
         constrained += a.proxy.mode == Mode::constrained;
-        // Where two places are as good, either may be found.
+        // If two places are equally good, either may be found.
         together += (a.proxy.scp - b.proxy.scp).norm() < 1e-3;
         if (a.proxy.mode == Mode::free && b.proxy.mode == Mode::free) {
             EXPECT_EQ(b.proxy.scp, hand);

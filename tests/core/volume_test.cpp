@@ -29,7 +29,7 @@ Volume made(const Geometry& geometry) {
     return Volume(geometry, std::vector<std::uint8_t>(count));
 }
 
-/// What a refusal says.
+/// The message of a refusal.
 template <class F>
 std::string refusal(F&& make) {
     try {

@@ -56,7 +56,7 @@ struct Shared {
     std::atomic<int> waited{0};                           // [ms] by the handler
 };
 
-/// Of the child process.
+/// State of the child process.
 struct Child {
     Shared* shared;
     Motor first, second;

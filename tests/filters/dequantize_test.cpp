@@ -72,7 +72,7 @@ struct Fidelity {
     double bias = 0;           ///< of the radius [samples]
 };
 
-/// Of the isosurface of a ball, along 2000 rays from its centre.
+/// Fidelity of the isosurface of a ball, along 2000 rays from its centre.
 Fidelity fidelity(const Volume& volume, double isovalue, double radius, const Vec3& centre) {
     support::Random random(7);
     std::vector<double> angles;

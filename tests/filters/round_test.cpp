@@ -53,7 +53,7 @@ TerracedBricks some_bricks(const Index3& size, const Index3& low, std::uint64_t 
 using Rounds = std::vector<DequantizePlan::Rounds>;
 using Way = DequantizePlan::Rounds::Way;
 
-/// Of a box whose first sample is `low`. Whether the samples of some bricks move and others do not.
+/// For a box whose first sample is `low`, in which samples of some bricks move and others do not.
 void expect_rounds(const Volume& volume, double level, bool mask, const Rounds& rounds,
                    const Index3& low = Index3::Zero()) {
     Moved fast(volume);

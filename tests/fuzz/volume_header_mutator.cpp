@@ -15,7 +15,7 @@ using namespace palpate::fuzz;
 
 constexpr std::size_t most_unpacked = 1 << 16;
 
-/// What a gzip or zlib stream holds, if it is one and not long.
+/// The contents of a gzip or zlib stream, if it is one and not long.
 std::optional<Bytes> unpacked(const Bytes& packed) {
     z_stream stream{};
     if (inflateInit2(&stream, 15 + 32) != Z_OK) return {};

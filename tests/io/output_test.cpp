@@ -221,8 +221,8 @@ TEST(Output, of_several_files_appears_together_also_where_names_cannot_be_exchan
               0);
 }
 
-/// What another run does that writes in the folder: a process of its own, which looks for leftovers
-/// once.
+/// The work of another run that writes in the folder: a process of its own, which looks for
+/// leftovers once.
 void write_in_another_process(const ScratchFolder& folder,
                               const std::function<void()>& between = {}) {
     const pid_t child = ::fork();

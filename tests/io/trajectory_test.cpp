@@ -59,7 +59,7 @@ TEST(Trajectory, may_have_cells_in_quotes) {
 TEST(Trajectory, is_read_from_a_trace_by_its_hip) {
     const Trajectory read = parse("t,hip_x,hip_y,hip_z,scp_x,mode\n0,1,2,3,9,free\n");
     EXPECT_EQ(read.position, (std::vector<Vec3>{{1, 2, 3}}));
-    // Where both are there, the plain names are meant.
+    // If both are there, the plain names count.
     EXPECT_EQ(parse("t,hip_x,hip_y,hip_z,x,y,z\n0,1,2,3,4,5,6\n").position[0], Vec3(4, 5, 6));
 }
 

@@ -105,7 +105,7 @@ TEST(dicom_folder, with_copies_of_its_slices_is_the_series_without_them_and_that
     const VolumeFile all = read_volume(folder.path());
     EXPECT_EQ(all.time_steps, 1);
     EXPECT_EQ(all.volume.geometry().size, Index3(4, 3, 6));
-    // The same identity, but not the same slice: nobody can know which one is right.
+    // The same identity, but not the same slice: the right one cannot be known.
     TestSlice other = slice_number(2);
     other.pixels.assign(12, 7);
     put_slice(folder / "other.dcm", other);

@@ -48,7 +48,7 @@ void expect_the_same(const std::vector<SessionTick>& ticks, const std::vector<Se
     }
 }
 
-/// What it records by itself in so many ticks.
+/// The ticks of a hand alone.
 std::vector<SessionTick> alone(const std::string& device, int ticks,
                                const std::filesystem::path& path) {
     run::Run run(shared_ball(), test::with_device(device));

@@ -208,7 +208,7 @@ TEST(Streamed, what_is_edited_is_felt_undone_recorded_and_repeats_bit_for_bit) {
     EXPECT_GT(expect_same_again(last), 100);
 }
 
-/// Of a store that a test may interfere with.
+/// A loaded volume of a store that a test may interfere with.
 LoadedVolume loaded_of(const std::shared_ptr<stream::VolumesStore>& store) {
     LoadedVolume loaded{.volume = stream::overview_of(*store), .source = {}, .name = "v"};
     StoreSource source{.address = "v", .options = {}, .loader = {}};

@@ -23,7 +23,7 @@ namespace {
 
 using namespace palpate::support;
 
-/// What a reader has made, for each viewer.
+/// The results of a reader, for each viewer.
 class Seen {
   public:
     DetailReader::Made made() {

@@ -64,7 +64,7 @@ std::map<std::string, std::string> all_in(const fs::path& folder) {
 
 using Makers = std::map<std::string, std::function<void(const fs::path&)>>;
 
-/// What may lie at OUT.partial. `ours`: one that was left behind.
+/// Possible contents of OUT.partial. `ours`: one that was left behind.
 Makers other_partials(const fs::path& precious, const fs::path& ours) {
     Makers all;
     all["folder"] = [](const fs::path& at) {
@@ -207,7 +207,7 @@ TEST(OwnFiles, saving_edits_touches_no_partial_whoever_made_it) {
         EXPECT_EQ(all_in(partial), before);
     }
     EXPECT_EQ(bytes_of(precious / "thesis.txt"), "years");
-    // What somebody else has put into a folder of edits stays there.
+    // Foreign files in a folder of edits stay there.
     for (const std::string place :
          {"notes.txt", "0/notes.txt", "2024/notes.txt", "0/c/notes.txt"}) {
         const fs::path file = folder / ("edits.zarr/" + place);

@@ -197,7 +197,7 @@ TEST(PlainFile, nifti_slopes_units_and_times_are_as_in_the_file_read_whole) {
     }
 }
 
-/// What this process has read so far, from files and otherwise [bytes].
+/// Bytes that this process has read so far, from files and otherwise.
 std::uint64_t bytes_read() {
     std::ifstream io("/proc/self/io");
     std::string name;

@@ -22,7 +22,7 @@ std::string reference(const std::string& arguments) {
            "/zarr_reference.py " + arguments;
 }
 
-/// What the independent writer has written, once for all tests.
+/// The files of the independent writer, made once for all tests.
 const fs::path& written() {
     static const ScratchFolder folder;
     static const bool done = std::system(reference("write " + folder.path().string()).c_str()) == 0;

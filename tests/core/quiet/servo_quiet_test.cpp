@@ -151,7 +151,7 @@ struct Company {
     }
 };
 
-/// What is watched: a servo with everything on that a tick can do, and everybody beside it.
+/// The watched program: a servo with everything on that a tick can do, and all its observers.
 struct BusyServo {
     scenes::Scene scene = scenes::make_volume("sphere");
     Field field = linear_field(scene.volume);

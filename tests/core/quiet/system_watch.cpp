@@ -38,7 +38,7 @@ bool filter_calls() {
     action.sa_sigaction = &on_forbidden_call;
     action.sa_flags = SA_SIGINFO;
     sigaction(SIGSYS, &action, nullptr);
-    // What a thread needs to end is allowed too.
+    // Calls that a thread needs to end are allowed too.
     constexpr std::array allowed{SYS_clock_nanosleep, SYS_clock_gettime, SYS_rt_sigreturn, SYS_exit,
                                  SYS_rt_sigprocmask,  SYS_madvise};
     std::array<sock_filter, 3 + 2 * allowed.size()> program;

@@ -81,7 +81,7 @@ Session pressing() {
     return {make_renderer(ramp_field(), 30), {}};
 }
 
-/// What a thread does in a call that does not return.
+/// The behaviour of a thread in a call that does not return.
 enum class How : std::uint8_t { waits, spins, throws };
 
 struct FailureCase {

@@ -291,7 +291,7 @@ TEST(Servo, settings_that_cannot_be_run_are_refused) {
         EXPECT_THROW(Servo(session, device), std::invalid_argument);
     };
     refuses([](Renderer& r) { r.settings.force.stiffness = -1; });
-    // What depends on the field, too.
+    // Checks that depend on the field, too.
     refuses([](Renderer& r) { r.proxy.isovalue = -HUGE_VAL; });
     refuses([](Renderer& r) {
         const std::array<DensityRange, 2> falling{DensityRange{0, 10}, {20, 30}};

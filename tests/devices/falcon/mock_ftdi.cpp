@@ -63,7 +63,7 @@ void answer() {
     line.later.push_back({mock.state.answers_after, before});
 }
 
-/// What is due goes on the line.
+/// Puts the bytes that are due on the line.
 void arrive(int empty_reads) {
     for (auto& one : line.later) one.reads -= empty_reads;
     while (!line.later.empty() && line.later.front().reads <= 0) {

@@ -128,7 +128,7 @@ TEST_F(ForceDimension, a_model_that_nobody_has_listed_is_what_its_library_says) 
     EXPECT_TRUE(full.has_orientation);
     EXPECT_EQ(full.limits.maximum_torque, 150);
     EXPECT_EQ(full.buttons, 1);
-    // Of one that is listed, the library's limit counts where it is the lower one.
+    // For a listed device, the library's limit counts if it is lower.
     with([](auto& dhd) { dhd.type = 33, dhd.limit = 15, dhd.max_force = -1; });
     EXPECT_EQ(open()->info().limits.maximum_force, 12);
     with([](auto& dhd) { dhd.limit = 5, dhd.max_force = -1; });

@@ -63,7 +63,7 @@ class Call {
     std::lock_guard<std::mutex> lock_;
 };
 
-/// What the test wants to happen during a call, without the lock.
+/// Runs the function that the test wants during a call, without the lock.
 void meanwhile(std::function<void()> MockDhdState::*what) {
     std::function<void()> happens;
     {

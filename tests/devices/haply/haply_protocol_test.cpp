@@ -206,7 +206,7 @@ TEST(HaplyProtocol, a_grip_that_is_gone_keeps_its_last_orientation_until_another
     EXPECT_EQ(state.grip.orientation, Mat3(Mat3::Identity()));
 }
 
-/// What service 3.5 adds to the first message is passed over.
+/// Additions of service 3.5 to the first message are ignored.
 TEST(HaplyProtocol, the_first_message_of_service_3_5_is_understood) {
     const std::string device =
         R"({"device_id":"049D","config":{"type":"inverse3","handedness":"right",)"

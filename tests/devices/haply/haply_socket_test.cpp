@@ -16,9 +16,9 @@ using namespace palpate::support;
 using namespace std::chrono_literals;
 
 constexpr const char* id = "049D";
-/// For what answers. What is waited for comes at once; the patience is for slow machines.
+/// For expected answers, which come at once. The patience is for slow machines.
 constexpr auto patience = 2min;
-/// For what never answers.
+/// For silence.
 constexpr auto no_time = 20ms;
 
 class HaplySocket : public testing::Test {

@@ -107,7 +107,7 @@ TEST(Simulated, the_same_reads_and_writes_give_the_same_bits) {
     EXPECT_TRUE(differs);
 }
 
-/// Where a loose mass is after `ticks` ms, when `force(i)` is written at the ms i.
+/// Place of a loose mass after `ticks` ms, if `force(i)` is written at the ms i.
 template <class Force>
 Vec3 moved(const std::string& options, int ticks, Force force) {
     const auto device = body().open(loose + options);

@@ -48,7 +48,7 @@ bool same_bytes(const Volume& a, const Volume& b) {
     return a.geometry() == b.geometry() && std::memcmp(a.data(), b.data(), a.bytes()) == 0;
 }
 
-/// What a maker has made last for each viewer; counts samples that changed without being told.
+/// The last result of a maker for each viewer. Counts samples that changed without a report.
 struct Shown {
     std::mutex mutex;
     std::map<int, std::shared_ptr<const DetailField>> last;

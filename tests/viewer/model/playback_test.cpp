@@ -70,7 +70,7 @@ struct Recorded {
     }
 };
 
-/// Of different levels and lengths.
+/// The hands have different levels and lengths.
 TEST(Playback, of_two_hands_has_the_snapshots_of_each) {
     const ScratchFolder folder;
     const auto path = folder / "two.csv";

@@ -95,7 +95,7 @@ TEST_F(Forces, the_stiffness_slider_ends_where_it_can_still_be_rendered) {
     EXPECT_EQ(damping->value(), damping->maximum());
 }
 
-/// Of all numbers in the tables of force and friction.
+/// Names of all numbers in the tables of force and friction.
 std::vector<std::string> names_of_rows() {
     std::vector<std::string> names;
     RendererSettings settings;

@@ -94,7 +94,7 @@ struct Slow final : Painter {
     std::size_t& triangles_;
 };
 
-/// Of the pictures of a large ball that turns.
+/// Triangles in the pictures of a large ball that turns.
 std::size_t triangles_in_motion(double seconds) {
     std::size_t triangles = 0;
     BackgroundRenderer renderer([&](Painter::Priority, Painter::Results results) {

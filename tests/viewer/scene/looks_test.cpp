@@ -69,7 +69,7 @@ TEST(DrawnLooks, show_lattice_and_planes_round_the_proxy) {
     look.tetrahedra = look.planes = true;
     look.box = false;
     Torus shown(look);
-    // Where a wall between two tetrahedra meets the surface.
+    // The hand presses at a wall between two tetrahedra.
     Snapshot snapshot = shown.pressed();
     const Vec3 index = index_of(snapshot.scp);
     LatticePoint on_wall = snapshot.scp;

@@ -74,7 +74,7 @@ TEST(SliceSamples, have_the_values_of_the_field_that_is_felt) {
     }
 }
 
-/// Of the field in the slice [data units a sample].
+/// Slope of the field in the slice [data units per sample].
 double slope_at(const Sliced& cut, double u, double v) {
     constexpr double step = 1e-3;
     return std::hypot(cut.value(u + step, v) - cut.value(u - step, v),
@@ -158,7 +158,7 @@ TEST(Contour, no_level_without_a_surface_has_one) {
     for (const double isovalue : {-1e9, 1e9, std::nan(""), std::numeric_limits<double>::infinity(),
                                   -std::numeric_limits<double>::infinity()}) {
         const Sliced cut({test.name, test.field, isovalue}, 0, 4.5);
-        // Where all of the data are solid and the background too, there is no border either.
+        // If data and background are solid, there is no border either.
         EXPECT_TRUE(cut.pieces.empty()) << isovalue;
     }
 }

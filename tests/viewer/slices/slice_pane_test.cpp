@@ -165,7 +165,7 @@ TEST(SlicePane, a_millimetre_is_as_many_pixels_in_every_direction) {
     EXPECT_GT(one, 1);
 }
 
-/// Of the pixel and those beside it: a thin line may lie between two.
+/// The colour nearest to orange among a pixel and those beside it: a line may lie between two.
 QColor nearest_to_orange(const QImage& picture, const QPoint& at) {
     QColor nearest = picture.pixel(at);
     for (const QPoint& by : {QPoint(1, 0), QPoint(-1, 0), QPoint(0, 1), QPoint(0, -1)}) {

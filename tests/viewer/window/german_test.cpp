@@ -31,7 +31,7 @@
 namespace palpate::viewer::test {
 namespace {
 
-/// What a person can read at `widget`, with tips and what a screen reader says.
+/// The words that a person can read at `widget`, with tips and those for screen readers.
 QStringList words_at(const QWidget& widget) {
     QStringList words{widget.toolTip(), widget.whatsThis(), widget.accessibleName(),
                       widget.accessibleDescription(), widget.windowTitle()};
@@ -107,7 +107,7 @@ class German : public InWindow {
         open_window("mouse");
     }
     void feel_sample() { feel(io::sample_volume_path().string()); }
-    /// Those of the window and its dialogs, with a volume and without.
+    /// The words of the window and its dialogs, with a volume and without.
     QSet<QString> words_of_all() {
         QSet<QString> all = all_words(*window_);
         feel_sample();

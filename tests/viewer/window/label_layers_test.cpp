@@ -65,7 +65,7 @@ class LabelsInWindow : public InWindow {
         QApplication::sendEvent(window_.get(), &event);
     }
     SharedLayers layers() { return window_->live()->settings().layers; }
-    /// Of a set that can be chosen; -1: it is not there.
+    /// Row of a set in the choice. -1: it is not there.
     int row_of(const QString& set) { return part<QComboBox>("layers").findText(set); }
     bool possible(const QString& set) {
         const auto& box = part<QComboBox>("layers");

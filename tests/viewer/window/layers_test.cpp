@@ -45,7 +45,7 @@ Volume ct_ball() {
     return Volume(geometry, samples);
 }
 
-/// Of the wheel: a whole notch of a narrow scene may go through the skin at once.
+/// Step of the wheel: a whole notch of a narrow scene may go through the skin at once.
 constexpr int finely = 40;
 
 class LayersInWindow : public InWindow {
