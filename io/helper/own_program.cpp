@@ -55,7 +55,7 @@ const char* program_for_folder(const fs::path& folder) {
         folders |= entry.is_directory();
         if (!is_shown_file(entry)) continue;
         if (names_a_volume(entry.path())) volumes.push_back(entry.path().filename().string());
-        // Two are enough, so that not all of ten thousand entries are examined.
+        // Not every one of ten thousand has to be looked into.
         dicoms += dicoms < 2 && looks_like_dicom(entry.path());
         tiffs += dicoms == 0 && tiffs < 2 && is_tiff_name(entry.path());
     }
@@ -85,7 +85,7 @@ const char* program_for_file(const fs::path& path) {
     }
     for (const char* packed : {".zip", ".gz", ".bz2", ".xz", ".7z", ".tar", ".ozx"}) {
         if (!extension.ends_with(packed)) continue;
-        throw Failure("is packed; unpack it and open its contents");
+        throw Failure("is packed; unpack it and give what is in it");
     }
     throw Failure(
         "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, mgh, mgz, mrc, "

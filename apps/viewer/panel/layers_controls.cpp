@@ -260,7 +260,7 @@ void LayersControls::remove_layer() {
     });
 }
 
-/// For layers by label. Layers by level are always in the order of their levels.
+/// Of layers by label: those of levels are in the order of their levels.
 void LayersControls::shift_layer(int by) {
     const int row = chosen(), to = row + by;
     if (std::min(row, to) < levels() || to >= count()) return;
@@ -302,7 +302,7 @@ void LayersControls::choose_layer(int layer) {
     if (layer < list_->count()) list_->setCurrentRow(layer);
 }
 
-/// Lists "none", the available sets, and the set in use if it is none of these.
+/// None, the sets that can be had, and the one in use where it is none of them.
 void LayersControls::show_choice() {
     const QSignalBlocker quiet(choice_);
     choice_->clear();

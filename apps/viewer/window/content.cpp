@@ -11,7 +11,7 @@ Content::Content() {
     connect(this, &Content::run_changed, &effect_, [this] { begin_effect(); });
 }
 
-/// Starts the effect of the chosen hand.
+/// Of the chosen hand.
 void Content::begin_effect() {
     if (const run::Run* run = live()) {
         return effect_.begin(run->field(), run->isovalue(), run->settings(), run->device(),

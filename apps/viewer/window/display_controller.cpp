@@ -1,4 +1,4 @@
-// Keeps scene and slices at the snapshot, the data and the level that are touched or played.
+// Keeps scene and slices at the snapshot, the data and the level that are felt or played.
 #include "apps/viewer/window/display_controller.hpp"
 
 #include <Eigen/Geometry>
@@ -22,8 +22,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The view of a stack that is thinner than this part of its next longer side, face on: rows to the
-/// right, and down or towards the head. 0 is for a single slice.
+/// Of a stack thinner than this part of its next longer side, as it lies on a screen: rows to the
+/// right, and down or towards the head. 0: of a single slice.
 std::optional<pictures::View> face_on(const Geometry& geometry, double is_thin) {
     int thin = 0;
     Vec3 sides = (geometry.size.cast<double>() - Vec3::Ones()).cwiseProduct(geometry.spacing);
@@ -161,7 +161,7 @@ void DisplayController::use_usual_look() {
     const Volume& volume = opened.loaded.volume;
     Look look = panel_.look_controls().look();
     look.transfer = preset(suggested_preset(opened.histogram, volume), opened.histogram, volume);
-    // These belong to the previous volume.
+    // Of the volume before.
     look.surfaces.clear();
     look.cut = Cut::nothing;
     look.overlay = {};

@@ -26,7 +26,7 @@ std::filesystem::path path_of(const QString& name) {
     return std::filesystem::path(name.toStdString());
 }
 
-/// The same source with another place of its grid.
+/// The same source, its grid lying otherwise.
 run::Source with_grid(run::Source source, const io::GivenGrid& grid) {
     const auto put_into = [&](auto& options) {
         options.spacing = grid.spacing;
@@ -116,7 +116,7 @@ void FileController::open_path(const QString& path) {
     if (path.endsWith(".json", Qt::CaseInsensitive)) return open_session(path);
     if (path.endsWith(".csv", Qt::CaseInsensitive)) return open_recording(path);
     messages_.guarded([&] {
-        // Finds out the kind of source: a store is touched while it is read.
+        // Looks at what it is: a store is felt while it is read.
         const run::Source source = run::source_from({{"volume", path.toStdString()}});
         lacks_layout(source) ? ask_layout(source) : open_volume(source);
     });
@@ -183,7 +183,7 @@ void FileController::feel(std::shared_ptr<Opened> opened, const RunRequest& requ
     tell_choices(*opened);
 }
 
-/// Says how many channels and times a store has, of which one is touched.
+/// Of a store with several channels or times one is felt.
 void FileController::tell_choices(const Opened& opened) {
     if (!opened.loaded.streamed) return;
     const stream::StoreInfo& info = opened.loaded.streamed->store->info();

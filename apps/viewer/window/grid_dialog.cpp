@@ -27,7 +27,7 @@ GridDialog::GridDialog(const Geometry& grid, const io::GivenGrid& given, QWidget
       measured_(grid.measured) {
     setObjectName("grid");
     setWindowTitle(tr("Orientation and spacing"));
-    // Facts of the file itself can be replaced, but not removed.
+    // What the file itself says can be replaced, not taken away.
     const bool may_be_unknown = !grid.oriented || !given.orientation.empty();
     const std::string letters = may_be_unknown ? " LRPASI" : "LRPASI";
     QStringList names{tr("to the left (L)"),  tr("to the right (R)"), tr("to the back (P)"),

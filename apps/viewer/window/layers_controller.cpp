@@ -57,7 +57,7 @@ bool LayersController::is_layers_file(const QString& path) {
     return text.contains("\"palpate_layers\"") && !text.contains("\"palpate-session\"");
 }
 
-/// Makes the choice impossible without a label map, and notes a label that the map lacks.
+/// What a label map has to have, and whether there is one.
 void LayersController::limit_to_labels(LayersChoice& choice) const {
     const auto& overlay = overlays_.overlay();
     if (!overlay || !overlay->is_label_map()) {
@@ -93,7 +93,7 @@ LayersChoice LayersController::choice_of(const io::LayersFile& file) const {
     return choice;
 }
 
-/// Layers of the visible labels.
+/// Of those that are shown.
 LayersChoice LayersController::choice_of_labels(const Overlay& labels) const {
     const auto& hidden = panel_.look_controls().look().overlay.hidden;
     LayersChoice choice = choice_of(layers_of(labels, hidden));
@@ -103,7 +103,7 @@ LayersChoice LayersController::choice_of_labels(const Overlay& labels) const {
     return choice;
 }
 
-/// Offers the labels of a label map first, then sets that suit the volume without a note.
+/// Those that suit the volume without a note come first, and the labels of a label map before all.
 void LayersController::offer() {
     if (!content_.live()) return;
     std::vector<LayersChoice> choices;

@@ -19,7 +19,7 @@
 namespace palpate::viewer {
 namespace {
 
-/// Opacity of the layer that belongs to this label, if there is one.
+/// Of the layer that a label is, if it is one.
 double opacity_of(int label, const SharedLayers& layers) {
     if (!layers || !layers->by_label) return 1;
     const auto labels = std::span(layers->layers).subspan(level_count(*layers));

@@ -50,13 +50,13 @@ void RecordingController::stop() {
     Q_EMIT changed();
 }
 
-/// Time since the run of the first hand began.
+/// Of the first hand, since its run began.
 double RecordingController::seconds() const {
     const auto now = content_.live(1)->snapshot();
     return now ? now->session.tick.time : 0;
 }
 
-/// The writer that all recorded hands share. Null if nothing is recorded.
+/// Of the hands that are recorded, all have the same. Null: nothing is recorded.
 const io::RecordingWriter* RecordingController::writer() const {
     for (int hand = 1; hand <= content_.hands(); ++hand) {
         const run::Run* live = content_.live(hand);

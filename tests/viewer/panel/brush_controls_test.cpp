@@ -27,7 +27,7 @@ class Brushes : public PanelFixture {
             if (!refuse_with.isEmpty()) controls->refuse(kept, refuse_with);
         });
     }
-    /// The choices since the last call, without waiting ones.
+    /// What has been chosen since the last look, and nothing that waits.
     std::vector<BrushChoice> chosen() {
         settle();
         return std::exchange(choices, {});
