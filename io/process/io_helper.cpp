@@ -42,7 +42,7 @@ void check_readable(const fs::path& path) {
     const fs::file_status status = fs::status(path, error);
     if (status.type() == fs::file_type::not_found && is_web_address(name)) {
         throw InputError(name +
-                         ": is a web address, and this command reads files only; convert it "
+                         ": is a web address, and only files can be read here; convert it "
                          "with palpate convert");
     }
     if (status.type() == fs::file_type::not_found && name.find("://") != std::string::npos) {
