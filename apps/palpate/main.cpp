@@ -23,18 +23,18 @@ int main(int argc, char** argv) {
     // The words after the command's name, for a command that becomes another program.
     const Words words{std::max(argc - 2, 0), argv + std::min(argc, 2)};
     return run_program(argc, argv, [&words](CLI::App& app) {
+        add_demo(app);
         add_info(app);
+        add_view(app, words);
+        add_touch(app, words);
+        add_record(app);
         add_replay(app);
+        add_render(app);
         add_extract(app);
         add_convert(app);
         add_tool(app);
-        add_render(app);
-        add_demo(app);
-        add_missing_python(app);
-        add_touch(app, words);
-        add_view(app, words);
-        add_record(app);
         add_devices(app);
         add_doctor(app);
+        add_missing_python(app);
     });
 }
