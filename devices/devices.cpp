@@ -7,6 +7,7 @@
 #include "devices/falcon/falcon.hpp"
 #include "devices/forcedimension/forcedimension.hpp"
 #include "devices/haply/haply.hpp"
+#include "devices/left_alone.hpp"
 #include "devices/openhaptics/openhaptics.hpp"
 #include "devices/recorded/recorded.hpp"
 #include "devices/simulated/simulated.hpp"
@@ -34,12 +35,16 @@ constexpr std::array<Backend, 8> backends{{
     {"spacenav", &find_spacenav, &open_spacenav},
 }};
 
-}  // namespace
-
-std::vector<DeviceFinding> find_devices() {
+std::vector<DeviceFinding> find_all() {
     std::vector<DeviceFinding> findings;
     for (const Backend& backend : backends) findings.push_back(backend.find());
     return findings;
+}
+
+}  // namespace
+
+std::vector<DeviceFinding> find_devices(const OnProgress& progress) {
+    return left_alone_when_stopped(progress, &find_all);
 }
 
 std::vector<std::string> device_names() {

@@ -12,6 +12,7 @@
 
 #include "doctor/latency.hpp"
 #include "palpate/devices/backend.hpp"
+#include "palpate/progress.hpp"
 
 namespace palpate::doctor {
 
@@ -130,6 +131,6 @@ struct Facts {
 
 /// This machine, but for the latency. Takes a few seconds: helpers are started and devices are
 /// looked for. Moves nothing. Throws std::invalid_argument for a device that there is not.
-Facts survey(const std::string& wanted_device);
+Facts survey(const std::string& wanted_device, const OnProgress& progress = {});
 
 }  // namespace palpate::doctor

@@ -147,13 +147,13 @@ Account read_account() {
     return account;
 }
 
-Facts survey(const std::string& wanted_device) {
+Facts survey(const std::string& wanted_device, const OnProgress& progress) {
     Facts facts;
     facts.machine = read_machine("/");
     facts.limits = read_limits();
     facts.account = read_account();
     facts.wanted_device = wanted_device;
-    facts.devices = devices::find_devices();
+    facts.devices = devices::find_devices(progress);
     const std::vector<std::string> names = devices::device_names();
     if (!wanted_device.empty() && std::ranges::find(names, wanted_device) == names.end()) {
         throw std::invalid_argument("there is no device '" + wanted_device +

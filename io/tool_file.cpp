@@ -91,7 +91,8 @@ ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress) {
     refuse(text);
 }
 
-std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing) {
+std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing,
+                                      const OnProgress& progress) {
     const Overloaded make{
         [](const PointSpec&) { return point_tool(); },
         [&](const SphereSpec& s) { return sphere_tool(s.radius, spacing); },
@@ -101,7 +102,7 @@ std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing) {
         [&](const BoxSpec& s) { return box_tool(s.size, spacing); },
         [&](const FingertipSpec& s) { return fingertip_tool(spacing, s.scale); },
         [](const PointsSpec& s) { return Tool(s.points, std::nullopt, s.turns, s.shape); },
-        [&](const MeshSpec& s) { return mesh_tool(*s.mesh, spacing); },
+        [&](const MeshSpec& s) { return mesh_tool(*s.mesh, spacing, progress); },
     };
     if (std::holds_alternative<PointSpec>(spec)) return nullptr;
     return std::make_shared<const Tool>(std::visit(make, spec));

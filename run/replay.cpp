@@ -109,8 +109,8 @@ Source recorded_source(const io::RecordingHead& head, const std::filesystem::pat
 }
 
 Session recorded_session(const io::RecordingHead& head, const LoadedVolume& loaded,
-                         const std::string& recording) {
-    const io::VolumeIdentity now = io::identify(loaded.volume, {});
+                         const std::string& recording, const OnProgress& progress) {
+    const io::VolumeIdentity now = io::identify(loaded.volume, {}, progress);
     if (now.size != head.volume.size || now.type != head.volume.type ||
         now.crc32 != head.volume.crc32) {
         throw io::InputError(loaded.name +
@@ -172,7 +172,10 @@ Replay::Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::str
                std::function<void()> tell)
     : reader_(reader),
       recording_(std::move(recording)),
-      session_(recorded_session(reader.head(), loaded, recording_)),
+      session_(recorded_session(reader.head(), loaded, recording_,
+                                [&tell](double) {
+                                    if (tell) tell();
+                                })),
       start_(session_.renderer.settings),
       samples_(session_.renderer.field.shared_samples(), frames_of(loaded),
                grid_of(loaded, std::move(tell))) {}

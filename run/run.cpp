@@ -42,7 +42,8 @@ Field seen(const Field& field) {
 
 /// For the run `hand`. If the device is the one that it has, it is closed first.
 std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setup& setup,
-                                 const Run* hand, const std::function<void()>& let_go = {}) {
+                                 const Run* hand, const OnProgress& progress = {},
+                                 const std::function<void()>& let_go = {}) {
     const double rate = setup.render.rate.value_or(usual_rate);
     if (!(rate >= 250 && rate <= 8000)) {
         std::string text;
@@ -50,10 +51,11 @@ std::unique_ptr<Device> open_for(const Field& field, double isovalue, const Setu
         throw std::invalid_argument("rate " + text + " Hz: a live session runs at 250 to 8000 Hz");
     }
     const devices::OpenedBy opened_by(hand, let_go);
-    return setup.open_device(setup.device,
-                             {seen(field), isovalue, rate, [&](const DeviceInfo& info) {
-                                  return transform_for(field.geometry(), info, setup);
-                              }});
+    return setup.open_device(setup.device, {seen(field), isovalue, rate,
+                                            [&](const DeviceInfo& info) {
+                                                return transform_for(field.geometry(), info, setup);
+                                            },
+                                            progress});
 }
 
 /// In place of a device that was closed and could not be opened again.
@@ -82,12 +84,13 @@ constexpr std::chrono::milliseconds longest_stop{500};
 }  // namespace
 
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
-                                 const Source& source, const RenderSetup& setup) {
+                                 const Source& source, const RenderSetup& setup,
+                                 const OnProgress& progress) {
     const Field& field = session.renderer.field;
     io::RecordingHead head;
     head.version = PALPATE_VERSION;
     head.begun = utc_now();
-    head.volume = io::identify(field.volume(), to_names(source));
+    head.volume = io::identify(field.volume(), to_names(source), progress);
     head.solid = field.solid();
     head.interpolation = field.interpolation();
     head.background = field.background();
@@ -106,8 +109,8 @@ Run::Run(std::shared_ptr<Data> data, const Setup& setup, const OnProgress& progr
       field_(make_field(data_->start(), setup.field, setup.render.method.method)) {
     const double isovalue = isovalue_of(data_->loaded(), setup, progress);
     if (progress) progress(1);
-    auto device = open_for(field_, isovalue, setup, this);
-    take(make_session(field_, isovalue, device->info(), setup));
+    auto device = open_for(field_, isovalue, setup, this, progress);
+    take(make_session(field_, isovalue, device->info(), setup, progress));
     hold(std::move(device));
 }
 
@@ -302,9 +305,9 @@ void Run::use_device(const devices::DeviceChoice& device, const OnProgress& prog
     const double isovalue = some_isovalue(progress);  // a simulated hand goes for its surface
     if (progress) progress(1);
     try {
-        auto opened = open_for(field_, isovalue, setup, this, [this] { close_device(); });
+        auto opened = open_for(field_, isovalue, setup, this, progress, [this] { close_device(); });
         const bool is_the_same = !device_ || device == setup_.device;
-        const Session fitted = make_session(field_, isovalue, opened->info(), setup);
+        const Session fitted = make_session(field_, isovalue, opened->info(), setup, progress);
         const RendererSettings& fit = fitted.renderer.settings;
         RendererSettings settings = settings_;
         settings.device = fit.device;
@@ -365,12 +368,13 @@ void Run::use_field(Solid solid, Interpolation interpolation, std::optional<doub
     launch(session_stopped());
 }
 
-void Run::record(const std::filesystem::path& path) {
+void Run::record(const std::filesystem::path& path, const OnProgress& progress) {
     Run* const self = this;
-    record_together(std::span(&self, 1), path);
+    record_together(std::span(&self, 1), path, progress);
 }
 
-void Run::record_together(std::span<Run* const> runs, const std::filesystem::path& path) {
+void Run::record_together(std::span<Run* const> runs, const std::filesystem::path& path,
+                          const OnProgress& progress) {
     if (runs.empty()) throw std::invalid_argument("there is no run to record");
     Data& data = *runs.front()->data_;
     std::vector<io::RecordingHead> heads;
@@ -383,7 +387,7 @@ void Run::record_together(std::span<Run* const> runs, const std::filesystem::pat
         }
         if (heads.empty()) data.check_recording();
         heads.push_back(recording_head(run->session_now(), run->device_->info(),
-                                       data.loaded().source, run->setup_.render));
+                                       data.loaded().source, run->setup_.render, progress));
     }
     const auto recording = std::make_shared<io::RecordingWriter>(path, heads, data.pace());
     std::exception_ptr lost;

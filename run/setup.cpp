@@ -41,10 +41,11 @@ std::uint32_t bit_of(const ButtonSetup& setup, const char* purpose, int buttons)
 }
 
 /// Throws std::invalid_argument.
-std::shared_ptr<const Tool> tool_for(const RenderSetup& setup, const Geometry& geometry) {
+std::shared_ptr<const Tool> tool_for(const RenderSetup& setup, const Geometry& geometry,
+                                     const OnProgress& progress) {
     const double spacing = setup.tool_spacing.value_or(io::usual_spacing(geometry));
     try {
-        return io::make_tool(setup.tool, spacing);
+        return io::make_tool(setup.tool, spacing, progress);
     } catch (const std::invalid_argument& e) {
         std::string apart;
         io::append_number(apart, spacing);
@@ -132,7 +133,7 @@ std::string layers_warning(const io::LayersFile& file, const LoadedVolume& loade
 }
 
 RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
-                                 const DeviceLimits& limits) {
+                                 const DeviceLimits& limits, const OnProgress& progress) {
     if (setup.layers && !setup.layers->layers.layers.empty() &&
         !std::holds_alternative<std::monostate>(setup.penetrability)) {
         throw std::invalid_argument(
@@ -155,7 +156,7 @@ RendererSettings render_settings(const RenderSetup& setup, const Field& field, d
         settings.layers =
             std::make_shared<const Layers>(io::layers_for(*setup.layers, field.volume()));
     }
-    settings.tool = tool_for(setup, field.geometry());
+    settings.tool = tool_for(setup, field.geometry(), progress);
     settings.force = setup.force;
     settings.force.limit = setup.limit.value_or(settings.force.limit);
     settings.force.stiffness = setup.stiffness.value_or(settings.force.stiffness);
@@ -171,8 +172,9 @@ double rate_of(const RenderSetup& setup, const DeviceInfo& device) {
     return setup.rate.value_or(device.renders_force ? usual_rate : without_force);
 }
 
-RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue) {
-    RendererSettings settings = render_settings(setup, field, isovalue);
+RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue,
+                                  const OnProgress& progress) {
+    RendererSettings settings = render_settings(setup, field, isovalue, {}, progress);
     settings.device.maximum_force = std::max(settings.device.maximum_force, settings.force.limit);
     settings.device.maximum_torque = std::min(settings.force.torque_limit, most_torque);
     settings.force.stale_after = std::numeric_limits<double>::infinity();
@@ -191,7 +193,7 @@ DeviceTransform transform_for(const Geometry& geometry, const DeviceInfo& info,
 }
 
 Session make_session(const Field& field, double isovalue, const DeviceInfo& info,
-                     const Setup& setup) {
+                     const Setup& setup, const OnProgress& progress) {
     RenderSetup render = setup.render;
     const double rate = rate_of(render, info);
     if (!render.limit) render.limit = info.limits.maximum_force;
@@ -203,7 +205,7 @@ Session make_session(const Field& field, double isovalue, const DeviceInfo& info
     }
     // The slower of device and loop is what renders the spring.
     render.rate = std::min(rate, info.limits.rate);
-    RendererSettings settings = render_settings(render, field, isovalue, info.limits);
+    RendererSettings settings = render_settings(render, field, isovalue, info.limits, progress);
     settings.transform = transform_for(field.geometry(), info, setup);
     Session session{make_renderer(field, isovalue, settings), {}};
     session.settings.clutch_buttons = bit_of(setup.buttons.clutch, "clutch", info.buttons);

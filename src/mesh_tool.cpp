@@ -20,6 +20,8 @@ using MeshEdge = std::pair<std::uint32_t, std::uint32_t>;
 constexpr double distance_of_points = 0.75, candidate_step = 1.0 / 3;
 static_assert(distance_of_points + candidate_step * 2 / 3 < 1);
 constexpr std::size_t most_candidates = 20'000'000;
+/// Triangles or candidates that take milliseconds.
+constexpr std::size_t items_in_slice = 4096;
 
 [[noreturn]] void refuse_number() {
     throw std::invalid_argument("a tool has at most " + std::to_string(most_tool_points) +
@@ -94,9 +96,11 @@ class SpreadPoints {
 /// Makes points of candidates until each has one within `distance`: far from each other first,
 /// which leaves few gaps that are neither one nor two points wide (dart throwing with shrinking
 /// darts; McCool and Fiume 1992).
-void choose(SpreadPoints& points, const std::vector<Vec3>& candidates, double distance) {
+void choose(SpreadPoints& points, const std::vector<Vec3>& candidates, double distance,
+            ReportedItems& work) {
     for (const double share : {2.0, 1.6, 1.3, 1.1, 1.0}) {
         for (const Vec3& place : candidates) {
+            work.done();
             if (!points.has_within(share * distance, place)) points.add(place);
         }
     }
@@ -109,7 +113,7 @@ Vec3 area_vector(std::span<const Vec3> vertices, const MeshTriangle& t) {
 /// Edges at the border, between more than two triangles, and where two meet at more than 30
 /// degrees.
 std::vector<MeshEdge> sharp_edges(std::span<const Vec3> vertices,
-                                  std::span<const MeshTriangle> triangles) {
+                                  std::span<const MeshTriangle> triangles, ReportedItems& work) {
     struct Sides {
         int count = 0;
         Vec3 normal;
@@ -118,6 +122,7 @@ std::vector<MeshEdge> sharp_edges(std::span<const Vec3> vertices,
     const double flat = std::cos(std::acos(-1.0) / 6);
     std::map<MeshEdge, Sides> edges;
     for (const MeshTriangle& t : triangles) {
+        work.done();
         const Vec3 normal = area_vector(vertices, t).normalized();
         for (std::size_t i = 0; i < 3; ++i) {
             Sides& sides = edges[std::minmax(t[i], t[(i + 1) % 3])];
@@ -189,12 +194,15 @@ void add_pieces(std::vector<Vec3>& places, const std::array<Vec3, 3>& corners, d
 
 }  // namespace
 
-Tool mesh_tool(ToolShape mesh, double spacing) {
+Tool mesh_tool(ToolShape mesh, double spacing, const OnProgress& progress) {
     if (!(spacing > 0 && spacing < 1e9)) {
         throw std::invalid_argument("the spacing of a tool's points must be > 0");
     }
     const std::span<const Vec3> vertices(mesh.vertices);
-    const std::vector<MeshTriangle> triangles = joined(vertices, mesh.triangles);
+    // Three passes over the triangles, and five over the candidates, of which there are some two
+    // per triangle or more.
+    ReportedItems work(progress, 13 * mesh.triangles.size(), items_in_slice);
+    const std::vector<MeshTriangle> triangles = joined(vertices, mesh.triangles, &work);
     double area = 0;
     for (const MeshTriangle& t : triangles) area += area_vector(vertices, t).norm();
     // The closest packing that leaves no place farther than the spacing from a point.
@@ -202,15 +210,16 @@ Tool mesh_tool(ToolShape mesh, double spacing) {
         refuse_number();
     }
     const double step = candidate_step * spacing, distance = distance_of_points * spacing;
-    const std::vector<MeshEdge> edges = sharp_edges(vertices, triangles);
+    const std::vector<MeshEdge> edges = sharp_edges(vertices, triangles, work);
     SpreadPoints points(spacing);
-    choose(points, corners_of(vertices, edges), distance);
-    choose(points, along(vertices, edges, step), distance);
+    choose(points, corners_of(vertices, edges), distance, work);
+    choose(points, along(vertices, edges, step), distance, work);
     std::vector<Vec3> places;
     for (const MeshTriangle& t : triangles) {
+        work.done();
         add_pieces(places, {vertices[t[0]], vertices[t[1]], vertices[t[2]]}, step);
     }
-    choose(points, places, distance);
+    choose(points, places, distance, work);
     return Tool(points.all(), std::nullopt, true, std::move(mesh));
 }
 

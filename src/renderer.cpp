@@ -114,8 +114,16 @@ void look_at_layers(Renderer& renderer) {
     }
 }
 
-/// An update that leaves the proxy where it is, because samples are missing.
-ProxyUpdate wait_for_samples(const Renderer& renderer, const Vec3& hip) {
+/// After an update from a place before which the proxy was placed, or not.
+void note_start(Renderer& renderer, bool was_placed, UpdateStatus status) {
+    if (counts(status)) renderer.starts_inside = false;
+    if (!was_placed && status == UpdateStatus::recovering) renderer.starts_inside = true;
+}
+
+/// An update that leaves the proxy where it is, because samples are missing. A hand that was put
+/// into the solid is followed: it may come out where samples are in memory, or where they come.
+ProxyUpdate wait_for_samples(Renderer& renderer, const Vec3& hip) {
+    if (renderer.starts_inside) renderer.proxy.placed = false;
     ProxyUpdate held =
         refuse_update(renderer.proxy, felt_field(renderer), hip, UpdateStatus::waiting);
     if (!renderer.proxy.placed) held.scp = hip;
@@ -182,8 +190,9 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
     }
     if (looked_beyond_memory(renderer, before, hip, moved.proxy.searched)) {
         forget_layers(renderer.layers, renderer.proxy, renderer.field);
-        moved = {wait_for_samples(renderer, hip), {}};
+        return {wait_for_samples(renderer, hip), {}};
     }
+    note_start(renderer, before.placed, moved.proxy.status);
     return moved;
 }
 
@@ -191,7 +200,8 @@ Moved move_proxy(Renderer& renderer, const DeviceState& device, const Vec3& hip,
 ToolUpdate move_tool(Renderer& renderer, const Pose& hand, const ToolSettings& asked,
                      PoseObserver observer) {
     ToolProxy& proxy = *renderer.tool_proxy;
-    const Pose from = proxy.placed ? proxy.pose : hand;
+    const bool was_placed = proxy.placed;
+    const Pose from = was_placed ? proxy.pose : hand;
     const double gyration = asked.gyration > 0 ? asked.gyration : proxy.tool().gyration();
     const Vec3 turn = rotation_between(from.orientation, hand.orientation);
     const double part = part_within_reach(
@@ -199,7 +209,10 @@ ToolUpdate move_tool(Renderer& renderer, const Pose& hand, const ToolSettings& a
         {from.position, hand.position, gyration * turn.norm(), proxy.tool().radius()});
     ToolUpdate update{
         .status = UpdateStatus::waiting, .mode = proxy.mode, .hand = hand, .proxy = from};
-    if (part == 0) return update;
+    if (part == 0) {
+        proxy.placed = was_placed && !renderer.starts_inside;
+        return update;
+    }
     Pose goal = hand;
     if (part < 1) {
         goal.position = from.position + part * (hand.position - from.position);
@@ -210,11 +223,14 @@ ToolUpdate move_tool(Renderer& renderer, const Pose& hand, const ToolSettings& a
     if (update.searched > 0 &&
         !is_resident(renderer.field, from.position, update.searched + proxy.tool().radius())) {
         proxy.pose = update.proxy = from;
+        proxy.placed = was_placed && !renderer.starts_inside;
         proxy.contact_count = 0;
         proxy.kept().inside = true;
         proxy.kept().recovery = {};
         update.status = UpdateStatus::waiting;
+        return update;
     }
+    note_start(renderer, was_placed, update.status);
     if (part < 1 && update.mode == Mode::free && counts(update.status)) {
         update.status = UpdateStatus::waiting;
     }

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <stdexcept>
 
+#include "apps/options/interruption.hpp"
 #include "apps/options/no_effect.hpp"
 #include "apps/options/values.hpp"
 #include "io/system/number.hpp"
@@ -29,6 +30,10 @@ std::array<double, 2> two_numbers(const std::string& option, const std::string& 
                         one_is_enough ? "one number, or two" : "two numbers"));
     }
     return {*first, *second};
+}
+
+void until_interrupted(double) {
+    stop_if_interrupted();
 }
 
 }  // namespace
@@ -67,7 +72,9 @@ void RenderOptions::add_to(CLI::App& command) {
     command
         .add_option_function<std::string>(
             "--tool",
-            [this](const std::string& text) { given.tool = io::tool_spec_from(tool_ = text); },
+            [this](const std::string& text) {
+                given.tool = io::tool_spec_from(tool_ = text, until_interrupted);
+            },
             "Touch with a rigid tool: sphere:R, rod:L, needle[:L,R], burr:R, box:X,Y,Z, fingertip "
             "[mm], or a file with points (.csv) or a mesh (.stl, .ply, .obj, .vtp)")
         ->type_name("{point,sphere:,rod:,needle,burr:,box:,fingertip}|FILE.{csv,stl,ply,obj,vtp}")
@@ -194,7 +201,8 @@ run::RenderSetup RenderOptions::setup() const {
     warn_of_no_effect();
     run::RenderSetup setup = given;
     if (!labels.empty()) {
-        setup.layers = run::layers_by_label(run::load(run::source_named(labels)), setup.layers);
+        setup.layers = run::layers_by_label(run::load(run::source_named(labels), until_interrupted),
+                                            setup.layers);
     }
     if (penetrability == Penetrability::threshold) {
         setup.penetrability = run::ThresholdSetup{threshold.value_or(1), minimum};

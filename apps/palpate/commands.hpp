@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/options/interruption.hpp"
+
 namespace palpate::app {
 
 void add_info(CLI::App& app);
@@ -21,16 +23,5 @@ void add_tool(CLI::App& app);
 void add_demo(CLI::App& app);
 void add_demo_sculpt(CLI::App& demo);
 void add_demo_beating(CLI::App& demo);
-
-/// Thrown where a signal such as that of Ctrl-C was seen: open files are dropped by unwinding (exit
-/// status 128 + the signal's number).
-struct Interrupted {};
-/// How often SIGINT, SIGTERM, SIGHUP or SIGQUIT has come.
-int interruptions();
-inline bool interrupted() {
-    return interruptions() > 0;
-}
-/// Throws Interrupted if so.
-void stop_if_interrupted();
 
 }  // namespace palpate::app

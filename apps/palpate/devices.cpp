@@ -15,7 +15,8 @@ namespace {
 
 void list_devices(bool json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const devices::DeviceFinding& device : devices::find_devices()) {
+    const auto found = devices::find_devices([](double) { stop_if_interrupted(); });
+    for (const devices::DeviceFinding& device : found) {
         const std::vector<std::string> plugged = plugged_in(device.name);
         if (json) {
             list.push_back({{"name", device.name},

@@ -64,7 +64,7 @@ void step(std::vector<LiveHand>& hands, double seconds) {
 void record(std::vector<LiveHand>& hands, const std::string& path) {
     std::vector<run::Run*> runs;
     for (LiveHand& hand : hands) runs.push_back(hand.run.get());
-    run::Run::record_together(runs, path);
+    run::Run::record_together(runs, path, [](double) { stop_if_interrupted(); });
 }
 
 std::vector<std::int64_t> stop_recording(std::vector<LiveHand>& hands) {

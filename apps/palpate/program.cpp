@@ -2,7 +2,6 @@
 #include "apps/palpate/program.hpp"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -19,13 +18,6 @@ namespace {
 using namespace palpate::app;
 
 constexpr int broken_pipe = 13;  // SIGPIPE, which Windows lacks
-
-volatile std::sig_atomic_t stop_signal = 0, stop_signals = 0;
-
-void on_signal(int number) {
-    stop_signal = number;
-    stop_signals = stop_signals + 1;
-}
 
 int finish_output() {
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return done;
@@ -68,21 +60,13 @@ int read_and_run(int argc, char** argv, const std::function<void(CLI::App&)>& ad
 
 namespace palpate::app {
 
-int interruptions() {
-    return stop_signals;
-}
-
-void stop_if_interrupted() {
-    if (interrupted()) throw Interrupted{};
-}
-
 int run_program(int argc, char** argv, const std::function<void(CLI::App&)>& add_commands) {
     occupy_closed_streams();
-    handle_ends(on_signal);
+    handle_ends(count_interruption);
     try {
         return read_and_run(argc, argv, add_commands);
     } catch (const Interrupted&) {
-        return fail("interrupted", status_of_signal(stop_signal));
+        return fail("interrupted", status_of_signal(last_interruption()));
     } catch (const palpate::io::ReaderGone&) {
         return status_of_signal(broken_pipe);
     } catch (const std::exception& e) {
@@ -90,7 +74,7 @@ int run_program(int argc, char** argv, const std::function<void(CLI::App&)>& add
         // Ctrl-C reaches the helper process as well, and its end may be seen first.
         const bool has_ended = dynamic_cast<const palpate::io::WaitEnded*>(&e) != nullptr;
         if ((failure.status == bad_input || has_ended) && interrupted())
-            return fail("interrupted", status_of_signal(stop_signal));
+            return fail("interrupted", status_of_signal(last_interruption()));
         if (std::ferror(stdout) != 0) {
             return reader_has_gone() ? status_of_signal(broken_pipe) : finish_output();
         }

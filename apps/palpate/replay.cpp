@@ -172,8 +172,9 @@ void replay(const ReplayOptions& options) {
                                         options.render.given.method.method);
     const run::RenderSetup render = options.render.setup();
     const double isovalue = required_isovalue(loaded, field, options.field, render);
+    const auto waiting = [](double) { stop_if_interrupted(); };
     Renderer renderer =
-        make_renderer(field, isovalue, run::offline_settings(render, field, isovalue));
+        make_renderer(field, isovalue, run::offline_settings(render, field, isovalue, waiting));
 
     const bool has_tool = renderer.settings.tool != nullptr;
     io::TraceWriter trace(options.output, {},

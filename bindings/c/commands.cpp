@@ -130,8 +130,9 @@ extern "C" PALPATE_API palpate_status palpate_run_set_tool(palpate_run* run, con
     return send(run, [&](const run::Run& now) {
         const double spacing = io::usual_spacing(now.field().geometry());
         if (!tool) return command::UseTool{nullptr};
+        const OnProgress progress = progress_of_thread();
         return command::UseTool{
-            io::make_tool(io::tool_spec_from(tool, progress_of_thread()), spacing)};
+            io::make_tool(io::tool_spec_from(tool, progress), spacing, progress)};
     });
 }
 

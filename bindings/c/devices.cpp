@@ -5,7 +5,9 @@
 namespace palpate::c {
 
 extern "C" PALPATE_API palpate_status palpate_device_list_create(palpate_device_list** out) {
-    return guarded([&] { given(out, "out") = new palpate_device_list{devices::find_devices()}; });
+    return guarded([&] {
+        given(out, "out") = new palpate_device_list{devices::find_devices(progress_of_thread())};
+    });
 }
 
 extern "C" PALPATE_API size_t palpate_device_list_count(const palpate_device_list* list) {

@@ -96,9 +96,9 @@ extern "C" PALPATE_API palpate_status palpate_run_create(palpate_data* data,
         const auto asked = taken_or_default(options, "options");
         auto made = std::make_unique<palpate_run>();
         made->data = given(data, "data").data;
-        made->run = std::make_unique<run::Run>(made->data, setup_from(asked),
-                                               progress_of(asked, "the run was cancelled"));
-        if (asked.recording) made->run->record(asked.recording);
+        const OnProgress progress = progress_of(asked, "the run was cancelled");
+        made->run = std::make_unique<run::Run>(made->data, setup_from(asked), progress);
+        if (asked.recording) made->run->record(asked.recording, progress);
         *out = made.release();
     });
 }
@@ -181,7 +181,7 @@ extern "C" PALPATE_API palpate_status palpate_run_use_device(palpate_run* run, c
 extern "C" PALPATE_API palpate_status palpate_run_record(palpate_run* run, const char* path) {
     return guarded([&] {
         const auto lock = locked(run);
-        run->run->record(&given(path, "path"));
+        run->run->record(&given(path, "path"), progress_of_thread());
     });
 }
 
@@ -200,7 +200,7 @@ extern "C" PALPATE_API palpate_status palpate_run_record_together(palpate_run* c
         }
         std::vector<std::unique_lock<std::mutex>> locks;
         for (palpate_run* const one : all) locks.push_back(locked(one));
-        run::Run::record_together(hands, &given(path, "path"));
+        run::Run::record_together(hands, &given(path, "path"), progress_of_thread());
     });
 }
 

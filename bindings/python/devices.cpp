@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 
 namespace palpate::python {
 namespace {
 
 std::vector<py::dict> found_devices() {
-    const auto findings = without_gil([&] { return devices::find_devices(); });
+    const auto findings = without_gil([] { return devices::find_devices(ctrl_c()); });
     std::vector<py::dict> list;
     for (const devices::DeviceFinding& f : findings) {
         list.push_back(py::dict(py::arg("name") = f.name, py::arg("found") = f.found,

@@ -113,7 +113,7 @@ run::LoadedVolume loaded_again(const py::tuple& state) {
     const auto source = run::source_from(state[1].cast<std::map<std::string, std::string>>());
     if (state[0].is_none()) {
         const GilReleased unlocked;
-        run::LoadedVolume loaded = run::load(source);
+        run::LoadedVolume loaded = run::load(source, ctrl_c());
         if (loaded.streamed) loaded.streamed->store = destroyed_here_only(loaded.streamed->store);
         return loaded;
     }

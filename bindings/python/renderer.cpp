@@ -19,7 +19,7 @@ SharedRenderer live_renderer(const Field& field, const io::Level& level, const R
     ForceSettings usual;
     usual.limit = limits.maximum_force;
     RendererSettings settings =
-        run::render_settings(setup_of(setup, usual), field, isovalue, limits);
+        run::render_settings(setup_of(setup, usual), field, isovalue, limits, ctrl_c());
     if (const auto tool = tool_in(setup)) settings.tool = tool;
     if (transform) settings.transform = *transform;
     return SharedRenderer(make_renderer(field, isovalue, settings));
@@ -222,7 +222,7 @@ void bind_changes(py::class_<SharedRenderer>& renderer) {
 Renderer offline_renderer(const Field& field, const io::Level& level, const RenderSetup& setup) {
     const double isovalue = io::level_in(field.volume(), level);
     RendererSettings settings =
-        run::offline_settings(setup_of(setup, offline_force()), field, isovalue);
+        run::offline_settings(setup_of(setup, offline_force()), field, isovalue, ctrl_c());
     if (const auto tool = tool_in(setup)) settings.tool = tool;
     return make_renderer(field, isovalue, settings);
 }

@@ -231,7 +231,7 @@ void record_together(const std::vector<std::shared_ptr<LiveRun>>& runs, const fs
         one->process.check();
         hands.push_back(one.get());
     }
-    run::Run::record_together(hands, path);
+    run::Run::record_together(hands, path, ctrl_c());
 }
 
 void send(LiveRun& r, const Sent& sent) {
@@ -261,7 +261,7 @@ void bind_run(py::module_& module) {
             "record",
             [](R& r, const fs::path& path) {
                 r.process.check();
-                r.record(path);
+                r.record(path, ctrl_c());
             },
             py::arg("path"), Unlocked(), "Records from now on, to a new file. Raises OutputError.")
         .def(

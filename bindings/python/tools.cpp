@@ -19,7 +19,7 @@ Made made(Tool tool) {
 
 Made from_text(const std::filesystem::path& text, double spacing) {
     const GilReleased unlocked;
-    const auto tool = io::make_tool(io::tool_spec_from(text.string(), ctrl_c()), spacing);
+    const auto tool = io::make_tool(io::tool_spec_from(text.string(), ctrl_c()), spacing, ctrl_c());
     return made(tool ? *tool : point_tool());
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "devices/haply/inverse3.hpp"
+#include "devices/left_alone.hpp"
 #include "io/system/number.hpp"
 
 namespace palpate::devices {
@@ -33,6 +34,35 @@ haply::Address address_from(const std::string& host, double port) {
                                     ": a whole number is needed");
     }
     return haply::look_up(host, static_cast<std::uint16_t>(port));
+}
+
+/// A conversation with the service that has begun, or why not.
+struct Begun {
+    haply::Address address;
+    haply::Talk talk;
+    std::string wrong = {};
+};
+
+/// Throws DeviceError if there is no such host.
+Begun begin_talk(haply::Talk talk, const std::string& host, double port, const std::string& device,
+                 const Timing& timing) {
+    Begun begun{address_from(host, port), std::move(talk)};
+    if (begun.address.numeric.empty()) {
+        throw DeviceError("device haply: no host '" + host +
+                          "': host=NAME is where Haply's Inverse Service runs, usually 127.0.0.1");
+    }
+    // For one that is just starting.
+    const haply::Clock::time_point deadline = haply::time_of(timing) + 1s;
+    for (;;) {
+        begun.wrong = haply::start_talk(begun.talk, begun.address, device, deadline);
+        const haply::Clock::time_point next = haply::time_of(timing) + 100ms;
+        if (begun.wrong.empty() || next > deadline) break;
+        timing.sleep_until(haply::ns_of(next));
+    }
+    if (begun.wrong.empty() && begun.talk.state.device_id.empty()) {
+        begun.wrong = haply::no_device(begun.talk, begun.address);
+    }
+    return begun;
 }
 
 }  // namespace
@@ -93,23 +123,14 @@ std::unique_ptr<haply::Inverse3> haply::open(const DeviceChoice& choice, const D
     settings.rate = scene.rate;
     options.finish();
 
-    Address address = address_from(host, port);
-    if (address.numeric.empty()) {
-        throw DeviceError("device haply: no host '" + host +
-                          "': host=NAME is where Haply's Inverse Service runs, usually 127.0.0.1");
-    }
-    const Clock::time_point deadline = time_of(timing) + 1s;  // for one that is just starting
-    std::string wrong;
-    for (;;) {
-        wrong = start_talk(talk, address, settings.device, deadline);
-        const Clock::time_point next = time_of(timing) + 100ms;
-        if (wrong.empty() || next > deadline) break;
-        timing.sleep_until(ns_of(next));
-    }
-    if (wrong.empty() && talk.state.device_id.empty()) wrong = no_device(talk, address);
-    if (!wrong.empty()) throw DeviceError("device haply: " + wrong);
-    return std::make_unique<Inverse3>(std::move(settings), std::move(address), std::move(talk),
-                                      timing);
+    Begun begun = left_alone_when_stopped(
+        scene.progress,
+        [talk = std::move(talk), host, port, device = settings.device, timing]() mutable {
+            return begin_talk(std::move(talk), host, port, device, timing);
+        });
+    if (!begun.wrong.empty()) throw DeviceError("device haply: " + begun.wrong);
+    return std::make_unique<Inverse3>(std::move(settings), std::move(begun.address),
+                                      std::move(begun.talk), timing);
 }
 
 }  // namespace palpate::devices

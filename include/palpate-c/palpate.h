@@ -70,9 +70,10 @@ PALPATE_API const char *palpate_version(void); /* MAJOR.MINOR.PATCH, for example
 PALPATE_API const char *palpate_last_error(void);
 /* Sets a function (or null) that reports the progress of long calls of this thread: they call it with
  * 0 to 1, unless their options have a function of their own. It returns 0 to cancel the call. Long calls
- * copy, adopt, load or describe a volume, look up many values, make a field, a mesh or a run, edit or
- * save data, read a tool, or change the device. A cancelled edit is made as a whole or not at all. Calls
- * from within a callback do not call it. */
+ * copy, adopt, load or describe a volume, look up many values, make a field, a mesh, a renderer or a
+ * run, edit or save data, or read a tool. Others look for devices, change the device, or begin a
+ * recording. A cancelled edit is made as a whole or not at all. Calls from within a callback do not
+ * call it. */
 PALPATE_API void palpate_set_progress(int32_t (*progress)(double fraction, void *context),
                                       void *context);
 
@@ -468,8 +469,8 @@ typedef struct palpate_run_options {
     const char *recording;                /* a new file to record into from the start; null: none */
     int32_t no_real_time;                 /* not 0: does not ask for real-time priority */
     int32_t deadman_button;               /* from 1: no force unless it is held; 0: none */
-    /* Called from this thread with 0 to 1 during the search for an isovalue, and before the device is
-     * opened. Returns 0 to cancel. Since 0.3. */
+    /* Called from this thread with 0 to 1 during the search for an isovalue, while the device is opened,
+     * while a tool is made and while a recording begins. Returns 0 to cancel. Since 0.3. */
     int32_t (*progress)(double fraction, void *context);
     void *context;
     int32_t clutch_button;                /* from 1: moves the volume with the hand while held; 0: button 2,

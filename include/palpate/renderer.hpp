@@ -63,6 +63,9 @@ struct Renderer {
     /// The tool's proxy, for the level `proxy.isovalue`. It has a value if there is a tool, or if
     /// make_room_for_tools() was called.
     std::optional<ToolProxy> tool_proxy = {};
+    /// The proxy was placed in the solid and has not been outside since: it is on no side of a
+    /// surface, and starts anew where it would have to wait for samples.
+    bool starts_inside = false;
 };
 
 /// The field that the proxy touches: that of the samples or, with layers by label, the one that

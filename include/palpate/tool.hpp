@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "palpate/progress.hpp"
 #include "palpate/volume.hpp"
 
 namespace palpate {
@@ -92,8 +93,8 @@ Tool fingertip_tool(double spacing, double scale = 1);
 /// has a point within `spacing` [mm], and no two points are closer than three quarters of that.
 /// Corners and edges (30 degrees) get points first. Throws std::invalid_argument without a triangle
 /// that has an area, for vertices that are not finite or missing, and for more points than a tool
-/// may have.
-Tool mesh_tool(ToolShape mesh, double spacing);
+/// may have. Exceptions of `progress` are passed on.
+Tool mesh_tool(ToolShape mesh, double spacing, const OnProgress& progress = {});
 
 /// A point of the tool in physical space.
 inline Vec3 physical_from_tool(const Pose& pose, const Vec3& point) {

@@ -100,11 +100,19 @@ std::uint32_t checksum_with(std::string_view line, std::uint32_t before) {
     return static_cast<std::uint32_t>(::crc32_z(before, bytes, line.size()));
 }
 
-VolumeIdentity identify(const Volume& volume, std::map<std::string, std::string> options) {
-    const auto* bytes = static_cast<const Bytef*>(volume.data());
-    const auto crc = ::crc32_z(::crc32_z(0, nullptr, 0), bytes, volume.bytes());
-    return {std::move(options), volume.geometry().size, volume.type(),
-            static_cast<std::uint32_t>(crc)};
+VolumeIdentity identify(const Volume& volume, std::map<std::string, std::string> options,
+                        const OnProgress& progress) {
+    constexpr std::size_t slice = std::size_t{4} << 20;
+    std::string_view left(static_cast<const char*>(volume.data()), volume.bytes());
+    ReportedItems work(progress, left.size(), slice);
+    std::uint32_t crc = 0;
+    while (!left.empty()) {
+        const std::string_view part = left.substr(0, slice);
+        crc = checksum_with(part, crc);
+        left.remove_prefix(part.size());
+        work.done(part.size());
+    }
+    return {std::move(options), volume.geometry().size, volume.type(), crc};
 }
 
 Json to_json(std::span<const RecordingHead> heads) {

@@ -8,13 +8,14 @@
 namespace palpate {
 
 std::vector<MeshTriangle> joined(std::span<const Vec3> vertices,
-                                 std::span<const MeshTriangle> triangles) {
+                                 std::span<const MeshTriangle> triangles, ReportedItems* work) {
     const auto before = [](const Vec3& a, const Vec3& b) {
         return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
     };
     std::map<Vec3, std::uint32_t, decltype(before)> numbers(before);
     std::vector<MeshTriangle> result;
     for (MeshTriangle t : triangles) {
+        if (work) work->done();
         for (std::uint32_t& i : t) {
             if (i >= vertices.size()) {
                 throw std::invalid_argument("a triangle names a vertex that the mesh has not");

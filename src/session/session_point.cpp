@@ -144,6 +144,7 @@ void halt(Session& session, SessionPoint& point) noexcept {
     point.clutched = session.clutched;
     point.past = session.past;
     renderer.proxy.kept_samples = {};  // a recording does not have them, and budgets count them
+    renderer.starts_inside = false;
     point.proxy = renderer.proxy;
     point.isovalue_without_layers = renderer.isovalue_without_layers;
     point.force = renderer.force;
@@ -178,6 +179,7 @@ void resume(Session& session, const SessionPoint& point) noexcept {
     session.clutched = point.clutched;
     session.past = point.past;
     renderer.proxy = point.proxy;
+    renderer.starts_inside = false;
     renderer.isovalue_without_layers = point.isovalue_without_layers;
     renderer.force = point.force;
     renderer.layers = point.layers;

@@ -343,10 +343,17 @@ TEST_P(Signal, ends_the_reader_too_while_a_file_is_read) {
     put_bytes(folder / "slow-reader", "#!/bin/sh\ntouch reading\nexec sleep 100\n");
     fs::permissions(folder / "slow-reader", fs::perms::owner_all);
     ::setenv("PALPATE_IO_HELPER", (folder / "slow-reader").c_str(), 1);
-    Running info(words_of("info a.nii"), folder.path());
-    ::unsetenv("PALPATE_IO_HELPER");
-    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "reading"); }));
-    expect_interrupted(info, folder, {"a.nii", "reading", "slow-reader"});
+    put_bytes(folder / "a.stl", std::string(1000, 'x'));
+    const std::string touch = "touch synthetic:sphere:24x24x24 --headless --seconds 1 ";
+    for (const std::string& command :
+         {std::string("info a.nii"), touch + "--tool a.stl", touch + "--labels a.nii"}) {
+        ::setenv("PALPATE_IO_HELPER", (folder / "slow-reader").c_str(), 1);
+        Running reader(words_of(command), folder.path());
+        ::unsetenv("PALPATE_IO_HELPER");
+        ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "reading"); }));
+        expect_interrupted(reader, folder, {"a.nii", "a.stl", "reading", "slow-reader"});
+        fs::remove(folder / "reading");
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Failure, Signal, testing::Values(SIGINT, SIGTERM),

@@ -159,6 +159,67 @@ TEST(Resident, a_proxy_does_not_go_into_a_finer_brick_that_says_solid) {
     }
 }
 
+/// A row of ten bricks, solid but for x from `low` to `high`, of which the first two and the last
+/// two are in memory. Space outside is solid.
+Field long_row(int low, int high, Interpolation interpolation) {
+    const Geometry geometry = grid({640, 64, 64});
+    const Volume volume = volume_of<std::uint8_t>(
+        geometry, [&](const Index3& at) { return at[0] >= low && at[0] < high ? 0 : 200; });
+    PartOf part(volume);
+    for (const int x : {0, 1, 8, 9}) part.add({x, 0, 0});
+    return Field(part.samples(), Solid::above, 200, interpolation);
+}
+
+struct Touching {
+    Interpolation interpolation;
+    std::shared_ptr<const Tool> tool = nullptr;
+
+    Renderer on(const Field& field) const {
+        RendererSettings settings;
+        settings.tool = tool;
+        return make_renderer(field, 100, settings);
+    }
+};
+const std::array touching{
+    Touching{Interpolation::linear}, Touching{Interpolation::cubic},
+    Touching{Interpolation::cubic, std::make_shared<const Tool>(sphere_tool(2, 1))}};
+
+TEST(Resident, a_hand_that_was_put_into_the_solid_is_felt_where_it_comes_out) {
+    for (const Touching& hand : touching) {
+        Renderer renderer = hand.on(long_row(590, 640, hand.interpolation));
+        int waiting = 0, tick = 0;
+        const auto at = [&](double x) {
+            const Tick now = render(renderer, {0.001 * ++tick, Vec3(x, 32, 32)});
+            waiting += now.proxy.status == UpdateStatus::waiting;
+            EXPECT_EQ(now.force, Vec3::Zero());
+            return now.proxy;
+        };
+        while (tick < 500) at(64);  // where nothing within memory is free
+        EXPECT_GT(waiting, 0);
+        ProxyUpdate update;
+        while (tick < 1000) update = at(615);
+        EXPECT_EQ(update.status, UpdateStatus::done);
+        EXPECT_EQ(update.mode, Mode::free);
+        EXPECT_EQ(update.scp, Vec3(615, 32, 32));
+    }
+}
+
+TEST(Resident, a_hand_over_which_a_solid_came_is_not_let_through_it) {
+    for (const Touching& hand : touching) {
+        Renderer renderer = hand.on(long_row(590, 640, hand.interpolation));
+        (void)render(renderer, {0.001, Vec3(615, 32, 32)});
+        const Field covered = long_row(0, 128, hand.interpolation);
+        field_will_change(renderer.proxy, renderer.field);
+        renderer.field.use(covered.shared_samples());
+        for (int tick = 2; tick < 500; ++tick) {
+            const ProxyUpdate update =
+                render(renderer, {0.001 * tick, Vec3(std::max(64, 616 - tick), 32, 32)}).proxy;
+            ASSERT_NE(update.status, UpdateStatus::done);
+            ASSERT_NEAR(update.scp[0], 615, 1e-9);
+        }
+    }
+}
+
 TEST(Resident, versions_are_what_a_map_of_bricks_says_and_share_what_stayed) {
     Random random(5);
     // More than one leaf of bricks along x.

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <stdexcept>
 
 #include "support/random.hpp"
 #include "support/scratch_folder.hpp"
@@ -100,6 +102,37 @@ TEST(ToolFile, what_is_no_tool_is_refused_in_words) {
     }
     EXPECT_THROW((void)make_tool(SphereSpec{50}, 0.1), std::invalid_argument) << "too many points";
     EXPECT_THROW((void)make_tool(SphereSpec{1}, 0), std::invalid_argument);
+}
+
+TEST(ToolFile, a_mesh_of_many_triangles_can_be_stopped_on_its_way_to_a_tool) {
+    constexpr std::uint32_t edge = 100;
+    ToolShape sheet;
+    for (std::uint32_t y = 0; y <= edge; ++y) {
+        for (std::uint32_t x = 0; x <= edge; ++x) {
+            sheet.vertices.emplace_back(x, y, 0);
+            const std::uint32_t next = edge + 1, at = y * next + x;
+            if (x == edge || y == edge) continue;
+            sheet.triangles.push_back({at, at + 1, at + next});
+            sheet.triangles.push_back({at + 1, at + next + 1, at + next});
+        }
+    }
+    const MeshSpec spec{std::make_shared<const ToolShape>(std::move(sheet))};
+    std::vector<double> parts;
+    const auto whole = make_tool(spec, 4, [&](double part) { parts.push_back(part); });
+    EXPECT_GT(parts.size(), 10U);
+    EXPECT_TRUE(std::ranges::is_sorted(parts));
+    EXPECT_LE(parts.back(), 1);
+    for (const std::size_t last : {std::size_t{1}, parts.size() / 2, parts.size()}) {
+        std::size_t calls = 0;
+        EXPECT_THROW((void)make_tool(spec, 4,
+                                     [&](double) {
+                                         if (++calls == last) throw std::runtime_error("stop");
+                                     }),
+                     std::runtime_error);
+        EXPECT_EQ(calls, last);
+    }
+    const auto untold = make_tool(spec, 4);
+    EXPECT_TRUE(std::ranges::equal(whole->points(), untold->points()));
 }
 
 }  // namespace

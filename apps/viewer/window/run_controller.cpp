@@ -149,7 +149,7 @@ void RunController::find_devices() {
     auto found = std::make_shared<std::vector<devices::DeviceFinding>>();
     search_.start(
         tr("Looking for devices"),
-        [found](const io::Progress&) { *found = devices::find_devices(); },
+        [found](const io::Progress& progress) { *found = devices::find_devices(progress); },
         [this, found] {
             findings_ = *found;
             show_devices();

@@ -12,6 +12,7 @@
 #include "palpate/devices/error.hpp"
 #include "palpate/devices/options.hpp"
 #include "palpate/field.hpp"
+#include "palpate/progress.hpp"
 
 namespace palpate::devices {
 
@@ -23,6 +24,8 @@ struct DeviceScene {
     /// Gives the place of a device with this workspace in the volume. Scripted and recorded hands
     /// move in physical space.
     std::function<DeviceTransform(const DeviceInfo&)> transform;
+    /// Called while a name is looked up and a service answers. Its exceptions are passed on.
+    OnProgress progress = {};
 };
 
 /// Whether one kind of device was found, and if not, why.

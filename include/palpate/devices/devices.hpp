@@ -4,11 +4,14 @@
 #include <vector>
 
 #include "palpate/devices/backend.hpp"
+#include "palpate/progress.hpp"
 
 namespace palpate::devices {
 
-/// Looks for every kind of device; takes at most a second or so. Moves nothing.
-std::vector<DeviceFinding> find_devices();
+/// Looks for every kind of device. Moves nothing. Takes a second or so, or as long as a vendor's
+/// library or the lookup of a name. These cannot be stopped: when `progress` throws, they are left
+/// alone on a thread of their own, and the exception is passed on at once.
+std::vector<DeviceFinding> find_devices(const OnProgress& progress = {});
 
 /// The names of all kinds, found or not.
 std::vector<std::string> device_names();

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "palpate/io/error.hpp"
+#include "palpate/progress.hpp"
 #include "palpate/servo.hpp"
 
 namespace palpate::io {
@@ -31,7 +32,9 @@ struct VolumeIdentity {
     SampleType type = SampleType::uint8;
     std::uint32_t crc32 = 0;  ///< of the samples in memory
 };
-VolumeIdentity identify(const Volume& volume, std::map<std::string, std::string> options);
+/// Exceptions of `progress` are passed on.
+VolumeIdentity identify(const Volume& volume, std::map<std::string, std::string> options,
+                        const OnProgress& progress = {});
 
 /// A session of one hand at its start.
 struct RecordingHead {

@@ -56,8 +56,9 @@ using ToolSpec = std::variant<PointSpec, SphereSpec, RodSpec, NeedleSpec, BurrSp
 ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress = {});
 /// The tool with neighbouring points about `spacing` [mm] apart; those of a file stay as they are.
 /// Null for a point. Throws std::invalid_argument for impossible sizes, and for more points than a
-/// tool may have.
-std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing);
+/// tool may have. Exceptions of `progress` are passed on.
+std::shared_ptr<const Tool> make_tool(const ToolSpec& spec, double spacing,
+                                      const OnProgress& progress = {});
 /// The same tool, `factor` times as large. Throws std::invalid_argument for a factor that is not
 /// above 0.
 ToolSpec scaled(const ToolSpec& spec, double factor);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "palpate/io/recording.hpp"
+#include "palpate/progress.hpp"
 #include "palpate/run/recorded_samples.hpp"
 #include "palpate/run/source.hpp"
 
@@ -19,9 +20,9 @@ Source recorded_source(const io::RecordingHead& head, const std::filesystem::pat
 
 /// The session of a recording before its first tick. Throws io::InputError if the volume is not the
 /// one that was recorded (size, type or samples), or if the settings in the head cannot be
-/// rendered.
+/// rendered. Exceptions of `progress` are passed on.
 Session recorded_session(const io::RecordingHead& head, const LoadedVolume& loaded,
-                         const std::string& recording);
+                         const std::string& recording, const OnProgress& progress = {});
 
 /// The first part of a tick that differs from the recording.
 struct Difference {
@@ -34,8 +35,9 @@ std::optional<Difference> difference(const SessionTick& recorded, const SessionT
 
 class Replay {
   public:
-    /// `reader` is before the first event and outlives this. `tell` is called repeatedly while
-    /// next() waits for samples of a store, and may throw to stop. Throws as recorded_session().
+    /// `reader` is before the first event and outlives this. `tell` is called repeatedly while the
+    /// volume is compared and while next() waits for samples of a store, and may throw to stop.
+    /// Throws as recorded_session().
     Replay(io::RecordingReader& reader, const LoadedVolume& loaded, std::string recording,
            std::function<void()> tell = {});
 

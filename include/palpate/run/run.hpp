@@ -15,6 +15,7 @@
 #include "palpate/devices/last_resort.hpp"
 #include "palpate/devices/mouse.hpp"
 #include "palpate/io/recording.hpp"
+#include "palpate/progress.hpp"
 #include "palpate/run/data.hpp"
 #include "palpate/run/setup.hpp"
 #include "palpate/servo.hpp"
@@ -23,7 +24,8 @@ namespace palpate::run {
 
 /// The head of a recording for a session that is about to begin.
 io::RecordingHead recording_head(const Session& session, const DeviceInfo& device,
-                                 const Source& source, const RenderSetup& setup);
+                                 const Source& source, const RenderSetup& setup,
+                                 const OnProgress& progress = {});
 
 /// The queue of commands is full: earlier commands have not been executed yet.
 class QueueFull : public std::invalid_argument {
@@ -121,13 +123,15 @@ class Run {
     /// recording can begin with; then nothing has changed. A recording that was running is
     /// finished; if that fails, io::OutputError says so, but the new one runs. Throws
     /// std::runtime_error or QueueFull, and leaves an empty recording, if the session takes no
-    /// commands.
-    void record(const std::filesystem::path& path);
+    /// commands. Computes a checksum of the volume first: exceptions of `progress` are passed on,
+    /// and nothing has changed.
+    void record(const std::filesystem::path& path, const OnProgress& progress = {});
     /// The same for several runs on the same data, into one file: they are its hands, in this order
     /// (docs/recordings.md). The file is complete when the last of them has ended its recording.
     /// Throws std::invalid_argument for runs on different data, for no run, and for a run that is
     /// given twice.
-    static void record_together(std::span<Run* const> runs, const std::filesystem::path& path);
+    static void record_together(std::span<Run* const> runs, const std::filesystem::path& path,
+                                const OnProgress& progress = {});
     /// Ends the recording; the session continues. Returns the number of its ticks, 0 without a
     /// recording. Throws io::OutputError if something could not be written.
     std::int64_t stop_recording();

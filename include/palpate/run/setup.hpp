@@ -15,6 +15,7 @@
 #include "palpate/io/layers_file.hpp"
 #include "palpate/io/level.hpp"
 #include "palpate/io/tool_file.hpp"
+#include "palpate/progress.hpp"
 #include "palpate/run/source.hpp"
 #include "palpate/session.hpp"
 #include "palpate/settings.hpp"
@@ -133,19 +134,21 @@ std::string layers_warning(const io::LayersFile& layers, const LoadedVolume& loa
 
 /// The requested settings. `isovalue` is the lowest level that is touched if no minimum is given,
 /// `limits` are the device's. Throws std::invalid_argument, through check(), for settings that
-/// cannot be rendered.
+/// cannot be rendered. Here and below, the tool may take seconds, and exceptions of `progress` are
+/// passed on.
 RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
-                                 const DeviceLimits& limits = {});
+                                 const DeviceLimits& limits = {}, const OnProgress& progress = {});
 /// The same for rendering without a device: only the requested force limit applies, and no time
 /// between two positions counts as a pause.
-RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue);
+RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue,
+                                  const OnProgress& progress = {});
 
 /// The transform that places the device's workspace in the volume.
 DeviceTransform transform_for(const Geometry& geometry, const DeviceInfo& info, const Setup& setup);
 /// A session for this device: `setup` with the device's limits, stiffness and buttons. Throws
 /// std::invalid_argument for a button that the device does not have.
 Session make_session(const Field& field, double isovalue, const DeviceInfo& info,
-                     const Setup& setup);
+                     const Setup& setup, const OnProgress& progress = {});
 
 /// The method of this name. Throws std::invalid_argument, listing the names, for another.
 baselines::NamedMethod named_method(std::string_view name);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "palpate/io/recording.hpp"
 #include "support/eventually.hpp"
@@ -407,6 +408,31 @@ TEST_F(CRun, whose_program_cancels_it_is_not_made) {
     EXPECT_EQ(palpate_run_create(data_, &options, &run_), PALPATE_CANCELLED);
     EXPECT_EQ(calls, 1);
     EXPECT_EQ(run_, nullptr);
+}
+
+TEST_F(CRun, recording_can_be_cancelled_while_the_volume_is_read_and_begins_again) {
+    PALPATE_STRUCT(palpate_geometry, grid);
+    for (std::int32_t& size : grid.size) size = 200;
+    std::vector<unsigned char> samples(std::size_t{200} * 200 * 200);
+    samples.back() = 200;
+    palpate_volume* volume = nullptr;
+    ASSERT_EQ(palpate_volume_copy(&grid, PALPATE_UINT8, samples.data(), samples.size(), &volume),
+              PALPATE_OK);
+    palpate_data_destroy(std::exchange(data_, nullptr));
+    ASSERT_EQ(palpate_data_create(volume, &data_), PALPATE_OK);
+    palpate_volume_destroy(volume);
+    ASSERT_EQ(create(nullptr, "mouse"), PALPATE_OK);
+    const support::ScratchFolder folder;
+    const std::string path = (folder.path() / "r.csv").string();
+    int calls = 0;
+    palpate_set_progress([](double, void* counted) { return ++*static_cast<int*>(counted) * 0; },
+                         &calls);
+    EXPECT_EQ(palpate_run_record(run_, path.c_str()), PALPATE_CANCELLED);
+    EXPECT_EQ(palpate_run_record_together(&run_, 1, path.c_str()), PALPATE_CANCELLED);
+    EXPECT_EQ(calls, 2) << "once each";
+    palpate_set_progress(nullptr, nullptr);
+    EXPECT_FALSE(std::filesystem::exists(path));
+    EXPECT_EQ(palpate_run_record(run_, path.c_str()), PALPATE_OK) << palpate_last_error();
 }
 
 TEST_F(CRun, two_on_the_same_data_are_recorded_together_and_one_goes_on_without_the_other) {

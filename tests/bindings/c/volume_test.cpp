@@ -247,7 +247,9 @@ TEST(CProgress, of_a_thread_is_told_by_every_long_call_and_can_stop_it) {
     EXPECT_EQ(palpate_data_field(data, nullptr, &field), PALPATE_CANCELLED);
     EXPECT_EQ(palpate_mesh_create(field, 100, &mesh), PALPATE_CANCELLED);
     EXPECT_EQ(palpate_data_save(data, path.c_str()), PALPATE_CANCELLED);
-    EXPECT_EQ(calls, 7) << "once each";
+    palpate_device_list* devices = nullptr;
+    EXPECT_EQ(palpate_device_list_create(&devices), PALPATE_CANCELLED);
+    EXPECT_EQ(calls, 8) << "once each";
     EXPECT_EQ(field, first);
     std::thread([&] { EXPECT_EQ(palpate_volume_describe(volume, &info), PALPATE_OK); }).join();
     const auto describe = [](double, void* context) {

@@ -2,6 +2,8 @@
 #include <cstdlib>
 
 #include "devices/haply/haply_fixture.hpp"
+#include "palpate/devices/devices.hpp"
+#include "support/silent_server.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -49,6 +51,36 @@ TEST_F(HaplyEnvironment, the_usual_service_is_looked_for_without_a_resolver) {
     EXPECT_NE(find().options.find("host=127.0.0.1"), std::string::npos);
     EXPECT_EQ(haply::look_up("localhost", 1).numeric,
               (std::vector<std::string>{"127.0.0.1", "::1"}));
+}
+
+TEST_F(HaplyEnvironment, what_waits_for_a_silent_service_ends_when_it_is_told_to) {
+    struct Stop {};
+    const auto stops = [](const auto& work) {
+        for (int attempt = 0; attempt < 20; ++attempt) {
+            int calls = 0;
+            try {
+                work([&](double) {
+                    if (++calls == 2) throw Stop{};
+                });
+            } catch (const Stop&) {
+                return true;
+            } catch (
+                const DeviceError&) {  // this thread was stalled until the service was given up
+            }
+        }
+        return false;
+    };
+    const support::SilentServer server;
+    const std::string address = server.address();
+    const std::size_t colon = address.rfind(':');
+    const std::string port = address.substr(colon + 1, address.rfind('/') - colon - 1);
+    EXPECT_TRUE(stops([&](const OnProgress& progress) {
+        DeviceScene scene = support::any_scene();
+        scene.progress = progress;
+        (void)open_haply({"haply", {{"host", "127.0.0.1"}, {"port", port}}}, scene);
+    }));
+    setenv("HAPLY_WS_PORT", port.c_str(), 1);
+    EXPECT_TRUE(stops([](const OnProgress& progress) { (void)find_devices(progress); }));
 }
 
 }  // namespace
