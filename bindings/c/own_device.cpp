@@ -3,6 +3,7 @@
 #include "bindings/c/own_device.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "bindings/c/handles.hpp"
@@ -43,6 +44,9 @@ void check(const palpate_own_device& asked, const DeviceInfo& info) {
     if (!(asked.maximum_force > 0)) {
         throw std::invalid_argument(
             "own.maximum_force: give what the device can take [N], above 0");
+    }
+    if (!(info.stiffness >= 0) || std::isinf(info.stiffness)) {
+        throw std::invalid_argument("own.stiffness [N/mm]: has to be finite and at least 0");
     }
     if (asked.buttons < 0 || asked.buttons > 32) {
         throw std::invalid_argument("own.buttons: 0 to 32");

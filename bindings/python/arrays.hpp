@@ -42,15 +42,23 @@ py::array_t<T> array_from(std::vector<T> numbers) {
 /// Shape (n, 3), without a copy.
 py::array_t<double> array_from(std::vector<Vec3> points);
 
-/// `of(row)` of each row: a number, or an Eigen vector of fixed size in a row of its own.
+inline Eigen::Vector4d xyzw(const Quaternion& q) {
+    return q.coeffs();
+}
+
+/// `of(row)` of each row: a number (small whole ones become int), or an Eigen vector of fixed size,
+/// or x, y, z, w of a quaternion, in a row of its own.
 template <class Row, class Of>
 auto column(const std::vector<Row>& rows, const Of& of) {
     using Value = std::decay_t<decltype(of(rows.front()))>;
     if constexpr (std::is_arithmetic_v<Value>) {
-        py::array_t<Value> array(static_cast<py::ssize_t>(rows.size()));
-        Value* to = array.mutable_data();
+        using Number = std::conditional_t<std::same_as<Value, std::int8_t>, int, Value>;
+        py::array_t<Number> array(static_cast<py::ssize_t>(rows.size()));
+        Number* to = array.mutable_data();
         for (const Row& row : rows) *to++ = of(row);
         return array;
+    } else if constexpr (std::same_as<Value, Quaternion>) {
+        return column(rows, [&](const Row& row) { return xyzw(of(row)); });
     } else {
         constexpr py::ssize_t width = Value::SizeAtCompileTime;
         py::array_t<double> array({static_cast<py::ssize_t>(rows.size()), width});
@@ -62,8 +70,4 @@ auto column(const std::vector<Row>& rows, const Of& of) {
         return array;
     }
 }
-inline Eigen::Vector4d xyzw(const Quaternion& q) {
-    return q.coeffs();
-}
-
 }  // namespace palpate::python

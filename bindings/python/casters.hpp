@@ -36,7 +36,8 @@ class GilReleased {
     GilReleased(const GilReleased&) = delete;
     GilReleased& operator=(const GilReleased&) = delete;
 
-    /// Calls work(), which takes the GIL. Does not return if the interpreter has ended.
+    /// Calls work(), which takes the GIL or runs Python. Does not return if the interpreter has
+    /// ended.
     template <class Work>
     static void until_the_end(const Work& work) {
         try {

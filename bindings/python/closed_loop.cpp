@@ -79,7 +79,7 @@ py::dict closed_loop(const SharedRenderer& renderer, const std::string& text, do
     const auto of = [&](const auto& value) { return column(ticks, value); };
     return py::dict(
         py::arg("position") = of([](const LoopTick& t) { return t.position; }),
-        py::arg("orientation_xyzw") = of([](const LoopTick& t) { return xyzw(t.orientation); }),
+        py::arg("orientation_xyzw") = of([](const LoopTick& t) { return t.orientation; }),
         py::arg("force") = of([](const LoopTick& t) { return t.wrench.force; }),
         py::arg("torque") = of([](const LoopTick& t) { return t.wrench.torque; }),
         py::arg("constrained") = of([](const LoopTick& t) { return t.constrained; }));

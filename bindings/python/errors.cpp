@@ -12,9 +12,9 @@
 namespace palpate::python {
 namespace {
 
-/// Names of files in it may have bytes that are no text.
+/// In one line. Names of files in it may have bytes that are no text.
 py::object message_of(const std::exception& error) {
-    const std::string text = error.what();
+    const std::string text = io::one_line(error.what());
     return py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
         text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace"));
 }

@@ -1,6 +1,9 @@
 // Renders whole trajectories offline: arrays in, arrays out, without the GIL.
 #include "palpate/run/offline.hpp"
 
+#include <tuple>
+#include <type_traits>
+
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/hands.hpp"
@@ -9,92 +12,90 @@
 #include "bindings/python/trace_table.hpp"
 
 namespace palpate::python {
-
-py::dict columns_of(const std::vector<io::TraceRow>& rows) {
-    using Row = io::TraceRow;
-    py::dict table;
-    table["t"] = column(rows, [](const Row& r) { return r.t; });
-    table["hip"] = column(rows, [](const Row& r) { return r.hip; });
-    table["scp"] = column(rows, [](const Row& r) { return r.scp; });
-    table["force"] = column(rows, [](const Row& r) { return r.force; });
-    table["density"] = column(rows, [](const Row& r) { return r.density; });
-    table["isovalue"] = column(rows, [](const Row& r) { return r.isovalue; });
-    table["constrained"] = column(rows, [](const Row& r) { return r.constrained; });
-    table["tetrahedra"] = column(rows, [](const Row& r) { return r.tetrahedra; });
-    table["update_ns"] = column(rows, [](const Row& r) { return r.update_ns; });
-    table["layer"] = column(rows, [](const Row& r) { return int{r.layers.touched}; });
-    table["inside"] = column(rows, [](const Row& r) { return int{r.layers.inside}; });
-    table["torque"] = column(rows, [](const Row& r) { return r.torque; });
-    table["hand_orientation_xyzw"] = column(rows, [](const Row& r) { return xyzw(r.tool.hand); });
-    table["proxy_orientation_xyzw"] = column(rows, [](const Row& r) { return xyzw(r.tool.proxy); });
-    table["contacts"] = column(rows, [](const Row& r) { return r.tool.contacts; });
-    return table;
-}
-
 namespace {
 
-/// The columns of a palpate.Trace.
-class Table {
-  public:
-    explicit Table(py::dict columns)
-        : columns_(std::move(columns)), rows_(columns_["t"].cast<Doubles>().size()) {}
+/// A column of palpate.Trace: its name, and the path to the part of a row that it has.
+template <class... Path>
+struct TraceColumn {
+    const char* name;
+    std::tuple<Path...> path;
 
-    py::ssize_t rows() const { return rows_; }
-    /// Throws std::invalid_argument for another shape than (rows, width), or (rows,).
-    Doubles column(const char* name, py::ssize_t width) const {
-        const auto array = numbers_from<double>(columns_[name]);
-        if (!array) throw std::invalid_argument(std::string(name) + ": numbers are needed");
-        if (array.size() != rows_ * width) {
-            throw std::invalid_argument(std::string(name) + ": the shape is " +
-                                        std::string(py::str(array.attr("shape"))) +
-                                        ", the trace has " + std::to_string(rows_) + " ticks");
-        }
-        return array;
+    constexpr TraceColumn(const char* its_name, Path... its_path)
+        : name(its_name), path(its_path...) {}
+    auto& part(auto& row) const {
+        const auto follow = [&](auto... step) { return &(row.*....*step); };
+        return *std::apply(follow, path);
     }
-
-  private:
-    py::dict columns_;
-    py::ssize_t rows_;
 };
+
+using Row = io::TraceRow;
+constexpr std::tuple trace_columns{
+    TraceColumn("t", &Row::t),
+    TraceColumn("hip", &Row::hip),
+    TraceColumn("scp", &Row::scp),
+    TraceColumn("force", &Row::force),
+    TraceColumn("density", &Row::density),
+    TraceColumn("isovalue", &Row::isovalue),
+    TraceColumn("constrained", &Row::constrained),
+    TraceColumn("tetrahedra", &Row::tetrahedra),
+    TraceColumn("update_ns", &Row::update_ns),
+    TraceColumn("layer", &Row::layers, &LayersFelt::touched),
+    TraceColumn("inside", &Row::layers, &LayersFelt::inside),
+    TraceColumn("torque", &Row::torque),
+    TraceColumn("hand_orientation_xyzw", &Row::tool, &ToolFelt::hand),
+    TraceColumn("proxy_orientation_xyzw", &Row::tool, &ToolFelt::proxy),
+    TraceColumn("contacts", &Row::tool, &ToolFelt::contacts)};
+
+void for_each_column(auto&& visit) {
+    std::apply([&](const auto&... each) { (visit(each), ...); }, trace_columns);
+}
+
+/// Throws std::invalid_argument for an array that does not fit the rows, or numbers that do not fit
+/// the column.
+template <class... Path>
+void read_column(const TraceColumn<Path...>& one, const py::object& given, std::vector<Row>& rows) {
+    using Value = std::remove_cvref_t<decltype(one.part(rows.front()))>;
+    constexpr py::ssize_t width = std::same_as<Value, Vec3>         ? 3
+                                  : std::same_as<Value, Quaternion> ? 4
+                                                                    : 1;
+    const std::string name = one.name;
+    const auto array = numbers_from<double>(given);
+    if (!array) throw std::invalid_argument(name + ": numbers are needed");
+    if (array.size() != std::ssize(rows) * width) {
+        throw std::invalid_argument(name + ": the shape is " +
+                                    std::string(py::str(array.attr("shape"))) + ", the trace has " +
+                                    std::to_string(rows.size()) + " ticks");
+    }
+    const double* from = array.data();
+    for (Row& row : rows) {
+        if constexpr (width == 3) {
+            one.part(row) = Vec3(from);
+        } else if constexpr (width == 4) {
+            one.part(row) = Quaternion(from);  // x, y, z, w
+        } else {
+            if (std::is_integral_v<Value> && !holds<Value>(*from)) {
+                throw std::invalid_argument(name + " = " + std::string(py::str(py::float_(*from))) +
+                                            ": is not whole, or too large");
+            }
+            one.part(row) = static_cast<Value>(*from);
+        }
+        from += width;
+    }
+}
 
 void write_trace(const std::filesystem::path& path, const py::dict& columns,
                  const std::vector<std::string>& layer_names, std::size_t nested_layers,
                  bool tool) {
-    const Table table(columns);
-    const auto numbers = [&](const char* name) {
-        return [array = table.column(name, 1)](py::ssize_t i) { return array.data()[i]; };
-    };
-    const auto vectors = [&](const char* name) {
-        return
-            [array = table.column(name, 3)](py::ssize_t i) { return Vec3(array.data() + 3 * i); };
-    };
-    const auto turns = [&](const char* name) {
-        return [array = table.column(name, 4)](py::ssize_t i) {
-            const double* q = array.data() + 4 * i;
-            return Quaternion(q[3], q[0], q[1], q[2]);
-        };
-    };
-    const auto t = numbers("t"), density = numbers("density"), isovalue = numbers("isovalue"),
-               constrained = numbers("constrained"), tetrahedra = numbers("tetrahedra"),
-               update_ns = numbers("update_ns"), touched = numbers("layer"),
-               inside = numbers("inside"), contacts = numbers("contacts");
-    const auto hip = vectors("hip"), scp = vectors("scp"), force = vectors("force"),
-               torque = vectors("torque");
-    const auto hand = turns("hand_orientation_xyzw"), proxy = turns("proxy_orientation_xyzw");
+    const auto ticks = columns["t"].cast<Doubles>().size();
+    std::vector<Row> rows(static_cast<std::size_t>(ticks));
+    for_each_column([&](const auto& one) { read_column(one, columns[one.name], rows); });
     io::TraceWriter writer(path, {}, {layer_names, nested_layers, tool});
-    for (py::ssize_t i = 0; i < table.rows(); ++i) {
-        io::TraceRow row{t(i), hip(i), scp(i), force(i), density(i), isovalue(i)};
-        row.constrained = constrained(i) != 0;
-        row.tetrahedra = static_cast<int>(tetrahedra(i));
-        row.update_ns = static_cast<std::int64_t>(update_ns(i));
-        row.layers.touched = static_cast<std::int8_t>(touched(i));
-        row.layers.inside = static_cast<std::int8_t>(inside(i));
-        const auto count = static_cast<int>(layer_names.size());
-        if (count > 0 && (row.layers.touched >= count || row.layers.inside > count)) {
-            throw std::invalid_argument("layer or inside is more than there are layer_names");
+    const auto count = static_cast<int>(layer_names.size());
+    for (const Row& row : rows) {
+        const int touched = row.layers.touched, inside = row.layers.inside;
+        if (count > 0 && (touched < -1 || touched >= count || inside < 0 || inside > count)) {
+            throw std::invalid_argument("layer or inside is not that of one of the layer_names");
         }
-        row.tool = {hand(i), proxy(i), static_cast<int>(contacts(i))};
-        row.torque = torque(i);
         writer.add(row);
     }
     writer.commit();
@@ -157,15 +158,23 @@ py::dict replay(const Field& field, const io::Level& isovalue, const Doubles& ti
                                        array_from(std::move(corners.values)));
     }
     if (poses) {
-        table["poses"] = py::make_tuple(
-            array_from(std::move(ways.ticks)),
-            column(ways.values, [](const Pose& pose) { return pose.position; }),
-            column(ways.values, [](const Pose& pose) { return xyzw(pose.orientation); }));
+        table["poses"] =
+            py::make_tuple(array_from(std::move(ways.ticks)),
+                           column(ways.values, [](const Pose& pose) { return pose.position; }),
+                           column(ways.values, [](const Pose& pose) { return pose.orientation; }));
     }
     return table;
 }
 
 }  // namespace
+
+py::dict columns_of(const std::vector<io::TraceRow>& rows) {
+    py::dict table;
+    for_each_column([&](const auto& one) {
+        table[one.name] = column(rows, [&](const Row& row) { return one.part(row); });
+    });
+    return table;
+}
 
 void bind_offline(py::module_& module) {
     module.def("_replay", &replay, py::arg("field"), py::arg("isovalue"), py::arg("time"),
@@ -177,7 +186,7 @@ void bind_offline(py::module_& module) {
             const io::Trajectory t = io::read_trajectory(file);
             py::object turns = py::none();
             if (!t.orientation.empty()) {
-                turns = column(t.orientation, [](const Quaternion& q) { return xyzw(q); });
+                turns = column(t.orientation, [](const Quaternion& q) { return q; });
             }
             return py::make_tuple(column(t.time, [](double s) { return s; }),
                                   column(t.position, [](const Vec3& p) { return p; }), turns);

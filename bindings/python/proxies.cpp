@@ -405,7 +405,8 @@ void bind_proxies(py::module_& module) {
              "An update for each place of the hand [mm, physical], shape (n, 3), in order: a\n"
              "ProxyTrace. scale: mm of volume per mm of hand, for the threshold of penetrability.")
         .def_property_readonly("scp", [](const PlacedProxy& p) { return p.proxy.scp_physical; })
-        .def("__copy__", [](const PlacedProxy& p) { return p; });
+        .def("__copy__", [](const PlacedProxy& p) { return p; })
+        .def("__deepcopy__", [](const PlacedProxy& p, const py::dict&) { return p; });
     module.def(
         "follow_each", &follow_each, py::arg("field"), py::arg("isovalue"), py::arg("hips"),
         py::arg("first"), py::arg("method") = "exact", py::arg("threads") = 0, py::kw_only(),

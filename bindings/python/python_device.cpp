@@ -14,7 +14,7 @@ constexpr std::int64_t rest = 50'000'000;  // [ns]
 template <class Work>
 std::string tried(const std::string& function, Work&& work) {
     try {
-        work();
+        GilReleased::until_the_end(work);
         return {};
     } catch (const py::error_already_set& error) {
         const std::string text = error.what();  // with a traceback

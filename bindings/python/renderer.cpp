@@ -102,16 +102,15 @@ py::dict follow_ticks(SharedRenderer& renderer, const Doubles& time, const Doubl
         });
     }
     const auto of = [&](const auto& value) { return column(ticks, value); };
-    return py::dict(
-        py::arg("scp") = of([](const Tick& t) { return t.proxy.scp; }),
-        py::arg("density") = of([](const Tick& t) { return t.proxy.density; }),
-        py::arg("constrained") =
-            of([](const Tick& t) { return t.proxy.mode == Mode::constrained; }),
-        py::arg("behind") = of([](const Tick& t) { return t.proxy.behind; }),
-        py::arg("force") = of([](const Tick& t) { return t.force; }),
-        py::arg("layer") = of([](const Tick& t) { return int{t.layers.touched}; }),
-        py::arg("inside") = of([](const Tick& t) { return int{t.layers.inside}; }),
-        py::arg("punctured") = of([](const Tick& t) { return int{t.layers.punctured}; }));
+    return py::dict(py::arg("scp") = of([](const Tick& t) { return t.proxy.scp; }),
+                    py::arg("density") = of([](const Tick& t) { return t.proxy.density; }),
+                    py::arg("constrained") =
+                        of([](const Tick& t) { return t.proxy.mode == Mode::constrained; }),
+                    py::arg("behind") = of([](const Tick& t) { return t.proxy.behind; }),
+                    py::arg("force") = of([](const Tick& t) { return t.force; }),
+                    py::arg("layer") = of([](const Tick& t) { return t.layers.touched; }),
+                    py::arg("inside") = of([](const Tick& t) { return t.layers.inside; }),
+                    py::arg("punctured") = of([](const Tick& t) { return t.layers.punctured; }));
 }
 
 py::array_t<double> batch_ns(SharedRenderer& renderer, const Doubles& time, const Doubles& position,
@@ -266,6 +265,7 @@ void bind_renderer(py::module_& module) {
         .def_property_readonly("field", [](const R& r) { return r.field; })
         .def("copy", &R::copied)
         .def("__copy__", &R::copied)
+        .def("__deepcopy__", [](const R& r, const py::dict&) { return r.copied(); })
         .def("__repr__", [](const R& r) {
             return py::str("Renderer({!r}, isovalue={:g})")
                 .format(py::cast(r.field), r.proxy.isovalue);

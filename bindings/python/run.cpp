@@ -107,6 +107,12 @@ struct LiveRun : run::Run {
         return false;
     }
 
+    /// For calls that have no effect in a forked child. Throws std::logic_error there.
+    LiveRun& here() {
+        process.check();
+        return *this;
+    }
+
     OwnProcess process;
     PythonDevice* const python_device;  ///< where the device is written in Python, the run's own
 };
@@ -188,10 +194,10 @@ std::shared_ptr<LiveRun> make(const Feelable& what, const std::optional<Setup>& 
 void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
     using R = LiveRun;
     run.def(
-           "play", [](R& r, double speed) { r.data().player().play(speed); }, py::arg("speed"),
-           Unlocked(), "Of a sequence: seconds of it per second; 0 pauses.")
+           "play", [](R& r, double speed) { r.here().data().player().play(speed); },
+           py::arg("speed"), Unlocked(), "Of a sequence: seconds of it per second; 0 pauses.")
         .def(
-            "seek", [](R& r, double time) { r.data().player().seek(time); }, py::arg("time"),
+            "seek", [](R& r, double time) { r.here().data().player().seek(time); }, py::arg("time"),
             Unlocked(), "Goes to a time of the sequence [s].")
         .def_property_readonly(
             "problem",
@@ -206,18 +212,18 @@ void bind_playback(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
 void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
     using R = LiveRun;
     run.def(
-           "edit", [](R& r, const Edit& edit) { r.data().editor().apply(edit, ctrl_c()); },
+           "edit", [](R& r, const Edit& edit) { r.here().data().editor().apply(edit, ctrl_c()); },
            py::arg("edit"), Unlocked(), "Makes an edit (Stroke, Fill, Replace): one undo step.")
         .def(
-            "undo", [](R& r) { return r.data().editor().undo(ctrl_c()); }, Unlocked(),
+            "undo", [](R& r) { return r.here().data().editor().undo(ctrl_c()); }, Unlocked(),
             "False if there is nothing to undo.")
         .def(
-            "redo", [](R& r) { return r.data().editor().redo(ctrl_c()); }, Unlocked(),
+            "redo", [](R& r) { return r.here().data().editor().redo(ctrl_c()); }, Unlocked(),
             "False if there is nothing to redo.")
         .def(
             "set_brush",
             [](R& r, const std::optional<run::HandBrush>& brush) {
-                r.data().editor().set_brush(brush);
+                r.here().data().editor().set_brush(brush);
             },
             py::arg("brush"), Unlocked(), "A HandBrush that follows the proxy; None: only feel.")
         .def(
@@ -227,15 +233,12 @@ void bind_editing(py::class_<LiveRun, std::shared_ptr<LiveRun>>& run) {
 
 void record_together(const std::vector<std::shared_ptr<LiveRun>>& runs, const fs::path& path) {
     std::vector<run::Run*> hands;
-    for (const auto& one : runs) {
-        one->process.check();
-        hands.push_back(one.get());
-    }
+    for (const auto& one : runs) hands.push_back(&one->here());
     run::Run::record_together(hands, path, ctrl_c());
 }
 
 void send(LiveRun& r, const Sent& sent) {
-    const Field field = r.field_now();
+    const Field field = r.here().field_now();
     r.send(command_of(sent, field, r.isovalue(), r.settings().force));
 }
 
@@ -258,19 +261,11 @@ void bind_run(py::module_& module) {
         .def("send", &send, py::arg("command"), Unlocked(),
              "As Servo.send(). Raises ValueError, QueueFull.")
         .def(
-            "record",
-            [](R& r, const fs::path& path) {
-                r.process.check();
-                r.record(path, ctrl_c());
-            },
+            "record", [](R& r, const fs::path& path) { r.here().record(path, ctrl_c()); },
             py::arg("path"), Unlocked(), "Records from now on, to a new file. Raises OutputError.")
         .def(
-            "stop_recording",
-            [](R& r) {
-                r.process.check();
-                return r.stop_recording();
-            },
-            Unlocked(), "The number of its ticks. The session goes on.")
+            "stop_recording", [](R& r) { return r.here().stop_recording(); }, Unlocked(),
+            "The number of its ticks. The session goes on.")
         .def("field", &R::field_now, Unlocked(), "A copy of the Field felt, edits included.")
         .def_property_readonly("device", &R::device, "DeviceInfo")
         .def_property_readonly("isovalue", &R::isovalue, "Asked for last [data units].");

@@ -53,6 +53,7 @@ Held make_servo(const SharedRenderer& renderer, const py::object& device, double
 }
 
 void send_to_servo(DeviceServo& s, const Sent& sent) {
+    s.process.check();
     const Command command = command_of(sent, s.field, s.isovalue, s.force);
     if (!s.servo.send(command)) {
         const py::object type = py::module_::import("palpate.errors").attr("QueueFull");

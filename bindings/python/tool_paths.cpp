@@ -71,7 +71,7 @@ py::dict follow_tool(const Field& field, const io::Level& level, std::shared_ptr
     using Update = ToolUpdate;
     return py::dict(
         py::arg("position") = of([](const Update& u) { return u.proxy.position; }),
-        py::arg("orientation_xyzw") = of([](const Update& u) { return xyzw(u.proxy.orientation); }),
+        py::arg("orientation_xyzw") = of([](const Update& u) { return u.proxy.orientation; }),
         py::arg("contacts") = of([](const Update& u) { return u.contacts; }),
         py::arg("unfinished") = of([](const Update& u) { return u.status != UpdateStatus::done; }),
         py::arg("recovering") =
@@ -82,7 +82,7 @@ py::dict follow_tool(const Field& field, const io::Level& level, std::shared_ptr
         py::arg("pose_position") =
             column(path.poses, [](const NumberedPose& p) { return p.pose.position; }),
         py::arg("pose_orientation_xyzw") =
-            column(path.poses, [](const NumberedPose& p) { return xyzw(p.pose.orientation); }));
+            column(path.poses, [](const NumberedPose& p) { return p.pose.orientation; }));
 }
 
 }  // namespace

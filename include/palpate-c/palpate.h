@@ -153,7 +153,8 @@ typedef struct palpate_field_options {
 PALPATE_API palpate_status palpate_field_create(const palpate_volume *volume,
                                                 const palpate_field_options *options,
                                                 palpate_field **out);
-/* Densities and gradients [1/mm] at `count` points (x, y, z of each). Either result may be null. */
+/* Densities and gradients [1/mm] at `count` points (x, y, z of each). Either result may be null. A call
+ * that is cancelled has written the results of the first points. */
 PALPATE_API palpate_status palpate_field_values(const palpate_field *field, const double *points,
                                                 size_t count, double *densities, double *gradients);
 

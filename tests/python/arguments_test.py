@@ -3,6 +3,9 @@ type, in one line."""
 
 import inspect
 import pathlib
+import pickle
+import subprocess
+import sys
 
 import numpy
 import palpate
@@ -130,6 +133,15 @@ def test_text_that_has_no_utf_8_is_a_value_error_in_one_line(call):
         call()
 
 
+def test_a_number_that_c_does_not_hold_is_named():
+    volume = palpate.scene("sphere:8x8x8").volume
+    field = palpate.Field(volume)
+    for call, name in ((lambda: palpate.smoothed(volume, 2**70), "passes"), (lambda: palpate.smoothed(volume, passes=-2**70), "passes"),
+                       (lambda: palpate.Renderer(field, 2**2000), "isovalue"), (lambda: palpate.extract(field, -2**2000), "isovalue"),
+                       (lambda: palpate.explore(field, 100, seed=-1), "seed")):
+        assert f"(): {name} = " in complaint(call) and "is out of range" in complaint(call)
+
+
 CLASSES = [kind for within in (palpate, palpate.command) for kind in vars(within).values()
            if isinstance(kind, type) and kind.__module__.startswith("palpate") and "__new__" not in vars(kind)
            and type(kind).__name__ == "pybind11_type"]
@@ -147,8 +159,43 @@ def test_an_object_that_was_not_made_is_refused_wherever_it_is_used(kind):
             palpate.Field(unmade)
 
 
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_every_protocol_of_pickle_gives_the_same_or_is_refused(protocol):
+    volume = palpate.scene("sphere:8x8x8").volume
+    for one in (palpate.Friction(static_coefficient=0.5), palpate.command.Freeze(True), palpate.Fill((0, 0, 0), (1, 1, 1), 3),
+                palpate.Tool.named("burr:3", 1.0), volume.geometry):
+        assert pickle.loads(pickle.dumps(one, protocol)) == one
+    assert numpy.array_equal(pickle.loads(pickle.dumps(palpate.Field(volume), protocol)).volume.array, volume.array)
+    for one in (palpate.Renderer(palpate.Field(volume), 100), palpate.Run(volume, palpate.Setup(real_time=False)), palpate.Editor(volume)):
+        with pytest.raises(TypeError, match="cannot pickle"):
+            pickle.dumps(one, protocol)
+
+
 def test_an_error_inside_a_callback_stays_as_it_is():
     def progress(fraction):
         raise TypeError("mine,\nin two lines")
     with pytest.raises(TypeError, match="mine,\nin two lines"):
         palpate.extract(palpate.Field(palpate.scene("sphere").volume), 1, progress=progress)
+
+
+@pytest.mark.parametrize("again", ["importlib.reload(palpate)", """
+for name in [name for name in sys.modules if name.startswith("palpate")]:
+    del sys.modules[name]
+import palpate"""], ids=["reload", "import"])
+def test_the_package_may_be_loaded_again(again):
+    program = f"""import importlib, sys, numpy, palpate
+{again}
+volume = palpate.Volume(numpy.ones((2, 2, 2), "u1"))
+setup = palpate.RenderSetup(stiffness=0.25)
+assert palpate.Field(volume).geometry == volume.geometry and setup.force.stiffness == 0.25
+try:
+    palpate.Volume(3)
+except TypeError as error:
+    print(error)
+try:
+    palpate.load("nothing.nrrd")
+except palpate.InputError:
+    print("refused")
+"""
+    ran = subprocess.run([sys.executable, "-B", "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+    assert ran.stdout == "Volume(): array must be an array, not 3\nrefused\n", ran.stderr

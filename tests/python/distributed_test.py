@@ -73,7 +73,7 @@ def test_a_level_of_a_zarr_has_the_bytes_of_one_machine(client, tmp_path):
     on_one_machine(ball(tmp_path), source, "--chunk", "16", "--ome-version", "0.4")
     expected = on_one_machine(source, tmp_path / "one.zarr", "--chunk", "8", "--level", "1",
                               "--compression", "blosc", "--ome-version", "0.4")
-    convert(client, source, str(tmp_path / "many.zarr"), level=1, chunk=8, block=16, compression="blosc",
+    convert(client, pathlib.Path(source), os.fsencode(tmp_path / "many.zarr"), level=1, chunk=8, block=16, compression="blosc",
             ome_version="0.4")
     assert files(tmp_path / "many.zarr") == expected
 

@@ -284,6 +284,12 @@ def test_files_whose_names_are_no_text_are_read_and_told(tmp_path):
         palpate.write(ball()[0].volume, missing + b"/c.nrrd")
 
 
+def test_what_a_message_quotes_does_not_break_its_line():
+    for call in (palpate.RenderSetup, lambda tool: palpate.Tool.named(tool, 1.0)):
+        with pytest.raises(ValueError, match="^the tool 'a b' is not known: [^\n]*$"):
+            call(tool="a\nb")
+
+
 @pytest.mark.parametrize("ending", (".ply", ".stl", ".obj", ".vtp"))
 def test_a_mesh_that_a_file_cannot_hold_is_not_written(tmp_path, ending):
     file = tmp_path / f"mesh{ending}"

@@ -1,6 +1,7 @@
 """Replay in Python against the command line: the same bits, on synthetic and real volumes."""
 
 import base64
+import copy
 import csv
 import os
 import re
@@ -15,7 +16,7 @@ import pytest
 
 import palpate
 
-PALPATE = os.environ["PALPATE"]
+PALPATE, NAN = os.environ["PALPATE"], float("nan")
 # Volume, level, options of the command line and the same in Python.
 CASES = {
     "torus": ("synthetic:torus:40x40x40", 0.5, [], {}),
@@ -95,9 +96,10 @@ def test_a_copied_renderer_goes_on_exactly_as_its_original():
     half = len(seconds) // 2
     for t, at in zip(seconds[:half], position[:half]):
         renderer.render(t, at)
-    other = renderer.copy()
+    others = renderer.copy(), copy.copy(renderer), copy.deepcopy(renderer)
     for t, at in zip(seconds[half:], position[half:]):
-        assert numpy.array_equal(renderer.render(t, at).force, other.render(t, at).force)
+        force = renderer.render(t, at).force
+        assert all(numpy.array_equal(force, other.render(t, at).force) for other in others)
 
 
 def test_replay_releases_the_gil():
@@ -210,6 +212,17 @@ def test_a_trace_is_written_and_read_back_bit_for_bit(settings, tmp_path):
         again.write(tmp_path / "short.csv")
     with pytest.raises(palpate.OutputError):
         trace.write(tmp_path / "none" / "trace.csv")
+
+
+@pytest.mark.parametrize("column, value", [
+    ("layer", 300), ("layer", 2), ("layer", -2), ("inside", -1), ("inside", 3), ("inside", 0.5), ("tetrahedra", NAN), ("contacts", 2**40),
+    ("update_ns", 1e30)])
+def test_a_trace_with_a_number_that_cannot_be_is_not_written(column, value, tmp_path):
+    trace = pressed(layers=palpate.Layers(layers=[palpate.Layer(name="outer", level=0.3), palpate.Layer(name="inner", level=0.6)]))
+    setattr(trace, column, numpy.where(trace.t == trace.t[7], value, getattr(trace, column)))
+    with pytest.raises(ValueError, match=column):
+        trace.write(tmp_path / "trace.csv")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_notebook_shows_facts_and_pictures():

@@ -53,7 +53,7 @@ def test_traces_have_the_bits_of_one_machine_though_a_worker_is_killed(client, m
             killed.append(list(client.run(os.getpid).values())[0])
             os.kill(killed[0], signal.SIGKILL)
 
-    traces = study(client, SOURCE, *motion, setups, str(tmp_path), field=FIELD, progress=kill)
+    traces = study(client, os.fsencode(SOURCE), *motion, setups, tmp_path, field=FIELD, progress=kill)
     assert killed and list(traces) == list(setups)
     for name, trace in traces.items():
         one = on_one_machine(setups[name], motion, FIELD)

@@ -118,6 +118,49 @@ print("end")
     assert words == ["end"]
 
 
+def test_a_program_may_end_while_a_function_that_hears_of_progress_runs():
+    words = run_program("""
+import time
+class Slow:  # gives other threads time to come back to Python, which has ended
+    def __del__(self):
+        time.sleep(0.5)
+sys.slow = Slow()
+field = palpate.Field(palpate.scene("sphere").volume)
+begun = threading.Event()
+def heard(fraction):
+    begun.set()
+    time.sleep(0.01)
+def compute():
+    while True:
+        palpate.extract(field, 100, progress=heard)
+for i in range(2):
+    threading.Thread(target=compute, daemon=True).start()
+begun.wait()
+print("end")
+""")
+    assert words == ["end"]
+
+
+def test_a_program_may_end_while_a_device_is_in_its_function():
+    words = run_program("""
+import time
+class Slow:
+    def __del__(self):
+        time.sleep(0.5)
+class Late(live_test.Still):
+    def read(self):
+        time.sleep(4.3)  # stopping waits for 2 s, and for 2 s more
+        return super().read()
+    def write(self, force, torque):
+        time.sleep(4.3)
+sys.slow = Slow()
+servo = palpate.Servo(live_test.renderer(), Late(60), real_time=False)
+servo.start()
+print("end")
+""")
+    assert words[0] == "end"
+
+
 def serve(folder, kind=http.server.SimpleHTTPRequestHandler):
     handler = functools.partial(kind, directory=folder)
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
@@ -139,9 +182,12 @@ run = palpate.Run(palpate.load("synthetic:sphere:16x16x16"), palpate.Setup(real_
 run.start()
 child = os.fork()
 if child == 0:
-    for thing in servo, run:
+    freeze, fill = palpate.command.Freeze(True), palpate.Fill((0, 0, 0), (1, 1, 1), 3)
+    for call in (servo.stop, run.stop, lambda: servo.send(freeze), lambda: run.send(freeze), lambda: run.edit(fill), run.undo, run.redo,
+                 lambda: run.set_brush(None), lambda: run.play(1), lambda: run.seek(0), lambda: run.record("r.csv"), run.stop_recording):
         try:
-            thing.stop()
+            call()
+            print("nothing happened", flush=True)
         except RuntimeError as e:
             print("forked" in str(e), flush=True)
     servo.__exit__(None, None, None)
@@ -153,7 +199,7 @@ run.stop()
 servo.stop()
 print(device.closed)
 """, serve(tmp_path) + "v.zarr")
-    assert words == ["True", "True", "True"]
+    assert words == 13 * ["True"]
 
 
 def interrupted_after(program, *arguments):

@@ -9,6 +9,7 @@ import functools
 import numbers
 import os
 import re
+import types
 from typing import SupportsIndex
 
 import numpy
@@ -199,6 +200,11 @@ def _problem(function, args, keywords):
     told = [flaw for flaw in flaws if flaw]
     if told:
         return told[0]
+    for one, value in zip(signatures(function)[0], args):  # pybind11 has tried each as a number of C++
+        keywords = {one.name: value, **keywords}
+    for name, value in keywords.items():
+        if isinstance(value, (int, numpy.integer)) and not 0 <= value < 2**31:
+            return f"{name} = {_given(value)} is out of range"
     values = [*map(_given, args), *(f"{name}={_given(value)}" for name, value in keywords.items())]
     return f"it does not take ({', '.join(values)})"
 
@@ -254,8 +260,12 @@ def _unmade(kind):
 
 
 def _complete_class(kind):
+    if isinstance(vars(kind).get("__init__"), types.FunctionType):
+        return  # by an import before this one: classes of C++ stay when the package is reloaded
     if type(vars(kind).get("__init__")).__name__ != "instancemethod":
         kind.__init__ = _unmade(kind)
+    # Protocols 0 and 1 of pickle would call a base class of pybind11, which ends the process.
+    kind.__reduce_ex__ = lambda self, protocol: object.__reduce_ex__(self, max(2, protocol))
     for name, raw in list(vars(kind).items()):
         if name.startswith("_") and name != "__init__":
             continue

@@ -34,6 +34,7 @@ if TYPE_CHECKING:  # help needs no Dask
 HALO = 40
 SITE_STEPS = (16, 8, 4, 2)
 Progress = Optional[Callable[[str, int, int], Any]]
+Name = Union[str, bytes, "os.PathLike[str]"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -372,7 +373,7 @@ def _work(out):
     return f"{out}.partial/work"
 
 
-def convert(client: Union["Client", Callable[[], "Client"]], source: str, out: str, *, level: int = 0, dequantize: int = 0,
+def convert(client: Union["Client", Callable[[], "Client"]], source: Name, out: Name, *, level: int = 0, dequantize: int = 0,
             smooth: int = 0, prefilter: bool = False, chunk: int = 64, compression: str = "zstd",
             ome_version: str = "0.5", block: int = 256, options: Optional[dict] = None,
             progress: Progress = None) -> Converted:
@@ -386,7 +387,7 @@ def convert(client: Union["Client", Callable[[], "Client"]], source: str, out: s
     each of (block + 64)^3 samples. progress(stage, done, all) may raise to stop; the next call with the same
     arguments goes on. Raises InputError, OutputError, ValueError.
     """
-    out = os.path.abspath(out)
+    source, out = os.fsdecode(source), os.path.abspath(os.fsdecode(out))
     if not source.startswith(("http://", "https://", "s3://")):
         source = os.path.abspath(source)
     if block < 1 or chunk < 1 or block % chunk:

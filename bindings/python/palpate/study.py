@@ -17,7 +17,7 @@ import numpy
 from distributed import Client
 
 from . import Field, RenderSetup, Trace, __version__, load, replay
-from .distributed import Progress, check_workers, each_piece, seen, writer
+from .distributed import Name, Progress, check_workers, each_piece, seen, writer
 from .trace import COLUMNS
 
 
@@ -64,8 +64,8 @@ def _replay(source, options, isovalue, motion, folder, work):
     return False
 
 
-def study(client: Client, source: str, isovalue: Union[float, str], time: Any, position: Any,
-          setups: Mapping[str, Union[RenderSetup, Mapping[str, Any]]], out: str, *,
+def study(client: Client, source: Name, isovalue: Union[float, str], time: Any, position: Any,
+          setups: Mapping[str, Union[RenderSetup, Mapping[str, Any]]], out: Name, *,
           orientation_xyzw: Any = None, field: Optional[dict] = None, loading: Optional[dict] = None,
           progress: Progress = None) -> dict[str, Trace]:
     """replay() of one motion under each of the setups, on the workers of a Dask client: a Trace for
@@ -77,6 +77,7 @@ def study(client: Client, source: str, isovalue: Union[float, str], time: Any, p
     are there already, whole and of the same work, are kept. progress('study', done, all) may raise to
     stop. Raises ValueError, InputError.
     """
+    source, out = os.fsdecode(source), os.fsdecode(out)
     for name in setups:
         if not re.fullmatch(r"\w[\w.+=,-]*", name):
             raise ValueError(f"{name!r}: names of setups become names of files: letters, digits and _.+=,-")

@@ -305,6 +305,12 @@ TEST_F(CRun, devices_that_cannot_be_are_refused) {
     own = device_of(hand_);
     own.rate = NAN;
     EXPECT_EQ(create(&own), PALPATE_INVALID);
+    for (const double stiffness : {-1.0, double{NAN}, double{INFINITY}}) {
+        own = device_of(hand_);
+        own.stiffness = stiffness;
+        EXPECT_EQ(create(&own), PALPATE_INVALID);
+        EXPECT_NE(std::string(palpate_last_error()).find("own.stiffness"), std::string::npos);
+    }
     EXPECT_EQ(hand_.closes, 0);
     EXPECT_EQ(create(nullptr, "nothing-of-this-name"), PALPATE_INVALID);
     EXPECT_EQ(create(nullptr, "forcedimension:library=/nowhere/libdhd.so.3"), PALPATE_NO_DEVICE);
