@@ -12,14 +12,15 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::array<std::string_view, 10> stored_names = {
-    "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64"};
+constexpr std::array<std::string_view, 11> stored_names = {"int8",    "uint8",   "int16",  "uint16",
+                                                           "int32",   "uint32",  "int64",  "uint64",
+                                                           "float16", "float32", "float64"};
 
 /// True where whole numbers are only shifted, and 16 bits hold all that they may become: ImageJ's
 /// signed images.
 bool shifted_within_int16(Stored stored, const ValueMap& values) {
     if (values.slope != 1 || values.intercept != std::floor(values.intercept)) return false;
-    if (stored == Stored::float32 || stored == Stored::float64) return false;
+    if (is_real(stored)) return false;
     return with_stored(stored, [&](auto type) {
         using From = std::numeric_limits<decltype(type)>;
         using To = std::numeric_limits<std::int16_t>;
@@ -48,6 +49,10 @@ void convert_mapped(Stored stored, const std::byte* from, SampleType type, std::
 
 std::size_t size_of(Stored stored) {
     return with_stored(stored, [](auto s) { return sizeof s; });
+}
+
+bool is_real(Stored stored) {
+    return stored == Stored::float16 || stored == Stored::float32 || stored == Stored::float64;
 }
 
 std::string name_of(Stored stored) {
@@ -86,8 +91,9 @@ void note_conversion(Stored stored, const ValueMap& values, std::vector<std::str
     }
     const std::string kept(name_of(kept_as(stored)));
     if (kept == name_of(stored)) return;
+    const bool is_exact = stored == Stored::int8 || stored == Stored::float16;
     notes.push_back("samples of type " + name_of(stored) + " became " + kept +
-                    (stored == Stored::int8 ? "" : " (exact to about 7 digits)"));
+                    (is_exact ? "" : " (exact to about 7 digits)"));
 }
 
 void convert(Stored stored, const std::byte* from, SampleType type, std::byte* to,

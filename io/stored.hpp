@@ -2,6 +2,7 @@
 // readers in the helper program and those that read by the box. Needs the core only.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -13,7 +14,34 @@
 
 namespace palpate::io {
 
-enum class Stored { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+enum class Stored {
+    int8,
+    uint8,
+    int16,
+    uint16,
+    int32,
+    uint32,
+    int64,
+    uint64,
+    float16,
+    float32,
+    float64
+};
+
+/// The IEEE number of 16 bits (binary16), for which C++20 has no type.
+struct Half {
+    std::uint16_t bits = 0;
+
+    operator float() const {
+        // Moved to its place in a float, the exponent is 112 too small, which the factor corrects,
+        // also for the least numbers, which have none.
+        const std::uint32_t moved = (bits & 0x7fffU) << 13;
+        const bool is_finite = (bits & 0x7c00U) != 0x7c00U;
+        const float size = is_finite ? std::bit_cast<float>(moved) * 0x1p112F
+                                     : std::bit_cast<float>(moved | 0x7f800000U);
+        return (bits & 0x8000U) == 0 ? size : -size;
+    }
+};
 
 /// What a stored number means: slope * number + intercept [data units].
 struct ValueMap {
@@ -22,6 +50,8 @@ struct ValueMap {
 };
 
 std::size_t size_of(Stored stored);
+/// False for whole numbers.
+bool is_real(Stored stored);
 std::string name_of(Stored stored);
 /// The inverse of name_of; nothing for any other name.
 std::optional<Stored> stored_named(std::string_view name);
@@ -51,6 +81,8 @@ auto with_stored(Stored stored, F&& f) {
             return f(std::int64_t{});
         case Stored::uint64:
             return f(std::uint64_t{});
+        case Stored::float16:
+            return f(Half{});
         case Stored::float32:
             return f(float{});
         case Stored::float64:

@@ -17,9 +17,9 @@ void SampleBytes::unpack(std::span<std::byte> raw, std::byte* to) const {
 }
 
 void note_finite(const SampleBytes& bytes, std::vector<std::string>& notes) {
-    const bool is_float =
-        bytes.stored == io::Stored::float32 || bytes.stored == io::Stored::float64;
-    if (!is_float && !(bytes.type() == SampleType::float32 && bytes.values.changes())) return;
+    if (!io::is_real(bytes.stored) &&
+        !(bytes.type() == SampleType::float32 && bytes.values.changes()))
+        return;
     notes.emplace_back(
         "samples that are not finite (NaN or infinity), if there are any, become the least finite "
         "value");

@@ -24,6 +24,20 @@ constexpr int deepest = 64;
 constexpr std::uint64_t most_beside_pixels = std::uint64_t{64} << 20;  // of a deflated file
 constexpr int most_repeated = 10000;
 const char* const deflated_syntax = "1.2.840.10008.1.2.1.99";
+const char* const jpeg_2000_syntax = "1.2.840.10008.1.2.4.90";
+
+/// JPEG 2000 with another coding of its blocks, which the library that unpacks it reads as well.
+bool is_high_throughput(const std::string& syntax) {
+    return syntax.starts_with("1.2.840.10008.1.2.4.20");
+}
+
+/// One that GDCM knows, of no more letters: headers of deflated files and of plain fragments (98)
+/// are explicit little endian.
+std::string syntax_of_header(const std::string& syntax) {
+    if (is_high_throughput(syntax)) return jpeg_2000_syntax;
+    const bool is_plain = syntax == deflated_syntax || syntax == "1.2.840.10008.1.2.1.98";
+    return is_plain ? "1.2.840.10008.1.2.1" : syntax;
+}
 
 struct Element {
     std::uint32_t tag = 0;
@@ -117,7 +131,7 @@ class Walk {
 
     void begin_data_set(const std::string& syntax) {
         if (syntax == "1.2.840.10008.1.2.2") bytes_.set_swapped();
-        extent_.syntax = syntax;
+        extent_.syntax = is_high_throughput(syntax) ? jpeg_2000_syntax : syntax;
         if (syntax != deflated_syntax) return;
         bytes_.deflated_from(data_set_, most_beside_pixels);
         extent_.compression = "deflate";
@@ -261,6 +275,10 @@ class Walk {
         const auto [end, error] =
             std::from_chars(digits.data(), digits.data() + digits.size(), extent_.frames);
         const bool is_number = error == std::errc{} && end == digits.data() + digits.size();
+        if (is_number && extent_.frames == 0) {
+            extent_.frames = 1;
+            extent_.notes.emplace_back("its NumberOfFrames is 0: 1 was taken");
+        }
         if (!is_number || extent_.frames < 1 || extent_.frames > 1 << 20) {
             fail("has '" + digits.substr(0, 20) + "' frames, which is not possible");
         }
@@ -330,10 +348,9 @@ class Walk {
             extent_.header +=
                 std::string("\xe0\x7f\1\0UN\0\0\x40\0\0\0", 12) + std::string(ahead, '\0');
         }
-        // Headers of deflated files (99) and of plain fragments (98) are explicit little endian,
-        // whose UID is the beginning of theirs; the rest is padding.
-        if (syntax == deflated_syntax || syntax == "1.2.840.10008.1.2.1.98") {
-            extent_.header.replace(syntax_at_ + 19, 3, 3, '\0');
+        if (std::string known = syntax_of_header(syntax); known != syntax) {
+            known.resize(syntax.size(), '\0');  // padding
+            extent_.header.replace(syntax_at_, syntax.size(), known);
         }
         extent_.header.erase(0, start_);
     }

@@ -25,6 +25,7 @@ std::string compression_of(const std::string& syntax) {
     if (rest == "4.80" || rest == "4.81") return "JPEG-LS";
     if (rest.rfind("4.9", 0) == 0 || rest.rfind("4.20", 0) == 0) return "JPEG 2000";
     if (rest.rfind("4.10", 0) == 0) return "video";
+    if (rest.rfind("4.11", 0) == 0) return "JPEG XL";
     return rest.rfind("4.", 0) == 0 ? "JPEG" : "";
 }
 
@@ -99,6 +100,11 @@ std::string check_compressed_pixels(const std::filesystem::path& file, const std
     }
     if (name == "video") {
         throw Failure(quoted(file) + " is a video; export it as a series of images");
+    }
+    if (name == "JPEG XL") {
+        throw Failure(quoted(file) +
+                      " is compressed with JPEG XL, which is not read; export it again without "
+                      "compression");
     }
     if (declared.bits % 8 != 0) fail(file, "has compressed samples of single bits");
     const auto wanted = static_cast<std::size_t>(declared.frames);

@@ -28,7 +28,7 @@ SampleType common_type(const std::vector<Decoded>& slices, std::vector<std::stri
     auto [low, high] = range_of(first, slices.front().samples);
     for (const Decoded& d : slices) {
         same = same && d.stored == first;
-        floats = floats || d.stored == Stored::float32 || d.stored == Stored::float64;
+        floats = floats || is_real(d.stored);
         const auto range = range_of(d.stored, d.samples);
         low = std::min(low, range.first);
         high = std::max(high, range.second);

@@ -26,6 +26,12 @@ std::optional<Stored> stored_of(hid_t type) {
     if (!is_float && H5Tget_class(type) != H5T_INTEGER) return std::nullopt;
     const std::size_t size = H5Tget_size(type);
     if (H5Tget_precision(type) != 8 * size) return std::nullopt;  // 12 bits in 16
+    if (is_float) {
+        std::size_t sign = 0, exponent = 0, exponent_bits = 0, fraction = 0, fraction_bits = 0;
+        H5Tget_fields(type, &sign, &exponent, &exponent_bits, &fraction, &fraction_bits);
+        const std::size_t usual = size == 2 ? 5 : size == 4 ? 8 : 11;  // bfloat16 has 8 of 16
+        if (exponent_bits != usual) return std::nullopt;
+    }
     const std::string kind = is_float ? "float" : H5Tget_sign(type) == H5T_SGN_2 ? "int" : "uint";
     return stored_named(kind + std::to_string(8 * size));
 }

@@ -284,7 +284,7 @@ ChunkedImage hdf5_image(const std::filesystem::path& path, int channel, int time
     if (!setups_of(file).empty()) return bdv_image(file, path, channel, time);
     throw Failure(
         "is an HDF5 file of another program; those of Imaris (5.5 and later) and BigDataViewer are "
-        "read");
+        "read: save its volume as one of them, or as OME-Zarr, TIFF or NRRD");
 }
 
 void hdf5_places(const std::filesystem::path& path, const ChunkBox& box,

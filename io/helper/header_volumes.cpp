@@ -1,6 +1,7 @@
 // Reads NRRD, MetaImage, NIfTI, MGH and MRC: their headers say all that it takes, so that no
 // library is needed.
 #include <functional>
+#include <string_view>
 
 #include "io/helper/headers.hpp"
 #include "io/helper/readers.hpp"
@@ -47,11 +48,44 @@ class StepTaker {
     std::int64_t seen_ = 0;  ///< samples of all volumes
 };
 
+/// Throws Failure for a file that is something else than its name says, by its first bytes or, if
+/// it is packed, by those of what is in it.
+void check_kind(const std::filesystem::path& file) {
+    struct Kind {
+        std::string_view begin, what;
+    };
+    constexpr Kind kinds[] = {
+        {"\x1f\x8b", "is packed twice; unpack it once"},
+        {"BZh", "is packed with bzip2; unpack it and give what is in it"},
+        {"\xfd"
+         "7zXZ",
+         "is packed with xz; unpack it and give what is in it"},
+        {"\x28\xb5\x2f\xfd", "is packed with zstd; unpack it and give what is in it"},
+        {"PK\3\4", "is packed with zip; unpack it and give what is in it"},
+        {"<!doctype", "is a web page in place of the file; download it again"},
+        {"<html", "is a web page in place of the file; download it again"}};
+    const auto start = start_of(file, 16);
+    const std::string text =
+        lower(std::string(reinterpret_cast<const char*>(start.data()), start.size()));
+    for (const auto& [begin, what] : kinds) {
+        if (text.starts_with(lower(std::string(begin)))) throw Failure(std::string(what));
+    }
+}
+
+VolumeHeader header_of(const Request& request) {
+    try {
+        return header_reader(request.path)(request);
+    } catch (const Failure&) {
+        check_kind(request.path);
+        throw;
+    }
+}
+
 }  // namespace
 
 Result read_by_header(const Request& request) {
     say_doing(request.path.filename().string());
-    VolumeHeader header = header_reader(request.path)(request);
+    VolumeHeader header = header_of(request);
     Result result;
     result.format = header.format;
     result.geometry = header.geometry;
@@ -69,7 +103,7 @@ Result read_by_header(const Request& request) {
 }
 
 VolumeHeader locate_by_header(const Request& request) {
-    VolumeHeader header = header_reader(request.path)(request);
+    VolumeHeader header = header_of(request);
     if (header.places.size() > 1) {
         throw OnlyWhole(
             "its samples are spread over several files, so they cannot be read piece by piece; "

@@ -18,10 +18,20 @@ constexpr double angstrom = 1e-7;  // [mm]
 /// The header's numbers, by the place of their first byte.
 class MrcNumbers {
   public:
-    explicit MrcNumbers(std::span<const std::byte> bytes) : bytes_(bytes) {
+    /// A stamp tells the order of the bytes. Older files have none, and some programs write that
+    /// of another machine: the order is one in which the numbers make sense.
+    MrcNumbers(std::span<const std::byte> bytes, std::vector<std::string>& notes) : bytes_(bytes) {
         const auto stamp = std::to_integer<int>(bytes[212]);
-        const bool is_big = stamp == 0x11 || (stamp != 0x44 && !makes_sense());
-        swapped_ = is_big == (std::endian::native == std::endian::little);
+        swapped_ = (stamp == 0x11) == (std::endian::native == std::endian::little);
+        if (makes_sense()) return;
+        swapped_ = !swapped_;
+        if (!makes_sense()) {
+            swapped_ = !swapped_;
+        } else if (stamp == 0x11 || stamp == 0x44) {
+            notes.emplace_back(
+                "its machine stamp gives the wrong order of bytes: that in which its header makes "
+                "sense was taken");
+        }
     }
     std::int32_t whole(std::size_t at) const {
         return number_in<std::int32_t>(bytes_.subspan(at), swapped_);
@@ -31,13 +41,12 @@ class MrcNumbers {
     bool has_letters() const { return std::memcmp(bytes_.data() + 208, "MAP", 3) == 0; }
 
   private:
-    /// As little-endian numbers.
     bool makes_sense() const {
         return whole(12) >= 0 && whole(12) <= 101 && whole(0) > 0 && whole(0) < 1 << 20;
     }
 
     std::span<const std::byte> bytes_;
-    bool swapped_ = std::endian::native == std::endian::big;
+    bool swapped_ = false;
 };
 
 /// Bytes have a sign, unless IMOD's flags say otherwise, or the header's greatest value.
@@ -57,9 +66,9 @@ Stored sample_type(const MrcNumbers& header, std::vector<std::string>& notes) {
     if (mode == 1) return Stored::int16;
     if (mode == 2) return Stored::float32;
     if (mode == 6) return Stored::uint16;
+    if (mode == 12) return Stored::float16;
     throw Failure("it has samples of mode " + std::to_string(mode) +
-                  " (complex, colours, half floats or half bytes), which is not read; save it with "
-                  "mode 1 or 2");
+                  " (complex, colours or half bytes), which is not read; save it with mode 1 or 2");
 }
 
 /// The axes of the cell (0: x) along columns, rows and sections.
@@ -115,12 +124,12 @@ VolumeHeader mrc_header(const Request& request) {
         throw Failure(
             "is too short for the header of an MRC file; check its name or copy it again");
     }
-    const MrcNumbers numbers(start);
+    VolumeHeader header;
+    const MrcNumbers numbers(start, header.notes);
     // Older files have no letters, but the order of their axes.
     if (!numbers.has_letters() && (numbers.whole(64) < 0 || numbers.whole(64) > 3)) {
         throw Failure("is no MRC file (it has no letters MAP at byte 208); check its name");
     }
-    VolumeHeader header;
     header.format = "MRC";
     header.stored = sample_type(numbers, header.notes);
     for (const std::size_t at : {0U, 4U, 8U}) header.sizes.push_back(numbers.whole(at));

@@ -126,12 +126,17 @@ FrameTimes times_of(const Header& header, std::vector<std::string>& notes) {
                        unit == units.end() ? "no time" : unit->second, notes);
 }
 
-/// The size of an axis, counted from 0; 1 for those that the file does not have.
-int size_of_axis(const Header& header, std::size_t axis) {
-    const auto number = [&](std::size_t i) {
-        return header.number<std::int16_t, std::int64_t>(dim, i);
-    };
-    return static_cast<std::int64_t>(axis) < number(0) ? static_cast<int>(number(axis + 1)) : 1;
+std::int64_t axes_of(const Header& header) {
+    return header.number<std::int16_t, std::int64_t>(dim);
+}
+
+/// The size of an axis, counted from 0; 1 for those that the file does not have. From the second
+/// one on, 0 means 1, as the reference library takes it.
+std::int64_t size_of_axis(const Header& header, std::int64_t axis) {
+    if (axis >= axes_of(header)) return 1;
+    const auto size =
+        header.number<std::int16_t, std::int64_t>(dim, static_cast<std::size_t>(axis) + 1);
+    return size == 0 && axis > 0 ? 1 : size;
 }
 
 /// How long the header's unit of length is [mm].
@@ -158,7 +163,7 @@ Vec3 spacings_of(const Header& header, double unit, std::vector<std::string>& no
     for (std::size_t a = 0; a < 3; ++a) {
         const double stored = header.real(pixdim, a + 1);
         const double given = stored == 0 ? 1 : std::abs(stored);
-        const bool measures = size_of_axis(header, a) > 1;
+        const bool measures = size_of_axis(header, static_cast<std::int64_t>(a)) > 1;
         if (measures) check_spacing(given * unit, "header field 'pixdim'");
         if (measures && stored <= 0) {
             notes.push_back("its header field 'pixdim' gives the spacing " + text_of(stored) +
@@ -209,7 +214,7 @@ Transform sform_of(const Header& header, double unit) {
     for (int row = 0; row < 3; ++row) check_coordinate(lps(row, 3), "header field 'srow'");
     for (int axis = 0; axis < 3; ++axis) {
         const double length = lps.col(axis).norm();
-        const bool measures = size_of_axis(header, static_cast<std::size_t>(axis)) > 1;
+        const bool measures = size_of_axis(header, axis) > 1;
         if (measures || length != 0) check_spacing(length, "header field 'srow'");
     }
     // If only an axis of one sample has no direction, the other two determine it.
@@ -232,8 +237,8 @@ double distance_between(const Transform& a, const Transform& b, const Header& he
     double most = 0;
     for (unsigned corner = 0; corner < 8; ++corner) {
         Eigen::Vector4d at(0, 0, 0, 1);
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            if (corner >> axis & 1) at[axis] = size_of_axis(header, axis) - 1;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (corner >> axis & 1) at[axis] = static_cast<double>(size_of_axis(header, axis) - 1);
         }
         most = std::max(most, ((a - b) * at).norm());
     }
@@ -256,9 +261,9 @@ void note_disagreement(const Transform& taken, const Header& header, double unit
 
 void note_spacings(const Transform& sform, const Header& header, double unit,
                    std::vector<std::string>& notes) {
-    for (std::size_t a = 0; a < 3; ++a) {
-        const double taken = sform.col(static_cast<Eigen::Index>(a)).norm();
-        const double given = unit * header.real(pixdim, a + 1);
+    for (int a = 0; a < 3; ++a) {
+        const double taken = sform.col(a).norm();
+        const double given = unit * header.real(pixdim, static_cast<std::size_t>(a) + 1);
         if (size_of_axis(header, a) <= 1 || std::abs(taken - given) <= 0.01 * taken) continue;
         notes.push_back("its header gives two spacings along axis " + std::to_string(a + 1) + ": " +
                         text_of(taken) + " mm (sform) was taken, not " + text_of(given) +
@@ -320,7 +325,7 @@ Geometry geometry_of(const Header& header, std::vector<std::string>& notes) {
     const Transform lps = transform_of(header, notes);
     Geometry g;
     for (int axis = 0; axis < 3; ++axis) {
-        g.size[axis] = size_of_axis(header, static_cast<std::size_t>(axis));
+        g.size[axis] = static_cast<int>(size_of_axis(header, axis));
         g.spacing[axis] = lps.col(axis).norm();
         g.direction.col(axis) = (lps.col(axis) / g.spacing[axis]).array() + 0.0;  // no -0
     }
@@ -348,15 +353,12 @@ ValueMap values_of(const Header& header, std::vector<std::string>& notes) {
 }
 
 std::vector<std::int64_t> sizes_of(const Header& header) {
-    const auto axes = header.number<std::int16_t, std::int64_t>(dim);
+    const std::int64_t axes = axes_of(header);
     if (axes < 1 || axes > 7) {
         throw Failure("its header gives " + std::to_string(axes) + " axes; the header is damaged");
     }
     std::vector<std::int64_t> sizes;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(axes); ++a) {
-        const auto size = header.number<std::int16_t, std::int64_t>(dim, a + 1);
-        sizes.push_back(size == 0 && a > 2 ? 1 : size);  // as the reference library takes it
-    }
+    for (std::int64_t a = 0; a < axes; ++a) sizes.push_back(size_of_axis(header, a));
     while (sizes.size() > 3 && sizes.back() == 1) sizes.pop_back();
     return sizes;
 }

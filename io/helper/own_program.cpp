@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <sstream>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -49,13 +51,14 @@ std::string listed(std::vector<std::string> names) {
 const char* program_for_folder(const fs::path& folder) {
     if (has_dicom_index(folder)) return dicom;
     int dicoms = 0, tiffs = 0;
-    bool folders = false;
+    bool folders = false, has_names = false;
     std::vector<std::string> volumes;
     for (const auto& entry : fs::directory_iterator(folder)) {
         folders |= entry.is_directory();
         if (!is_shown_file(entry)) continue;
         if (names_a_volume(entry.path())) volumes.push_back(entry.path().filename().string());
         // Not every one of ten thousand has to be looked into.
+        has_names = has_names || has_dicom_name(entry.path());
         dicoms += dicoms < 2 && looks_like_dicom(entry.path());
         tiffs += dicoms == 0 && tiffs < 2 && is_tiff_name(entry.path());
     }
@@ -66,9 +69,47 @@ const char* program_for_folder(const fs::path& folder) {
     }
     if (dicoms > 0) return dicom;
     if (tiffs > 0) return images;
+    if (has_names) return dicom;  // which says what is wrong with them
     throw Failure(std::string("is a folder with no DICOM or TIFF slices in it; ") +
                   (folders ? "give one of the folders in it, or a volume file"
                            : "give a volume file or another folder"));
+}
+
+/// What to do with a file of a format that is not read; empty for an extension that names none.
+std::string advice_for(const std::string& extension) {
+    struct Advice {
+        std::string_view extensions, words;
+    };
+    constexpr Advice advices[] = {
+        {".zip .gz .bz2 .xz .zst .7z .tar .ozx", "is packed; unpack it and give what is in it"},
+        {".mnc .mnc2 .minc", "is a MINC file, which is not read; convert it with mnc2nii"},
+        {".mif .mih",
+         "is an image of MRtrix, which is not read; convert it with mrconvert IN OUT.nii"},
+        {".head .brik", "is an image of AFNI, which is not read; convert it with 3dAFNItoNIFTI"},
+        {".npy .npz .mat",
+         "is an array of NumPy or MATLAB, which is not read; in Python, make a palpate.Volume of "
+         "it, "
+         "or save it as .nrrd, .nii or .tif"},
+        {".h5 .hdf5 .hdf",
+         "is an HDF5 file of another program than Imaris and BigDataViewer, which is not read; "
+         "save "
+         "its volume as .nrrd, .nii or .tif"},
+        {".czi .nd2 .lif .oib .oif .vsi .dv",
+         "is of a microscope's own format, which is not read; save it as OME-TIFF (Fiji) or "
+         "OME-Zarr "
+         "(bioformats2raw)"},
+        {".vtk .pvti .vtr .vts .vtu .pvd .vtm",
+         "is of a format of VTK that is not read; save it as an image in one file (.vti)"},
+        {".png .jpg .jpeg .bmp .jp2 .gif",
+         "is a picture, not a volume; save its slices as one TIFF file, or as a folder of them"}};
+    const std::string last = extension.substr(std::min(extension.rfind('.'), extension.size()));
+    for (const auto& [extensions, words] : advices) {
+        std::istringstream names{std::string(extensions)};
+        for (std::string name; names >> name;) {
+            if (name == last) return std::string(words);
+        }
+    }
+    return "";
 }
 
 const char* program_for_file(const fs::path& path) {
@@ -83,10 +124,7 @@ const char* program_for_file(const fs::path& path) {
             "is one of a pair of files (.hdr and .img), and the other is not beside it; put it "
             "there, or save the pair as one .nii file");
     }
-    for (const char* packed : {".zip", ".gz", ".bz2", ".xz", ".7z", ".tar", ".ozx"}) {
-        if (!extension.ends_with(packed)) continue;
-        throw Failure("is packed; unpack it and give what is in it");
-    }
+    if (const std::string advice = advice_for(extension); !advice.empty()) throw Failure(advice);
     throw Failure(
         "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, mgh, mgz, mrc, "
         "dcm, tif, vti); if it holds nothing but samples, give its dims and type");

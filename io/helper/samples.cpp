@@ -1,5 +1,6 @@
 // Reads the samples that a header describes: raw, compressed or as text.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -93,10 +94,12 @@ void append_sample(double number, std::vector<std::byte>& bytes) {
                           ", which its sample type cannot hold; correct the type in its header");
         }
     }
-    const T value = static_cast<T>(number);
-    const auto at = bytes.size();
-    bytes.resize(at + sizeof value);
-    std::memcpy(bytes.data() + at, &value, sizeof value);
+    if constexpr (std::is_arithmetic_v<T>) {  // no header has half floats as text
+        const T value = static_cast<T>(number);
+        const auto at = bytes.size();
+        bytes.resize(at + sizeof value);
+        std::memcpy(bytes.data() + at, &value, sizeof value);
+    }
 }
 
 /// Numbers may have commas between them, as in C.
@@ -181,10 +184,25 @@ std::uint64_t available_at(const DataPlace& place) {
     return file_bytes - std::min(place.offset, file_bytes);
 }
 
+/// Whether the bytes there begin as those of gzip or zlib do.
+bool begins_packed(const DataPlace& place) {
+    std::ifstream in(place.file, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(place.offset));
+    std::array<char, 2> bytes{};
+    in.read(bytes.data(), bytes.size());
+    const auto number = big_endian<std::uint16_t>(std::as_bytes(std::span(bytes)));
+    return number == 0x1f8b || ((number >> 8 & 0xf) == 8 && number % 31 == 0);
+}
+
 void check_length(VolumeHeader& header, const DataPlace& place) {
     const std::uint64_t available = available_at(place);
-    compare_samples(available - std::min(place.skip, available), header.bytes_each(),
-                    "bytes of samples", place, header.notes);
+    const std::uint64_t have = available - std::min(place.skip, available);
+    if (have < header.bytes_each() && begins_packed(place)) {
+        throw Failure(
+            "its header says that its samples are not compressed, but they begin as gzip's or "
+            "zlib's do; correct the header, or unpack them");
+    }
+    compare_samples(have, header.bytes_each(), "bytes of samples", place, header.notes);
 }
 
 void read_raw_bytes(VolumeHeader& header, const DataPlace& place, const ByteSink& sink) {
@@ -207,6 +225,11 @@ void read_compressed(VolumeHeader& header, const DataPlace& place, const ByteSin
     const std::uint64_t available = available_at(place);
     if (place.length != UINT64_MAX) {
         compare(available, place.length, "compressed bytes", padding_allowed, header.notes);
+    }
+    if (!begins_packed(place)) {
+        throw Failure(
+            "its header says that its samples are compressed, but they do not begin as gzip's or "
+            "zlib's do; correct the header, or copy it again");
     }
     SampleBytes samples(header, place, sink);
     std::uint64_t unpacked = 0;

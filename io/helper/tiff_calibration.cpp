@@ -154,7 +154,13 @@ Moments image_j_moments(const std::string& text, std::size_t pages,
                       text_of(frames) + " times, but has " + std::to_string(pages) +
                       " pages; save it again");
     }
-    Moments moments{static_cast<std::int64_t>(frames), static_cast<std::int64_t>(channels), {}};
+    Moments moments;
+    moments.count = static_cast<std::int64_t>(frames);
+    moments.channels = static_cast<std::int64_t>(channels);
+    // Of Micro-Manager. ImageJ knows no other order.
+    if (const auto order = description.find("order"); order != description.end()) {
+        if (lower(order->second) == "zct") moments.order = "XYZCT";
+    }
     if (frames == 1) return moments;
     if (const auto interval = description.find("finterval"); interval != description.end()) {
         const auto unit = description.find("tunit");
@@ -185,11 +191,12 @@ ValueMap image_j_values(const std::string& text, Stored stored, std::vector<std:
     const Description description = fields_of(text);
     const auto function = number_in(description, "cf");
     if (!function || *function == none) return {};
-    const ValueMap values{number_in(description, "c1").value_or(0),
-                          number_in(description, "c0").value_or(0)};
-    const bool whole = stored != Stored::float32 && stored != Stored::float64;
-    if (*function == straight_line && whole && std::isfinite(values.slope) && values.slope != 0 &&
-        std::isfinite(values.intercept)) {
+    ValueMap values{number_in(description, "c1").value_or(0),
+                    number_in(description, "c0").value_or(0)};
+    // ImageJ adds 32768 to signed numbers, and its calibration is that of the sums.
+    if (stored == Stored::int16) values.intercept += 32768 * values.slope;
+    if (*function == straight_line && !is_real(stored) && std::isfinite(values.slope) &&
+        values.slope != 0 && std::isfinite(values.intercept)) {
         return values;
     }
     notes.emplace_back("ImageJ's calibration of its values (cf=" + text_of(*function) +

@@ -25,9 +25,10 @@ ValueMap image_j_values(const std::string& description, Stored stored,
 double image_j_planes(const std::string& description);
 
 /// Into how many moments, one after the other, ImageJ's description divides the pages, and each
-/// slice of them into channels.
+/// slice of them into channels, or each channel into slices.
 struct Moments {
     std::int64_t count = 1, channels = 1;
+    std::string order = "XYCZT";  ///< of the pages
     FrameTimes times;
 };
 /// Throws Failure where it has channels of a single slice, or other counts than there are pages.

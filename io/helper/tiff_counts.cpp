@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "io/byte_order.hpp"
 #include "io/helper/decode.hpp"
@@ -159,6 +160,19 @@ void check_shape(const nlohmann::json& told, const TiffPage& page, std::size_t p
     }
 }
 
+/// Programs that say in tags of their own how they count pages, which are not read.
+void note_own_tags(TIFF* tiff, std::vector<std::string>& notes) {
+    constexpr std::pair<std::uint32_t, const char*> programs[] = {{34361, "FluoView"},
+                                                                  {51123, "Micro-Manager"}};
+    for (const auto& [tag, name] : programs) {
+        std::uint32_t count = 0;
+        const void* data = nullptr;
+        if (TIFFGetField(tiff, tag, &count, &data) == 0) continue;
+        notes.push_back("what " + std::string(name) +
+                        " says of its pages was not used: all of them were taken as slices");
+    }
+}
+
 }  // namespace
 
 nlohmann::json told_by_tifffile(const std::string& description) {
@@ -186,6 +200,7 @@ std::optional<CountedPages> counted_pages(TIFF* tiff, const std::string& descrip
         check_shape(by_tifffile, first, planes, told.has_value(), notes);
     }
     if (told) check_product(*told, planes);
+    if (!told && planes > 1 && description.empty()) note_own_tags(tiff, notes);
     return told;
 }
 

@@ -50,8 +50,7 @@ std::vector<std::string> codecs_of(TIFF* tiff, Stored stored) {
     TIFFGetFieldDefaulted(tiff, TIFFTAG_PREDICTOR, &predictor);
     if (predictor == PREDICTOR_NONE) return {name};
     if (predictor == PREDICTOR_HORIZONTAL) return {name, "difference"};
-    const bool is_real = stored == Stored::float32 || stored == Stored::float64;
-    if (predictor == PREDICTOR_FLOATINGPOINT && is_real) return {name, "float_difference"};
+    if (predictor == PREDICTOR_FLOATINGPOINT && is_real(stored)) return {name, "float_difference"};
     throw Failure("its predictor " + std::to_string(predictor) +
                   " is not read by the tile; save it without or with the horizontal one");
 }

@@ -61,8 +61,7 @@ std::size_t planes_behind(TIFF* tiff, const fs::path& file, const TiffPage& page
     return static_cast<std::size_t>(told);
 }
 
-/// Divides the pages as LSM, ScanImage, tifffile or ImageJ count them; an order of channels, then
-/// slices, then times is ImageJ's.
+/// Divides the pages as LSM, ScanImage, tifffile or ImageJ count them.
 void take_counts(TIFF* tiff, const std::string& description, const TiffPage& first, OmeImage& image,
                  std::vector<std::string>& notes) {
     const std::size_t planes = image.pages.size();
@@ -74,7 +73,7 @@ void take_counts(TIFF* tiff, const std::string& description, const TiffPage& fir
         return;
     }
     const Moments moments = image_j_moments(description, planes, notes);
-    order_pages(image, "XYCZT",
+    order_pages(image, moments.order,
                 {static_cast<std::int64_t>(planes) / (moments.count * moments.channels),
                  moments.channels, moments.count});
     image.frame_interval = moments.times.interval;

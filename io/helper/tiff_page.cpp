@@ -88,6 +88,12 @@ TiffPage page_of(TIFF* tiff, const fs::path& file, std::vector<std::string>& not
         add_note(notes, "its Orientation " + std::to_string(page.orientation) +
                             " was not applied: rows and columns were taken as they are stored");
     }
+    std::uint16_t compression = COMPRESSION_NONE;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
+    if (TIFFIsCODECConfigured(compression) == 0) {  // 33003, 33005 and 34712 are JPEG 2000
+        throw Failure(quoted(file) + " has a compression that is not read (TIFF number " +
+                      std::to_string(compression) + "); save it with deflate, LZW or zstd");
+    }
     page.stored = stored_from(bits, format, file);
     page.bits = bits;
     return page;

@@ -22,8 +22,9 @@ struct Placement {
 
 std::vector<double> numbers_of(const Json& list, std::size_t axes, const char* what) {
     if (!list.is_array() || list.size() != axes) {
-        throw BadMetadata(std::string("a ") + what +
-                          " of its image has not as many numbers as axes");
+        throw BadMetadata(std::string("a ") + what + " of its image has " +
+                          std::to_string(list.size()) + " numbers for " + std::to_string(axes) +
+                          " axes (t, c, z, y and x if none are named); correct its metadata");
     }
     std::vector<double> numbers;
     for (const Json& number : list) {

@@ -54,6 +54,7 @@ std::optional<double> float_of(const std::string& text, io::Stored stored) {
         return std::nullopt;
     }
     if (stored == io::Stored::float64) return std::bit_cast<double>(bits);
+    if (stored == io::Stored::float16) return io::Half{static_cast<std::uint16_t>(bits)};
     return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
 }
 
@@ -61,7 +62,7 @@ std::optional<double> float_of(const std::string& text, io::Stored stored) {
 /// signed one of as many bits, and whole numbers may be text, as zarr-python has it.
 double fill_of(const Json& json, const SampleBytes& bytes, bool is_zarr2) {
     const io::Stored stored = bytes.stored;
-    const bool is_float = stored == io::Stored::float32 || stored == io::Stored::float64;
+    const bool is_float = io::is_real(stored);
     std::optional<double> fill;
     if (json.is_null()) fill = 0;
     if (json.is_boolean()) fill = json.get<bool>() ? 1 : 0;

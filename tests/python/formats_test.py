@@ -476,8 +476,12 @@ def test_messages_say_what_to_do(tmp_path):
     for name in ("a.hdr", "b.img"):
         (tmp_path / name).write_bytes(bytes(348))
         refused(tmp_path / name, "save the pair as one .nii file")
-    tifffile.imwrite(tmp_path / "a.tif", ramp("f4").astype("f2"), photometric="minisblack")
-    refused(tmp_path / "a.tif", "16 bits", "as 32-bit float")
+    tifffile.imwrite(tmp_path / "a.tif", ramp("f4")[:1], photometric="minisblack")
+    data = bytearray((tmp_path / "a.tif").read_bytes())
+    with tifffile.TiffFile(tmp_path / "a.tif") as file:
+        struct.pack_into("<H", data, file.pages[0].tags["BitsPerSample"].valueoffset, 24)
+    (tmp_path / "a.tif").write_bytes(data)
+    refused(tmp_path / "a.tif", "24 bits", "as 32-bit float")
 
 
 def test_a_space_of_absurd_dimensions_is_refused(tmp_path):

@@ -442,7 +442,7 @@ def test_volumes_of_an_mrc_are_frames_and_one_without_a_cell_is_noted(tmp_path):
 
 def test_an_mrc_that_is_not_read_is_refused(tmp_path):
     path, data = tmp_path / "a.mrc", ramp("i2")
-    for changes, words in (({"mode": 12}, "mode 12"), ({"mode": 4}, "mode 4"), ({"angles": (90, 90, 120)}, "right angles"),
+    for changes, words in (({"mode": 3}, "mode 3"), ({"mode": 4}, "mode 4"), ({"angles": (90, 90, 120)}, "right angles"),
                            ({"axes": (1, 1, 3)}, "MAPC"), ({"letters": bytes(4), "axes": (9, 2, 3)}, "no MRC file")):
         refused(mrc(path, data, **({"mode": 1} | changes)), words)
     mrc(path, data, 1)

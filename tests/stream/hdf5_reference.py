@@ -170,9 +170,15 @@ def write_refused(folder):
         OWN["lzf"] = {"compression": "lzf"}
         put_channel(file, 0, 0, 0, data, kind="lzf")
         put_extent(file)
-    with imaris("half") as file:
-        put_channel(file, 0, 0, 0, data.astype("f2"))
+    with imaris("bfloat16") as file:
+        put_channel(file, 0, 0, 0, data)
         put_extent(file)
+        group = file["DataSet/ResolutionLevel 0/TimePoint 0/Channel 0"]
+        del group["Data"]
+        kind, how = h5py.h5t.IEEE_F16LE.copy(), h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+        kind.set_fields(15, 7, 8, 0, 7)
+        how.set_chunk((4, 5, 6))
+        h5py.h5d.create(group.id, b"Data", kind, h5py.h5s.create_simple(data.shape), how)
     with imaris("extent") as file:
         put_channel(file, 0, 0, 0, data)
     with imaris("backwards") as file:

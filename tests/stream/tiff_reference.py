@@ -174,4 +174,5 @@ def main():
         write(folder)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -171,7 +171,7 @@ function formatOf(header, pixelKind) {
 }
 
 function framesIn(header) {
-  const told = header.text(tags.frames) || "1";
+  const told = (header.text(tags.frames) || "1").replace(/^\+?0+$/, "1"); // pydicom reads 0 as 1, too
   return /^\+?[1-9]\d{0,6}$/.test(told) ? Number(told) : refuse(`it has '${told}' frames, which is not possible`, again);
 }
 
