@@ -125,6 +125,7 @@ void TimelineController::connect_timeline() {
             action(recorded_);
             content_.set_time(recorded_.time);
         }
+        timeline_.set_view(view());
     };
     connect(&timeline_, &Timeline::speed_asked, this,
             [ask](double speed) { ask([speed](auto& player) { player.play(speed); }); });
