@@ -120,8 +120,9 @@ int main(int argc, char** argv) {
     QCoreApplication::setApplicationName("palpate");
     // Qt has taken the system's; files are read with strtod, whose point must stay a point.
     std::setlocale(LC_NUMERIC, "C");
-    const viewer::Translation translation(viewer::chosen_language());
-    viewer::set_appearance(viewer::last_appearance());
+    const viewer::Preferences preferences = viewer::saved_preferences();
+    const viewer::Translation translation(preferences.language);
+    viewer::set_appearance(preferences.appearance);
     try {
         return show(application, options);
     } catch (const std::exception& e) {

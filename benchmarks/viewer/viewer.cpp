@@ -17,10 +17,10 @@
 #include <thread>
 #include <vector>
 
-#include "apps/viewer/panel/look_controls.hpp"
-#include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/window/look_controls.hpp"
 #include "apps/viewer/window/main_window.hpp"
+#include "apps/viewer/window/panel.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "pictures/view.hpp"
 

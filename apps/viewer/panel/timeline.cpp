@@ -259,25 +259,23 @@ Timeline::Timeline(QWidget* parent)
     let_return_press_buttons(*this);
     connect_inputs();
     show_possible();
-    show_asked();
+    show_playing();
 }
 
 void Timeline::connect_inputs() {
     connect(back_, &QToolButton::clicked, this, [this] { step(-1); });
     connect(forward_, &QToolButton::clicked, this, [this] { step(1); });
-    connect(play_, &QToolButton::clicked, this, [this] { ask_speed(playing() ? 0 : play_speed_); });
+    connect(play_, &QToolButton::clicked, this,
+            [this] { Q_EMIT speed_asked(playing() ? 0 : play_speed_); });
     connect(speed_, qOverload<double>(&NumberBox::valueChanged), this, [this](double speed) {
         const double bounded = std::clamp(speed, speed_steps.front(), speed_steps.back());
         speed_->show_value(bounded);
         const double asked = std::copysign(bounded, play_speed_);
         if (asked == std::exchange(play_speed_, asked)) return;
-        if (playing()) ask_speed(asked);
+        if (playing()) Q_EMIT speed_asked(asked);
     });
-    connect(loop_, &QCheckBox::clicked, this, [this](bool loop) {
-        asked_loop_.ask(loop);
-        Q_EMIT loop_asked(loop);
-    });
-    connect(track_, &TimelineTrack::chosen, this, &Timeline::ask_moment);
+    connect(loop_, &QCheckBox::clicked, this, &Timeline::loop_asked);
+    connect(track_, &TimelineTrack::chosen, this, &Timeline::moment_asked);
     connect(track_, &TimelineTrack::stepped, this, &Timeline::step);
 }
 
@@ -293,42 +291,26 @@ void Timeline::step(int direction) {
     if (!track_->isEnabled()) return;
     const auto time = frame_beside(track_->view(), track_->time(), direction);
     if (!time) return;
-    if (playing()) ask_speed(0);
-    ask_moment(*time);
-}
-
-void Timeline::ask_speed(double speed) {
-    asked_speed_.ask(speed);
-    show_asked();
-    Q_EMIT speed_asked(speed);
-}
-
-void Timeline::ask_moment(double time) {
-    asked_time_.ask(time);
-    show_asked();
-    Q_EMIT moment_asked(track_->time());
+    if (playing()) Q_EMIT speed_asked(0);
+    Q_EMIT moment_asked(*time);
 }
 
 void Timeline::set_view(const TimelineView& view) {
-    if (track_->set_view(view)) {
-        asked_time_.set(view.time);
-        show_possible();
+    const bool other = track_->set_view(view);
+    if (other) show_possible();
+    if (other || !dragging()) track_->set_time(view.time);
+    text_->setText(text_at(track_->view(), track_->time()));
+    loop_->setChecked(view.loop);
+    speed_now_ = view.speed;
+    if (playing() && play_speed_ != view.speed) {
+        play_speed_ = view.speed;
+        speed_->show_value(std::abs(play_speed_));
     }
-    if (!dragging()) asked_time_.observe(view.time);
-    asked_speed_.observe(view.speed);
-    asked_loop_.observe(view.loop);
-    show_asked();
+    show_playing();
 }
 
 /// Changes only what is shown otherwise.
-void Timeline::show_asked() {
-    if (playing() && play_speed_ != asked_speed_.shown()) {
-        play_speed_ = asked_speed_.shown();
-        speed_->show_value(std::abs(play_speed_));
-    }
-    loop_->setChecked(asked_loop_.shown());
-    track_->set_time(asked_time_.shown());
-    text_->setText(text_at(track_->view(), track_->time()));
+void Timeline::show_playing() {
     const QString does = playing() ? tr("Pause") : tr("Play");
     if (does == play_->accessibleName()) return;
     play_->setIcon(icon_of(playing() ? Shape::pause : Shape::play));

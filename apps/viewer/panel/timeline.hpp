@@ -60,30 +60,8 @@ class TimelineTrack : public QAbstractSlider {
     double time_ = 0;
 };
 
-/// A setting as it was asked for, until the views agree with it or three of them do not.
-template <class T>
-class Asked {
-  public:
-    const T& shown() const { return shown_; }
-    void ask(const T& value) {
-        shown_ = value;
-        awaited_.begin();
-    }
-    void observe(const T& now) {
-        if (!awaited_.passes_over(now == shown_)) shown_ = now;
-    }
-    void set(const T& value) {
-        shown_ = value;
-        awaited_.end();
-    }
-
-  private:
-    T shown_{};
-    AwaitedChange awaited_;
-};
-
-/// Has no clock: it shows the views that it is given, and emits what the user asks for. That is
-/// shown at once (AwaitedChange). For a live source only the play button works.
+/// Has no clock: it shows the views that it is given, and emits what the user asks for. Whoever
+/// carries that out gives it a view at once. For a live source only the play button works.
 class Timeline : public QWidget {
     Q_OBJECT
 
@@ -97,7 +75,7 @@ class Timeline : public QWidget {
     void toggle_playing();
     /// As if a step button was pressed: a frame forward (1) or back (-1).
     void step(int direction);
-    bool playing() const { return asked_speed_.shown() != 0; }
+    bool playing() const { return speed_now_ != 0; }
     /// The user is dragging in the track.
     bool dragging() const;
 
@@ -111,18 +89,15 @@ class Timeline : public QWidget {
 
   private:
     void connect_inputs();
-    void show_asked();
+    void show_playing();
     void show_possible();
-    void ask_speed(double speed);
-    void ask_moment(double time);
 
     QToolButton *back_, *play_, *forward_;
     TimelineTrack* track_;
     QLabel* text_;
     NumberBox* speed_;
     QCheckBox* loop_;
-    Asked<double> asked_speed_, asked_time_;
-    Asked<bool> asked_loop_;
+    double speed_now_ = 0;
     double play_speed_ = 1;  // while it plays; below 0: backwards
 };
 

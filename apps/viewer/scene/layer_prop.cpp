@@ -28,10 +28,10 @@ void put_over(const unsigned char* front, const std::array<double, 4>& back,
 
 }  // namespace
 
-Layer composed(std::vector<Layer> layers, const Layer& solid) {
+pictures::Layer composed(std::vector<pictures::Layer> layers, const pictures::Layer& solid) {
     if (layers.empty()) return {};
     if (layers.size() == 1) return std::move(layers.front());
-    Layer result = std::move(layers.front());
+    pictures::Layer result = std::move(layers.front());
     layers.erase(layers.begin());
     std::vector<std::pair<float, const unsigned char*>> at;
     std::vector<unsigned char> first(4);
@@ -43,7 +43,7 @@ Layer composed(std::vector<Layer> layers, const Layer& solid) {
         };
         std::copy_n(pixel, 4, first.begin());
         add(result.depth[i], first.data());
-        for (const Layer& layer : layers) add(layer.depth[i], layer.rgba.data() + 4 * i);
+        for (const pictures::Layer& layer : layers) add(layer.depth[i], layer.rgba.data() + 4 * i);
         std::ranges::sort(at, {}, [](const auto& one) { return one.first; });
         std::array<double, 4> sum{};
         for (auto one = at.rbegin(); one != at.rend(); ++one) {
@@ -90,7 +90,7 @@ LayerProp* LayerProp::New() {
     return made;
 }
 
-void LayerProp::set_layer(std::shared_ptr<const RenderedImage> owner, const Layer& layer,
+void LayerProp::set_layer(std::shared_ptr<const RenderedImage> owner, const pictures::Layer& layer,
                           bool translucent) {
     owner_ = std::move(owner);
     layer_ = &layer;

@@ -14,13 +14,10 @@
 
 namespace palpate::viewer {
 
-// Puts translucent layers over each other.
-using pictures::Layer;
-
 /// One layer that looks as all of them do, the nearest first at each pixel, without what lies
 /// behind `solid`; its depth is the nearest one's. Colours are not multiplied by alpha. Empty
 /// without layers. All must have as many pixels.
-Layer composed(std::vector<Layer> layers, const Layer& solid);
+pictures::Layer composed(std::vector<pictures::Layer> layers, const pictures::Layer& solid);
 
 /// Fills the viewport, wherever the camera is. Drawn in its turn among the opaque props.
 class LayerProp : public vtkProp {
@@ -29,7 +26,7 @@ class LayerProp : public vtkProp {
 
     /// Copies the layer at the next drawing; nothing is drawn of one without pixels.
     /// `translucent`: its alpha is its opacity, and it does not write depths.
-    void set_layer(std::shared_ptr<const RenderedImage> owner, const Layer& layer,
+    void set_layer(std::shared_ptr<const RenderedImage> owner, const pictures::Layer& layer,
                    bool translucent);
     void clear();
 
@@ -45,7 +42,7 @@ class LayerProp : public vtkProp {
     void upload(vtkOpenGLRenderWindow& window);
 
     std::shared_ptr<const RenderedImage> owner_;
-    const Layer* layer_ = nullptr;
+    const pictures::Layer* layer_ = nullptr;
     bool translucent_ = false, uploaded_ = false;
     vtkSmartPointer<vtkTextureObject> colour_, depth_;
     std::unique_ptr<vtkOpenGLQuadHelper> quad_;

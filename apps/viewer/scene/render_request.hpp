@@ -41,17 +41,15 @@ struct RenderRequest {
     bool moving = false;        ///< quick rather than fine
 };
 
-using pictures::Layer;
-
 /// What a render thread has drawn.
 struct RenderedImage {
     std::uint64_t number = 0;
     int width = 0, height = 0;  ///< as asked for, or half of it while things move slowly
     pictures::Camera camera;
     double reach = 1;  ///< [mm] see reach_of(), of the volume that is shown
-    Layer solid;
+    pictures::Layer solid;
     /// What is translucent, with its opacity as alpha. Empty without any.
-    Layer glass;
+    pictures::Layer glass;
     bool moving = false;
     double seconds = 0;     ///< that it took
     bool hardware = false;  ///< drawn by graphics hardware, not by the processor

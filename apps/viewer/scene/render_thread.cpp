@@ -81,12 +81,12 @@ class OffscreenRenderer {
     void show_surfaces(const RenderRequest& request);
     void dress(const SurfacePart& part, const DrawnSurface& surface);
     void drop(const std::vector<vtkSmartPointer<vtkActor>>& actors);
-    Layer glass_layer(const RenderRequest& request, const Layer& solid);
+    pictures::Layer glass_layer(const RenderRequest& request, const pictures::Layer& solid);
     void show_slices(const RenderRequest& request);
     void show_box(const RenderRequest& request);
     void show_volume(const RenderRequest& request);
     const Volume& volume_of(const Field& field, bool coarse);
-    Layer layer_of(vtkRenderer& renderer);
+    pictures::Layer layer_of(vtkRenderer& renderer);
 
     const std::atomic<bool>& give_up_;
     vtkSmartPointer<vtkGenericOpenGLRenderWindow> window_;
@@ -190,7 +190,8 @@ void OffscreenRenderer::dress(const SurfacePart& part, const DrawnSurface& surfa
 
 /// Each translucent surface is drawn alone, its nearest part, and these are put over each other
 /// where the solid does not hide them.
-Layer OffscreenRenderer::glass_layer(const RenderRequest& request, const Layer& solid) {
+pictures::Layer OffscreenRenderer::glass_layer(const RenderRequest& request,
+                                               const pictures::Layer& solid) {
     const auto is_glass = [](const DrawnSurface& s) { return s.opacity > 0 && s.opacity < 1; };
     const auto set_visible = [&](std::size_t i, bool visible) {
         for (const SurfacePart* part : {&surfaces_[i].whole, &surfaces_[i].finer}) {
@@ -199,7 +200,7 @@ Layer OffscreenRenderer::glass_layer(const RenderRequest& request, const Layer& 
             }
         }
     };
-    std::vector<Layer> layers;
+    std::vector<pictures::Layer> layers;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         if (is_glass(request.surfaces[i])) set_visible(i, false);
     }
@@ -316,12 +317,12 @@ void OffscreenRenderer::show(const RenderRequest& request) {
 }
 
 /// Empty if it was cancelled.
-Layer OffscreenRenderer::layer_of(vtkRenderer& renderer) {
+pictures::Layer OffscreenRenderer::layer_of(vtkRenderer& renderer) {
     window_->AddRenderer(&renderer);
     renew_aspect(renderer);
     window_->SetAbortRender(0);
     window_->Render();
-    Layer layer = give_up_ ? Layer{} : pictures::layer_of(*window_);
+    pictures::Layer layer = give_up_ ? pictures::Layer{} : pictures::layer_of(*window_);
     window_->RemoveRenderer(&renderer);
     return layer;
 }

@@ -160,7 +160,7 @@ std::optional<Vec3> Scene::surface_at(const QPointF& pixel) const {
     const auto x = static_cast<int>(pixel.x() * shown->width / width());
     const int y = shown->height - 1 - static_cast<int>(pixel.y() * shown->height / height());
     if (x < 0 || y < 0 || x >= shown->width || y >= shown->height) return std::nullopt;
-    const auto depth_at = [&](const Layer& layer) {
+    const auto depth_at = [&](const pictures::Layer& layer) {
         const std::size_t i = std::size_t(y) * std::size_t(shown->width) + std::size_t(x);
         return i < layer.depth.size() ? layer.depth[i] : 1.0F;
     };

@@ -12,24 +12,8 @@
         <translation>Alle Dateien (*)</translation>
     </message>
     <message>
-        <source>Open layers</source>
-        <translation>Schichten öffnen</translation>
-    </message>
-    <message>
-        <source>Layers (*.json);;All files (*)</source>
-        <translation>Schichten (*.json);;Alle Dateien (*)</translation>
-    </message>
-    <message>
         <source>Open a volume, a session, layers or a recording</source>
         <translation>Volumen, Sitzung, Schichten oder Aufzeichnung öffnen</translation>
-    </message>
-    <message>
-        <source>Open a tool</source>
-        <translation>Werkzeug öffnen</translation>
-    </message>
-    <message>
-        <source>Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)</source>
-        <translation>Werkzeuge (*.stl *.ply *.obj *.vtp *.csv);;Alle Dateien (*)</translation>
     </message>
     <message>
         <source>Open a folder of slices, or a Zarr image</source>
@@ -710,6 +694,18 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <source>Take a tool on the page Feel first</source>
         <translation>Wählen Sie zuerst auf der Seite „Fühlen“ ein Werkzeug</translation>
     </message>
+    <message>
+        <source>A sequence cannot be edited: open one frame of it (--time-step).</source>
+        <translation>Eine Sequenz lässt sich nicht bearbeiten: Öffnen Sie ein Bild davon (--time-step).</translation>
+    </message>
+    <message>
+        <source>There is nothing to undo</source>
+        <translation>Es gibt nichts rückgängig zu machen</translation>
+    </message>
+    <message>
+        <source>There is nothing to redo</source>
+        <translation>Es gibt nichts wiederherzustellen</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::DeviceControls</name>
@@ -853,87 +849,17 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <source>The device has no buttons</source>
         <translation>Das Gerät hat keine Tasten</translation>
     </message>
-</context>
-<context>
-    <name>palpate::viewer::EditController</name>
     <message>
-        <source>A sequence cannot be edited: open one frame of it (--time-step).</source>
-        <translation>Eine Sequenz lässt sich nicht bearbeiten: Öffnen Sie ein Bild davon (--time-step).</translation>
+        <source>Looking for devices</source>
+        <translation>Geräte werden gesucht</translation>
     </message>
     <message>
-        <source>There is nothing to undo</source>
-        <translation>Es gibt nichts rückgängig zu machen</translation>
+        <source>No haptic device was found: the mouse is the hand.</source>
+        <translation>Kein haptisches Gerät gefunden: Die Maus ist die Hand.</translation>
     </message>
     <message>
-        <source>There is nothing to redo</source>
-        <translation>Es gibt nichts wiederherzustellen</translation>
-    </message>
-    <message>
-        <source>Save the volume</source>
-        <translation>Volumen speichern</translation>
-    </message>
-    <message>
-        <source>Saving %1</source>
-        <translation>%1 wird gespeichert</translation>
-    </message>
-    <message>
-        <source>Saved %1</source>
-        <translation>%1 gespeichert</translation>
-    </message>
-    <message>
-        <source>Save the surface (.ply, .stl, .obj or .vtp)</source>
-        <translation>Oberfläche speichern (.ply, .stl, .obj oder .vtp)</translation>
-    </message>
-    <message>
-        <source>Meshes (*.ply *.stl *.obj *.vtp)</source>
-        <translation>Netze (*.ply *.stl *.obj *.vtp)</translation>
-    </message>
-    <message>
-        <source>The volume was edited, and not saved since. Save it?</source>
-        <translation>Das Volumen wurde geändert und seitdem nicht gespeichert. Speichern?</translation>
-    </message>
-    <message>
-        <source>This will name the volume&apos;s file, which has not the latest edits. Save the volume first?</source>
-        <translation>Dies nennt die Datei des Volumens, in der die letzten Änderungen fehlen. Zuerst das Volumen speichern?</translation>
-    </message>
-    <message>
-        <source>Without the edits</source>
-        <translation>Ohne die Änderungen</translation>
-    </message>
-    <message>
-        <source>The volume is still being saved</source>
-        <translation>Das Volumen wird noch gespeichert</translation>
-    </message>
-    <message>
-        <source>: it opens as the edited volume while the original stays where it is</source>
-        <translation>: wird als das bearbeitete Volumen geöffnet, solange das Original bleibt, wo es ist</translation>
-    </message>
-    <message>
-        <source>Making the surface</source>
-        <translation>Die Oberfläche wird erzeugt</translation>
-    </message>
-    <message>
-        <source>Simplify</source>
-        <translation>Vereinfachen</translation>
-    </message>
-    <message>
-        <source>All triangles</source>
-        <translation>Alle Dreiecke</translation>
-    </message>
-    <message>
-        <source>The surface has %1 triangles, more than many programs can work with. Simplify it to about %2? It stays closed, and what is left of its points stays on the surface.</source>
-        <translation>Die Oberfläche hat %1 Dreiecke, mehr als viele Programme verarbeiten können. Auf etwa %2 vereinfachen? Sie bleibt geschlossen, und die Punkte, die übrig bleiben, bleiben auf der Oberfläche.</translation>
-    </message>
-    <message numerus="yes">
-        <source>Saved %1, %2 triangles</source>
-        <translation>
-            <numerusform>%1 gespeichert, %2 Dreieck</numerusform>
-            <numerusform>%1 gespeichert, %2 Dreiecke</numerusform>
-        </translation>
-    </message>
-    <message>
-        <source>Volumes (%1)</source>
-        <translation>Volumen (%1)</translation>
+        <source>Found: %1. Choose it under Device.</source>
+        <translation>Gefunden: %1. Wählen Sie es unter Gerät.</translation>
     </message>
 </context>
 <context>
@@ -964,6 +890,26 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
     <message>
         <source>%1 channels, %2 times: Data &gt; Level, channel and time chooses another</source>
         <translation>%1 Kanäle, %2 Zeiten: Daten &gt; Detailstufe, Kanal und Zeit wählt anderes</translation>
+    </message>
+    <message>
+        <source>The measurements are in no session file yet. Save the session?</source>
+        <translation>Die Messungen sind noch in keiner Sitzungsdatei. Sitzung speichern?</translation>
+    </message>
+    <message>
+        <source>The changed layers are in no file yet. Save them in the session?</source>
+        <translation>Die geänderten Schichten sind noch in keiner Datei. In der Sitzung speichern?</translation>
+    </message>
+    <message>
+        <source>Save the session</source>
+        <translation>Sitzung speichern</translation>
+    </message>
+    <message>
+        <source>Felt through the device %1</source>
+        <translation>Gefühlt mit dem Gerät %1</translation>
+    </message>
+    <message>
+        <source>Felt through the devices %1</source>
+        <translation>Gefühlt mit den Geräten %1</translation>
     </message>
 </context>
 <context>
@@ -1141,6 +1087,10 @@ Der Schieber endet, wo Gerät und Regelkreis sie nicht mehr stabil wiedergeben k
         <source>Settings of hand %1, %2</source>
         <translation>Einstellungen von Hand %1, %2</translation>
     </message>
+    <message>
+        <source>The panel shows the settings of hand %1</source>
+        <translation>Die Leiste zeigt die Einstellungen von Hand %1</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::Hints</name>
@@ -1252,53 +1202,6 @@ Das Volumen wird neu gelesen; Änderungen gehen verloren.</translation>
     <message>
         <source>Layers by label are felt, not a level of the densities.</source>
         <translation>Es werden Schichten nach Labels gefühlt, kein Wert der Dichten.</translation>
-    </message>
-</context>
-<context>
-    <name>palpate::viewer::LayersController</name>
-    <message>
-        <source>Save the layers</source>
-        <translation>Schichten speichern</translation>
-    </message>
-    <message>
-        <source>layers</source>
-        <translation>schichten</translation>
-    </message>
-    <message>
-        <source>Saved %1</source>
-        <translation>%1 gespeichert</translation>
-    </message>
-    <message>
-        <source>These layers are by label: open a label map over the volume first (page Data)</source>
-        <translation>Diese Schichten gehen nach Labels: Öffnen Sie zuerst eine Labelkarte über dem Volumen (Seite „Daten“)</translation>
-    </message>
-    <message>
-        <source>The label map has no label %1</source>
-        <translation>Die Labelkarte hat kein Label %1</translation>
-    </message>
-    <message>
-        <source>A layer for each label of the label map. A surface between two labels has the properties of the later one in the list.</source>
-        <translation>Eine Schicht für jedes Label der Labelkarte. Eine Oberfläche zwischen zwei Labels hat die Eigenschaften des späteren in der Liste.</translation>
-    </message>
-    <message>
-        <source>All labels are hidden: show those to feel</source>
-        <translation>Alle Labels sind ausgeblendet: Blenden Sie die ein, die gefühlt werden sollen</translation>
-    </message>
-    <message>
-        <source>%1. Hide labels in the list to feel the others</source>
-        <translation>%1. Blenden Sie Labels in der Liste aus, um die anderen zu fühlen</translation>
-    </message>
-    <message>
-        <source>Looking for the labels</source>
-        <translation>Labels werden gesucht</translation>
-    </message>
-    <message>
-        <source>Reading the labels</source>
-        <translation>Labels werden gelesen</translation>
-    </message>
-    <message>
-        <source>%1: these are layers: open a volume first, and feel it, then open them</source>
-        <translation>%1: Das sind Schichten: Öffnen und fühlen Sie zuerst ein Volumen, dann öffnen Sie sie</translation>
     </message>
 </context>
 <context>
@@ -1728,6 +1631,54 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
         <source>Rubbing on a needle&apos;s shaft for each millimetre of it in the layer [N/mm]; without a needle there is none</source>
         <translation>Reibung am Schaft einer Nadel je Millimeter in der Schicht [N/mm]; ohne Nadel gibt es keine</translation>
     </message>
+    <message>
+        <source>These layers are by label: open a label map over the volume first (page Data)</source>
+        <translation>Diese Schichten gehen nach Labels: Öffnen Sie zuerst eine Labelkarte über dem Volumen (Seite „Daten“)</translation>
+    </message>
+    <message>
+        <source>The label map has no label %1</source>
+        <translation>Die Labelkarte hat kein Label %1</translation>
+    </message>
+    <message>
+        <source>A layer for each label of the label map. A surface between two labels has the properties of the later one in the list.</source>
+        <translation>Eine Schicht für jedes Label der Labelkarte. Eine Oberfläche zwischen zwei Labels hat die Eigenschaften des späteren in der Liste.</translation>
+    </message>
+    <message>
+        <source>All labels are hidden: show those to feel</source>
+        <translation>Alle Labels sind ausgeblendet: Blenden Sie die ein, die gefühlt werden sollen</translation>
+    </message>
+    <message>
+        <source>%1. Hide labels in the list to feel the others</source>
+        <translation>%1. Blenden Sie Labels in der Liste aus, um die anderen zu fühlen</translation>
+    </message>
+    <message>
+        <source>Looking for the labels</source>
+        <translation>Labels werden gesucht</translation>
+    </message>
+    <message>
+        <source>Reading the labels</source>
+        <translation>Labels werden gelesen</translation>
+    </message>
+    <message>
+        <source>%1: these are layers: open a volume first, and feel it, then open them</source>
+        <translation>%1: Das sind Schichten: Öffnen und fühlen Sie zuerst ein Volumen, dann öffnen Sie sie</translation>
+    </message>
+    <message>
+        <source>Save the layers</source>
+        <translation>Schichten speichern</translation>
+    </message>
+    <message>
+        <source>layers</source>
+        <translation>schichten</translation>
+    </message>
+    <message>
+        <source>Saved %1</source>
+        <translation>%1 gespeichert</translation>
+    </message>
+    <message>
+        <source>Layers (*.json);;All files (*)</source>
+        <translation>Schichten (*.json);;Alle Dateien (*)</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::LevelChart</name>
@@ -2101,10 +2052,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Zule&amp;tzt geöffnet</translation>
     </message>
     <message>
-        <source>Save the session</source>
-        <translation>Sitzung speichern</translation>
-    </message>
-    <message>
         <source>&amp;Save the session</source>
         <translation>&amp;Sitzung speichern</translation>
     </message>
@@ -2393,10 +2340,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <translation>Keine Lage und kein Abstand in der Datei</translation>
     </message>
     <message>
-        <source>The measurements are in no session file yet. Save the session?</source>
-        <translation>Die Messungen sind noch in keiner Sitzungsdatei. Sitzung speichern?</translation>
-    </message>
-    <message>
         <source>Or&amp;ientation and spacing…</source>
         <translation>&amp;Lage und Abstand…</translation>
     </message>
@@ -2415,10 +2358,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>The proxy: where it is, the sample there and its slope</source>
         <translation>Der Proxy: wo er ist, der Wert dort und dessen Steigung</translation>
-    </message>
-    <message>
-        <source>The changed layers are in no file yet. Save them in the session?</source>
-        <translation>Die geänderten Schichten sind noch in keiner Datei. In der Sitzung speichern?</translation>
     </message>
     <message>
         <source>%1 %2   slope %3 /%4</source>
@@ -2441,13 +2380,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Click a point on one side, the corner, and a point on the other side (Esc: give up)</source>
         <translation>Klicken Sie einen Punkt auf einem Schenkel, den Scheitel und einen Punkt auf dem anderen Schenkel an (Esc: aufgeben)</translation>
-    </message>
-</context>
-<context>
-    <name>palpate::viewer::OverlayController</name>
-    <message>
-        <source>Opening %1</source>
-        <translation>%1 wird geöffnet</translation>
     </message>
 </context>
 <context>
@@ -2531,6 +2463,10 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>Layers by label: each label that is shown becomes one, with its name and colour; change them on the page Feel</source>
         <translation>Schichten nach Labels: Jedes eingeblendete Label wird eine, mit seinem Namen und seiner Farbe; ändern Sie sie auf der Seite „Fühlen“</translation>
+    </message>
+    <message>
+        <source>Opening %1</source>
+        <translation>%1 wird geöffnet</translation>
     </message>
 </context>
 <context>
@@ -2941,44 +2877,79 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
         <source>the first %1 of %2 hands are shown</source>
         <translation>die ersten %1 von %2 Händen werden gezeigt</translation>
     </message>
+    <message>
+        <source>Recorded up to this change: the session began anew</source>
+        <translation>Bis zu dieser Änderung aufgezeichnet: Die Sitzung hat neu begonnen</translation>
+    </message>
 </context>
 <context>
-    <name>palpate::viewer::RunController</name>
+    <name>palpate::viewer::SaveController</name>
     <message>
-        <source>No haptic device was found: the mouse is the hand.</source>
-        <translation>Kein haptisches Gerät gefunden: Die Maus ist die Hand.</translation>
+        <source>Volumes (%1)</source>
+        <translation>Volumen (%1)</translation>
     </message>
     <message>
-        <source>Found: %1. Choose it under Device.</source>
-        <translation>Gefunden: %1. Wählen Sie es unter Gerät.</translation>
+        <source>Save the volume</source>
+        <translation>Volumen speichern</translation>
     </message>
     <message>
-        <source>Felt through the device %1</source>
-        <translation>Gefühlt mit dem Gerät %1</translation>
+        <source>: it opens as the edited volume while the original stays where it is</source>
+        <translation>: wird als das bearbeitete Volumen geöffnet, solange das Original bleibt, wo es ist</translation>
     </message>
     <message>
-        <source>Looking for devices</source>
-        <translation>Geräte werden gesucht</translation>
+        <source>Saving %1</source>
+        <translation>%1 wird gespeichert</translation>
     </message>
     <message>
-        <source>Recorded up to the other device</source>
-        <translation>Bis zum anderen Gerät aufgezeichnet</translation>
+        <source>Saved %1</source>
+        <translation>%1 gespeichert</translation>
     </message>
     <message>
-        <source>Felt through the devices %1</source>
-        <translation>Gefühlt mit den Geräten %1</translation>
+        <source>Save the surface (.ply, .stl, .obj or .vtp)</source>
+        <translation>Oberfläche speichern (.ply, .stl, .obj oder .vtp)</translation>
     </message>
     <message>
-        <source>The panel shows the settings of hand %1</source>
-        <translation>Die Leiste zeigt die Einstellungen von Hand %1</translation>
+        <source>Meshes (*.ply *.stl *.obj *.vtp)</source>
+        <translation>Netze (*.ply *.stl *.obj *.vtp)</translation>
     </message>
     <message>
-        <source>%1: this is a tool: open a volume first, and feel it, then open the tool</source>
-        <translation>%1: das ist ein Werkzeug: zuerst ein Volumen öffnen und fühlen, dann das Werkzeug öffnen</translation>
+        <source>Making the surface</source>
+        <translation>Die Oberfläche wird erzeugt</translation>
     </message>
     <message>
-        <source>Reading the tool</source>
-        <translation>Werkzeug wird gelesen</translation>
+        <source>The surface has %1 triangles, more than many programs can work with. Simplify it to about %2? It stays closed, and what is left of its points stays on the surface.</source>
+        <translation>Die Oberfläche hat %1 Dreiecke, mehr als viele Programme verarbeiten können. Auf etwa %2 vereinfachen? Sie bleibt geschlossen, und die Punkte, die übrig bleiben, bleiben auf der Oberfläche.</translation>
+    </message>
+    <message>
+        <source>Simplify</source>
+        <translation>Vereinfachen</translation>
+    </message>
+    <message>
+        <source>All triangles</source>
+        <translation>Alle Dreiecke</translation>
+    </message>
+    <message numerus="yes">
+        <source>Saved %1, %2 triangles</source>
+        <translation>
+            <numerusform>%1 gespeichert, %2 Dreieck</numerusform>
+            <numerusform>%1 gespeichert, %2 Dreiecke</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>The volume was edited, and not saved since. Save it?</source>
+        <translation>Das Volumen wurde geändert und seitdem nicht gespeichert. Speichern?</translation>
+    </message>
+    <message>
+        <source>This will name the volume&apos;s file, which has not the latest edits. Save the volume first?</source>
+        <translation>Dies nennt die Datei des Volumens, in der die letzten Änderungen fehlen. Zuerst das Volumen speichern?</translation>
+    </message>
+    <message>
+        <source>Without the edits</source>
+        <translation>Ohne die Änderungen</translation>
+    </message>
+    <message>
+        <source>The volume is still being saved</source>
+        <translation>Das Volumen wird noch gespeichert</translation>
     </message>
 </context>
 <context>
@@ -3394,6 +3365,18 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
     <message>
         <source>What touches. No point of a tool ever goes through the surface; it pushes and turns the hand. With the mouse, Ctrl and drag in the scene turn it.</source>
         <translation>Womit berührt wird. Kein Punkt eines Werkzeugs geht je durch die Oberfläche; es drückt und dreht die Hand. Mit der Maus drehen es Strg und Ziehen in der Szene.</translation>
+    </message>
+    <message>
+        <source>%1: this is a tool: open a volume first, and feel it, then open the tool</source>
+        <translation>%1: das ist ein Werkzeug: zuerst ein Volumen öffnen und fühlen, dann das Werkzeug öffnen</translation>
+    </message>
+    <message>
+        <source>Reading the tool</source>
+        <translation>Werkzeug wird gelesen</translation>
+    </message>
+    <message>
+        <source>Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)</source>
+        <translation>Werkzeuge (*.stl *.ply *.obj *.vtp *.csv);;Alle Dateien (*)</translation>
     </message>
 </context>
 <context>

@@ -22,16 +22,6 @@
     </message>
 </context>
 <context>
-    <name>palpate::viewer::EditController</name>
-    <message numerus="yes">
-        <source>Saved %1, %2 triangles</source>
-        <translation>
-            <numerusform>Saved %1, %2 triangle</numerusform>
-            <numerusform>Saved %1, %2 triangles</numerusform>
-        </translation>
-    </message>
-</context>
-<context>
     <name>palpate::viewer::LoopView</name>
     <message numerus="yes">
         <source>%n forces cancelled</source>
@@ -65,6 +55,16 @@
         <translation>
             <numerusform>%n tick comes out otherwise than it was recorded</numerusform>
             <numerusform>%n ticks come out otherwise than they were recorded</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>palpate::viewer::SaveController</name>
+    <message numerus="yes">
+        <source>Saved %1, %2 triangles</source>
+        <translation>
+            <numerusform>Saved %1, %2 triangle</numerusform>
+            <numerusform>Saved %1, %2 triangles</numerusform>
         </translation>
     </message>
 </context>

@@ -4,11 +4,46 @@
 #include <stdexcept>
 #include <utility>
 
+#include "apps/viewer/window/desk.hpp"
+
 namespace palpate::viewer {
 
+Effect& Desk::effect() const {
+    return content_.effect();
+}
+
+std::vector<run::Setup> RunRequest::setups() const {
+    std::vector<run::Setup> hands(1 + others.size(), setup);
+    for (std::size_t i = 0; i < others.size(); ++i) hands[i + 1].device = others[i];
+    return hands;
+}
+
+void RunRequest::use_devices_of(const RunRequest& other) {
+    setup.device = other.setup.device;
+    setup.buttons = other.setup.buttons;
+    others = other.others;
+}
+
 /// Before anything else hears of it, the effect is that of the run.
-Content::Content() {
+Content::Content(RunRequest request) : request_(std::move(request)) {
     connect(this, &Content::run_changed, &effect_, [this] { begin_effect(); });
+}
+
+RunRequest& Content::request() {
+    if (!live(1)) return request_;
+    request_.setup.device = live(1)->setup().device;
+    request_.setup.buttons = live(1)->setup().buttons;
+    request_.others.clear();
+    for (int hand = 2; live(hand); ++hand) request_.others.push_back(live(hand)->setup().device);
+    return request_;
+}
+
+RunRequest Content::take_request() {
+    RunRequest taken = request();
+    request_.setup.field.isovalue.reset();
+    request_.setup.render.layers.reset();
+    request_.record.clear();
+    return taken;
 }
 
 /// Of the chosen hand.
@@ -71,6 +106,7 @@ void Content::add_hand(const devices::DeviceChoice& device) {
     added->start();
     runs_.push_back(std::move(added));
     choose_hand(hands());
+    Q_EMIT device_changed();
 }
 
 void Content::remove_hand() {
@@ -83,6 +119,7 @@ void Content::remove_hand() {
 
 void Content::close() {
     Q_EMIT closing();
+    request();  // with the devices of these runs
     runs_.clear();
     data_.reset();
     playbacks_.clear();
@@ -108,6 +145,7 @@ void Content::set_session(const QString& path) {
 void Content::use_device(const devices::DeviceChoice& device) {
     live()->use_device(device);
     Q_EMIT run_changed();
+    Q_EMIT device_changed();
 }
 
 void Content::use_buttons(const run::Buttons& buttons) {

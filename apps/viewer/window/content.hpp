@@ -1,6 +1,6 @@
 // What is open in the window: a volume, and with it either a live run, in which it is felt, or the
 // playback of a recording. Both have a hand or two, one of which is chosen: the panel shows its
-// settings, and commands are for it.
+// settings, and commands are for it. Also the request for the next run.
 #pragma once
 
 #include <QObject>
@@ -9,6 +9,8 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/viewer/model/hands.hpp"
@@ -20,11 +22,26 @@
 
 namespace palpate::viewer {
 
+/// Settings from the command line for the runs to come, and the devices used last.
+struct RunRequest {
+    run::Setup setup;
+    /// The device of the command line: used instead of those in a session file, with `others`.
+    std::optional<devices::DeviceChoice> device = {};
+    std::string record = {};  ///< recording to write; empty: none
+    /// Of the hands beside the first.
+    std::vector<devices::DeviceChoice> others = {};
+    /// The buttons that the command line names: used instead of those in a session file.
+    std::vector<std::pair<run::ButtonSetup run::Buttons::*, run::ButtonSetup>> buttons = {};
+
+    std::vector<run::Setup> setups() const;
+    void use_devices_of(const RunRequest& other);
+};
+
 class Content : public QObject {
     Q_OBJECT
 
   public:
-    Content();
+    explicit Content(RunRequest request = {});
     /// Closes what was open first: a device serves one run. Throws as run::Run; then nothing is
     /// open.
     void start_run(std::shared_ptr<Opened> volume, const std::vector<run::Setup>& hands);
@@ -48,6 +65,12 @@ class Content : public QObject {
     void remove_hand();
     /// Ends the run, forces are zero; emits nothing.
     void end_run() { runs_.clear(); }
+
+    /// With the devices and buttons in use.
+    RunRequest& request();
+    /// The request for another run. The level, the layers and the recording of the command line are
+    /// for the first one only.
+    RunRequest take_request();
 
     /// The settings of the live run, which commands change, or of the recording.
     Effect& effect() { return effect_; }
@@ -124,6 +147,8 @@ class Content : public QObject {
     /// The run has started, or has another device, field or settings.
     void run_changed();
     void playback_started();
+    /// The chosen hand has another device: also of a run that has started. After run_changed().
+    void device_changed();
     /// Another hand is chosen, added or removed. After run_changed().
     void hand_changed();
     /// source() or session() is another one.
@@ -135,6 +160,7 @@ class Content : public QObject {
     void begin_effect();
     double time_of(int hand) const;
 
+    RunRequest request_;
     Effect effect_;
     std::shared_ptr<Opened> volume_;
     std::optional<run::Source> saved_;

@@ -1,4 +1,4 @@
-// The parts of the window that controllers share, and the base of controllers.
+// The parts of the window that features share, and the base of those without controls.
 #pragma once
 
 #include <QObject>
@@ -6,34 +6,29 @@
 namespace palpate::viewer {
 
 class Content;
+class Effect;
 class Messages;
-class Panel;
-class Timeline;
 class Views;
 
-struct Desk {
-    Content& content;
-    Messages& messages;
-    Views& views;
-    Panel& panel;
-    Timeline& timeline;
-};
+/// A feature of the window derives from it.
+class Desk {
+  public:
+    Desk(Content& content, Messages& messages, Views& views)
+        : content_(content), messages_(messages), views_(views) {}
 
-/// Does one task of the window (docs/viewer_internals.md).
-class Controller : public QObject {
+    /// That of the content, for forms.
+    Effect& effect() const;
+
   protected:
-    explicit Controller(const Desk& desk)
-        : content_(desk.content),
-          messages_(desk.messages),
-          views_(desk.views),
-          panel_(desk.panel),
-          timeline_(desk.timeline) {}
-
     Content& content_;
     Messages& messages_;
     Views& views_;
-    Panel& panel_;
-    Timeline& timeline_;
+};
+
+/// Does one task of the window (docs/viewer_internals.md).
+class Controller : public QObject, protected Desk {
+  protected:
+    explicit Controller(const Desk& desk) : Desk(desk) {}
 };
 
 }  // namespace palpate::viewer

@@ -7,14 +7,12 @@
 #include <optional>
 #include <utility>
 
-#include "apps/viewer/model/transfer.hpp"
-#include "apps/viewer/panel/look_controls.hpp"
-#include "apps/viewer/panel/panel.hpp"
-#include "apps/viewer/scene/cut.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/look_controls.hpp"
 #include "apps/viewer/window/measure_controller.hpp"
-#include "apps/viewer/window/overlay_controller.hpp"
+#include "apps/viewer/window/overlay_controls.hpp"
+#include "apps/viewer/window/panel.hpp"
 #include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
@@ -37,9 +35,11 @@ std::optional<pictures::View> face_on(const Geometry& geometry, double is_thin) 
 
 }  // namespace
 
-DisplayController::DisplayController(const Desk& desk, MeasureController& measuring,
-                                     OverlayController& overlays)
-    : Controller(desk), measuring_(measuring), overlays_(overlays) {
+DisplayController::DisplayController(const Desk& desk, Panel& panel, MeasureController& measuring)
+    : Controller(desk),
+      look_(panel.look_controls()),
+      overlays_(panel.overlay_controls()),
+      measuring_(measuring) {
     connect(&content_, &Content::closed, this, &DisplayController::clear);
     connect(&content_, &Content::run_started, this, [this] {
         const run::Run& live = *content_.live();
@@ -51,20 +51,12 @@ DisplayController::DisplayController(const Desk& desk, MeasureController& measur
         const io::RecordingHead& head = content_.playback()->head();
         show_volume(content_.seen(content_.felt()), head.isovalue, head.settings.transform);
     });
-    connect(&panel_.look_controls(), &LookControls::look_changed, this,
-            &DisplayController::show_look);
-    connect(&panel_.look_controls(), &LookControls::cut_wanted, this, &DisplayController::set_cut);
-    connect(&views_.scene(), &Scene::cut_moved, this, &DisplayController::set_look);
 }
 
 void DisplayController::clear() {
     held_.reset();
     views_.clear();
     set(views_, &Shown::layers, nullptr);
-}
-
-std::optional<double> DisplayController::isovalue() const {
-    return content_.volume() ? std::optional(views_.shown().isovalue) : std::nullopt;
 }
 
 void DisplayController::show_field(const Field& field, double isovalue) {
@@ -78,7 +70,7 @@ void DisplayController::show_volume(const Field& field, double isovalue,
                                     const DeviceTransform& transform) {
     show_field(field, isovalue);
     views_.scene().reset_camera();
-    look_from_hand(transform);
+    look_from(transform);
     // With another device the view is that of the hand, or it would go aslant.
     const bool mouse = content_.live() && content_.live()->mouse();
     if (const auto view = face_on(field.geometry(), mouse ? 0.3 : 0)) {
@@ -135,45 +127,23 @@ void DisplayController::observe_state(const std::optional<Snapshot>& now) {
         show_level(next, proxy, now->penetrability_on);
     }
     views_.set_shown(next);
-    if (next.layers != before) overlays_.colour();
-}
-
-void DisplayController::show_look() {
-    set(views_, &Shown::look, panel_.look_controls().look());
+    if (next.layers != before) overlays_.colour_labels();
 }
 
 void DisplayController::hold() {
     if (content_.live()) held_ = content_.snapshots();
 }
 
-void DisplayController::set_look(const Look& look) {
-    panel_.look_controls().set_look(look);
-    show_look();
+void DisplayController::look_from_hand() {
+    if (const auto now = content_.snapshot()) look_from(now->session.transform);
 }
 
-void DisplayController::set_cut(Cut cut) {
-    const Vec3 towards = views_.scene().camera().towards_viewer;
-    set_look(with_cut(panel_.look_controls().look(), cut, views_.shown().crosshair, towards));
-}
-
-void DisplayController::use_usual_look() {
-    const Opened& opened = *content_.volume();
-    const Volume& volume = opened.loaded.volume;
-    Look look = panel_.look_controls().look();
-    look.transfer = preset(suggested_preset(opened.histogram, volume), opened.histogram, volume);
-    // Of the volume before.
-    look.surfaces.clear();
-    look.cut = Cut::nothing;
-    look.overlay = {};
-    set_look(look);
-}
-
-void DisplayController::look_from_hand(const DeviceTransform& transform) {
+void DisplayController::look_from(const DeviceTransform& transform) {
     views_.scene().look_from({transform.rotation.col(2), transform.rotation.col(1)});
 }
 
 void DisplayController::save_view(SessionFile& session) const {
-    session.look = panel_.look_controls().look();
+    session.look = look_.look();
     session.camera = views_.scene().camera();
     session.crosshair = views_.shown().crosshair;
     session.follow = views_.follows();
@@ -186,8 +156,8 @@ void DisplayController::save_view(SessionFile& session) const {
 
 void DisplayController::restore_view(const SessionFile& session) {
     Look look = session.look;
-    if (look.transfer.points.empty()) look.transfer = panel_.look_controls().look().transfer;
-    set_look(look);
+    if (look.transfer.points.empty()) look.transfer = look_.look().transfer;
+    look_.set_look(look);
     set(views_, &Shown::window, {session.window_low, session.window_high});
     if (session.crosshair) set(views_, &Shown::crosshair, *session.crosshair);
     views_.set_follow(session.follow);

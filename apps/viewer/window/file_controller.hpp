@@ -18,34 +18,21 @@
 namespace palpate::viewer {
 
 class DisplayController;
-class LayersController;
+class SaveController;
+class LayersControls;
 class MeasureController;
 class RecordingController;
-class RunController;
+class Panel;
 struct Opened;
 struct RunRequest;
-
-/// What would be lost with the volume that is open.
-struct UnsavedWork {
-    std::shared_ptr<const Samples> edits;
-    std::vector<Measurement> measurements;
-    SharedLayers layers;
-    bool operator==(const UnsavedWork&) const = default;
-};
 
 /// Errors are shown; what was open then stays open, as long as the new file cannot be read.
 class FileController : public Controller {
     Q_OBJECT
 
   public:
-    FileController(const Desk& desk, RunController& run, LayersController& layers,
-                   RecordingController& recordings, DisplayController& display,
-                   MeasureController& measuring);
-
-    /// The open volume can be changed while another file is read. If it was changed, `settle` is
-    /// called before that file is shown, and calls its action when the work is saved or given up.
-    void guard(std::function<UnsavedWork()> unsaved,
-               std::function<void(const std::function<void()>&)> settle);
+    FileController(const Desk& desk, Panel& panel, RecordingController& recordings,
+                   DisplayController& display, MeasureController& measuring, SaveController& saver);
 
     /// A volume, a folder, a session, layers or a recording: its name tells which. Asks for the
     /// layout where lacks_layout().
@@ -62,43 +49,60 @@ class FileController : public Controller {
     void open_sample();
     void open_session(const QString& path);
     void open_recording(const QString& path);
-    /// Reads the volume that is felt again, dequantized or as it comes, and feels it as before.
+    /// Reads the volume that is felt again, dequantized or as it comes, and feels it as before,
+    /// once its edits were saved or given up.
     void dequantize(bool on);
     /// Ends the playback: feels the recording's volume, at the level and in the view shown.
     void leave_playback();
     /// With its measurements. Throws io::OutputError.
     void save_session(const QString& path);
-    /// Reads the volume again with what was asked for in place of its orientation and spacing: it
-    /// is felt as before, but seen anew.
-    void use_grid(const io::GivenGrid& grid);
+    /// Asks for a name where there is none. A session names a volume, so its edits are saved first.
+    void ask_save_session(const QString& name, const std::function<void()>& then = {});
+    /// `action` at once, or after unsaved edits, measurements and layers were saved or given up.
+    void settle_work(const std::function<void()>& action);
+    /// True if there is no such work, or it is given up. `once_saved` runs after it was saved.
+    bool may_lose_work(const std::function<void()>& once_saved);
+    /// Asks how the grid of the volume lies in the body, and its spacing, and reads the volume
+    /// again with these: it is felt as before, but seen anew.
+    void ask_grid();
 
     BackgroundTask& loader() { return loader_; }
     bool loading() const { return loader_.busy(); }
 
   private:
     using Then = std::function<void(std::shared_ptr<Opened>)>;
+    /// What would be lost with the volume that is open.
+    struct UnsavedWork {
+        std::shared_ptr<const Samples> edits;
+        std::vector<Measurement> measurements;
+        SharedLayers layers;
+        bool operator==(const UnsavedWork&) const = default;
+    };
+    UnsavedWork unsaved_work() const;
     void read(const QString& label, Worker::Task task, std::function<void()> then);
     void load(const run::Source& source, Then then);
     void feel_again(const run::Source& source);
+    void use_grid(const io::GivenGrid& grid);
     void tell_choices(const Opened& opened);
     void choose_series(const io::SeriesChoice& choice, const run::Source& source, const Then& then);
     void load_or_reuse(const run::Source& source, Then then);
+    void start(std::shared_ptr<Opened> opened, const std::vector<run::Setup>& hands);
     void feel(std::shared_ptr<Opened> opened, const RunRequest& request);
     void feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
                       RunRequest request, bool in_place = true);
     void restore_hands(const SessionFile& session, bool in_place);
+    void restore(const RendererSettings& settings, bool in_place);
     RunRequest request_for_same();
     void play(std::shared_ptr<Opened> opened, const QString& path);
     SessionFile session_now() const;
 
-    RunController& run_;
-    LayersController& layers_;
+    Panel& panel_;
+    LayersControls& layers_;
     RecordingController& recordings_;
     DisplayController& display_;
     MeasureController& measuring_;
+    SaveController& saver_;
     BackgroundTask loader_;
-    std::function<UnsavedWork()> unsaved_ = [] { return UnsavedWork(); };
-    std::function<void(const std::function<void()>&)> settle_;
 };
 
 }  // namespace palpate::viewer

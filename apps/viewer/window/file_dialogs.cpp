@@ -30,10 +30,6 @@ constexpr const char* volumes =
     "*.ims "
     "*.h5 *.hdf5";
 
-QString ask_file(QWidget* window, const QString& title, const QString& filter) {
-    return QFileDialog::getOpenFileName(window, title, last_folder(), filter);
-}
-
 /// A synthetic volume, a live source or a web address.
 bool is_no_file(const QString& path) {
     return path.startsWith("synthetic:") || path.startsWith("live:") ||
@@ -49,16 +45,20 @@ bool may_replace(QWidget* window, const QString& path) {
 
 }  // namespace
 
-QString ask_open_name(QWidget* window) {
-    return ask_file(
+QString ask_open_name(QWidget* window, const QString& title, const QString& filter) {
+    return QFileDialog::getOpenFileName(window, title, last_folder(), filter);
+}
+
+QString ask_open_anything(QWidget* window) {
+    return ask_open_name(
         window, FileDialogs::tr("Open a volume, a session, layers or a recording"),
         FileDialogs::tr("All that can be opened (%1 *.raw *.raw.gz *.json *.csv);;All files (*)")
             .arg(volumes));
 }
 
 QString ask_open_overlay_name(QWidget* window) {
-    return ask_file(window, FileDialogs::tr("Open an overlay: labels or another image"),
-                    FileDialogs::tr("Volumes (%1);;All files (*)").arg(volumes));
+    return ask_open_name(window, FileDialogs::tr("Open an overlay: labels or another image"),
+                         FileDialogs::tr("Volumes (%1);;All files (*)").arg(volumes));
 }
 
 QString ask_open_folder(QWidget* window) {
@@ -87,17 +87,8 @@ QString ask_save_name(QWidget* window, const QString& title, const QString& name
 }
 
 QString ask_open_raw_name(QWidget* window) {
-    return ask_file(window, FileDialogs::tr("Open raw data"), FileDialogs::tr("All files (*)"));
-}
-
-QString ask_open_layers_name(QWidget* window) {
-    return ask_file(window, FileDialogs::tr("Open layers"),
-                    FileDialogs::tr("Layers (*.json);;All files (*)"));
-}
-
-QString ask_open_tool_name(QWidget* window) {
-    return ask_file(window, FileDialogs::tr("Open a tool"),
-                    FileDialogs::tr("Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)"));
+    return ask_open_name(window, FileDialogs::tr("Open raw data"),
+                         FileDialogs::tr("All files (*)"));
 }
 
 void remember_folder(const QString& path) {

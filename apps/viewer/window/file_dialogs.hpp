@@ -10,12 +10,12 @@ class QWidget;
 namespace palpate::viewer {
 
 /// These return an empty name if the user cancels.
-QString ask_open_name(QWidget* window);
+QString ask_open_name(QWidget* window, const QString& title, const QString& filter);
+/// A volume, a session, layers or a recording.
+QString ask_open_anything(QWidget* window);
 QString ask_open_overlay_name(QWidget* window);
 QString ask_open_folder(QWidget* window);
 QString ask_open_raw_name(QWidget* window);
-QString ask_open_layers_name(QWidget* window);
-QString ask_open_tool_name(QWidget* window);
 /// `replaces`: the dialog asks before an existing file is replaced; false for files that are never
 /// replaced. With a `filter`, the dialog shows these files, and names without an extension get
 /// `suffix`. Without it, the dialog shows files with the suffix, and all other names get it.

@@ -116,7 +116,7 @@ void say(QLabel& label, const QString& words, const QPoint& middle) {
 Hints::Hints(const Desk& desk, const RecordingController& recordings)
     : Controller(desk),
       recordings_(recordings),
-      scene_(desk.views.scene()),
+      scene_(views_.scene()),
       reason_(label_over(scene_, "hint", "background-color: #ffb000; color: black;")),
       brush_(label_over(scene_, "brush_on", "background-color: #d55e00; color: white;")),
       depth_(label_over(scene_, "depth", "background-color: rgba(0, 0, 0, 150); color: white;")),

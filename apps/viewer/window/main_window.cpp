@@ -25,18 +25,20 @@
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/ruler.hpp"
-#include "apps/viewer/panel/brush_controls.hpp"
-#include "apps/viewer/panel/isovalue_controls.hpp"
-#include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/names.hpp"
-#include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/window/brush_controls.hpp"
+#include "apps/viewer/window/device_controls.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
-#include "apps/viewer/window/grid_dialog.hpp"
+#include "apps/viewer/window/hand_switch.hpp"
 #include "apps/viewer/window/hints.hpp"
+#include "apps/viewer/window/layers_controls.hpp"
 #include "apps/viewer/window/menus.hpp"
+#include "apps/viewer/window/overlay_controls.hpp"
+#include "apps/viewer/window/panel.hpp"
+#include "apps/viewer/window/tool_controls.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "apps/viewer/window/welcome.hpp"
 #include "palpate/field.hpp"
@@ -57,26 +59,24 @@ constexpr int give_back_ms = 2000;
 }  // namespace
 
 MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
-    : views_(new Views(std::move(make_painter), this)),
+    : content_(request),
+      views_(new Views(std::move(make_painter), this)),
       welcome_(new Welcome(this)),
-      panel_(new Panel(content_.effect(), this)),
       timeline_(new Timeline(this)),
       streaming_(new QLabel),
       readout_(new QLabel),
       frame_time_(new QLabel),
       messages_(this),
-      desk_{content_, messages_, *views_, *panel_, *timeline_},
+      desk_(content_, messages_, *views_),
+      panel_(new Panel(desk_, this)),
       measuring_(desk_),
-      overlays_(desk_),
-      display_(desk_, measuring_, overlays_),
+      display_(desk_, *panel_, measuring_),
       details_(desk_),
-      run_(desk_, request),
-      layers_(desk_, overlays_),
       recordings_(desk_),
-      probe_(desk_, run_),
-      editing_(desk_),
-      playing_(desk_),
-      files_(desk_, run_, layers_, recordings_, display_, measuring_),
+      probe_(desk_),
+      saver_(desk_, *panel_),
+      playing_(desk_, *timeline_),
+      files_(desk_, *panel_, recordings_, display_, measuring_, saver_),
       hints_(desk_, recordings_),
       actions_(this, messages_) {
     setObjectName("palpate");
@@ -88,7 +88,7 @@ MainWindow::MainWindow(const RunRequest& request, MakePainter make_painter)
     connect_welcome();
     restore_layout();
     use(saved_preferences());
-    run_.find_devices();
+    panel_->device_controls().find_devices();
     timer_.start(frame_ms);
 }
 
@@ -105,11 +105,11 @@ void MainWindow::build() {
     layout->setStretch(1, 1);
     views_->hide();
     layout->setSpacing(0);
-    layout->addWidget(make_progress_strip(files_.loader()));
-    layout->addWidget(make_progress_strip(overlays_.loader()));
-    layout->addWidget(make_progress_strip(editing_.saver()));
-    layout->addWidget(make_progress_strip(layers_.reader()));
-    layout->addWidget(make_progress_strip(run_.reader()));
+    for (BackgroundTask* task :
+         {&files_.loader(), &panel_->overlay_controls().loader(), &saver_.task(),
+          &panel_->layers_controls().reader(), &panel_->tool_controls().reader()}) {
+        layout->addWidget(make_progress_strip(*task));
+    }
     setCentralWidget(centre);
     auto* dock = new QDockWidget(tr("Feel and look"));
     dock->setObjectName("dock");
@@ -136,19 +136,7 @@ void MainWindow::connect_parts() {
             [this](const QString& what) { statusBar()->showMessage(what, message_ms); });
     connect(&views_->scene(), &Scene::problem, this,
             [this](const QString& what) { messages_.show_problem(what); });
-    const auto outline_brush = [this] {
-        const BrushChoice& brush = panel_->brush_controls().choice();
-        const bool ball = content_.editor() && brush.on && !brush.as_tool;  // a tool is drawn
-        set(*views_, &Shown::brush, ball ? brush.radius : 0);
-    };
-    connect(&panel_->brush_controls(), &BrushControls::changed, this, outline_brush);
-    connect(&probe_, &ProbeController::lifted, &editing_, &EditController::rest);
-    connect(&content_, &Content::run_changed, this, outline_brush);
-    connect(&content_, &Content::closed, this, outline_brush);
-    connect(&panel_->isovalue_controls(), &IsovalueControls::dequantize_wanted, this,
-            [this](bool on) { editing_.settle_edits([this, on] { files_.dequantize(on); }); });
-    files_.guard([this] { return unsaved_work(); },
-                 [this](const std::function<void()>& action) { settle_work(action); });
+    connect(&probe_, &ProbeController::lifted, &panel_->brush_controls(), &BrushControls::rest);
     connect(&content_, &Content::closed, this, &MainWindow::show_title);
     connect(&content_, &Content::run_started, this, &MainWindow::show_title);
     connect(&content_, &Content::playback_started, this, &MainWindow::show_title);
@@ -164,7 +152,7 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::run_changed, this, refresh);
     connect(&content_, &Content::playback_started, this, refresh);
     connect(&content_, &Content::hand_changed, this, refresh);
-    connect(&run_, &RunController::device_changed, this, refresh);
+    connect(&content_, &Content::device_changed, this, refresh);
     connect(&recordings_, &RecordingController::changed, this, refresh);
 }
 
@@ -176,8 +164,8 @@ void MainWindow::connect_welcome() {
     };
     connect(&content_, &Content::run_started, this, show_views);
     connect(&content_, &Content::playback_started, this, show_views);
-    connect(&run_, &RunController::devices_found, this,
-            [this] { welcome_->set_devices(run_.device_words()); });
+    connect(&panel_->device_controls(), &DeviceControls::devices_found, welcome_,
+            &Welcome::set_devices);
     connect(welcome_, &Welcome::open_asked, actions_.find("open"), &QAction::trigger);
     connect(welcome_, &Welcome::folder_asked, actions_.find("open_folder"), &QAction::trigger);
     connect(welcome_, &Welcome::sample_asked, this, [this] { files_.open_sample(); });
@@ -207,52 +195,6 @@ void MainWindow::show_grid() {
                                         : tr("No orientation and no spacing in the file"));
 }
 
-void MainWindow::ask_grid() {
-    const run::LoadedVolume& loaded = content_.volume()->loaded;
-    const Geometry& grid = loaded.streamed ? loaded.streamed->store->info().levels[0].geometry
-                                           : loaded.volume.geometry();
-    auto* dialog = new GridDialog(grid, given_grid(content_.source()), this);
-    connect(dialog, &QDialog::accepted, this,
-            [this, dialog] { messages_.guarded([&] { files_.use_grid(dialog->grid()); }); });
-    messages_.ask(dialog);
-}
-
-void MainWindow::settle_work(const std::function<void()>& action) {
-    if (may_lose_work([this, action] { settle_work(action); })) action();
-}
-
-UnsavedWork MainWindow::unsaved_work() const {
-    UnsavedWork work{editing_.unsaved(), {}, nullptr};
-    if (measuring_.unsaved()) work.measurements = measuring_.measurements();
-    const LayersControls& layers = panel_->layers_controls();
-    if (layers.unsaved()) work.layers = layers.layers();
-    return work;
-}
-
-/// True if there is none, or it is given up. `once_saved` runs after it was saved.
-bool MainWindow::may_lose_work(const std::function<void()>& once_saved) {
-    if (!editing_.may_lose_edits(once_saved)) return false;
-    const bool measured = measuring_.unsaved();
-    if (!measured && !panel_->layers_controls().unsaved()) return true;
-    return messages_.may_lose(
-        "lose_work",
-        measured ? tr("The measurements are in no session file yet. Save the session?")
-                 : tr("The changed layers are in no file yet. Save them in the session?"),
-        {}, [this, once_saved] { save_session(content_.session(), once_saved); });
-}
-
-void MainWindow::save_session(const QString& name, const std::function<void()>& then) {
-    editing_.save_edits_first([=, this] {
-        const QString path =
-            !name.isEmpty() ? name
-                            : ask_save_name(this, tr("Save the session"), "session.json", "json");
-        if (path.isEmpty()) return;
-        files_.save_session(path);
-        panel_->layers_controls().set_saved();
-        if (then) then();
-    });
-}
-
 void MainWindow::restore_layout() {
     const QSettings settings;
     if (!restoreGeometry(settings.value("geometry").toByteArray())) {
@@ -274,7 +216,9 @@ void MainWindow::use(const Preferences& preferences) {
 
 void MainWindow::ask_preferences() {
     const auto change = [this](const Preferences& preferences) {
-        if (preferences.appearance != last_appearance()) set_appearance(preferences.appearance);
+        if (preferences.appearance != saved_preferences().appearance) {
+            set_appearance(preferences.appearance);
+        }
         save_preferences(preferences);
         use(preferences);
     };
@@ -294,20 +238,23 @@ void MainWindow::tick() {
     if (now && rounds_ % panel_rounds == 0) {
         content_.effect().observe(*now);
         show_readout(*now);
-        editing_.observe();
+        panel_->brush_controls().observe();
         playing_.observe();
     }
-    if (now && rounds_ % device_rounds == 0) run_.observe(*now);
-    if (rounds_ % device_rounds == 0) show_streaming();
+    if (now && rounds_ % device_rounds == 0) {
+        panel_->hand_switch().show_hands();
+        panel_->device_controls().observe(*now);
+    }
     if (rounds_ % device_rounds == 0) {
+        show_streaming();
         actions_.refresh();
-        setWindowModified(editing_.unsaved() != nullptr);
+        setWindowModified(saver_.unsaved() != nullptr);
     }
     if (rounds_ % report_rounds == 0) recordings_.check();
     // New numbers make the whole window be composed again, which takes software 30 ms.
     const bool resting = at_rest_ > rounds_at_rest;
     if (rounds_ % (resting ? 4 * report_rounds : report_rounds) != 0) return;
-    run_.show_report();
+    panel_->loop_view().observe();
     const double seconds = views_->scene().frame_seconds();
     frame_time_->setText(seconds > 0 ? tr("%1 ms a frame").arg(1e3 * seconds, 0, 'f', 0)
                                      : QString());
@@ -357,8 +304,9 @@ void MainWindow::rest_or_wake(const HandSnapshots& now) {
 }
 
 bool MainWindow::settled() const {
-    return !files_.loading() && !editing_.saving() && !probe_.travelling() && overlays_.settled() &&
-           layers_.settled() && run_.settled() &&
+    return !files_.loading() && !saver_.saving() && !probe_.travelling() &&
+           panel_->overlay_controls().settled() && !panel_->layers_controls().reader().busy() &&
+           !panel_->tool_controls().reader().busy() &&
            (!content_.volume() || (views_->scene().settled() && details_.settled()));
 }
 
@@ -374,7 +322,7 @@ void MainWindow::save_picture(const QString& path, bool whole_window) {
 
 void MainWindow::end() {
     timer_.stop();
-    const bool edits = editing_.unsaved() != nullptr;
+    const bool edits = saver_.unsaved() != nullptr;
     const std::shared_ptr<run::Data> data = content_.data();
     recordings_.stop();
     content_.end_run();  // forces first
@@ -385,7 +333,7 @@ void MainWindow::end() {
 void MainWindow::closeEvent(QCloseEvent* event) {
     // Later: a window that is closing does not close.
     const auto close_again = [this] { QTimer::singleShot(0, this, [this] { close(); }); };
-    if (!may_lose_work(close_again)) return event->ignore();
+    if (!files_.may_lose_work(close_again)) return event->ignore();
     if (keeps_layout_) {
         QSettings settings;
         settings.setValue("geometry", saveGeometry());
@@ -415,9 +363,9 @@ void MainWindow::dropEvent(QDropEvent* event) {
     const QUrl& url = urls.front();
     const QString path = url.isLocalFile() ? url.toLocalFile() : url.toString();
     // The volume stays, with its edits.
-    if (LayersController::is_layers_file(path)) return layers_.open(path);
-    if (RunController::is_tool_file(path)) return run_.open_tool(path);
-    settle_work([this, path] { files_.open_path(path); });
+    if (LayersControls::is_layers_file(path)) return panel_->layers_controls().open(path);
+    if (ToolControls::is_tool_file(path)) return panel_->tool_controls().open(path);
+    files_.settle_work([this, path] { files_.open_path(path); });
 }
 
 }  // namespace palpate::viewer

@@ -9,18 +9,15 @@
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/detail_controller.hpp"
 #include "apps/viewer/window/display_controller.hpp"
-#include "apps/viewer/window/edit_controller.hpp"
 #include "apps/viewer/window/file_controller.hpp"
 #include "apps/viewer/window/hints.hpp"
-#include "apps/viewer/window/layers_controller.hpp"
 #include "apps/viewer/window/measure_controller.hpp"
 #include "apps/viewer/window/menus.hpp"
 #include "apps/viewer/window/messages.hpp"
-#include "apps/viewer/window/overlay_controller.hpp"
 #include "apps/viewer/window/preferences.hpp"
 #include "apps/viewer/window/probe_controller.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
-#include "apps/viewer/window/run_controller.hpp"
+#include "apps/viewer/window/save_controller.hpp"
 
 class QLabel;
 
@@ -44,13 +41,10 @@ class MainWindow : public QMainWindow {
     void end();
 
     FileController& files() { return files_; }
-    RunController& run() { return run_; }
-    LayersController& layers() { return layers_; }
     RecordingController& recordings() { return recordings_; }
-    EditController& editing() { return editing_; }
+    SaveController& saver() { return saver_; }
     ProbeController& probe() { return probe_; }
     MeasureController& measuring() { return measuring_; }
-    OverlayController& overlays() { return overlays_; }
     DisplayController& display() { return display_; }
     DetailController& details() { return details_; }
     Messages& messages() { return messages_; }
@@ -64,12 +58,6 @@ class MainWindow : public QMainWindow {
 
     /// Opens the dialog; changes are seen at once, and kept.
     void ask_preferences();
-    /// Asks how the grid of the volume lies in the body, and its spacing.
-    void ask_grid();
-    /// `action` at once, or after unsaved edits and measurements were saved or given up.
-    void settle_work(const std::function<void()>& action);
-    /// Asks for a name where there is none. A session names a volume, so its edits are saved first.
-    void save_session(const QString& name, const std::function<void()>& then = {});
     /// Size and layout of this window are not those of the next start.
     void forget_layout() { keeps_layout_ = false; }
     /// Throws io::OutputError.
@@ -91,8 +79,6 @@ class MainWindow : public QMainWindow {
     void connect_welcome();
     void show_title();
     void show_grid();
-    UnsavedWork unsaved_work() const;
-    bool may_lose_work(const std::function<void()>& once_saved);
     void restore_layout();
     void use(const Preferences& preferences);
     void show_readout(const Snapshot& now);
@@ -113,26 +99,21 @@ class MainWindow : public QMainWindow {
     /// known.
     void name_views(bool oriented);
     void record(bool on);
-    void toggle_brush();
-    void look_from_hand();
 
     Content content_;
     Views* views_;
     Welcome* welcome_;
-    Panel* panel_;
     Timeline* timeline_;
     QLabel *streaming_, *readout_, *frame_time_;
     Messages messages_;
     Desk desk_;
+    Panel* panel_;
     MeasureController measuring_;
-    OverlayController overlays_;
     DisplayController display_;
     DetailController details_;
-    RunController run_;
-    LayersController layers_;
     RecordingController recordings_;
     ProbeController probe_;
-    EditController editing_;
+    SaveController saver_;
     TimelineController playing_;
     FileController files_;
     Hints hints_;

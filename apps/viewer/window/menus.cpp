@@ -12,14 +12,17 @@
 #include <map>
 #include <utility>
 
-#include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/icons.hpp"
-#include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/window/brush_controls.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
+#include "apps/viewer/window/hand_switch.hpp"
+#include "apps/viewer/window/look_controls.hpp"
 #include "apps/viewer/window/main_window.hpp"
 #include "apps/viewer/window/messages.hpp"
+#include "apps/viewer/window/overlay_controls.hpp"
+#include "apps/viewer/window/panel.hpp"
 #include "apps/viewer/window/preferences.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "apps/viewer/window/welcome.hpp"
@@ -100,14 +103,16 @@ void MainWindow::fill_recent(QMenu& menu) {
     menu.clear();
     for (const QString& path : recent_files()) {
         connect(menu.addAction(on_button(path)), &QAction::triggered, this,
-                [this, path] { settle_work([this, path] { files_.open_path(path); }); });
+                [this, path] { files_.settle_work([this, path] { files_.open_path(path); }); });
     }
     if (menu.isEmpty()) menu.addAction(tr("nothing yet"))->setEnabled(false);
 }
 
 void MainWindow::make_file_menu() {
     QMenu* menu = menuBar()->addMenu(tr("&File"));
-    const auto settled = [this](auto action) { return [this, action] { settle_work(action); }; };
+    const auto settled = [this](auto action) {
+        return [this, action] { files_.settle_work(action); };
+    };
     const auto open = [this, settled](auto ask, auto then) {
         return settled([this, ask, then] {
             if (const QString path = ask(this); !path.isEmpty()) then(path);
@@ -122,20 +127,21 @@ void MainWindow::make_file_menu() {
             ask_save_name(this, tr("Save a picture"), "palpate-" + time_stamp() + ".png", "png");
         if (!path.isEmpty()) save_picture(path, whole_window);
     };
-    actions_.add(menu, {{"open", tr("&Open…"), QKeySequence::Open, open(ask_open_name, by_name)},
-                        {"open_folder", tr("Open a &folder (DICOM, TIFF, Zarr)…"), "Ctrl+Shift+O",
-                         open(ask_open_folder, by_name)},
-                        {"open_raw", tr("Open raw &data…"), "", open(ask_open_raw_name, raw)},
-                        {"open_address", tr("Open a&n address…"), "Ctrl+L",
-                         settled([this] { files_.ask_address(); })}});
+    actions_.add(menu,
+                 {{"open", tr("&Open…"), QKeySequence::Open, open(ask_open_anything, by_name)},
+                  {"open_folder", tr("Open a &folder (DICOM, TIFF, Zarr)…"), "Ctrl+Shift+O",
+                   open(ask_open_folder, by_name)},
+                  {"open_raw", tr("Open raw &data…"), "", open(ask_open_raw_name, raw)},
+                  {"open_address", tr("Open a&n address…"), "Ctrl+L",
+                   settled([this] { files_.ask_address(); })}});
     QMenu* recent = submenu(*menu, "recent", tr("Open &recent"));
     connect(recent, &QMenu::aboutToShow, this, [this, recent] { fill_recent(*recent); });
     actions_.add(menu,
                  {separator,
                   {"save_session", tr("&Save the session"), QKeySequence::Save,
-                   [this] { save_session(content_.session()); }, if_open_},
-                  {"save_session_as", tr("Save the session &as…"), "", [this] { save_session({}); },
-                   if_open_},
+                   [this] { files_.ask_save_session(content_.session()); }, if_open_},
+                  {"save_session_as", tr("Save the session &as…"), "",
+                   [this] { files_.ask_save_session({}); }, if_open_},
                   {"picture", tr("&Picture of the scene…"), "Ctrl+P", [picture] { picture(false); },
                    if_open_},
                   {"window_picture", tr("Picture of the &window…"), "Ctrl+Shift+P",
@@ -180,8 +186,8 @@ void MainWindow::make_session_menu() {
          {"pointer", tr("&Mouse moves the probe"), "H",
           [this](bool on) { probe_.set_pointing(on); }, [this] { return probe_.possible(); },
           [this] { return probe_.pointing(); }},
-         {"next_hand", tr("Settings of the &next hand"), "N", [this] { run_.choose_next_hand(); },
-          [this] { return content_.hands() > 1; }},
+         {"next_hand", tr("Settings of the &next hand"), "N",
+          [this] { panel_->hand_switch().choose_next(); }, [this] { return content_.hands() > 1; }},
          separator,
          {"level_up", tr("Isovalue &up by 1 %"), "+", raise(1), if_live_},
          {"level_down", tr("Isovalue &down by 1 %"), "-", raise(-1), if_live_},
@@ -197,13 +203,10 @@ void MainWindow::make_session_menu() {
           [this] { return playback() != nullptr; }}});
 }
 
-void MainWindow::toggle_brush() {
-    BrushControls& brush = panel_->brush_controls();
-    brush.reason().isEmpty() ? brush.toggle() : messages_.show_done(brush.reason());
-}
-
 void MainWindow::make_data_menu() {
     QMenu* menu = menuBar()->addMenu(tr("&Data"));
+    BrushControls& brush = panel_->brush_controls();
+    OverlayControls& overlays = panel_->overlay_controls();
     const auto editable = [this] { return content_.editor() != nullptr; };
     const auto playable = [this] { return content_.player() || playback(); };
     const auto is_store = [this] {
@@ -211,32 +214,28 @@ void MainWindow::make_data_menu() {
     };
     actions_.add(
         menu,
-        {{"brush_action", tr("&Brush at the probe"), "B", [this] { toggle_brush(); }, if_live_},
-         {"undo_action", tr("&Undo"), QKeySequence::Undo, [this] { editing_.undo(); }, editable},
-         {"redo_action", tr("&Redo"), "Ctrl+Shift+Z", [this] { editing_.redo(); }, editable},
-         {"save_volume", tr("&Save the volume…"), "Ctrl+Shift+S", [this] { editing_.ask_save(); },
+        {{"brush_action", tr("&Brush at the probe"), "B", [&brush] { brush.toggle(); }, if_live_},
+         {"undo_action", tr("&Undo"), QKeySequence::Undo, [&brush] { brush.undo(); }, editable},
+         {"redo_action", tr("&Redo"), "Ctrl+Shift+Z", [&brush] { brush.redo(); }, editable},
+         {"save_volume", tr("&Save the volume…"), "Ctrl+Shift+S", [this] { saver_.ask_save(); },
           if_live_},
          {"save_surface", tr("Save the surface as a &mesh…"), "",
-          [this] { editing_.ask_save_surface(); }, if_live_},
+          [this] { saver_.ask_save_surface(); }, if_live_},
          {"open_overlay_action", tr("Open an o&verlay: labels or another image…"), "",
-          [this] { overlays_.ask_open(); }, if_open_},
-         {"close_overlay_action", tr("&Close the overlay"), "", [this] { overlays_.close(); },
-          [this] { return overlays_.overlay() != nullptr; }},
+          [&overlays] { overlays.ask_open(); }, if_open_},
+         {"close_overlay_action", tr("&Close the overlay"), "",
+          [&overlays] { overlays.close_overlay(); },
+          [&overlays] { return overlays.overlay() != nullptr; }},
          {"choose_level", tr("&Level, channel and time…"), "",
-          [this] { settle_work([this] { files_.ask_level(); }); }, is_store},
+          [this] { files_.settle_work([this] { files_.ask_level(); }); }, is_store},
          {"choose_grid", tr("Or&ientation and spacing…"), "",
-          [this] { settle_work([this] { ask_grid(); }); },
+          [this] { files_.settle_work([this] { files_.ask_grid(); }); },
           [this] { return live() && content_.from_file(); }},
          separator,
          {"play_sequence", tr("&Play the sequence, or pause it"), "K",
           [this] { timeline_->toggle_playing(); }, playable},
          {"frame_back", tr("A frame bac&k"), ",", [this] { timeline_->step(-1); }, playable},
          {"frame_on", tr("A frame &on"), ".", [this] { timeline_->step(1); }, playable}});
-}
-
-void MainWindow::look_from_hand() {
-    const auto now = live() ? live()->snapshot() : std::nullopt;
-    if (now) display_.look_from_hand(now->session.transform);
 }
 
 void MainWindow::make_measure_and_cut_menus(QMenu& view) {
@@ -252,7 +251,9 @@ void MainWindow::make_measure_and_cut_menus(QMenu& view) {
                    [this] { measuring_.remove_last(); }, measured},
                   {"measure_remove_all", tr("R&emove all"), "", [this] { measuring_.remove_all(); },
                    measured}});
-    const auto cut = [this](Cut kind) { return [this, kind] { display_.set_cut(kind); }; };
+    const auto cut = [this](Cut kind) {
+        return [this, kind] { panel_->look_controls().set_cut(kind); };
+    };
     actions_.add(submenu(view, "cut", tr("Cut awa&y")),
                  {{"cut_nothing", tr("&Nothing"), "", cut(Cut::nothing), if_open_},
                   {"cut_plane", tr("By a &plane that faces you"), "V", cut(Cut::plane), if_open_},
@@ -264,7 +265,7 @@ void MainWindow::make_view_menu() {
     Views& views = *views_;
     std::vector<ActionRow> rows{
         {"whole", tr("&Whole volume"), "R", [&views] { views.scene().show_whole(); }, if_open_},
-        {"from_hand", tr("From the &hand"), "0", [this] { look_from_hand(); }, if_live_}};
+        {"from_hand", tr("From the &hand"), "0", [this] { display_.look_from_hand(); }, if_live_}};
     const auto& names = pictures::view_names();
     std::vector<std::string> view_actions;
     for (const std::string& name : names) view_actions.push_back("view_" + name);
@@ -292,7 +293,6 @@ void MainWindow::make_view_menu() {
     actions_.add(menu, {{"follow", tr("&Crosshair follows the probe"), "G",
                          [&views](bool on) { views.set_follow(on); }, always,
                          [&views] { return views.follows(); }}});
-    connect(&views, &Views::follow_changed, actions_.find("follow"), &QAction::setChecked);
     auto* dock = findChild<QDockWidget*>("dock");
     dock->toggleViewAction()->setShortcut(QKeySequence("F9"));
     menu->addAction(dock->toggleViewAction());

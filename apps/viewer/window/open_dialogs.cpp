@@ -4,6 +4,7 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QCoreApplication>
+#include <QDialog>
 #include <QDialogButtonBox>
 #include <QFileInfo>
 #include <QFormLayout>
@@ -18,10 +19,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "apps/options/exit_status.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/opening.hpp"
+#include "apps/viewer/model/worker.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
@@ -42,72 +46,88 @@ QPixmap pixmap_of(const io::Thumbnail& picture, const QSize& size) {
     return QPixmap::fromImage(image.scaled(size, Qt::KeepAspectRatio, Qt::SmoothTransformation));
 }
 
-}  // namespace
+/// The layout of a raw file, with a slice of it.
+class RawDialog : public Form {
+    Q_DECLARE_TR_FUNCTIONS(palpate::viewer::RawDialog)
 
-RawDialog::RawDialog(const QString& path, QWidget* parent)
-    : QDialog(parent),
-      path_(path),
-      have_(double(QFileInfo(path).size())),
-      layout_(guessed_layout(path.toStdString(), static_cast<std::uint64_t>(have_))),
-      slice_(named(new QSlider(Qt::Horizontal), "raw_slice")),
-      picture_(named(new QLabel, "raw_picture")),
-      verdict_(named(new QLabel, "raw_verdict")) {
-    setObjectName("raw");
-    setWindowTitle(tr("Raw data: %1").arg(QFileInfo(path).fileName()));
-    verdict_->setWordWrap(true);
-    auto* form = new Form;
-    add_rows(*form);
-    QPushButton* accept = fill(*this, row_of({form, make_preview()}), QDialogButtonBox::Open);
-    form->each_time(accept, [this](QPushButton& open) { open.setEnabled(judge()); });
-    form->refresh();
-}
+  public:
+    explicit RawDialog(const QString& path)
+        : path_(path),
+          have_(double(QFileInfo(path).size())),
+          layout_(guessed_layout(path.toStdString(), static_cast<std::uint64_t>(have_))) {
+        verdict_->setWordWrap(true);
+        add_rows();
+    }
+    run::FileSource source() const {
+        const bool given = layout_.spacing != Vec3::Ones();
+        return {path_.toStdString(),
+                layout_,
+                given ? std::optional(layout_.spacing) : std::nullopt,
+                {}};
+    }
+    QWidget* make_preview();
+    bool judge();
+
+  private:
+    QWidget* make_numbers(const QString& name, const QString& spoken, auto io::RawLayout::*member,
+                          double low, double high);
+    void add_rows();
+    bool is_packed() const { return path_.endsWith(".gz", Qt::CaseInsensitive); }
+    void show_slice();
+
+    QString path_;
+    double have_;  // [bytes] of the file
+    io::RawLayout layout_;
+    QSlider* slice_ = named(new QSlider(Qt::Horizontal), "raw_slice");
+    QLabel* picture_ = named(new QLabel, "raw_picture");
+    QLabel* verdict_ = named(new QLabel, "raw_verdict");
+};
 
 /// Three numbers, along x, y and z.
-QWidget* RawDialog::make_numbers(Form& form, const QString& name, const QString& spoken,
+QWidget* RawDialog::make_numbers(const QString& name, const QString& spoken,
                                  auto io::RawLayout::*member, double low, double high) {
     auto* row = row_of({});
     for (int a = 0; a < 3; ++a) {
         const auto get = [this, a, member] { return double((layout_.*member)[a]); };
         const auto set = [this, a, member](double to) {
-            auto& number = (layout_.*member)[a];
-            number = static_cast<std::decay_t<decltype(number)>>(to);
+            auto& one = (layout_.*member)[a];
+            one = static_cast<std::decay_t<decltype(one)>>(to);
         };
         const Words words{name + QString::number(a), "", {}, spoken.arg(QChar("xyz"[a]))};
-        row->layout()->addWidget(form.number(words, within(low, high, {get, set})));
+        row->layout()->addWidget(number(words, within(low, high, {get, set})));
     }
     return row;
 }
 
-void RawDialog::add_rows(Form& form) {
-    auto* rows = form_in(&form);
+void RawDialog::add_rows() {
+    auto* rows = form_in(this);
     const std::vector types{SampleType::uint8, SampleType::int16, SampleType::uint16,
                             SampleType::float32};
-    auto* type = form.choice(
+    auto* type = choice(
         {"raw_type", ""}, {"uint8", "int16", "uint16", "float32"},
         {[this, types] { return int(std::ranges::find(types, layout_.type) - types.begin()); },
          [this, types](int at) { layout_.type = types[std::size_t(at)]; }});
-    auto* order = form.choice(
+    auto* order = choice(
         {"raw_order", ""}, {tr("little-endian (PC)"), tr("big-endian")},
         {[this] { return int(layout_.big_endian); }, [this](int at) { layout_.big_endian = at; }});
-    form.each_time(order, [this](QWidget& one) { one.setEnabled(size_of(layout_.type) > 1); });
-    auto* skip = form.number({"raw_skip", ""},
-                             within(0, most_skipped,
-                                    {[this] { return double(layout_.skip); },
-                                     [this](double to) { layout_.skip = std::uint64_t(to); }}));
-    auto* skip_rest = form.button(
+    each_time(order, [this](QWidget& one) { one.setEnabled(size_of(layout_.type) > 1); });
+    auto* skip =
+        number({"raw_skip", ""}, within(0, most_skipped,
+                                        {[this] { return double(layout_.skip); },
+                                         [this](double to) { layout_.skip = std::uint64_t(to); }}));
+    auto* skip_rest = button(
         {"raw_skip_rest", tr("Skip the rest"),
          tr("Takes the bytes that are left over for a header")},
         [this] { layout_.skip += std::uint64_t(have_ - bytes_of(layout_)); },
         [this] { return !is_packed() && bytes_of(layout_) < have_; });
     add_row(*rows, tr("Samples"),
-            make_numbers(form, "size", tr("Samples along %1"), &io::RawLayout::size, 1, 65535),
+            make_numbers("size", tr("Samples along %1"), &io::RawLayout::size, 1, 65535),
             tr("How many along x, which runs fastest, y and z"));
     add_row(*rows, tr("Sample type"), type, tr("Of each sample in the file"));
     add_row(*rows, tr("Byte order"), order, tr("Of samples of two or four bytes"));
-    add_row(
-        *rows, tr("Spacing [mm]"),
-        make_numbers(form, "spacing", tr("Spacing along %1"), &io::RawLayout::spacing, 1e-4, 1000),
-        tr("Between samples along x, y and z"));
+    add_row(*rows, tr("Spacing [mm]"),
+            make_numbers("spacing", tr("Spacing along %1"), &io::RawLayout::spacing, 1e-4, 1000),
+            tr("Between samples along x, y and z"));
     add_row(*rows, tr("Header [bytes]"), row_of({skip, skip_rest}),
             tr("Skipped before the samples"));
     rows->addRow(verdict_);
@@ -121,10 +141,6 @@ QWidget* RawDialog::make_preview() {
     slice_->setAccessibleName(tr("Slice of the preview"));
     connect(slice_, &QSlider::valueChanged, this, &RawDialog::show_slice);
     return column_of({picture_, slice_});
-}
-
-bool RawDialog::is_packed() const {
-    return path_.endsWith(".gz", Qt::CaseInsensitive);
 }
 
 /// Whether the file has just the bytes that are needed; says so, and shows the middle slice.
@@ -151,15 +167,29 @@ void RawDialog::show_slice() {
     picture_->setPixmap(pixmap_of(*slice, picture_->contentsRect().size()));
 }
 
-run::FileSource RawDialog::layout_source() const {
-    const bool given = layout_.spacing != Vec3::Ones();
-    return {
-        path_.toStdString(), layout_, given ? std::optional(layout_.spacing) : std::nullopt, {}};
+}  // namespace
+
+QDialog* make_raw_dialog(const QString& path, QWidget* window,
+                         std::function<void(const run::FileSource&)> then) {
+    auto* dialog = named(new QDialog(window), "raw");
+    dialog->setWindowTitle(RawDialog::tr("Raw data: %1").arg(QFileInfo(path).fileName()));
+    auto* form = new RawDialog(path);
+    QPushButton* accept =
+        fill(*dialog, row_of({form, form->make_preview()}), QDialogButtonBox::Open);
+    form->each_time(accept, [form](QPushButton& open) { open.setEnabled(form->judge()); });
+    form->refresh();
+    QObject::connect(dialog, &QDialog::accepted, form,
+                     [form, then = std::move(then)] { then(form->source()); });
+    return dialog;
 }
 
 namespace {
 
 constexpr int picture_size = 64;
+
+struct SeriesDialog {
+    Q_DECLARE_TR_FUNCTIONS(palpate::viewer::SeriesDialog)
+};
 
 QStringList columns() {
     return {"",
@@ -190,46 +220,48 @@ QStringList texts_of(const io::SeriesInfo& s) {
 
 }  // namespace
 
-SeriesDialog::SeriesDialog(const QString& name, const std::vector<io::SeriesInfo>& series,
-                           QWidget* parent)
-    : QDialog(parent),
-      table_(named(new QTableWidget(static_cast<int>(series.size()), columns().size()), "series")) {
-    setObjectName("choose-series");
-    setWindowTitle(tr("Choose a series of %1").arg(name));
-    table_->setAccessibleName(tr("Series"));
-    table_->setHorizontalHeaderLabels(columns());
-    table_->setSelectionBehavior(QAbstractItemView::SelectRows);
-    table_->setSelectionMode(QAbstractItemView::SingleSelection);
-    table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
-    for (int row = 0; row < table_->rowCount(); ++row) {
+QDialog* make_series_dialog(const QString& name, const std::vector<io::SeriesInfo>& series,
+                            QWidget* window, std::function<void(int)> then) {
+    auto* dialog = named(new QDialog(window), "choose-series");
+    dialog->setWindowTitle(SeriesDialog::tr("Choose a series of %1").arg(name));
+    auto* table =
+        named(new QTableWidget(static_cast<int>(series.size()), columns().size()), "series");
+    table->setAccessibleName(SeriesDialog::tr("Series"));
+    table->setHorizontalHeaderLabels(columns());
+    table->setSelectionBehavior(QAbstractItemView::SelectRows);
+    table->setSelectionMode(QAbstractItemView::SingleSelection);
+    table->setEditTriggers(QAbstractItemView::NoEditTriggers);
+    for (int row = 0; row < table->rowCount(); ++row) {
         const io::SeriesInfo& s = series[static_cast<std::size_t>(row)];
         auto* picture = new QLabel;
         picture->setPixmap(pixmap_of(s.picture, {picture_size, picture_size}));
         picture->setAlignment(Qt::AlignCenter);
-        table_->setCellWidget(row, 0, picture);
+        table->setCellWidget(row, 0, picture);
         const QStringList texts = texts_of(s);
         for (int i = 0; i < texts.size(); ++i) {
             auto* item = new QTableWidgetItem(texts[i]);
             item->setToolTip(QString::fromStdString(s.uid));
-            table_->setItem(row, i + 1, item);
+            table->setItem(row, i + 1, item);
         }
-        table_->setRowHeight(row, picture_size + 6);
+        table->setRowHeight(row, picture_size + 6);
     }
-    table_->resizeColumnsToContents();
-    table_->setColumnWidth(0, picture_size + 10);
+    table->resizeColumnsToContents();
+    table->setColumnWidth(0, picture_size + 10);
     // The one with the most slices is most often what is looked for.
     const auto most = std::ranges::max_element(series, {}, &io::SeriesInfo::slices);
-    table_->selectRow(static_cast<int>(most - series.begin()));
-    QPushButton* open = fill(*this, table_, QDialogButtonBox::Open);
-    connect(table_, &QTableWidget::cellDoubleClicked, this, &QDialog::accept);
-    connect(table_, &QTableWidget::itemSelectionChanged, open,
-            [this, open] { open->setEnabled(chosen() > 0); });
-    resize(900, 420);
-}
-
-int SeriesDialog::chosen() const {
-    const auto rows = table_->selectionModel()->selectedRows();
-    return rows.isEmpty() ? 0 : rows.front().row() + 1;
+    table->selectRow(static_cast<int>(most - series.begin()));
+    QPushButton* open = fill(*dialog, table, QDialogButtonBox::Open);
+    const auto chosen = [table] {
+        const auto rows = table->selectionModel()->selectedRows();
+        return rows.isEmpty() ? 0 : rows.front().row() + 1;
+    };
+    QObject::connect(table, &QTableWidget::cellDoubleClicked, dialog, &QDialog::accept);
+    QObject::connect(table, &QTableWidget::itemSelectionChanged, open,
+                     [open, chosen] { open->setEnabled(chosen() > 0); });
+    QObject::connect(dialog, &QDialog::accepted, table,
+                     [chosen, then = std::move(then)] { then(chosen()); });
+    dialog->resize(900, 420);
+    return dialog;
 }
 
 namespace {
@@ -247,15 +279,47 @@ QString product(const Vec3& spacing) {
 constexpr int most_attempts = 2;
 constexpr double timeout_s = 5;
 
-}  // namespace
-
 /// Written by the thread that looks.
-struct StoreDialog::Found {
+struct Found {
     stream::StoreInfo info;
     run::StoreSource source;
     QString problem;
 };
 
+/// What is asked for a store, and what it has.
+class StoreDialog : public QWidget {
+    Q_DECLARE_TR_FUNCTIONS(palpate::viewer::StoreDialog)
+
+  public:
+    StoreDialog(const std::optional<run::StoreSource>& known, int time, QDialog& dialog);
+    run::Source source() const;
+
+  private:
+    void add_rows();
+    void look();
+    void take(const std::shared_ptr<Found>& found);
+    void show_found();
+
+    QLineEdit* address_ = named(new QLineEdit, "store_address");
+    QPushButton* look_ = named(new QPushButton(tr("Look it up")), "store_look",
+                               tr("Reads which levels, channels and times there are"));
+    QComboBox* level_ = named(new QComboBox, "store_level");
+    QComboBox* channel_ = named(new QComboBox, "store_channel");
+    QSpinBox* time_ = named(new QSpinBox, "store_time");
+    QCheckBox* all_times_ = named(new QCheckBox(tr("All, as a sequence")), "store_all_times",
+                                  tr("Plays them; each is read whole at this level"));
+    QCheckBox* forbidden_ =
+        named(new QCheckBox(tr("Status 403 means: not stored")), "store_forbidden",
+              tr("S3 answers so for missing pieces where the list is not public"));
+    QLabel* verdict_ = named(new QLabel, "store_verdict");
+    QPushButton* accept_;
+    int first_level_ = 0, first_channel_ = 0, first_time_;  // as they are felt now
+    run::StoreSource known_;
+    std::shared_ptr<Found> looking_, found_;  // asked last; what can be opened
+    NewestWorker worker_;                     // that looks
+};
+
+/// "0: 512 x 512 x 234, every 1 x 1 x 2 mm, 61 MB".
 QString level_words(const stream::StoreInfo& info, int level) {
     const Geometry& grid = info.levels[static_cast<std::size_t>(level)].geometry;
     const double bytes = double(sample_count(grid)) * double(size_of(info.type));
@@ -264,24 +328,8 @@ QString level_words(const stream::StoreInfo& info, int level) {
              QCoreApplication::translate("Units", unit_word(grid)), bytes_text(bytes));
 }
 
-StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time, QWidget* parent)
-    : QDialog(parent),
-      address_(named(new QLineEdit, "store_address")),
-      look_(named(new QPushButton(tr("Look it up")), "store_look",
-                  tr("Reads which levels, channels and times there are"))),
-      level_(named(new QComboBox, "store_level")),
-      channel_(named(new QComboBox, "store_channel")),
-      time_(named(new QSpinBox, "store_time")),
-      all_times_(named(new QCheckBox(tr("All, as a sequence")), "store_all_times",
-                       tr("Plays them; each is read whole at this level"))),
-      forbidden_(named(new QCheckBox(tr("Status 403 means: not stored")), "store_forbidden",
-                       tr("S3 answers so for missing pieces where the list is not public"))),
-      verdict_(named(new QLabel, "store_verdict")),
-      first_time_(time) {
-    setObjectName("store");
-    setWindowTitle(known ? tr("Level, channel and time") : tr("Open an address"));
-    auto* fields = new QWidget;
-    auto* form = form_in(fields);
+void StoreDialog::add_rows() {
+    auto* form = form_in(this);
     address_->setPlaceholderText("https://…/image.zarr");
     address_->setMinimumWidth(60 * fontMetrics().averageCharWidth());
     add_row(*form, tr("Address"), row_of({address_, look_}, 0),
@@ -296,12 +344,16 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
     form->addRow(verdict_);
     verdict_->setWordWrap(true);
     verdict_->setTextFormat(Qt::PlainText);
-    accept_ = fill(*this, fields, QDialogButtonBox::Open);
+}
+
+StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time, QDialog& dialog)
+    : accept_(fill(dialog, this, QDialogButtonBox::Open)), first_time_(time) {
+    add_rows();
     connect(all_times_, &QCheckBox::toggled, time_, &QWidget::setDisabled);
     connect(look_, &QPushButton::clicked, this, &StoreDialog::look);
     connect(address_, &QLineEdit::returnPressed, this, &StoreDialog::look);
     // Return in the line looks; it must not open what was found at another address.
-    for (auto* button : findChildren<QPushButton*>()) button->setAutoDefault(false);
+    for (auto* button : dialog.findChildren<QPushButton*>()) button->setAutoDefault(false);
     connect(address_, &QLineEdit::textEdited, this, [this] {
         worker_.cancel();
         looking_ = found_ = nullptr;
@@ -319,8 +371,6 @@ StoreDialog::StoreDialog(const std::optional<run::StoreSource>& known, int time,
     }
     show_found();
 }
-
-StoreDialog::~StoreDialog() = default;
 
 void StoreDialog::look() {
     const std::string address = address_->text().trimmed().toStdString();
@@ -400,6 +450,19 @@ run::Source StoreDialog::source() const {
     source.from = std::move(store);
     if (time_->maximum() > 0 && !store.all_times) source.frame = time_->value();
     return source;
+}
+
+}  // namespace
+
+QDialog* make_store_dialog(const std::optional<run::StoreSource>& known, int time, QWidget* window,
+                           std::function<void(const run::Source&)> then) {
+    auto* dialog = named(new QDialog(window), "store");
+    dialog->setWindowTitle(known ? StoreDialog::tr("Level, channel and time")
+                                 : StoreDialog::tr("Open an address"));
+    auto* fields = new StoreDialog(known, time, *dialog);
+    QObject::connect(dialog, &QDialog::accepted, fields,
+                     [fields, then = std::move(then)] { then(fields->source()); });
+    return dialog;
 }
 
 }  // namespace palpate::viewer

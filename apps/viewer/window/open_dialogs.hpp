@@ -1,104 +1,40 @@
-// Dialogs that ask what to open: how a raw file lies, which DICOM series, and which address, level
-// of detail, channel and time.
+// Dialogs that ask what to open: how a raw file lies, which DICOM series, which address, level of
+// detail, channel and time, and how the grid of a volume lies in the body.
 #pragma once
 
-#include <QDialog>
-
-#include <memory>
+#include <functional>
 #include <optional>
-#include <string>
+#include <vector>
 
-#include "apps/viewer/model/worker.hpp"
+#include "palpate/io/orientation.hpp"
 #include "palpate/io/series.hpp"
 #include "palpate/run/source.hpp"
 
-class QCheckBox;
-class QComboBox;
-class QLabel;
-class QLineEdit;
-class QPushButton;
-class QSlider;
-class QSpinBox;
-class QTableWidget;
+class QDialog;
+class QString;
+class QWidget;
 
 namespace palpate::viewer {
 
-class Form;
+// Each calls `then` with the answer, if there is one. Messages::ask() opens them.
 
 /// Begins with what the file's name and length suggest. Shows at every change a slice, and whether
 /// the file has just the bytes that are needed; else it cannot be accepted.
-class RawDialog : public QDialog {
-    Q_OBJECT
+QDialog* make_raw_dialog(const QString& path, QWidget* window,
+                         std::function<void(const run::FileSource&)> then);
 
-  public:
-    explicit RawDialog(const QString& path, QWidget* parent = nullptr);
-    /// The file with the layout that is chosen.
-    run::FileSource layout_source() const;
-
-  private:
-    QWidget* make_numbers(Form& form, const QString& name, const QString& spoken,
-                          auto io::RawLayout::*member, double low, double high);
-    void add_rows(Form& form);
-    QWidget* make_preview();
-    bool is_packed() const;
-    bool judge();
-    void show_slice();
-
-    QString path_;
-    double have_;  // [bytes] of the file
-    io::RawLayout layout_;
-    QSlider* slice_;
-    QLabel *picture_, *verdict_;
-};
-
-/// A dialog that asks which of the DICOM series of a file or folder to open.
-class SeriesDialog : public QDialog {
-    Q_OBJECT
-
-  public:
-    SeriesDialog(const QString& name, const std::vector<io::SeriesInfo>& series,
-                 QWidget* parent = nullptr);
-    /// From 1.
-    int chosen() const;
-
-  private:
-    QTableWidget* table_;
-};
+/// Which of the DICOM series of a file or folder, from 1.
+QDialog* make_series_dialog(const QString& name, const std::vector<io::SeriesInfo>& series,
+                            QWidget* window, std::function<void(int)> then);
 
 /// What an address has is looked up in the background once it was typed; only then can the dialog
-/// be accepted.
-class StoreDialog : public QDialog {
-    Q_OBJECT
+/// be accepted. Without a known source it asks for the address, too.
+QDialog* make_store_dialog(const std::optional<run::StoreSource>& known, int time, QWidget* window,
+                           std::function<void(const run::Source&)> then);
 
-  public:
-    /// Without a source: asks for the address, too.
-    explicit StoreDialog(const std::optional<run::StoreSource>& known, int time = 0,
-                         QWidget* parent = nullptr);
-    /// Stops what is looked up.
-    ~StoreDialog() override;
-    run::Source source() const;
-
-  private:
-    struct Found;
-
-    void look();
-    void take(const std::shared_ptr<Found>& found);
-    void show_found();
-
-    QLineEdit* address_;
-    QPushButton* look_;
-    QComboBox *level_, *channel_;
-    QSpinBox* time_;
-    QCheckBox *all_times_, *forbidden_;
-    QLabel* verdict_;
-    QPushButton* accept_;
-    int first_level_ = 0, first_channel_ = 0, first_time_ = 0;  // as they are felt now
-    run::StoreSource known_;
-    std::shared_ptr<Found> looking_, found_;  // asked last; what can be opened
-    NewestWorker worker_;                     // that looks
-};
-
-/// "0: 512 x 512 x 234, every 1 x 1 x 2 mm, 61 MB".
-QString level_words(const stream::StoreInfo& info, int level);
+/// `grid`: as it is felt, with `given` in it. The answer replaces the file's own orientation and
+/// spacing; what was not touched stays as it was given. If nothing was changed there is none.
+QDialog* make_grid_dialog(const Geometry& grid, const io::GivenGrid& given, QWidget* window,
+                          std::function<void(const io::GivenGrid&)> then);
 
 }  // namespace palpate::viewer

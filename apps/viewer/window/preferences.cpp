@@ -67,11 +67,6 @@ void set_appearance(Appearance appearance) {
     }
 }
 
-Appearance last_appearance() {
-    const int last = QSettings().value("appearance", 0).toInt();
-    return last == 1 ? Appearance::light : last == 2 ? Appearance::dark : Appearance::system;
-}
-
 namespace {
 
 constexpr const char* language_key = "preferences/language";
@@ -90,16 +85,6 @@ QLocale locale_of(Language language) {
 }
 
 }  // namespace
-
-Language chosen_language() {
-    const QString code = QSettings().value(language_key).toString();
-    return code == "en" ? Language::english : code == "de" ? Language::german : Language::system;
-}
-
-void choose_language(Language language) {
-    if (language == Language::system) return QSettings().remove(language_key);
-    QSettings().setValue(language_key, locale_of(language).name().section('_', 0, 0));
-}
 
 Translation::Translation(Language language) {
     use_resources();
@@ -134,8 +119,14 @@ Preferences saved_preferences() {
     const QSettings settings;
     const Preferences usual;
     Preferences found;
-    found.appearance = last_appearance();
-    found.language = chosen_language();
+    const int last = settings.value("appearance", 0).toInt();
+    found.appearance = last == 1   ? Appearance::light
+                       : last == 2 ? Appearance::dark
+                                   : Appearance::system;
+    const QString code = settings.value(language_key).toString();
+    found.language = code == "en"   ? Language::english
+                     : code == "de" ? Language::german
+                                    : Language::system;
     found.wheel_px =
         number_in(settings, "preferences/wheel_px", usual.wheel_px, least_wheel, most_wheel);
     found.unit = static_cast<LengthUnit>(
@@ -146,8 +137,12 @@ Preferences saved_preferences() {
 }
 
 void save_preferences(const Preferences& preferences) {
-    choose_language(preferences.language);
+    const Language language = preferences.language;
     QSettings settings;
+    settings.remove(language_key);
+    if (language != Language::system) {
+        settings.setValue(language_key, locale_of(language).name().section('_', 0, 0));
+    }
     settings.setValue("preferences/wheel_px", preferences.wheel_px);
     settings.setValue("preferences/unit", static_cast<int>(preferences.unit));
     settings.setValue("preferences/surface_millions", preferences.surface_millions);

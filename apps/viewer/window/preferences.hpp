@@ -18,15 +18,9 @@ enum class Appearance { system, light, dark };
 /// For the whole application, at once, and for the next start; `system` is what it had when this
 /// was first called.
 void set_appearance(Appearance appearance);
-/// What was set last, in this run or another.
-Appearance last_appearance();
 
 /// The language of the window's words: the system's, or one that was chosen in the preferences.
 enum class Language { system, english, german };
-
-/// For the next start. From QSettings; the system's where nothing, or nothing that exists, is kept.
-Language chosen_language();
-void choose_language(Language language);
 
 /// Translates all words, Qt's own too, as long as it lives. What a window shows already stays as it
 /// is. Words without a translation are English.
@@ -48,7 +42,8 @@ struct Preferences {
     bool operator==(const Preferences&) const = default;
 };
 
-/// From QSettings; what is missing or cannot be is as it is by default.
+/// From QSettings; what is missing or cannot be is as it is by default. The appearance is that of
+/// set_appearance().
 Preferences saved_preferences();
 void save_preferences(const Preferences& preferences);
 

@@ -13,7 +13,6 @@
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/messages.hpp"
-#include "apps/viewer/window/run_controller.hpp"
 #include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
@@ -34,7 +33,7 @@ constexpr double hold_seconds = 0.6, press_speed = 3;
 
 }  // namespace
 
-ProbeController::ProbeController(const Desk& desk, RunController& run) : Controller(desk) {
+ProbeController::ProbeController(const Desk& desk) : Controller(desk) {
     connect(&views_.scene(), &Scene::probe_dragged, this, [this](const Vec3& by) {
         forget_press();
         move_by(by);
@@ -52,7 +51,7 @@ ProbeController::ProbeController(const Desk& desk, RunController& run) : Control
     connect(&content_, &Content::run_started, this, [this] {
         for (bool& hand : approaching_) hand = true;
     });
-    connect(&run, &RunController::device_changed, this, [this] {
+    connect(&content_, &Content::device_changed, this, [this] {
         set_pointing(possible());
         end_route();
         approaching_[content_.hand()] = true;

@@ -10,13 +10,11 @@
 
 namespace palpate::viewer {
 
-class RunController;
-
 class ProbeController : public Controller {
     Q_OBJECT
 
   public:
-    ProbeController(const Desk& desk, RunController& run);
+    explicit ProbeController(const Desk& desk);
 
     /// Whether the mouse is the device.
     bool possible() const;

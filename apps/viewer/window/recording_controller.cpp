@@ -15,6 +15,7 @@ namespace palpate::viewer {
 
 RecordingController::RecordingController(const Desk& desk) : Controller(desk) {
     connect(&content_, &Content::closing, this, &RecordingController::stop);
+    connect(&content_, &Content::run_changed, this, &RecordingController::tell_end);
     connect(&content_, &Content::playback_started, this, &RecordingController::tell_playback);
 }
 
@@ -25,6 +26,7 @@ void RecordingController::start(const QString& path) {
         for (int hand = 1; hand <= content_.hands(); ++hand) hands.push_back(content_.live(hand));
         run::Run::record_together(hands, path.toStdString());
         began_ = seconds();
+        records_ = true;
         messages_.show_done(tr("Recording to %1").arg(path));
     });
     Q_EMIT changed();
@@ -32,6 +34,7 @@ void RecordingController::start(const QString& path) {
 
 void RecordingController::stop() {
     if (!recording()) return;
+    records_ = false;
     messages_.guarded([&] {
         const int before = std::exchange(exit_status_, app::bad_output);  // unless it is whole
         const double recorded = std::max(0.0, seconds() - began_);
@@ -47,6 +50,14 @@ void RecordingController::stop() {
         messages_.show_done(tr("Recorded %1 s").arg(recorded, 0, 'f', 1));
         exit_status_ = before;
     });
+    Q_EMIT changed();
+}
+
+/// Another device, other buttons or another field end the recording: a session begins anew.
+void RecordingController::tell_end() {
+    if (!records_ || recording()) return;
+    records_ = false;
+    messages_.show_done(tr("Recorded up to this change: the session began anew"));
     Q_EMIT changed();
 }
 
@@ -67,6 +78,7 @@ const io::RecordingWriter* RecordingController::writer() const {
 
 void RecordingController::check() {
     if (recording() && !writer()->problem().empty()) stop();
+    tell_end();
 }
 
 void RecordingController::tell_playback() {
@@ -88,7 +100,8 @@ void RecordingController::tell_playback() {
     messages_.show_done(words.join("; "));
 }
 
-TimelineController::TimelineController(const Desk& desk) : Controller(desk) {
+TimelineController::TimelineController(const Desk& desk, Timeline& timeline)
+    : Controller(desk), timeline_(timeline) {
     connect_timeline();
     connect(&content_, &Content::closed, &timeline_, &QWidget::hide);
     connect(&content_, &Content::run_changed, this, &TimelineController::show);
@@ -112,6 +125,7 @@ void TimelineController::connect_timeline() {
             action(recorded_);
             content_.set_time(recorded_.time);
         }
+        timeline_.set_view(view());
     };
     connect(&timeline_, &Timeline::speed_asked, this,
             [ask](double speed) { ask([speed](auto& player) { player.play(speed); }); });

@@ -15,6 +15,8 @@ class RecordingWriter;
 
 namespace palpate::viewer {
 
+class Timeline;
+
 class RecordingController : public Controller {
     Q_OBJECT
 
@@ -25,7 +27,8 @@ class RecordingController : public Controller {
     void start(const QString& path);
     void stop();
     bool recording() const { return writer() != nullptr; }
-    /// Ends a recording that cannot be written any more, which shows why.
+    /// Ends a recording that cannot be written any more, which shows why, and tells of one that has
+    /// ended otherwise; twice a second.
     void check();
     /// 0, or the status for a program in which a recording was lost.
     int exit_status() const { return exit_status_; }
@@ -36,15 +39,17 @@ class RecordingController : public Controller {
   private:
     const io::RecordingWriter* writer() const;
     void tell_playback();
+    void tell_end();
     double seconds() const;
 
+    bool records_ = false;  // as far as the person knows
     int exit_status_ = 0;
     double began_ = 0;  // [s] of the run
 };
 
 class TimelineController : public Controller {
   public:
-    explicit TimelineController(const Desk& desk);
+    TimelineController(const Desk& desk, Timeline& timeline);
 
     /// Goes to a time of the recording [s]; nothing without one.
     void show_time(double time);
@@ -59,6 +64,7 @@ class TimelineController : public Controller {
     void show();
     TimelineView view() const;
 
+    Timeline& timeline_;
     TimelineView recorded_;  // of the chosen hand
     QElapsedTimer since_;    // the last advance()
     QString problem_;

@@ -182,12 +182,6 @@ void Views::choose_crosshair(const Vec3& physical) {
     set(*this, &Shown::crosshair, physical);
 }
 
-void Views::set_follow(bool follow) {
-    if (follow_ == follow) return;
-    follow_ = follow;
-    Q_EMIT follow_changed(follow);
-}
-
 void Views::show_slices(bool shown) {
     slices_shown_ = shown;
     show_panes();

@@ -36,7 +36,7 @@ class Views : public QWidget {
     /// Up to 60 times a second. The crosshair follows the chosen hand.
     void show_snapshots(const HandSnapshots& hands, int chosen);
     /// The crosshair follows the probe, once it has touched something.
-    void set_follow(bool follow);
+    void set_follow(bool follow) { follow_ = follow; }
     bool follows() const { return follow_; }
     /// What the file does not say of the volume's grid, on a button over the panes; empty: none.
     void set_missing(const QString& words);
@@ -63,7 +63,6 @@ class Views : public QWidget {
     void double_clicked();
     /// The button of set_missing() was pressed.
     void grid_asked();
-    void follow_changed(bool follow);
     /// While measuring.
     void point_chosen(const palpate::Vec3& at);
     void point_pointed_at(const palpate::Vec3& at);

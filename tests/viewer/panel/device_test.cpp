@@ -4,10 +4,9 @@
 #include <QPushButton>
 #include <QToolButton>
 
-#include "apps/viewer/panel/device_controls.hpp"
-#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/window/device_controls.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {
@@ -20,39 +19,36 @@ const std::vector<devices::DeviceFinding> findings{
 
 class Devices : public PanelFixture {
   protected:
-    Devices() {
-        QObject::connect(&panel.device_controls(), &DeviceControls::chosen,
-                         [this](const QString& option) { chosen.push_back(option); });
-    }
     QComboBox* picker() { return find<QComboBox>("devices"); }
-    QStringList chosen;
+    DeviceControls& controls() { return panel.device_controls(); }
+    std::string used() { return run::text_of(content.live()->setup().device); }
 };
 
 TEST_F(Devices, the_device_in_use_is_shown_with_its_options) {
-    set();
-    panel.device_controls().set_devices(findings, "simulated:seed=7,depth=3");
+    feel("simulated:depth=3,seed=7");
+    controls().list(findings);
     EXPECT_TRUE(picker()->currentText().startsWith("simulated"));
-    EXPECT_EQ(find<QLineEdit>("device_options")->text(), "seed=7,depth=3");
-    EXPECT_TRUE(chosen.empty());
+    EXPECT_EQ(find<QLineEdit>("device_options")->text(), "depth=3,seed=7");
 }
 
-TEST_F(Devices, connecting_asks_for_name_and_options) {
-    set();
-    panel.device_controls().set_devices(findings, "simulated");
+TEST_F(Devices, connecting_goes_on_with_the_device_of_this_name_and_these_options) {
+    feel("simulated");
+    controls().list(findings);
     picker()->setFocus();
     QTest::keyClick(picker(), Qt::Key_Down);
     press("connect_device");
+    EXPECT_EQ(used(), "mouse");
     auto* options = find<QLineEdit>("device_options");
     EXPECT_EQ(options->placeholderText(), "speed=600 [mm/s]");
     options->setFocus();
     QTest::keyClicks(options, "speed=300");
     QTest::keyClick(options, Qt::Key_Return);
-    EXPECT_EQ(chosen, (QStringList{"mouse", "mouse:speed=300"}));
+    EXPECT_EQ(used(), "mouse:speed=300");
 }
 
 TEST_F(Devices, a_device_that_was_not_found_says_why_and_can_be_tried_elsewhere) {
-    set();
-    panel.device_controls().set_devices(findings, "simulated");
+    feel("simulated:seed=7");
+    controls().list(findings);
     const int haply = picker()->findText("haply", Qt::MatchStartsWith);
     ASSERT_GE(haply, 0);
     EXPECT_EQ(picker()->itemData(haply, Qt::ToolTipRole).toString(),
@@ -62,47 +58,47 @@ TEST_F(Devices, a_device_that_was_not_found_says_why_and_can_be_tried_elsewhere)
     picker()->setFocus();
     QTest::keyClick(picker(), Qt::Key_End);
     EXPECT_EQ(find<QLabel>("device_missing")->text(), "no Inverse Service at localhost:10001");
-    QTest::keyClicks(find<QLineEdit>("device_options"), "host=10.0.0.7");
+    QTest::keyClicks(find<QLineEdit>("device_options"), "host=127.0.0.1,port=1");
     press("connect_device");
-    EXPECT_EQ(chosen, (QStringList{"haply:host=10.0.0.7"}));
+    EXPECT_TRUE(messages.problem().contains("127.0.0.1:1")) << messages.problem().toStdString();
+    EXPECT_EQ(used(), "simulated:seed=7") << "it cannot be had: the one before goes on";
+    EXPECT_TRUE(picker()->currentText().startsWith("simulated"));
+    EXPECT_EQ(find<QLineEdit>("device_options")->text(), "seed=7");
 }
 
 TEST_F(Devices, simulated_and_mouse_are_always_there) {
-    set();
-    panel.device_controls().set_devices({}, "");
+    feel("mouse");
+    controls().list({});
     EXPECT_GE(picker()->findText("simulated", Qt::MatchStartsWith), 0);
     EXPECT_GE(picker()->findText("mouse", Qt::MatchStartsWith), 0);
-    panel.device_controls().set_devices(findings, "mouse");
+    controls().list(findings);
     EXPECT_EQ(picker()->count(), 3);
     EXPECT_TRUE(picker()->currentText().startsWith("mouse"));
 }
 
 TEST_F(Devices, invalid_options_are_refused_in_the_panel) {
-    set();
-    panel.device_controls().set_devices(findings, "mouse");
+    feel("mouse");
+    controls().list(findings);
     QTest::keyClicks(find<QLineEdit>("device_options"), "speed=1,speed=2");
     press("connect_device");
-    EXPECT_TRUE(chosen.empty());
+    EXPECT_EQ(used(), "mouse");
     EXPECT_TRUE(message("device_part").contains("speed"));
 }
 
-TEST_F(Devices, an_unavailable_device_leaves_the_old_one) {
-    set();
-    panel.device_controls().set_devices(findings, "simulated:seed=7");
-    picker()->setFocus();
-    QTest::keyClick(picker(), Qt::Key_Down);
-    press("connect_device");
-    EXPECT_EQ(chosen.size(), 1);
-    panel.device_controls().set_devices(findings, "simulated:seed=7");
-    EXPECT_TRUE(picker()->currentText().startsWith("simulated"));
-    EXPECT_EQ(find<QLineEdit>("device_options")->text(), "seed=7");
-}
-
-TEST_F(Devices, the_button_requests_a_new_search) {
-    set();
-    QSignalSpy wanted(&panel.device_controls(), &DeviceControls::refresh_wanted);
-    press("refresh_devices");
-    EXPECT_EQ(wanted.count(), 1);
+TEST_F(Devices, one_is_added_as_a_second_hand_and_removed_again) {
+    feel("mouse");
+    controls().list({});
+    EXPECT_FALSE(find<QPushButton>("remove_hand")->isVisible());
+    QTest::keyClicks(find<QLineEdit>("device_options"), "speed=300");
+    press("add_hand");
+    ASSERT_EQ(content.hands(), 2);
+    EXPECT_EQ(content.hand(), 2);
+    EXPECT_EQ(used(), "mouse:speed=300");
+    EXPECT_FALSE(find<QPushButton>("add_hand")->isVisible());
+    press("remove_hand");
+    EXPECT_EQ(content.hands(), 1);
+    EXPECT_EQ(used(), "mouse");
+    EXPECT_TRUE(find<QPushButton>("add_hand")->isVisible());
 }
 
 TEST_F(Devices, the_device_state_is_shown_with_what_to_do) {
@@ -113,15 +109,14 @@ TEST_F(Devices, the_device_state_is_shown_with_what_to_do) {
     info.workspace_low = Vec3(-70, 0, -50);
     info.workspace_high = Vec3(70, 100, 50);
     info.limits.maximum_force = 4;
-    panel.device_controls().show_device(info, DeviceStatus::uncalibrated,
-                                        "move the arm to its corner");
+    controls().show_device(info, DeviceStatus::uncalibrated, "move the arm to its corner");
     EXPECT_EQ(find<QLabel>("device_state")->text(), "needs calibration");
     EXPECT_EQ(find<QLabel>("device_problem")->text(), "move the arm to its corner");
     EXPECT_TRUE(find<QLabel>("device_problem")->isVisible());
     EXPECT_EQ(find<QLabel>("device_model")->text(), "haply, Inverse3 0A1B");
     EXPECT_EQ(find<QLabel>("device_workspace")->text(), "140 x 100 x 100 mm, up to 4 N");
     const QColor amber = find<QLabel>("device_dot")->palette().color(QPalette::WindowText);
-    panel.device_controls().show_device(info, DeviceStatus::ready, {});
+    controls().show_device(info, DeviceStatus::ready, {});
     EXPECT_FALSE(find<QLabel>("device_problem")->isVisible());
     EXPECT_NE(find<QLabel>("device_dot")->palette().color(QPalette::WindowText), amber);
     Snapshot now;
@@ -151,33 +146,12 @@ TEST_F(Devices, the_scale_of_the_hand_is_requested_and_followed) {
     EXPECT_EQ(of<command::Scale>().size(), 1U);
 }
 
-TEST_F(Devices, each_purpose_takes_one_of_the_devices_buttons_or_none) {
-    set();
-    std::vector<run::Buttons> wanted;
-    QObject::connect(&panel.device_controls(), &DeviceControls::buttons_wanted,
-                     [&](const run::Buttons& buttons) { wanted.push_back(buttons); });
-    auto *clutch = find<QComboBox>("clutch_button"), *deadman = find<QComboBox>("deadman_button");
-    panel.device_controls().set_buttons({});
-    EXPECT_FALSE(clutch->isEnabled());
-    EXPECT_EQ(deadman->toolTip(), "The device has no buttons");
-    DeviceInfo info = desktop_device();
-    info.buttons = 3;
-    effect.begin(*field, 300, {}, info, histogram, [](const Command&) {});
-    panel.device_controls().set_buttons({});
-    EXPECT_EQ(clutch->currentText(), "the second, or the only one");
-    EXPECT_EQ(deadman->currentText(), "none");
-    EXPECT_EQ(deadman->count(), 4);
-    find<QComboBox>("deadman_button")->setFocus();
-    QTest::keyClick(deadman, Qt::Key_Down);
-    ASSERT_EQ(wanted.size(), 1U);
-    EXPECT_EQ(wanted[0], (run::Buttons{run::UsualButton{}, run::Button{1}}));
-    EXPECT_EQ(deadman->currentText(), "none") << "nobody has carried it out";
-    panel.device_controls().set_buttons(wanted[0]);
-    EXPECT_EQ(deadman->currentText(), "button 1");
-    clutch->setFocus();
-    QTest::keyClick(clutch, Qt::Key_End);
-    ASSERT_EQ(wanted.size(), 2U);
-    EXPECT_EQ(wanted[1], (run::Buttons{run::Button{3}, run::Button{1}}));
+TEST_F(Devices, without_buttons_gives_them_no_purpose_and_says_so) {
+    feel("mouse");
+    for (const char* purpose : {"clutch_button", "deadman_button"}) {
+        EXPECT_FALSE(find<QComboBox>(purpose)->isEnabled());
+        EXPECT_EQ(find<QComboBox>(purpose)->toolTip(), "The device has no buttons");
+    }
 }
 
 TEST_F(Devices, the_loops_figures_are_shown_with_their_units) {

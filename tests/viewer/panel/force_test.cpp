@@ -10,9 +10,9 @@
 #include <functional>
 #include <limits>
 
-#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/sections.hpp"
+#include "apps/viewer/window/hand_switch.hpp"
 
 namespace palpate::viewer {
 namespace {

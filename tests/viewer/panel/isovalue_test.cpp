@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
+#include "apps/viewer/window/isovalue_controls.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -40,27 +40,19 @@ class Isovalue : public PanelFixture {
     }
 };
 
-TEST_F(Isovalue, a_session_is_shown_and_nothing_is_emitted) {
+TEST_F(Isovalue, a_session_is_shown_and_nothing_is_asked_for) {
     RendererSettings settings;
     settings.force.stiffness = 0.7;
     const DensityRange ranges[] = {{-400, 150}, {700, 1500}};
     settings.penetrability = penetrability_ranges(1.5, ranges);
-    int looks = 0;
-    QObject::connect(&panel.look_controls(), &LookControls::look_changed,
-                     [&](const Look&) { ++looks; });
-    QSignalSpy device(&panel.device_controls(), &DeviceControls::chosen);
-    int sides = 0;
-    QObject::connect(&panel.isovalue_controls(), &IsovalueControls::field_wanted,
-                     [&](Solid, Interpolation) { ++sides; });
     set(settings, 412.5);
     set(settings, 300, Solid::below);
     set({}, 412.5);
     panel.look_controls().set_look({});
-    panel.device_controls().set_devices({}, "mouse");
+    panel.device_controls().list({});
     effect.observe({});
     settle();
     EXPECT_TRUE(commands.empty());
-    EXPECT_EQ(looks + device.count() + sides, 0);
     EXPECT_EQ(find<NumberBox>("isovalue_box")->value(), 412.5);
     EXPECT_EQ(chart()->level(), 412.5);
 }
@@ -192,29 +184,23 @@ TEST_F(Isovalue, the_level_felt_is_a_second_marker_while_it_differs) {
     EXPECT_EQ(find<QLabel>("felt")->text(), "felt inf");
 }
 
-TEST_F(Isovalue, choosing_the_other_side_is_emitted_once) {
-    set();
-    std::vector<Solid> chosen;
-    QObject::connect(&panel.isovalue_controls(), &IsovalueControls::field_wanted,
-                     [&](Solid solid, Interpolation) { chosen.push_back(solid); });
-    auto* box = find<QComboBox>("solid");
-    box->setFocus();
-    QTest::keyClick(box, Qt::Key_Down);
-    EXPECT_EQ(chosen, (std::vector{Solid::below}));
-    EXPECT_EQ(box->currentIndex(), 0) << "nobody has put a session in with the other side";
-}
-
-TEST_F(Isovalue, choosing_the_smooth_field_is_emitted_with_the_side_that_is_solid) {
-    set();
-    std::vector<std::pair<Solid, Interpolation>> chosen;
-    const auto* controls = &panel.isovalue_controls();
-    QObject::connect(controls, &IsovalueControls::field_wanted,
-                     [&](Solid solid, Interpolation as) { chosen.emplace_back(solid, as); });
-    auto* box = find<QComboBox>("field");
-    box->setFocus();
-    QTest::keyClick(box, Qt::Key_Down);
-    EXPECT_EQ(chosen, (std::vector{std::pair{Solid::above, Interpolation::cubic}}));
-    EXPECT_EQ(box->currentIndex(), 0) << "nobody has put a session in with this field";
+TEST_F(Isovalue, the_other_side_and_another_field_are_felt_once_they_are_chosen) {
+    feel("mouse");
+    const auto choose = [&](const char* name, Qt::Key key) {
+        auto* box = find<QComboBox>(name);
+        box->setFocus();
+        QTest::keyClick(box, key);
+    };
+    QSignalSpy replaced(&content, &Content::field_replaced);
+    choose("solid", Qt::Key_Down);
+    EXPECT_EQ(content.live()->field().solid(), Solid::below);
+    EXPECT_EQ(content.live()->field().interpolation(), Interpolation::cubic);
+    EXPECT_EQ(find<QComboBox>("solid")->currentIndex(), 1);
+    choose("field", Qt::Key_Up);
+    EXPECT_EQ(content.live()->field().solid(), Solid::below);
+    EXPECT_EQ(content.live()->field().interpolation(), Interpolation::linear);
+    choose("field", Qt::Key_Up);  // it is that one already
+    EXPECT_EQ(replaced.count(), 2);
 }
 
 TEST_F(Isovalue, dequantizing_is_asked_for_and_shown_once_the_volume_has_been_read_again) {

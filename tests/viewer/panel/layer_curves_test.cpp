@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/viewer/panel/isovalue_controls.hpp"
+#include "apps/viewer/window/isovalue_controls.hpp"
 #include "tests/viewer/panel/layers_fixture.hpp"
 
 namespace palpate::viewer {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "apps/viewer/panel/layers_controls.hpp"
+#include "apps/viewer/window/layers_controls.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 

@@ -12,8 +12,8 @@
 #include <set>
 
 #include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/isovalue_controls.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
+#include "apps/viewer/window/isovalue_controls.hpp"
 #include "tests/viewer/panel/layers_fixture.hpp"
 
 namespace palpate::viewer {

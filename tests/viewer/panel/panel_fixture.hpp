@@ -11,16 +11,21 @@
 #include <QTabWidget>
 #include <QTest>
 
+#include <memory>
 #include <optional>
 #include <random>
 #include <stdexcept>
 #include <vector>
 
-#include "apps/viewer/panel/brush_controls.hpp"
-#include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/look_controls.hpp"
-#include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/window/brush_controls.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/device_controls.hpp"
+#include "apps/viewer/window/look_controls.hpp"
+#include "apps/viewer/window/messages.hpp"
+#include "apps/viewer/window/panel.hpp"
+#include "apps/viewer/window/views.hpp"
+#include "viewer/undrawn.hpp"
 #include "viewer/waiting.hpp"
 
 namespace palpate::viewer {
@@ -80,6 +85,17 @@ class PanelFixture : public testing::Test {
         session_settings = settings;
         field.emplace(linear_field(head_like(), solid));
         begin(*field, isovalue, settings);
+    }
+
+    /// A ball that is felt with this device.
+    void feel(const std::string& device) {
+        run::Setup setup;
+        setup.device = devices::parse_device(device);
+        setup.real_time = false;
+        setup.field.isovalue = 100.0;
+        const auto ball = run::source_named("synthetic:sphere:24x24x24");
+        content.start_run(std::make_shared<Opened>(open(ball, [](double) {})), {setup});
+        Q_EMIT content.device_changed();
     }
 
     /// Until nothing is held back any more.
@@ -150,8 +166,13 @@ class PanelFixture : public testing::Test {
     RendererSettings session_settings;
     std::optional<Field> field;
     run::Histogram histogram;
-    Effect effect;
-    Panel panel{effect};
+    Content content;
+    Effect& effect = content.effect();
+    Views views{painter_of_test()};
+    QWidget window;  // of messages
+    Messages messages{&window};
+    Desk desk{content, messages, views};
+    Panel panel{desk};
 };
 
 }  // namespace palpate::viewer

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "apps/viewer/model/transfer.hpp"
-#include "apps/viewer/panel/device_controls.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/icons.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/sections.hpp"
+#include "apps/viewer/window/device_controls.hpp"
 #include "palpate/run/source.hpp"
 #include "tests/viewer/panel/panel_fixture.hpp"
 
@@ -100,11 +100,10 @@ class Pictures : public PanelFixture {
         Look look;
         look.transfer = preset("CT bone", histogram, field->volume());
         panel.look_controls().set_look(look);
-        panel.device_controls().set_devices(
+        panel.device_controls().list(
             {{"simulated", true, "a haptic device and its hand, computed", "", "seed=1"},
              {"mouse", true, "pointer and keys", "", "speed=600 [mm/s]"},
-             {"haply", false, "", "no Inverse Service at localhost:10001", "port=10001"}},
-            "simulated:seed=7");
+             {"haply", false, "", "no Inverse Service at localhost:10001", "port=10001"}});
         Snapshot now;
         now.session.tick.force = Vec3(1.2, 0, 1);
         now.session.tick.proxy.isovalue = 820;

@@ -1,11 +1,11 @@
 // The tool in the panel: a choice becomes a command, with the size asked for.
 #include <QComboBox>
 
-#include "apps/viewer/panel/device_controls.hpp"
-#include "apps/viewer/panel/hand_switch.hpp"
 #include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
-#include "apps/viewer/panel/tool_controls.hpp"
+#include "apps/viewer/window/device_controls.hpp"
+#include "apps/viewer/window/hand_switch.hpp"
+#include "apps/viewer/window/tool_controls.hpp"
 #include "viewer/panel/panel_fixture.hpp"
 
 namespace palpate::viewer {

@@ -252,15 +252,15 @@ TEST(CutPlanes, of_a_box_are_those_of_the_ends_that_cut) {
 
 TEST(Compose, puts_the_nearest_over_the_others_at_each_pixel_and_leaves_out_what_is_hidden) {
     const auto layer = [](std::vector<unsigned char> rgba, std::vector<float> depth) {
-        return Layer{std::move(rgba), std::move(depth)};
+        return pictures::Layer{std::move(rgba), std::move(depth)};
     };
     // Four pixels: a over b; b over a; b behind the solid; nothing.
-    const Layer a =
+    const pictures::Layer a =
         layer({200, 0, 0, 128, 200, 0, 0, 128, 200, 0, 0, 128, 9, 9, 9, 0}, {0.2F, 0.6F, 0.2F, 1});
-    const Layer b =
+    const pictures::Layer b =
         layer({0, 100, 0, 255, 0, 100, 0, 255, 0, 100, 0, 255, 9, 9, 9, 0}, {0.5F, 0.4F, 0.8F, 1});
-    const Layer solid = layer(std::vector<unsigned char>(16), {1, 1, 0.7F, 1});
-    const Layer both = composed({a, b}, solid);
+    const pictures::Layer solid = layer(std::vector<unsigned char>(16), {1, 1, 0.7F, 1});
+    const pictures::Layer both = composed({a, b}, solid);
     const auto pixel = [&](std::size_t i) {
         return std::vector<int>(both.rgba.begin() + std::ptrdiff_t(4 * i),
                                 both.rgba.begin() + std::ptrdiff_t(4 * i + 4));

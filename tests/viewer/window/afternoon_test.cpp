@@ -84,7 +84,7 @@ void DrawnAfternoon::drill() {
 
 void DrawnAfternoon::save_and_reopen() {
     type_in_dialog(Qt::Key_S, scratch("drilled.nrrd"), Qt::ShiftModifier);
-    wait_until([&] { return !window_->editing().saving(); });
+    wait_until([&] { return !window_->saver().saving(); });
     type_in_dialog(Qt::Key_S, scratch("afternoon.json"));
     show("saved");
     open(head());
@@ -104,8 +104,8 @@ void DrawnAfternoon::choose_layers_and_overlay() {
     show("layers");
     sets.setCurrentIndex(0);
     Q_EMIT sets.activated(0);
-    window_->overlays().open(run::source_named(scratch("bone.nrrd").toStdString()));
-    wait_until([&] { return window_->overlays().overlay() != nullptr; });
+    window_->panel().overlay_controls().open(run::source_named(scratch("bone.nrrd").toStdString()));
+    wait_until([&] { return window_->panel().overlay_controls().overlay() != nullptr; });
     on_page<QWidget>("open_overlay");
     show("overlay");
     part<QAction>("close_overlay_action").trigger();
@@ -132,10 +132,10 @@ void DrawnAfternoon::record_and_replay() {
 }
 
 void DrawnAfternoon::export_mesh() {
-    window_->editing().set_many_triangles(20000);
+    window_->saver().set_many_triangles(20000);
     answer(QMessageBox::Yes);
     typing(scratch("head.ply"), [&] { part<QAction>("save_surface").trigger(); });
-    wait_until([&] { return !window_->editing().saving() && QFile::exists(scratch("head.ply")); });
+    wait_until([&] { return !window_->saver().saving() && QFile::exists(scratch("head.ply")); });
     show("exported");
     EXPECT_LT(io::read_mesh(scratch("head.ply").toStdString()).triangles.size(), 21000U);
 }

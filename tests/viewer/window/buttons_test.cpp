@@ -1,5 +1,7 @@
 // The purposes of a device's buttons, chosen in the panel while the volume is felt.
+#include <QAction>
 #include <QComboBox>
+#include <QStatusBar>
 
 #include <atomic>
 #include <limits>
@@ -8,6 +10,7 @@
 
 #include "apps/viewer/model/session_file.hpp"
 #include "palpate/devices/devices.hpp"
+#include "palpate/io/recording.hpp"
 #include "viewer/window/window_fixture.hpp"
 
 namespace palpate::viewer::test {
@@ -39,6 +42,17 @@ class WithButtons final : public Device {
 
 class DeviceButtons : public InWindow {
   protected:
+    /// A hand in the solid that feels force at once, with buttons.
+    void feel_with_buttons() {
+        run::Setup setup = setup_with("simulated:hand=hold,depth=4,seconds=3600");
+        setup.render.force.start_below = std::numeric_limits<double>::infinity();
+        setup.open_device = [this](const auto& choice,
+                                   const auto& scene) -> std::unique_ptr<Device> {
+            return std::make_unique<WithButtons>(devices::open_device(choice, scene), held_);
+        };
+        open_window(setup);
+        feel("synthetic:sphere:48x48x48");
+    }
     void choose(const char* purpose, Qt::Key key) {
         auto& box = part<QComboBox>(purpose);
         box.setFocus();
@@ -49,14 +63,7 @@ class DeviceButtons : public InWindow {
 };
 
 TEST_F(DeviceButtons, a_dead_man_button_is_chosen_and_gives_force_only_while_it_is_held) {
-    run::Setup setup = setup_with("simulated:hand=hold,depth=4,seconds=3600");
-    // A hand that is in the solid already feels force at once.
-    setup.render.force.start_below = std::numeric_limits<double>::infinity();
-    setup.open_device = [this](const auto& choice, const auto& scene) -> std::unique_ptr<Device> {
-        return std::make_unique<WithButtons>(devices::open_device(choice, scene), held_);
-    };
-    open_window(setup);
-    feel("synthetic:sphere:48x48x48");
+    feel_with_buttons();
     wait_until([&] { return force() > 0.05; });
     const double isovalue = window_->live()->isovalue();
     choose("deadman_button", Qt::Key_Down);
@@ -85,6 +92,26 @@ TEST_F(DeviceButtons, a_dead_man_button_is_chosen_and_gives_force_only_while_it_
     const run::Buttons both{run::Button{2}, run::Button{1}};
     EXPECT_EQ(window_->live()->setup().buttons, both);
     EXPECT_EQ(read_session(scratch("day.json").toStdString()).buttons, both);
+}
+
+TEST_F(DeviceButtons, that_change_end_a_recording_as_another_field_does_and_the_window_says_so) {
+    feel_with_buttons();
+    for (const char* change : {"deadman_button", "solid"}) {
+        SCOPED_TRACE(change);
+        const QString name = scratch((std::string(change) + ".csv").c_str());
+        type_in_dialog(Qt::Key_R, name);
+        ASSERT_TRUE(window_->recordings().recording());
+        wait_until([&] { return window_->live()->recording()->ticks() > 50; });
+        choose(change, Qt::Key_Down);
+        EXPECT_FALSE(window_->recordings().recording());
+        EXPECT_EQ(window_->statusBar()->currentMessage(),
+                  "Recorded up to this change: the session began anew");
+        EXPECT_FALSE(window_->findChild<QAction*>("record")->isChecked());
+        io::RecordingReader written(name.toStdString());
+        while (written.next()) {
+        }
+        EXPECT_TRUE(written.complete());
+    }
 }
 
 }  // namespace

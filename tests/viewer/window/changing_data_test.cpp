@@ -140,7 +140,7 @@ TEST_F(ChangingData, what_was_saved_is_what_is_open) {
     const auto carved = work().samples;
     wait_until([&] { return window_->isWindowModified(); });
     type_in_dialog(Qt::Key_S, scratch("carved.nrrd"), Qt::ShiftModifier);
-    wait_until([&] { return !window_->editing().saving(); });
+    wait_until([&] { return !window_->saver().saving(); });
     wait_until([&] { return !window_->isWindowModified(); });
     EXPECT_TRUE(window_->windowTitle().startsWith("carved.nrrd[*]"));
     EXPECT_EQ(recent_files().value(0), scratch("carved.nrrd"));

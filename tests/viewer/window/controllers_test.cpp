@@ -10,14 +10,14 @@
 #include <stdexcept>
 
 #include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/window/content.hpp"
-#include "apps/viewer/window/edit_controller.hpp"
 #include "apps/viewer/window/menus.hpp"
 #include "apps/viewer/window/messages.hpp"
+#include "apps/viewer/window/panel.hpp"
 #include "apps/viewer/window/recording_controller.hpp"
+#include "apps/viewer/window/save_controller.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "support/scratch_folder.hpp"
 #include "viewer/undrawn.hpp"
@@ -45,9 +45,9 @@ class Controllers : public testing::Test {
     Messages messages{&parent};
     Content content;
     Views views{painter_of_test()};
-    Panel panel{content.effect()};
     Timeline timeline;
-    Desk desk{content, messages, views, panel, timeline};
+    Desk desk{content, messages, views};
+    Panel panel{desk};
     QString done;
     support::ScratchFolder scratch;
 };
@@ -109,7 +109,7 @@ TEST_F(Controllers, actions_follow_what_is_possible_and_on) {
 
 TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played_by_the_timeline) {
     RecordingController recordings(desk);
-    TimelineController playing(desk);
+    TimelineController playing(desk, timeline);
     feel("synthetic:sphere:24x24x24");
     EXPECT_TRUE(timeline.isHidden());
     const auto file = scratch.path() / "a.csv";
@@ -139,14 +139,14 @@ TEST_F(Controllers, a_recording_ends_when_another_volume_is_opened_and_is_played
 }
 
 TEST_F(Controllers, without_edits_nothing_is_unsaved_and_nothing_can_be_undone) {
-    EditController editing(desk);
+    SaveController editing(desk, panel);
     EXPECT_TRUE(editing.may_lose_edits({}));
-    editing.undo();
+    panel.brush_controls().undo();
     EXPECT_TRUE(done.isEmpty()) << "nothing is open";
     feel("synthetic:sphere:24x24x24");
     EXPECT_EQ(editing.unsaved(), nullptr);
     EXPECT_TRUE(editing.may_lose_edits({}));
-    editing.undo();
+    panel.brush_controls().undo();
     EXPECT_EQ(done, "There is nothing to undo");
     const auto file = scratch.path() / "saved.nrrd";
     editing.save(QString::fromStdString(file.string()));

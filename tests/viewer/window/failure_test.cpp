@@ -62,7 +62,7 @@ TEST_F(Failures, a_hand_stays_frozen_when_its_device_is_chosen_again_and_refused
     press(Qt::Key_F);
     wait_until([&] { return now().session.frozen; });
     const std::int64_t before = now().number;
-    window_->run().use_device("simulated:hand=hold");
+    window_->panel().device_controls().use_device("simulated:hand=hold");
     EXPECT_EQ(window_->messages().problem(), "no such option");
     window_->messages().forget();
     wait_until([&] { return now().number != before && now().session.frozen; });
@@ -142,8 +142,8 @@ TEST_F(Failures, looking_for_devices_again_changes_neither_pointer_nor_device) {
     press(Qt::Key_H);
     ASSERT_FALSE(pointer->isChecked());
     wait_until_settled();
-    QSignalSpy found(&window_->run(), &RunController::devices_found);
-    Q_EMIT window_->panel().device_controls().refresh_wanted();
+    QSignalSpy found(&window_->panel().device_controls(), &DeviceControls::devices_found);
+    QTest::mouseClick(&on_page<QPushButton>("refresh_devices"), Qt::LeftButton);
     wait_until([&] { return !found.isEmpty(); });
     window_->tick();
     EXPECT_FALSE(pointer->isChecked());
@@ -183,7 +183,7 @@ TEST_F(Failures, text_is_readable_in_light_and_dark) {
     feel(sphere);
     for (const Appearance appearance : {Appearance::light, Appearance::dark, Appearance::system}) {
         set_appearance(appearance);
-        EXPECT_EQ(last_appearance(), appearance);
+        EXPECT_EQ(saved_preferences().appearance, appearance);
         EXPECT_GT(contrast(QPalette::WindowText, QPalette::Window), 120);
         EXPECT_GT(contrast(QPalette::ButtonText, QPalette::Button), 120);
         EXPECT_GT(contrast(QPalette::Text, QPalette::Base), 120);

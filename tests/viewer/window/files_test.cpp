@@ -179,10 +179,10 @@ TEST_F(Files, a_raw_file_is_opened_once_the_dialog_knows_its_size) {
 
 TEST_F(Files, the_surface_is_saved_as_a_mesh) {
     feel("synthetic:sphere:32x32x32");
-    window_->editing().save_surface(scratch("ball.xyz"));
+    window_->saver().save_surface(scratch("ball.xyz"));
     EXPECT_TRUE(window_->messages().problem().contains("ply"));
-    window_->editing().save_surface(scratch("ball.obj"));
-    wait_until([&] { return !window_->editing().saving(); });
+    window_->saver().save_surface(scratch("ball.obj"));
+    wait_until([&] { return !window_->saver().saving(); });
     std::ifstream file(scratch_.path() / "ball.obj");
     int vertices = 0, normals = 0, triangles = 0;
     for (std::string line; std::getline(file, line);) {
@@ -197,7 +197,7 @@ TEST_F(Files, the_surface_is_saved_as_a_mesh) {
 
 TEST_F(Files, a_surface_of_many_triangles_is_simplified_if_one_likes) {
     feel("synthetic:torus:48x48x24");
-    EditController& editing = window_->editing();
+    SaveController& editing = window_->saver();
     const auto saved = [&](const char* name) {
         wait_until([&] { return !editing.saving(); });
         return io::read_mesh(scratch(name).toStdString());
@@ -367,7 +367,7 @@ TEST_F(Files, a_session_keeps_its_buttons_unless_the_command_line_names_others) 
     RunRequest usual{setup_with("mouse"), {}, {}};
     EXPECT_EQ(feel_by(usual, scratch("day.json")), request.setup.buttons);
     // They are those of another hand or device in this window as well.
-    EXPECT_EQ(window_->run().request().setup.buttons, request.setup.buttons);
+    EXPECT_EQ(window_->content().request().setup.buttons, request.setup.buttons);
     // Of two, the command line may name one.
     usual.buttons.emplace_back(&run::Buttons::deadman, run::ButtonSetup());
     EXPECT_EQ(feel_by(usual, scratch("day.json")), request.setup.buttons);

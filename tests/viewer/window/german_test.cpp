@@ -117,8 +117,8 @@ class German : public InWindow {
              {make_first_steps_dialog(window_.get()), make_shortcuts_dialog(window_.get()),
               make_about_dialog(window_.get()),
               make_preferences_dialog({}, window_.get(), [](const Preferences&) {}),
-              static_cast<QDialog*>(new RawDialog("/data/a.raw", window_.get())),
-              static_cast<QDialog*>(new SeriesDialog("a", {io::SeriesInfo{}}, window_.get()))}) {
+              make_raw_dialog("/data/a.raw", window_.get(), {}),
+              make_series_dialog("a", {io::SeriesInfo{}}, window_.get(), {})}) {
             all |= all_words(*dialog);
             delete dialog;
         }
@@ -229,9 +229,9 @@ TEST_F(German, large_numbers_read_alike_in_every_language) {
     EXPECT_EQ(count_text(999), "999");
     EXPECT_EQ(count_text(1234567), QString::fromUtf8("1\u202f234\u202f567"));
     open_german();
-    RawDialog dialog("/dev/null", window_.get());
-    EXPECT_FALSE(dialog.findChild<QLabel*>("raw_verdict")->text().contains("6,"));
-    EXPECT_FALSE(dialog.findChild<QLabel*>("raw_verdict")->text().contains("6."));
+    const QDialog* dialog = make_raw_dialog("/dev/null", window_.get(), {});
+    EXPECT_FALSE(dialog->findChild<QLabel*>("raw_verdict")->text().contains("6,"));
+    EXPECT_FALSE(dialog->findChild<QLabel*>("raw_verdict")->text().contains("6."));
 }
 
 TEST_F(German, qt_s_own_buttons_are_german) {
@@ -258,7 +258,7 @@ TEST_F(German, numbers_in_files_keep_their_point) {
 }
 
 TEST_F(German, the_choice_of_a_language_is_kept) {
-    EXPECT_EQ(chosen_language(), Language::system);
+    EXPECT_EQ(saved_preferences().language, Language::system);
     for (const Language language : {Language::german, Language::english, Language::system}) {
         Preferences preferences;
         preferences.language = language;
@@ -266,7 +266,7 @@ TEST_F(German, the_choice_of_a_language_is_kept) {
         EXPECT_EQ(saved_preferences().language, language);
     }
     QSettings().setValue("preferences/language", "xx");
-    EXPECT_EQ(chosen_language(), Language::system);
+    EXPECT_EQ(saved_preferences().language, Language::system);
 }
 
 TEST_F(German, plurals_are_right_in_both_languages) {

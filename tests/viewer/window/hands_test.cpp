@@ -47,6 +47,8 @@ TEST_F(TwoHands, each_has_settings_of_its_own_and_the_panel_says_whose_it_shows)
     press(Qt::Key_N);
     EXPECT_EQ(content().hand(), 2);
     EXPECT_TRUE(button_of(2).isChecked());
+    EXPECT_EQ(button_of(2).text(), "Hand 2: simulated");
+    EXPECT_EQ(button_of(2).accessibleName(), "Settings of hand 2, simulated");
     ForceSettings force = settings_of(2).force;
     force.stiffness = 0.111;
     EXPECT_TRUE(content().effect().request(force));
@@ -54,11 +56,15 @@ TEST_F(TwoHands, each_has_settings_of_its_own_and_the_panel_says_whose_it_shows)
     EXPECT_TRUE(content().effect().request(command::Isovalue{level + 20}));
     EXPECT_EQ(settings_of(2).force.stiffness, 0.111);
     EXPECT_NE(settings_of(1).force.stiffness, 0.111);
-    wait_until([&] { return window_->display().isovalue() == level + 20; });
+    wait_until([&] { return window_->views().shown().isovalue == level + 20; });
+    button_of(2).setFocus();
+    QTest::keyClick(&button_of(2), Qt::Key_Left);
+    EXPECT_EQ(content().hand(), 1);
+    press(Qt::Key_N);
     QTest::mouseClick(&button_of(1), Qt::LeftButton);
     EXPECT_EQ(content().effect().settings().force.stiffness, settings_of(1).force.stiffness);
     EXPECT_EQ(content().effect().isovalue(), level);
-    wait_until([&] { return window_->display().isovalue() == level; });
+    wait_until([&] { return window_->views().shown().isovalue == level; });
     // The space bar is for the hand that the panel shows.
     press(Qt::Key_Space);
     wait_until([&] { return !content().snapshot(1)->forces_on; });
@@ -95,13 +101,14 @@ TEST_F(TwoHands, one_whose_device_fails_ends_alone_and_the_window_says_which) {
     wait_until([&] { return part<QLabel>("hint").text().startsWith("Hand 2: "); });
     EXPECT_TRUE(part<QLabel>("hint").isVisible());
     wait_until([&] { return button_of(2).text().startsWith(QString::fromUtf8("\u26A0")); });
+    EXPECT_FALSE(button_of(2).accessibleDescription().isEmpty());
     EXPECT_EQ(content().live(1)->device_problem(), "");
     wait_for_ticks(20);
     wait_until([&] { return force_of(1) > 0.05; });
     // Once it is there again it goes on.
     fails_ = false;
     press(Qt::Key_N);
-    window_->run().use_device(QString::fromStdString(circles));
+    window_->panel().device_controls().use_device(QString::fromStdString(circles));
     wait_until([&] { return content().snapshot(2) && force_of(2) > 0.05; });
     wait_until([&] { return !button_of(2).text().startsWith(QString::fromUtf8("\u26A0")); });
 }
@@ -175,7 +182,7 @@ TEST_F(TwoHands, a_hand_is_added_and_removed_at_any_time) {
     feel(felt_by_two);
     EXPECT_FALSE(button_of(1).isVisible());
     EXPECT_TRUE(window_->probe().possible());
-    window_->run().add_hand(QString::fromStdString(circles));
+    window_->panel().device_controls().add_hand(QString::fromStdString(circles));
     ASSERT_EQ(content().hands(), 2);
     EXPECT_EQ(content().hand(), 2);
     EXPECT_FALSE(window_->probe().possible()) << "the mouse moves the hand that is chosen";
@@ -193,7 +200,7 @@ TEST_F(TwoHands, a_hand_is_added_and_removed_at_any_time) {
     EXPECT_FALSE(button_of(1).isVisible());
     wait_until_settled();
     EXPECT_FALSE(part<QLabel>("hand_number_1").isVisible());
-    window_->run().add_hand("haply:host=127.0.0.1,port=1");
+    window_->panel().device_controls().add_hand("haply:host=127.0.0.1,port=1");
     EXPECT_EQ(content().hands(), 1) << "it cannot be had";
 }
 
@@ -227,7 +234,7 @@ TEST_F(TwoHands, what_is_read_again_keeps_the_device_that_was_chosen_after_the_s
     open_window(request);
     window_->files().open_path(felt_by_two);
     wait_until([&] { return window_->live() != nullptr; });
-    window_->run().use_device("mouse");
+    window_->panel().device_controls().use_device("mouse");
     ASSERT_NE(window_->live()->mouse(), nullptr);
     const auto volume = content().volume();
     window_->files().dequantize(true);

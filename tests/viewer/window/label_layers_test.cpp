@@ -12,7 +12,7 @@
 #include <fstream>
 
 #include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/layers_controls.hpp"
+#include "apps/viewer/window/layers_controls.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "viewer/window/window_fixture.hpp"
 
@@ -40,8 +40,9 @@ class LabelsInWindow : public InWindow {
     }
     void open_labels() {
         write_labels();
-        window_->overlays().open(run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
-        wait_until([&] { return window_->overlays().overlay() != nullptr; });
+        window_->panel().overlay_controls().open(
+            run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
+        wait_until([&] { return window_->panel().overlay_controls().overlay() != nullptr; });
         wait_until_settled();
     }
     void feel_labels() {
@@ -93,13 +94,13 @@ TEST_F(LabelsInWindow, the_volume_is_not_saved_over_the_file_of_the_overlay) {
     open_labels();
     const std::filesystem::path file = scratch_.path() / "ball.seg.nrrd";
     const auto before = std::filesystem::file_size(file);
-    window_->editing().save(QString::fromStdString(file.string()));
+    window_->saver().save(QString::fromStdString(file.string()));
     EXPECT_TRUE(window_->messages().problem().contains("in use"));
     wait_until_settled();
     EXPECT_EQ(std::filesystem::file_size(file), before);
 
-    window_->overlays().close();
-    window_->editing().save(QString::fromStdString(file.string()));
+    window_->panel().overlay_controls().close_overlay();
+    window_->saver().save(QString::fromStdString(file.string()));
     wait_until_settled();
     EXPECT_NE(std::filesystem::file_size(file), before);
 }
@@ -163,7 +164,7 @@ TEST_F(LabelsInWindow, a_session_keeps_them_also_when_it_is_moved_with_its_data)
     EXPECT_EQ(window_->messages().problem(), "");
     EXPECT_TRUE(layers()->by_label);
     EXPECT_EQ(layers()->layers[0][HapticProperty::stiffness], 0.123);
-    EXPECT_TRUE(window_->overlays().overlay());
+    EXPECT_TRUE(window_->panel().overlay_controls().overlay());
     EXPECT_TRUE(press_until_on("shell"));
     std::filesystem::remove(moved / "ball.seg.nrrd");
     window_->files().open_path(QString::fromStdString((moved / "s.json").string()));
@@ -174,7 +175,7 @@ TEST_F(LabelsInWindow, a_session_keeps_them_also_when_it_is_moved_with_its_data)
 TEST_F(LabelsInWindow, of_the_second_hand_come_back_from_a_session) {
     feel("synthetic:sphere:48x48x48");
     open_labels();
-    window_->run().add_hand("mouse");
+    window_->panel().device_controls().add_hand("mouse");
     feel_open_labels();
     const auto layers_of = [&](int hand) {
         return window_->content().live(hand)->settings().layers;
@@ -207,8 +208,9 @@ TEST_F(LabelsInWindow, a_recording_is_played_with_them) {
     wait_until([&] { return part<QLabel>("readout").text().contains("on shell"); });
     press(Qt::Key_Escape);
     wait_until([&] { return window_->live() && layers(); });
-    wait_until(
-        [&] { return window_->overlays().overlay() != nullptr; });  // their label map is shown
+    wait_until([&] {
+        return window_->panel().overlay_controls().overlay() != nullptr;
+    });  // their label map is shown
     wait_until_settled();
 }
 

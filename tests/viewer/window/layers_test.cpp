@@ -10,9 +10,9 @@
 
 #include "apps/viewer/model/session_file.hpp"
 #include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/isovalue_controls.hpp"
-#include "apps/viewer/panel/layers_controls.hpp"
 #include "apps/viewer/panel/stroke_plot.hpp"
+#include "apps/viewer/window/isovalue_controls.hpp"
+#include "apps/viewer/window/layers_controls.hpp"
 #include "apps/viewer/window/menus.hpp"
 #include "palpate/io/sample_volume.hpp"
 #include "viewer/window/window_fixture.hpp"
@@ -116,7 +116,7 @@ TEST_F(DrawnLayers, the_built_in_head_shows_skin_as_glass_over_bone) {
     ASSERT_TRUE(layers());
     EXPECT_FALSE(part<QLabel>("layers_note").isVisible());
     wait_until_settled();
-    EXPECT_EQ(window_->display().isovalue(), layers()->layers[0].level);
+    EXPECT_EQ(window_->views().shown().isovalue, layers()->layers[0].level);
     const QImage image = window_->views().scene().picture();
     EXPECT_FALSE(image.isNull());
     save("head");
@@ -124,7 +124,7 @@ TEST_F(DrawnLayers, the_built_in_head_shows_skin_as_glass_over_bone) {
     pick("No layers: one surface");
     EXPECT_FALSE(layers());
     EXPECT_TRUE(part<QWidget>("isovalue_box").isEnabled());
-    wait_until([&] { return window_->display().isovalue() == before; });
+    wait_until([&] { return window_->views().shown().isovalue == before; });
     EXPECT_EQ(window_->live()->isovalue(), before);
 }
 
@@ -211,7 +211,7 @@ TEST_F(LayersInWindow, a_recording_names_the_layers_that_were_felt) {
     EXPECT_EQ(window_->playback()->different(), 0U);
     window_->playing().show_time(window_->playback()->end());
     // The words may still be those of the session before.
-    wait_until([&] { return window_->display().isovalue() == -300; });
+    wait_until([&] { return window_->views().shown().isovalue == -300; });
     wait_until([&] { return part<QLabel>("readout").text().contains("on skin"); });
     press(Qt::Key_Escape);
     wait_until([&] { return window_->live() && layers(); });  // felt again, with them
@@ -237,7 +237,7 @@ TEST_F(LayersInWindow, sets_that_do_not_suit_the_solid_side_cannot_be_picked) {
         return bool(box.model()->index(box.findText(set), 0).flags() & Qt::ItemIsEnabled);
     };
     EXPECT_TRUE(possible(ct_set));
-    window_->run().use_field(Solid::below, Interpolation::cubic);
+    window_->content().use_field(Solid::below, Interpolation::cubic);
     EXPECT_FALSE(possible(ct_set));
 }
 

@@ -173,9 +173,9 @@ TEST_F(Looking, a_segmentation_lies_over_slices_and_scene_with_its_names_and_col
     write_segmentation(scratch_.path() / "ball.seg.nrrd");
     typing(scratch("ball.seg.nrrd"),
            [&] { QTest::mouseClick(&on_page<QPushButton>("open_overlay"), Qt::LeftButton); });
-    wait_until([&] { return window_->overlays().overlay() != nullptr; });
+    wait_until([&] { return window_->panel().overlay_controls().overlay() != nullptr; });
     wait_until_settled();
-    const Overlay& overlay = *window_->overlays().overlay();
+    const Overlay& overlay = *window_->panel().overlay_controls().overlay();
     ASSERT_EQ(overlay.labels.size(), 2U);
     EXPECT_EQ(overlay.labels[0].name, "left half");
     EXPECT_EQ(overlay.labels[1].value, 7);
@@ -196,18 +196,18 @@ TEST_F(Looking, a_segmentation_lies_over_slices_and_scene_with_its_names_and_col
     EXPECT_LT(qBlue(colour_at({8, 6, 3})), qRed(colour_at({8, 6, 3})) + 20);
     window_->files().save_session(scratch("s.json"));
     QTest::mouseClick(&part<QPushButton>("close_overlay"), Qt::LeftButton);
-    EXPECT_EQ(window_->overlays().overlay(), nullptr);
+    EXPECT_EQ(window_->panel().overlay_controls().overlay(), nullptr);
     window_->files().open_path(scratch("s.json"));
-    wait_until([&] { return window_->overlays().overlay() != nullptr; });
+    wait_until([&] { return window_->panel().overlay_controls().overlay() != nullptr; });
     EXPECT_EQ(look().overlay.hidden, std::vector{7});
     wait_until_settled();
 }
 
 TEST_F(Looking, another_image_lies_over_the_slices_in_a_colour_map) {
     feel("synthetic:sphere:48x48x48");
-    window_->overlays().open(run::source_named("synthetic:torus:40x40x40"));
-    wait_until([&] { return window_->overlays().overlay() != nullptr; });
-    EXPECT_FALSE(window_->overlays().overlay()->is_label_map());
+    window_->panel().overlay_controls().open(run::source_named("synthetic:torus:40x40x40"));
+    wait_until([&] { return window_->panel().overlay_controls().overlay() != nullptr; });
+    EXPECT_FALSE(window_->panel().overlay_controls().overlay()->is_label_map());
     wait_until_settled();
     save("image");
     auto& level = on_page<NumberBox>("overlay_level");
@@ -221,23 +221,26 @@ TEST_F(Looking, another_image_lies_over_the_slices_in_a_colour_map) {
 TEST_F(Looking, an_overlay_that_cannot_be_read_is_reported_and_the_one_before_stays) {
     feel("synthetic:sphere:48x48x48");
     write_segmentation(scratch_.path() / "ball.seg.nrrd");
-    window_->overlays().open(run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
-    wait_until([&] { return window_->overlays().overlay() != nullptr; });
-    window_->overlays().open(run::source_named((scratch_.path() / "none.nrrd").string()));
+    window_->panel().overlay_controls().open(
+        run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
+    wait_until([&] { return window_->panel().overlay_controls().overlay() != nullptr; });
+    window_->panel().overlay_controls().open(
+        run::source_named((scratch_.path() / "none.nrrd").string()));
     wait_until([&] { return !window_->messages().problem().isEmpty(); });
-    EXPECT_NE(window_->overlays().overlay(), nullptr);
+    EXPECT_NE(window_->panel().overlay_controls().overlay(), nullptr);
     EXPECT_NE(window_->live(), nullptr);
     feel("synthetic:torus:40x40x40");
-    EXPECT_EQ(window_->overlays().overlay(), nullptr) << "it belongs to the volume before";
+    EXPECT_EQ(window_->panel().overlay_controls().overlay(), nullptr)
+        << "it belongs to the volume before";
 }
 
 TEST_F(Looking, pressing_through_shows_what_is_felt_and_not_a_body_in_pieces) {
     feel("synthetic:sphere:48x48x48");
-    const double level = window_->display().isovalue().value();
+    const double level = window_->views().shown().isovalue;
     window_->content().effect().request(Command(penetrability_threshold(0.3, level)));
     Scene& scene = window_->views().scene();
     ASSERT_TRUE(press_until([&] { return now().session.tick.proxy.isovalue > level + 20; }));
-    EXPECT_EQ(window_->display().isovalue(), level) << "the whole surface stays";
+    EXPECT_EQ(window_->views().shown().isovalue, level) << "the whole surface stays";
     wait_until_settled();
     save("pressed-through");
     turn_wheel(scene, -60);
@@ -260,7 +263,7 @@ TEST_F(Looking, preferences_are_used_at_once_and_kept) {
     part<QDoubleSpinBox>("preferred_triangles").setValue(0.1);
     dialog.close();
     Preferences wanted;
-    wanted.appearance = last_appearance();
+    wanted.appearance = saved_preferences().appearance;
     wanted.unit = LengthUnit::centimetres;
     wanted.wheel_px = 30;
     wanted.surface_millions = 0.1;

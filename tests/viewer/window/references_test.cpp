@@ -57,8 +57,9 @@ TEST_F(DrawnReferences, several_surfaces) {
 TEST_F(DrawnReferences, overlay) {
     feel("synthetic:sphere:48x48x48");
     write_segmentation(scratch_.path() / "ball.seg.nrrd");
-    window_->overlays().open(run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
-    wait_until([&] { return window_->overlays().overlay() != nullptr; });
+    window_->panel().overlay_controls().open(
+        run::source_named((scratch_.path() / "ball.seg.nrrd").string()));
+    wait_until([&] { return window_->panel().overlay_controls().overlay() != nullptr; });
     set(window_->views(), &Shown::crosshair, {3, 3, 3});
     expect_as("overlay");
 }

@@ -7,7 +7,7 @@
 #include <QMimeData>
 #include <fstream>
 
-#include "apps/viewer/panel/tool_controls.hpp"
+#include "apps/viewer/window/tool_controls.hpp"
 #include "palpate/io/mesh_file.hpp"
 #include "palpate/surface.hpp"
 #include "viewer/window/window_fixture.hpp"
@@ -138,7 +138,7 @@ TEST_F(ToolInWindow, that_cannot_be_read_is_said_and_changes_nothing) {
     const auto before = tool();
     const auto path = scratch_.path() / "bad.stl";
     std::ofstream(path) << "no mesh";
-    window_->run().open_tool(QString::fromStdString(path.string()));
+    window_->panel().tool_controls().open(QString::fromStdString(path.string()));
     wait_until([&] { return !window_->messages().problem().isEmpty(); });
     EXPECT_TRUE(window_->messages().problem().contains("bad.stl"));
     EXPECT_EQ(tool(), before);

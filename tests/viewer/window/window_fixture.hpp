@@ -19,14 +19,15 @@
 #include <memory>
 #include <stdexcept>
 
-#include "apps/viewer/panel/brush_controls.hpp"
-#include "apps/viewer/panel/device_controls.hpp"
-#include "apps/viewer/panel/look_controls.hpp"
-#include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/panel/timeline.hpp"
 #include "apps/viewer/scene/scene.hpp"
 #include "apps/viewer/slices/slice_pane.hpp"
+#include "apps/viewer/window/brush_controls.hpp"
+#include "apps/viewer/window/device_controls.hpp"
+#include "apps/viewer/window/look_controls.hpp"
 #include "apps/viewer/window/main_window.hpp"
+#include "apps/viewer/window/overlay_controls.hpp"
+#include "apps/viewer/window/panel.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "support/scratch_folder.hpp"
 #include "viewer/kept_picture.hpp"

@@ -65,7 +65,7 @@ TEST_F(Work, done_while_another_file_is_read_is_asked_about_before_that_takes_it
         wait_until([&] { return !edits().changed; });
     }
     answer(QMessageBox::Discard);
-    window_->settle_work([this] { window_->files().open_volume(slow_source()); });
+    window_->files().settle_work([this] { window_->files().open_volume(slow_source()); });
     wait_until([&] { return !window_->files().loading() && size() == 128; });
     EXPECT_TRUE(window_->measuring().measurements().empty()) << "given up before, asked once";
 }
@@ -75,13 +75,13 @@ TEST_F(Work, that_is_being_saved_shows_its_progress_and_can_be_cancelled) {
     press_until_force();
     carve();
     const QString path = scratch("saved.nii.gz");
-    window_->editing().save(path);
-    ASSERT_TRUE(window_->editing().saving());
+    window_->saver().save(path);
+    ASSERT_TRUE(window_->saver().saving());
     QWidget* shown = strip();
     ASSERT_NE(shown, nullptr) << "a large volume takes a while";
     EXPECT_EQ(shown->findChild<QLabel*>()->text(), "Saving saved.nii.gz");
     QTest::mouseClick(shown->findChild<QPushButton*>("cancel"), Qt::LeftButton);
-    wait_until([&] { return !window_->editing().saving(); });
+    wait_until([&] { return !window_->saver().saving(); });
     EXPECT_EQ(strip(), nullptr);
     EXPECT_EQ(edits().changed, !QFile::exists(path)) << "as a whole or not at all";
     EXPECT_TRUE(window_->messages().problem().isEmpty());

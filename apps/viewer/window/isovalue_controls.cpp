@@ -1,10 +1,12 @@
 // Keeps chart, slider and number box of the isovalue in step.
-#include "apps/viewer/panel/isovalue_controls.hpp"
+#include "apps/viewer/window/isovalue_controls.hpp"
 
 #include <QBoxLayout>
 
 #include <cmath>
 
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/messages.hpp"
 #include "palpate/renderer.hpp"
 
 namespace palpate::viewer {
@@ -14,8 +16,9 @@ constexpr int snapshots_of_grace = 3;
 
 }  // namespace
 
-IsovalueControls::IsovalueControls(Effect& effect)
-    : EffectForm(effect),
+IsovalueControls::IsovalueControls(const Desk& desk)
+    : EffectForm(desk.effect()),
+      Desk(desk),
       chart_(new LevelChart),
       level_(quantity({"isovalue", "", tr("Isovalue [data units]: the level whose surface is felt"),
                        tr("Isovalue")},
@@ -53,6 +56,7 @@ IsovalueControls::IsovalueControls(Effect& effect)
     connect(&effect_, &Effect::observed, this, [this](const Snapshot& now) {
         show_felt(now.session.tick.proxy.isovalue, now.penetrability_on);
     });
+    connect(&content_, &Content::run_changed, this, &IsovalueControls::show_terraces);
     clear();
     refresh();
 }
@@ -89,18 +93,14 @@ QWidget* IsovalueControls::make_field() {
                    "vessels dark on bright.\nThe session starts anew, with penetrability off.")},
                {tr("above is solid"), tr("below is solid")},
                {[field] { return static_cast<int>(field().first); },
-                [this, field](int side) {
-                    Q_EMIT field_wanted(static_cast<Solid>(side), field().second);
-                }});
-    auto* smoothness =
-        choice({"field", "",
-                tr("How densities continue between samples: cubic, smooth, or linear, with "
-                   "facets.\nThe session starts anew, with penetrability off.")},
-               {tr("linear"), tr("cubic")},
-               {[field] { return static_cast<int>(field().second); },
-                [this, field](int as) {
-                    Q_EMIT field_wanted(field().first, static_cast<Interpolation>(as));
-                }});
+                [this, field](int side) { use_field(static_cast<Solid>(side), field().second); }});
+    auto* smoothness = choice(
+        {"field", "",
+         tr("How densities continue between samples: cubic, smooth, or linear, with "
+            "facets.\nThe session starts anew, with penetrability off.")},
+        {tr("linear"), tr("cubic")},
+        {[field] { return static_cast<int>(field().second); },
+         [this, field](int as) { use_field(field().first, static_cast<Interpolation>(as)); }});
     dequantize_ = named(new QCheckBox(tr("dequantize")), "dequantize",
                         tr("Give back what rounding to levels took, against terraces and the stair "
                            "steps of masks.\nThe volume is read again; edits are lost."));
@@ -109,6 +109,21 @@ QWidget* IsovalueControls::make_field() {
         Q_EMIT dequantize_wanted(on);
     });
     return row_of({solid, smoothness, dequantize_}, 2);
+}
+
+void IsovalueControls::use_field(Solid solid, Interpolation interpolation) {
+    const Field& now = effect_.field();
+    if (now.solid() == solid && now.interpolation() == interpolation) return;
+    messages_.guarded([&] { content_.use_field(solid, interpolation); });
+}
+
+void IsovalueControls::show_terraces() {
+    const Opened& opened = *content_.volume();
+    const bool on = opened.loaded.source.dequantize > 0;
+    set_dequantized(on, on || opened.terraces,
+                    opened.terraces
+                        ? QString::fromStdString(filters::reason_to_dequantize(*opened.terraces))
+                        : QString());
 }
 
 void IsovalueControls::begin() {

@@ -1,4 +1,5 @@
-// Controls of the brush at the probe, with undo, redo and save.
+// The brush at the probe: its controls, with undo, redo and save, and the brush of the live run's
+// editor.
 #pragma once
 
 #include <array>
@@ -6,7 +7,9 @@
 
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/form.hpp"
+#include "apps/viewer/window/desk.hpp"
 #include "palpate/run/brush.hpp"
+#include "palpate/run/volume_editor.hpp"
 
 namespace palpate::viewer {
 
@@ -17,34 +20,34 @@ struct BrushChoice : run::HandBrush {
     bool operator==(const BrushChoice&) const = default;
 };
 
-/// Remembers a typed value for each kind of brush, as a value that carves cannot add. Setters emit
-/// nothing. With each session the brush is off, its values are automatic, there are no edits and no
-/// reason. Its radius goes from the largest spacing of the grid to a quarter of the shortest side.
-class BrushControls : public EffectForm {
+/// Remembers a typed value for each kind of brush, as a value that carves cannot add. With each
+/// session the brush is off, its values are automatic, there are no edits and no reason. Its radius
+/// goes from the largest spacing of the grid to a quarter of the shortest side.
+class BrushControls : public EffectForm, protected Desk {
     Q_OBJECT
 
   public:
-    explicit BrushControls(Effect& effect);
+    explicit BrushControls(const Desk& desk);
 
     /// Whether a tool is in the hand, whose shape the brush can take. Without one it is a ball.
     void set_tool(bool there);
-    /// Shows a choice, even one that the controls would not allow.
+    /// Takes a choice, even one that the controls would not allow.
     void set_choice(const BrushChoice& choice);
     const BrushChoice& choice() const { return choice_; }
-    /// The change that was emitted last cannot be: shows the choice before, and why.
-    void refuse(const BrushChoice& before, const QString& why);
     void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);
     /// One sentence why nothing can be edited, which also shows the switch off. Empty: it can.
     void set_reason(const QString& why);
-    QString reason() const { return reason_->text(); }
-    /// As if the switch was pressed.
-    void toggle() { on_->click(); }
-
-  Q_SIGNALS:
-    void changed(const palpate::viewer::BrushChoice& choice);
+    /// As if the switch was pressed. Says why if nothing can be edited.
+    void toggle();
+    /// While the hand is lifted the brush does nothing.
+    void rest(bool on);
     void undo();
     void redo();
-    void save();
+    /// Shows what can be undone; about thirty times a second.
+    void observe();
+
+  Q_SIGNALS:
+    void save_wanted();
 
   private:
     QWidget* make_kinds();
@@ -54,11 +57,16 @@ class BrushControls : public EffectForm {
     Quantity* limited(const Words& words, const Span& span, double BrushChoice::*member,
                       const QString& limits);
     void change(const std::function<void(BrushChoice&)>& how);
+    void show_choice(const BrushChoice& choice);
+    void use();
+    void step(bool (run::VolumeEditor::*take)(const OnProgress&), const QString& if_none);
     void begin() override;
     void clear() override;
     double fitting() const;
 
-    BrushChoice choice_;
+    BrushChoice choice_, used_;  // and the last one that the editor could use
+    bool resting_ = false;
+    QString problem_;                              // of the editor
     std::array<std::optional<double>, 4> values_;  // by kind
     double ball_ = 3, beyond_ = 1;  // [mm] the radius of a ball, and beyond the skin of a tool
     double rate_ = 10;              // [1/s] while it is not at once

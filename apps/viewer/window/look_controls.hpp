@@ -1,4 +1,4 @@
-// Controls of the look: what the scene shows, its colours and surfaces, the transfer function.
+// The look: what the scene shows, its colours and surfaces, the transfer function.
 #pragma once
 
 #include <functional>
@@ -6,28 +6,28 @@
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
+#include "apps/viewer/window/desk.hpp"
 
 namespace palpate::viewer {
 
 /// Object names: show_..., and of the surfaces beside the felt one, from N = 1, surface_N (shown or
 /// not), surface_N_colour, _level, _opacity, _feel, _remove; add_surface.
-class LookControls : public EffectForm {
+class LookControls : public EffectForm, protected Desk {
     Q_OBJECT
 
   public:
-    explicit LookControls(Effect& effect);
+    explicit LookControls(const Desk& desk);
 
-    /// As by hand.
     void change(const std::function<void(Look&)>& how);
-    /// Shows a look; emits look_set() alone.
     void set_look(const Look& look);
     const Look& look() const { return look_; }
+    /// Through the crosshair, facing the viewer.
+    void set_cut(Cut cut);
+    /// The transfer function that the volume suggests.
+    void use_usual_look();
 
   Q_SIGNALS:
     void look_changed(const palpate::viewer::Look& look);
-    void look_set();
-    /// A cut of this kind, for the present view.
-    void cut_wanted(palpate::viewer::Cut cut);
 
   private:
     QWidget* make_surface(std::size_t at);

@@ -1,5 +1,5 @@
 // Lists tools in sizes that suit the data, and makes the one that is chosen.
-#include "apps/viewer/panel/tool_controls.hpp"
+#include "apps/viewer/window/tool_controls.hpp"
 
 #include <QLabel>
 
@@ -11,6 +11,9 @@
 #include <vector>
 
 #include "apps/viewer/panel/layout.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/file_dialogs.hpp"
+#include "palpate/io/mesh_file.hpp"
 #include "palpate/io/tool_file.hpp"
 
 namespace palpate::viewer {
@@ -66,7 +69,8 @@ MadeTool made_tool(const io::ToolSpec& spec, double scale, const Geometry& geome
 
 }  // namespace
 
-ToolControls::ToolControls(Effect& effect) : EffectForm(effect) {
+ToolControls::ToolControls(const Desk& desk)
+    : EffectForm(desk.effect()), Desk(desk), reader_(messages_) {
     each_time(this, [this](QWidget&) { show_tool(); });
     choice_ =
         choice({"tool", "",
@@ -79,7 +83,12 @@ ToolControls::ToolControls(Effect& effect) : EffectForm(effect) {
                          tr("A tool from a file: a mesh (STL, PLY, OBJ, VTP) or points (CSV: x, y, "
                             "z), in mm from the point that is held"),
                          tr("Open a tool")},
-                        [this] { Q_EMIT open_wanted(); });
+                        [this] {
+                            const QString path = ask_open_name(
+                                messages_.window(), tr("Open a tool"),
+                                tr("Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)"));
+                            if (!path.isEmpty()) this->open(path);
+                        });
     auto* form = new QFormLayout;
     auto* scale = quantity_in(
         *form,
@@ -95,6 +104,7 @@ ToolControls::ToolControls(Effect& effect) : EffectForm(effect) {
     choice_->setMinimumContentsLength(8);
     column_in(this, {row_of({choice_, open}, 0)})->addLayout(form);
     layout()->addWidget(words);
+    connect(&content_, &Content::closed, this, [this] { reader_.abandon(); });
     refresh();
 }
 
@@ -156,6 +166,27 @@ QString ToolControls::about() const {
                                               : tr("%n points.", nullptr, count);
     return points + ' ' +
            tr("Layers, pressing through, magnet and texture are felt with a point only.");
+}
+
+bool ToolControls::is_tool_file(const QString& path) {
+    return io::names_a_mesh(path.toStdString());
+}
+
+void ToolControls::open(const QString& path) {
+    messages_.forget();
+    if (!content_.live()) {
+        return messages_.show_problem(
+            tr("%1: this is a tool: open a volume first, and feel it, then open the tool")
+                .arg(short_name(path)));
+    }
+    remember_folder(path);
+    const auto read = std::make_shared<io::ToolSpec>();
+    reader_.start(
+        tr("Reading the tool"),
+        [read, path](const io::Progress& progress) {
+            *read = io::tool_spec_from(path.toStdString(), progress);
+        },
+        [this, read, path] { add(short_name(path), *read); });
 }
 
 void ToolControls::add(const QString& name, const io::ToolSpec& spec) {

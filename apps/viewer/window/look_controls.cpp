@@ -1,5 +1,5 @@
-// Connects the controls of the look with the look that is chosen.
-#include "apps/viewer/panel/look_controls.hpp"
+// Connects the controls of the look with the look that is chosen, and shows it in the views.
+#include "apps/viewer/window/look_controls.hpp"
 
 #include <QGridLayout>
 #include <QLabel>
@@ -9,6 +9,10 @@
 #include <iterator>
 
 #include "apps/viewer/model/transfer.hpp"
+#include "apps/viewer/scene/cut.hpp"
+#include "apps/viewer/scene/scene.hpp"
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/views.hpp"
 
 namespace palpate::viewer {
 
@@ -24,8 +28,9 @@ void LookControls::change_point(const std::function<void(ControlPoint&)>& how) {
     take_transfer(line.knots, line.colours);
 }
 
-LookControls::LookControls(Effect& effect)
-    : EffectForm(effect),
+LookControls::LookControls(const Desk& desk)
+    : EffectForm(desk.effect()),
+      Desk(desk),
       editor_(named(
           new LevelChart, "transfer_editor",
           tr("Opacity (upwards, 0 to 1) and colour by level [data units].\n"
@@ -55,13 +60,14 @@ LookControls::LookControls(Effect& effect)
          tr("Cut away")},
         {tr("nothing"), tr("by a plane"), tr("to a box")},
         {[this] { return static_cast<int>(look_.cut); },
-         [this](int at) { Q_EMIT cut_wanted(static_cast<Cut>(at)); }});
+         [this](int at) { set_cut(static_cast<Cut>(at)); }});
     column_in(this, {felt, others, row_of({label_for(tr("Cut away"), cut), cut}, 1), make_volume(),
                      make_rest()});
     connect(editor_, &LevelChart::curve_changed, this, &LookControls::take_transfer);
     connect(editor_, &LevelChart::knot_held, this, &LookControls::refresh);
     connect(editor_, &LevelChart::knot_activated, findChild<ColourButton*>("point_colour"),
             &ColourButton::choose);
+    connect(&views_.scene(), &Scene::cut_moved, this, &LookControls::set_look);
     refresh();
 }
 
@@ -263,13 +269,31 @@ void LookControls::begin() {
 void LookControls::set_look(const Look& look) {
     look_ = look;
     refresh();
-    Q_EMIT look_set();
+    set(views_, &Shown::look, look_);
+    Q_EMIT look_changed(look_);
 }
 
 void LookControls::change(const std::function<void(Look&)>& how) {
-    how(look_);
-    refresh();
-    Q_EMIT look_changed(look_);
+    Look next = look_;
+    how(next);
+    set_look(next);
+}
+
+void LookControls::set_cut(Cut cut) {
+    const Vec3 towards = views_.scene().camera().towards_viewer;
+    set_look(with_cut(look_, cut, views_.shown().crosshair, towards));
+}
+
+void LookControls::use_usual_look() {
+    const Opened& opened = *content_.volume();
+    const Volume& volume = opened.loaded.volume;
+    Look look = look_;
+    look.transfer = preset(suggested_preset(opened.histogram, volume), opened.histogram, volume);
+    // Of the volume before.
+    look.surfaces.clear();
+    look.cut = Cut::nothing;
+    look.overlay = {};
+    set_look(look);
 }
 
 }  // namespace palpate::viewer

@@ -1,5 +1,5 @@
-// Passes brush and undo to the editor of the live run; saves the volume in the background.
-#include "apps/viewer/window/edit_controller.hpp"
+// Saves the volume and its surface in the background.
+#include "apps/viewer/window/save_controller.hpp"
 
 #include <QCoreApplication>
 #include <QDir>
@@ -9,14 +9,14 @@
 #include <cstdio>
 #include <utility>
 
-#include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/panel/inputs.hpp"
-#include "apps/viewer/panel/layers_controls.hpp"
-#include "apps/viewer/panel/panel.hpp"
 #include "apps/viewer/scene/render_mesh.hpp"
+#include "apps/viewer/window/brush_controls.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/file_dialogs.hpp"
+#include "apps/viewer/window/layers_controls.hpp"
 #include "apps/viewer/window/messages.hpp"
+#include "apps/viewer/window/panel.hpp"
 #include "palpate/io/mesh_file.hpp"
 #include "palpate/io/raw_options.hpp"
 #include "palpate/io/written_formats.hpp"
@@ -52,72 +52,17 @@ QString saved_volumes() {
     for (const std::string_view extension : io::written_extensions()) {
         patterns << "*" + QString::fromUtf8(extension.data(), int(extension.size()));
     }
-    return EditController::tr("Volumes (%1)").arg((patterns << "*.zarr").join(' '));
+    return SaveController::tr("Volumes (%1)").arg((patterns << "*.zarr").join(' '));
 }
 
 }  // namespace
 
-EditController::EditController(const Desk& desk) : Controller(desk), saving_(messages_) {
-    connect(&content_, &Content::run_changed, this, &EditController::show);
-    const BrushControls* controls = &panel_.brush_controls();
-    connect(controls, &BrushControls::changed, this, &EditController::use_brush);
-    connect(controls, &BrushControls::undo, this, &EditController::undo);
-    connect(controls, &BrushControls::redo, this, &EditController::redo);
-    connect(controls, &BrushControls::save, this, [this] { ask_save(); });
+SaveController::SaveController(const Desk& desk, Panel& panel)
+    : Controller(desk), panel_(panel), saving_(messages_) {
+    connect(&panel_.brush_controls(), &BrushControls::save_wanted, this, [this] { ask_save(); });
 }
 
-void EditController::show() {
-    panel_.brush_controls().set_reason(
-        content_.player() ? tr("A sequence cannot be edited: open one frame of it (--time-step).")
-                          : QString());
-    use_brush(panel_.brush_controls().choice());
-}
-
-void EditController::use_brush(const BrushChoice& brush) {
-    run::VolumeEditor* editor = content_.editor();
-    if (!editor) return;
-    try {
-        editor->set_brush(brush.on && !resting_ ? std::optional<run::HandBrush>(brush)
-                                                : std::nullopt);
-        brush_ = brush;
-    } catch (const std::invalid_argument& e) {
-        panel_.brush_controls().refuse(brush_, QString::fromStdString(e.what()));
-    }
-}
-
-void EditController::rest(bool on) {
-    resting_ = on;
-    use_brush(panel_.brush_controls().choice());
-}
-
-void EditController::undo() {
-    step(&run::VolumeEditor::undo, tr("There is nothing to undo"));
-}
-
-void EditController::redo() {
-    step(&run::VolumeEditor::redo, tr("There is nothing to redo"));
-}
-
-void EditController::step(bool (run::VolumeEditor::*take)(const OnProgress&),
-                          const QString& if_none) {
-    messages_.guarded([&] {
-        run::VolumeEditor* editor = content_.editor();
-        if (editor && !(editor->*take)({})) messages_.show_done(if_none);
-    });
-}
-
-void EditController::observe() {
-    const run::VolumeEditor* editor = content_.editor();
-    if (!editor) return;
-    const run::EditState state = editor->state();
-    panel_.brush_controls().set_history(state.undo_steps, state.redo_steps, state.changed);
-    const QString problem = QString::fromStdString(state.problem);
-    if (problem != std::exchange(problem_, problem) && !problem.isEmpty()) {
-        messages_.show_done(problem);
-    }
-}
-
-void EditController::ask_save(std::function<void()> then) {
+void SaveController::ask_save(std::function<void()> then) {
     if (!content_.live()) return;
     const std::string volume = run::name_of(content_.source());
     const std::string kind(io::written_extension_of(volume));
@@ -136,7 +81,7 @@ void EditController::ask_save(std::function<void()> then) {
     if (!path.isEmpty()) save(path, std::move(then));
 }
 
-void EditController::save(const QString& path, std::function<void()> then) {
+void SaveController::save(const QString& path, std::function<void()> then) {
     if (!content_.live() || saving()) return;
     const std::filesystem::path file(path.toStdString());
     const std::shared_ptr<run::Data> data = content_.data();
@@ -163,7 +108,7 @@ void EditController::save(const QString& path, std::function<void()> then) {
         });
 }
 
-void EditController::ask_save_surface() {
+void SaveController::ask_save_surface() {
     const std::string volume = run::name_of(content_.source());
     const auto kind = static_cast<int>(io::written_extension_of(volume).size());  // .nii.gz is one
     const QFileInfo name(QString::fromStdString(volume));
@@ -174,7 +119,7 @@ void EditController::ask_save_surface() {
     if (!path.isEmpty()) save_surface(path);
 }
 
-void EditController::save_surface(const QString& path) {
+void SaveController::save_surface(const QString& path) {
     if (!content_.live() || saving()) return;
     const std::filesystem::path file(path.toStdString());
     if (!messages_.guarded([&] { (void)io::mesh_format_from(file); })) return;
@@ -189,7 +134,7 @@ void EditController::save_surface(const QString& path) {
 }
 
 /// Offers to simplify a large one.
-void EditController::write_surface(const QString& path, const std::shared_ptr<SurfaceMesh>& mesh) {
+void SaveController::write_surface(const QString& path, const std::shared_ptr<SurfaceMesh>& mesh) {
     std::size_t most = mesh->triangles.size();
     if (most > many_triangles_) {
         QMessageBox box(QMessageBox::Question, "Palpate",
@@ -217,15 +162,15 @@ void EditController::write_surface(const QString& path, const std::shared_ptr<Su
     });
 }
 
-void EditController::settle_edits(const std::function<void()>& action) {
+void SaveController::settle_edits(const std::function<void()>& action) {
     if (may_lose_edits(action)) action();
 }
 
-bool EditController::may_lose_edits(const std::function<void()>& once_saved) {
+bool SaveController::may_lose_edits(const std::function<void()>& once_saved) {
     return go_on(tr("The volume was edited, and not saved since. Save it?"), {}, once_saved);
 }
 
-void EditController::save_edits_first(const std::function<void()>& action) {
+void SaveController::save_edits_first(const std::function<void()>& action) {
     const bool at_once = go_on(tr("This will name the volume's file, which has not the latest "
                                   "edits. Save the volume first?"),
                                tr("Without the edits"), action);
@@ -233,7 +178,7 @@ void EditController::save_edits_first(const std::function<void()>& action) {
 }
 
 /// Asks, if there are unsaved edits.
-bool EditController::go_on(const QString& question, const QString& without,
+bool SaveController::go_on(const QString& question, const QString& without,
                            const std::function<void()>& once_saved) {
     if (saving()) {
         messages_.show_done(tr("The volume is still being saved"));
@@ -243,7 +188,7 @@ bool EditController::go_on(const QString& question, const QString& without,
                                             [this, once_saved] { ask_save(once_saved); });
 }
 
-std::shared_ptr<const Samples> EditController::unsaved() const {
+std::shared_ptr<const Samples> SaveController::unsaved() const {
     const run::VolumeEditor* editor = content_.editor();
     if (!editor) return nullptr;
     const run::EditState state = editor->state();

@@ -11,6 +11,7 @@ class QTabWidget;
 namespace palpate::viewer {
 
 class BrushControls;
+class Desk;
 class DeviceControls;
 class HandSwitch;
 class IsovalueControls;
@@ -26,14 +27,14 @@ class Panel : public QWidget {
 
   public:
     /// Of a recording only the look can be set, without a session nothing.
-    explicit Panel(Effect& effect, QWidget* parent = nullptr);
+    explicit Panel(const Desk& desk, QWidget* parent = nullptr);
     ~Panel() override;
 
     IsovalueControls& isovalue_controls() { return *isovalue_; }
     LookControls& look_controls() { return *look_; }
     OverlayControls& overlay_controls() { return *overlay_; }
     LayersControls& layers_controls() { return *layers_; }
-    BrushControls& brush_controls() { return *edit_; }
+    BrushControls& brush_controls() { return *brush_; }
     DeviceControls& device_controls() { return *device_; }
     HandSwitch& hand_switch() { return *hands_; }
     ToolControls& tool_controls() { return *tool_; }
@@ -48,15 +49,15 @@ class Panel : public QWidget {
     void show_marks();
 
     Effect& effect_;
-    HandSwitch* hands_;
     IsovalueControls* isovalue_;
-    LayersControls* layers_;
     ToolControls* tool_;
-    BrushControls* edit_;
+    BrushControls* brush_;
+    HandSwitch* hands_;
     DeviceControls* device_;
     LoopView* loop_;
     LookControls* look_;
     OverlayControls* overlay_;
+    LayersControls* layers_;
     QTabWidget* tabs_;
 };
 

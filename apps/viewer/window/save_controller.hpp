@@ -1,5 +1,4 @@
-// Edits of the volume that is felt: the brush, undo and redo, saving, and the question whether
-// unsaved edits may be lost.
+// Saves the volume that is felt, and its surface, and asks whether unsaved edits may be lost.
 #pragma once
 
 #include <QObject>
@@ -7,7 +6,6 @@
 #include <functional>
 #include <memory>
 
-#include "apps/viewer/panel/brush_controls.hpp"
 #include "apps/viewer/window/desk.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "palpate/run/data.hpp"
@@ -15,17 +13,13 @@
 
 namespace palpate::viewer {
 
-class EditController : public Controller {
+class Panel;
+
+class SaveController : public Controller {
     Q_OBJECT
 
   public:
-    explicit EditController(const Desk& desk);
-
-    void use_brush(const BrushChoice& brush);
-    /// While the hand is lifted the brush does nothing.
-    void rest(bool on);
-    void undo();
-    void redo();
+    SaveController(const Desk& desk, Panel& panel);
 
     /// Asks for a name; offers the format of the volume, if it can be written. `then` runs once it
     /// is saved.
@@ -40,7 +34,7 @@ class EditController : public Controller {
     /// More triangles than this are many.
     void set_many_triangles(std::size_t triangles) { many_triangles_ = triangles; }
     bool saving() const { return saving_.busy(); }
-    BackgroundTask& saver() { return saving_; }
+    BackgroundTask& task() { return saving_; }
 
     /// True if there are no unsaved edits, or the user goes on without them. Offers to save them,
     /// and calls `once_saved` when that is done. False while the volume is being saved.
@@ -52,21 +46,14 @@ class EditController : public Controller {
     /// The samples, if they have edits that were not saved; else null.
     std::shared_ptr<const Samples> unsaved() const;
 
-    /// Shows in the panel what can be undone, and why the brush does nothing.
-    void observe();
-
   private:
     bool go_on(const QString& question, const QString& without,
                const std::function<void()>& once_saved);
-    void show();
     void write_surface(const QString& path, const std::shared_ptr<SurfaceMesh>& mesh);
-    void step(bool (run::VolumeEditor::*take)(const OnProgress&), const QString& if_none);
 
+    Panel& panel_;
     BackgroundTask saving_;
-    QString problem_;
-    bool resting_ = false;
     std::size_t many_triangles_ = 1000000;
-    BrushChoice brush_;  // the last one that could be
 };
 
 /// Saves edits where run::Data::rescue() finds a place; prints the name on standard error.

@@ -1,5 +1,5 @@
-// Layers: the choice of a set, what is touched now, the list of layers with the properties of one,
-// and the force along the stroke.
+// Layers: the choice of a set that suits the volume, opening and saving others, what is touched
+// now, the list of layers with the properties of one, and the force along the stroke.
 #pragma once
 
 #include <QCoreApplication>
@@ -17,10 +17,17 @@
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
+#include "apps/viewer/window/desk.hpp"
+#include "apps/viewer/window/messages.hpp"
+#include "palpate/io/layers_file.hpp"
 
 namespace palpate::viewer {
 
+class LookControls;
+class OverlayControls;
 class StrokePlot;
+struct Overlay;
+struct SessionFile;
 
 /// Names, units and usual ranges of what layers and their curves give.
 struct PropertyWords {
@@ -59,7 +66,7 @@ inline constexpr const PropertyWords& words_of(HapticProperty property) {
     return property_words[static_cast<std::size_t>(property)];
 }
 
-/// A set that can be chosen. One by label may lack the places of its labels: labels_wanted().
+/// A set that can be chosen. One by label may lack the places of its labels.
 struct LayersChoice {
     SharedLayers layers;
     QString about;
@@ -71,12 +78,20 @@ struct LayersChoice {
 /// for the properties, layer_never; with _clear, the button that clears a property. Of their
 /// curves: curve_property, start_curve, remove_curve, curve_note; start_gradient, remove_gradient,
 /// gradient_chart. layers_closing, needle, needle_lateral, needle_static_ratio, needle_stick_speed.
-class LayersControls : public EffectForm {
+class LayersControls : public EffectForm, protected Desk {
     Q_OBJECT
 
   public:
-    explicit LayersControls(Effect& effect);
+    LayersControls(const Desk& desk, LookControls& look, OverlayControls& overlays);
 
+    /// Whether a file is a set of layers, by its content.
+    static bool is_layers_file(const QString& path);
+    /// Feels the layers of a file. Errors are shown; the layers before stay then.
+    void open(const QString& path);
+    /// Each hand of the session feels its layers that lack_labels() once their label volume has
+    /// been read; a name that is relative counts from the working folder, then from that of `file`.
+    void restore(const SessionFile& session, const QString& file);
+    BackgroundTask& reader() { return reader_; }
     void set_choices(std::vector<LayersChoice> choices);
     const SharedLayers& layers() const { return effect_.settings().layers; }
     /// They were changed, and are in no file.
@@ -84,8 +99,6 @@ class LayersControls : public EffectForm {
     void set_saved() { saved_ = layers(); }
     /// Of the layer that is chosen; nothing: there is none, or layers are by label.
     std::optional<double> chosen_level() const;
-    /// What a file that was opened says; shown until another set is chosen.
-    void say(const QString& note) { note_->say(note); }
     /// As by hand.
     void use(const SharedLayers& layers);
     void move_level(int layer, double level);
@@ -100,12 +113,8 @@ class LayersControls : public EffectForm {
     void set_one_step(int ms) { one_step_ms_ = ms; }
 
   Q_SIGNALS:
-    /// The places of its labels are to be looked up, then use().
-    void labels_wanted(const palpate::viewer::SharedLayers& layers);
     /// The curve of another property is to be shown.
     void curve_chosen();
-    void open_wanted();
-    void save_wanted();
 
   private:
     QWidget* make_choice();
@@ -121,6 +130,17 @@ class LayersControls : public EffectForm {
     void begin() override;
     void clear() override;
     void choose_set(int at);
+    LayersChoice choice_of(const io::LayersFile& file) const;
+    LayersChoice choice_of_labels(const Overlay& labels) const;
+    void limit_to_labels(LayersChoice& choice) const;
+    void offer();
+    void feel_labels();
+    void feel(const LayersChoice& choice);
+    void place(const SharedLayers& layers);
+    void show_label_map();
+    void ask_open();
+    void ask_save();
+    void save(const QString& path);
     void edit(const SharedLayers& next, const QString& key = {});
     void request(const SharedLayers& next);
     void change(const QString& key, const std::function<void(Layers&)>& how);
@@ -142,6 +162,10 @@ class LayersControls : public EffectForm {
     const Layers& all() const;
     double gap() const;
 
+    LookControls& look_;
+    OverlayControls& overlays_;
+    std::vector<io::LayersFile> files_;  // built in, then those that were opened
+    BackgroundTask reader_;              // of labels
     SharedLayers saved_;
     double low_ = 0, high_ = 1;
     std::vector<LayersChoice> choices_;

@@ -1,5 +1,9 @@
-// The forms of the chosen layer, of the needle, and of the curves of a property.
+// The controls of layers: the choice of a set, the list, the forms of the chosen layer, of the
+// needle, and of the curves of a property.
+#include <QBoxLayout>
 #include <QLineEdit>
+#include <QSignalBlocker>
+#include <QStandardItemModel>
 #include <QToolButton>
 
 #include <algorithm>
@@ -7,9 +11,147 @@
 #include <limits>
 #include <utility>
 
-#include "apps/viewer/panel/layers_controls.hpp"
+#include "apps/viewer/panel/names.hpp"
+#include "apps/viewer/window/layers_controls.hpp"
 
 namespace palpate::viewer {
+namespace {
+
+constexpr int most_rows = 6;  // of the list without scrolling
+
+/// Long tips in lines.
+QString wrapped(const QString& text) {
+    return "<p>" + text.toHtmlEscaped() + "</p>";
+}
+
+}  // namespace
+
+QWidget* LayersControls::make_choice() {
+    let_wheel_pass(*choice_);
+    choice_->setAccessibleName(tr("Layers"));
+    choice_->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    choice_->setMinimumContentsLength(12);
+    connect(choice_, qOverload<int>(&QComboBox::activated), this, &LayersControls::choose_set);
+    auto* open = button(
+        {"open_layers", tr("Open…"), tr("A set of layers from a file (JSON)"), tr("Open layers")},
+        [this] { ask_open(); });
+    auto* save = button(
+        {"save_layers", tr("Save as…"),
+         tr("This set of layers to a file (JSON), for these and other data"), tr("Save layers")},
+        [this] { ask_save(); }, [this] { return layers() != nullptr; });
+    auto* add = button({"add_layer", tr("Add"), {}, tr("Add a layer")}, [this] { add_layer(); });
+    each_time(add, [this](QWidget& one) {
+        const bool full = count() >= Layers::most_layers;
+        one.setEnabled(!by_label() && !full);
+        one.setToolTip(
+            by_label() ? tr("The labels are chosen in the label map: show those to feel, on the "
+                            "page Data, and feel them again")
+            : full     ? tr("There are %1 layers at most").arg(Layers::most_layers)
+                       : tr("Another layer, where levels leave the most room; the first at the "
+                                "isovalue"));
+    });
+    auto* undo = button(
+        {"undo_layers", "↶", tr("Undo the last change of layers"), tr("Undo, layers")},
+        [this] { step(true); }, [this] { return history_.can_undo(); });
+    auto* redo = button(
+        {"redo_layers", "↷", tr("Redo the change of layers that was undone"), tr("Redo, layers")},
+        [this] { step(false); }, [this] { return history_.can_redo(); });
+    for (QWidget* one : {undo, redo}) one->setMaximumWidth(2 * fontMetrics().height());
+    return column_of({choice_, row_of({open, save, add, undo, redo}, 1)});
+}
+
+/// Layers by label have an order instead of levels.
+QWidget* LayersControls::make_list() {
+    list_->setAccessibleName(tr("Layers, from outside in"));
+    list_->setUniformItemSizes(true);
+    connect(list_, &QListWidget::currentRowChanged, this, &LayersControls::refresh);
+    each_time(list_, [this](QWidget& one) {
+        one.setToolTip(by_label() ? tr("Layers by label; choose one to change it. The order says "
+                                       "which one counts where two meet")
+                                  : tr("Layers from outside in; choose one to change it. Their "
+                                       "levels are lines to drag on the histogram"));
+    });
+    auto* remove = button(
+        {"remove_layer", tr("Remove"), tr("Remove the chosen layer"), tr("Remove the layer")},
+        [this] { remove_layer(); }, [this] { return chosen() >= 0; });
+    auto* earlier = button(
+        {"layer_earlier", "▲",
+         tr("Earlier in the list: a surface between two labels has the "
+            "properties of the later one"),
+         tr("Layer earlier in the list")},
+        [this] { shift_layer(-1); }, [this] { return chosen() > levels(); });
+    auto* later = button(
+        {"layer_later", "▼",
+         tr("Later in the list: a surface between two labels has the properties "
+            "of the later one"),
+         tr("Layer later in the list")},
+        [this] { shift_layer(1); },
+        [this] { return chosen() >= levels() && chosen() + 1 < count(); });
+    for (QWidget* one : {earlier, later}) {
+        one->setMaximumWidth(2 * fontMetrics().height());
+        each_time(one, [this](QWidget& shown) { shown.setVisible(by_label()); });
+    }
+    auto* buttons = row_of({remove, earlier, later});
+    buttons->layout()->setAlignment(Qt::AlignLeft);
+    return column_of({list_, buttons, make_layer(), make_needle(), make_curves()});
+}
+
+/// None, the sets that can be had, and the one in use where it is none of them.
+void LayersControls::show_choice() {
+    const QSignalBlocker quiet(choice_);
+    choice_->clear();
+    choice_->addItem(tr("No layers: one surface"));
+    choice_->setItemData(0, wrapped(tr("The surface of the isovalue is felt")), Qt::ToolTipRole);
+    int now = 0;
+    bool changed = false;  // the one in use was made from one that is offered
+    for (const LayersChoice& one : choices_) {
+        choice_->addItem(shown_set(one.layers->name));
+        const int at = choice_->count() - 1;
+        choice_->setItemData(at,
+                             wrapped(one.note.isEmpty() ? one.about : one.note + ". " + one.about),
+                             Qt::ToolTipRole);
+        auto* model = qobject_cast<QStandardItemModel*>(choice_->model());
+        if (!one.possible) model->item(at)->setEnabled(false);
+        if (layers() && now == 0 && same(one.layers, layers())) now = at;
+        changed = changed || one.layers->name == all().name;
+    }
+    if (layers() && now == 0) {
+        const QString name = shown_set(layers()->name);
+        choice_->addItem(changed ? tr("%1 (changed)").arg(name) : name);
+        now = choice_->count() - 1;
+    }
+    choice_->setCurrentIndex(now);
+    choice_->setToolTip(now == 0 ? wrapped(tr("Several surfaces in one stroke, each with its own "
+                                              "stiffness, friction and puncture force"))
+                                 : choice_->itemData(now, Qt::ToolTipRole).toString());
+}
+
+/// With a mark where the device cannot render what a layer asks for.
+void LayersControls::show_list() {
+    const QSignalBlocker quiet(list_);
+    const int row = std::clamp(list_->currentRow(), count() > 0 ? 0 : -1, count() - 1);
+    while (list_->count() > count()) delete list_->takeItem(list_->count() - 1);
+    while (list_->count() < count()) list_->addItem("");
+    for (std::size_t at = 0; at < all().layers.size(); ++at) {
+        const Layer& layer = all().layers[at];
+        QListWidgetItem& item = *list_->item(static_cast<int>(at));
+        item.setIcon(icon_of(colour_of(layer)));
+        item.setText((is_label(all(), at) ? tr("%1   label %2") : QString("%1   %2"))
+                         .arg(QString::fromStdString(layer.name), number_text(layer.level)));
+        item.setToolTip({});
+        const auto lowered = lowered_stiffness(all(), at, effect_.settings());
+        if (!lowered) continue;
+        const double asked = property_at(all(), at, HapticProperty::stiffness, effect_.settings());
+        const QString rendered = number_text(*lowered, 3);
+        item.setText(item.text() + "   ⚠ " + tr("rendered at %1 N/mm").arg(rendered));
+        item.setToolTip(tr("The device cannot render %1 N/mm stably with this damping and "
+                           "viscosity: it renders %2 N/mm")
+                            .arg(number_text(asked, 3), rendered));
+    }
+    list_->setCurrentRow(row);
+    const int rows = std::clamp(count(), 2, most_rows);
+    list_->setFixedHeight(rows * (fontMetrics().height() + 4) + 6);
+}
 
 QWidget* LayersControls::make_layer() {
     auto* editor = named(new QWidget, "layer_editor");

@@ -1,53 +1,66 @@
-// Opens an overlay over the volume, and shows it in slices and scene.
+// The overlay: opens and closes one over the volume, in the background, and shows it in slices and
+// scene. Its controls show and change the overlay's part of the look.
 #pragma once
 
-#include <QObject>
+#include <QLabel>
+#include <QListWidget>
+
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "apps/viewer/model/overlay.hpp"
 #include "apps/viewer/scene/surface_maker.hpp"
 #include "apps/viewer/window/desk.hpp"
+#include "apps/viewer/window/look_controls.hpp"
 #include "apps/viewer/window/messages.hpp"
 
 namespace palpate::viewer {
 
-class OverlayController : public Controller {
+class OverlayControls : public EffectForm, protected Desk {
     Q_OBJECT
 
   public:
-    explicit OverlayController(const Desk& desk);
+    OverlayControls(const Desk& desk, LookControls& look);
 
     /// By a dialog.
     void ask_open();
     /// Over the volume that is open, once it has been read. Errors are shown; the overlay before
     /// stays then.
     void open(const run::Source& source);
-    void close();
+    void close_overlay();
     /// Null: none.
     const std::shared_ptr<const Overlay>& overlay() const { return overlay_; }
     /// Labels have the colours and opacities of the layers shown, where those are by label.
-    void colour();
-    bool settled() const { return !loader_.busy() && !image_.extracting(); }
+    void colour_labels();
+    bool settled() const { return !loader_.busy() && !image_surface_.extracting(); }
     BackgroundTask& loader() { return loader_; }
 
   Q_SIGNALS:
     /// Another overlay, or none.
-    void changed();
+    void overlay_changed();
+    /// The labels that are shown are to be felt.
+    void feel_wanted();
 
   private:
+    const OverlayLook& its_look() const { return look_.look().overlay; }
+    void make_labels();
     void use(std::shared_ptr<const Overlay> overlay, std::vector<ExtractedSurface> labels);
     void keep_file(const std::filesystem::path& file);
-    void show();
+    void list(const Overlay* overlay);
+    void show_surfaces();
     void go_to(int label);
 
+    LookControls& look_;
     std::shared_ptr<const Overlay> overlay_;
     std::filesystem::path file_;  // of the overlay; empty: none
-    std::vector<ExtractedSurface> labels_;
-    SurfaceMaker image_;  // its surface
+    std::vector<ExtractedSurface> label_surfaces_;
+    SurfaceMaker image_surface_;
     BackgroundTask loader_;
+    QLabel* name_;
+    QPushButton *close_, *feel_;
+    QWidget *body_, *image_;
+    QListWidget* labels_;
 };
 
 }  // namespace palpate::viewer

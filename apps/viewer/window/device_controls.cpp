@@ -1,5 +1,5 @@
-// Lists devices and shows the state of the one in use.
-#include "apps/viewer/panel/device_controls.hpp"
+// Lists devices, changes to another one, and shows the state of the one in use.
+#include "apps/viewer/window/device_controls.hpp"
 
 #include <QBoxLayout>
 #include <QGridLayout>
@@ -8,17 +8,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "apps/options/words.hpp"
 #include "apps/viewer/panel/names.hpp"
+#include "apps/viewer/window/content.hpp"
 #include "palpate/devices/options.hpp"
 
 namespace palpate::viewer {
 namespace {
 
-constexpr const char* columns[] = {"p50", "p99", "p99.9", "max"};
+constexpr const char* percentiles[] = {"p50", "p99", "p99.9", "max"};
 
 QString time_text(std::int64_t ns) {
     return QString::fromStdString(app::duration_text(ns)).replace(" us", " µs");
@@ -26,7 +29,7 @@ QString time_text(std::int64_t ns) {
 
 }  // namespace
 
-LoopView::LoopView() {
+LoopView::LoopView(const Desk& desk) : Desk(desk) {
     auto* grid = new QGridLayout(this);
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setVerticalSpacing(2);
@@ -43,8 +46,8 @@ LoopView::LoopView() {
     grid->addWidget(new QLabel(tr("Lateness")), 3, 0);
     grid->addWidget(new QLabel(tr("Compute")), 4, 0);
     for (int i = 0; i < 4; ++i) {
-        const QString name = QString(columns[i]).remove('.');
-        grid->addWidget(new QLabel(columns[i]), 2, i + 1);
+        const QString name = QString(percentiles[i]).remove('.');
+        grid->addWidget(new QLabel(percentiles[i]), 2, i + 1);
         grid->addWidget(named(new QLabel, "lateness_" + name), 3, i + 1);
         grid->addWidget(named(new QLabel, "compute_" + name), 4, i + 1);
         grid->setColumnStretch(i + 1, 1);
@@ -53,7 +56,24 @@ LoopView::LoopView() {
     setToolTip(
         tr("Lateness: how late a tick began, caused by the rest of the machine.\n"
            "Compute: processor time of a tick."));
+    for (const auto over : {&Effect::begun, &Effect::ended}) {
+        connect(&content_.effect(), over, this, &LoopView::clear);
+    }
+    connect(&content_, &Content::hand_changed, this, [this] {
+        ticks_ = std::numeric_limits<std::int64_t>::max();  // of another servo
+    });
+    since_.start();
     clear();
+}
+
+void LoopView::observe() {
+    if (!content_.live()) return;
+    const ServoReport report = content_.live()->report();
+    const double seconds = 1e-3 * static_cast<double>(since_.restart());
+    const std::int64_t ticks = report.ticks - std::exchange(ticks_, report.ticks);
+    // Fewer than before: another servo.
+    if (ticks < 0 || !(seconds > 0)) return;
+    show_report(report, static_cast<double>(ticks) / seconds);
 }
 
 void LoopView::put(const QString& name, const QString& text) {
@@ -70,11 +90,13 @@ void LoopView::show_report(const ServoReport& report, double rate) {
         missed << tr("%n not recorded", nullptr, static_cast<int>(report.unrecorded));
     }
     put("loop_missed", missed.join(", "));
-    for (const auto& [row, its] :
-         {std::pair{"lateness_", report.lateness}, std::pair{"compute_", report.compute}}) {
+    const auto put_times = [this](const QString& row, const auto& its) {
         const std::int64_t times[] = {its.p50, its.p99, its.p999, its.max};
-        for (int i = 0; i < 4; ++i) put(row + QString(columns[i]).remove('.'), time_text(times[i]));
-    }
+        for (int i = 0; i < 4; ++i)
+            put(row + QString(percentiles[i]).remove('.'), time_text(times[i]));
+    };
+    put_times("lateness_", report.lateness);
+    put_times("compute_", report.compute);
     if (report.worst.tick < 0) return put("loop_worst", tr("none yet"));
     const std::int64_t whole = report.worst.lateness_ns + report.worst.work_ns;
     put("loop_worst",
@@ -112,8 +134,10 @@ QString length_text(const Vec3& size) {
 
 }  // namespace
 
-DeviceControls::DeviceControls(Effect& effect)
-    : EffectForm(effect),
+DeviceControls::DeviceControls(const Desk& desk)
+    : EffectForm(desk.effect()),
+      Desk(desk),
+      search_(messages_),
       picker_(named(new QComboBox, "devices",
                     tr("Devices; grey: not found, the tip says what was looked for"))),
       options_(named(new QLineEdit, "device_options")),
@@ -134,31 +158,36 @@ DeviceControls::DeviceControls(Effect& effect)
     make_controls();
     connect(picker_, qOverload<int>(&QComboBox::currentIndexChanged), this,
             &DeviceControls::choose);
-    connect(&effect, &Effect::observed, this, [this](const Snapshot& now) {
+    connect(&effect_, &Effect::observed, this, [this](const Snapshot& now) {
         show_status(now.session.device.status);
         // A number that is being typed is left alone.
         if (!findChild<NumberBox*>("scale")->hasFocus()) refresh();
     });
-    set_devices({}, {});
-    set_hands(1);
-    set_buttons({});
+    for (const auto changed : {&Content::device_changed, &Content::hand_changed}) {
+        connect(&content_, changed, this, [this] { list(findings_); });
+    }
+    connect(&content_, &Content::run_changed, this, &DeviceControls::show_buttons);
+    list({});
+    show_buttons();
 }
 
 void DeviceControls::make_controls() {
-    const auto connect_it = [this] { ask_for_device(&DeviceControls::chosen); };
+    const auto connect_it = [this] { ask_for_device(&DeviceControls::use_device); };
     connect(options_, &QLineEdit::returnPressed, this, connect_it);
     auto* look = button(
         {"refresh_devices", tr("Look again"), tr("Look for devices again; takes about a second")},
-        [this] { Q_EMIT refresh_wanted(); });
+        [this] { find_devices(); });
     auto* use =
         button({"connect_device", tr("Connect"), tr("Go on with this device; forces ramp up anew")},
                connect_it);
-    add_ = button({"add_hand", tr("Add as second hand"),
-                   tr("One more hand with the device above. Each feels what the other edits")},
-                  [this] { ask_for_device(&DeviceControls::added); });
-    remove_ = button(
+    auto* add = button({"add_hand", tr("Add as second hand"),
+                        tr("One more hand with the device above. Each feels what the other edits")},
+                       [this] { ask_for_device(&DeviceControls::add_hand); });
+    auto* remove = button(
         {"remove_hand", tr("Remove this hand"), tr("Its force ends; the other hand goes on")},
-        [this] { Q_EMIT removed(); });
+        [this] { content_.remove_hand(); });
+    each_time(add, [this](QWidget& one) { one.setVisible(content_.hands() < most_hands); });
+    each_time(remove, [this](QWidget& one) { one.setVisible(content_.hands() > 1); });
     auto* scale = number({"scale", "",
                           tr("Scale of the hand: mm in the volume for each mm of the hand. Changes "
                              "about the proxy, so that neither it nor the force moves")},
@@ -184,25 +213,28 @@ void DeviceControls::make_controls() {
                     &run::Buttons::deadman);
     form->addRow(tr("Clutch button"), clutch_);
     form->addRow(tr("Dead-man button"), deadman_);
-    column_in(this, {row_of({picker_, look}, 0), row_of({options_, use}, 0),
-                     row_of({add_, remove_}), missing_, problem_})
+    column_in(this, {row_of({picker_, look}, 0), row_of({options_, use}, 0), row_of({add, remove}),
+                     missing_, problem_})
         ->addLayout(form);
 }
 
 QComboBox* DeviceControls::make_button(const Words& words,
                                        run::ButtonSetup run::Buttons::*purpose) {
-    return choice(words, std::vector<std::string>(),
-                  {[this, purpose] { return run::text_of(purposes_.*purpose); },
-                   [this, purpose](const std::string& text) {
-                       run::Buttons wanted = purposes_;
-                       wanted.*purpose = run::button_from("", text);
-                       Q_EMIT buttons_wanted(wanted);
-                   }});
+    return choice(
+        words, std::vector<std::string>(),
+        {[this, purpose] {
+             const auto* live = content_.live();
+             return run::text_of(live ? live->setup().buttons.*purpose : run::Buttons{}.*purpose);
+         },
+         [this, purpose](const std::string& text) {
+             run::Buttons wanted = content_.live()->setup().buttons;
+             wanted.*purpose = run::button_from("", text);
+             messages_.guarded([&] { content_.use_buttons(wanted); });
+         }});
 }
 
 /// Lists the buttons of the device.
-void DeviceControls::set_buttons(const run::Buttons& buttons) {
-    purposes_ = buttons;
+void DeviceControls::show_buttons() {
     const int count = effect_.there() ? effect_.device().buttons : 0;
     for (QComboBox* box : {clutch_, deadman_}) {
         box->clear();
@@ -217,8 +249,30 @@ void DeviceControls::set_buttons(const run::Buttons& buttons) {
     refresh();
 }
 
-void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& findings,
-                                 const QString& current) {
+void DeviceControls::find_devices() {
+    if (search_.busy()) return;
+    const auto found = std::make_shared<std::vector<devices::DeviceFinding>>();
+    search_.start(
+        tr("Looking for devices"),
+        [found](const io::Progress& progress) { *found = devices::find_devices(progress); },
+        [this, found] {
+            list(*found);
+            Q_EMIT devices_found(device_words());
+        });
+}
+
+QString DeviceControls::device_words() const {
+    QStringList names;
+    for (const devices::DeviceFinding& finding : findings_) {
+        const bool made =
+            finding.name == "mouse" || finding.name == "simulated" || finding.name == "recorded";
+        if (finding.found && !made) names << QString::fromStdString(finding.name);
+    }
+    if (names.isEmpty()) return tr("No haptic device was found: the mouse is the hand.");
+    return tr("Found: %1. Choose it under Device.").arg(names.join(", "));
+}
+
+void DeviceControls::list(const std::vector<devices::DeviceFinding>& findings) {
     findings_ = findings;
     // These two exist on any machine, even before a search.
     for (const char* name : {"mouse", "simulated"}) {
@@ -244,10 +298,15 @@ void DeviceControls::set_devices(const std::vector<devices::DeviceFinding>& find
                              Qt::ForegroundRole);
         picker_->setItemData(row, QString::fromStdString(finding.missing), Qt::ToolTipRole);
     }
+    const devices::DeviceChoice& device =
+        content_.live() ? content_.live()->setup().device : content_.request().setup.device;
+    const QString current = QString::fromStdString(run::text_of(device));
     const int colon = current.indexOf(':');
     picker_->setCurrentIndex(std::max(0, picker_->findData(current.left(colon))));
     choose(picker_->currentIndex());
     options_->setText(colon < 0 ? QString() : current.mid(colon + 1));
+    told_.reset();
+    refresh();
 }
 
 void DeviceControls::choose(int row) {
@@ -261,7 +320,7 @@ void DeviceControls::choose(int row) {
     picker_->setToolTip(picker_->itemData(row, Qt::ToolTipRole).toString());
 }
 
-void DeviceControls::ask_for_device(void (DeviceControls::*signal)(const QString&)) {
+void DeviceControls::ask_for_device(void (DeviceControls::*use)(const QString&)) {
     const QString options = options_->text().trimmed();
     const QString option =
         picker_->currentData().toString() + (options.isEmpty() ? "" : ":" + options);
@@ -272,12 +331,27 @@ void DeviceControls::ask_for_device(void (DeviceControls::*signal)(const QString
         return;
     }
     Q_EMIT nonsense({});
-    Q_EMIT(this->*signal)(option);
+    (this->*use)(option);
 }
 
-void DeviceControls::set_hands(int hands) {
-    add_->setVisible(hands < 2);
-    remove_->setVisible(hands > 1);
+void DeviceControls::use_device(const QString& option) {
+    if (!content_.live()) return;
+    messages_.guarded([&] { content_.use_device(devices::parse_device(option.toStdString())); });
+    list(findings_);
+}
+
+void DeviceControls::add_hand(const QString& option) {
+    messages_.guarded([&] { content_.add_hand(devices::parse_device(option.toStdString())); });
+}
+
+void DeviceControls::observe(const Snapshot& now) {
+    const run::Run* live = content_.live();
+    if (!live) return;
+    const DeviceStatus status = now.session.device.status;
+    const QString problem = QString::fromStdString(live->device_problem());
+    if (told_ == status && problem_->text() == problem) return;
+    told_ = status;
+    show_device(live->device(), status, problem);
 }
 
 void DeviceControls::show_status(DeviceStatus status) {

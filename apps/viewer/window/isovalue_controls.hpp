@@ -6,14 +6,15 @@
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/form.hpp"
 #include "apps/viewer/panel/level_chart.hpp"
+#include "apps/viewer/window/desk.hpp"
 
 namespace palpate::viewer {
 
-class IsovalueControls : public EffectForm {
+class IsovalueControls : public EffectForm, protected Desk {
     Q_OBJECT
 
   public:
-    explicit IsovalueControls(Effect& effect);
+    explicit IsovalueControls(const Desk& desk);
 
     /// Whether the samples are dequantized, whether they could be, and why that is worth it (or
     /// nothing).
@@ -21,7 +22,6 @@ class IsovalueControls : public EffectForm {
     LevelChart& chart() { return *chart_; }
 
   Q_SIGNALS:
-    void field_wanted(palpate::Solid solid, palpate::Interpolation interpolation);
     void dequantize_wanted(bool on);  ///< it shows the state before until the next set_dequantized
 
   private:
@@ -30,6 +30,8 @@ class IsovalueControls : public EffectForm {
     void begin() override;
     void clear() override;
     bool layered() const;
+    void use_field(Solid solid, Interpolation interpolation);
+    void show_terraces();
     void show_felt(double isovalue, bool penetrability_on);
 
     LevelChart* chart_;

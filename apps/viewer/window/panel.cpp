@@ -1,5 +1,5 @@
 // Turns changes by the user into commands, and shows the settings in effect.
-#include "apps/viewer/panel/panel.hpp"
+#include "apps/viewer/window/panel.hpp"
 
 #include <QEvent>
 #include <QRegularExpression>
@@ -11,15 +11,15 @@
 #include <utility>
 #include <vector>
 
-#include "apps/viewer/panel/brush_controls.hpp"
-#include "apps/viewer/panel/device_controls.hpp"
-#include "apps/viewer/panel/hand_switch.hpp"
-#include "apps/viewer/panel/isovalue_controls.hpp"
-#include "apps/viewer/panel/layers_controls.hpp"
-#include "apps/viewer/panel/look_controls.hpp"
-#include "apps/viewer/panel/overlay_controls.hpp"
 #include "apps/viewer/panel/sections.hpp"
-#include "apps/viewer/panel/tool_controls.hpp"
+#include "apps/viewer/window/brush_controls.hpp"
+#include "apps/viewer/window/device_controls.hpp"
+#include "apps/viewer/window/hand_switch.hpp"
+#include "apps/viewer/window/isovalue_controls.hpp"
+#include "apps/viewer/window/layers_controls.hpp"
+#include "apps/viewer/window/look_controls.hpp"
+#include "apps/viewer/window/overlay_controls.hpp"
+#include "apps/viewer/window/tool_controls.hpp"
 
 namespace palpate::viewer {
 namespace {
@@ -52,28 +52,25 @@ class Page : public QScrollArea {
 
 }  // namespace
 
-Panel::Panel(Effect& effect, QWidget* parent)
+Panel::Panel(const Desk& desk, QWidget* parent)
     : QWidget(parent),
-      effect_(effect),
-      hands_(new HandSwitch),
-      isovalue_(new IsovalueControls(effect)),
-      layers_(new LayersControls(effect)),
-      tool_(new ToolControls(effect)),
-      edit_(new BrushControls(effect)),
-      device_(new DeviceControls(effect)),
-      loop_(new LoopView),
-      look_(new LookControls(effect)),
-      overlay_(new OverlayControls(effect, *look_)),
+      effect_(desk.effect()),
+      isovalue_(new IsovalueControls(desk)),
+      tool_(new ToolControls(desk)),
+      brush_(new BrushControls(desk)),
+      hands_(new HandSwitch(desk, *brush_)),
+      device_(new DeviceControls(desk)),
+      loop_(new LoopView(desk)),
+      look_(new LookControls(desk)),
+      overlay_(new OverlayControls(desk, *look_)),
+      layers_(new LayersControls(desk, *look_, *overlay_)),
       tabs_(named(new QTabWidget, "tabs")) {
     setObjectName("panel");
     build();
     connect(&effect_, &Effect::answered, this, &Panel::answer);
     connect(&effect_, &Effect::changed, this, &Panel::show_marks);
     for (const auto over : {&Effect::begun, &Effect::ended}) {
-        connect(&effect_, over, this, [this] {
-            loop_->clear();
-            enable();
-        });
+        connect(&effect_, over, this, &Panel::enable);
     }
     connect_levels();
     let_return_press_buttons(*this);
@@ -109,7 +106,7 @@ void Panel::build() {
                       part(tr("Force"), "force_part", force_section(effect_))});
     add(tr("L&ook"), {part(tr("Look"), "look_part", look_)});
     add(tr("D&ata"),
-        {part(tr("Edit"), "edit_part", edit_), part(tr("Overlay"), "overlay_part", overlay_)});
+        {part(tr("Edit"), "edit_part", brush_), part(tr("Overlay"), "overlay_part", overlay_)});
     Section* loop = part(tr("Advanced: servo loop"), "loop_part", loop_);
     loop->set_open(false);
     add(tr("Devi&ce"), {part(tr("Device"), "device_part", device_), loop});
@@ -142,7 +139,6 @@ void Panel::connect_levels() {
     connect(&isovalue_->chart(), &LevelChart::curve_changed, layers_, &LayersControls::set_curve);
     connect(layers_, &LayersControls::curve_chosen, this, &Panel::show_marks);
     connect(look_, &LookControls::look_changed, this, &Panel::show_marks);
-    connect(look_, &LookControls::look_set, this, &Panel::show_marks);
     connect(overlay_, &OverlayControls::feel_wanted, this, [this] { raise_page(*layers_); });
 }
 

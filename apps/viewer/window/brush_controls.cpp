@@ -1,5 +1,5 @@
-// Connects the brush controls with the brush that is chosen.
-#include "apps/viewer/panel/brush_controls.hpp"
+// Connects the brush controls with the brush that is chosen, and that with the editor.
+#include "apps/viewer/window/brush_controls.hpp"
 
 #include <QBoxLayout>
 #include <QButtonGroup>
@@ -10,8 +10,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
+#include "apps/viewer/window/content.hpp"
+#include "apps/viewer/window/messages.hpp"
+#include "apps/viewer/window/views.hpp"
 #include "palpate/names.hpp"
 
 namespace palpate::viewer {
@@ -47,8 +51,9 @@ QString in_words(std::size_t steps) {
 
 }  // namespace
 
-BrushControls::BrushControls(Effect& effect)
-    : EffectForm(effect),
+BrushControls::BrushControls(const Desk& desk)
+    : EffectForm(desk.effect()),
+      Desk(desk),
       body_(new QWidget),
       reason_(new Note("brush_reason", Note::Kind::plain)),
       on_(button({"brush", "", tr("While it is on, the probe edits the samples where it is")},
@@ -67,8 +72,15 @@ BrushControls::BrushControls(Effect& effect)
     column->addWidget(make_history());
     column->addWidget(state_);
     column_in(this, {reason_, body_});
-    connect(&effect, &Effect::changed, this,
+    connect(&effect_, &Effect::changed, this,
             [this] { set_tool(effect_.settings().tool != nullptr); });
+    connect(&content_, &Content::run_changed, this, [this] {
+        set_reason(content_.player()
+                       ? tr("A sequence cannot be edited: open one frame of it (--time-step).")
+                       : QString());
+        use();
+    });
+    connect(&content_, &Content::closed, this, &BrushControls::use);
     clear();
     refresh();
 }
@@ -204,11 +216,11 @@ QWidget* BrushControls::make_value() {
 }
 
 QWidget* BrushControls::make_history() {
-    undo_ = button({"undo", ""}, [this] { Q_EMIT undo(); });
-    redo_ = button({"redo", ""}, [this] { Q_EMIT redo(); });
+    undo_ = button({"undo", ""}, [this] { undo(); });
+    redo_ = button({"redo", ""}, [this] { redo(); });
     auto* save =
         button({"save_edits", tr("Save as..."), tr("Writes the volume as it is now to a file")},
-               [this] { Q_EMIT this->save(); });
+               [this] { Q_EMIT save_wanted(); });
     for (QPushButton* one : {undo_, redo_, save}) {
         one->setMinimumWidth(fontMetrics().horizontalAdvance(tr("Undo") + " (000)  "));
         connect(one, &QPushButton::pressed, this, [this] { Q_EMIT nonsense({}); });
@@ -219,24 +231,76 @@ QWidget* BrushControls::make_history() {
 void BrushControls::change(const std::function<void(BrushChoice&)>& how) {
     BrushChoice next = choice_;
     how(next);
-    const bool same = next == choice_;
-    set_choice(next);
-    if (same) return;
+    if (next == choice_) return refresh();
     Q_EMIT nonsense({});
-    Q_EMIT changed(choice_);
+    set_choice(next);
 }
 
 void BrushControls::set_choice(const BrushChoice& choice) {
+    show_choice(choice);
+    use();
+}
+
+/// One that the editor cannot use is undone.
+void BrushControls::use() {
+    run::VolumeEditor* editor = content_.editor();
+    if (editor) {
+        try {
+            const bool works = choice_.on && !resting_;
+            editor->set_brush(works ? std::optional<run::HandBrush>(choice_) : std::nullopt);
+            used_ = choice_;
+        } catch (const std::invalid_argument& e) {
+            show_choice(used_);
+            Q_EMIT nonsense(QString::fromStdString(e.what()));
+        }
+    }
+    const bool ball = editor && choice_.on && !choice_.as_tool;  // a tool is drawn
+    set(views_, &Shown::brush, ball ? choice_.radius : 0);
+}
+
+void BrushControls::rest(bool on) {
+    resting_ = on;
+    use();
+}
+
+void BrushControls::undo() {
+    step(&run::VolumeEditor::undo, tr("There is nothing to undo"));
+}
+
+void BrushControls::redo() {
+    step(&run::VolumeEditor::redo, tr("There is nothing to redo"));
+}
+
+void BrushControls::step(bool (run::VolumeEditor::*take)(const OnProgress&),
+                         const QString& if_none) {
+    messages_.guarded([&] {
+        run::VolumeEditor* editor = content_.editor();
+        if (editor && !(editor->*take)({})) messages_.show_done(if_none);
+    });
+}
+
+void BrushControls::observe() {
+    const run::VolumeEditor* editor = content_.editor();
+    if (!editor) return;
+    const run::EditState state = editor->state();
+    set_history(state.undo_steps, state.redo_steps, state.changed);
+    const QString problem = QString::fromStdString(state.problem);
+    if (problem != std::exchange(problem_, problem) && !problem.isEmpty()) {
+        messages_.show_done(problem);
+    }
+}
+
+void BrushControls::toggle() {
+    const QString why = reason_->text();
+    why.isEmpty() ? on_->click() : messages_.show_done(why);
+}
+
+void BrushControls::show_choice(const BrushChoice& choice) {
     choice_ = choice;
     values_[static_cast<std::size_t>(choice.kind)] = choice.value;
     if (std::isfinite(choice.rate)) rate_ = choice.rate;
     (choice.as_tool ? beyond_ : ball_) = choice.radius;
     refresh();
-}
-
-void BrushControls::refuse(const BrushChoice& before, const QString& why) {
-    set_choice(before);
-    Q_EMIT nonsense(why);
 }
 
 /// The automatic value at the level in effect, from samples without edits.

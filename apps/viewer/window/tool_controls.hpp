@@ -6,21 +6,25 @@
 
 #include "apps/viewer/panel/effect.hpp"
 #include "apps/viewer/panel/form.hpp"
+#include "apps/viewer/window/desk.hpp"
+#include "apps/viewer/window/messages.hpp"
 #include "palpate/io/tool_file.hpp"
 
 namespace palpate::viewer {
 
-class ToolControls : public EffectForm {
+class ToolControls : public EffectForm, protected Desk {
     Q_OBJECT
 
   public:
-    explicit ToolControls(Effect& effect);
+    explicit ToolControls(const Desk& desk);
 
+    /// Whether a file that is dropped on the window is a tool: a mesh, by its name.
+    static bool is_tool_file(const QString& path);
+    /// Feels with the tool of a file. Errors are shown; the tool before stays then.
+    void open(const QString& path);
+    BackgroundTask& reader() { return reader_; }
     /// Another choice, chosen as by hand.
     void add(const QString& name, const io::ToolSpec& spec);
-
-  Q_SIGNALS:
-    void open_wanted();
 
   private:
     struct Choice {
@@ -39,6 +43,7 @@ class ToolControls : public EffectForm {
     void show_tool();
     QString about() const;
 
+    BackgroundTask reader_;
     Geometry geometry_{Index3::Zero()};
     std::size_t built_in_ = 0;     // of the choices, the first ones
     std::vector<Choice> choices_;  // then those of files and sessions
