@@ -269,7 +269,7 @@ PALPATE_API void palpate_renderer_destroy(palpate_renderer *renderer);
  *   `force.magnet.peak` [N] Force of the magnet at half of that distance (default: 0).
  *   `force.texture.amplitude` [mm, physical] Height of the bumps (0: off) (default: 0).
  *   `force.texture.wavelength` [mm, physical] Distance from one bump to the next (default: 2).
- *   `force.limit` [N] Largest force, in addition to the device's limit (default: 3.3).
+ *   `force.limit` [N] Largest force, within the device's limit (default: 3.3).
  *   `force.rate_limit` [N/s] Largest change of force (default: 2000).
  *   `force.ramp` [s] Duration of the rise of the force from zero at the start (default: 0.25).
  *   `force.stale_after` [s] A longer time between two readings of the device is a pause (default: 0.02).

@@ -146,7 +146,7 @@ inline constexpr auto settings_of<ForceSettings> = std::tuple{
     setting(&ForceSettings::magnet, "magnet", "", "Pull the hand to a surface that is near")
         .as_option("--magnet"),
     setting(&ForceSettings::texture, "texture", "", "Bumps on the surface").as_option("--texture"),
-    setting(&ForceSettings::limit, "limit", "N", "Largest force, in addition to the device's limit")
+    setting(&ForceSettings::limit, "limit", "N", "Largest force, within the device's limit")
         .titled("force limit")
         .as_option("--force-limit")
         .if_open("the device's; offline 3.3")

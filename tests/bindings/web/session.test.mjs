@@ -350,7 +350,7 @@ test("the settings are those of the table, and change the feel by name", () => {
   const value = (name) => session.settings().find((one) => one.name === name)?.value;
   assert.ok(session.settings().length > 20);
   const { unit, about, least, most } = session.settings().find(({ name }) => name === "force.limit");
-  assert.deepEqual([unit, about, least, most], ["N", "Largest force, in addition to the device's limit", 0, Number.MAX_VALUE]);
+  assert.deepEqual([unit, about, least, most], ["N", "Largest force, within the device's limit", 0, Number.MAX_VALUE]);
   assert.equal(value("force.rate_limit"), Infinity);
   assert.equal(value("force.stiffness"), 0.2);
 
