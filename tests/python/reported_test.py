@@ -1,5 +1,5 @@
 """Files of the kinds that people report to other programs: half floats, planes in another order, calibrations of signed
-numbers, headers that contradict their numbers. What is not read is refused with what to do."""
+numbers, headers that contradict their numbers. Other files are refused, with the next step."""
 
 import base64
 import bz2
