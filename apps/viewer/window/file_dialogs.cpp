@@ -27,8 +27,7 @@ QString last_folder() {
 
 constexpr const char* volumes =
     "*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.hdr *.mgh *.mgz *.mrc *.dcm *.tif *.tiff *.vti "
-    "*.ims "
-    "*.h5 *.hdf5";
+    "*.vtk *.ims *.h5 *.hdf5";
 
 QString ask_file(QWidget* window, const QString& title, const QString& filter) {
     return QFileDialog::getOpenFileName(window, title, last_folder(), filter);
