@@ -44,12 +44,12 @@ class VtkWords {
 
 Stored stored_as_vtk(const std::string& type) {
     static const std::map<std::string, Stored> types = {
-        {"unsigned_char", Stored::uint8},   {"char", Stored::int8},
-        {"signed_char", Stored::int8},      {"unsigned_short", Stored::uint16},
-        {"short", Stored::int16},           {"unsigned_int", Stored::uint32},
-        {"int", Stored::int32},             {"unsigned_long", Stored::uint64},
-        {"long", Stored::int64},            {"vtktypeuint64", Stored::uint64},
-        {"vtktypeint64", Stored::int64},    {"float", Stored::float32},
+        {"unsigned_char", Stored::uint8}, {"char", Stored::int8},
+        {"signed_char", Stored::int8},    {"unsigned_short", Stored::uint16},
+        {"short", Stored::int16},         {"unsigned_int", Stored::uint32},
+        {"int", Stored::int32},           {"unsigned_long", Stored::uint64},
+        {"long", Stored::int64},          {"vtktypeuint64", Stored::uint64},
+        {"vtktypeint64", Stored::int64},  {"float", Stored::float32},
         {"double", Stored::float64}};
     const auto found = types.find(type);
     if (found != types.end()) return found->second;

@@ -1,5 +1,5 @@
 """Files of the kinds that people report to other programs: half floats, planes in another order, calibrations of signed
-numbers, headers that contradict their numbers, VTK's older format. What is not read is refused with what to do."""
+numbers, headers that contradict their numbers, VTK's older format. A refusal says what to do."""
 
 import base64
 import bz2
