@@ -1,5 +1,5 @@
-// Reads NRRD, MetaImage, NIfTI, MGH and MRC: their headers say all that it takes, so that no
-// library is needed.
+// Reads NRRD, MetaImage, NIfTI, MGH, MRC and VTK's older format: their headers say all that it
+// takes, so that no library is needed.
 #include <functional>
 #include <string_view>
 

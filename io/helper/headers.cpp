@@ -130,6 +130,7 @@ ReadHeader* header_reader(const std::filesystem::path& path) {
     if (extension == ".mha" || extension == ".mhd") return &meta_image_header;
     if (extension == ".nii" || extension == ".nii.gz") return &nifti_header;
     if (extension == ".mgh" || extension == ".mgz" || extension == ".mgh.gz") return &mgh_header;
+    if (extension == ".vtk") return &vtk_header;
     for (const char* end : {".mrc", ".map", ".rec", ".ccp4"}) {
         if (extension == end || extension == end + std::string(".gz")) return &mrc_header;
     }

@@ -1,4 +1,4 @@
-// Headers of NRRD, MetaImage, NIfTI, MGH and MRC files: each format has one function here that
+// Headers of NRRD, MetaImage, NIfTI, MGH, MRC and VTK files: each format has one function here that
 // turns a file into a description, which reading it whole and reading it by the box both use. Every
 // function throws Failure.
 #pragma once
@@ -68,6 +68,7 @@ VolumeHeader meta_image_header(const Request& request);
 VolumeHeader nifti_header(const Request& request);
 VolumeHeader mgh_header(const Request& request);
 VolumeHeader mrc_header(const Request& request);
+VolumeHeader vtk_header(const Request& request);
 /// One of these, by a file's extension; null for a file of another format.
 using ReadHeader = VolumeHeader(const Request& request);
 ReadHeader* header_reader(const std::filesystem::path& path);

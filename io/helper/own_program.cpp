@@ -1,7 +1,7 @@
 // palpate-io-helper: reads or writes one volume, or reads a mesh, and reports as described in
 // protocol.hpp. It exists so that a crash of a format's library does not crash the caller. It reads
-// NRRD, MetaImage, NIfTI, MGH and MRC itself. For all other formats it becomes the program that has
-// the library, so that only needed libraries are loaded.
+// NRRD, MetaImage, NIfTI, MGH, MRC and VTK's older format itself. For all other formats it becomes
+// the program that has the library, so that only needed libraries are loaded.
 #include <unistd.h>
 
 #include <algorithm>
@@ -98,7 +98,7 @@ std::string advice_for(const std::string& extension) {
          "is of a microscope's own format, which is not read; save it as OME-TIFF (Fiji) or "
          "OME-Zarr "
          "(bioformats2raw)"},
-        {".vtk .pvti .vtr .vts .vtu .pvd .vtm",
+        {".pvti .vtr .vts .vtu .pvd .vtm",
          "is of a format of VTK that is not read; save it as an image in one file (.vti)"},
         {".png .jpg .jpeg .bmp .jp2 .gif",
          "is a picture, not a volume; save its slices as one TIFF file, or as a folder of them"}};
@@ -127,7 +127,7 @@ const char* program_for_file(const fs::path& path) {
     if (const std::string advice = advice_for(extension); !advice.empty()) throw Failure(advice);
     throw Failure(
         "has no extension of a known format (nrrd, nhdr, mha, mhd, nii, nii.gz, mgh, mgz, mrc, "
-        "dcm, tif, vti); if it holds nothing but samples, give its dims and type");
+        "dcm, tif, vti, vtk); if it holds nothing but samples, give its dims and type");
 }
 
 const char* program_for(Job job, const fs::path& path) {

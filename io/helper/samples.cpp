@@ -151,7 +151,8 @@ void read_text(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
     std::uint64_t count = 0;
     CommasSeen commas;
     const std::uint64_t wanted = header.samples() / header.places.size();
-    for (std::string word; in >> std::setw(longest_word) >> word; ++count) {
+    const auto goes_on = [&] { return !place.has_footer || count < wanted; };
+    for (std::string word; goes_on() && in >> std::setw(longest_word) >> word; ++count) {
         const auto number = number_from<double>(word);
         if (!number) {
             throw Failure("its data are not all numbers ('" + word.substr(0, 20) + "' after " +

@@ -32,6 +32,7 @@ void read_volume(char format, const std::string& path) {
                           : format == 'n' ? nifti_header(request)
                           : format == 'g' ? mgh_header(request)
                           : format == 'c' ? mrc_header(request)
+                          : format == 'v' ? vtk_header(request)
                                           : nrrd_header(request);
     check_geometry(header.geometry);
     require(header.bytes() <= memory_limit * std::uint64_t(header.steps));

@@ -1,9 +1,10 @@
 """Files of the kinds that people report to other programs: half floats, planes in another order, calibrations of signed
-numbers, headers that contradict their numbers. Other files are refused, with the next step."""
+numbers, headers that contradict their numbers, VTK's older format. A refusal says what to do."""
 
 import base64
 import bz2
 import gzip
+import itertools
 import json
 import struct
 import sys
@@ -15,12 +16,14 @@ import numpy
 import palpate
 import pytest
 import tifffile
+import vtk
 import zarr
 from formats_test import nrrd
 from headers_test import meta_image, mrc, nifti
 from pydicom._uid_dict import UID_dictionary
 from pydicom.encaps import encapsulate
 from readers_test import SHAPE, SYNTAXES, noted, ramp, refused, save, slice_of, stack
+from vtk.util import numpy_support
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "stream"))
 from tiff_reference import TILE, tiles
@@ -215,6 +218,70 @@ def test_jpeg_xl_is_refused_with_what_to_do(tmp_path):
     refused(save(tmp_path / "a", slices, "other"), "JPEG XL", "without compression")
 
 
+# VTK's older format, written by VTK ---------------------------------------------------------------------
+
+
+def write_vtk(path, data, text=False, cells=False, second=None):
+    image = vtk.vtkImageData()
+    image.SetDimensions(*(size + cells for size in data.shape[::-1]))
+    image.SetSpacing(0.5, 2, 3)
+    image.SetOrigin(10, -20, 30)
+    for name, samples in (("density", data), ("second", second)):
+        if samples is not None:
+            array = numpy_support.numpy_to_vtk(samples.ravel(), deep=True)
+            array.SetName(name)
+            (image.GetCellData() if cells else image.GetPointData()).AddArray(array)
+    if second is None:
+        (image.GetCellData() if cells else image.GetPointData()).SetActiveScalars("density")
+    writer = vtk.vtkStructuredPointsWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(image)
+    writer.SetFileType(vtk.VTK_ASCII if text else vtk.VTK_BINARY)
+    assert writer.Write() == 1
+    return path
+
+
+@pytest.mark.parametrize("dtype, text", (*itertools.product(("i1", "i2", "u2", "i4", "u4", "i8", "f4", "f8"), (False, True)), ("u1", False)))
+def test_structured_points_of_vtk(tmp_path, dtype, text):
+    loaded = palpate.load(write_vtk(tmp_path / "a.vtk", ramp(dtype) // 2, text))
+    geometry = loaded.volume.geometry
+    assert numpy.array_equal(loaded.volume.array, ramp(dtype) // 2) and not geometry.oriented
+    assert numpy.array_equal(geometry.spacing, (0.5, 2, 3)) and numpy.array_equal(geometry.origin, (10, -20, 30))
+    assert not any("ignored" in note for note in loaded.notes), loaded.notes
+
+
+@pytest.mark.parametrize("text", (False, True))
+def test_arrays_of_fields_and_of_cells_of_vtk(tmp_path, text):
+    volume = palpate.load(write_vtk(tmp_path / "a.vtk", ramp("i2"), text, second=ramp("f4"))).volume
+    assert b"FIELD" in (tmp_path / "a.vtk").read_bytes() and numpy.array_equal(volume.array, ramp("i2"))
+    volume = noted(write_vtk(tmp_path / "b.vtk", ramp("i2"), text, cells=True), "centres")
+    assert numpy.array_equal(volume.array, ramp("i2")) and numpy.array_equal(volume.geometry.origin, (10.25, -19, 31.5))
+
+
+def test_vtk_without_a_spacing_or_in_small_letters(tmp_path):
+    text = write_vtk(tmp_path / "a.vtk", ramp("i2"), text=True).read_text()
+    (tmp_path / "a.vtk").write_text(text.replace("SPACING 0.5 2 3\n", ""))
+    assert numpy.array_equal(noted(tmp_path / "a.vtk", "no spacing").geometry.spacing, (1, 1, 1))
+    refused(write_vtk(tmp_path / "b.vtk", ramp("u1"), text=True), "save it as binary")
+    (tmp_path / "a.vtk").write_bytes(text.replace("SPACING", "ASPECT_RATIO").lower().replace("\n", "\r\n").encode())
+    assert numpy.array_equal(palpate.load(tmp_path / "a.vtk").volume.geometry.spacing, (0.5, 2, 3))
+
+
+@pytest.mark.parametrize("change, words", (
+    (lambda data: data[:-10], "cut off"), (lambda data: data[:150], "header"), (lambda data: data[10:], "no file of VTK"),
+    (lambda data: data.replace(b"STRUCTURED_POINTS", b"POLYDATA"), "mesh"),
+    (lambda data: data.replace(b"SCALARS", b"VECTORS"), "vectors"), (lambda data: data.replace(b" short", b" short 3"), "3 values"),
+    (lambda data: data.replace(b" short", b" bit"), "'bit'"), (lambda data: data.replace(b"SPACING 0.5", b"SPACING nan"), "spacing"),
+    (lambda data: data.replace(b"DIMENSIONS 6", b"DIMENSIONS 60000"), "its grid is 60000x4x5"),
+    (lambda data: data.replace(b"DIMENSIONS 6 4", b"DIMENSIONS 6"), "three numbers"),
+    (lambda data: data.replace(b"ORIGIN 10", b"ORIGIN 1e30"), "position")), ids=range(11))
+@pytest.mark.parametrize("text", (False, True))
+def test_vtk_files_that_are_damaged_or_of_another_kind_are_refused(tmp_path, text, change, words):
+    path = write_vtk(tmp_path / "a.vtk", ramp("i2"), text)
+    path.write_bytes(change(path.read_bytes()))
+    refused(path, words)
+
+
 # What to do -------------------------------------------------------------------------------------------
 
 
@@ -241,7 +308,7 @@ def test_samples_that_are_compressed_against_their_header_are_refused_for_that(t
 
 
 @pytest.mark.parametrize("name, words", (("a.mnc", "mnc2nii"), ("a.mif", "mrconvert"), ("a.mif.gz", "unpack"), ("a.HEAD", "AFNI"),
-                                         ("a.npy", "palpate.Volume"), ("a.czi", "OME-TIFF"), ("a.vtk", ".vti"),
+                                         ("a.npy", "palpate.Volume"), ("a.czi", "OME-TIFF"), ("a.vtu", ".vti"),
                                          ("a.nii.zst", "unpack"), ("a.png", "TIFF"), ("a.other", "no extension of a known format")))
 def test_a_format_that_is_not_read_is_refused_with_what_to_do(tmp_path, name, words):
     (tmp_path / name).write_bytes(b"something")

@@ -27,8 +27,7 @@ QString last_folder() {
 
 constexpr const char* volumes =
     "*.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.hdr *.mgh *.mgz *.mrc *.dcm *.tif *.tiff *.vti "
-    "*.ims "
-    "*.h5 *.hdf5";
+    "*.vtk *.ims *.h5 *.hdf5";
 
 /// A synthetic volume, a live source or a web address.
 bool is_no_file(const QString& path) {

@@ -7,7 +7,7 @@ const readZarr = async (get) => (await import("./zarr.js")).readZarr(get);
 
 const bytesOf = async (file) => new Uint8Array(await file.arrayBuffer());
 const isHidden = /(^|\/)(\.[^/]*|Thumbs\.db|desktop\.ini)$/i; // left by systems
-const isVolume = /\.(nrrd|nhdr|mha|mhd|mgz|(mgh|mrc|map|rec|ccp4|nii|hdr)(\.gz)?)$/i;
+const isVolume = /\.(nrrd|nhdr|mha|mhd|mgz|vtk|(mgh|mrc|map|rec|ccp4|nii|hdr)(\.gz)?)$/i;
 /** Named as DICOM is, or beginning with its groups, without a preamble. */
 const isBare = (name, bytes) => /\.(dcm|ima)$/i.test(name) || ([2, 8].includes(bytes[0]) && bytes[1] === 0 && bytes[3] === 0 && /^[A-Z]{2}$/.test(String.fromCharCode(bytes[4], bytes[5])));
 
