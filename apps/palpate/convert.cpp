@@ -45,7 +45,9 @@ std::optional<run::StoreSource> store_of(const run::Source& source) {
             throw std::invalid_argument(
                 "only one time can be converted: choose it with --time-step");
         }
-        return *store;
+        run::StoreSource taken = *store;
+        if (taken.loader.whole_process) taken.options.unpacking = taken.loader.memory / 2;
+        return taken;
     }
     const auto* file = std::get_if<run::FileSource>(&source.from);
     if (!file) return std::nullopt;
@@ -174,7 +176,7 @@ void convert(const CLI::App& command, const ConvertWords& words) {
                                   (extension == ".nii" ? "name it .nii.gz" : "name it .nrrd"));
         }
     }
-    warn_of_no_effect(command, {"--memory", "--coarse-first"}, "each part is read once");
+    warn_of_no_effect(command, {"--coarse-first"}, "each part is read once");
     const Taken taken = opened(words);
     const auto levels = static_cast<int>(taken.store->info().levels.size());
     if (taken.level >= levels) {

@@ -9,7 +9,8 @@
 #include <array>
 #include <cstdio>
 #include <cstring>
-#include <map>
+#include <filesystem>
+#include <string_view>
 
 #include "io/system/leftovers.hpp"
 #include "palpate/io/address.hpp"
@@ -133,11 +134,20 @@ void fail_changed(const Store& store) {
 }
 
 std::uint64_t files_at(const std::string& address, const std::stop_token& stop) {
-    std::map<fs::path, struct stat> files;  // in an order that does not depend on the disk
+    std::uint64_t sum = 0;  // there may be millions of files, which the disk lists in any order
     const auto add = [&](const fs::path& path) {
         if (io::is_temporary(path.filename().native())) return;  // of an output beside them
         struct stat about {};
-        if (::stat(path.c_str(), &about) == 0 && S_ISREG(about.st_mode)) files[path] = about;
+        if (::stat(path.c_str(), &about) != 0 || !S_ISREG(about.st_mode)) return;
+        const std::string_view name = std::string_view(path.native()).substr(address.size());
+        ContentHash hash;
+        hash.take(std::as_bytes(std::span(name)));
+        take_value(hash, about.st_size);
+        for (const timespec& time : {about.st_mtim, about.st_ctim}) {
+            take_value(hash, time.tv_sec);
+            take_value(hash, time.tv_nsec);
+        }
+        sum += hash.value();
     };
     add(address);
     std::error_code error;
@@ -146,18 +156,7 @@ std::uint64_t files_at(const std::string& address, const std::stop_token& stop) 
         if (stop.stop_requested()) throw Cancelled{};
         add(entry->path());
     }
-    if (files.empty()) return 0;
-    ContentHash hash;
-    for (const auto& [path, about] : files) {
-        const std::string name = path.lexically_relative(address).native();
-        hash.take(std::as_bytes(std::span(name)));
-        take_value(hash, about.st_size);
-        for (const timespec& time : {about.st_mtim, about.st_ctim}) {
-            take_value(hash, time.tv_sec);
-            take_value(hash, time.tv_nsec);
-        }
-    }
-    return hash.value();
+    return sum;
 }
 
 }  // namespace palpate::stream

@@ -52,7 +52,8 @@ class FolderObjects : public Objects {
             if (errno == ENXIO) fail(wanted.key, "is no file; make the folder again");
             fail(wanted.key, io::reason(errno) + "; check its permissions");
         }
-        const std::string identity = io::identity_of(file.number());
+        const std::string identity =
+            wanted.identity ? io::identity_of(file.number()) : std::string();
         struct stat status {};
         if (fstat(file.number(), &status) != 0) fail(wanted.key, io::reason(errno));
         const auto size = static_cast<std::uint64_t>(status.st_size);

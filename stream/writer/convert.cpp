@@ -17,6 +17,7 @@
 #include "stream/box_bytes.hpp"
 #include "stream/formats/content.hpp"
 #include "stream/formats/edited_store.hpp"
+#include "stream/loader/blocks.hpp"
 #include "stream/objects/objects.hpp"
 #include "stream/while_telling.hpp"
 
@@ -76,6 +77,9 @@ class SeenRange {
     Range range_{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 };
 
+/// [bytes] Of pieces of the source, once they are unpacked.
+constexpr std::uint64_t most_kept = std::uint64_t{128} << 20;
+
 class Conversion {
   public:
     Conversion(const Store& from, int level, const ConvertOptions& options,
@@ -84,7 +88,8 @@ class Conversion {
           level_(level),
           options_(options),
           partial_(partial),
-          image_(partial.result(), from.info().type, level_of(from, level).geometry, options) {
+          image_(partial.result(), from.info().type, level_of(from, level).geometry, options),
+          pieces_(from, most_kept, loader_for({}, 1), For::eyes) {
         for (int l = 0; l < image_.levels(); ++l) total_ += chunks(l);
     }
 
@@ -129,9 +134,13 @@ class Conversion {
         if (level == 0) seen_.take(from_.info().type, *samples);
     }
 
-    Bytes read(const SampleBox& box, const std::stop_token& stop) const {
+    Bytes read(const SampleBox& box, const std::stop_token& stop) {
         Bytes samples(bytes_of(box, from_.info().type));
-        from_.read(level_, box, samples, stop);
+        if (from_.info().format == "memory") {
+            from_.read(level_, box, samples, stop);
+        } else {
+            pieces_.read(level_, box, box, samples, stop);
+        }
         return samples;
     }
 
@@ -140,6 +149,7 @@ class Conversion {
     const ConvertOptions& options_;
     const io::GrowingFolder& partial_;
     GrowingImage image_;
+    Blocks pieces_;  // a chunk of the source may be larger than one of the image
     SeenRange seen_;
     std::int64_t total_ = 0;
     std::atomic<std::uint64_t> kept_ = 0, empty_ = 0;

@@ -239,5 +239,20 @@ TEST(Convert, a_damaged_chunk_is_one_line_and_no_file) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
+TEST(Convert, a_chunk_that_does_not_fit_into_half_of_the_memory_is_refused_by_name) {
+    const ScratchFolder folder;
+    fs::create_directory(folder / "bomb.zarr");
+    put_bytes(folder / "bomb.zarr/.zarray",
+              R"({"zarr_format":2,"shape":[1024,1024,1024],"chunks":[1024,1024,1024],)"
+              R"("dtype":"|u1","compressor":{"id":"gzip"},"fill_value":0,"order":"C",)"
+              R"("filters":null})");
+    put_bytes(folder / "bomb.zarr/0.0.0", "no gzip");
+    for (const std::string out : {"o.zarr", "o.raw"}) {
+        expect_failure(palpate(folder, "convert -q bomb.zarr --memory 256MB " + out), 3,
+                       "a chunk of level 0 takes 2148 MB to be read, and 134 MB may be used");
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"bomb.zarr"});
+}
+
 }  // namespace
 }  // namespace palpate::app::test

@@ -31,7 +31,7 @@ MAY_SEE = {
     "stream/objects": ("include", "io", "stream"),
     "stream/formats": ("include", "io", "stream", "stream/objects"),
     "stream/loader": ("include", "io", "stream"),
-    "stream/writer": ("include", "io", "stream", "stream/objects", "stream/formats"),
+    "stream/writer": ("include", "io", "stream", "stream/objects", "stream/formats", "stream/loader"),
     "devices": ("include", "io", "scenes"),
     "run": ("include", "io", "baselines", "scenes", "filters", "stream", "devices"),
     "bindings/c": ("include", "io", "devices", "run"),

@@ -7,6 +7,7 @@
 #include "io/volume_support.hpp"
 #include "stream/store_support.hpp"
 #include "stream/volume_server.hpp"
+#include "stream/volumes_store.hpp"
 
 namespace palpate::stream::test {
 namespace {
@@ -330,6 +331,23 @@ TEST(Convert, a_level_behind_http_becomes_a_local_image) {
     EXPECT_TRUE(
         local->info().levels[0].geometry.origin.isApprox(remote->info().levels[7].geometry.origin));
     expect_same_boxes(*local, volume_of(*remote, 7), 11);
+}
+
+TEST(Convert, a_piece_of_the_source_is_read_once_however_small_the_chunks_of_the_image_are) {
+    const ScratchFolder folder;
+    std::mt19937 random(5);
+    Geometry grid;
+    grid.size = Index3(64, 64, 64);
+    const Volume volume = random_volume(random, SampleType::uint8, grid);
+    const auto store = store_in_pieces(volume, {32, 32, 32});
+    ConvertOptions options;
+    options.chunk = 8;
+    options.threads = 4;
+    const Converted converted = convert_to_zarr(*store, 0, folder / "v.zarr", options);
+    EXPECT_GT(converted.chunks, 512U);
+    // Twice two slabs of planes to recognise the source.
+    EXPECT_EQ(store->traffic().requests, 8U + 4U);
+    expect_same_boxes(*open_store(folder / "v.zarr"), volume, 3);
 }
 
 }  // namespace
