@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 /// series, filters).
 nlohmann::json source_of(const Store& from, int level, const std::stop_token& stop) {
     nlohmann::json source = {{"content", content_of(from, level, stop)}};
-    // Of stores, only parts of the samples are hashed. Rewritten files show further changes.
+    // Of what is not read whole, files that were written anew show what its samples may not.
     if (from.info().format == "memory") return source;
     source["files"] = files_at(from.info().address, stop);
     if (const auto* edits = dynamic_cast<const EditedStore*>(&from)) {
@@ -136,7 +136,11 @@ class Conversion {
 
     Bytes read(const SampleBox& box, const std::stop_token& stop) {
         Bytes samples(bytes_of(box, from_.info().type));
-        pieces_.read(level_, box, box, samples, stop);
+        if (from_.info().format == "memory") {
+            from_.read(level_, box, samples, stop);
+        } else {
+            pieces_.read(level_, box, box, samples, stop);
+        }
         return samples;
     }
 
