@@ -11,6 +11,7 @@
 
 #include "bindings/python/casters.hpp"
 #include "palpate/settings.hpp"
+#include "palpate/tool.hpp"
 
 namespace palpate::python {
 
@@ -81,8 +82,13 @@ void check_numbers(const std::string& name, const Value& value, const ValueRange
 template <class Owner, class Value>
 void check_range(const Setting<Owner, Value>& setting, const Value& value) {
     const std::string unit = *setting.unit != '\0' ? std::string(" [") + setting.unit + "]" : "";
-    constexpr bool is_number = std::same_as<Value, double>;  // else a place or a rotation
-    check_numbers(setting.title + unit, value, is_number ? setting.range : ranges::finite);
+    check_numbers(setting.title + unit, value, setting.range);
+    if constexpr (std::same_as<Value, Mat3>) {
+        if (!is_rotation(value)) {
+            throw std::invalid_argument(std::string(setting.title) +
+                                        " must be orthonormal and must not mirror");
+        }
+    }
 }
 
 /// What a field is, and the range of its numbers.

@@ -228,9 +228,10 @@ inline constexpr auto settings_of<DeviceTransform> =
     std::tuple{setting(&DeviceTransform::rotation, "rotation", "",
                        "Orthonormal, device axes to physical axes, (3, 3)"),
                setting(&DeviceTransform::translation, "translation", "mm, physical",
-                       "Where the device's origin lies"),
+                       "Where the device's origin lies")
+                   .within({-1e60, 1e60, false, "within 1e60"}),
                setting(&DeviceTransform::scale, "scale", "", "Physical mm per mm of hand, above 0")
-                   .within(ranges::positive)};
+                   .within({1e-30, 1e30, false, "from 1e-30 to 1e30"})};
 
 template <>
 inline constexpr auto settings_of<DensityRange> =

@@ -39,8 +39,11 @@ ACCEPTED = {
     "infinity": LIMITS | FROM_ZERO_OR_INFINITE | ANY, "less": ANY, "negative": FINITE | ANY | {"Setup.speed"},
     "zero": FINITE | ANY | FROM_ZERO | FROM_ZERO_OR_INFINITE | COUNTS | PARTS | {"Setup.speed"},
     "huge": (FINITE | ANY | FROM_ZERO | FROM_ZERO_OR_INFINITE | POSITIVE | LIMITS | {"Needle.static_ratio"})
-            - {"RenderSetup.scale"},
-    "huge places": PLACES, "negative places": PLACES, "text": TEXTS, "no text": TEXTS}
+            - {"RenderSetup.scale", "DeviceTransform.scale"},
+    "huge places": PLACES - {"DeviceTransform.translation"}, "negative places": PLACES, "text": TEXTS, "no text": TEXTS}
+
+
+FIELD = palpate.Field(palpate.scene("sphere:12x12x12", "float32").volume)
 
 
 def refused(change):
@@ -67,6 +70,16 @@ def test_a_value_that_cannot_be_is_refused_where_it_is_set(kind, name):
                 assert refused(lambda: kind(**{name: value}))
 
 
+@pytest.mark.parametrize("name, value, good", [
+    ("scale", 1e30, True), ("scale", 1e-30, True), ("scale", 1.1e30, False), ("scale", 1e300, False), ("scale", 5e-324, False),
+    ("translation", (0, 1e60, 0), True), ("translation", (0, -1.1e60, 0), False), ("rotation", numpy.eye(3) + 1e-9, True),
+    ("rotation", numpy.eye(3) + 1e-5, False), ("rotation", numpy.diag([1.0, 1, -1]), False)], ids=str)
+def test_a_transform_that_cannot_be_rendered_is_refused_where_it_is_set(name, value, good):
+    transform = palpate.DeviceTransform()
+    assert (refused(lambda: setattr(transform, name, value)) is None) == good
+    palpate.Renderer(FIELD, 0.5, transform=transform)
+
+
 @pytest.mark.parametrize("kind, name", FIELDS, ids=[f"{kind.__name__}.{name}" for kind, name in FIELDS])
 def test_what_is_true_or_whole_is_not_what_python_can_convert(kind, name):
     made = kind()
@@ -80,9 +93,6 @@ def test_what_is_true_or_whole_is_not_what_python_can_convert(kind, name):
         setattr(made, name, numpy.int64(usual))
         for value in (1.5, 2.0, "1", numpy.float64(1)):
             assert refused(lambda: setattr(made, name, value))
-
-
-FIELD = palpate.Field(palpate.scene("sphere:12x12x12", "float32").volume)
 
 
 @pytest.mark.parametrize("call", [
