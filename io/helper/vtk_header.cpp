@@ -19,7 +19,7 @@ class VtkWords {
   public:
     explicit VtkWords(const std::filesystem::path& file) {
         const auto start = start_of(file, longest_vtk_header);
-        in_.str({reinterpret_cast<const char*>(start.data()), start.size()});
+        in_.str(std::string(reinterpret_cast<const char*>(start.data()), start.size()));
     }
     std::string word() {
         std::string word;
