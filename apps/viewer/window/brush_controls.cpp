@@ -166,9 +166,9 @@ QLayout* BrushControls::make_form() {
     each_time(rate, [this](Quantity& one) { one.setEnabled(std::isfinite(choice_.rate)); });
     auto* at_once = check({"brush_at_once", tr("At once")},
                           {[this] { return std::isinf(choice_.rate); },
-                           [this](bool at_once) {
+                           [this](bool on) {
                                const double infinity = std::numeric_limits<double>::infinity();
-                               change([&](BrushChoice& c) { c.rate = at_once ? infinity : rate_; });
+                               change([&](BrushChoice& c) { c.rate = on ? infinity : rate_; });
                            }});
     auto* both = row_of({rate, at_once});
     both->setFocusProxy(rate);
@@ -192,14 +192,13 @@ QWidget* BrushControls::make_value() {
     box->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
     box->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     box->setMinimumWidth(radius_->box().minimumWidth());
-    auto* automatic = check({"brush_automatic", tr("Automatic")},
-                            {[this] { return !choice_.value; },
-                             [this, box](bool automatic) {
-                                 typed_ = false;
-                                 change([&](BrushChoice& c) {
-                                     c.value = automatic ? std::optional<double>() : box->value();
-                                 });
-                             }});
+    auto* automatic = check(
+        {"brush_automatic", tr("Automatic")},
+        {[this] { return !choice_.value; },
+         [this, box](bool on) {
+             typed_ = false;
+             change([&](BrushChoice& c) { c.value = on ? std::optional<double>() : box->value(); });
+         }});
     connect(box->findChild<QLineEdit*>(), &QLineEdit::textEdited, this, [this, box, automatic] {
         typed_ = box->hasAcceptableInput();
         automatic->setChecked(!typed_ && !choice_.value);

@@ -388,7 +388,7 @@ void LayersControls::restore(const SessionFile& session, const QString& file) {
     reader_.start(
         tr("Reading the labels"),
         [read, from = std::filesystem::path(file.toStdString())](const io::Progress&) {
-            for (auto& [hand, layers] : *read) layers = run::with_labels(layers, from);
+            for (auto& [its, layers] : *read) layers = run::with_labels(layers, from);
         },
         [this, read] { content_.use_layers(*read); });
 }

@@ -323,10 +323,10 @@ void MainWindow::save_picture(const QString& path, bool whole_window) {
 void MainWindow::end() {
     timer_.stop();
     const bool edits = saver_.unsaved() != nullptr;
-    const std::shared_ptr<run::Data> data = content_.data();
+    const std::shared_ptr<run::Data> felt = content_.data();
     recordings_.stop();
     content_.end_run();  // forces first
-    if (edits) rescue_edits(*data);
+    if (edits) rescue_edits(*felt);
     QApplication::exit(0);
 }
 

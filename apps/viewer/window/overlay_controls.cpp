@@ -177,9 +177,9 @@ void OverlayControls::use(std::shared_ptr<const Overlay> overlay,
 
 /// From being replaced by the volume that is saved.
 void OverlayControls::keep_file(const std::filesystem::path& file) {
-    if (const auto& data = content_.data()) {
-        data->release(file_);
-        data->keep(file);
+    if (const auto& felt = content_.data()) {
+        felt->release(file_);
+        felt->keep(file);
     }
     file_ = file;
 }

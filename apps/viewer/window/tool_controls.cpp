@@ -95,7 +95,7 @@ ToolControls::ToolControls(const Desk& desk)
         {"tool_scale", tr("Size"), tr("How many times as large as usual the tool is"),
          tr("Size of the tool")},
         {"×", 0.1, 10, 0.1, Quantity::Scale::factors},
-        {[this] { return shown_.scale; }, [this](double scale) { choose(shown_.row, scale); }});
+        {[this] { return shown_.scale; }, [this](double to) { choose(shown_.row, to); }});
     each_time(scale, [this](Quantity& one) { one.setEnabled(shown_.tool != nullptr); });
     auto* words = named(new QLabel, "tool_about");
     each_time(words, [this](QLabel& label) { label.setText(about()); });

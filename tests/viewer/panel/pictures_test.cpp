@@ -150,6 +150,18 @@ TEST_F(Pictures, show_a_session_in_dark_colours) {
     picture("panel_dark");
 }
 
+TEST_F(Pictures, show_each_page) {
+    full();
+    auto& tabs = *find<QTabWidget>("tabs");
+    for (int page = 0; page < tabs.count(); ++page) {
+        tabs.setCurrentIndex(page);
+        QApplication::processEvents();
+        const QWidget& shown = *static_cast<QScrollArea*>(tabs.widget(page))->widget();
+        EXPECT_LE(shown.minimumSizeHint().width(), tabs.width()) << page;
+        picture(QString("panel_page_%1").arg(page + 1));
+    }
+}
+
 TEST_F(Pictures, show_every_row_of_the_force) {
     const std::unique_ptr<Form> form(force_section(effect));
     QWidget& rows = *form;
