@@ -51,6 +51,17 @@ class GilReleased {
     PyThreadState* thread_;
 };
 
+/// What a function of Python returns. Only the call itself is unwound if the interpreter ends
+/// meanwhile, because to release an object then would crash.
+template <class... Arguments>
+py::object called(py::handle function, const Arguments&... arguments) {
+    const py::tuple given = py::make_tuple(arguments...);
+    PyObject* answer = nullptr;
+    GilReleased::until_the_end([&] { answer = PyObject_CallObject(function.ptr(), given.ptr()); });
+    if (!answer) throw py::error_already_set();
+    return py::reinterpret_steal<py::object>(answer);
+}
+
 /// What work() returns.
 template <class Work>
 auto without_gil(Work&& work) {

@@ -20,13 +20,7 @@ inline OnProgress progress_of(const ProgressFunction& function) {
         std::optional<py::gil_scoped_acquire> gil;
         GilReleased::until_the_end([&] { gil.emplace(); });
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        if (!function) return;
-        const py::float_ done(fraction);
-        PyObject* answer = nullptr;
-        GilReleased::until_the_end(
-            [&] { answer = PyObject_CallOneArg(function->ptr(), done.ptr()); });
-        if (!answer) throw py::error_already_set();
-        Py_DECREF(answer);
+        if (function) called(*function, fraction);
     };
 }
 

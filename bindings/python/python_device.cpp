@@ -14,7 +14,7 @@ constexpr std::int64_t rest = 50'000'000;  // [ns]
 template <class Work>
 std::string tried(const std::string& function, Work&& work) {
     try {
-        GilReleased::until_the_end(work);
+        work();
         return {};
     } catch (const py::error_already_set& error) {
         const std::string text = error.what();  // with a traceback
@@ -27,7 +27,8 @@ std::string tried(const std::string& function, Work&& work) {
 
 std::string write_to(const py::object& device, const Wrench& wrench) {
     return tried("write()", [&] {
-        if (py::hasattr(device, "write")) device.attr("write")(wrench.force, wrench.torque);
+        if (!py::hasattr(device, "write")) return;
+        called(py::object(device.attr("write")), wrench.force, wrench.torque);
     });
 }
 
@@ -140,8 +141,9 @@ void PythonDevice::run() {
 void PythonDevice::step() {
     const py::gil_scoped_acquire gil;
     DeviceReading reading;
-    const std::string unread = tried(
-        "read()", [&] { reading = returned_by<DeviceReading>("read()", self_.attr("read")()); });
+    const std::string unread = tried("read()", [&] {
+        reading = returned_by<DeviceReading>("read()", called(py::object(self_.attr("read"))));
+    });
     const std::int64_t now = devices::monotonic_ns();
     if (!unread.empty()) {
         set_problem(unread);  // before the servo sees the fault
@@ -168,7 +170,7 @@ void PythonDevice::end() {
     for (int i = 1; i < tries && !problem.empty(); ++i) problem = write_to(self_, {});
     for (int i = 0; i < 2; ++i) link_.wrench(devices::monotonic_ns());  // the zero is out
     const std::string open = tried("close()", [&] {
-        if (py::hasattr(self_, "close")) self_.attr("close")();
+        if (py::hasattr(self_, "close")) called(py::object(self_.attr("close")));
     });
     if (problem.empty()) problem = open;
     if (!problem.empty()) set_problem(problem);
