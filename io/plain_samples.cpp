@@ -24,7 +24,7 @@ bool is_plain_name(const fs::path& path) {
     const std::string name = lower(path.filename().string());
     return std::ranges::any_of(
         std::array{".nrrd", ".nhdr", ".mha", ".mhd", ".nii", ".nii.gz", ".mgh", ".mgz", ".mgh.gz",
-                   ".mrc", ".map", ".rec", ".ccp4"},
+                   ".mrc", ".map", ".rec", ".ccp4", ".vtk"},
         [&](const char* end) { return name.ends_with(end); });
 }
 

@@ -248,6 +248,9 @@ def test_structured_points_of_vtk(tmp_path, dtype, text):
     assert numpy.array_equal(loaded.volume.array, ramp(dtype) // 2) and not geometry.oriented
     assert numpy.array_equal(geometry.spacing, (0.5, 2, 3)) and numpy.array_equal(geometry.origin, (10, -20, 30))
     assert not any("ignored" in note for note in loaded.notes), loaded.notes
+    if not text:
+        store = palpate.open_store(tmp_path / "a.vtk")
+        assert numpy.array_equal(store.read((0, 0, 0), store.levels[0].size).array, ramp(dtype) // 2)
 
 
 @pytest.mark.parametrize("text", (False, True))
