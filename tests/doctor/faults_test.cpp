@@ -179,7 +179,7 @@ const Injection kernels[] = {
 
 const Injection programs[] = {
     {"ticks-missed", true, "hwlatdetect", [](M& m) { m.facts.latency->report.missed = 100; }},
-    {"ticks-missed", true, "the machine itself", missed_in_a_virtual_machine},
+    {"ticks-missed", true, "a physical machine", missed_in_a_virtual_machine},
     {"ticks-late", false, "hwlatdetect",
      [](M& m) {
          m.facts.latency->report.lateness = {10'000, 1, 2, 700'000, 800'000};
