@@ -173,6 +173,7 @@ void check_arrays(const std::filesystem::path& file) {
     std::optional<std::uint64_t> last;  // where the last array lies
     std::vector<double> extent;
     double samples = any;  // that an array may have
+    bool is_of_samples = false;
     std::string text, tag;
     while (!tag.starts_with("AppendedData") && std::getline(in, text, '<')) {
         const bool is_text = tag.starts_with("DataArray") && !tag.ends_with('/') &&
@@ -188,7 +189,13 @@ void check_arrays(const std::filesystem::path& file) {
         if (tag.starts_with("VTKFile")) file_tag = tag;
         last = std::max(last, number_from<std::uint64_t>(attribute(tag, "offset")));
         if (tag.starts_with("Piece")) extent = numbers_of(tag, "Extent", 6);
+        if (tag.starts_with("DataArray") && is_of_samples && attribute(tag, "Name").empty()) {
+            throw Failure(
+                "has an array without a name, which VTK does not read; give its DataArray a Name");
+        }
         const bool at_points = tag.starts_with("PointData"), in_cells = tag.starts_with("CellData");
+        is_of_samples = (is_of_samples || at_points || in_cells) &&
+                        !tag.starts_with("/PointData") && !tag.starts_with("/CellData");
         if (at_points || in_cells) samples = extent.empty() ? any : samples_of(extent, in_cells);
         if (tag.starts_with("/PointData") || tag.starts_with("/CellData")) samples = any;
     }
