@@ -9,6 +9,7 @@ from pydicom.sequence import Sequence
 from random_headers_test import try_seeds
 from readers_test import SYNTAXES
 
+USUAL = tuple(SYNTAXES)
 CT, MR, PT, DOSE = (f"1.2.840.10008.5.1.4.1.1.{kind}" for kind in ("2", "4", "128", "481.2"))
 ENHANCED_CT, ENHANCED_MR, SEGMENTS = (f"1.2.840.10008.5.1.4.1.1.{kind}" for kind in ("2.1", "4.1", "66.4"))
 
@@ -102,7 +103,7 @@ def series(dice, folder):
     if dice.often(0.5):
         order.sort()
     placed, by = Placed(dice), dice.one(("TemporalPositionIdentifier", "AcquisitionNumber", "TriggerTime", "AcquisitionTime", ""))
-    scaled, names, syntax = scalings(dice, len(order)), dice.permutation(len(order)), dice.one(SYNTAXES)
+    scaled, names, syntax = scalings(dice, len(order)), dice.permutation(len(order)), dice.one(USUAL)
     planes = [{} for _ in range(times)]
     for number, (z, t) in enumerate(order):
         data = image(dice, kind, modality, dtype, bits, shape)
@@ -148,7 +149,7 @@ def frames(dice, folder):
     data = image(dice, kind, modality, dtype, bits, shape)
     data.NumberOfFrames, data.InstanceNumber = len(order), 1
     data.PerFrameFunctionalGroupsSequence, data.SharedFunctionalGroupsSequence = Sequence(groups), Sequence([shared])
-    save(data, folder / "a.dcm", numpy.stack(stack), dice.one(SYNTAXES))
+    save(data, folder / "a.dcm", numpy.stack(stack), dice.one(USUAL))
     for time, expected in enumerate(planes):
         placed.expect(palpate.load(dice.one((folder, folder / "a.dcm")), frame=time).volume, expected)
 
@@ -183,6 +184,7 @@ def segmentation(dice, folder):
     shared.PixelMeasuresSequence = items(PixelSpacing=placed.spacing, SliceThickness=1, SpacingBetweenSlices=abs(placed.step))
     shared.PlaneOrientationSequence = items(ImageOrientationPatient=placed.orientation)
     data = image(dice, SEGMENTS, "SEG", "u1", bits, shape)
+    data.SegmentSequence = Sequence([items(SegmentNumber=number + 1, SegmentLabel="a")[0] for number in range(segments)])
     data.BitsAllocated, data.SegmentationType = bits, "BINARY" if bits == 1 else "FRACTIONAL"
     if bits > 1:
         data.MaximumFractionalValue = greatest

@@ -317,6 +317,17 @@ def test_an_array_of_a_field_with_another_number_of_samples_is_refused(tmp_path)
     refused(path, "119 samples")
 
 
+def test_text_of_vtk_with_too_many_numbers_or_decimal_commas(tmp_path):
+    text = write_vtk(tmp_path / "a.vtk", ramp("i2"), text=True, second=ramp("f4")).read_text()
+    assert " 7 14 " in text and "\nsecond" in text
+    (tmp_path / "a.vtk").write_text(text.replace(" 7 14 ", " 7,5 14 "))
+    refused(tmp_path / "a.vtk", "decimal commas")
+    (tmp_path / "a.vtk").write_text(text.replace("\nsecond", " 9\nsecond"))
+    assert numpy.array_equal(noted(tmp_path / "a.vtk", "121; the rest was ignored").array, ramp("i2"))
+    (tmp_path / "a.vtk").write_text(text.replace("\nsecond", " 9" * 120 + "\nsecond"))
+    refused(tmp_path / "a.vtk", "there are 240")
+
+
 def test_an_array_of_vti_without_a_name_is_refused_with_what_to_do(tmp_path):
     palpate.write(palpate.Volume(ramp("i2")), tmp_path / "a.vti")
     whole = (tmp_path / "a.vti").read_bytes()
