@@ -335,6 +335,37 @@ def test_an_array_of_vti_without_a_name_is_refused_with_what_to_do(tmp_path):
     refused(tmp_path / "a.vti", "without a name", "Name")
 
 
+def write_vti(path, data, encoded, between, compressor, width):
+    """`between`: the arrays are between their tags, not behind them."""
+    image = vtk.vtkImageData()
+    image.SetDimensions(*data.shape[::-1])
+    for name in ("density", "second"):
+        array = numpy_support.numpy_to_vtk(data.ravel(), deep=True)
+        array.SetName(name)
+        image.GetPointData().AddArray(array)
+    writer = vtk.vtkXMLImageDataWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(image)
+    (writer.SetDataModeToBinary if between else writer.SetDataModeToAppended)()
+    (writer.EncodeAppendedDataOn if encoded else writer.EncodeAppendedDataOff)()
+    writer.SetCompressorType(compressor)
+    (writer.SetHeaderTypeToUInt32 if width == 32 else writer.SetHeaderTypeToUInt64)()
+    assert writer.Write() == 1
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize("width", (32, 64))
+@pytest.mark.parametrize("encoded, between, compressor", itertools.product((False, True), (False, True), (0, 1, 3)))
+def test_lengths_of_vti_arrays_that_contradict_the_header_are_refused(tmp_path, encoded, between, compressor, width):
+    """VTK reads as many bytes as the type takes, and a part of a wider length as samples."""
+    path = tmp_path / "a.vti"
+    whole = write_vti(path, ramp("i2"), encoded, between, compressor, width)
+    assert numpy.array_equal(palpate.load(path).volume.array, ramp("i2"))
+    for before, after in ((b'"Int16"', b'"Int8"'), (b'"Int16"', b'"Float32"'), (f'"UInt{width}"'.encode(), f'"UInt{96 - width}"'.encode())):
+        path.write_bytes(whole.replace(before, after))
+        refused(path, "a.vti")
+
+
 @pytest.mark.parametrize("change, words", (
     (lambda data: data[:-10], "cut off"), (lambda data: data[:150], "header"), (lambda data: data[10:], "no file of VTK"),
     (lambda data: data.replace(b"STRUCTURED_POINTS", b"POLYDATA"), "mesh"),
