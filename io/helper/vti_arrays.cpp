@@ -1,5 +1,5 @@
 // Checks the arrays of a VTI file. Format: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
-// VTK reads as many bytes as the type of an array takes, and ignores what else is there.
+// VTK reads as many bytes as the type of an array takes, and ignores all others.
 #include "io/helper/vti_arrays.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The arrays of a VTI file: what VTK's reader takes without a word, though it contradicts the header.
+// Checks of the arrays in a VTI file. VTK's reader accepts many that contradict the header.
 #pragma once
 
 #include <filesystem>
