@@ -1,5 +1,6 @@
-// Checks the arrays of a VTI file. Format: https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html.
-// VTK reads as many bytes as the type of an array takes, and ignores all others.
+// Checks the arrays of a VTI file. Format:
+// https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html. VTK reads as many bytes as
+// the type of an array takes, and ignores all others.
 #include "io/helper/vti_arrays.hpp"
 
 #include <algorithm>
@@ -164,8 +165,8 @@ void check_inline(const VtiArray& array, const ArrayHead& head, const std::strin
     if (std::ranges::count(lengths_of(array, head), count) == 0) refuse_length(array);
 }
 
-/// Raw arrays end where the last one does. Otherwise bytes were lost or added, by a transfer as text
-/// for example, and VTK takes others for samples. `begin`: of the last array.
+/// Raw arrays end where the last one does. Otherwise bytes were lost or added, by a transfer as
+/// text for example, and VTK takes others for samples. `begin`: of the last array.
 void check_raw_end(std::istream& in, const ArrayHead& head, std::uint64_t begin) {
     std::array<std::byte, 8> start{};
     in.seekg(static_cast<std::streamoff>(begin));
@@ -199,8 +200,7 @@ void check_appended(std::istream& in, std::vector<VtiArray> arrays, const ArrayH
         in.read(text.data(), std::ssize(text));
         text.resize(static_cast<std::size_t>(in.gcount()));
         in.clear();
-        array.check(head,
-                    is_raw ? std::as_bytes(std::span(text)) : decoded(text, head.size()));
+        array.check(head, is_raw ? std::as_bytes(std::span(text)) : decoded(text, head.size()));
         if (is_raw || head.is_packed() || array.bytes == any_number) continue;
         const auto ends = [&](double length) {
             const std::uint64_t end = array.offset + static_cast<std::uint64_t>(length);
@@ -259,7 +259,8 @@ class ArrayTags {
     VtiArray array_of(const std::string& tag) const {
         const auto type = stored_named(lower(attribute(tag, "type")));
         if (!type) return {attribute(tag, "Name")};
-        return {attribute(tag, "Name"), numbers_in_array(tag) * static_cast<double>(size_of(*type))};
+        return {attribute(tag, "Name"),
+                numbers_in_array(tag) * static_cast<double>(size_of(*type))};
     }
 
     double numbers_in_array(const std::string& tag) const {
