@@ -21,6 +21,8 @@ namespace palpate::io {
 
 /// Throws std::invalid_argument: "'name' must be WANTED".
 [[noreturn]] void wrong_member(const std::string& name, const std::string& wanted);
+/// The same: "'name' is missing".
+[[noreturn]] void missing_member(const std::string& name);
 
 /// "above, below or beside"
 std::string one_of(const std::vector<std::string>& names);
@@ -43,6 +45,7 @@ inline Json to_value(double value) {
     return number_to_json(value);
 }
 Json to_value(const Vec3& value);
+Json to_value(const Index3& value);
 Json to_value(const Mat3& value);        ///< rows
 Json to_value(const Quaternion& value);  ///< w, x, y, z
 Json to_value(const Layers& layers);
@@ -55,6 +58,8 @@ void from_value(const Json& json, const std::string& name, std::string& value);
 void from_value(const Json& json, const std::string& name, int& value);
 void from_value(const Json& json, const std::string& name, std::uint32_t& value);
 void from_value(const Json& json, const std::string& name, Vec3& value);
+/// At most 2^20 from 0 along each axis.
+void from_value(const Json& json, const std::string& name, Index3& value);
 void from_value(const Json& json, const std::string& name, Mat3& value);
 void from_value(const Json& json, const std::string& name, Quaternion& value);
 void from_value(const Json& json, const std::string& name, Layers& layers);
@@ -108,6 +113,7 @@ struct JsonWriter {
         Json& list = json[name] = Json::array();
         for (const T& value : values) list.push_back(of(value));
     }
+    void needed(const std::string& name, const auto& value) { (*this)(name, value); }
     void must(bool, const std::string&, const std::string&) const {}
 };
 
@@ -157,6 +163,11 @@ struct JsonReader {
             const std::string item = where + name + "[" + std::to_string(values.size()) + "]";
             get(value, item, values.emplace_back());
         }
+    }
+    /// A member that has to be there.
+    void needed(const std::string& name, auto& value) {
+        if (!find(name)) missing_member(where + name);
+        (*this)(name, value);
     }
     /// A rule for what was read of a member, or where `name` is empty of the whole. Throws
     /// std::invalid_argument: it "must be WANTED".

@@ -2,7 +2,6 @@
 #include "palpate/run/brush.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 namespace palpate::run {
 
@@ -20,18 +19,7 @@ HandBrush tool_brush(const Geometry& geometry) {
 }
 
 void check(const HandBrush& brush) {
-    if (!(brush.radius > 0) || !std::isfinite(brush.radius)) {
-        throw std::invalid_argument("the brush's radius [mm] must be finite and above 0");
-    }
-    if (!(brush.hardness >= 0 && brush.hardness <= 1)) {
-        throw std::invalid_argument("the brush's hardness must be 0 to 1");
-    }
-    if (!(brush.rate > 0)) {
-        throw std::invalid_argument("the brush's rate [1/s] must be above 0 (inf: at once)");
-    }
-    if (brush.value && !std::isfinite(*brush.value)) {
-        throw std::invalid_argument("the brush's value must be finite");
-    }
+    check_ranges(brush);
 }
 
 std::optional<Brush> brush_at(const HandBrush& hand, const Field& field, double isovalue,

@@ -10,7 +10,6 @@
 
 #include "edit/before.hpp"
 #include "edit/reach.hpp"
-#include "palpate/names.hpp"
 
 namespace palpate {
 namespace {
@@ -219,20 +218,8 @@ Edited edited_as(const std::shared_ptr<const Samples>& samples, const Edit& edit
 }
 
 void check_brush(const Brush& brush) {
-    if (!(brush.radius > 0) || !std::isfinite(brush.radius)) {
-        throw std::invalid_argument("a brush's radius [mm] must be finite and above 0");
-    }
-    if (!(brush.hardness >= 0 && brush.hardness <= 1)) {
-        throw std::invalid_argument("a brush's hardness must be 0 to 1");
-    }
-    if (!(brush.strength > 0 && brush.strength <= 1)) {
-        throw std::invalid_argument("a brush's strength must be above 0 and at most 1");
-    }
-    if (brush.kind == BrushKind::smooth) return;
-    if (!std::isfinite(brush.value) || !std::isfinite(brush.level)) {
-        throw std::invalid_argument("a brush's value and level must be finite");
-    }
-    if (brush.kind == BrushKind::paint) return;
+    check_ranges(brush);
+    if (brush.kind == BrushKind::smooth || brush.kind == BrushKind::paint) return;
     const bool above = brush.value > brush.level;
     const bool solid = above == (brush.solid == Solid::above) && brush.value != brush.level;
     if (brush.kind == BrushKind::carve && (solid || brush.value == brush.level)) {
@@ -262,14 +249,6 @@ void check_sweep(const edit::Sweep& sweep, const Geometry& geometry) {
 }
 
 }  // namespace
-
-std::string_view name_of(BrushKind kind) {
-    return enum_name(kind);
-}
-
-BrushKind brush_kind_from(std::string_view name) {
-    return named<BrushKind>(name);
-}
 
 void check(const Edit& edit, const Samples& samples) {
     if (samples.frames().size() > 1) {

@@ -95,15 +95,7 @@ void check(const Layers& layers, Solid solid) {
     if (!(layers.closing > 0) || !std::isfinite(layers.closing)) {
         refuse("the distance at which surfaces close must be finite and above 0 mm");
     }
-    if (!layers.needle) return;
-    const Needle& needle = *layers.needle;
-    if (!(needle.lateral_stiffness >= 0) || !std::isfinite(needle.lateral_stiffness)) {
-        refuse("the needle's lateral stiffness must be finite and at least 0 N/mm");
-    }
-    if (!(needle.static_ratio >= 1) || !std::isfinite(needle.static_ratio)) {
-        refuse("the needle's static friction must be at least that in motion");
-    }
-    if (!(needle.stick_speed >= 0)) refuse("the needle's stick speed must be at least 0 mm/s");
+    if (layers.needle) check_ranges(*layers.needle);
 }
 
 std::shared_ptr<const Field> numbered_labels(const Volume& labels, std::span<const Layer> layers,

@@ -13,11 +13,6 @@
 namespace palpate {
 namespace {
 
-/// Scales [physical mm per device mm] and translations [mm] beyond these have no use, and double's
-/// range has to hold what follows from them.
-constexpr double most_scale = 1e30;
-constexpr double farthest_translation = 1e60;
-
 /// A tool's metric differs from its own by no more than this: beyond, one of the springs is nothing
 /// beside the other.
 constexpr double most_gyration_ratio = 1e3;
@@ -329,17 +324,10 @@ void check(const RendererSettings& s) {
         }
     }
     if (s.proxy.step_budget < 1) throw std::invalid_argument("the step budget must be at least 1");
+    check_ranges(s.transform);
     if (!is_rotation(s.transform.rotation)) {
         throw std::invalid_argument(
             "device transform: rotation must be orthonormal and must not mirror");
-    }
-    const Vec3& translation = s.transform.translation;
-    if (!translation.allFinite() || translation.cwiseAbs().maxCoeff() > farthest_translation) {
-        throw std::invalid_argument("device transform: translation must be within 1e60 mm");
-    }
-    if (!(s.transform.scale >= 1 / most_scale && s.transform.scale <= most_scale)) {
-        throw std::invalid_argument(
-            "device transform: scale must be finite and above 0, from 1e-30 to 1e30");
     }
 }
 

@@ -99,12 +99,7 @@ void play(Session& session, double time) {
 }  // namespace
 
 void check(const SessionSettings& s) {
-    if (!(s.fastest_hand > 0)) {
-        throw std::invalid_argument("the fastest hand [mm/s] must be above 0 (inf: any)");
-    }
-    if (!(s.overrun > 0)) {
-        throw std::invalid_argument("the longest tick [s] must be above 0 (inf: any)");
-    }
+    check_ranges(s);
 }
 
 /// The settings that a command leaves. Checks what is the command's alone.

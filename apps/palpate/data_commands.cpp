@@ -11,6 +11,7 @@
 #include "apps/palpate/commands.hpp"
 #include "io/system/number.hpp"
 #include "palpate/io/level.hpp"
+#include "palpate/names.hpp"
 
 namespace palpate::app {
 namespace {
@@ -54,7 +55,7 @@ DataRequest silent(Change change) {
 DataRequest stroke(const CommandWords& words, const Volume& volume) {
     words.expect(3, 4);
     run::HandBrush hand;
-    hand.kind = brush_kind_from(words.name());
+    hand.kind = named<BrushKind>(words.name());
     hand.radius = words.number(2);
     if (words.count() > 3) hand.value = io::level_from_text(words[3], volume);
     run::check(hand);
@@ -134,7 +135,7 @@ std::optional<run::HandBrush> brush_from(const CommandWords& words, const Volume
     if (words.count() == 2 && words[1] == "off") return std::nullopt;
     words.expect(3, 5);
     run::HandBrush brush;
-    brush.kind = brush_kind_from(words[1]);
+    brush.kind = named<BrushKind>(words[1]);
     const std::string& size = words[2];
     if (size == "tool" || size.starts_with("tool:")) {
         brush.as_tool = true;
@@ -153,7 +154,7 @@ DataRequest set_brush(const std::optional<run::HandBrush>& brush) {
     return [brush](run::Data& data, const Field&, double, const io::Progress&) {
         data.editor().set_brush(brush);
         if (!brush) return std::string("brush: off");
-        return fmt::format("brush: {}, {:g} mm{}", name_of(brush->kind), brush->radius,
+        return fmt::format("brush: {}, {:g} mm{}", enum_name(brush->kind), brush->radius,
                            brush->as_tool ? " around the tool" : "");
     };
 }

@@ -17,29 +17,9 @@ std::optional<Box> box_of(const SampleBox& box) {
 }
 
 void bind_brushes(py::module_& module) {
-    Record<Brush>(module, "Brush", "A round brush.")
-        .field("kind", &Brush::kind, "'carve', 'add', 'smooth' or 'paint'.")
-        .field("radius", &Brush::radius, {"[mm, physical]", ranges::positive})
-        .field("hardness", &Brush::hardness,
-               {"1: an edge two voxels wide; 0: as wide as the brush.", ranges::part})
-        .field(
-            "strength", &Brush::strength,
-            {"Part of the way to its target, above 0 to 1.", {0, 1, true, "above 0 and at most 1"}})
-        .field("level", &Brush::level,
-               {"carve, add: the level that it shapes [data units].", ranges::finite})
-        .field("solid", &Brush::solid, "'above' or 'below' that level.")
-        .field("value", &Brush::value, {"That a full touch leaves [data units].", ranges::finite})
-        .done();
-    using H = run::HandBrush;
-    Record<H>(module, "HandBrush", "A brush that follows the proxy while it touches.")
-        .field("kind", &H::kind, "'carve', 'add', 'smooth' or 'paint'.")
-        .field("radius", &H::radius, {"[mm, physical]", ranges::positive})
-        .field("hardness", &H::hardness, {"As of Brush.", ranges::part})
-        .field("rate", &H::rate,
-               {"[1/s] after a second 1 - exp(-rate) of the change is done",
-                {0, ranges::infinity, true, "above 0 (inf: at once)"}})
-        .field("value", &H::value,
-               {"That it leaves [data units]; None: the usual one.", ranges::finite})
+    Record<Brush>(module, "Brush", "A round brush.").settings().done();
+    Record<run::HandBrush>(module, "HandBrush", "A brush that follows the proxy while it touches.")
+        .settings()
         .done();
     module.def(
         "brush_for",

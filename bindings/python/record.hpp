@@ -26,11 +26,8 @@ std::string text_of(const Setting<Owner, Value>& setting) {
 
 namespace ranges {
 using namespace palpate::ranges;
-inline constexpr ValueRange finite{-greatest, greatest, false, "finite"};
-inline constexpr ValueRange spacing{1e-30, 1e30, false, "from 1e-30 to 1e30"};
-inline constexpr ValueRange scale = spacing;
+inline constexpr ValueRange spacing = scale;
 inline constexpr ValueRange speed{-1000, 1000, false, "from -1000 to 1000"};
-inline constexpr ValueRange part{0, 1, false, "from 0 to 1"};
 }  // namespace ranges
 
 /// Calls visit(number) for each number of a value. Values of other types have none.
@@ -81,8 +78,7 @@ void check_numbers(const std::string& name, const Value& value, const ValueRange
 }
 template <class Owner, class Value>
 void check_range(const Setting<Owner, Value>& setting, const Value& value) {
-    const std::string unit = *setting.unit != '\0' ? std::string(" [") + setting.unit + "]" : "";
-    check_numbers(setting.title + unit, value, setting.range);
+    check_numbers(title_of(setting), value, setting.range);
     if constexpr (std::same_as<Value, Mat3>) {
         if (!is_rotation(value)) {
             throw std::invalid_argument(std::string(setting.title) +

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 STAGE = re.compile(r"Stage (\d+), (\w+): ")
-OBSERVERS = ("names", "progress", "settings", "surface", "tool", "tool_proxy")  # in no stage: beside the flow
+OBSERVERS = ("names", "progress", "setting", "settings", "surface", "tool", "tool_proxy")  # in no stage: beside the flow
 LIBRARIES = {"scenes": "named synthetic volumes and motions", "baselines": "all proxy methods by name",
              "filters": "volumes from volumes", "io": "readers and writers of files",
              "stream": "stores that are read by the box", "devices": "devices by name",

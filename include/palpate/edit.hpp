@@ -11,20 +11,18 @@
 
 #include "palpate/field.hpp"
 #include "palpate/progress.hpp"
+#include "palpate/setting.hpp"
 #include "palpate/tool.hpp"
 
 namespace palpate {
 
+/// Named in names.hpp.
 enum class BrushKind : std::uint8_t {
     carve,   ///< removes solid: no sample becomes more solid
     add,     ///< adds solid: no sample becomes less solid
     smooth,  ///< blurs (3 x 3 x 3 binomial)
     paint,   ///< moves samples to a value, up or down
 };
-/// "carve", "add", "smooth" or "paint".
-std::string_view name_of(BrushKind kind);
-/// The inverse of name_of(). Throws std::invalid_argument with the accepted names.
-BrushKind brush_kind_from(std::string_view name);
 
 /// A brush, round or with a tool's own shape. Its effect falls from full to none across an edge,
 /// and is half at `radius`.
@@ -48,6 +46,26 @@ struct Brush {
     /// example the background; add: on its solid side; paint: any; smooth: not used.
     double value = 0;
 };
+template <>
+inline constexpr auto settings_of<Brush> = std::tuple{
+    setting(&Brush::kind, "kind", "", "'carve', 'add', 'smooth' or 'paint'"),
+    setting(&Brush::radius, "radius", "mm, physical",
+            "Distance at which half of the effect is left")
+        .titled("radius of the brush")
+        .within(ranges::positive),
+    setting(&Brush::hardness, "hardness", "", "1: an edge two voxels wide; 0: as wide as the brush")
+        .titled("hardness of the brush")
+        .within(ranges::part),
+    setting(&Brush::strength, "strength", "", "Part of the way to its target that one touch goes")
+        .titled("strength of the brush")
+        .within({0, 1, true, "above 0 and at most 1"}),
+    setting(&Brush::level, "level", "data units", "carve, add: the level whose surface it shapes")
+        .titled("level of the brush")
+        .within(ranges::finite),
+    setting(&Brush::solid, "solid", "", "'above' or 'below' that level"),
+    setting(&Brush::value, "value", "data units", "Value that a full touch leaves")
+        .titled("value of the brush")
+        .within(ranges::finite)};
 
 namespace edit {
 /// A brush swept along a straight line without gaps, like a spherical burr.

@@ -14,6 +14,7 @@
 
 #include "palpate/force.hpp"
 #include "palpate/proxy.hpp"
+#include "palpate/setting.hpp"
 
 namespace palpate {
 
@@ -70,6 +71,19 @@ struct Needle {
     /// [mm/s] Slower than this along the line, the shaft sticks (Karnopp 1985).
     double stick_speed = 1;
 };
+template <>
+inline constexpr auto settings_of<Needle> = std::tuple{
+    setting(&Needle::lateral_stiffness, "lateral_stiffness", "N/mm",
+            "Stiffness of the pull to the needle's line")
+        .titled("lateral stiffness of the needle")
+        .within(ranges::not_negative),
+    setting(&Needle::static_ratio, "static_ratio", "",
+            "Friction at rest, as a multiple of that in motion")
+        .titled("static ratio of the needle")
+        .within(ranges::at_least_1),
+    setting(&Needle::stick_speed, "stick_speed", "mm/s", "Speed below which the shaft sticks")
+        .titled("stick speed of the needle")
+        .within(ranges::limit_or_zero)};
 
 /// A haptic transfer function. Properties that neither a layer nor a curve gives are those of the
 /// session's settings. Without a puncture force, surfaces never give way.

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "palpate/cubic.hpp"
+#include "palpate/setting.hpp"
 
 namespace palpate {
 
@@ -191,6 +192,10 @@ struct DensityRange {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
 };
+template <>
+inline constexpr auto settings_of<DensityRange> =
+    std::tuple{setting(&DensityRange::low, "low", "data units", "Lowest level that is touched"),
+               setting(&DensityRange::high, "high", "data units", "Highest level that is touched")};
 
 /// The input of a penetrability function in each constrained tick.
 struct Pressing {

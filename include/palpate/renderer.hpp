@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "palpate/layers.hpp"
+#include "palpate/setting.hpp"
 #include "palpate/tool_proxy.hpp"
 
 namespace palpate {
@@ -17,6 +18,15 @@ struct DeviceTransform {
     Vec3 translation = Vec3::Zero();   ///< [mm, physical] where the device's origin lies
     double scale = 1;                  ///< physical mm per device mm, > 0
 };
+template <>
+inline constexpr auto settings_of<DeviceTransform> =
+    std::tuple{setting(&DeviceTransform::rotation, "rotation", "",
+                       "Orthonormal, device axes to physical axes, (3, 3)"),
+               setting(&DeviceTransform::translation, "translation", "mm, physical",
+                       "Where the device's origin lies")
+                   .within(ranges::place),
+               setting(&DeviceTransform::scale, "scale", "", "Physical mm per mm of hand, above 0")
+                   .within(ranges::scale)};
 Vec3 physical_from_device(const DeviceTransform& transform, const Vec3& device);
 Vec3 device_from_physical(const DeviceTransform& transform, const Vec3& physical);
 

@@ -8,6 +8,7 @@
 #include "palpate/device.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/renderer.hpp"
+#include "palpate/setting.hpp"
 
 namespace palpate {
 
@@ -23,6 +24,18 @@ struct SessionSettings {
     /// [s] A tick that takes longer gives no force, and the force starts again with the ramp.
     double overrun = 0.02;
 };
+template <>
+inline constexpr auto settings_of<SessionSettings> = std::tuple{
+    setting(&SessionSettings::clutch_buttons, "clutch_buttons", "",
+            "Bits of the buttons that hold the volume to the hand"),
+    setting(&SessionSettings::deadman_buttons, "deadman_buttons", "",
+            "Bits of the buttons of which one must be held (0: none)"),
+    setting(&SessionSettings::fastest_hand, "fastest_hand", "device mm/s",
+            "Fastest plausible motion of a hand")
+        .titled("fastest hand")
+        .within(ranges::limit),
+    setting(&SessionSettings::overrun, "overrun", "s", "A tick that takes longer gives no force")
+        .within(ranges::limit)};
 
 /// How samples were made, so that a replay of a recording can make them again.
 struct EditOf {

@@ -1,101 +1,18 @@
-// Describes each number of force, friction, device, transform, needle and session once: its unit,
-// range and purpose. Files, command-line options, live commands, the C interface and the Python
-// module are made from these tables. A setting's default is that of its struct.
+// Describes each number that a running session can change once: its unit, range and purpose. Files,
+// command-line options, live commands, the C interface and the Python module are made from these
+// tables. Other structs have their table beside them. A setting's default is that of its struct.
 #pragma once
 
-#include <concepts>
-#include <cstddef>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <tuple>
-#include <type_traits>
 #include <vector>
 
 #include "palpate/names.hpp"
 #include "palpate/session.hpp"
+#include "palpate/setting.hpp"
 
 namespace palpate {
-
-/// The values that a number may have. NaN is in no range.
-struct ValueRange {
-    double least, most;  ///< both included, except `least` where `open`
-    bool open;
-    const char* words;  ///< "finite and at least 0"
-
-    constexpr bool has(double value) const {
-        return (open ? value > least : value >= least) && value <= most;
-    }
-};
-namespace ranges {
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
-inline constexpr double greatest = std::numeric_limits<double>::max();
-inline constexpr ValueRange any{-infinity, infinity, false, "a number"};
-inline constexpr ValueRange not_negative{0, greatest, false, "finite and at least 0"};
-inline constexpr ValueRange at_least_1{1, greatest, false, "finite and at least 1"};
-inline constexpr ValueRange positive{0, greatest, true, "finite and above 0"};
-inline constexpr ValueRange limit{0, infinity, true, "above 0 (inf: none)"};
-inline constexpr ValueRange limit_or_zero{0, infinity, false, "at least 0 (inf: none)"};
-inline constexpr ValueRange start{0, infinity, false, "at least 0 (inf: start at any)"};
-inline constexpr ValueRange rate{1, 1e5, false, "1 to 100000"};
-}  // namespace ranges
-
-/// One setting of a struct.
-template <class Owner, class Value>
-struct Setting {
-    Value Owner::*member;
-    const char* name;   ///< of the member, and in Python and C
-    const char* unit;   ///< "N/mm", or "" without one
-    const char* about;  ///< a sentence without its full stop
-    ValueRange range = ranges::any;
-    const char* title = name;    ///< in messages
-    const char* key = name;      ///< in files
-    const char* option = "";     ///< of the command line: "--force-limit", or ""
-    const char* left_open = "";  ///< the meaning of None in Python, or "" if it cannot be None
-
-    constexpr Setting within(const ValueRange& to) const { return with(&Setting::range, to); }
-    constexpr Setting titled(const char* to) const { return with(&Setting::title, to); }
-    constexpr Setting in_files(const char* to) const { return with(&Setting::key, to); }
-    constexpr Setting as_option(const char* to) const { return with(&Setting::option, to); }
-    constexpr Setting if_open(const char* to) const { return with(&Setting::left_open, to); }
-
-  private:
-    template <class Part>
-    constexpr Setting with(Part Setting::*part, const Part& to) const {
-        Setting changed = *this;
-        changed.*part = to;
-        return changed;
-    }
-};
-template <class Owner, class Value>
-constexpr Setting<Owner, Value> setting(Value Owner::*member, const char* name, const char* unit,
-                                        const char* about) {
-    return {member, name, unit, about};
-}
-
-/// The table of a struct: a tuple with a Setting for each member, in the order of files.
-template <class T>
-inline constexpr std::nullptr_t settings_of{};
-/// T has a table.
-template <class T>
-concept Described = !std::same_as<decltype(settings_of<T>), const std::nullptr_t>;
-/// Calls visit(setting) for each setting of T.
-template <Described T>
-constexpr void for_each_setting(auto&& visit) {
-    std::apply([&](const auto&... each) { (visit(each), ...); }, settings_of<T>);
-}
-/// Calls visit(path, setting, number) for each number of a struct, and of the structs in it, as in
-/// "force.magnet.peak" for the path "force". `number` is a reference into `owner`.
-template <class Owner>
-void for_each_number(const std::string& path, Owner& owner, auto&& visit) {
-    for_each_setting<std::remove_const_t<Owner>>([&](const auto& one) {
-        auto& value = owner.*one.member;
-        using Value = std::remove_cvref_t<decltype(value)>;
-        const std::string name = path + "." + one.name;
-        if constexpr (Described<Value>) for_each_number(name, value, visit);
-        if constexpr (std::same_as<Value, double>) visit(name, one, value);
-    });
-}
 
 template <>
 inline constexpr auto settings_of<Friction> =
@@ -222,44 +139,6 @@ inline constexpr auto settings_of<DeviceLimits> = std::tuple{
             "Time in which a constant force brings the motors to 63 % of its warmth")
         .titled("warming time")
         .within(ranges::positive)};
-
-template <>
-inline constexpr auto settings_of<DeviceTransform> =
-    std::tuple{setting(&DeviceTransform::rotation, "rotation", "",
-                       "Orthonormal, device axes to physical axes, (3, 3)"),
-               setting(&DeviceTransform::translation, "translation", "mm, physical",
-                       "Where the device's origin lies")
-                   .within({-1e60, 1e60, false, "within 1e60"}),
-               setting(&DeviceTransform::scale, "scale", "", "Physical mm per mm of hand, above 0")
-                   .within({1e-30, 1e30, false, "from 1e-30 to 1e30"})};
-
-template <>
-inline constexpr auto settings_of<DensityRange> =
-    std::tuple{setting(&DensityRange::low, "low", "data units", "Lowest level that is touched"),
-               setting(&DensityRange::high, "high", "data units", "Highest level that is touched")};
-
-template <>
-inline constexpr auto settings_of<Needle> = std::tuple{
-    setting(&Needle::lateral_stiffness, "lateral_stiffness", "N/mm",
-            "Stiffness of the pull to the needle's line")
-        .within(ranges::not_negative),
-    setting(&Needle::static_ratio, "static_ratio", "",
-            "Friction at rest, as a multiple of that in motion")
-        .within(ranges::at_least_1),
-    setting(&Needle::stick_speed, "stick_speed", "mm/s", "Speed below which the shaft sticks")
-        .within(ranges::limit_or_zero)};
-
-template <>
-inline constexpr auto settings_of<SessionSettings> = std::tuple{
-    setting(&SessionSettings::clutch_buttons, "clutch_buttons", "",
-            "Bits of the buttons that hold the volume to the hand"),
-    setting(&SessionSettings::deadman_buttons, "deadman_buttons", "",
-            "Bits of the buttons of which one must be held (0: none)"),
-    setting(&SessionSettings::fastest_hand, "fastest_hand", "device mm/s",
-            "Fastest plausible motion of a hand")
-        .within(ranges::limit),
-    setting(&SessionSettings::overrun, "overrun", "s", "A tick that takes longer gives no force")
-        .within(ranges::limit)};
 
 /// Calls visit(name, setting, number, group) for each number that a running session can change: a
 /// command changes all of its group. "force.stiffness" is a name.

@@ -3,130 +3,122 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <stdexcept>
+#include <optional>
 #include <string>
+#include <variant>
 
 #include "io/json_members.hpp"
 #include "palpate/names.hpp"
 
+namespace palpate {
+
+static io::Json to_value(const BricksOf::Brick& brick) {
+    return {brick.at[0], brick.at[1], brick.at[2], brick.level};
+}
+
+static void from_value(const io::Json& json, const std::string& name, BricksOf::Brick& brick) {
+    std::array<int, 4> numbers{};
+    if (!json.is_array() || json.size() != numbers.size()) io::wrong_member(name, "four numbers");
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const auto number = json[i].is_number_integer() ? json[i].get<std::int64_t>() : -2;
+        if (number < -1 || number > 1 << 30) io::wrong_member(name, "whole numbers from -1");
+        numbers[i] = static_cast<int>(number);
+    }
+    brick = {{numbers[0], numbers[1], numbers[2]}, numbers[3]};
+}
+
+}  // namespace palpate
+
 namespace palpate::io {
+
+// The lists of members. Recordings from before a brush got a setting have its default. Not in an
+// unnamed namespace, where JsonWriter would not find them.
+
+static void members(auto& v, Is<Pose> auto& s) {
+    v.needed("position", s.position);
+    v.needed("wxyz", s.orientation);
+}
+static void members(auto& v, Is<edit::Stroke> auto& s) {
+    members(v, s.brush);
+    v.needed("from", s.from);
+    v.needed("to", s.to);
+}
+/// But for its body, which is written once in a recording.
+static void members(auto& v, Is<edit::Sweep> auto& s) {
+    members(v, s.brush);
+    v.needed("from", s.from);
+    v.needed("to", s.to);
+}
+static void members(auto& v, Is<edit::Fill> auto& s) {
+    v.needed("low", s.box.low);
+    v.needed("high", s.box.high);
+    v.needed("value", s.value);
+}
+static void members(auto& v, Is<FramesOf> auto& s) {
+    v.needed("frames", s.numbers);
+    v.needed("times", s.times);
+    v.needed("period", s.period);
+    v.must(std::ranges::all_of(s.numbers, [](int n) { return n >= 0; }), "frames",
+           "whole numbers from 0");
+    v.must(s.numbers.size() == s.times.size(), "frames", "as many as times");
+}
+/// But for its version, which an edit has, too.
+static void members(auto& v, Is<BricksOf> auto& s) {
+    v.needed("bricks", s.bricks);
+}
+
 namespace {
 
-Json json_of(const Vec3& v) {
-    return {v[0], v[1], v[2]};
-}
-Json json_of(const Index3& v) {
-    return {v[0], v[1], v[2]};
-}
-
-Json json_of(const Pose& pose) {
-    const Quaternion& q = pose.orientation;
-    return {{"position", json_of(pose.position)}, {"wxyz", {q.w(), q.x(), q.y(), q.z()}}};
+template <class T>
+T read(const Json& json) {
+    T value;
+    JsonReader reader{json};
+    members(reader, value);
+    return value;
 }
 
-Json json_of(const Brush& brush) {
-    return {{"kind", name_of(brush.kind)}, {"radius", brush.radius},
-            {"hardness", brush.hardness},  {"strength", brush.strength},
-            {"level", brush.level},        {"solid", enum_name(brush.solid)},
-            {"value", brush.value}};
-}
-
-Json json_of(const edit::Stroke& stroke) {
-    Json json = json_of(stroke.brush);
-    json["from"] = json_of(stroke.from);
-    json["to"] = json_of(stroke.to);
-    return json;
-}
-
-Json json_of(const edit::Sweep& sweep, Bodies& bodies) {
-    Json json = json_of(sweep.brush);
-    json["from"] = json_of(sweep.from);
-    json["to"] = json_of(sweep.to);
-    const auto known = std::ranges::find(bodies, sweep.body);
-    if (known != bodies.end()) {
-        json["body"] = known - bodies.begin();
-        return json;
-    }
-    bodies.push_back(sweep.body);
-    const ToolBody& body = *sweep.body;
-    json["body"] = {
-        {"tool", to_value(*body.tool())}, {"step", body.step()}, {"reach", body.reach()}};
-    return json;
+Json json_of(const std::shared_ptr<const ToolBody>& body, Bodies& bodies) {
+    const auto known = std::ranges::find(bodies, body);
+    if (known != bodies.end()) return known - bodies.begin();
+    bodies.push_back(body);
+    return {{"tool", to_value(*body->tool())}, {"step", body->step()}, {"reach", body->reach()}};
 }
 
 Json json_of(const Edit& edit, Bodies& bodies) {
-    if (const auto* stroke = std::get_if<edit::Stroke>(&edit))
-        return {{"stroke", json_of(*stroke)}};
-    if (const auto* sweep = std::get_if<edit::Sweep>(&edit))
-        return {{"sweep", json_of(*sweep, bodies)}};
-    if (const auto* fill = std::get_if<edit::Fill>(&edit)) {
-        return {{"fill",
-                 {{"low", json_of(fill->box.low)},
-                  {"high", json_of(fill->box.high)},
-                  {"value", fill->value}}}};
-    }
-    const auto& replace = std::get<edit::Replace>(edit);
-    const Index3 high = replace.at + replace.samples.geometry().size - Index3::Ones();
-    return {{"replace", {{"low", json_of(replace.at)}, {"high", json_of(high)}}}};
-}
-
-[[noreturn]] void wrong(const char* name) {
-    throw std::invalid_argument(std::string("'") + name + "' of the samples is not valid");
+    const Overloaded write{
+        [](const edit::Stroke& stroke) {
+            return Json{{"stroke", JsonWriter::of(stroke)}};
+        },
+        [&](const edit::Sweep& sweep) {
+            Json json = JsonWriter::of(sweep);
+            json["body"] = json_of(sweep.body, bodies);
+            return Json{{"sweep", json}};
+        },
+        [](const edit::Fill& fill) {
+            return Json{{"fill", JsonWriter::of(fill)}};
+        },
+        [](const edit::Replace& replace) {
+            const Index3 high = replace.at + replace.samples.geometry().size - Index3::Ones();
+            return Json{{"replace", {{"low", to_value(replace.at)}, {"high", to_value(high)}}}};
+        }};
+    return std::visit(write, edit);
 }
 
 double number(const Json& json, const char* name) {
     return number_from_json(member(json, name), name);
 }
 
-std::string word(const Json& json, const char* name) {
-    const Json& text = member(json, name);
-    if (!text.is_string()) wrong(name);
-    return text.get<std::string>();
-}
-
-Vec3 vector(const Json& json, const char* name) {
-    const Json& list = member(json, name);
-    if (!list.is_array() || list.size() != 3) wrong(name);
-    return {number_from_json(list[0], name), number_from_json(list[1], name),
-            number_from_json(list[2], name)};
-}
-
-Index3 index(const Json& json, const char* name) {
-    const Vec3 v = vector(json, name);
-    if (!(v.cwiseAbs().maxCoeff() <= 1 << 20)) wrong(name);
-    return v.cast<int>();
-}
-
 std::uint64_t whole(const Json& json, const char* name) {
     const Json& value = member(json, name);
-    if (!value.is_number_unsigned()) wrong(name);
+    if (!value.is_number_unsigned()) wrong_member(name, "a whole number");
     return value.get<std::uint64_t>();
-}
-
-Brush brush_from(const Json& json) {
-    Brush brush;
-    brush.kind = brush_kind_from(word(json, "kind"));
-    brush.radius = number(json, "radius");
-    brush.hardness = number(json, "hardness");
-    brush.strength = number(json, "strength");
-    brush.level = number(json, "level");
-    brush.solid = named<Solid>(word(json, "solid"));
-    brush.value = number(json, "value");
-    return brush;
-}
-
-Pose pose_from(const Json& json) {
-    const Json& wxyz = member(json, "wxyz");
-    if (!wxyz.is_array() || wxyz.size() != 4) wrong("wxyz");
-    std::array<double, 4> q{};
-    for (std::size_t i = 0; i < 4; ++i) q[i] = number_from_json(wxyz[i], "wxyz");
-    return {vector(json, "position"), {q[0], q[1], q[2], q[3]}};
 }
 
 std::shared_ptr<const ToolBody> body_from(const Json& json, Bodies& bodies) {
     if (json.is_number()) {
-        if (!json.is_number_unsigned() || json.get<std::uint64_t>() >= bodies.size()) wrong("body");
+        if (!json.is_number_unsigned() || json.get<std::uint64_t>() >= bodies.size()) {
+            wrong_member("body", "the number of one that came before");
+        }
         return bodies[json.get<std::size_t>()];
     }
     Tool tool;
@@ -136,60 +128,29 @@ std::shared_ptr<const ToolBody> body_from(const Json& json, Bodies& bodies) {
     return bodies.back();
 }
 
-Edit edit_from(const Json& json, Bodies& bodies) {
-    if (json.contains("stroke")) {
-        const Json& stroke = json.at("stroke");
-        return edit::Stroke{brush_from(stroke), vector(stroke, "from"), vector(stroke, "to")};
-    }
-    if (json.contains("sweep")) {
-        const Json& sweep = json.at("sweep");
-        return edit::Sweep{brush_from(sweep), body_from(member(sweep, "body"), bodies),
-                           pose_from(member(sweep, "from")), pose_from(member(sweep, "to"))};
-    }
-    const Json& fill = json.at("fill");
-    return edit::Fill{{index(fill, "low"), index(fill, "high")}, number(fill, "value")};
+/// Nothing for samples that an application put in place.
+std::optional<Edit> edit_from(const Json& json, Bodies& bodies) {
+    if (json.contains("stroke")) return read<edit::Stroke>(json.at("stroke"));
+    if (json.contains("fill")) return read<edit::Fill>(json.at("fill"));
+    if (!json.contains("sweep")) return std::nullopt;
+    auto sweep = read<edit::Sweep>(json.at("sweep"));
+    sweep.body = body_from(member(json.at("sweep"), "body"), bodies);
+    return sweep;
 }
 
-FramesOf frames_from(const Json& json) {
-    const Json& numbers = member(json, "frames");
-    const Json& times = member(json, "times");
-    if (!numbers.is_array() || !times.is_array() || numbers.size() != times.size()) wrong("frames");
-    FramesOf frames;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if (!numbers[i].is_number_unsigned() || numbers[i].get<std::uint64_t>() > 1 << 30) {
-            wrong("frames");
-        }
-        frames.numbers.push_back(numbers[i].get<int>());
-        frames.times.push_back(number_from_json(times[i], "times"));
+/// Nothing for samples whose recipe is not known.
+std::optional<Recipe> recipe_from(const Json& json, Bodies& bodies) {
+    if (json.contains("frames")) return read<FramesOf>(json);
+    if (json.contains("bricks")) {
+        auto bricks = read<BricksOf>(json);
+        bricks.version = whole(json, "of");
+        return bricks;
     }
-    frames.period = number(json, "period");
-    return frames;
-}
-
-BricksOf bricks_from(const Json& json) {
-    BricksOf bricks{whole(json, "of"), {}};
-    const Json& list = member(json, "bricks");
-    if (!list.is_array()) wrong("bricks");
-    for (const Json& each : list) {
-        if (!each.is_array() || each.size() != 4) wrong("bricks");
-        std::array<int, 4> numbers{};
-        for (std::size_t i = 0; i < 4; ++i) {
-            if (!each[i].is_number_integer()) wrong("bricks");
-            const auto number = each[i].get<std::int64_t>();
-            if (number < -1 || number > 1 << 30) wrong("bricks");
-            numbers[i] = static_cast<int>(number);
-        }
-        bricks.bricks.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3]});
-    }
-    return bricks;
-}
-
-Json json_of(const BricksOf& bricks) {
-    Json list = Json::array();
-    for (const BricksOf::Brick& brick : bricks.bricks) {
-        list.push_back({brick.at[0], brick.at[1], brick.at[2], brick.level});
-    }
-    return list;
+    if (!json.contains("edit")) return std::nullopt;
+    const std::uint64_t of = whole(json, "of");
+    const auto edit = edit_from(json.at("edit"), bodies);
+    if (!edit) return std::nullopt;
+    return EditOf{of, *edit};
 }
 
 }  // namespace
@@ -197,39 +158,24 @@ Json json_of(const BricksOf& bricks) {
 Json to_json(const command::Samples& samples, Bodies& bodies) {
     Json json{{"version", samples.version}};
     if (!samples.recipe) return json;
-    if (const auto* made = std::get_if<EditOf>(samples.recipe.get())) {
-        json["of"] = made->version;
-        json["edit"] = json_of(made->edit, bodies);
-        return json;
-    }
-    if (const auto* bricks = std::get_if<BricksOf>(samples.recipe.get())) {
-        json["of"] = bricks->version;
-        json["bricks"] = json_of(*bricks);
-        return json;
-    }
-    const auto& frames = std::get<FramesOf>(*samples.recipe);
-    json["frames"] = frames.numbers;
-    json["times"] = frames.times;
-    json["period"] = frames.period;
+    const Overloaded write{[&](const EditOf& made) {
+                               json["of"] = made.version;
+                               json["edit"] = json_of(made.edit, bodies);
+                           },
+                           [&](const BricksOf& bricks) {
+                               json["of"] = bricks.version;
+                               json.update(JsonWriter::of(bricks));
+                           },
+                           [&](const FramesOf& frames) { json.update(JsonWriter::of(frames)); }};
+    std::visit(write, *samples.recipe);
     return json;
 }
 
 command::Samples samples_command_from_json(const Json& json, Bodies& bodies) {
     command::Samples samples;
     samples.version = whole(json, "version");
-    if (json.contains("frames")) {
-        samples.recipe = std::make_shared<const Recipe>(frames_from(json));
-        return samples;
-    }
-    if (json.contains("bricks")) {
-        samples.recipe = std::make_shared<const Recipe>(bricks_from(json));
-        return samples;
-    }
-    if (!json.contains("edit")) return samples;
-    const Json& edit = member(json, "edit");
-    const std::uint64_t of = whole(json, "of");
-    if (edit.contains("stroke") || edit.contains("sweep") || edit.contains("fill")) {
-        samples.recipe = std::make_shared<const Recipe>(EditOf{of, edit_from(edit, bodies)});
+    if (const auto recipe = recipe_from(json, bodies)) {
+        samples.recipe = std::make_shared<const Recipe>(*recipe);
     }
     return samples;
 }

@@ -32,6 +32,10 @@ void wrong_member(const std::string& name, const std::string& wanted) {
     throw std::invalid_argument("'" + name + "' must be " + wanted);
 }
 
+void missing_member(const std::string& name) {
+    throw std::invalid_argument("'" + name + "' is missing");
+}
+
 std::string one_of(const std::vector<std::string>& names) {
     std::string words = names.front();
     for (std::size_t i = 1; i < names.size(); ++i) {
@@ -44,6 +48,10 @@ Json to_value(const Vec3& value) {
     Json list = Json::array();
     for (int i = 0; i < 3; ++i) list.push_back(number_to_json(value[i]));
     return list;
+}
+
+Json to_value(const Index3& value) {
+    return {value[0], value[1], value[2]};
 }
 
 Json to_value(const Mat3& value) {
@@ -77,6 +85,13 @@ void from_value(const Json& json, const std::string& name, std::uint32_t& value)
 void from_value(const Json& json, const std::string& name, Vec3& value) {
     if (!json.is_array() || json.size() != 3) wrong_member(name, "three numbers");
     for (int i = 0; i < 3; ++i) value[i] = number_from_json(json[std::size_t(i)], name);
+}
+
+void from_value(const Json& json, const std::string& name, Index3& value) {
+    Vec3 numbers;
+    from_value(json, name, numbers);
+    if (!(numbers.cwiseAbs().maxCoeff() <= 1 << 20)) wrong_member(name, "an index of a grid");
+    value = numbers.cast<int>();
 }
 
 void from_value(const Json& json, const std::string& name, Mat3& value) {
@@ -256,9 +271,7 @@ Command command_named(const std::string& name, const Json& json, Bodies& bodies)
 }  // namespace
 
 const Json& member(const Json& json, const char* name) {
-    if (!json.is_object() || !json.contains(name)) {
-        throw std::invalid_argument(std::string("'") + name + "' is missing");
-    }
+    if (!json.is_object() || !json.contains(name)) missing_member(name);
     return json.at(name);
 }
 

@@ -224,7 +224,7 @@ TEST(Touch, refuses_commands_that_it_does_not_understand_before_anything_runs) {
     refused("soon freeze on\n", "is no time");
     refused("2 freeze on\n1 freeze off\n", "the time goes back");
     refused("0 stiffness 1000\n", "to be rendered stably");
-    refused("0 scale 0\n", "scale must be finite and above 0");
+    refused("0 scale 0\n", "scale = 0: must be from 1e-30 to 1e30");
     refused("0 penetrability ranges 1 5:3\n", "low <= high");
     refused("0 isovalue much\n", "'much'");
 }

@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"--isovalue", "--isovalue"}, Case{"--background nan", "'nan'"},
         Case{"--method magic", "magic"}, Case{"--stiffness 1000", "at most 5 at 1000 Hz"},
         Case{"--stiffness -1", "at least 0"}, Case{"--stiffness nan", "nan"},
-        Case{"--stiffness abc", "abc"}, Case{"--scale 0", "scale must be finite and above 0"},
+        Case{"--stiffness abc", "abc"}, Case{"--scale 0", "scale = 0: must be from 1e-30 to 1e30"},
         Case{"--scale -1", "scale"}, Case{"--scale nan", "scale"},
         Case{"--friction 0.2,0.5", "dynamic coefficient <= static"}, Case{"--friction -1", "0 <="},
         Case{"--friction a", "--friction a"}, Case{"--friction 1,2,3", "--friction 1,2,3"},

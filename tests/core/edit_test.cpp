@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "palpate/names.hpp"
 #include "palpate/proxy.hpp"
 #include "support/constants.hpp"
 #include "support/edits.hpp"
@@ -326,8 +327,8 @@ TEST(Edit, that_cannot_be_made_is_refused) {
 }
 
 TEST(Edit, brushes_have_names) {
-    for (const BrushKind kind : brush_kinds) EXPECT_EQ(brush_kind_from(name_of(kind)), kind);
-    EXPECT_THROW(brush_kind_from("dig"), std::invalid_argument);
+    for (const BrushKind kind : brush_kinds) EXPECT_EQ(named<BrushKind>(enum_name(kind)), kind);
+    EXPECT_THROW(named<BrushKind>("dig"), std::invalid_argument);
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ TEST(Layers, say_what_is_wrong_with_them) {
     EXPECT_EQ(refused([](Layers& l) { l.closing = 0; }),
               "the distance at which surfaces close must be finite and above 0 mm");
     EXPECT_EQ(refused([](Layers& l) { l.needle = Needle{.static_ratio = 0.5}; }),
-              "the needle's static friction must be at least that in motion");
+              "static ratio of the needle = 0.5: must be finite and at least 1");
 }
 
 TEST(Layers, give_the_force_of_the_closed_form_at_every_speed) {

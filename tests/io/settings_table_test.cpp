@@ -52,6 +52,21 @@ TEST(SettingsTable, a_setting_that_is_added_to_a_table_is_in_files) {
     EXPECT_THROW(JsonReader::get(Json{{"wobbles", "far"}}, "dummy", read), std::invalid_argument);
 }
 
+TEST(SettingsTable, a_setting_that_is_added_to_a_table_is_checked) {
+    const auto refusal = [](const Dummy& dummy) -> std::string {
+        try {
+            check_ranges(dummy);
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refusal({}), "");
+    EXPECT_EQ(refusal({.wobble = 0, .magnet = {}}), "wobble [mm] = 0: must be finite and above 0");
+    EXPECT_EQ(refusal({.magnet = {.peak = -1}}),
+              "magnet peak [N] = -1: must be finite and at least 0");
+}
+
 TEST(SettingsTable, numbers_are_named_by_their_path_and_their_range_is_told) {
     Dummy dummy;
     std::vector<std::string> names;

@@ -279,6 +279,13 @@ class SilentAboutMost(http.server.SimpleHTTPRequestHandler):
         super().do_GET()
 
 
+def is_pending(number, process):
+    """A signal was sent to the process, which has not handled it yet."""
+    with open(f"/proc/{process.pid}/status", encoding="utf-8") as status:
+        pending = next(line for line in status if line.startswith("ShdPnd:"))
+    return int(pending.split()[1], 16) >> (number - 1) & 1
+
+
 @pytest.mark.parametrize("how", ["option", "command"])
 def test_ctrl_c_ends_the_saving_of_edits_and_they_are_rescued_without_the_server(tmp_path, how):
     subprocess.run([os.environ["PALPATE"], "convert", "-q", "synthetic:sphere:200x200x200", tmp_path / "v.zarr",
@@ -291,13 +298,14 @@ def test_ctrl_c_ends_the_saving_of_edits_and_they_are_rescued_without_the_server
                               "--commands", "c.txt", *save, "-q"], cwd=tmp_path,
                              env={**os.environ, "TMPDIR": str(tmp_path)}, stderr=subprocess.PIPE, text=True)
     assert "create it first" in touch.stderr.readline()  # so the samples are filled
+    if how == "option":
+        touch.send_signal(signal.SIGINT)  # ends the session, so that saving begins
+    live_test.until(lambda: list(tmp_path.glob(".palpate-*.part")))
     if how == "command":
-        live_test.until(lambda: list(tmp_path.glob(".palpate-*.part")))
-    begin = time.monotonic()
-    while touch.poll() is None:
-        touch.send_signal(signal.SIGINT)
-        time.sleep(0.1)
-    assert time.monotonic() - begin < 20  # of 100
+        touch.send_signal(signal.SIGINT)  # ends the session, which waits for what is saved
+        live_test.until(lambda: not is_pending(signal.SIGINT, touch))
+    touch.send_signal(signal.SIGINT)  # ends saving. A third one would end the rescue
+    touch.wait(20)  # of 100
     told = touch.stderr.read()
     assert "saving was interrupted; the edits are kept in" in told, told
     [kept] = tmp_path.glob("palpate-edits-*/edits.zarr")

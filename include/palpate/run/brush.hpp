@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "palpate/edit.hpp"
+#include "palpate/setting.hpp"
 
 namespace palpate::run {
 
@@ -38,3 +39,29 @@ std::optional<Brush> brush_at(const HandBrush& brush, const Field& field, double
                               double dt);
 
 }  // namespace palpate::run
+
+namespace palpate {
+
+template <>
+inline constexpr auto settings_of<run::HandBrush> =
+    std::tuple{setting(&run::HandBrush::kind, "kind", "", "'carve', 'add', 'smooth' or 'paint'"),
+               setting(&run::HandBrush::radius, "radius", "mm, physical",
+                       "Radius of the ball. With the shape of a tool: how far beyond its surface")
+                   .titled("radius of the brush")
+                   .within(ranges::positive),
+               setting(&run::HandBrush::hardness, "hardness", "",
+                       "1: an edge two voxels wide; 0: as wide as the brush")
+                   .titled("hardness of the brush")
+                   .within(ranges::part),
+               setting(&run::HandBrush::rate, "rate", "1/s",
+                       "After a second 1 - exp(-rate) of the change is done")
+                   .titled("rate of the brush")
+                   .within({0, ranges::infinity, true, "above 0 (inf: at once)"}),
+               setting(&run::HandBrush::value, "value", "data units", "Value that it leaves")
+                   .titled("value of the brush")
+                   .within(ranges::finite)
+                   .if_open("the usual one"),
+               setting(&run::HandBrush::as_tool, "as_tool", "",
+                       "It has the shape of the tool. That of a point is a ball")};
+
+}  // namespace palpate
