@@ -81,7 +81,8 @@ ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress) {
         return BoxSpec{{x, y, z}};
     }
     if (std::filesystem::path(text).extension() == ".csv") {
-        return PointsSpec{parse_tool_points(read_text(text), text)};
+        const auto waiting = progress ? Waiting([&] { progress(0); }) : Waiting();
+        return PointsSpec{parse_tool_points(read_text(text, waiting), text)};
     }
     if (names_a_mesh(text)) {
         SurfaceMesh mesh = read_mesh(text, progress);

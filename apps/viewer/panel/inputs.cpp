@@ -1,4 +1,4 @@
-// Number boxes, sliders, and requests that wait until the interval since the last one is over.
+// Number boxes and sliders, and texts of numbers.
 #include "apps/viewer/panel/inputs.hpp"
 
 #include <QBoxLayout>
