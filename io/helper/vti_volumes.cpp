@@ -271,9 +271,7 @@ void write_vti(const std::filesystem::path& path, const WrittenVolume& volume) {
     writer->EncodeAppendedDataOff();
     writer->SetHeaderTypeToUInt64();
     if (!volume.compress) writer->SetCompressorTypeToNone();
-    if (writer->Write() == 0 || !errors->first().empty()) {
-        throw Failure("could not be written (" + errors->first() + "); is the disk full?");
-    }
+    if (writer->Write() == 0 || !errors->first().empty()) throw Failure(not_written_whole);
 }
 
 }  // namespace palpate::io

@@ -11,7 +11,8 @@
 
 namespace palpate::viewer {
 
-/// A number with as few digits as it needs, at most `digits`; "inf" and "-inf" are numbers.
+/// A number with as few digits as it needs, at most `digits` and those before the point, without an
+/// exponent from 1e-4 to 1e9; "inf" and "-inf" are numbers.
 QString number_text(double value, int digits = 6);
 /// A whole number in groups of three, with narrow spaces: every language reads it alike.
 QString count_text(double whole);

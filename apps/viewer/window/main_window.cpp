@@ -25,6 +25,7 @@
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/ruler.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/panel/timeline.hpp"
@@ -282,9 +283,9 @@ void MainWindow::show_readout(const Snapshot& now) {
     words += QString("%1, %2, %3 %4").arg(number(at[0]), number(at[1]), number(at[2]), unit);
     if (const auto field = content_.felt_round(now, at)) {
         const double slope = gradient_at(*field, at).norm() / ruler.per_mm;
-        words += "   " + tr("%1 %2   slope %3 /%4")
-                             .arg(QString::number(value_at(*field, at), 'g', 4), units,
-                                  QString::number(slope, 'g', 3), unit);
+        words += "   " +
+                 tr("%1 %2   slope %3 /%4")
+                     .arg(number_text(value_at(*field, at), 4), units, number_text(slope, 3), unit);
     }
     readout_->setText(words);
 }
