@@ -74,7 +74,7 @@ class VolumeEditor {
     /// commands.
     void record(const Servo& servo, const BeginRecording& begin);
     /// After a command with which the hand of this servo may touch although it did not move. `tool`
-    /// is its tool from now on; null: a point. The brush pauses until the tool has left the
+    /// is its tool from now on (null: a point). The brush pauses until the tool has left the
     /// surface. The brush of a servo that was just attached pauses too. No effect for a servo that
     /// is not attached.
     void rest_brush(const Servo& servo, const std::shared_ptr<const Tool>& tool);
