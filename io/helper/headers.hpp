@@ -37,8 +37,9 @@ struct DataPlace {
     std::uint64_t length = UINT64_MAX;  ///< bytes of a compressed stream, if the header says
     std::uint64_t skip = 0;             ///< bytes before the samples, after unpacking
     enum class Encoding { raw, compressed, text } encoding = Encoding::raw;
-    bool has_footer = false;  ///< something else may follow the samples
-    bool swapped = false;     ///< the bytes of a sample are in the other order than the machine's
+    /// What may follow the samples: VTK's arrays begin with a word, FreeSurfer's tags are numbers.
+    enum class Footer { none, words, tags } footer = Footer::none;
+    bool swapped = false;  ///< the bytes of a sample are in the other order than the machine's
 };
 
 /// All that reading the samples of one volume takes.

@@ -83,7 +83,7 @@ VolumeHeader mgh_header(const Request& request) {
     place.file = request.path;
     place.skip = first_sample;
     place.swapped = std::endian::native == std::endian::little;
-    place.has_footer = true;
+    place.footer = DataPlace::Footer::tags;
     if (is_gzip(request.path)) place.encoding = DataPlace::Encoding::compressed;
     header.geometry = grid_of(bytes, header.notes);
     header.steps = header.sizes[3];

@@ -1,6 +1,7 @@
 // Reads the samples that a header describes: raw, compressed or as text.
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -15,7 +16,7 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::uint64_t padding_allowed = 4096, longest_footer = 1 << 24;
+constexpr std::uint64_t padding_allowed = 4096, longest_footer = 1 << 20;
 constexpr std::size_t chunk_bytes = 1 << 20;
 constexpr int longest_word = 512;  // a double has up to some 320 digits
 
@@ -75,11 +76,14 @@ void compare(std::uint64_t have, std::uint64_t need, const std::string& what, st
 }
 
 /// The same for samples. As many additional bytes again, or more, are no padding: the type is twice
-/// as wide as the header says, or there are other samples. A footer is ignored.
+/// as wide as the header says, or there are other samples. Footers are ignored.
 void compare_samples(std::uint64_t have, std::uint64_t need, const std::string& what,
                      const DataPlace& place, std::vector<std::string>& notes) {
-    if (place.has_footer && have > need) return;
     const bool doubled = have >= need && have - need >= need;
+    const bool has_words = place.footer == DataPlace::Footer::words,
+               has_tags = place.footer == DataPlace::Footer::tags;
+    if (have > need && has_words) return;
+    if (have > need && has_tags && !(doubled && have - need > longest_footer)) return;
     compare(have, need, what, doubled ? 0 : padding_allowed, notes);
 }
 
@@ -153,7 +157,7 @@ void read_text(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
     const std::uint64_t wanted = header.samples() / header.places.size();
     for (std::string word; in >> std::setw(longest_word) >> word; ++count) {
         const auto number = number_from<double>(word);
-        if (!number && place.has_footer && count >= wanted) break;
+        if (!number && place.footer == DataPlace::Footer::words && count >= wanted) break;
         if (!number) {
             throw Failure("its data are not all numbers ('" + word.substr(0, 20) + "' after " +
                           std::to_string(count) + " of them); export it again");
@@ -170,7 +174,7 @@ void read_text(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
         throw Failure(
             "its numbers have decimal commas, which are not read; write them with points");
     }
-    place.has_footer = false;  // which begins with a word
+    place.footer = DataPlace::Footer::none;  // all numbers before it were counted
     compare_samples(count, wanted, "numbers", place, header.notes);
     samples(bytes);
 }
@@ -196,6 +200,21 @@ bool begins_packed(const DataPlace& place) {
     return number == 0x1f8b || ((number >> 8 & 0xf) == 8 && number % 31 == 0);
 }
 
+/// Behind the samples, a line ends, and words follow, or nothing does.
+void check_words_behind(const DataPlace& place, std::uint64_t bytes) {
+    std::ifstream in(place.file, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(place.offset + place.skip + bytes));
+    constexpr int end = std::char_traits<char>::eof();
+    const int first = in.get();
+    if (first == end) return;
+    in >> std::ws;
+    const int next = in.peek();
+    if (std::isspace(first) != 0 && (next == end || std::isalpha(next) != 0)) return;
+    throw Failure(
+        "its samples do not end where its header says; correct the sizes or the type in its "
+        "header");
+}
+
 void check_length(VolumeHeader& header, const DataPlace& place) {
     const std::uint64_t available = available_at(place);
     const std::uint64_t have = available - std::min(place.skip, available);
@@ -205,6 +224,7 @@ void check_length(VolumeHeader& header, const DataPlace& place) {
             "zlib's do; correct the header, or unpack them");
     }
     compare_samples(have, header.bytes_each(), "bytes of samples", place, header.notes);
+    if (place.footer == DataPlace::Footer::words) check_words_behind(place, header.bytes_each());
 }
 
 void read_raw_bytes(VolumeHeader& header, const DataPlace& place, const ByteSink& sink) {
@@ -236,7 +256,9 @@ void read_compressed(VolumeHeader& header, const DataPlace& place, const ByteSin
     SampleBytes samples(header, place, sink);
     std::uint64_t unpacked = 0;
     try {
-        const std::uint64_t behind = place.has_footer ? longest_footer : padding_allowed;
+        const bool has_tags = place.footer == DataPlace::Footer::tags;
+        const std::uint64_t behind =
+            has_tags ? std::max(header.bytes_each(), longest_footer) : padding_allowed;
         const std::uint64_t at_most = place.skip + header.bytes_each() + behind;
         unpacked =
             inflate_checked(place.file, {place.offset, place.length, at_most}, std::ref(samples));

@@ -33,10 +33,29 @@ void check_deflate(TIFF* tiff, const fs::path& file, std::uint32_t piece, bool t
     try {
         const auto most =
             static_cast<std::uint64_t>(tiled ? TIFFTileSize64(tiff) : TIFFStripSize64(tiff));
-        inflate_checked(raw, most + 4096);
+        inflate_checked(raw, most + std::min<std::uint64_t>(4096, most - 1));
     } catch (const DamagedStream& e) {
         throw Failure(quoted(file) + ": " + e.what() + "; copy it again");
     }
+}
+
+/// Refuses pieces without compression that have twice the bytes of the page, or more: its samples
+/// are wider, or more, than the header says.
+void check_surplus(TIFF* tiff, const fs::path& file, const TiffPage& page) {
+    constexpr std::uint64_t padding_allowed = 4096;
+    std::uint16_t compression = COMPRESSION_NONE;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
+    if (compression != COMPRESSION_NONE) return;
+    const bool tiled = TIFFIsTiled(tiff) != 0;
+    const std::uint32_t pieces = tiled ? TIFFNumberOfTiles(tiff) : TIFFNumberOfStrips(tiff);
+    const std::uint64_t need = tiled ? pieces * std::uint64_t{TIFFTileSize64(tiff)}
+                                     : page.height * std::uint64_t{page.bytes_of(page.width)};
+    std::uint64_t have = 0;
+    for (std::uint32_t i = 0; i < pieces; ++i) have += TIFFGetStrileByteCount(tiff, i);
+    if (have < 2 * need || have - need < padding_allowed) return;
+    throw Failure(quoted(file) + " has a page of " + std::to_string(have) +
+                  " bytes, and its header tells of " + std::to_string(need) +
+                  "; correct its size or BitsPerSample, or export it again");
 }
 
 /// Strips are tiles as wide as the page, the last of which has the rows that are left.
@@ -51,6 +70,7 @@ void read_pieces(TIFF* tiff, const fs::path& file, const TiffPage& page, std::by
         TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &height);
         height = std::clamp<std::uint32_t>(height, 1, page.height);
     }
+    check_surplus(tiff, file, page);
     const std::int64_t sizes[] = {width, height};
     std::vector<std::byte> piece(checked_bytes(sizes, size_of(page.stored), UINT64_MAX, request));
     const std::size_t row = page.bytes_of(page.width), piece_row = page.bytes_of(width);
@@ -140,7 +160,8 @@ Result read_slices(const std::vector<Slice>& slices, const TiffLayout& layout,
     for (std::size_t i = 0; i < slices.size(); ++i) {
         const Slice& slice = slices[i];
         say_doing(slice.file.filename().string());
-        if (i == 0 || slice.file != slices[i - 1].file) tiff = open_to_read(slice.file);
+        // c: strips as long as they are stored, not cut by libtiff, which forgets their lengths.
+        if (i == 0 || slice.file != slices[i - 1].file) tiff = open_to_read(slice.file, "c");
         if (layout.plain_from == 0) go_to_slice(tiff.get(), slice);
         const TiffPage page = page_of(tiff.get(), slice.file, result.notes);
         if (i == 0) {

@@ -236,7 +236,7 @@ VolumeHeader vtk_header(const Request& request) {
     take_vtk_array(words, header);
     place.offset = words.offset();
     place.swapped = std::endian::native == std::endian::little;
-    place.has_footer = true;
+    place.footer = DataPlace::Footer::words;
     checked_bytes(header.sizes, size_of(header.stored), std::filesystem::file_size(request.path),
                   request);
     header.together = static_cast<std::int64_t>(header.samples());

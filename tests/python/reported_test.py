@@ -12,6 +12,7 @@ import zlib
 from pathlib import Path
 
 import h5py
+import nibabel
 import numpy
 import palpate
 import pytest
@@ -315,6 +316,44 @@ def test_an_array_of_a_field_with_another_number_of_samples_is_refused(tmp_path)
     path = write_vtk(tmp_path / "a.vtk", ramp("i2"), second=ramp("f4"))
     path.write_bytes(path.read_bytes().replace(b"density 1 120", b"density 1 119"))
     refused(path, "119 samples")
+
+
+@pytest.mark.parametrize("second", (None, ramp("i2")))
+def test_binary_vtk_of_a_narrower_type_than_its_samples_is_refused(tmp_path, second):
+    path = write_vtk(tmp_path / "a.vtk", ramp("i4"), second=second)
+    whole = path.read_bytes()
+    for narrower in (b"short", b"char", b"unsigned_char"):
+        path.write_bytes(whole.replace(b" int\n", b" " + narrower + b"\n", 1))
+        refused(path, "do not end where its header says")
+        with pytest.raises(palpate.InputError, match="do not end"):
+            palpate.open_store(path)
+
+
+@pytest.mark.parametrize("name", ("a.mgh", "a.mgz"))
+@pytest.mark.parametrize("size, is_refused", ((4, False), (128, True)))
+def test_an_mgh_of_a_narrower_type_than_its_samples_is_refused(tmp_path, name, size, is_refused):
+    """A few bytes may be tags, but not as many as millions of samples take."""
+    nibabel.MGHImage(numpy.ones((size,) * 3, "i4"), numpy.eye(4)).to_filename(tmp_path / "b.mgh")
+    whole = (tmp_path / "b.mgh").read_bytes()
+    whole = whole[:20] + struct.pack(">i", 0) + whole[24:]  # bytes
+    (tmp_path / name).write_bytes(gzip.compress(whole) if name == "a.mgz" else whole)
+    if is_refused:
+        refused(tmp_path / name, "a.mg")
+    else:
+        assert palpate.load(tmp_path / name).volume.array.shape == (size,) * 3
+
+
+@pytest.mark.parametrize("tile", (None, (16, 16)))
+@pytest.mark.parametrize("compression", (None, "zlib"))
+@pytest.mark.parametrize("dtype, bits", (("u2", 8), ("u4", 16), ("u4", 8)))
+def test_pages_of_tiff_with_wider_samples_than_their_header_says_are_refused(tmp_path, dtype, bits, compression, tile):
+    tifffile.imwrite(tmp_path / "a.tif", ramp(dtype, (2, 80, 96)), photometric="minisblack", metadata=None, compression=compression, tile=tile)
+    data = bytearray((tmp_path / "a.tif").read_bytes())
+    with tifffile.TiffFile(tmp_path / "a.tif") as file:
+        for page in file.pages:
+            struct.pack_into("<H", data, page.tags["BitsPerSample"].valueoffset, bits)
+    (tmp_path / "a.tif").write_bytes(data)
+    refused(tmp_path / "a.tif", "a.tif")
 
 
 def test_text_of_vtk_with_too_many_numbers_or_decimal_commas(tmp_path):
