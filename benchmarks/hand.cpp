@@ -141,13 +141,9 @@ Touch all_resident(Touch touch) {
                 const SampleBox box = ResidentBricks::box_of(brick, geometry.size);
                 std::shared_ptr<std::byte[]> samples(
                     new std::byte[ResidentBricks::per_brick * each]());
-                const Index3 corner =
-                    brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
                 for (int z = box.low[2]; z <= box.high[2]; ++z) {
                     for (int y = box.low[1]; y <= box.high[1]; ++y) {
-                        const Index3 in = Index3(box.low[0], y, z) - corner;
-                        const auto to =
-                            in[0] + in[1] * ResidentBricks::row + in[2] * ResidentBricks::slice;
+                        const auto to = ResidentBricks::place_of({box.low[0], y, z});
                         const auto from =
                             (std::ptrdiff_t{z} * geometry.size[1] + y) * geometry.size[0] +
                             box.low[0];

@@ -112,10 +112,10 @@ def main():
     for kind in ("compute", "lateness"):
         line(f"{kind} {' / '.join(PARTS)} [us]",
              lambda row: " / ".join(f"{row[kind + '_ns'][part] / 1e3:,.1f}" for part in PARTS))
-    line("tetrahedra an update, p50 / p99 / p99.9 / max, and of the longest update",
+    line("tetrahedra per update, p50 / p99 / p99.9 / max, and of the longest update",
          lambda row: " / ".join(f"{row['tetrahedra'][int(part * (len(row['tetrahedra']) - 1))]:,}"
                                 for part in (0.5, 0.99, 0.999, 1)) + f", {row['in_longest']:,}")
-    line("forces taken back (overruns)", lambda row: f"{row['overruns']}")
+    line("forces cancelled (overruns)", lambda row: f"{row['overruns']}")
     line("missed deadlines", lambda row: f"{row['missed']:,}")
     return 0 if all(row["same"] and row["unrecorded"] == 0 for row in rows) else 1
 

@@ -273,7 +273,7 @@ std::string four(const LatencySummary& s) {
 
 void print(const ServoReport& r) {
     fmt::print(
-        "ticks {}, missed deadlines {}, forces taken back {}, events lost {}\n"
+        "ticks {}, missed deadlines {}, forces cancelled {}, events lost {}\n"
         "compute time (ours)    {}\n"
         "lateness (the machine) {}\n"
         "work (wall clock)      {}\n"

@@ -21,7 +21,7 @@ struct Held {
     }
 };
 Held& held() {
-    static Held all;
+    static Held& all = *new Held;  // a thread that was left alone may outlive the program's end
     return all;
 }
 
@@ -51,6 +51,7 @@ Claim::Claim(std::string device, const void* hand) : device_(std::move(device)) 
 }
 
 Claim::~Claim() {
+    if (device_.empty()) return;
     const std::lock_guard lock(held().mutex);
     held().hands.erase(device_);
 }

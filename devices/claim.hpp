@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 namespace palpate::devices {
 
@@ -33,13 +34,13 @@ class Claim {
     /// Throws DeviceError if another hand has it.
     explicit Claim(std::string device, const void* hand = opening_hand());
     ~Claim();
-    Claim(const Claim&) = delete;
-    Claim& operator=(const Claim&) = delete;
+    Claim(Claim&& other) noexcept : device_(std::exchange(other.device_, {})) {}
+    Claim& operator=(Claim&&) = delete;
 
     const std::string& device() const { return device_; }
 
   private:
-    std::string device_;
+    std::string device_;  // empty: moved away
 };
 
 }  // namespace palpate::devices

@@ -122,8 +122,8 @@ stream::BrickLoaderStatus Data::streaming() const {
     return streamer_ ? streamer_->status() : stream::BrickLoaderStatus{};
 }
 
-void Data::use_tool(const Servo& servo, std::shared_ptr<const Tool> tool) {
-    if (editor_) editor_->use_tool(servo, std::move(tool));
+void Data::rest_brush(const Servo& servo, const std::shared_ptr<const Tool>& tool) {
+    if (editor_) editor_->rest_brush(servo, tool);
 }
 
 std::string Data::problem() const {

@@ -76,6 +76,18 @@ class Gone final : public Device {
     const std::string problem_;
 };
 
+/// After such a command, a hand that stands still may touch what it did not touch before.
+bool moves_contact(const Command& command) {
+    const Overloaded moves{[](const ForceSettings&) { return false; },
+                           [](const Friction&) { return false; },
+                           [](const DeviceLimits&) { return false; },
+                           [](const command::Forces&) { return false; },
+                           [](const command::Speed&) { return false; },
+                           [](const command::Samples&) { return false; },
+                           [](const auto&) { return true; }};
+    return std::visit(moves, command);
+}
+
 /// Interval between steps of data and recording, with Pace::by_steps [s].
 constexpr double between_steps = 0.004;
 /// How long stop() waits for a device that hangs.
@@ -280,9 +292,7 @@ void Run::send(const Command& command) {
     settings_ = changed.renderer.settings;
     isovalue_ = changed.renderer.proxy.isovalue;
     frozen_ = changed.frozen;
-    if (std::holds_alternative<command::UseTool>(command)) {
-        data_->use_tool(*servo_, settings_.tool);
-    }
+    if (moves_contact(command)) data_->rest_brush(*servo_, settings_.tool);
 }
 
 void Run::close_device() {

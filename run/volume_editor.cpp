@@ -101,7 +101,7 @@ std::unique_ptr<Servo> VolumeEditor::attach(Session session, const StartServo& s
         palpate::apply(session, command::Samples{editor_.samples(), version});
         servo = start(std::move(session), history());
     }
-    hands_.push_back({servo.get(), field, tool});
+    hands_.push_back({.servo = servo.get(), .field = field, .tool = tool, .resting = true});
     new_step_ = true;
     return servo;
 }
@@ -122,14 +122,14 @@ void VolumeEditor::record(const Servo& servo, const BeginRecording& begin) {
     begin(history());
 }
 
-void VolumeEditor::use_tool(const Servo& servo, std::shared_ptr<const Tool> tool) {
+void VolumeEditor::rest_brush(const Servo& servo, const std::shared_ptr<const Tool>& tool) {
     const std::scoped_lock lock(mutex_);
     for (Hand& hand : hands_) {
-        if (hand.servo != &servo || hand.tool == tool) continue;
+        if (hand.servo != &servo) continue;
+        if (hand.tool != tool) hand.body.reset();
         hand.tool = tool;
-        hand.body.reset();
         hand.touch.reset();
-        hand.resting = true;  // a larger tool touches where the hand did not move
+        hand.resting = true;
         const auto now = servo.snapshot();
         hand.from = now ? now->number + Servo::sure_after : 0;
     }

@@ -89,19 +89,37 @@ void Field::cover(const std::shared_ptr<const Field>& labels, std::uint32_t soli
 
 namespace {
 
-/// Whether samples of a box belong to bricks of another level than its own. A brick's margin is
-/// made from samples of its own level. If it counted beside a finer brick, the field would jump
-/// between the two, and a proxy could go from what one calls free into what the other calls solid.
-bool meets_other_level(const ResidentBricks& resident, const Brick& own, const Index3& low,
-                       const Index3& high) {
-    const Index3 first = ResidentBricks::brick_of(low), last = ResidentBricks::brick_of(high);
-    for (int i = 0; i < 8; ++i) {
-        const Brick* brick = resident.at(
-            {i & 1 ? last[0] : first[0], i & 2 ? last[1] : first[1], i & 4 ? last[2] : first[2]});
-        if (brick && brick->level != own.level) return true;
+/// Reads samples in bricks one by one. Neighbours mostly lie in one resident brick, which is then
+/// looked up only once.
+template <class T>
+class BrickReader {
+  public:
+    BrickReader(const ResidentBricks* resident, const Bricks* edited)
+        : resident_(resident), edited_(edited) {}
+
+    /// Null if the sample is in no brick. In a large grid this means that it is not in memory.
+    const T* find(const Index3& at) {
+        if (resident_) {
+            const Index3 place = ResidentBricks::brick_of(at);
+            if (place != place_) brick_ = resident_->at(place_ = place);
+            if (!brick_) return nullptr;
+        }
+        if (const Brick* edited = edited_ ? edited_->of_sample(at) : nullptr) {
+            return in(*edited) + Bricks::place_of(at);
+        }
+        return brick_ ? in(*brick_) + ResidentBricks::place_of(at) : nullptr;
     }
-    return false;
-}
+
+  private:
+    static const T* in(const Brick& brick) {
+        return reinterpret_cast<const T*>(brick.samples.get());
+    }
+
+    const ResidentBricks* resident_;
+    const Bricks* edited_;
+    Index3 place_ = Index3::Constant(-1);
+    const Brick* brick_ = nullptr;  // there
+};
 
 /// Whether two samples lie in one resident brick.
 bool are_in_one(const Index3& a, const Index3& b) {
@@ -119,9 +137,8 @@ Field::Run Field::stored_run(const Index3& low) const {
         return Run{brick.samples.get() + static_cast<std::size_t>(place) * bytes, row, row * row,
                    false};
     };
-    // A block of three lies in the resident brick of its middle, one of two in that of its corner.
-    const Index3 owner = count == 3 ? Index3(low[0] + 1, low[1] + 1, low[2] + 1) : low;
-    const Brick* const resident = resident_ ? resident_->of_sample(owner) : nullptr;
+    const Brick* const resident =
+        resident_ && are_in_one(low, high) ? resident_->of_sample(low) : nullptr;
     if (resident_ && !resident) return {};
     if (bricks_) {
         const Brick* const first = bricks_->of_sample(low);
@@ -135,14 +152,7 @@ Field::Run Field::stored_run(const Index3& low) const {
             if (bricks_->of_sample(corner)) return {};
         }
     }
-    if (resident) {
-        constexpr std::ptrdiff_t row = ResidentBricks::row, slice = ResidentBricks::slice;
-        if (!are_in_one(low, high) && meets_other_level(*resident_, *resident, low, high)) {
-            return {};
-        }
-        const std::ptrdiff_t back = count == 3 ? 1 + row + slice : 0;
-        return in(*resident, ResidentBricks::place_of(owner) - back, row);
-    }
+    if (resident) return in(*resident, ResidentBricks::place_of(low), ResidentBricks::row);
     const std::ptrdiff_t place = low[0] + low[1] * row_ + low[2] * slice_;
     return {static_cast<const std::byte*>(data_) + static_cast<std::size_t>(place) * bytes, row_,
             slice_, true};
@@ -221,15 +231,6 @@ Field::Run Field::run_of(const Index3& low) const {
     return stored_run<count>(low);
 }
 
-template <class T>
-double Field::sample_at(const Index3& at) const {
-    if (!has_sample(at)) return background_ - offset_;
-    if (resident_ && !resident_->of_sample(at)) {
-        return (sign_ > 0 ? samples_->maximum() : samples_->minimum()) - offset_;
-    }
-    return samples_->sample_as<T>(at, moment_) - offset_;
-}
-
 template <int count>
 std::array<double, std::size_t{count} * count * count> Field::gathered(const Index3& low) const {
     std::array<double, std::size_t{count} * count * count> samples;
@@ -252,6 +253,13 @@ std::array<double, std::size_t{count} * count * count> Field::gathered(const Ind
             if (!(weight > 0)) return double(from[at]) - offset_;
             return (1 - weight) * double(from[at]) + weight * double(to[at]) - offset_;
         };
+        BrickReader<T> reader(resident_, bricks_);
+        const auto in_bricks = [&](int x, int y, int z) {
+            const T* const sample = reader.find({low[0] + x, low[1] + y, low[2] + z});
+            if (sample) return double(*sample) - offset_;
+            if (!resident_) return in_frames(x, y, z);
+            return (sign_ > 0 ? samples_->maximum() : samples_->minimum()) - offset_;
+        };
         const Index3 none = Index3::Zero(), all = Index3::Constant(count);
         const Run run = stored_run<count>(low);
         if (run.in_frame) {
@@ -260,13 +268,14 @@ std::array<double, std::size_t{count} * count * count> Field::gathered(const Ind
             gather(none, all, [&](int x, int y, int z) {
                 return double(brick[x + y * run.row + z * run.slice]) - offset_;
             });
-        } else if (bricks_ || resident_) {
-            gather(none, all, [&](int x, int y, int z) {
-                return sample_at<T>({low[0] + x, low[1] + y, low[2] + z});
-            });
-        } else {  // across the border
+        } else {  // across the border of the grid or of bricks
             samples.fill(background_ - offset_);
-            gather((-low).cwiseMax(none), (size_ - low).cwiseMin(all), in_frames);
+            const Index3 first = (-low).cwiseMax(none), end = (size_ - low).cwiseMin(all);
+            if (bricks_ || resident_) {
+                gather(first, end, in_bricks);
+            } else {
+                gather(first, end, in_frames);
+            }
         }
     });
     if (!cover_.labels) return samples;

@@ -137,7 +137,23 @@ double Samples::within(double time) const noexcept {
 }
 
 double Samples::sample(const Index3& index, const Moment& moment) const {
-    return with_type(type(), [&](auto zero) { return sample_as<decltype(zero)>(index, moment); });
+    return with_type(type(), [&](auto zero) {
+        const auto in = [](const void* samples, std::ptrdiff_t place) {
+            return double(static_cast<const decltype(zero)*>(samples)[place]);
+        };
+        if (const Brick* brick = bricks_ ? bricks_->of_sample(index) : nullptr) {
+            return in(brick->samples.get(), Bricks::place_of(index));
+        }
+        if (resident_) {
+            const Brick* const brick = resident_->of_sample(index);
+            return in(brick->samples.get(), ResidentBricks::place_of(index));
+        }
+        const std::ptrdiff_t place = sample_place(index, geometry_.size);
+        const double from = in(frames_[moment.from].volume.data(), place);
+        if (!(moment.weight > 0)) return from;
+        return (1 - moment.weight) * from +
+               moment.weight * in(frames_[moment.to].volume.data(), place);
+    });
 }
 
 Volume flattened(const Samples& samples, const Moment& moment) {

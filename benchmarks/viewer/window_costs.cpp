@@ -7,6 +7,7 @@
 #include <QApplication>
 #include <QElapsedTimer>
 #include <QEventLoop>
+#include <QFileInfo>
 #include <QImage>
 #include <QSettings>
 #include <QSurfaceFormat>
@@ -170,6 +171,11 @@ int main(int argc, char** argv) {
     volumes.removeFirst();
     if (volumes.isEmpty()) {
         std::fprintf(stderr, "usage: viewer_costs VOLUME [OTHER...]\n");
+        return 2;
+    }
+    for (const QString& path : volumes) {  // else the run would wait ten minutes for it
+        if (QFileInfo::exists(path)) continue;
+        std::fprintf(stderr, "viewer_costs: %s does not exist\n", qUtf8Printable(path));
         return 2;
     }
     return measure(volumes);

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "devices/falcon/words.hpp"
+#include "devices/left_alone.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -71,10 +73,14 @@ std::unique_ptr<falcon::FalconDevice> falcon::open(const DeviceChoice& choice,
     const std::string library = options.text("library", "");
     options.finish();
     try {
-        return std::make_unique<FalconDevice>(
-            library,
-            Settings{static_cast<unsigned int>(index), firmware_from(firmware), scene.rate},
-            timing);
+        const Ftdi ftdi =
+            left_alone_when_stopped(scene.progress, [library] { return Ftdi(library); });
+        const Settings settings{static_cast<unsigned int>(index), firmware_from(firmware),
+                                scene.rate};
+        return left_alone_when_stopped(
+            scene.progress, [ftdi, claim = claim_for(settings), settings, timing]() mutable {
+                return std::make_unique<FalconDevice>(ftdi, std::move(claim), settings, timing);
+            });
     } catch (const DeviceError& error) {
         throw DeviceError("device " + choice.name + ": " + error.what());
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "devices/falcon/kinematics.hpp"
 #include "devices/falcon/words.hpp"
@@ -74,11 +75,15 @@ std::array<int, 3> motors_for(const Vec3& force, const Vec3& position) {
     return motors;
 }
 
-FalconDevice::FalconDevice(const std::string& library, Settings settings, const Timing& timing)
+Claim claim_for(const Settings& settings) {
+    return Claim("the Falcon with index=" + std::to_string(settings.index));
+}
+
+FalconDevice::FalconDevice(const Ftdi& ftdi, Claim claim, Settings settings, const Timing& timing)
     : LinkedDevice(timing),
-      ftdi_(library),
+      ftdi_(ftdi),
       settings_(std::move(settings)),
-      claim_("the Falcon with index=" + std::to_string(settings_.index)),
+      claim_(std::move(claim)),
       info_(info_of(settings_)) {
     const int count = ftdi_.count();
     if (count <= static_cast<int>(settings_.index)) {

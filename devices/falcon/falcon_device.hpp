@@ -46,9 +46,12 @@ std::array<int, 3> motors_for(const Vec3& force, const Vec3& position);
 /// The greatest that a motor is asked for.
 constexpr int most_of_motor = 4096;
 
+/// Of the device that the settings choose.
+Claim claim_for(const Settings& settings);
+
 class FalconDevice final : public LinkedDevice {
   public:
-    FalconDevice(const std::string& library, Settings settings, const Timing& timing = {});
+    FalconDevice(const Ftdi& ftdi, Claim claim, Settings settings, const Timing& timing = {});
     /// Ends the thread. The last packet asks for no force.
     ~FalconDevice() override;
 

@@ -78,8 +78,12 @@ DeviceStatus status_of(Trouble::Kind kind) {
     }
 }
 
-Opened::Opened(const Dhd& dhd, const Settings& settings)
-    : claim_("the device with index=" + std::to_string(settings.index)), dhd_(dhd) {
+Claim claim_for(const Settings& settings) {
+    return Claim("the device with index=" + std::to_string(settings.index));
+}
+
+Opened::Opened(const Dhd& dhd, Claim claim, const Settings& settings)
+    : claim_(std::move(claim)), dhd_(dhd) {
     if (settings.simulator && !dhd.enable_simulator) {
         throw DeviceError("simulator=yes: " + dhd.library.path() +
                           " knows no simulator: install the SDK's current version");
@@ -108,10 +112,10 @@ Opened::~Opened() {
     dhd_.close(id_);
 }
 
-DhdDevice::DhdDevice(const std::string& library, const Settings& settings, const Timing& timing)
+DhdDevice::DhdDevice(const Dhd& dhd, Claim claim, const Settings& settings, const Timing& timing)
     : LinkedDevice(timing),
-      dhd_(library),
-      opened_(dhd_, settings),
+      dhd_(dhd),
+      opened_(dhd_, std::move(claim), settings),
       id_(opened_.id()),
       arm_(arm_of(dhd_, id_)),
       renders_torque_(arm_.model.torque > 0),

@@ -45,10 +45,13 @@ struct Trouble {
 };
 DeviceStatus status_of(Trouble::Kind kind);
 
+/// Of the device that the settings choose.
+Claim claim_for(const Settings& settings);
+
 /// Opens a device of the library and closes it when destroyed. Throws DeviceError.
 class Opened {
   public:
-    Opened(const Dhd& dhd, const Settings& settings);
+    Opened(const Dhd& dhd, Claim claim, const Settings& settings);
     ~Opened();
     Opened(const Opened&) = delete;
     Opened& operator=(const Opened&) = delete;
@@ -63,7 +66,7 @@ class Opened {
 
 class DhdDevice final : public LinkedDevice {
   public:
-    DhdDevice(const std::string& library, const Settings& settings, const Timing& timing = {});
+    DhdDevice(const Dhd& dhd, Claim claim, const Settings& settings, const Timing& timing = {});
     /// Ends the thread. The last force is zero.
     ~DhdDevice() override;
 

@@ -2,9 +2,11 @@
 #include "devices/forcedimension/forcedimension.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "devices/forcedimension/dhd_device.hpp"
 #include "devices/forcedimension/words.hpp"
+#include "devices/left_alone.hpp"
 
 namespace palpate::devices {
 namespace {
@@ -69,7 +71,11 @@ std::unique_ptr<forcedimension::DhdDevice> forcedimension::open(const DeviceChoi
     settings.spring = options.number("spring", 0, 0, 3);
     options.finish();
     try {
-        return std::make_unique<DhdDevice>(library, settings, timing);
+        const Dhd dhd = left_alone_when_stopped(scene.progress, [library] { return Dhd(library); });
+        return left_alone_when_stopped(
+            scene.progress, [dhd, claim = claim_for(settings), settings, timing]() mutable {
+                return std::make_unique<DhdDevice>(dhd, std::move(claim), settings, timing);
+            });
     } catch (const DeviceError& error) {
         throw DeviceError("device " + choice.name + ": " + error.what());
     }

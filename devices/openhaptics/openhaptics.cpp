@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "devices/left_alone.hpp"
 #include "devices/openhaptics/phantom.hpp"
 #include "devices/openhaptics/words.hpp"
 
@@ -42,8 +43,12 @@ std::unique_ptr<Device> openhaptics::open(const DeviceChoice& choice, const Devi
     const std::string library = options.text("library", "");
     options.finish();
     try {
-        auto attachment = std::make_unique<Attachment>(library, settings.name);
-        return std::make_unique<Phantom>(std::move(attachment), settings, timing);
+        return left_alone_when_stopped(
+            scene.progress, [library, claim = claim_for_all(), settings, timing]() mutable {
+                return std::make_unique<Phantom>(
+                    std::make_unique<Attachment>(std::move(claim), library, settings.name),
+                    settings, timing);
+            });
     } catch (const DeviceError& error) {
         throw DeviceError("device " + choice.name + ": " + error.what());
     }

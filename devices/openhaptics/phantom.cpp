@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "devices/models.hpp"
@@ -104,9 +105,12 @@ const char* advice(unsigned int code) {
 
 }  // namespace
 
-Attachment::Attachment(const std::string& library, const std::string& name)
-    : claim_("the only device that the driver opens per process"),
-      hd_(std::make_shared<const Hd>(library)) {
+Claim claim_for_all() {
+    return Claim("the only device that the driver opens per process");
+}
+
+Attachment::Attachment(Claim claim, const std::string& library, const std::string& name)
+    : claim_(std::move(claim)), hd_(std::make_shared<const Hd>(library)) {
     std::vector<const char*> names{name.c_str()};
     if (name.empty()) names = {nullptr, "Default Device", "Default PHANToM"};
     std::string tried;

@@ -15,11 +15,13 @@ struct Settings {
     double rate = 1000;  ///< [Hz] of the servo
 };
 
-/// Opens a device of the driver and closes it when destroyed. The driver has one servo loop and one
-/// current device per process, so there is at most one of these. Throws DeviceError.
+/// Of the one device. The driver has one servo loop and one current device per process.
+Claim claim_for_all();
+
+/// Opens a device of the driver and closes it when destroyed. Throws DeviceError.
 class Attachment {
   public:
-    Attachment(const std::string& library, const std::string& name);
+    Attachment(Claim claim, const std::string& library, const std::string& name);
     ~Attachment();
     Attachment(const Attachment&) = delete;
     Attachment& operator=(const Attachment&) = delete;

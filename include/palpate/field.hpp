@@ -150,9 +150,6 @@ class Field {
     Run stored_run(const Index3& low) const;
     template <int count>
     Run run_of(const Index3& low) const;
-    /// One sample anywhere in space, less offset(), without regard to labels.
-    template <class T>
-    double sample_at(const Index3& at) const;
     template <int count>
     std::array<double, std::size_t{count} * count * count> gathered(const Index3& low) const;
     CellSamples other_cell(const Index3& cell) const;

@@ -98,16 +98,14 @@ class SparseBricks {
     Node root_;
 };
 
-/// Bricks of 2^shift samples along each axis, with `before` samples on the side before them and one
-/// behind them. So the whole cell of a brick's sample lies in the brick. A brick's samples outside
-/// the grid may have any value.
-template <int shift, int before>
+/// Bricks of 2^shift samples along each axis, which store `more` samples behind them, too. A
+/// brick's samples outside the grid may have any value.
+template <int shift, int more>
 class BrickTable : public SparseBricks {
   public:
     static constexpr int edge = 1 << shift;
-    static constexpr int margin = before;
-    static constexpr std::ptrdiff_t row = edge + before + 1;  ///< samples between neighbours in y
-    static constexpr std::ptrdiff_t slice = row * row;        ///< and in z
+    static constexpr std::ptrdiff_t row = edge + more;  ///< samples between neighbours in y
+    static constexpr std::ptrdiff_t slice = row * row;  ///< and in z
     static constexpr std::size_t per_brick = std::size_t{slice} * row;
 
     /// None of a grid of this size.
@@ -125,25 +123,23 @@ class BrickTable : public SparseBricks {
     /// The box of samples that a brick stores, clipped to a grid of this size.
     static SampleBox box_of(const Index3& brick, const Index3& size) {
         const Index3 low = brick * edge;
-        return {(low - Index3::Constant(before)).cwiseMax(Index3::Zero()),
-                (low + Index3::Constant(edge)).cwiseMin(size - Index3::Ones())};
+        return {low, (low + Index3::Constant(edge + more)).cwiseMin(size) - Index3::Ones()};
     }
-    /// The brick that a sample inside the grid, and its cell, belong to, or null.
+    /// The brick that a sample inside the grid belongs to, or null.
     const Brick* of_sample(const Index3& sample) const { return at(brick_of(sample)); }
     /// Place of a sample among those of its brick.
     static std::ptrdiff_t place_of(const Index3& sample) {
         constexpr int mask = edge - 1;
-        return ((sample[0] & mask) + before) + ((sample[1] & mask) + before) * row +
-               ((sample[2] & mask) + before) * slice;
+        return (sample[0] & mask) + (sample[1] & mask) * row + (sample[2] & mask) * slice;
     }
 };
 
-/// Edited samples. Two neighbours both hold the samples on their common face, with equal values.
-/// The grid's own samples count in place of empty bricks.
-using Bricks = BrickTable<4, 0>;
-/// The part of a large grid that is in memory (docs/streaming.md): a sample's neighbours lie in the
-/// brick of that sample.
-using ResidentBricks = BrickTable<6, 1>;
+/// Edited samples. Two neighbours both hold the samples on their common face, with equal values, so
+/// that the whole cell of a sample lies in its brick. The grid's own samples count in place of
+/// empty bricks.
+using Bricks = BrickTable<4, 1>;
+/// The part of a large grid that is in memory (docs/streaming.md).
+using ResidentBricks = BrickTable<6, 0>;
 
 /// A moment of a sequence, as a place between two frames.
 struct Moment {
@@ -200,10 +196,6 @@ class Samples {
     double sample(const Index3& index, const Moment& moment = {}) const;
 
   private:
-    friend class Field;
-    template <class T>
-    double sample_as(const Index3& at, const Moment& moment) const;
-
     std::vector<Frame> frames_;
     Geometry geometry_;
     double period_ = 0;
@@ -212,23 +204,6 @@ class Samples {
     double minimum_ = 0;
     double maximum_ = 0;
 };
-
-template <class T>
-double Samples::sample_as(const Index3& at, const Moment& moment) const {
-    const auto in = [](const void* samples, std::ptrdiff_t place) {
-        return double(static_cast<const T*>(samples)[place]);
-    };
-    if (const Brick* brick = bricks_ ? bricks_->of_sample(at) : nullptr) {
-        return in(brick->samples.get(), Bricks::place_of(at));
-    }
-    if (resident_) {
-        return in(resident_->of_sample(at)->samples.get(), ResidentBricks::place_of(at));
-    }
-    const std::ptrdiff_t place = sample_place(at, geometry_.size);
-    const double from = in(frames_[moment.from].volume.data(), place);
-    if (!(moment.weight > 0)) return from;
-    return (1 - moment.weight) * from + moment.weight * in(frames_[moment.to].volume.data(), place);
-}
 
 /// The samples at a moment as one volume of the same type (rounded to it between two frames), for
 /// files and for code that needs one array. It shares an existing volume if that has the same

@@ -280,6 +280,21 @@ Result read_chosen(const std::vector<DicomSeries>& all, const Request& request) 
     }
 }
 
+/// A slice alone may be one of a series, which its folder opens.
+void note_others_beside(const fs::path& slice, std::vector<std::string>& notes) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(fs::absolute(slice).parent_path(), error)) {
+        if (!is_shown_file(entry) || entry.path().filename() == slice.filename() ||
+            !begins_as_dicom(entry.path())) {
+            continue;
+        }
+        notes.emplace_back(
+            "it is one slice, and other DICOM files are beside it: if they belong to one series, "
+            "give their folder");
+        return;
+    }
+}
+
 Result read_file(const Request& request) {
     say_doing(request.path.filename().string());
     if (is_gzip(request.path)) throw Failure(packed);
@@ -287,7 +302,10 @@ Result read_file(const Request& request) {
     if (all.empty()) {
         throw Failure("is a DICOM file without an image; give the folder with the slices");
     }
-    return read_chosen(all, request);
+    Result result = read_chosen(all, request);
+    const bool is_alone = all.size() == 1 && all.front().slices.size() == 1;
+    if (is_alone) note_others_beside(request.path, result.notes);
+    return result;
 }
 
 /// A file's path with "#" for every number in its name: the same for all slices of most series.

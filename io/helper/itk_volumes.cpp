@@ -22,9 +22,8 @@ void check_written(const std::filesystem::path& path, std::int64_t samples) {
         VolumeHeader header = header_reader(path)(request);
         stream_samples(header, {});
         written = header.samples();
-    } catch (const Failure& e) {
-        throw Failure(
-            "was not written whole; is the disk full? (read again: " + std::string(e.what()) + ")");
+    } catch (const Failure&) {
+        throw Failure(not_written_whole);
     }
     if (written != static_cast<std::uint64_t>(samples))
         throw Failure("is too large for this format; write .nrrd instead");

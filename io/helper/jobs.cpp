@@ -288,9 +288,9 @@ std::string words_of(const std::exception& e, Job job) {
         return job == Job::read_mesh ? "not enough memory; simplify the mesh"
                                      : "not enough memory; crop or downsample the volume";
     }
-    return "the format's library refused it (" + library_words(e.what(), 300) + "); " +
-           (job == Job::write ? "is the disk full?"
-                              : "it is damaged or of a kind that is not read");
+    if (job == Job::write) return not_written_whole;
+    return "the format's library refused it (" + library_words(e.what(), 300) +
+           "); it is damaged or of a kind that is not read";
 }
 
 void serve(const char* program, const Formats& formats, int argc, char** argv) {

@@ -64,7 +64,9 @@ Geometry grid_of(Bytes header, std::vector<std::string>& notes) {
 VolumeHeader mgh_header(const Request& request) {
     const std::vector<std::byte> start = start_of(request.path, first_sample);
     const Bytes bytes(start);
-    if (start.size() < first_sample || big_endian<std::int32_t>(bytes) != 1) {
+    // Since FreeSurfer 7.3, the version has its two middle bytes for the intent (labels, ...).
+    constexpr std::uint32_t intent = 0x00ffff00;
+    if (start.size() < first_sample || (big_endian<std::uint32_t>(bytes) & ~intent) != 1) {
         throw Failure(
             "is no MGH file (it does not begin with version 1), or is cut off; check its "
             "name or copy it again");

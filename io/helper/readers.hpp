@@ -42,6 +42,9 @@ struct MeshSize {
 /// numbers of vertices each].
 MeshSize read_mesh(const std::filesystem::path& path, const std::string& extension);
 
+/// For every format: what its library says of a full disk is nothing for people.
+inline constexpr const char* not_written_whole = "was not written whole; is the disk full?";
+
 struct WrittenVolume {
     Geometry geometry;
     SampleType type = SampleType::uint8;

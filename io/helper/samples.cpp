@@ -151,9 +151,9 @@ void read_text(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
     std::uint64_t count = 0;
     CommasSeen commas;
     const std::uint64_t wanted = header.samples() / header.places.size();
-    const auto goes_on = [&] { return !place.has_footer || count < wanted; };
-    for (std::string word; goes_on() && in >> std::setw(longest_word) >> word; ++count) {
+    for (std::string word; in >> std::setw(longest_word) >> word; ++count) {
         const auto number = number_from<double>(word);
+        if (!number && place.has_footer && count >= wanted) break;
         if (!number) {
             throw Failure("its data are not all numbers ('" + word.substr(0, 20) + "' after " +
                           std::to_string(count) + " of them); export it again");
@@ -170,6 +170,7 @@ void read_text(VolumeHeader& header, DataPlace& place, const ByteSink& sink) {
         throw Failure(
             "its numbers have decimal commas, which are not read; write them with points");
     }
+    place.has_footer = false;  // which begins with a word
     compare_samples(count, wanted, "numbers", place, header.notes);
     samples(bytes);
 }

@@ -18,9 +18,7 @@ int format_of(SampleType type) {
 }
 
 [[noreturn]] void fail_unfinished() {
-    throw Failure("was not written whole (" +
-                  (first_tiff_error().empty() ? "libtiff" : first_tiff_error()) +
-                  "); is the disk full?");
+    throw Failure(not_written_whole);
 }
 
 /// Rows of some 256 KB: large enough to be packed well, small enough to be read piece by piece.

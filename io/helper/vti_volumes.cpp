@@ -13,24 +13,16 @@
 #include <vtkXMLImageDataWriter.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <iterator>
-#include <limits>
-#include <optional>
-#include <pugixml.hpp>
 
-#include "io/byte_order.hpp"
 #include "io/helper/headers.hpp"
 #include "io/helper/library_words.hpp"
 #include "io/helper/readers.hpp"
+#include "io/helper/vti_arrays.hpp"
 #include "io/helper/vtk_errors.hpp"
 #include "io/helper/vtk_type.hpp"
-#include "io/system/number.hpp"
 
 namespace palpate::io {
 namespace {
@@ -47,30 +39,15 @@ std::string image_tag(const std::string& head) {
     return at == std::string::npos ? "" : head.substr(at + 1, head.find('>', at) - at - 1);
 }
 
-/// Attribute of a tag without its brackets. Empty if there is no such attribute.
-std::string attribute(const std::string& tag, const std::string& name) {
-    pugi::xml_document element;
-    element.load_string(("<" + tag + ">").c_str());  // it has no end, but its attributes
-    return element.first_child().attribute(name.c_str()).value();
-}
-
-/// The numbers of an attribute, as many as belong there; none if there is no such attribute.
-std::vector<double> numbers_of(const std::string& tag, const std::string& name, std::size_t count) {
-    const auto numbers = numbers_in(attribute(tag, name), name);
-    if (numbers.empty() || numbers.size() == count) return numbers;
-    throw Failure("its " + name + " has " + std::to_string(numbers.size()) + " numbers where " +
-                  std::to_string(count) + " belong; correct it");
-}
-
 /// VTK inverts the matrix that these make. Whether there is a spacing.
 bool check_placement(const std::string& tag) {
-    const auto spacings = numbers_of(tag, "Spacing", 3);
+    const auto spacings = vti_numbers(tag, "Spacing", 3);
     for (const double spacing : spacings) {
         if (spacing != 0) check_spacing(spacing, "Spacing");  // 0: of one sample, replaced later
     }
-    for (const double coordinate : numbers_of(tag, "Origin", 3))
+    for (const double coordinate : vti_numbers(tag, "Origin", 3))
         check_coordinate(coordinate, "Origin");
-    for (const double cosine : numbers_of(tag, "Direction", 9)) {
+    for (const double cosine : vti_numbers(tag, "Direction", 9)) {
         if (std::abs(cosine) <= 1.01) continue;
         throw Failure("its Direction has the number " + text_of(cosine) +
                       ", which is no direction cosine; correct it");
@@ -100,102 +77,6 @@ bool check_ends(const Request& request) {
         throw Failure("it is cut off (no </VTKFile> at its end); copy or download it again");
     }
     return has_spacing;
-}
-
-/// Refuses a number that its type cannot hold, and more than `most` numbers, of which VTK would
-/// drop the last. What is no number stops VTK.
-void check_numbers(const std::string& text, Stored stored, double most) {
-    const auto [low, high] = with_stored(stored, [](auto zero) {
-        using Limits = std::numeric_limits<decltype(zero)>;
-        return std::pair(static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max()));
-    });
-    const char *at = text.data(), *const end = at + text.size();
-    double number = 0;
-    for (double count = 1;; ++count) {
-        at = std::find_if(at, end, [](char c) { return std::strchr(" \t\r\n+", c) == nullptr; });
-        const auto [next, error] = std::from_chars(at, end, number);
-        if (error != std::errc{}) return;
-        if (count > most) {
-            throw Failure(
-                "an array has more numbers than its piece has samples; it is damaged: "
-                "export it again");
-        }
-        if (std::isfinite(number) && (number < low || number > high)) {
-            throw Failure("its data have the number " + text_of(number) +
-                          ", which its sample type cannot hold; correct the type of its DataArray");
-        }
-        at = next;
-    }
-}
-
-/// Samples at the points or in the cells of a piece.
-double samples_of(const std::vector<double>& extent, bool in_cells) {
-    double count = 1;
-    for (std::size_t a = 0; a + 1 < extent.size(); a += 2) {
-        const double steps = extent[a + 1] - extent[a];
-        count *= in_cells ? std::max(1.0, steps) : steps + 1;
-    }
-    return count;
-}
-
-/// Raw arrays end where the one at `last` does. Otherwise bytes were lost or added, by a transfer
-/// as text for example, and VTK takes others for samples. `in`: behind the tag AppendedData.
-void check_raw_end(std::istream& in, const std::string& file_tag, std::uint64_t last) {
-    in.ignore(std::numeric_limits<std::streamsize>::max(), '_');
-    in.seekg(static_cast<std::streamoff>(last), std::ios::cur);
-    const bool is_wide = attribute(file_tag, "header_type") == "UInt64";
-    const bool is_big = attribute(file_tag, "byte_order") == "BigEndian";
-    std::array<std::byte, 8> length{};
-    in.read(reinterpret_cast<char*>(length.data()), is_wide ? 8 : 4);
-    const bool swapped = is_big != (std::endian::native == std::endian::big);
-    const std::uint64_t bytes = is_wide ? number_in<std::uint64_t>(length, swapped)
-                                        : number_in<std::uint32_t>(length, swapped);
-    const auto back = std::min(bytes, std::uint64_t{64});
-    in.seekg(static_cast<std::streamoff>(bytes - back), std::ios::cur);
-    std::string text(static_cast<std::size_t>(back) + 256, ' ');
-    in.read(text.data(), std::ssize(text));
-    const std::string rest = text.substr(back);
-    // Writers end the line before the tag. That end lies in the array where bytes were lost.
-    const auto before = text.substr(0, back).find_last_not_of(" \t");
-    const bool is_moved =
-        rest[0] != '\n' && rest[0] != '\r' && before != std::string::npos && text[before] == '\n';
-    if (!is_moved && trimmed(rest).starts_with("</AppendedData")) return;
-    throw Failure(
-        "its arrays do not end where its raw data do: bytes were lost or added, perhaps by a "
-        "transfer as text; copy or export it again");
-}
-
-/// Checks numbers that are written as text, and where raw ones end.
-void check_arrays(const std::filesystem::path& file) {
-    constexpr double any = std::numeric_limits<double>::infinity();
-    std::ifstream in(file, std::ios::binary);
-    std::string file_tag;
-    std::optional<std::uint64_t> last;  // where the last array lies
-    std::vector<double> extent;
-    double samples = any;  // that an array may have
-    std::string text, tag;
-    while (!tag.starts_with("AppendedData") && std::getline(in, text, '<')) {
-        const bool is_text = tag.starts_with("DataArray") && !tag.ends_with('/') &&
-                             attribute(tag, "format") != "binary" &&
-                             attribute(tag, "offset").empty();
-        if (is_text) {
-            const auto type = stored_named(lower(attribute(tag, "type")));
-            const auto components = numbers_of(tag, "NumberOfComponents", 1);
-            check_numbers(text, type.value_or(Stored::float64),
-                          samples * (components.empty() ? 1 : components[0]));
-        }
-        if (!std::getline(in, tag, '>')) return;
-        if (tag.starts_with("VTKFile")) file_tag = tag;
-        last = std::max(last, number_from<std::uint64_t>(attribute(tag, "offset")));
-        if (tag.starts_with("Piece")) extent = numbers_of(tag, "Extent", 6);
-        const bool at_points = tag.starts_with("PointData"), in_cells = tag.starts_with("CellData");
-        if (at_points || in_cells) samples = extent.empty() ? any : samples_of(extent, in_cells);
-        if (tag.starts_with("/PointData") || tag.starts_with("/CellData")) samples = any;
-    }
-    const bool is_raw = attribute(tag, "encoding") == "raw";
-    if (is_raw && last && attribute(file_tag, "compressor").empty()) {
-        check_raw_end(in, file_tag, *last);
-    }
 }
 
 /// VTK's reader, which leaves open what its pieces hold.
@@ -307,7 +188,7 @@ void check_size(vtkXMLImageDataReader& reader, const Request& request) {
 
 Result read_vti(const Request& request) {
     const bool has_spacing = check_ends(request);
-    check_arrays(request.path);
+    check_vti_arrays(request.path);
     const vtkNew<ErrorKeeper> errors;
     vtkOutputWindow::SetInstance(errors);
     const vtkNew<PieceReader> reader;
@@ -390,9 +271,7 @@ void write_vti(const std::filesystem::path& path, const WrittenVolume& volume) {
     writer->EncodeAppendedDataOff();
     writer->SetHeaderTypeToUInt64();
     if (!volume.compress) writer->SetCompressorTypeToNone();
-    if (writer->Write() == 0 || !errors->first().empty()) {
-        throw Failure("could not be written (" + errors->first() + "); is the disk full?");
-    }
+    if (writer->Write() == 0 || !errors->first().empty()) throw Failure(not_written_whole);
 }
 
 }  // namespace palpate::io

@@ -12,7 +12,7 @@
 namespace palpate::io {
 namespace {
 
-constexpr std::size_t longest_vtk_header = 1 << 16;
+constexpr std::size_t longest_vtk_header = 1 << 20;  // with fields before the samples
 
 /// The words of a header, in lower case: VTK does not look at their case.
 class VtkWords {
@@ -31,6 +31,11 @@ class VtkWords {
         std::string line;
         std::getline(in_, line);
         return lower(trimmed(line));
+    }
+    /// Passes over the samples of an array that is not used.
+    void skip(std::int64_t count, Stored stored, bool is_text) {
+        if (!is_text) in_.ignore(count * static_cast<std::int64_t>(size_of(stored)));
+        for (std::int64_t i = 0; is_text && i < count; ++i) (void)word();
     }
     /// Of the next byte.
     std::uint64_t offset() {
@@ -58,11 +63,54 @@ Stored stored_as_vtk(const std::string& type) {
 
 using VtkFields = std::map<std::string, std::string>;
 
+/// An array of a FIELD: a name, numbers for each sample, samples, and their type.
+struct VtkArray {
+    std::string components;
+    std::int64_t samples = 0;
+    Stored stored = Stored::uint8;
+};
+
+/// VTK describes the array before it in lines that end with an empty one.
+void skip_metadata(VtkWords& words) {
+    (void)words.rest();
+    while (!words.rest().empty()) continue;
+}
+
+VtkArray array_of_field(VtkWords& words) {
+    if (words.word() == "metadata") {  // or a name
+        skip_metadata(words);
+        (void)words.word();
+    }
+    const std::string components = words.word();
+    const std::int64_t samples = whole_number_in(words.word(), "FIELD", 0);
+    VtkArray array{components, samples, stored_as_vtk(words.word())};
+    (void)words.rest();
+    return array;
+}
+
+/// The file may have numbers of its own before those of the grid (a time, a cycle).
+void skip_field(VtkWords& words, bool is_text) {
+    (void)words.word();  // a name
+    const std::int64_t arrays = whole_number_in(words.rest(), "FIELD", 0);
+    for (std::int64_t i = 0; i < arrays; ++i) {
+        const VtkArray array = array_of_field(words);
+        const std::int64_t each = whole_number_in(array.components, "FIELD", 0);
+        if (each > 0 && array.samples > std::int64_t{longest_vtk_header} / each) {
+            throw Failure("it has a FIELD before its samples that is too long; save it as .vti");
+        }
+        words.skip(each * array.samples, array.stored, is_text);
+    }
+}
+
 /// The fields of the grid; stops behind the word that says whether the samples belong to points or
 /// to cells, which is `kind`.
-VtkFields vtk_fields(VtkWords& words, std::string& kind) {
+VtkFields vtk_fields(VtkWords& words, bool is_text, std::string& kind) {
     VtkFields fields;
     for (kind = words.word(); kind != "point_data" && kind != "cell_data"; kind = words.word()) {
+        if (kind == "field" || kind == "metadata") {
+            kind == "field" ? skip_field(words, is_text) : skip_metadata(words);
+            continue;
+        }
         const std::string name = kind == "aspect_ratio" ? "spacing" : kind;
         if (name != "dimensions" && name != "spacing" && name != "origin") {
             throw Failure("it has '" + name.substr(0, 40) +
@@ -111,42 +159,51 @@ void take_vtk_grid(const VtkFields& fields, bool in_cells, VolumeHeader& header)
     }
 }
 
+void check_vtk_count(std::int64_t told, const VolumeHeader& header) {
+    double grid = 1;
+    for (const std::int64_t size : header.sizes) grid *= static_cast<double>(size);
+    if (static_cast<double>(told) == grid) return;
+    throw Failure("it has " + std::to_string(told) + " samples, its grid is " +
+                  text_of(header.sizes) + "; correct its header");
+}
+
 /// The first array: SCALARS with their table of colours, COLOR_SCALARS, which is how VTK writes
 /// bytes, or the first one of a FIELD.
 void take_vtk_array(VtkWords& words, VolumeHeader& header) {
     const std::string kind = words.word();
-    std::string type, components = "1";
+    std::string components = "1";
     if (kind == "scalars") {
         (void)words.word();  // a name
         std::istringstream rest(words.rest());
+        std::string type;
         rest >> type >> components;
         if (words.word() != "lookup_table") {
             throw Failure("its SCALARS have no LOOKUP_TABLE; it is damaged: export it again");
         }
+        (void)words.rest();
+        header.stored = stored_as_vtk(type);
     } else if (kind == "color_scalars") {
         (void)words.word();
-        components = words.word();
-        type = "unsigned_char";
+        components = words.rest();
+        header.stored = Stored::uint8;
         if (header.places.front().encoding == DataPlace::Encoding::text) {
             throw Failure(
                 "its bytes are written as fractions in text (COLOR_SCALARS); save it as binary");
         }
     } else if (kind == "field") {
         (void)words.rest();
-        (void)words.word();
-        components = words.word();
-        (void)words.word();  // how many
-        type = words.word();
+        const VtkArray array = array_of_field(words);
+        components = array.components;
+        header.stored = array.stored;
+        check_vtk_count(array.samples, header);
     } else {
         throw Failure("its first array is '" + kind.substr(0, 40) +
                       "' and no SCALARS (vectors, colours); save one value per sample");
     }
-    (void)words.rest();
     if (components != "1") {
         throw Failure("it has " + components.substr(0, 20) +
                       " values a sample (colours or vectors); give a volume with one");
     }
-    header.stored = stored_as_vtk(type);
 }
 
 }  // namespace
@@ -172,15 +229,10 @@ VolumeHeader vtk_header(const Request& request) {
             "image, and save that as .vti");
     }
     std::string kind;
-    const VtkFields fields = vtk_fields(words, kind);
+    const VtkFields fields = vtk_fields(words, encoding == "ascii", kind);
     const auto told = whole_number_in(words.rest(), kind, 0);
     take_vtk_grid(fields, kind == "cell_data", header);
-    if (static_cast<double>(told) != static_cast<double>(header.sizes[0]) *
-                                         static_cast<double>(header.sizes[1]) *
-                                         static_cast<double>(header.sizes[2])) {
-        throw Failure("it has " + std::to_string(told) + " samples, its grid is " +
-                      text_of(header.sizes) + "; correct its header");
-    }
+    check_vtk_count(told, header);
     take_vtk_array(words, header);
     place.offset = words.offset();
     place.swapped = std::endian::native == std::endian::little;

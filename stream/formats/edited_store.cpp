@@ -23,6 +23,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::uintmax_t longest_note = std::uintmax_t{64} << 20;
+/// What its values may take: the list of chunks of large edits is longer than io::parsed_json()
+/// allows.
+constexpr std::size_t most_note_bytes = 8 * longest_note;
 constexpr std::size_t most_edited_levels = 64;
 
 template <class Vector>
@@ -129,13 +132,9 @@ EditsNote read_note(const fs::path& folder, const StoreOptions& options) {
     const auto bytes = folder_objects(folder)->get({io::edits_note, {}, longest_note}, {});
     if (!bytes) throw io::InputError(path.string() + ": is not there");
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
-    // The list of chunks of large edits is longer than io::parsed_json() allows.
-    const auto check_depth = [](int depth, Json::parse_event_t, Json&) {
-        if (depth > io::deepest_json) throw std::invalid_argument("nested too deeply");
-        return true;
-    };
+    std::size_t room = most_note_bytes;
     try {
-        return note_from(Json::parse(text, check_depth), folder, options);
+        return note_from(io::parsed_json_within(room, text), folder, options);
     } catch (const std::exception&) {  // of the library, or above
         throw io::InputError(path.string() +
                              ": is damaged; without it the edits are of no known volume");

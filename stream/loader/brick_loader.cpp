@@ -293,10 +293,7 @@ void BrickLoader::Parts::make(const Job& job, std::uint64_t waits, const std::st
     std::string problem;
     bool is_kept = false, failed = false;
     try {
-        {
-            const std::scoped_lock lock(mutex_);
-            is_kept = has_all(job.brick, job.coarser);
-        }
+        is_kept = has_all(job.brick, job.coarser);
         brick = read(job.brick, job.coarser, stop);
     } catch (const Cancelled&) {  // the loader ends
     } catch (const std::exception& e) {
@@ -335,14 +332,8 @@ void BrickLoader::Parts::fail(const Index3& brick, const std::string& problem,
 /// Errors are ignored here, because the thread that makes the brick meets and reports them.
 void BrickLoader::Parts::help(const Job& job, const std::stop_token& stop) {
     try {
-        Makings makings;
-        {
-            const std::scoped_lock lock(mutex_);
-            makings = makings_of(job.brick, job.coarser);
-        }
-        for (const SampleBox& part : makings.unread) {
-            if (blocks_->load_one(settings_.level + job.coarser, part, stop)) return;
-        }
+        const SampleBox source = source_of(job.brick, job.coarser);
+        (void)blocks_->load_one(settings_.level + job.coarser, source, stop);
     } catch (const Cancelled&) {
     } catch (const std::exception&) {
     }
@@ -390,20 +381,20 @@ std::uint64_t BrickLoader::Parts::bytes() const {
 
 void BrickLoader::Parts::read(const SampleBox& box, std::span<std::byte> out,
                               const std::stop_token& stop) {
-    const Index3 at = ResidentBricks::brick_of(box.low);
-    Brick held;
-    {
-        const std::scoped_lock lock(mutex_);
-        if (const auto brick = held_.find(at); brick != held_.end()) {
-            held = brick->second;
-        }
-    }
-    const SampleBox has = ResidentBricks::box_of(at, geometry_.size);
-    if (!held || held.level != 0 || (box.high.array() > has.high.array()).any()) {
-        blocks_->read(settings_.level, box, box, out, stop);
-        return;
-    }
-    copy_box(room_of(at), held.samples.get(), box, out.data(), size_of(overview_.type()));
+    for_each_piece(Index3::Constant(ResidentBricks::edge), box,
+                   [&](const Index3& at, const SampleBox& part) {
+                       Brick held;
+                       {
+                           const std::scoped_lock lock(mutex_);
+                           if (has(at, 0)) held = held_.at(at);
+                       }
+                       if (held) {
+                           copy_box(room_of(at), held.samples.get(), box, out.data(),
+                                    size_of(overview_.type()));
+                       } else {
+                           blocks_->read(settings_.level, part, box, out, stop);
+                       }
+                   });
 }
 
 void BrickLoader::Parts::leave_room(std::uint64_t bytes) {

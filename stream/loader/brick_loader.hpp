@@ -20,11 +20,6 @@ struct BrickLoader::Parts {
         int coarser;
         bool helps;  ///< another thread makes the brick; this one reads a piece of it
     };
-    /// What a brick is made of.
-    struct Makings {
-        std::vector<std::pair<Index3, Brick>> held;  ///< neighbours, for parts of its margin
-        std::vector<SampleBox> unread;               ///< what the store is asked for
-    };
     /// A wait_for() that has not ended.
     struct Waiting {
         std::vector<Index3> needed;
@@ -47,7 +42,6 @@ struct BrickLoader::Parts {
     void make(const Job& job, std::uint64_t waits, const std::stop_token& stop);
     void help(const Job& job, const std::stop_token& stop);
     SampleBox source_of(const Index3& brick, int coarser) const;
-    Makings makings_of(const Index3& brick, int coarser) const;
     bool has_all(const Index3& brick, int coarser) const;
     std::optional<Job> next_job(bool urgent);
     int for_eyes() const;
@@ -65,8 +59,8 @@ struct BrickLoader::Parts {
 
     /// All samples of a brick's memory, also those beyond the grid.
     static SampleBox room_of(const Index3& brick) {
-        const Index3 low = brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
-        return {low, low + Index3::Constant(ResidentBricks::row - 1)};
+        const Index3 low = brick * ResidentBricks::edge;
+        return {low, low + Index3::Constant(ResidentBricks::edge - 1)};
     }
 
     const std::shared_ptr<const Store> store_;

@@ -138,74 +138,30 @@ SampleBox BrickLoader::Parts::source_of(const Index3& brick, int coarser) const 
     return {inside(a.cwiseMin(b).array().floor()), inside(a.cwiseMax(b).array().ceil())};
 }
 
-/// Needs the lock. A neighbour in memory has the samples of a margin, so that only those of the
-/// others are read: a piece of the store often holds one brick, and a brick touches 27 of them.
-BrickLoader::Parts::Makings BrickLoader::Parts::makings_of(const Index3& brick, int coarser) const {
-    const SampleBox all = source_of(brick, coarser);
-    if (coarser > 0 || !blocks_->keeps(settings_.level)) return {{}, {all}};
-    const SampleBox around{Index3::Constant(-1), Index3::Ones()};
-    Makings makings;
-    for_each_index(around, [&](const Index3& side) {
-        const auto held = held_.find(brick + side);
-        if (side.isZero() || held == held_.end() || held->second.level > 0) return;
-        makings.held.emplace_back(brick + side, held->second);
-    });
-    for_each_index(around, [&](const Index3& side) {
-        const Index3 low = (brick + side) * ResidentBricks::edge;
-        const SampleBox part{low.cwiseMax(all.low),
-                             (low + Index3::Constant(ResidentBricks::edge - 1)).cwiseMin(all.high)};
-        // A neighbour's memory goes on for a sample beyond its own, on every side.
-        const bool is_held = std::ranges::any_of(makings.held, [&](const auto& neighbour) {
-            const Index3 of = neighbour.first - brick;
-            return (of.array() == 0 || of.array() == side.array()).all();
-        });
-        if (!is_held && (part.low.array() <= part.high.array()).all()) {
-            makings.unread.push_back(part);
-        }
-    });
-    return makings;
-}
-
-/// Needs the lock. Whether all that the store is asked for is in memory or being read.
+/// Whether all that the store is asked for is in memory or being read.
 bool BrickLoader::Parts::has_all(const Index3& brick, int coarser) const {
-    return std::ranges::all_of(makings_of(brick, coarser).unread, [&](const SampleBox& part) {
-        return blocks_->has_all(settings_.level + coarser, part);
-    });
+    return blocks_->has_all(settings_.level + coarser, source_of(brick, coarser));
 }
 
 Brick BrickLoader::Parts::read(const Index3& brick, int coarser, const std::stop_token& stop) {
     const SampleType type = overview_.type();
     const std::size_t each = size_of(type);
     const int level = settings_.level + coarser;
-    if (coarser == 0) {
-        const auto makings = [&] {
-            const std::scoped_lock lock(mutex_);
-            return makings_of(brick, 0);
-        };
-        // Before it takes memory; and neighbours may come meanwhile, or go.
-        const std::vector<SampleBox> missing = makings().unread;
-        for (const SampleBox& part : missing) blocks_->load(level, part, stop);
-        const std::shared_ptr<std::byte[]> samples = memory_->take();
-        const SampleBox room = room_of(brick);
-        const auto [held, unread] = makings();
-        for (const auto& [place, neighbour] : held) {
-            copy_box(room_of(place), neighbour.samples.get(), room, samples.get(), each);
-        }
-        for (const SampleBox& part : unread) {
-            blocks_->read(level, part, room, {samples.get(), ResidentBricks::per_brick * each},
-                          stop);
-        }
-        return {samples, 0};
-    }
     const SampleBox box = ResidentBricks::box_of(brick, geometry_.size);
     const SampleBox from = source_of(brick, coarser);
+    if (coarser == 0) {
+        blocks_->load(level, box, stop);  // before it takes memory
+        const std::shared_ptr<std::byte[]> samples = memory_->take();
+        blocks_->read(level, box, room_of(brick), {samples.get(), ResidentBricks::per_brick * each},
+                      stop);
+        return {samples, 0};
+    }
     const Geometry& grid = level_of(*store_, level).geometry;
     std::vector<std::byte> bytes(bytes_of(from, type));
     blocks_->read(level, from, from, bytes, stop);
     const std::shared_ptr<std::byte[]> samples = memory_->take();
-    std::byte* const first = samples.get() + place_in(room_of(brick), box.low) * each;
     upsample(geometry_of(grid, from), bytes.data(), type, geometry_, box,
-             {first, ResidentBricks::row, ResidentBricks::slice});
+             {samples.get(), ResidentBricks::row, ResidentBricks::slice});
     return {samples, static_cast<std::uint8_t>(coarser)};
 }
 

@@ -97,9 +97,10 @@ bool is_hexadecimal(const std::string& name, std::size_t digits) {
     return name.size() == digits && name.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// Entries in the cache's folder. Only files with the place and name of an entry count, because
-/// others are not ours.
+/// Entries in the cache's folder, not all of them if it is stopped. Only files with the place and
+/// name of an entry count, because others are not ours.
 struct Scan {
+    std::stop_token stop;
     std::vector<Entry> entries = {};
     std::set<fs::path> unread = {};  ///< folders of which not all could be read
     fs::file_time_type now = fs::file_time_type::clock::now();
@@ -121,14 +122,14 @@ struct Scan {
     /// `take` is called with each file in a folder that can be read.
     void read(const fs::path& folder, const std::function<void(const fs::directory_entry&)>& take) {
         std::error_code error;
-        for (fs::directory_iterator file(folder, error), end; !error && file != end;
-             file.increment(error)) {
+        for (fs::directory_iterator file(folder, error), end;
+             !error && file != end && !stop.stop_requested(); file.increment(error)) {
             take(*file);
         }
         if (error && error != std::errc::no_such_file_or_directory) unread.insert(folder);
     }
 
-    explicit Scan(const fs::path& cache) {
+    Scan(const fs::path& cache, std::stop_token until) : stop(std::move(until)) {
         read(cache, [&](const fs::directory_entry& folder) {
             std::error_code error;
             if (is_hexadecimal(folder.path().filename().string(), folder_digits) &&
@@ -162,6 +163,22 @@ DiskCache::DiskCache(fs::path folder, std::uint64_t most_bytes)
                    "); choose a folder that you may write to";
     } else {
         ::unlink(probe.c_str());
+        begin();
+    }
+}
+
+/// What an earlier process with a higher limit left is removed now. The first put() counts anew,
+/// because other processes may add entries until then.
+void DiskCache::begin() {
+    try {
+        at_start_.emplace(1, [this](const std::stop_token& stop) {
+            try {
+                const std::lock_guard lock(mutex_);
+                if (!known_) count(0, stop);
+            } catch (const std::exception&) {  // no memory: the first put() does the same
+            }
+        });
+    } catch (const std::system_error&) {  // no thread: the same
     }
 }
 
@@ -219,29 +236,8 @@ void DiskCache::write(const std::string& name, const Bytes& bytes) const {
 /// because nothing in it can be removed.
 bool DiskCache::make_room(const fs::path& folder, std::uint64_t bytes) const {
     const std::lock_guard lock(mutex_);
-    const std::uint64_t full = most_ - most_ / 16, after = most_ - most_ / 8;
-    const bool count_again = !known_ || added_ > most_ / 16 || counted_ + added_ + bytes > full;
-    if (count_again) {
-        Scan scan(folder_);
-        std::map<fs::path, std::uint64_t> held;
-        for (const fs::path& unread : scan.unread) held[unread] = held_[unread];
-        for (const Entry& entry : scan.entries) {
-            const fs::path in = entry.path.parent_path();
-            if (!scan.unread.contains(in)) held[in] += entry.bytes;
-        }
-        counted_ = 0;
-        for (const auto& [in, all] : held) counted_ += all;
-        held_ = std::move(held);
-        if (counted_ + bytes > full) {
-            std::ranges::sort(scan.entries, {}, &Entry::used);
-            for (const Entry& entry : scan.entries) {
-                if (counted_ + bytes <= after) break;
-                remove_entry(entry.path);
-                counted_ -= entry.bytes;
-            }
-        }
-        unread_ = std::move(scan.unread);
-        added_ = 0;
+    if (!known_ || added_ > most_ / 16 || counted_ + added_ + bytes > full()) {
+        count(bytes, {});
         known_ = true;
     }
     const std::uint64_t whole = bytes + sizeof(EntryHead) + 256;
@@ -249,6 +245,31 @@ bool DiskCache::make_room(const fs::path& folder, std::uint64_t bytes) const {
     if (unread_.contains(folder_) || unread_.contains(folder)) return false;
     held_[folder] += whole;
     return true;
+}
+
+/// Needs the lock. Counts the entries, and removes the oldest ones where so many bytes more would
+/// be too many.
+void DiskCache::count(std::uint64_t bytes, const std::stop_token& stop) const {
+    Scan scan(folder_, stop);
+    std::map<fs::path, std::uint64_t> held;
+    for (const fs::path& unread : scan.unread) held[unread] = held_[unread];
+    for (const Entry& entry : scan.entries) {
+        const fs::path in = entry.path.parent_path();
+        if (!scan.unread.contains(in)) held[in] += entry.bytes;
+    }
+    counted_ = 0;
+    for (const auto& [in, all] : held) counted_ += all;
+    held_ = std::move(held);
+    if (counted_ + bytes > full()) {
+        std::ranges::sort(scan.entries, {}, &Entry::used);
+        for (const Entry& entry : scan.entries) {
+            if (counted_ + bytes <= most_ - most_ / 8 || stop.stop_requested()) break;
+            remove_entry(entry.path);
+            counted_ -= entry.bytes;
+        }
+    }
+    unread_ = std::move(scan.unread);
+    added_ = 0;
 }
 
 }  // namespace palpate::stream

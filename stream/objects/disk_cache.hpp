@@ -10,6 +10,7 @@
 #include <string>
 
 #include "stream/objects/objects.hpp"
+#include "stream/small_threads.hpp"
 
 namespace palpate::stream {
 
@@ -18,6 +19,7 @@ namespace palpate::stream {
 /// that were not used for the longest time go. Other files in the folder are left alone.
 class DiskCache {
   public:
+    /// If the folder has more than `most_bytes`, a thread removes the oldest entries.
     DiskCache(std::filesystem::path folder, std::uint64_t most_bytes);
 
     /// Why nothing is kept, in a sentence; empty if files can be made in the folder.
@@ -26,9 +28,13 @@ class DiskCache {
     void put(const std::string& name, const Bytes& bytes) const noexcept;
 
   private:
+    void begin();
     std::filesystem::path path_of(const std::string& name) const;
     void write(const std::string& name, const Bytes& bytes) const;
     bool make_room(const std::filesystem::path& folder, std::uint64_t bytes) const;
+    void count(std::uint64_t bytes, const std::stop_token& stop) const;
+    /// Bytes from which on the oldest entries go.
+    std::uint64_t full() const { return most_ - most_ / 16; }
 
     std::filesystem::path folder_;
     std::uint64_t most_;
@@ -39,6 +45,7 @@ class DiskCache {
     mutable bool known_ = false;         ///< false: not yet counted
     mutable std::map<std::filesystem::path, std::uint64_t> held_;  ///< bytes in each folder
     mutable std::set<std::filesystem::path> unread_;  ///< folders that could not be read
+    std::optional<SmallThreads> at_start_;            ///< last: it uses all of the above
 };
 
 }  // namespace palpate::stream

@@ -177,6 +177,17 @@ def test_the_claim_of_streaming_is_about_the_strokes_that_were_judged():
         assert not next(streaming.claims_of(Table(rows))).held
 
 
+def test_the_title_of_streaming_is_true_of_the_stroke_that_coarser_levels_spare_least():
+    def strokes(latency, finest, coarse):
+        return [{"levels": levels, "latency_ms": latency, "speed_voxel_s": 100, "waiting_share": share}
+                for levels, share in zip(streaming.LEVELS, (finest, coarse))]
+
+    without_latency, half, quarter, more = strokes(0, 0.1, 0.1), strokes(20, 0.8, 0.4), strokes(100, 0.04, 0.03), strokes(200, 0.1, 0.2)
+    assert "at least 50 %" in streaming.title_of(Table(without_latency + half + strokes(50, 0, 0)))
+    assert "at least 25 %" in streaming.title_of(Table(half + quarter))
+    assert "not spare every hand" in streaming.title_of(Table(half + more))
+
+
 def test_the_page_of_scaling_names_the_calm_and_the_calmest_noise():
     rows = [{"part": "noise", "method": "exact", "tetrahedra_per_update": moved} for moved in (1.9, 0.04, 0.1)]
     rows += [{"part": "speed", "method": "exact", "tetrahedra": 7, "updates": 1, "path_voxel": 1, "mean_ns": 1},

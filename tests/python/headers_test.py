@@ -367,7 +367,10 @@ def test_an_mgh_without_a_place_is_noted_and_a_damaged_one_refused(tmp_path):
     path.write_bytes(whole[:28] + bytes(2) + whole[30:])
     geometry = noted(path, "goodRASFlag").geometry
     assert not geometry.oriented and numpy.array_equal(geometry.spacing, (1, 1, 1))
+    path.write_bytes(b"\0\0\2\1" + whole[4:])  # FreeSurfer 7.3: version 1 with the intent 2
+    assert palpate.load(path).volume.geometry.oriented
     for damaged, words in ((whole[:400], "cut off"), (whole[:200], "no MGH file"), (b"\0\0\0\2" + whole[4:], "no MGH file"),
+                           (b"\1\0\0\1" + whole[4:], "no MGH file"),
                            (whole[:20] + b"\0\0\0\7" + whole[24:], "type 7"), (whole[:4] + b"\xff" * 4 + whole[8:], "size"),
                            (whole[:30] + bytes(4) + whole[34:], "spacing of 0")):
         path.write_bytes(damaged)

@@ -209,6 +209,16 @@ def test_high_throughput_jpeg_2000_is_read(tmp_path, signed, number):
     refused(save(tmp_path / "b", slices, "other"), "JPEG 2000 image that is cut off")
 
 
+def test_one_slice_of_several_is_noted(tmp_path):
+    folder = save(tmp_path / "a", stack(ramp("i2")))
+    assert numpy.array_equal(noted(folder / "002.dcm", "give their folder").array, ramp("i2")[1:2])
+    assert not any("give their folder" in note for note in palpate.load(folder).notes)
+    for other in ("001", "003", "004", "005"):
+        (folder / f"{other}.dcm").unlink()
+    (folder / "notes.txt").write_text("of the scan")
+    assert not any("give their folder" in note for note in palpate.load(folder / "002.dcm").notes)
+
+
 def test_jpeg_xl_is_refused_with_what_to_do(tmp_path):
     slices = stack(ramp("u2"))
     use_syntax("1.2.840.10008.1.2.4.110")
@@ -268,6 +278,92 @@ def test_vtk_without_a_spacing_or_in_small_letters(tmp_path):
     refused(write_vtk(tmp_path / "b.vtk", ramp("u1"), text=True), "save it as binary")
     (tmp_path / "a.vtk").write_bytes(text.replace("SPACING", "ASPECT_RATIO").lower().replace("\n", "\r\n").encode())
     assert numpy.array_equal(palpate.load(tmp_path / "a.vtk").volume.geometry.spacing, (0.5, 2, 3))
+
+
+FIELD = b"""FIELD FieldData 3
+TIME 1 1 double
+%s
+METADATA
+INFORMATION 1
+NAME of LOCATION time
+DATA 1 2
+
+CYCLE 1 1 int
+%s
+pair 2 2 float
+%s
+"""
+
+
+@pytest.mark.parametrize("text", (False, True))
+def test_numbers_of_a_whole_vtk_file_are_not_its_samples(tmp_path, text):
+    """VisIt and ParaView write the time before the grid."""
+    numbers = (b"0.25", b"7", b"1 2\n3 4") if text else (struct.pack(">d", 0.25), struct.pack(">i", 7), b"DIMENSIONS 9 9 9"[:16])
+    path = write_vtk(tmp_path / "a.vtk", ramp("i2"), text)
+    whole = path.read_bytes()
+    for before in (b"DIMENSIONS", b"SPACING", b"POINT_DATA"):
+        path.write_bytes(whole.replace(before, FIELD % numbers + before, 1))
+        volume = palpate.load(path).volume
+        assert numpy.array_equal(volume.array, ramp("i2")) and numpy.array_equal(volume.geometry.origin, (10, -20, 30))
+    path.write_bytes(whole.replace(b"POINT_DATA", b"FIELD FieldData 1\nname 1 1 string\nabc\nPOINT_DATA"))
+    refused(path, "'string'")
+    path.write_bytes(whole.replace(b"POINT_DATA", b"FIELD FieldData 1\nlong 1 2000000 double\n1\nPOINT_DATA"))
+    refused(path, "too long")
+
+
+def test_an_array_of_a_field_with_another_number_of_samples_is_refused(tmp_path):
+    path = write_vtk(tmp_path / "a.vtk", ramp("i2"), second=ramp("f4"))
+    path.write_bytes(path.read_bytes().replace(b"density 1 120", b"density 1 119"))
+    refused(path, "119 samples")
+
+
+def test_text_of_vtk_with_too_many_numbers_or_decimal_commas(tmp_path):
+    text = write_vtk(tmp_path / "a.vtk", ramp("i2"), text=True, second=ramp("f4")).read_text()
+    assert " 7 14 " in text and "\nsecond" in text
+    (tmp_path / "a.vtk").write_text(text.replace(" 7 14 ", " 7,5 14 "))
+    refused(tmp_path / "a.vtk", "decimal commas")
+    (tmp_path / "a.vtk").write_text(text.replace("\nsecond", " 9\nsecond"))
+    assert numpy.array_equal(noted(tmp_path / "a.vtk", "121; the rest was ignored").array, ramp("i2"))
+    (tmp_path / "a.vtk").write_text(text.replace("\nsecond", " 9" * 120 + "\nsecond"))
+    refused(tmp_path / "a.vtk", "there are 240")
+
+
+def test_an_array_of_vti_without_a_name_is_refused_with_what_to_do(tmp_path):
+    palpate.write(palpate.Volume(ramp("i2")), tmp_path / "a.vti")
+    whole = (tmp_path / "a.vti").read_bytes()
+    (tmp_path / "a.vti").write_bytes(whole.replace(b' Name="density"', b""))
+    refused(tmp_path / "a.vti", "without a name", "Name")
+
+
+def write_vti(path, data, encoded, between, compressor, width):
+    """`between`: the arrays are between their tags, not behind them."""
+    image = vtk.vtkImageData()
+    image.SetDimensions(*data.shape[::-1])
+    for name in ("density", "second"):
+        array = numpy_support.numpy_to_vtk(data.ravel(), deep=True)
+        array.SetName(name)
+        image.GetPointData().AddArray(array)
+    writer = vtk.vtkXMLImageDataWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(image)
+    (writer.SetDataModeToBinary if between else writer.SetDataModeToAppended)()
+    (writer.EncodeAppendedDataOn if encoded else writer.EncodeAppendedDataOff)()
+    writer.SetCompressorType(compressor)
+    (writer.SetHeaderTypeToUInt32 if width == 32 else writer.SetHeaderTypeToUInt64)()
+    assert writer.Write() == 1
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize("width", (32, 64))
+@pytest.mark.parametrize("encoded, between, compressor", itertools.product((False, True), (False, True), (0, 1, 3)))
+def test_lengths_of_vti_arrays_that_contradict_the_header_are_refused(tmp_path, encoded, between, compressor, width):
+    """VTK reads as many bytes as the type takes, and a part of a wider length as samples."""
+    path = tmp_path / "a.vti"
+    whole = write_vti(path, ramp("i2"), encoded, between, compressor, width)
+    assert numpy.array_equal(palpate.load(path).volume.array, ramp("i2"))
+    for before, after in ((b'"Int16"', b'"Int8"'), (b'"Int16"', b'"Float32"'), (f'"UInt{width}"'.encode(), f'"UInt{96 - width}"'.encode())):
+        path.write_bytes(whole.replace(before, after))
+        refused(path, "a.vti")
 
 
 @pytest.mark.parametrize("change, words", (

@@ -225,11 +225,11 @@ TEST(VolumeEditor, after_a_change_of_the_tool_the_brush_rests_until_it_is_taken_
     EXPECT_TRUE(p.editor.undo());
     p.editor.set_brush({});
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5});
-    p.editor.use_tool(*p.servo, std::make_shared<const Tool>(box_tool({6, 10, 4}, 0.5)));
+    p.editor.rest_brush(*p.servo, std::make_shared<const Tool>(box_tool({6, 10, 4}, 0.5)));
     p.step(50);
     EXPECT_EQ(p.editor.state().undo_steps, 0U) << "a larger tool has edited what no hand touched";
     p.editor.set_brush({});
-    p.editor.use_tool(*p.servo, nullptr);
+    p.editor.rest_brush(*p.servo, nullptr);
     p.editor.set_brush(HandBrush{.radius = 3, .rate = 5});
     EXPECT_TRUE(p.until([&] { return p.editor.state().undo_steps > 0; }));
 }

@@ -333,5 +333,17 @@ TEST(Bounds, json_that_is_nested_too_deeply_is_refused_before_it_is_parsed) {
     }
 }
 
+TEST(Bounds, json_of_many_small_values_is_refused_in_time_that_grows_with_its_length) {
+    std::string values;
+    for (int i = 0; i < 5'000'000; ++i) values += "{},";
+    const ScratchFolder folder;
+    for (const char* file : {"a.zarr/zarr.json", "b.zarr/.zattrs", "c.n5/attributes.json",
+                             "d.zarr/palpate-edits.json"}) {
+        fs::create_directories((folder / file).parent_path());
+        put_bytes(folder / file, R"({"a":[)" + values + "{}]}");
+        EXPECT_THROW((void)open_store((folder / file).parent_path()), io::InputError) << file;
+    }
+}
+
 }  // namespace
 }  // namespace palpate::stream::test

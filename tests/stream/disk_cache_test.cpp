@@ -9,6 +9,7 @@
 #include <cerrno>
 
 #include "stream/store_support.hpp"
+#include "support/eventually.hpp"
 
 namespace palpate::stream::test {
 namespace {
@@ -34,6 +35,7 @@ namespace {
 namespace fs = std::filesystem;
 using support::put_bytes;
 using support::ScratchFolder;
+using namespace std::chrono_literals;
 
 TEST(DiskCache, removes_no_file_that_it_did_not_write) {
     const ScratchFolder folder, precious;
@@ -77,6 +79,33 @@ TEST(DiskCache, stays_within_its_bound_although_one_of_its_folders_cannot_be_rea
     put(400, 800);
     EXPECT_LE(bytes_in(folder.path()), bound);
     EXPECT_NE(bytes_in(broken), before) << "it is used again once it can be read";
+}
+
+TEST(DiskCache, a_lower_bound_acts_at_once_and_the_newest_entries_stay) {
+    const ScratchFolder folder;
+    const Bytes bytes(4'000);
+    {
+        const DiskCache large(folder.path(), 400'000);
+        for (int i = 0; i < 60; ++i) large.put("piece " + std::to_string(i), bytes);
+    }
+    ASSERT_GT(bytes_in(folder.path()), 200'000U);
+    for (const auto& entry : fs::recursive_directory_iterator(folder.path())) {
+        if (entry.is_regular_file()) fs::last_write_time(entry, entry.last_write_time() - 1h);
+    }
+    {
+        const DiskCache newer(folder.path(), 400'000);
+        newer.put("newest", bytes);
+    }
+    const DiskCache small(folder.path(), 100'000);  // from which nothing is read
+    const auto is_small = [&] {
+        try {
+            return bytes_in(folder.path()) <= 100'000;
+        } catch (const fs::filesystem_error&) {  // a file went while it was counted
+            return false;
+        }
+    };
+    EXPECT_TRUE(support::comes_true(is_small));
+    EXPECT_TRUE(small.find("newest"));
 }
 
 }  // namespace

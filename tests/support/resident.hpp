@@ -16,23 +16,13 @@ inline Brick brick_of(const Volume& volume, const Index3& brick, int outside = 0
     const std::size_t bytes = size_of(volume.type());
     const std::shared_ptr<std::byte[]> samples(new std::byte[ResidentBricks::per_brick * bytes]);
     std::memset(samples.get(), outside, ResidentBricks::per_brick * bytes);
-    const Index3 low = brick * ResidentBricks::edge - Index3::Constant(ResidentBricks::margin);
     const Index3& size = volume.geometry().size;
     const auto* whole = static_cast<const std::byte*>(volume.data());
-    for (int k = 0; k < ResidentBricks::row; ++k) {
-        for (int j = 0; j < ResidentBricks::row; ++j) {
-            for (int i = 0; i < ResidentBricks::row; ++i) {
-                const Index3 at = low + Index3(i, j, k);
-                if ((at.array() < 0).any() || (at.array() >= size.array()).any()) continue;
-                const auto to =
-                    std::size_t(i + j * ResidentBricks::row + k * ResidentBricks::slice);
-                const auto from = (std::size_t(at[2]) * std::size_t(size[1]) + std::size_t(at[1])) *
-                                      std::size_t(size[0]) +
-                                  std::size_t(at[0]);
-                std::memcpy(samples.get() + to * bytes, whole + from * bytes, bytes);
-            }
-        }
-    }
+    for_each_index(ResidentBricks::box_of(brick, size), [&](const Index3& at) {
+        const auto to = std::size_t(ResidentBricks::place_of(at));
+        const auto from = std::size_t(sample_place(at, size));
+        std::memcpy(samples.get() + to * bytes, whole + from * bytes, bytes);
+    });
     return {samples, level};
 }
 

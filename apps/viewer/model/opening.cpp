@@ -8,6 +8,7 @@
 #include <numeric>
 #include <regex>
 #include <stdexcept>
+#include <system_error>
 #include <vector>
 
 #include "io/byte_order.hpp"
@@ -54,6 +55,15 @@ run::LoadedVolume loaded_from(const run::Source& source, const io::Progress& pro
     }
 }
 
+/// The earliest time for what is no file or folder, or is not there.
+std::filesystem::file_time_type time_of(const run::Source& source) {
+    const auto* file = std::get_if<run::FileSource>(&source.from);
+    std::error_code error;
+    const auto time = file ? std::filesystem::last_write_time(file->path, error)
+                           : std::filesystem::file_time_type::min();
+    return error ? std::filesystem::file_time_type::min() : time;
+}
+
 }  // namespace
 
 double Opened::dark() const {
@@ -67,7 +77,13 @@ double Opened::bright() const {
     return level > dark() ? level : loaded.volume.maximum();
 }
 
+bool is_outdated(const Opened& opened) {
+    const auto time = time_of(opened.loaded.source);
+    return time != opened.written && time != std::filesystem::file_time_type::min();
+}
+
 Opened open(const run::Source& source, const io::Progress& progress) {
+    const auto written = time_of(source);  // before it is read
     // Counting takes at most a tenth of the time of reading.
     run::LoadedVolume loaded = loaded_from(source, [&](double part) { progress(0.9 * part); });
     const OnProgress counting = [&](double) { progress(0.9); };
@@ -78,7 +94,7 @@ Opened open(const run::Source& source, const io::Progress& progress) {
     const bool none = source.dequantize > 0 || loaded.streamed;
     auto terraces = none ? std::nullopt : filters::terraces_of(loaded.volume, counting);
     progress(1);
-    return {std::move(loaded), std::move(histogram), std::move(terraces)};
+    return {std::move(loaded), std::move(histogram), std::move(terraces), written, {}};
 }
 
 double first_isovalue(const Opened& opened) {

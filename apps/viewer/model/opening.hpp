@@ -7,6 +7,7 @@
 
 #include "palpate/filters/dequantize.hpp"
 #include "palpate/io/series.hpp"
+#include "palpate/io/tool_file.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "palpate/run/source.hpp"
 #include "palpate/run/statistics.hpp"
@@ -20,11 +21,19 @@ struct Opened {
     /// store.
     std::optional<filters::Terraces> terraces = {};
 
+    /// When the file was written that was read; the earliest time for other sources.
+    std::filesystem::file_time_type written = std::filesystem::file_time_type::min();
+    /// The command line's tool with its points for this grid, if making them takes time.
+    std::optional<io::PointsSpec> tool = {};
+
     /// The grey levels that the file suggests, or those between which nearly all samples lie [data
     /// units].
     double dark() const;
     double bright() const;
 };
+
+/// Whether its file was written since it was opened.
+bool is_outdated(const Opened& opened);
 
 /// Reads the volume and counts its samples. `progress` may throw to stop. Throws as run::load().
 Opened open(const run::Source& source, const io::Progress& progress);

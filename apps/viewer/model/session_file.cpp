@@ -325,7 +325,7 @@ std::vector<SessionHand> others_from(const Json& json, const std::filesystem::pa
     return others;
 }
 
-SessionFile session_from(const Json& json, const std::filesystem::path& folder) {
+SessionFile from_json(const Json& json, const std::filesystem::path& folder) {
     check_head(json);
     SessionFile session;
     session.source = source_from(needed(json, "volume"), "volume", folder);
@@ -357,15 +357,24 @@ SessionFile session_from(const Json& json, const std::filesystem::path& folder) 
 }  // namespace
 
 SessionFile read_session(const std::filesystem::path& path) {
+    return session_from(session_text(path), path);
+}
+
+std::string session_text(const std::filesystem::path& path, const OnProgress& progress) {
+    std::error_code ignored;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, ignored);
+    if (!ignored && bytes > largest_file) {
+        throw io::InputError(path.string() + ": is no session: it is too large for one");
+    }
+    return io::read_text(path, progress);
+}
+
+SessionFile session_from(const std::string& text, const std::filesystem::path& path) {
     const auto fail = [&](const std::string& problem) {
         return io::InputError(path.string() + ": " + problem);
     };
-    std::error_code ignored;
-    const std::uintmax_t bytes = std::filesystem::file_size(path, ignored);
-    if (!ignored && bytes > largest_file) throw fail("is no session: it is too large for one");
-    const std::string text = io::read_text(path);
     try {
-        return session_from(io::parsed_json(text), path.parent_path());
+        return from_json(io::parsed_json(text), path.parent_path());
     } catch (const Json::exception&) {
         throw fail("is no session: it is not valid JSON, or was cut off");
     } catch (const std::invalid_argument& e) {
@@ -397,7 +406,7 @@ void write_session(const std::filesystem::path& path, const SessionFile& session
     writer("background", session.background);
     writer("method", std::string(session.method.name));
     members(writer, session);
-    (void)session_from(writer.json, folder);  // what cannot be read is not written
+    (void)from_json(writer.json, folder);  // what cannot be read is not written
     std::string text;
     try {
         text = writer.json.dump(1) + "\n";

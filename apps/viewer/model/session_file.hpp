@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/viewer/model/look.hpp"
 #include "apps/viewer/model/measurement.hpp"
+#include "palpate/io/csv.hpp"
 #include "palpate/run/setup.hpp"
 
 namespace palpate::viewer {
@@ -46,6 +48,10 @@ struct SessionFile : SessionHand {
 /// names the file and the member: no session, of a later version, damaged, or with values that
 /// cannot be used.
 SessionFile read_session(const std::filesystem::path& path);
+/// The same in two steps: the text of a file that is not too large for a session, and the session
+/// in it.
+std::string session_text(const std::filesystem::path& path, const OnProgress& progress = {});
+SessionFile session_from(const std::string& text, const std::filesystem::path& path);
 
 /// Writes a session, whole or not at all. A volume that lies below the session's folder is named
 /// relative to it, so that both can be moved together; any other by its whole path. So does the

@@ -5,6 +5,13 @@
 #include <utility>
 
 namespace palpate::viewer {
+namespace {
+
+/// Snapshots come thirty times a second, and a command takes effect within a tick: a fourth one
+/// that differs means that it was not carried out.
+constexpr int late_snapshots = 3;
+
+}  // namespace
 
 void Effect::begin(const Field& field, double isovalue, const RendererSettings& settings,
                    const DeviceInfo& device, const run::Histogram& histogram, CarryOut carry_out) {
@@ -14,7 +21,7 @@ void Effect::begin(const Field& field, double isovalue, const RendererSettings& 
     device_ = device;
     histogram_ = histogram;
     carry_out_ = std::move(carry_out);
-    awaited_.end();
+    awaited_ = 0;
     Q_EMIT begun();
     Q_EMIT changed();
 }
@@ -44,7 +51,7 @@ QString Effect::refusal_of(const Command& command) {
         apply(next, command);
         carry_out_(command);
         session_ = std::move(next);
-        awaited_.begin();
+        awaited_ = late_snapshots;
     } catch (const std::invalid_argument& error) {
         return QString::fromStdString(error.what());
     }
@@ -58,7 +65,10 @@ void Effect::observe(const Snapshot& snapshot) {
     const bool same = session_->frozen == now.frozen && session_->clutched == now.clutched &&
                       settings.forces_on == snapshot.forces_on &&
                       settings.transform.scale == now.transform.scale;
-    if (!awaited_.passes_over(same)) {
+    if (same) awaited_ = 0;
+    if (awaited_ > 0) {
+        --awaited_;
+    } else {
         session_->frozen = now.frozen;
         session_->clutched = now.clutched;
         settings.forces_on = snapshot.forces_on;

@@ -6,7 +6,6 @@
 #include <functional>
 #include <optional>
 
-#include "apps/viewer/panel/inputs.hpp"
 #include "palpate/run/statistics.hpp"
 #include "palpate/servo.hpp"
 
@@ -64,7 +63,7 @@ class Effect : public QObject {
     run::Histogram histogram_;
     DeviceInfo device_;
     CarryOut carry_out_;
-    AwaitedChange awaited_;  // by the snapshots
+    int awaited_ = 0;  // so many snapshots may still differ from what was asked for
 };
 
 }  // namespace palpate::viewer

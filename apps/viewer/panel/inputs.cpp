@@ -1,4 +1,4 @@
-// Number boxes, sliders, and requests that wait until the interval since the last one is over.
+// Number boxes and sliders, and texts of numbers.
 #include "apps/viewer/panel/inputs.hpp"
 
 #include <QBoxLayout>
@@ -37,7 +37,12 @@ void let_wheel_pass(QWidget& widget) {
 
 QString number_text(double value, int digits) {
     if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-    return QString::number(value == 0 ? 0.0 : value, 'g', digits);
+    const double size = std::abs(value);
+    if (!(size >= 1e-4 && size < 1e9)) return QString::number(size == 0 ? 0 : value, 'g', digits);
+    // 'g' would write 35030 with three digits as 3.5e+04.
+    const int whole = static_cast<int>(std::floor(std::log10(size))) + 1;
+    if (digits <= whole) return QString::number(value, 'f', 0);
+    return QString::number(value, 'g', digits);
 }
 
 QString count_text(double whole) {

@@ -1,4 +1,4 @@
-// Number boxes and sliders, and how fast their requests are passed on and shown.
+// Number boxes and sliders, and texts of numbers.
 #pragma once
 
 #include <QDoubleSpinBox>
@@ -11,24 +11,8 @@
 
 namespace palpate::viewer {
 
-/// Snapshots come thirty times a second and a command takes effect within a tick: after a change up
-/// to three snapshots may still differ from it. A fourth means that it was not carried out.
-class AwaitedChange {
-  public:
-    void begin() { left_ = 3; }
-    void end() { left_ = 0; }
-    /// Whether to ignore a snapshot. `same`: it agrees with the control, so that nothing more is
-    /// awaited.
-    bool passes_over(bool same) {
-        if (same) left_ = 0;
-        return left_ > 0 && left_-- > 0;
-    }
-
-  private:
-    int left_ = 0;  // snapshots that may still differ
-};
-
-/// A number with as few digits as it needs, at most `digits`; "inf" and "-inf" are numbers.
+/// A number with as few digits as it needs, at most `digits` and those before the point, without an
+/// exponent from 1e-4 to 1e9; "inf" and "-inf" are numbers.
 QString number_text(double value, int digits = 6);
 /// A whole number in groups of three, with narrow spaces: every language reads it alike.
 QString count_text(double whole);

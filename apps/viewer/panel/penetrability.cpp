@@ -33,17 +33,16 @@ class PenetrabilityControls : public EffectForm {
         each_time(this, [this](QWidget&) { show_effect(); });
         auto* on =
             check({"penetrability", tr("Surfaces give way"),
-                   tr("A surface that is pressed deeper than PT gives way: the level felt follows "
-                      "the hand")},
+                   tr("A surface that is pressed deep enough gives way: the level felt follows the "
+                      "hand")},
                   pressing_[&Pressing::on]);
         auto* form = new QFormLayout;
         auto* threshold = quantity_in(
             *form,
-            {"threshold", "PT",
-             tr("PT, the penetration threshold [mm of the hand]: pulled further apart than this, "
-                "hand and proxy get the surface to give way. The spring never exceeds stiffness x "
-                "PT."),
-             tr("PT, penetration threshold")},
+            {"threshold", tr("Depth"),
+             tr("How deep the hand presses before the surface gives way [mm of the hand]: the "
+                "penetration threshold, PT. The spring never exceeds stiffness x PT."),
+             tr("Depth at which surfaces give way")},
             {"mm", 0, 5, 0.1}, pressing_[&Pressing::threshold]);
         threshold->box().set_infinite(true);
         each_time(threshold, [this](QWidget& one) { one.setEnabled(shown_.on); });

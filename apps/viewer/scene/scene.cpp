@@ -165,7 +165,6 @@ void Scene::move_camera(const pictures::Camera& camera) {
     fitted_ = false;
     camera_ = camera;
     changed();
-    Q_EMIT camera_moved();
 }
 
 void Scene::look_from(const pictures::View& view) {

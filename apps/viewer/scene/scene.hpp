@@ -89,7 +89,6 @@ class Scene : public QVTKOpenGLNativeWidget {
     /// the plane through the camera's focus [mm, physical].
     void probe_pressed(const palpate::Vec3& at);
     void probe_released();
-    void camera_moved();
     /// While measuring: the point of a surface or volume under the pointer [mm, physical].
     void point_chosen(const palpate::Vec3& at);
     void point_pointed_at(const palpate::Vec3& at);

@@ -1679,6 +1679,10 @@ Strg-Rad vergrößert, Umschalt-Rad verschiebt, Strg+0 zeigt wieder alles.</tran
         <source>Layers (*.json);;All files (*)</source>
         <translation>Schichten (*.json);;Alle Dateien (*)</translation>
     </message>
+    <message>
+        <source>Reading %1</source>
+        <translation>%1 wird gelesen</translation>
+    </message>
 </context>
 <context>
     <name>palpate::viewer::LevelChart</name>
@@ -2535,18 +2539,6 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
 <context>
     <name>palpate::viewer::PenetrabilityControls</name>
     <message>
-        <source>A surface that is pressed deeper than PT gives way: the level felt follows the hand</source>
-        <translation>Eine Oberfläche, die tiefer als PT gedrückt wird, gibt nach: Der gefühlte Wert folgt der Hand</translation>
-    </message>
-    <message>
-        <source>PT, penetration threshold</source>
-        <translation>PT, Durchdringungsschwelle</translation>
-    </message>
-    <message>
-        <source>PT, the penetration threshold [mm of the hand]: pulled further apart than this, hand and proxy get the surface to give way. The spring never exceeds stiffness x PT.</source>
-        <translation>PT, die Durchdringungsschwelle [mm der Hand]: Sind Hand und Proxy weiter auseinander, gibt die Oberfläche nach. Die Feder übersteigt nie Steifigkeit x PT.</translation>
-    </message>
-    <message>
         <source>Add range</source>
         <translation>Bereich hinzufügen</translation>
     </message>
@@ -2593,6 +2585,22 @@ Rechenzeit: Prozessorzeit eines Takts.</translation>
     <message>
         <source>the last range stays: switch pressing through off to have none</source>
         <translation>der letzte Bereich bleibt: Schalten Sie das Durchdrücken aus, um keinen zu haben</translation>
+    </message>
+    <message>
+        <source>A surface that is pressed deep enough gives way: the level felt follows the hand</source>
+        <translation>Eine Oberfläche, in die man tief genug drückt, gibt nach: Der gefühlte Wert folgt der Hand</translation>
+    </message>
+    <message>
+        <source>Depth</source>
+        <translation>Tiefe</translation>
+    </message>
+    <message>
+        <source>How deep the hand presses before the surface gives way [mm of the hand]: the penetration threshold, PT. The spring never exceeds stiffness x PT.</source>
+        <translation>Wie tief die Hand drückt, bevor die Oberfläche nachgibt [mm der Hand]: die Durchdringungsschwelle, PT. Die Feder übersteigt nie Steifigkeit x PT.</translation>
+    </message>
+    <message>
+        <source>Depth at which surfaces give way</source>
+        <translation>Tiefe, ab der Oberflächen nachgeben</translation>
     </message>
 </context>
 <context>
@@ -3377,6 +3385,10 @@ Ein Zug endet zwei Sekunden, nachdem die Hand alle Schichten verlassen hat.</tra
     <message>
         <source>Tools (*.stl *.ply *.obj *.vtp *.csv);;All files (*)</source>
         <translation>Werkzeuge (*.stl *.ply *.obj *.vtp *.csv);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Making the tool</source>
+        <translation>Das Werkzeug wird erzeugt</translation>
     </message>
 </context>
 <context>

@@ -124,7 +124,7 @@ Quantity* BrushControls::limited(const Words& words, const Span& span, double Br
              if (value >= its.low() && value <= its.high()) {
                  return change([=](BrushChoice& c) { c.*member = value; });
              }
-             const auto text = [](double number) { return QString::number(number, 'g', 4); };
+             const auto text = [](double number) { return number_text(number, 4); };
              Q_EMIT nonsense(limits.arg(text(its.low()), text(its.high()), text(value)));
          }});
 }

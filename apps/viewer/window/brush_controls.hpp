@@ -29,14 +29,9 @@ class BrushControls : public EffectForm, protected Desk {
   public:
     explicit BrushControls(const Desk& desk);
 
-    /// Whether a tool is in the hand, whose shape the brush can take. Without one it is a ball.
-    void set_tool(bool there);
     /// Takes a choice, even one that the controls would not allow.
     void set_choice(const BrushChoice& choice);
     const BrushChoice& choice() const { return choice_; }
-    void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);
-    /// One sentence why nothing can be edited, which also shows the switch off. Empty: it can.
-    void set_reason(const QString& why);
     /// As if the switch was pressed. Says why if nothing can be edited.
     void toggle();
     /// While the hand is lifted the brush does nothing.
@@ -59,6 +54,11 @@ class BrushControls : public EffectForm, protected Desk {
     void change(const std::function<void(BrushChoice&)>& how);
     void show_choice(const BrushChoice& choice);
     void use();
+    /// Whether a tool is in the hand, whose shape the brush can take. Without one it is a ball.
+    void set_tool(bool there);
+    void set_history(std::size_t undo_steps, std::size_t redo_steps, bool changed);
+    /// One sentence why nothing can be edited, which also shows the switch off. Empty: it can.
+    void set_reason(const QString& why);
     void step(bool (run::VolumeEditor::*take)(const OnProgress&), const QString& if_none);
     void begin() override;
     void clear() override;

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "apps/options/exit_status.hpp"
 #include "apps/viewer/model/opening.hpp"
 #include "apps/viewer/window/content.hpp"
 #include "apps/viewer/window/display_controller.hpp"
@@ -30,6 +29,11 @@ std::filesystem::path path_of(const QString& name) {
     return std::filesystem::path(name.toStdString());
 }
 
+/// A session or layers.
+bool is_json(const QString& path) {
+    return path.endsWith(".json", Qt::CaseInsensitive);
+}
+
 /// What replaces the file's own orientation and spacing now.
 io::GivenGrid given_grid(const run::Source& source) {
     if (const auto* file = std::get_if<run::FileSource>(&source.from)) {
@@ -38,6 +42,22 @@ io::GivenGrid given_grid(const run::Source& source) {
     const auto* store = std::get_if<run::StoreSource>(&source.from);
     return store ? io::GivenGrid{store->options.spacing, store->options.orientation}
                  : io::GivenGrid{};
+}
+
+/// The tool of a mesh, whose points take time. Nothing for other tools, and for one that cannot be
+/// made: the run says why.
+std::optional<io::PointsSpec> points_of(const run::RenderSetup& setup,
+                                        const run::LoadedVolume& loaded,
+                                        const io::Progress& progress) {
+    if (loaded.streamed || !std::holds_alternative<io::MeshSpec>(setup.tool)) return std::nullopt;
+    const double usual = io::usual_spacing(loaded.volume.geometry());
+    try {
+        const auto tool = io::make_tool(setup.tool, setup.tool_spacing.value_or(usual), progress);
+        return io::PointsSpec{
+            {tool->points().begin(), tool->points().end()}, tool->turns(), tool->shape()};
+    } catch (const std::invalid_argument&) {
+        return std::nullopt;
+    }
 }
 
 /// The same source, its grid lying otherwise.
@@ -63,16 +83,25 @@ FileController::FileController(const Desk& desk, Panel& panel, RecordingControll
       display_(display),
       measuring_(measuring),
       saver_(saver),
+      reader_(messages_),
       loader_(messages_) {
     connect(&panel_.isovalue_controls(), &IsovalueControls::dequantize_wanted, this,
             &FileController::dequantize);
 }
 
 /// What is open can be changed meanwhile, which is asked about then.
-void FileController::read(const QString& label, Worker::Task task, std::function<void()> then) {
-    loader_.start(label, std::move(task), [this, before = unsaved_work(), then = std::move(then)] {
-        unsaved_work() == before ? then() : settle_work(then);
-    });
+std::function<void()> FileController::unless_changed(const std::optional<UnsavedWork>& before,
+                                                     std::function<void()> then) {
+    return [this, before, then = std::move(then)] {
+        before == unsaved_work() ? then() : settle_work(then);
+    };
+}
+
+void FileController::read(BackgroundTask& reader, const QString& path, Worker::Task task,
+                          std::function<void()> then) {
+    reader_.abandon();  // it was for another file
+    reader.start(tr("Reading %1").arg(short_name(path)), std::move(task),
+                 unless_changed(unsaved_work(), std::move(then)));
 }
 
 FileController::UnsavedWork FileController::unsaved_work() const {
@@ -104,10 +133,11 @@ void FileController::load(const run::Source& source, Then then) {
     };
     auto result = std::make_shared<Result>();
     read(
-        tr("Reading %1").arg(short_name(QString::fromStdString(name_of(source)))),
-        [result, source](const io::Progress& progress) {
+        loader_, QString::fromStdString(name_of(source)),
+        [result, source, render = content_.request().setup.render](const io::Progress& progress) {
             try {
                 result->opened = std::make_shared<Opened>(open(source, progress));
+                result->opened->tool = points_of(render, result->opened->loaded, progress);
             } catch (const io::SeriesChoice& choice) {
                 result->choice = choice;
             }
@@ -141,20 +171,26 @@ void FileController::load_or_reuse(const run::Source& source, Then then) {
         run::to_names(opened->loaded.source) != names) {
         return load(source, std::move(then));
     }
+    reader_.abandon();
     loader_.abandon();
     messages_.guarded([&] { then(opened); });
 }
 
 void FileController::open_path(const QString& path) {
     remember_folder(path);
-    if (LayersControls::is_layers_file(path)) return layers_.open(path);
-    if (path.endsWith(".json", Qt::CaseInsensitive)) return open_session(path);
+    if (is_json(path)) return open_session(path);
     if (path.endsWith(".csv", Qt::CaseInsensitive)) return open_recording(path);
     messages_.guarded([&] {
         // Looks at what it is: a store is felt while it is read.
         const run::Source source = run::source_from({{"volume", path.toStdString()}});
         lacks_layout(source) ? ask_layout(source) : open_volume(source);
     });
+}
+
+void FileController::open_dropped(const QString& path) {
+    if (!is_json(path)) return settle_work([this, path] { open_path(path); });
+    remember_folder(path);
+    open_json(path, std::nullopt);
 }
 
 void FileController::ask_layout(const run::Source& source) {
@@ -219,7 +255,12 @@ void FileController::open_sample() {
     });
 }
 
-void FileController::start(std::shared_ptr<Opened> volume, const std::vector<run::Setup>& hands) {
+void FileController::start(std::shared_ptr<Opened> volume, std::vector<run::Setup> hands) {
+    for (run::Setup& hand : hands) {
+        if (volume->tool && std::holds_alternative<io::MeshSpec>(hand.render.tool)) {
+            hand.render.tool = *volume->tool;
+        }
+    }
     content_.start_run(std::move(volume), hands);
     QStringList names;
     for (const run::Setup& hand : hands) names << QString::fromStdString(run::text_of(hand.device));
@@ -299,20 +340,24 @@ void FileController::use_grid(const io::GivenGrid& grid) {
 
 void FileController::open_recording(const QString& path) {
     messages_.forget();
-    messages_.guarded([&] {
-        const io::RecordingHead head = io::read_recording_head(path_of(path));
-        const run::Source source = run::recorded_source(head, path_of(path));
-        (void)content_.take_request();  // they were for a volume to feel
-        load_or_reuse(source, [this, path](std::shared_ptr<Opened> opened) {
-            play(std::move(opened), path);
+    const auto source = std::make_shared<run::Source>();
+    read(
+        reader_, path,
+        [source, path](const io::Progress&) {
+            *source = run::recorded_source(io::read_recording_head(path_of(path)), path_of(path));
+        },
+        [this, source, path] {
+            (void)content_.take_request();  // they were for a volume to feel
+            load_or_reuse(*source, [this, path](std::shared_ptr<Opened> opened) {
+                play(std::move(opened), path);
+            });
         });
-    });
 }
 
 void FileController::play(std::shared_ptr<Opened> opened, const QString& path) {
     auto result = std::make_shared<std::vector<Playback>>();
     read(
-        tr("Reading %1").arg(short_name(path)),
+        loader_, path,
         [result, opened, path](const io::Progress& progress) {
             *result = Playback::read_hands(path_of(path), opened->loaded, progress);
         },
@@ -339,145 +384,6 @@ void FileController::leave_playback() {
     }
     feel_session(content_.volume(), session, request_for_same());
     if (!layers.empty()) content_.use_layers(layers);
-}
-
-SessionFile FileController::session_now() const {
-    SessionFile session;
-    session.source = content_.source();
-    const auto hand_now = [](const run::Run& live) {
-        SessionHand hand{live.setup().device, live.isovalue(), live.settings()};
-        if (const auto now = live.snapshot()) hand.settings->transform = now->session.transform;
-        return hand;
-    };
-    if (const run::Run* live = content_.live(1)) {
-        session.solid = live->field().solid();
-        session.interpolation = live->field().interpolation();
-        session.background = live->field().background();
-        session.method = live->setup().render.method;
-        session.buttons = live->setup().buttons;
-        static_cast<SessionHand&>(session) = hand_now(*live);
-        for (int hand = 2; hand <= content_.hands(); ++hand) {
-            session.others.push_back(hand_now(*content_.live(hand)));
-        }
-    } else {
-        const io::RecordingHead& head = content_.playback(1)->head();
-        session.solid = head.solid;
-        session.interpolation = head.interpolation;
-        session.background = head.background;
-        session.isovalue = head.isovalue;
-        session.device = content_.request().setup.device;
-        for (const devices::DeviceChoice& device : content_.request().others) {
-            const Playback* other = content_.playback(2);
-            session.others.push_back({device, (other ? other->head() : head).isovalue, {}});
-        }
-        session.method = run::named_method(head.method);
-        session.buttons = content_.request().setup.buttons;
-        session.settings = head.settings;
-    }
-    display_.save_view(session);
-    return session;
-}
-
-void FileController::save_session(const QString& path) {
-    if (!content_.volume()) return;
-    write_session(path.toStdString(), session_now());
-    measuring_.set_saved();
-    content_.set_session(path);
-    remember_file(path);
-    messages_.show_done(tr("Saved %1").arg(path));
-}
-
-void FileController::ask_save_session(const QString& name, const std::function<void()>& then) {
-    saver_.save_edits_first([=, this] {
-        const QString path =
-            !name.isEmpty()
-                ? name
-                : ask_save_name(messages_.window(), tr("Save the session"), "session.json", "json");
-        if (path.isEmpty()) return;
-        save_session(path);
-        layers_.set_saved();
-        if (then) then();
-    });
-}
-
-void FileController::open_session(const QString& path) {
-    messages_.forget();
-    messages_.guarded([&] {
-        const SessionFile session = read_session(path.toStdString());
-        load_or_reuse(session.source, [this, session, path, request = content_.take_request()](
-                                          std::shared_ptr<Opened> opened) {
-            feel_session(std::move(opened), session, request);
-            content_.set_session(path);
-            measuring_.set_saved();
-            remember_file(path);
-            layers_.restore(session, path);
-        });
-    });
-}
-
-/// Devices and buttons are those of the command line, else the session's; where they cannot be had,
-/// those chosen in this window.
-void FileController::feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
-                                  RunRequest request, bool in_place) {
-    run::Setup& setup = request.setup;
-    setup.field = {session.solid, session.background, session.isovalue, session.interpolation};
-    if (!request.device) {
-        request.others.clear();
-        for (const SessionHand& other : session.others) request.others.push_back(other.device);
-    }
-    setup.device = request.device.value_or(session.device);
-    setup.buttons = session.buttons;
-    for (const auto& [member, wanted] : request.buttons) setup.buttons.*member = wanted;
-    setup.render.method = session.method;
-    setup.render.layers.reset();  // the session's are in its settings
-    // The usual one is smaller for a fast device.
-    const int budget = session.settings.value_or(RendererSettings{}).proxy.step_budget;
-    if (!setup.render.step_budget && budget != ProxySettings{}.step_budget) {
-        setup.render.step_budget = budget;
-    }
-    try {
-        feel(opened, request);
-    } catch (const std::exception& e) {
-        const RunRequest& chosen = content_.request();
-        if (setup.device == chosen.setup.device && request.others == chosen.others) throw;
-        const QString why = QString::fromStdString(app::failure_of(e).text);
-        request.use_devices_of(chosen);
-        feel(opened, request);
-        messages_.show_done(tr("%1; felt through the device %2")
-                                .arg(why, QString::fromStdString(run::text_of(setup.device))));
-    }
-    panel_.look_controls().use_usual_look();
-    restore_hands(session, in_place);
-    display_.restore_view(session);
-}
-
-void FileController::restore_hands(const SessionFile& session, bool in_place) {
-    if (session.settings) restore(*session.settings, in_place);
-    int hand = 1;
-    for (const SessionHand& other : session.others) {
-        if (!content_.live(++hand)) break;  // its device cannot be had
-        content_.choose_hand(hand);
-        content_.effect().request(command::Isovalue{other.isovalue});
-        if (other.settings) restore(*other.settings, in_place);
-    }
-    content_.choose_hand(1);
-}
-
-/// Requests those of the settings for which there are commands. Not layers that lack_labels(). Not
-/// `in_place`: hands are where this run has put them, as the data lie elsewhere.
-void FileController::restore(const RendererSettings& settings, bool in_place) {
-    const auto send = [this](const Command& command) { content_.effect().request(command); };
-    if (!settings.tool) send(command::UseTool{nullptr});  // beside one, other things are refused
-    send(settings.force);
-    send(settings.proxy.friction);
-    send(settings.penetrability);
-    if (settings.layers && !lack_labels(settings.layers)) {
-        send(command::UseLayers{settings.layers});
-    }
-    if (settings.tool) send(command::UseTool{settings.tool});
-    if (in_place) send(settings.transform);
-    send(command::Forces{settings.forces_on});
-    Q_EMIT content_.run_changed();
 }
 
 }  // namespace palpate::viewer

@@ -5,6 +5,7 @@
 #include <QString>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "apps/viewer/model/layer_set.hpp"
@@ -37,6 +38,8 @@ class FileController : public Controller {
     /// A volume, a folder, a session, layers or a recording: its name tells which. Asks for the
     /// layout where lacks_layout().
     void open_path(const QString& path);
+    /// The same, once unsaved work was saved or given up. With layers it stays.
+    void open_dropped(const QString& path);
     /// Asks how the samples lie in a file without a header, and opens it.
     void ask_layout(const run::Source& source);
     void ask_address();
@@ -66,8 +69,10 @@ class FileController : public Controller {
     /// again with these: it is felt as before, but seen anew.
     void ask_grid();
 
+    /// Of sessions, layers and heads of recordings; and of volumes.
+    BackgroundTask& reader() { return reader_; }
     BackgroundTask& loader() { return loader_; }
-    bool loading() const { return loader_.busy(); }
+    bool loading() const { return reader_.busy() || loader_.busy(); }
 
   private:
     using Then = std::function<void(std::shared_ptr<Opened>)>;
@@ -79,14 +84,18 @@ class FileController : public Controller {
         bool operator==(const UnsavedWork&) const = default;
     };
     UnsavedWork unsaved_work() const;
-    void read(const QString& label, Worker::Task task, std::function<void()> then);
+    std::function<void()> unless_changed(const std::optional<UnsavedWork>& before,
+                                         std::function<void()> then);
+    void read(BackgroundTask& reader, const QString& path, Worker::Task task,
+              std::function<void()> then);
+    void open_json(const QString& path, const std::optional<UnsavedWork>& before);
     void load(const run::Source& source, Then then);
     void feel_again(const run::Source& source);
     void use_grid(const io::GivenGrid& grid);
     void tell_choices(const Opened& opened);
     void choose_series(const io::SeriesChoice& choice, const run::Source& source, const Then& then);
     void load_or_reuse(const run::Source& source, Then then);
-    void start(std::shared_ptr<Opened> opened, const std::vector<run::Setup>& hands);
+    void start(std::shared_ptr<Opened> opened, std::vector<run::Setup> hands);
     void feel(std::shared_ptr<Opened> opened, const RunRequest& request);
     void feel_session(std::shared_ptr<Opened> opened, const SessionFile& session,
                       RunRequest request, bool in_place = true);
@@ -102,7 +111,7 @@ class FileController : public Controller {
     DisplayController& display_;
     MeasureController& measuring_;
     SaveController& saver_;
-    BackgroundTask loader_;
+    BackgroundTask reader_, loader_;
 };
 
 }  // namespace palpate::viewer

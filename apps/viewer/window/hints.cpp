@@ -4,6 +4,8 @@
 #include <QCoreApplication>
 #include <QStringList>
 
+#include <algorithm>
+
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/ruler.hpp"
 #include "apps/viewer/panel/colours.hpp"
@@ -99,14 +101,26 @@ QLabel* label_over(QWidget& owner, const QString& name, const QString& style) {
     return label;
 }
 
-/// Shows words with the label's middle there; hidden where there are none.
+/// Shows words with the label's middle there, but inside its owner; hidden where there are none.
+/// Words that are too wide for the owner are wrapped.
 void say(QLabel& label, const QString& words, const QPoint& middle) {
     if (words.isEmpty()) return label.hide();
-    if (label.text() != words) {
+    const QWidget& owner = *label.parentWidget();
+    const bool fits =
+        label.wordWrap() ? label.width() == owner.width() : label.width() <= owner.width();
+    if (label.text() != words || !fits) {
+        label.setWordWrap(false);
         label.setText(words);
         label.adjustSize();
+        if (label.width() > owner.width()) {
+            label.setWordWrap(true);
+            label.resize(owner.width(), label.heightForWidth(owner.width()));
+        }
     }
-    const QPoint corner = middle - label.rect().center();
+    const QPoint last(owner.width() - label.width(), owner.height() - label.height());
+    QPoint corner = middle - label.rect().center();
+    corner.setX(std::clamp(corner.x(), 0, std::max(0, last.x())));
+    corner.setY(std::clamp(corner.y(), 0, std::max(0, last.y())));
     if (label.pos() != corner) label.move(corner);
     label.show();
 }

@@ -2,7 +2,6 @@
 // those in use.
 #include "apps/viewer/window/layers_controls.hpp"
 
-#include <QFile>
 #include <QRegularExpression>
 
 #include <algorithm>
@@ -20,6 +19,7 @@
 #include "apps/viewer/window/file_dialogs.hpp"
 #include "apps/viewer/window/look_controls.hpp"
 #include "apps/viewer/window/overlay_controls.hpp"
+#include "palpate/io/csv.hpp"
 #include "palpate/run/labels.hpp"
 
 namespace palpate::viewer {
@@ -265,13 +265,9 @@ void LayersControls::show_snapshot(const Snapshot& now) {
     if (touched_->text() != text) touched_->setText(text);
 }
 
-bool LayersControls::is_layers_file(const QString& path) {
-    constexpr qint64 largest = qint64{16} << 20;  // [bytes] far more than any has
-    QFile file(path);
-    if (!path.endsWith(".json", Qt::CaseInsensitive)) return false;
-    if (file.size() > largest || !file.open(QIODevice::ReadOnly)) return false;
-    const QByteArray text = file.readAll();
-    return text.contains("\"palpate_layers\"") && !text.contains("\"palpate-session\"");
+bool LayersControls::is_layers(const std::string& text) {
+    return text.find("\"palpate_layers\"") != text.npos &&
+           text.find("\"palpate-session\"") == text.npos;
 }
 
 /// What a label map has to have, and whether there is one.
@@ -408,24 +404,31 @@ void LayersControls::ask_open() {
 
 void LayersControls::open(const QString& path) {
     messages_.forget();
+    remember_folder(path);
+    const auto read = std::make_shared<io::LayersFile>();
+    reader_.start(
+        tr("Reading %1").arg(short_name(path)),
+        [read, name = path.toStdString()](const io::Progress& progress) {
+            *read = io::layers_from_text(io::read_text(name, progress), name);
+        },
+        [this, read, path] { take(path, *read); });
+}
+
+void LayersControls::take(const QString& path, const io::LayersFile& file) {
     if (!content_.live()) {
         return messages_.show_problem(
             tr("%1: these are layers: open a volume first, and feel it, then open them")
                 .arg(short_name(path)));
     }
-    messages_.guarded([&] {
-        const io::LayersFile file = io::read_layers(path.toStdString());
-        const LayersChoice choice = choice_of(file);
-        remember_folder(path);
-        if (choice.possible || file.layers.by_label) {
-            files_.push_back(file);
-            offer();
-        }
-        if (!choice.possible) {
-            return messages_.show_problem(QString("%1: %2").arg(short_name(path), choice.note));
-        }
-        feel(choice);
-    });
+    const LayersChoice choice = choice_of(file);
+    if (choice.possible || file.layers.by_label) {
+        files_.push_back(file);
+        offer();
+    }
+    if (!choice.possible) {
+        return messages_.show_problem(QString("%1: %2").arg(short_name(path), choice.note));
+    }
+    feel(choice);
 }
 
 void LayersControls::ask_save() {

@@ -84,10 +84,10 @@ class LayersControls : public EffectForm, protected Desk {
   public:
     LayersControls(const Desk& desk, LookControls& look, OverlayControls& overlays);
 
-    /// Whether a file is a set of layers, by its content.
-    static bool is_layers_file(const QString& path);
+    /// Whether the text of a JSON file is that of layers, and of no session.
+    static bool is_layers(const std::string& text);
     /// Feels the layers of a file. Errors are shown; the layers before stay then.
-    void open(const QString& path);
+    void take(const QString& path, const io::LayersFile& file);
     /// Each hand of the session feels its layers that lack_labels() once their label volume has
     /// been read; a name that is relative counts from the working folder, then from that of `file`.
     void restore(const SessionFile& session, const QString& file);
@@ -139,6 +139,7 @@ class LayersControls : public EffectForm, protected Desk {
     void place(const SharedLayers& layers);
     void show_label_map();
     void ask_open();
+    void open(const QString& path);
     void ask_save();
     void save(const QString& path);
     void edit(const SharedLayers& next, const QString& key = {});
@@ -165,7 +166,7 @@ class LayersControls : public EffectForm, protected Desk {
     LookControls& look_;
     OverlayControls& overlays_;
     std::vector<io::LayersFile> files_;  // built in, then those that were opened
-    BackgroundTask reader_;              // of labels
+    BackgroundTask reader_;              // of layers and of labels
     SharedLayers saved_;
     double low_ = 0, high_ = 1;
     std::vector<LayersChoice> choices_;

@@ -25,6 +25,7 @@
 #include "apps/viewer/model/hands.hpp"
 #include "apps/viewer/model/measurement.hpp"
 #include "apps/viewer/model/ruler.hpp"
+#include "apps/viewer/panel/inputs.hpp"
 #include "apps/viewer/panel/layout.hpp"
 #include "apps/viewer/panel/names.hpp"
 #include "apps/viewer/panel/timeline.hpp"
@@ -106,8 +107,9 @@ void MainWindow::build() {
     views_->hide();
     layout->setSpacing(0);
     for (BackgroundTask* task :
-         {&files_.loader(), &panel_->overlay_controls().loader(), &saver_.task(),
-          &panel_->layers_controls().reader(), &panel_->tool_controls().reader()}) {
+         {&files_.reader(), &files_.loader(), &panel_->overlay_controls().loader(), &saver_.task(),
+          &panel_->layers_controls().reader(), &panel_->tool_controls().reader(),
+          &panel_->tool_controls().maker()}) {
         layout->addWidget(make_progress_strip(*task));
     }
     setCentralWidget(centre);
@@ -164,6 +166,14 @@ void MainWindow::connect_welcome() {
     };
     connect(&content_, &Content::run_started, this, show_views);
     connect(&content_, &Content::playback_started, this, show_views);
+    // Later: what was closed usually makes room for what is opened.
+    const auto show_welcome = [this] {
+        if (content_.volume()) return;
+        views_->hide();
+        welcome_->refresh();
+        welcome_->show();
+    };
+    connect(&content_, &Content::closed, this, show_welcome, Qt::QueuedConnection);
     connect(&panel_->device_controls(), &DeviceControls::devices_found, welcome_,
             &Welcome::set_devices);
     connect(welcome_, &Welcome::open_asked, actions_.find("open"), &QAction::trigger);
@@ -273,9 +283,9 @@ void MainWindow::show_readout(const Snapshot& now) {
     words += QString("%1, %2, %3 %4").arg(number(at[0]), number(at[1]), number(at[2]), unit);
     if (const auto field = content_.felt_round(now, at)) {
         const double slope = gradient_at(*field, at).norm() / ruler.per_mm;
-        words += "   " + tr("%1 %2   slope %3 /%4")
-                             .arg(QString::number(value_at(*field, at), 'g', 4), units,
-                                  QString::number(slope, 'g', 3), unit);
+        words += "   " +
+                 tr("%1 %2   slope %3 /%4")
+                     .arg(number_text(value_at(*field, at), 4), units, number_text(slope, 3), unit);
     }
     readout_->setText(words);
 }
@@ -306,7 +316,7 @@ void MainWindow::rest_or_wake(const HandSnapshots& now) {
 bool MainWindow::settled() const {
     return !files_.loading() && !saver_.saving() && !probe_.travelling() &&
            panel_->overlay_controls().settled() && !panel_->layers_controls().reader().busy() &&
-           !panel_->tool_controls().reader().busy() &&
+           !panel_->tool_controls().reader().busy() && !panel_->tool_controls().maker().busy() &&
            (!content_.volume() || (views_->scene().settled() && details_.settled()));
 }
 
@@ -363,9 +373,8 @@ void MainWindow::dropEvent(QDropEvent* event) {
     const QUrl& url = urls.front();
     const QString path = url.isLocalFile() ? url.toLocalFile() : url.toString();
     // The volume stays, with its edits.
-    if (LayersControls::is_layers_file(path)) return panel_->layers_controls().open(path);
     if (ToolControls::is_tool_file(path)) return panel_->tool_controls().open(path);
-    files_.settle_work([this, path] { files_.open_path(path); });
+    files_.open_dropped(path);
 }
 
 }  // namespace palpate::viewer

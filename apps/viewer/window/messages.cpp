@@ -7,6 +7,7 @@
 #include <QMessageBox>
 #include <QProgressBar>
 #include <QPushButton>
+#include <QTimer>
 
 #include <cstdio>
 #include <utility>
@@ -94,7 +95,9 @@ void BackgroundTask::abandon() {
     Q_EMIT ended();
 }
 
+/// Not for what is done at once: the strip makes the views smaller, which draws them anew.
 QWidget* make_progress_strip(BackgroundTask& task) {
+    constexpr int shown_after_ms = 150;
     auto* label = new QLabel;
     label->setTextFormat(Qt::PlainText);
     label->setMinimumWidth(1);  // a long name must not make the window wider
@@ -102,6 +105,8 @@ QWidget* make_progress_strip(BackgroundTask& task) {
     bar->setRange(0, 100);
     auto* cancel = named(new QPushButton(BackgroundTask::tr("Cancel")), "cancel");
     auto* strip = named(new QWidget, "progress");
+    auto* late = new QTimer(strip);
+    late->setSingleShot(true);
     auto* row = new QHBoxLayout(strip);
     row->addWidget(label);
     row->addWidget(bar, 1);
@@ -111,11 +116,15 @@ QWidget* make_progress_strip(BackgroundTask& task) {
         label->setText(what);
         label->setToolTip("<p>" + what.toHtmlEscaped() + "</p>");
         bar->setValue(0);
-        strip->show();
+        late->start(shown_after_ms);
     });
+    QObject::connect(late, &QTimer::timeout, strip, &QWidget::show);
     QObject::connect(&task, &BackgroundTask::progressed, strip,
                      [bar](double fraction) { bar->setValue(static_cast<int>(100 * fraction)); });
-    QObject::connect(&task, &BackgroundTask::ended, strip, &QWidget::hide);
+    QObject::connect(&task, &BackgroundTask::ended, strip, [=] {
+        late->stop();
+        strip->hide();
+    });
     strip->hide();
     return strip;
 }

@@ -91,7 +91,7 @@ class BackgroundTask : public QObject {
     std::function<void()> then_;
 };
 
-/// Shows the progress of a task, with a button to cancel it; hidden while there is none.
+/// Shows the progress of a task that is not done soon, with a button to cancel it.
 QWidget* make_progress_strip(BackgroundTask& task);
 
 }  // namespace palpate::viewer

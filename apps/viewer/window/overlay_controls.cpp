@@ -71,6 +71,7 @@ OverlayControls::OverlayControls(const Desk& desk, LookControls& look)
                {[this] { return its_look().level.value_or(overlay_ ? overlay_->level : 0); },
                 its[&OverlayLook::level].set});
     name_->setTextFormat(Qt::PlainText);
+    name_->setMinimumWidth(1);  // a long name must not make the panel wider
     image_ = row_of(
         {label_for(tr("Colours"), colours), colours, label_for(tr("Level"), level), level}, 3);
     make_labels();

@@ -98,7 +98,8 @@ void SaveController::save(const QString& path, std::function<void()> then) {
         tr("Saving %1").arg(short_name(path)),
         [file, data](const io::Progress& progress) { data->save(file, progress); },
         [this, path, words, data, then = std::move(then)] {
-            if (content_.editor()) {  // of a sequence only one frame was saved
+            // Of a sequence only one frame was saved.
+            if (content_.data() == data && content_.editor()) {
                 // The source can be determined only now.
                 content_.set_saved(source_of(path, data->loaded().volume));
                 remember_file(path);

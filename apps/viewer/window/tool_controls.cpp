@@ -39,22 +39,23 @@ std::vector<io::ToolSpec> built_in_tools(const Geometry& geometry) {
 }
 
 struct MadeTool {
-    std::shared_ptr<const Tool> tool;  ///< null: a point
-    double spacing = 0;                ///< [mm] of its points
+    std::shared_ptr<const Tool> tool;
+    double spacing = 0;  ///< [mm] of its points
 };
 
 /// Makes the tool, `scale` times as large. Its points are half a voxel apart, or farther if there
 /// would be more than two thousand, for which a tick has no time. Throws std::invalid_argument if
-/// the file is no tool.
-MadeTool made_tool(const io::ToolSpec& spec, double scale, const Geometry& geometry) {
+/// the file is no tool. Exceptions of `progress` are passed on.
+MadeTool made_tool(const io::ToolSpec& spec, double scale, const Geometry& geometry,
+                   const io::Progress& progress) {
     constexpr std::size_t most_points = 2000;
-    if (std::holds_alternative<io::PointSpec>(spec)) return {};
     const io::ToolSpec scaled = io::scaled(spec, scale);
     MadeTool made{nullptr, io::usual_spacing(geometry)};
     constexpr int tries = 60;
     for (int i = 0;; ++i) {
+        progress(0);
         try {
-            made.tool = io::make_tool(scaled, made.spacing);
+            made.tool = io::make_tool(scaled, made.spacing, progress);
         } catch (const std::invalid_argument&) {  // most likely far too many points
             if (i == tries) throw;
             made.spacing *= 2;
@@ -70,15 +71,15 @@ MadeTool made_tool(const io::ToolSpec& spec, double scale, const Geometry& geome
 }  // namespace
 
 ToolControls::ToolControls(const Desk& desk)
-    : EffectForm(desk.effect()), Desk(desk), reader_(messages_) {
+    : EffectForm(desk.effect()), Desk(desk), reader_(messages_), maker_(messages_) {
     each_time(this, [this](QWidget&) { show_tool(); });
-    choice_ =
-        choice({"tool", "",
-                tr("What touches. No point of a tool ever goes through the surface; it "
-                   "pushes and turns the hand. With the mouse, Ctrl and drag in the scene "
-                   "turn it."),
-                tr("Tool")},
-               QStringList(), {[this] { return shown_.row; }, [this](int row) { choose(row, 1); }});
+    choice_ = choice({"tool", "",
+                      tr("What touches. No point of a tool ever goes through the surface; it "
+                         "pushes and turns the hand. With the mouse, Ctrl and drag in the scene "
+                         "turn it."),
+                      tr("Tool")},
+                     QStringList(),
+                     {[this] { return wanted().row; }, [this](int row) { choose(row, 1); }});
     auto* open = button({"open_tool", tr("Open…"),
                          tr("A tool from a file: a mesh (STL, PLY, OBJ, VTP) or points (CSV: x, y, "
                             "z), in mm from the point that is held"),
@@ -95,8 +96,8 @@ ToolControls::ToolControls(const Desk& desk)
         {"tool_scale", tr("Size"), tr("How many times as large as usual the tool is"),
          tr("Size of the tool")},
         {"×", 0.1, 10, 0.1, Quantity::Scale::factors},
-        {[this] { return shown_.scale; }, [this](double to) { choose(shown_.row, to); }});
-    each_time(scale, [this](Quantity& one) { one.setEnabled(shown_.tool != nullptr); });
+        {[this] { return wanted().scale; }, [this](double to) { choose(wanted().row, to); }});
+    each_time(scale, [this](Quantity& one) { one.setEnabled(wanted().row > 0); });
     auto* words = named(new QLabel, "tool_about");
     each_time(words, [this](QLabel& label) { label.setText(about()); });
     words->setWordWrap(true);
@@ -104,12 +105,17 @@ ToolControls::ToolControls(const Desk& desk)
     choice_->setMinimumContentsLength(8);
     column_in(this, {row_of({choice_, open}, 0)})->addLayout(form);
     layout()->addWidget(words);
-    connect(&content_, &Content::closed, this, [this] { reader_.abandon(); });
+    connect(&content_, &Content::closed, this, [this] {
+        reader_.abandon();
+        maker_.abandon();
+    });
+    connect(&maker_, &BackgroundTask::ended, this, &Form::refresh);
     refresh();
 }
 
 /// For another volume: offers sizes that suit it, and keeps tools of files.
 void ToolControls::begin() {
+    maker_.abandon();  // it was for another hand or another volume
     const Geometry& geometry = effect_.field().geometry();
     if (geometry.size == geometry_.size && geometry.spacing == geometry_.spacing) return;
     const QString names[] = {tr("Point"), tr("Ball"), tr("Rod"),      tr("Needle"),
@@ -126,18 +132,36 @@ void ToolControls::begin() {
     shown_ = asked_ = {};
 }
 
+/// A point needs no time.
 void ToolControls::choose(int row, double scale) {
     if (row < 0 || row >= static_cast<int>(choices_.size())) return;
-    const Choice& choice = choices_[static_cast<std::size_t>(row)];
-    try {
-        const MadeTool made = made_tool(choice.spec, scale, geometry_);
-        const bool given = std::holds_alternative<io::PointsSpec>(choice.spec);
-        asked_ = {row, scale, made.tool, given ? 0 : made.spacing};
-    } catch (const std::invalid_argument& e) {
-        Q_EMIT nonsense(QString::fromStdString(e.what()));
-        return;
-    }
-    effect_.request(command::UseTool{asked_.tool});
+    maker_.abandon();
+    making_ = {row, scale, nullptr, 0};
+    const io::ToolSpec& spec = choices_[static_cast<std::size_t>(row)].spec;
+    if (std::holds_alternative<io::PointSpec>(spec)) return use(making_);
+    struct Result {
+        MadeTool made;
+        QString refusal;
+    };
+    const auto result = std::make_shared<Result>();
+    maker_.start(
+        tr("Making the tool"),
+        [result, spec, scale, geometry = geometry_](const io::Progress& progress) {
+            try {
+                result->made = made_tool(spec, scale, geometry, progress);
+            } catch (const std::invalid_argument& e) {
+                result->refusal = QString::fromStdString(e.what());
+            }
+        },
+        [this, result, made = making_, given = std::holds_alternative<io::PointsSpec>(spec)] {
+            if (!result->refusal.isEmpty()) return Q_EMIT nonsense(result->refusal);
+            use({made.row, made.scale, result->made.tool, given ? 0 : result->made.spacing});
+        });
+}
+
+void ToolControls::use(const Made& made) {
+    asked_ = made;
+    effect_.request(command::UseTool{made.tool});
 }
 
 /// One that was not made here, such as a session's, is one more choice.
@@ -191,8 +215,8 @@ void ToolControls::open(const QString& path) {
 
 void ToolControls::add(const QString& name, const io::ToolSpec& spec) {
     choices_.push_back({name, spec});
-    choice_->addItem(name);
     choose(static_cast<int>(choices_.size()) - 1, 1);
+    refresh();
 }
 
 }  // namespace palpate::viewer

@@ -23,6 +23,7 @@ class ToolControls : public EffectForm, protected Desk {
     /// Feels with the tool of a file. Errors are shown; the tool before stays then.
     void open(const QString& path);
     BackgroundTask& reader() { return reader_; }
+    BackgroundTask& maker() { return maker_; }
     /// Another choice, chosen as by hand.
     void add(const QString& name, const io::ToolSpec& spec);
 
@@ -40,14 +41,18 @@ class ToolControls : public EffectForm, protected Desk {
     };
     void begin() override;
     void choose(int row, double scale);
+    void use(const Made& made);
+    /// The one in the making, else the one in effect.
+    const Made& wanted() const { return maker_.busy() ? making_ : shown_; }
     void show_tool();
     QString about() const;
 
-    BackgroundTask reader_;
+    BackgroundTask reader_, maker_;
     Geometry geometry_{Index3::Zero()};
     std::size_t built_in_ = 0;     // of the choices, the first ones
     std::vector<Choice> choices_;  // then those of files and sessions
     Made shown_, asked_;           // in effect, and last asked for, whatever became of it
+    Made making_;                  // without the tool
     QComboBox* choice_ = nullptr;
 };
 

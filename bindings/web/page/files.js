@@ -22,19 +22,28 @@ export function finite(samples, notes) {
   return samples.map((v) => (Number.isFinite(v) ? v : Number.isFinite(least) ? least : 0));
 }
 
+/** A number of 16 bits (IEEE 754-2008): of a sign, five bits of an exponent, and ten of a fraction. */
+function half(bits) {
+  const [exponent, fraction] = [(bits >> 10) & 31, bits & 1023];
+  const size = exponent === 0 ? fraction * 2 ** -24 : exponent < 31 ? (1024 + fraction) * 2 ** (exponent - 25) : fraction ? NaN : Infinity;
+  return bits >> 15 ? -size : size;
+}
+
 /** Samples of a type that the core has: others become float32. */
 export function samplesOf(bytes, type, big, count) {
   const kinds = {
     uint8: ["getUint8", 1, Uint8Array], int8: ["getInt8", 1, Int16Array], int16: ["getInt16", 2, Int16Array],
     uint16: ["getUint16", 2, Uint16Array], int32: ["getInt32", 4, Float32Array], uint32: ["getUint32", 4, Float32Array],
-    float32: ["getFloat32", 4, Float32Array], float64: ["getFloat64", 8, Float32Array],
+    int64: ["getBigInt64", 8, Float32Array], uint64: ["getBigUint64", 8, Float32Array],
+    float16: ["getUint16", 2, Float32Array], float32: ["getFloat32", 4, Float32Array], float64: ["getFloat64", 8, Float32Array],
   };
   if (!kinds[type]) refuse(`samples of type ${type} are not read`);
   const [read, size, Type] = kinds[type];
   if (bytes.byteLength < count * size) refuse("the file ends before its samples do", "copy or download it again");
   if (!big && Type.name.toLowerCase() === `${type}array`) return new Type(bytes.slice(0, count * size).buffer);
   const view = new DataView(bytes.buffer, bytes.byteOffset);
-  return Type.from({ length: count }, (_, i) => view[read](i * size, !big));
+  const number = type === "float16" ? half : Number;
+  return Type.from({ length: count }, (_, i) => number(view[read](i * size, !big)));
 }
 
 /** Geometry from the columns that lead from a sample to the next along each axis. */

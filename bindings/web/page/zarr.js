@@ -8,8 +8,10 @@ const mostSamples = 2 ** 25; // finer levels are left out
 const millimetres = { "": 1, angstrom: 1e-7, foot: 304.8, inch: 25.4, mile: 1609344, yard: 914.4 };
 const prefixes = { atto: -18, femto: -15, pico: -12, nano: -9, micro: -6, milli: -3, centi: -2, deci: -1, "": 0, deca: 1, hecto: 2, kilo: 3 };
 for (const [prefix, power] of Object.entries(prefixes)) millimetres[`${prefix}meter`] = Number(`1e${power + 3}`);
-const typesOfZarr2 = { u1: "uint8", i1: "int8", u2: "uint16", i2: "int16", u4: "uint32", i4: "int32", f4: "float32", f8: "float64" };
-const widths = { uint8: 1, int8: 1, uint16: 2, int16: 2, uint32: 4, int32: 4, float32: 4, float64: 8 };
+const typesOfZarr2 = {
+  u1: "uint8", i1: "int8", u2: "uint16", i2: "int16", u4: "uint32", i4: "int32", u8: "uint64", i8: "int64", f2: "float16", f4: "float32", f8: "float64",
+};
+const widths = { uint8: 1, int8: 1, uint16: 2, int16: 2, uint32: 4, int32: 4, uint64: 8, int64: 8, float16: 2, float32: 4, float64: 8 };
 
 async function json(get, path) {
   const bytes = await get(path, true);

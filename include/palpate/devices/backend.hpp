@@ -24,7 +24,9 @@ struct DeviceScene {
     /// Gives the place of a device with this workspace in the volume. Scripted and recorded hands
     /// move in physical space.
     std::function<DeviceTransform(const DeviceInfo&)> transform;
-    /// Called while a name is looked up and a service answers. Its exceptions are passed on.
+    /// Called while a service or a vendor's library is waited for. Its exceptions are passed on at
+    /// once. The call of the library is then left alone, and a device that it still opens is closed
+    /// again.
     OnProgress progress = {};
 };
 

@@ -57,7 +57,7 @@ class Data {
     /// As VolumeEditor::record().
     void record(const Servo& servo, const BeginRecording& begin);
     /// The tool of an attached servo from now on, for brushes.
-    void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
+    void rest_brush(const Servo& servo, const std::shared_ptr<const Tool>& tool);
     /// Why edits or frames are missing; usually empty.
     std::string problem() const;
     /// A file that is in use from now on, such as a recording or an overlay: save() replaces no

@@ -73,9 +73,11 @@ class VolumeEditor {
     /// For an attached servo. Throws std::runtime_error, and does not begin, if it takes no
     /// commands.
     void record(const Servo& servo, const BeginRecording& begin);
-    /// The tool of this servo from now on. Null: a point. The brush pauses until the tool has left
-    /// the surface. No effect for a servo that is not attached.
-    void use_tool(const Servo& servo, std::shared_ptr<const Tool> tool);
+    /// After a command with which the hand of this servo may touch although it did not move. `tool`
+    /// is its tool from now on (null: a point). The brush pauses until the tool has left the
+    /// surface. The brush of a servo that was just attached pauses too. No effect for a servo that
+    /// is not attached.
+    void rest_brush(const Servo& servo, const std::shared_ptr<const Tool>& tool);
     /// The brush of every attached servo. Nothing: no brush. Throws as check().
     void set_brush(const std::optional<HandBrush>& brush);
     /// Makes an edit, one step for undo(). Throws std::invalid_argument as check(Edit) does and for
@@ -108,8 +110,8 @@ class VolumeEditor {
         Field field;  // for its solid side and background
         std::shared_ptr<const Tool> tool;
         std::optional<Touch> touch = {};
-        bool resting = false;   // after an undo or another tool, until it was in the air
-        std::int64_t from = 0;  // the first tick that surely has the tool
+        bool resting = false;   // until it was in the air: it may touch without having moved
+        std::int64_t from = 0;  // the first tick that surely follows the command of rest_brush()
         bool lacks = false;     // it took no command when the newest version was sent
         std::shared_ptr<const ToolBody> body = {};  // of the tool, for the last sweep
     };

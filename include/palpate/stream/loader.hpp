@@ -117,9 +117,8 @@ class BrickLoader {
     void wait_for(const Vec3& centre, double radius, std::stop_token stop = {});
     BrickLoaderStatus status() const;
 
-    /// Samples of the level that is touched, x fastest. They come from memory if one brick has them
-    /// all, and otherwise from the store. The box lies inside the grid. Blocks; throws as
-    /// Store::read().
+    /// Samples of the level that is touched, x fastest. Those in bricks come from memory, the
+    /// others from the store. The box lies inside the grid. Blocks; throws as Store::read().
     void read(const SampleBox& box, std::span<std::byte> out, std::stop_token stop = {});
     /// Reserves this many bytes of the memory for edits. Bricks get less, but at least those that a
     /// hand needs.

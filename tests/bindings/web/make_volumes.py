@@ -231,6 +231,7 @@ def translation(*shift):
 SCALE = {"type": "scale", "scale": [1, 2, 3]}
 LPS = ["space: LPS", "space directions: (1,0,0) (0,2,0) (0,0,3)"]
 HOLES = np.array([1, 2, np.nan, 4, np.inf, 6, -7, 8], "<f4").tobytes()
+HALVES = np.array([1, 0.1, np.nan, -65504, -np.inf, 6e-8, -1e-5, 0], "<f2").tobytes()  # also the smallest ones
 ZSTD = bytes.fromhex("28b52ffd 24 10 810000") + EIGHT + bytes.fromhex("88494901")  # not packed, with a checksum
 FINE, COARSE, HUGE = [4, 4, 4], [2, 2, 2], [4, 8192, 8192]
 HALF = [{"type": "scale", "scale": [2, 4, 6]}, translation(0.5, 1, 1.5)]
@@ -245,6 +246,8 @@ SAME_ZARR = {
     "outer": image3([SCALE, translation(1, 2, 3)], outer=[{"type": "scale", "scale": [2, 2, 2]}, translation(5, 6, 7)]),
     "named": array2({"_ARRAY_DIMENSIONS": ["x", "y", "z"]}), "capitals": array3(dimension_names=["X", "Y", "Z"]),
     "holes": array3(data_type="float32", fill_value="NaN", shape=[2, 2, 2]) | {"c/0/0/0": HOLES},
+    "halves": array3(data_type="float16", fill_value=0.5, shape=[2, 2, 3]) | {"c/0/0/0": HALVES},
+    "longs": array3(data_type="int64") | {"c/0/0/0": np.array([1, -2, 3, 4, 2**40, 2**53, -2**62, 0], "<i8").tobytes()},
     "checked": array3(codecs=[BYTES, {"name": "crc32c"}]) | {"c/0/0/0": EIGHT + crc32c(EIGHT)},
 }
 # Read, or refused in the same words, as by the native program. What is in a folder is opened with all beside it.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "devices/blocked_driver.hpp"
 #include "devices/claim.hpp"
 #include "devices/falcon/kinematics.hpp"
 #include "devices/falcon/mock_ftdi.hpp"
@@ -50,11 +51,13 @@ class Falcon : public support::SteppedDevice {
         device_->step();
         pass(1ms);
     }
-    std::unique_ptr<falcon::FalconDevice> open(const std::string& options = "",
-                                               double rate = 1000) {
+    std::unique_ptr<falcon::FalconDevice> open(const std::string& options = "", double rate = 1000,
+                                               const OnProgress& progress = {}) {
+        DeviceScene scene = any_scene(rate);
+        scene.progress = progress;
         auto device =
-            falcon::open(parse_device("falcon:library=" + std::string(MOCK_FTDI) + options),
-                         any_scene(rate), {&support::virtual_now, &support::pass_until});
+            falcon::open(parse_device("falcon:library=" + std::string(MOCK_FTDI) + options), scene,
+                         {&support::virtual_now, &support::pass_until});
         device_ = device.get();
         return device;
     }
@@ -109,6 +112,12 @@ TEST_F(Falcon, tells_where_its_grip_is_held) {
     EXPECT_EQ(device->info().buttons, 4);
     EXPECT_EQ(device->info().limits.maximum_force, 8);
     with([](auto& falcon) { EXPECT_EQ(falcon.bad_packets, 0); });
+}
+
+TEST_F(Falcon, an_opening_that_is_stopped_is_left_alone_and_closed_at_its_end) {
+    support::expect_a_stopped_opening_is_left_alone(
+        [&](const OnProgress& progress) { return open("", 1000, progress); },
+        [&](const auto& block) { with([&](auto& falcon) { falcon.while_opening = block; }); });
 }
 
 TEST_F(Falcon, gives_the_force_that_is_written_and_none_after_20_ms_without) {

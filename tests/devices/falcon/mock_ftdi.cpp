@@ -141,6 +141,12 @@ MOCK_EXPORT void ftdi_list_free(void** list) {
 
 MOCK_EXPORT int ftdi_usb_open_desc_index(void*, int, int, const char*, const char*,
                                          unsigned int index) {
+    std::function<void()> meanwhile;
+    {
+        const std::lock_guard lock(mock.mutex);
+        meanwhile = mock.state.while_opening;
+    }
+    if (meanwhile) meanwhile();
     const std::lock_guard lock(mock.mutex);
     ++mock.state.opens;
     line = {};

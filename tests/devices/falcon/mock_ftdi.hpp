@@ -32,6 +32,8 @@ struct MockFtdiState {
 
     // Called without the lock by a read that brings nothing: its latency [ms] passes there.
     std::function<void(int)> while_waiting;
+    // The same by ftdi_usb_open_desc_index.
+    std::function<void()> while_opening;
 
     // What it saw.
     std::array<int, 3> motors{};

@@ -52,10 +52,13 @@ class ForceDimension : public support::SteppedDevice {
         pass(250us);
     }
     std::unique_ptr<forcedimension::DhdDevice> open(const std::string& options = "",
-                                                    double rate = 1000) {
+                                                    double rate = 1000,
+                                                    const OnProgress& progress = {}) {
+        DeviceScene scene = any_scene(rate);
+        scene.progress = progress;
         auto device =
             forcedimension::open(parse_device("forcedimension:library=" + library_ + options),
-                                 any_scene(rate), {&support::virtual_now, &support::pass_until});
+                                 scene, {&support::virtual_now, &support::pass_until});
         device_ = device.get();
         return device;
     }

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "devices/blocked_driver.hpp"
 #include "support/eventually.hpp"
 
 namespace palpate::devices {
@@ -78,6 +79,13 @@ TEST_F(ForceDimension, one_device_does_not_serve_two_hands_and_is_not_closed_for
     EXPECT_TRUE(with([](auto& dhd) { return dhd.calls.empty(); }));
     first.reset();
     EXPECT_NO_THROW(open(",index=0"));
+}
+
+TEST_F(ForceDimension, an_opening_that_is_stopped_is_left_alone_and_closed_at_its_end) {
+    support::expect_a_stopped_opening_is_left_alone(
+        [&](const OnProgress& progress) { return open("", 1000, progress); },
+        [&](const auto& block) { with([&](auto& dhd) { dhd.while_opening = block; }); });
+    EXPECT_FALSE(with([](auto& dhd) { return dhd.is_open; }));
 }
 
 TEST_F(ForceDimension, each_model_has_its_own_limits) {

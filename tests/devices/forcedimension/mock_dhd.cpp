@@ -3,10 +3,14 @@
 #include "mock_dhd.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <initializer_list>
+#include <thread>
 
 #define MOCK_EXPORT extern "C" __attribute__((visibility("default")))
 
@@ -74,6 +78,12 @@ void meanwhile(std::function<void()> MockDhdState::*what) {
 }
 
 int open_device(char index, const char* name) {
+    // As a driver whose bus is stuck. Its file is open meanwhile, so that a test sees it.
+    if (const char* const seen = std::getenv("MOCK_DHD_HANGS")) {
+        const std::ifstream file(seen);
+        std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+    meanwhile(&MockDhdState::while_opening);
     const std::lock_guard lock(mock.mutex);
     mock.state.calls.emplace_back(name);
     if (mock.state.refuses_open || index != 0) return fail(20);

@@ -43,8 +43,9 @@ struct MockDhdState {
     int force_off_cause = 0;     // the device has switched its force off
     bool tells_of_force = true;  // false: its status never says that force is on
 
-    // Called without the lock by drdAutoInit, dhdGetPosition and drdMoveToRot: time may pass there.
-    std::function<void()> while_initialising, while_reading, while_centring;
+    // Called without the lock by drdAutoInit, dhdGetPosition, drdMoveToRot, and dhdOpenID and
+    // drdOpenID: time may pass there.
+    std::function<void()> while_initialising, while_reading, while_centring, while_opening;
 
     // What it saw.
     std::array<double, 3> force{};   // [N] as applied: zero with brakes on or force off

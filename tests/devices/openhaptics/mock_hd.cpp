@@ -121,7 +121,7 @@ MOCK_EXPORT void mock_hd_reset() {
     state.refuses_null = state.refuses_all = state.refuses_start = false;
     state.update_helps = true;
     state.every_error = state.next_error = 0;
-    state.while_beginning = nullptr;
+    state.while_beginning = state.while_opening = nullptr;
     state.silent = state.no_position = state.own_thread = false;
     state.force = {};
     state.largest_force = 0;
@@ -133,6 +133,12 @@ MOCK_EXPORT void mock_hd_reset() {
 }
 
 MOCK_EXPORT unsigned int hdInitDevice(const char* name) {
+    std::function<void()> meanwhile;
+    {
+        const std::lock_guard lock(state.mutex);
+        meanwhile = state.while_opening;
+    }
+    if (meanwhile) meanwhile();
     const std::lock_guard lock(state.mutex);
     called("init " + std::string(name ? name : "NULL"));
     if (state.has_no_licence) return complain(0x600), 0xFFFFFFFF;

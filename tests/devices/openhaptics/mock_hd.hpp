@@ -35,12 +35,13 @@ struct MockHd {
     bool update_helps = true;      // hdUpdateCalibration
     unsigned int every_error = 0;  // reported by every frame
     // Those that end the servo loop (0x304, 0x500, 0x501) end it.
-    unsigned int next_error = 0;            // reported by the next frame
-    unsigned int torque_error = 0;          // reported by every call that sets a torque
-    unsigned int temperature_error = 0;     // reported by every call that asks for it
-    bool silent = false;                    // the servo loop calls nobody
-    bool no_position = false;               // hdGetDoublev(position) tells nothing
-    std::function<void()> while_beginning;  // called without the lock by hdBeginFrame
+    unsigned int next_error = 0;         // reported by the next frame
+    unsigned int torque_error = 0;       // reported by every call that sets a torque
+    unsigned int temperature_error = 0;  // reported by every call that asks for it
+    bool silent = false;                 // the servo loop calls nobody
+    bool no_position = false;            // hdGetDoublev(position) tells nothing
+    // Called without the lock by hdBeginFrame and hdInitDevice.
+    std::function<void()> while_beginning, while_opening;
     bool own_thread = false;  // its servo loop runs by itself; otherwise by mock_hd_frame()
 
     // What it saw.

@@ -44,10 +44,12 @@ class OpenHaptics : public support::SteppedDevice {
         reset();
     }
 
-    static std::unique_ptr<Device> open(const std::string& options = "", double rate = 1000) {
+    static std::unique_ptr<Device> open(const std::string& options = "", double rate = 1000,
+                                        const OnProgress& progress = {}) {
         const std::string text = "openhaptics:library=" + std::string(MOCK_HD) + options;
-        return openhaptics::open(parse_device(text), any_scene(rate),
-                                 {&support::virtual_now, &frames_until});
+        DeviceScene scene = any_scene(rate);
+        scene.progress = progress;
+        return openhaptics::open(parse_device(text), scene, {&support::virtual_now, &frames_until});
     }
     void step() override {
         frame_();

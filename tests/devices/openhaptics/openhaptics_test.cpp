@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "devices/blocked_driver.hpp"
 #include "devices/claim.hpp"
 #include "devices/openhaptics/openhaptics_fixture.hpp"
 #include "support/eventually.hpp"
@@ -90,6 +91,13 @@ TEST_F(OpenHaptics, a_second_one_is_refused_while_the_first_is_open) {
     const auto device = open();
     EXPECT_TRUE(contains(refusal(), "serves another hand"));
     EXPECT_TRUE(becomes(*device, DeviceStatus::ready));
+}
+
+TEST_F(OpenHaptics, an_opening_that_is_stopped_is_left_alone_and_closed_at_its_end) {
+    support::expect_a_stopped_opening_is_left_alone(
+        [&](const OnProgress& progress) { return open("", 1000, progress); },
+        [&](const auto& block) { with([&](MockHd& hd) { hd.while_opening = block; }); });
+    EXPECT_FALSE(with([](MockHd& hd) { return hd.device_open; }));
 }
 
 TEST_F(OpenHaptics, a_hand_lets_go_of_it_before_it_is_opened_again) {

@@ -32,10 +32,18 @@ class Brushes : public PanelFixture {
         panel.brush_controls().set_choice(brush);
         seen = brush;
     }
+    /// A volume that can be edited, with two edits.
+    void edit_twice() {
+        feel("mouse");
+        for (const int low : {2, 9}) editor().apply(edit::Fill{{{low, 5, 5}, {low + 4, 9, 9}}, 0});
+        panel.brush_controls().observe();
+    }
+    run::VolumeEditor& editor() { return *content.editor(); }
     BrushChoice seen;
 };
 
-TEST_F(Brushes, each_control_changes_its_part_of_the_choice_and_nothing_else) {
+TEST_F(Brushes, each_control_changes_its_part_of_the_choice_once_and_nothing_else) {
+    QSignalSpy changes(&panel.brush_controls(), &BrushControls::nonsense);
     const BrushChoice start{BrushKind::add, 4, 0.5, 20, 900.0, false};
     struct Case {
         const char* name;
@@ -60,7 +68,10 @@ TEST_F(Brushes, each_control_changes_its_part_of_the_choice_and_nothing_else) {
     for (const Case& one : cases) {
         SCOPED_TRACE(one.name);
         edit(start);
+        changes.clear();
         one.act();
+        ASSERT_EQ(changes.count(), 1);
+        EXPECT_EQ(changes.front().front().toString(), "");
         BrushChoice expected = start;
         one.change(expected);
         const auto asked = chosen();
@@ -74,9 +85,6 @@ TEST_F(Brushes, each_control_changes_its_part_of_the_choice_and_nothing_else) {
 TEST_F(Brushes, a_choice_that_is_set_is_shown) {
     set();
     panel.brush_controls().set_choice({BrushKind::smooth, 7, 0.3, 12, 100.0, false, true});
-    panel.brush_controls().set_history(3, 1, true);
-    panel.brush_controls().set_reason("A sequence cannot be edited.");
-    panel.brush_controls().set_reason({});
     EXPECT_TRUE(find<QToolButton>("brush_smooth")->isChecked());
     EXPECT_TRUE(find<QPushButton>("brush")->isChecked());
     EXPECT_EQ(find<NumberBox>("brush_radius_box")->value(), 7);
@@ -194,27 +202,36 @@ TEST_F(Brushes, the_rate_comes_back_when_it_is_not_at_once_any_more) {
 }
 
 TEST_F(Brushes, undo_and_redo_say_how_many_steps_there_are) {
-    set();
+    feel("mouse");
     QSignalSpy save(&panel.brush_controls(), &BrushControls::save_wanted);
+    press("undo");
+    press("redo");
     EXPECT_FALSE(find<QPushButton>("undo")->isEnabled()) << "there is nothing to undo";
     EXPECT_EQ(find<QLabel>("edit_state")->text(), "Nothing was edited");
-    panel.brush_controls().set_history(12, 1, true);
-    EXPECT_EQ(find<QPushButton>("undo")->text(), "Undo (12)");
+    edit_twice();
+    EXPECT_EQ(find<QPushButton>("undo")->text(), "Undo (2)");
+    press("undo");
+    EXPECT_EQ(editor().state().undo_steps, 1U) << "one step for one press";
+    panel.brush_controls().observe();
     EXPECT_EQ(find<QPushButton>("redo")->accessibleName(), "Redo, one step");
     EXPECT_EQ(find<QLabel>("edit_state")->text(), "There are edits that are not saved");
+    auto* redo = find<QPushButton>("redo");
+    redo->setFocus();
+    QTest::keyClick(redo, Qt::Key_Return);
+    EXPECT_EQ(editor().state().undo_steps, 2U);
     press("save_edits");
     EXPECT_EQ(save.count(), 1);
-    panel.brush_controls().set_history(12, 1, false);
+    editor().set_saved(editor().state().samples);
+    panel.brush_controls().observe();
     EXPECT_EQ(find<QLabel>("edit_state")->text(), "Nothing is left to save");
-    EXPECT_TRUE(chosen().empty());
 }
 
 TEST_F(Brushes, a_sequence_cannot_be_edited_and_it_says_why) {
-    edit({{}, true});
-    panel.brush_controls().set_history(2, 0, true);
-    panel.brush_controls().set_reason("A sequence cannot be edited: open one frame of it.");
+    edit_twice();
+    feel("mouse", "synthetic:beating:24x24x24");
+    chosen();
     auto* why = find<QLabel>("brush_reason");
-    EXPECT_EQ(why->text(), "A sequence cannot be edited: open one frame of it.");
+    EXPECT_EQ(why->text(), "A sequence cannot be edited: open one frame of it (--time-step).");
     EXPECT_TRUE(why->isVisible());
     EXPECT_TRUE(why->isEnabled()) << "it is to be read";
     for (const char* name : {"brush", "brush_carve", "brush_radius", "undo", "save_edits"}) {
@@ -224,14 +241,33 @@ TEST_F(Brushes, a_sequence_cannot_be_edited_and_it_says_why) {
     press("brush");
     panel.brush_controls().toggle();
     EXPECT_TRUE(chosen().empty());
-    panel.brush_controls().set_reason({});
+    feel("mouse");
     EXPECT_FALSE(why->isVisible());
-    EXPECT_TRUE(find<QPushButton>("brush")->isChecked()) << "as it was chosen";
+    press("brush");
+    EXPECT_TRUE(find<QPushButton>("brush")->isChecked());
+}
+
+TEST_F(Brushes, a_choice_that_the_editor_refuses_goes_back_and_says_why) {
+    feel("mouse");
+    press("brush");
+    const BrushChoice before = brush();
+    ASSERT_TRUE(before.on);
+    BrushChoice impossible = before;
+    impossible.kind = BrushKind::paint;
+    impossible.hardness = 2;
+    panel.brush_controls().set_choice(impossible);
+    EXPECT_EQ(brush(), before);
+    EXPECT_TRUE(find<QToolButton>("brush_carve")->isChecked());
+    EXPECT_EQ(message("edit_part"), "the brush's hardness must be 0 to 1");
+    press("brush_paint");
+    EXPECT_EQ(brush().kind, BrushKind::paint);
+    EXPECT_EQ(message("edit_part"), "");
 }
 
 TEST_F(Brushes, another_volume_begins_with_the_brush_off_and_a_radius_that_fits) {
+    edit_twice();
+    ASSERT_TRUE(find<QPushButton>("undo")->isEnabled());
     edit({BrushKind::carve, 7, 0.5, 20, -800.0, false, true});
-    panel.brush_controls().set_history(2, 1, true);
     Geometry small;
     small.size = {12, 12, 12};
     const Field other = linear_field(Volume(small, std::vector<std::uint8_t>(12 * 12 * 12, 9)));
@@ -244,11 +280,15 @@ TEST_F(Brushes, another_volume_begins_with_the_brush_off_and_a_radius_that_fits)
 }
 
 TEST_F(Brushes, one_with_the_shape_of_the_tool_needs_a_tool_and_is_a_ball_again_without) {
-    edit({BrushKind::carve, 5, 1, 10, {}, false, true});
+    field.emplace(head_like(), Solid::above, std::nullopt, Interpolation::cubic);
+    begin(*field, 300);
+    panel.brush_controls().set_choice({BrushKind::carve, 5, 1, 10, {}, false, true});
+    chosen();
     auto* shape = find<QCheckBox>("brush_as_tool");
     EXPECT_FALSE(shape->isEnabled());
     EXPECT_TRUE(shape->toolTip().contains("Feel"));
-    panel.brush_controls().set_tool(true);
+    const auto tool = std::make_shared<const Tool>(sphere_tool(4, 1));
+    ASSERT_TRUE(effect.request(command::UseTool{tool}));
     EXPECT_TRUE(chosen().empty());
     QTest::keyClick(shape, Qt::Key_Space);
     auto made = chosen();
@@ -263,7 +303,7 @@ TEST_F(Brushes, one_with_the_shape_of_the_tool_needs_a_tool_and_is_a_ball_again_
     EXPECT_EQ(made[0].radius, 5) << "the ball it was";
     QTest::keyClick(shape, Qt::Key_Space);
     EXPECT_EQ(chosen().back().radius, 2.5);
-    panel.brush_controls().set_tool(false);
+    ASSERT_TRUE(effect.request(command::UseTool{nullptr}));
     made = chosen();
     ASSERT_EQ(made.size(), 1U);
     EXPECT_FALSE(made[0].as_tool);
@@ -291,15 +331,16 @@ TEST_F(Brushes, are_drawn_in_light_and_dark) {
         const QString scale = image.devicePixelRatio() > 1.5 ? "_2x" : "";
         EXPECT_TRUE(image.save(QString(PALPATE_PICTURES) + "/" + name + scale + ".png"));
     };
-    edit({{.kind = BrushKind::add, .rate = 20}, true});
-    panel.brush_controls().set_history(12, 1, true);
+    edit_twice();
+    editor().undo();
+    panel.brush_controls().observe();
+    panel.brush_controls().set_choice({{.kind = BrushKind::add, .rate = 20}, true});
     picture("brush_light");
     QPalette dark(QColor(58, 58, 62), QColor(45, 45, 48));
     dark.setColor(QPalette::Base, QColor(28, 28, 30));
     QApplication::setPalette(dark);
     picture("brush_dark");
-    panel.brush_controls().set_reason(
-        "A sequence cannot be edited: open one frame of it by its time step.");
+    feel("mouse", "synthetic:beating:24x24x24");
     picture("brush_reason_dark");
     QApplication::setPalette(usual);
 }

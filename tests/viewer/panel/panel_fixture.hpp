@@ -24,6 +24,7 @@
 #include "apps/viewer/window/look_controls.hpp"
 #include "apps/viewer/window/messages.hpp"
 #include "apps/viewer/window/panel.hpp"
+#include "apps/viewer/window/tool_controls.hpp"
 #include "apps/viewer/window/views.hpp"
 #include "viewer/undrawn.hpp"
 #include "viewer/waiting.hpp"
@@ -87,19 +88,29 @@ class PanelFixture : public testing::Test {
         begin(*field, isovalue, settings);
     }
 
-    /// A ball that is felt with this device.
-    void feel(const std::string& device) {
-        run::Setup setup;
-        setup.device = devices::parse_device(device);
-        setup.real_time = false;
-        setup.field.isovalue = 100.0;
-        const auto ball = run::source_named("synthetic:sphere:24x24x24");
-        content.start_run(std::make_shared<Opened>(open(ball, [](double) {})), {setup});
+    /// A ball, or another volume, that is felt with these devices.
+    void feel(const std::vector<std::string>& devices,
+              const std::string& volume = "synthetic:sphere:24x24x24") {
+        std::vector<run::Setup> hands;
+        for (const std::string& device : devices) {
+            run::Setup& setup = hands.emplace_back();
+            setup.device = devices::parse_device(device);
+            setup.real_time = false;
+            setup.field.isovalue = 100.0;
+        }
+        const auto source = run::source_named(volume);
+        content.start_run(std::make_shared<Opened>(open(source, [](double) {})), hands);
         Q_EMIT content.device_changed();
     }
+    void feel(const std::string& device, const std::string& volume = "synthetic:sphere:24x24x24") {
+        feel(std::vector{device}, volume);
+    }
 
-    /// Until nothing is held back any more.
-    void settle() const { wait_until_quiet(panel); }
+    /// Until nothing is held back any more, and no tool is being made.
+    void settle() {
+        wait_until([this] { return !panel.tool_controls().maker().busy(); });
+        wait_until_quiet(panel);
+    }
 
     /// On the page that is shown from now on.
     template <class T>

@@ -126,14 +126,12 @@ TEST(Navigation, the_whole_grid_is_inside_the_picture_and_fills_it) {
 }
 
 struct Hands : ShownScene {
-    int moves = 0;
     Vec3 dragged = Vec3::Zero();
 
     Hands() {
         scene.set_field(linear_field(scenes::ball(support::cube(32))), 128);
         // The middle of the grid is the origin; 0.2 mm a pixel.
         scene.set_camera({Vec3::Zero(), Vec3(0, -1, 0), Vec3(0, 0, 1), 32});
-        QObject::connect(&scene, &Scene::camera_moved, [this] { ++moves; });
         QObject::connect(&scene, &Scene::probe_dragged, [this](const Vec3& by) { dragged += by; });
     }
     void drag(Qt::MouseButton button, const QPoint& from, const QPoint& to,
@@ -164,7 +162,6 @@ TEST(SceneMouse, left_drag_turns_the_camera_about_its_focus) {
     // 80 pixels of 320: 45 degrees; the body's right side comes round to the viewer.
     EXPECT_NEAR(after.towards_viewer.dot(before.towards_viewer), std::sqrt(0.5), 1e-6);
     EXPECT_LT(after.towards_viewer[0], -0.5);
-    EXPECT_GT(hands.moves, 0);
     EXPECT_EQ(hands.dragged, Vec3::Zero());
     // And no more once the button is up.
     QTest::mouseMove(&hands.scene, {100, 100});
@@ -221,19 +218,19 @@ TEST(SceneMouse, left_drag_moves_the_probe_as_far_as_the_pointer) {
     hands.dragged = Vec3::Zero();
     hands.drag(Qt::LeftButton, {200, 160}, {240, 150}, Qt::ShiftModifier);
     EXPECT_LT((hands.dragged - 0.2 * Vec3(8, 0, 2)).norm(), 1e-9);
-    EXPECT_EQ(hands.scene.camera().towards_viewer, before.towards_viewer);
-    EXPECT_EQ(hands.moves, 0);
+    EXPECT_EQ(hands.scene.camera(), before);
 }
 
 TEST(SceneMouse, wheel_forward_moves_the_probe_into_the_screen) {
     Hands hands;
     set(hands.scene, &Shown::probe, true);
+    const Camera before = hands.scene.camera();
     hands.wheel({200, 160}, 2);
     EXPECT_LT((hands.dragged - Vec3(0, 6, 0)).norm(), 1e-9);  // 15 pixels a notch
     hands.dragged = Vec3::Zero();
     hands.wheel({200, 160}, -1, Qt::ShiftModifier);
     EXPECT_LT((hands.dragged - Vec3(0, -0.6, 0)).norm(), 1e-9);
-    EXPECT_EQ(hands.moves, 0);
+    EXPECT_EQ(hands.scene.camera(), before);
 }
 
 TEST(SceneMouse, with_the_probe_in_hand_the_camera_still_turns_pans_and_zooms) {
@@ -252,12 +249,11 @@ TEST(SceneMouse, with_the_probe_in_hand_the_camera_still_turns_pans_and_zooms) {
     EXPECT_EQ(hands.dragged, Vec3::Zero());
 }
 
-TEST(SceneMouse, setting_a_camera_is_signalled_and_an_impossible_one_is_refused) {
+TEST(SceneMouse, a_camera_that_is_set_is_used_and_an_impossible_one_is_refused) {
     Hands hands;
     const Camera camera{Vec3(1, 2, 3), Vec3(1, 1, 0), Vec3(0, 0, 1), 12};
     hands.scene.set_camera(camera);
-    EXPECT_EQ(hands.scene.camera().focus, camera.focus);
-    EXPECT_EQ(hands.moves, 1);
+    EXPECT_EQ(hands.scene.camera(), camera);
     Camera flat = camera;
     flat.up = camera.towards_viewer;
     EXPECT_THROW(hands.scene.set_camera(flat), std::invalid_argument);

@@ -56,15 +56,6 @@ class LabelsInWindow : public InWindow {
         QTest::mouseClick(&part<QPushButton>("feel_labels"), Qt::LeftButton);
         wait_until([&] { return layers() != nullptr; });
     }
-    void drop(const QString& path) {
-        QMimeData data;
-        data.setUrls({QUrl::fromLocalFile(path)});
-        QDragEnterEvent enter({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
-        QApplication::sendEvent(window_.get(), &enter);
-        ASSERT_TRUE(enter.isAccepted());
-        QDropEvent event(QPointF(10, 10), Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
-        QApplication::sendEvent(window_.get(), &event);
-    }
     SharedLayers layers() { return window_->live()->settings().layers; }
     /// Row of a set in the choice. -1: it is not there.
     int row_of(const QString& set) { return part<QComboBox>("layers").findText(set); }
@@ -224,6 +215,7 @@ TEST_F(LabelsInWindow, a_set_by_label_can_be_chosen_once_there_is_a_label_map) {
     write_file("organs.json", by_label_set);
     write_file("named.json", named_set);
     drop(scratch("organs.json"));
+    viewer::wait_until([&] { return !window_->messages().problem().isEmpty(); });
     EXPECT_TRUE(window_->messages().problem().contains("label map"))
         << window_->messages().problem().toStdString();
     EXPECT_FALSE(layers());
@@ -249,6 +241,7 @@ TEST_F(LabelsInWindow, a_layer_file_that_is_opened_is_used_and_a_bad_one_is_one_
     write_file("named.json", named_set);
     write_file("bad.json", R"({"palpate_layers": 1, "layers": [{"name": "a", "levle": 3}]})");
     window_->files().open_path(scratch("named.json"));
+    viewer::wait_until([&] { return !window_->messages().problem().isEmpty(); });
     EXPECT_TRUE(window_->messages().problem().contains("open a volume first"));
     for (auto* box : window_->findChildren<QDialog*>()) box->close();
     window_->activateWindow();

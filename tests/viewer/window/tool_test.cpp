@@ -1,10 +1,8 @@
 // Tools in the window: choosing one, pressing and turning it with the mouse, files, sessions.
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDragEnterEvent>
-#include <QDropEvent>
 #include <QLabel>
-#include <QMimeData>
+#include <algorithm>
 #include <fstream>
 
 #include "apps/viewer/window/tool_controls.hpp"
@@ -26,7 +24,10 @@ class ToolInWindow : public InWindow {
         ASSERT_GE(row, 0) << name;
         box.setCurrentIndex(row);
         Q_EMIT box.activated(row);
-        wait_until([&] { return window_->live()->waiting() == 0; });
+        wait_until([&] {
+            return !window_->panel().tool_controls().maker().busy() &&
+                   window_->live()->waiting() == 0;
+        });
     }
     void turn(const QPoint& from, const QPoint& to) {
         drag(window_->views().scene(), from, to, Qt::LeftButton, Qt::ControlModifier);
@@ -80,12 +81,7 @@ TEST_F(ToolInWindow, comes_from_a_mesh_that_is_dropped_and_goes_with_the_session
     mesh.triangles = hook.triangles;
     const QString path = QString::fromStdString((scratch_.path() / "hook.stl").string());
     io::write_mesh(mesh, path.toStdString());
-    QMimeData data;
-    data.setUrls({QUrl::fromLocalFile(path)});
-    QDragEnterEvent enter({100, 100}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
-    QApplication::sendEvent(window_.get(), &enter);
-    QDropEvent drop({100, 100}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
-    QApplication::sendEvent(window_.get(), &drop);
+    drop(path);
     wait_until([&] { return tool() != nullptr; });
     EXPECT_EQ(tool()->shape().triangles.size(), 4U);
     EXPECT_EQ(part<QComboBox>("tool").currentText(), "hook.stl");
@@ -102,6 +98,29 @@ TEST_F(ToolInWindow, comes_from_a_mesh_that_is_dropped_and_goes_with_the_session
     EXPECT_EQ(tool()->points().size(), points);
     EXPECT_EQ(tool()->shape().triangles.size(), 4U);
     EXPECT_EQ(part<QComboBox>("tool").currentText(), "This session's tool");
+}
+
+TEST_F(ToolInWindow, of_the_command_line_is_made_with_the_volume_and_not_by_the_run) {
+    const ToolShape pyramid{{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}},
+                            {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+    run::Setup setup = setup_with("mouse");
+    setup.render.tool = io::MeshSpec{std::make_shared<ToolShape>(pyramid)};
+    open_window(setup);
+    for (const char* volume : {ball, "synthetic:sphere:32x32x32"}) {
+        feel(volume);
+        EXPECT_TRUE(std::holds_alternative<io::PointsSpec>(window_->live()->setup().render.tool));
+        const Geometry& grid = window_->live()->field().geometry();
+        const Tool same = mesh_tool(pyramid, io::usual_spacing(grid));
+        ASSERT_TRUE(tool());
+        EXPECT_TRUE(std::ranges::equal(tool()->points(), same.points()));
+        EXPECT_EQ(tool()->gyration(), same.gyration());
+        EXPECT_EQ(tool()->shape().triangles, pyramid.triangles);
+    }
+    setup.render.tool = io::MeshSpec{std::make_shared<ToolShape>()};
+    open_window(setup);
+    window_->files().open_path(ball);
+    viewer::wait_until([&] { return !window_->messages().problem().isEmpty(); });
+    EXPECT_TRUE(window_->messages().problem().startsWith("--tool: "));
 }
 
 TEST_F(ToolInWindow, drills_with_its_own_shape) {

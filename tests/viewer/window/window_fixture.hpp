@@ -6,11 +6,16 @@
 #include <QApplication>
 #include <QDialog>
 #include <QDir>
+#include <QDragEnterEvent>
+#include <QDropEvent>
 #include <QLineEdit>
 #include <QMessageBox>
+#include <QMimeData>
+#include <QPushButton>
 #include <QSettings>
 #include <QTabWidget>
 #include <QTimer>
+#include <QUrl>
 #include <QWheelEvent>
 #include <QtTest>
 #include <fstream>
@@ -219,6 +224,29 @@ class InWindow : public testing::Test {
     void type_in_dialog(Qt::Key key, const QString& name, Qt::KeyboardModifiers with = {}) {
         typing(name, [&] { press(key, Qt::ControlModifier | with); });
         activate(*window_);
+    }
+    /// Drops files or addresses on the window.
+    void drop(const QList<QUrl>& urls) {
+        QMimeData data;
+        data.setUrls(urls);
+        QDragEnterEvent enter({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(window_.get(), &enter);
+        ASSERT_TRUE(enter.isAccepted());
+        QDropEvent event({10, 10}, Qt::CopyAction, &data, Qt::LeftButton, Qt::NoModifier);
+        QApplication::sendEvent(window_.get(), &event);
+    }
+    void drop(const QString& path) { drop({QUrl::fromLocalFile(path)}); }
+    /// The strip of a task that is in progress; null: there is none.
+    QWidget* strip() {
+        for (auto* one : window_->findChildren<QWidget*>("progress")) {
+            if (one->isVisible()) return one;
+        }
+        return nullptr;
+    }
+    /// Presses the button that cancels a task, once it is there.
+    void cancel_task() {
+        wait_until([&] { return strip() != nullptr; });
+        QTest::mouseClick(strip()->findChild<QPushButton*>("cancel"), Qt::LeftButton);
     }
     /// Presses a button of the question that comes.
     void answer(QMessageBox::StandardButton button) {

@@ -29,13 +29,6 @@ class Work : public InWindow {
         }
         ASSERT_EQ(window_->measuring().measurements().size(), before + 1);
     }
-    /// The strip of a task that is in progress.
-    QWidget* strip() {
-        for (auto* one : window_->findChildren<QWidget*>("progress")) {
-            if (one->isVisible()) return one;
-        }
-        return nullptr;
-    }
     /// A source whose reading takes long enough to change what is open.
     run::Source slow_source() {
         const auto ball = run::load(run::source_named("synthetic:sphere:128x128x128")).volume;
@@ -77,6 +70,7 @@ TEST_F(Work, that_is_being_saved_shows_its_progress_and_can_be_cancelled) {
     const QString path = scratch("saved.nii.gz");
     window_->saver().save(path);
     ASSERT_TRUE(window_->saver().saving());
+    wait_until([&] { return strip() || !window_->saver().saving(); });
     QWidget* shown = strip();
     ASSERT_NE(shown, nullptr) << "a large volume takes a while";
     EXPECT_EQ(shown->findChild<QLabel*>()->text(), "Saving saved.nii.gz");
@@ -85,6 +79,40 @@ TEST_F(Work, that_is_being_saved_shows_its_progress_and_can_be_cancelled) {
     EXPECT_EQ(strip(), nullptr);
     EXPECT_EQ(edits().changed, !QFile::exists(path)) << "as a whole or not at all";
     EXPECT_TRUE(window_->messages().problem().isEmpty());
+}
+
+TEST_F(Work, that_was_saved_is_not_taken_for_another_volume_that_was_opened_meanwhile) {
+    feel("synthetic:sphere:96x96x96");
+    const auto other = std::make_shared<Opened>(
+        open(run::source_named("synthetic:torus:32x32x16"), [](double) {}));
+    window_->saver().save(scratch("sphere.nii.gz"));
+    window_->content().start_run(other, {setup_with("mouse")});
+    wait_until([&] { return !window_->saver().saving(); });
+    EXPECT_TRUE(QFile::exists(scratch("sphere.nii.gz")));
+    EXPECT_EQ(run::name_of(window_->content().source()), "synthetic:torus:32x32x16");
+}
+
+TEST_F(Work, goes_on_with_the_file_as_it_is_now_when_its_session_is_opened_again) {
+    const auto write = [&](const char* volume) {
+        io::write_volume(run::load(run::source_named(volume)).volume, scratch_.path() / "day.nrrd");
+    };
+    write("synthetic:sphere:24x24x24");
+    feel(scratch("day.nrrd").toStdString());
+    window_->files().save_session(scratch("day.json"));
+    const auto volume = window_->content().volume();
+    const auto open_again = [&] {
+        const QSignalSpy started(&window_->content(), &Content::run_started);
+        window_->files().open_path(scratch("day.json"));
+        wait_until([&] { return !started.isEmpty(); });
+    };
+    open_again();
+    EXPECT_EQ(window_->content().volume(), volume) << "nothing was written: it is not read again";
+    write("synthetic:sphere:40x40x40");  // by another program
+    open_again();
+    EXPECT_EQ(size(), 40);
+    std::filesystem::remove(scratch_.path() / "day.nrrd");
+    open_again();
+    EXPECT_EQ(size(), 40) << "as long as it is in memory, it can be felt";
 }
 
 TEST_F(Work, gets_the_extension_that_opens_it_again_whatever_its_name) {
@@ -164,10 +192,22 @@ TEST_F(Work, with_a_very_long_name_does_not_make_the_window_wider) {
     std::filesystem::rename(scratch_.path() / "slow.nrrd", longer);
     std::get<run::FileSource>(slow.from).path = longer;
     window_->files().open_volume(slow);
-    ASSERT_NE(strip(), nullptr);
+    wait_until([&] { return strip() != nullptr; });
     QApplication::processEvents();
     EXPECT_EQ(window_->width(), width);
     window_->files().loader().abandon();
+    std::filesystem::copy_file(longer, scratch_.path() / "short.nrrd");
+    OverlayControls& overlays = window_->panel().overlay_controls();
+    const auto width_with = [&](const std::string& overlay) {
+        overlays.open(run::source_named(overlay));
+        wait_until([&] { return overlays.settled(); });
+        QApplication::processEvents();
+        EXPECT_NE(overlays.overlay(), nullptr);
+        return window_->panel().minimumSizeHint().width();
+    };
+    const int panel = width_with(scratch("short.nrrd").toStdString());
+    EXPECT_EQ(width_with(longer), panel);
+    EXPECT_EQ(window_->width(), width);
 }
 
 }  // namespace
