@@ -65,8 +65,8 @@ LayersFile layers_from_text(std::string_view text, const std::string& name) {
     }
 }
 
-LayersFile read_layers(const fs::path& path) {
-    return layers_from_text(read_text(path), path.string());
+LayersFile read_layers(const fs::path& path, const OnProgress& progress) {
+    return layers_from_text(read_text(path, progress), path.string());
 }
 
 std::string text_of(const LayersFile& file) {
@@ -119,10 +119,10 @@ std::vector<LayersPreset> layers_presets() {
     return presets;
 }
 
-LayersFile layers_named(const std::string& file_or_name) {
+LayersFile layers_named(const std::string& file_or_name, const OnProgress& progress) {
     std::error_code error;
     if (file_or_name.find_first_of("./") != std::string::npos || fs::exists(file_or_name, error)) {
-        return read_layers(file_or_name);
+        return read_layers(file_or_name, progress);
     }
     for (LayersPreset& preset : layers_presets()) {
         if (preset.name == file_or_name) return std::move(preset.file);

@@ -22,6 +22,13 @@ constexpr const char* wanted =
     throw std::invalid_argument("the tool '" + text + "' is not known: it is " + wanted);
 }
 
+/// "box:2,2,2"
+std::string example(const std::string& text, std::size_t count) {
+    std::string made = text.substr(0, text.find(':')) + ":2";
+    for (std::size_t i = 1; i < count; ++i) made += ",2";
+    return made;
+}
+
 /// The sizes after the colon, each finite and above 0.
 template <std::size_t count>
 std::array<double, count> sizes_from(const std::string& text, std::string_view sizes) {
@@ -33,7 +40,8 @@ std::array<double, count> sizes_from(const std::string& text, std::string_view s
         if (!number || !(*number > 0 && *number < 1e6) || last != (comma == sizes.npos)) {
             throw std::invalid_argument("the tool '" + text + "': " + std::to_string(count) +
                                         (count == 1 ? " length" : " lengths") +
-                                        " above 0 and below 1e6 [mm] must follow the colon");
+                                        " above 0 and below 1e6 [mm] must follow a colon, as in " +
+                                        example(text, count));
         }
         found[i] = *number;
         sizes.remove_prefix(last ? sizes.size() : comma + 1);
@@ -81,8 +89,7 @@ ToolSpec tool_spec_from(const std::string& text, const OnProgress& progress) {
         return BoxSpec{{x, y, z}};
     }
     if (std::filesystem::path(text).extension() == ".csv") {
-        const auto waiting = progress ? Waiting([&] { progress(0); }) : Waiting();
-        return PointsSpec{parse_tool_points(read_text(text, waiting), text)};
+        return PointsSpec{parse_tool_points(read_text(text, progress), text)};
     }
     if (names_a_mesh(text)) {
         SurfaceMesh mesh = read_mesh(text, progress);

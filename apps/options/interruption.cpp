@@ -23,7 +23,7 @@ int interruptions() {
     return signals;
 }
 
-void stop_if_interrupted() {
+void stop_if_interrupted(double /*fraction*/) {
     if (interrupted()) throw Interrupted{};
 }
 

@@ -15,7 +15,7 @@ int interruptions();
 inline bool interrupted() {
     return interruptions() > 0;
 }
-/// Throws Interrupted if so.
-void stop_if_interrupted();
+/// Throws Interrupted if so. It may be the OnProgress of long work, whatever part is done.
+void stop_if_interrupted(double fraction = 0);
 
 }  // namespace palpate::app

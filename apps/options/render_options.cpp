@@ -32,10 +32,6 @@ std::array<double, 2> two_numbers(const std::string& option, const std::string& 
     return {*first, *second};
 }
 
-void until_interrupted(double) {
-    stop_if_interrupted();
-}
-
 }  // namespace
 
 Friction friction_from(const std::string& what, const std::string& text) {
@@ -62,7 +58,9 @@ void RenderOptions::add_to(CLI::App& command) {
     command
         .add_option_function<std::string>(
             "--layers",
-            [this](const std::string& text) { given.layers = io::layers_named(layers_ = text); },
+            [this](const std::string& text) {
+                given.layers = io::layers_named(layers_ = text, stop_if_interrupted);
+            },
             "Several surfaces, each with its own feel: a file, or the name of a built-in set")
         ->type_name(fmt::format("{{{}}}|FILE.json", fmt::join(io::layers_names(), ",")));
     command
@@ -73,7 +71,7 @@ void RenderOptions::add_to(CLI::App& command) {
         .add_option_function<std::string>(
             "--tool",
             [this](const std::string& text) {
-                given.tool = io::tool_spec_from(tool_ = text, until_interrupted);
+                given.tool = io::tool_spec_from(tool_ = text, stop_if_interrupted);
             },
             "Touch with a rigid tool: sphere:R, rod:L, needle[:L,R], burr:R, box:X,Y,Z, fingertip "
             "[mm], or a file with points (.csv) or a mesh (.stl, .ply, .obj, .vtp)")
@@ -201,8 +199,8 @@ run::RenderSetup RenderOptions::setup() const {
     warn_of_no_effect();
     run::RenderSetup setup = given;
     if (!labels.empty()) {
-        setup.layers = run::layers_by_label(run::load(run::source_named(labels), until_interrupted),
-                                            setup.layers);
+        setup.layers = run::layers_by_label(
+            run::load(run::source_named(labels), stop_if_interrupted), setup.layers);
     }
     if (penetrability == Penetrability::threshold) {
         setup.penetrability = run::ThresholdSetup{threshold.value_or(1), minimum};

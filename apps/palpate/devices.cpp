@@ -15,7 +15,7 @@ namespace {
 
 void list_devices(bool json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    const auto found = devices::find_devices([](double) { stop_if_interrupted(); });
+    const auto found = devices::find_devices(stop_if_interrupted);
     for (const devices::DeviceFinding& device : found) {
         const std::vector<std::string> plugged = plugged_in(device.name);
         if (json) {

@@ -43,7 +43,7 @@ void examine(const Options& options) {
     check_outputs({}, {options.report});
     std::optional<io::PendingFile> file;
     if (!options.report.empty()) file.emplace(options.report);
-    doctor::Facts facts = doctor::survey(options.device, [](double) { stop_if_interrupted(); });
+    doctor::Facts facts = doctor::survey(options.device, stop_if_interrupted);
     if (options.duration() > 0) {
         ProgressBar bar("measuring", options.quiet || options.json);
         facts.latency =

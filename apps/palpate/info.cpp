@@ -236,17 +236,17 @@ void add_info(CLI::App& app) {
     command->add_flag("--json", *json, "Print JSON");
     command->callback([options, json] {
         run::LoadedVolume loaded = load_for_terminal(*options);
-        const OnProgress waiting = [](double) { stop_if_interrupted(); };
-        loaded.values.padding = run::padding_of(loaded.volume, loaded.values.padding, waiting);
+        loaded.values.padding =
+            run::padding_of(loaded.volume, loaded.values.padding, stop_if_interrupted);
         const run::Histogram histogram =
-            run::histogram_of(loaded.volume, fine_bins, loaded.values.padding, waiting);
+            run::histogram_of(loaded.volume, fine_bins, loaded.values.padding, stop_if_interrupted);
         std::vector<double> suggested = run::suggested_isovalues(histogram);
         const std::optional<double>& own = loaded.isovalue;  // a tiny grid may miss its range
         if (own && *own > loaded.volume.minimum() && *own < loaded.volume.maximum()) {
             suggested.insert(suggested.begin(), *own);
         }
         std::optional<filters::Terraces> terraces;
-        if (!loaded.streamed) terraces = filters::terraces_of(loaded.volume, waiting);
+        if (!loaded.streamed) terraces = filters::terraces_of(loaded.volume, stop_if_interrupted);
         if (*json) {
             print_json(json_of(loaded, histogram, suggested, terraces));
         } else {

@@ -54,7 +54,7 @@ Command LiveCommands::layers_from(const CommandWords& words) {
     if (name == "off") return use_layers(nullptr);
     try {
         return use_layers(std::make_shared<const Layers>(
-            io::layers_for(io::layers_named(name), field_.volume())));
+            io::layers_for(io::layers_named(name, stop_if_interrupted), field_.volume())));
     } catch (const io::InputError& e) {
         throw std::invalid_argument(e.what());
     }

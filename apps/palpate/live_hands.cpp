@@ -21,7 +21,7 @@ std::vector<LiveHand> open_hands(const std::shared_ptr<run::Data>& data,
                                  const std::vector<run::Setup>& setups) {
     std::vector<LiveHand> hands;
     for (const run::Setup& setup : setups) {
-        auto run = std::make_unique<run::Run>(data, setup, [](double) { stop_if_interrupted(); });
+        auto run = std::make_unique<run::Run>(data, setup, stop_if_interrupted);
         const DeviceInfo device = run->device();
         LiveCommands commands(run->field(), run->isovalue(), run->settings());
         std::string name = "device " + device.name;
@@ -64,7 +64,7 @@ void step(std::vector<LiveHand>& hands, double seconds) {
 void record(std::vector<LiveHand>& hands, const std::string& path) {
     std::vector<run::Run*> runs;
     for (LiveHand& hand : hands) runs.push_back(hand.run.get());
-    run::Run::record_together(runs, path, [](double) { stop_if_interrupted(); });
+    run::Run::record_together(runs, path, stop_if_interrupted);
 }
 
 std::vector<std::int64_t> stop_recording(std::vector<LiveHand>& hands) {

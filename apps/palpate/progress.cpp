@@ -72,8 +72,8 @@ std::string dequantize_suggestion(const std::optional<filters::Terraces>& terrac
 void note_terraces(const run::LoadedVolume& loaded) {
     const run::Source& source = loaded.source;
     if (source.dequantize > 0 || source.smooth > 0 || loaded.streamed || loaded.live) return;
-    const std::string suggestion = dequantize_suggestion(
-        filters::terraces_of(loaded.volume, [](double) { stop_if_interrupted(); }));
+    const std::string suggestion =
+        dequantize_suggestion(filters::terraces_of(loaded.volume, stop_if_interrupted));
     if (suggestion.empty()) return;
     say("palpate: note: {}: try {}\n", io::without_secrets(loaded.name), suggestion);
 }

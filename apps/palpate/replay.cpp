@@ -143,8 +143,10 @@ void check(const ReplayOptions& options) {
     if (!options.recorded_volume.empty()) {
         throw std::invalid_argument("--volume is for --validate");
     }
-    if (options.trajectory.empty()) throw std::invalid_argument("--trajectory is required");
-    if (options.output.empty()) throw std::invalid_argument("--output is required");
+    if (options.trajectory.empty())
+        throw std::invalid_argument("--trajectory is required (see palpate replay --help)");
+    if (options.output.empty())
+        throw std::invalid_argument("--output is required (see palpate replay --help)");
     if (options.live && options.wait) {
         throw std::invalid_argument("--live and --wait cannot be given together");
     }
@@ -172,9 +174,8 @@ void replay(const ReplayOptions& options) {
                                         options.render.given.method.method);
     const run::RenderSetup render = options.render.setup();
     const double isovalue = required_isovalue(loaded, field, options.field, render);
-    const auto waiting = [](double) { stop_if_interrupted(); };
-    Renderer renderer =
-        make_renderer(field, isovalue, run::offline_settings(render, field, isovalue, waiting));
+    Renderer renderer = make_renderer(
+        field, isovalue, run::offline_settings(render, field, isovalue, stop_if_interrupted));
 
     const bool has_tool = renderer.settings.tool != nullptr;
     io::TraceWriter trace(options.output, {},

@@ -103,13 +103,12 @@ void describe(const CLI::App& command, const ToolOptions& options) {
         throw std::invalid_argument(
             "--json, a table and a picture cannot share standard output: give them files");
     }
-    const OnProgress waiting = [](double) { stop_if_interrupted(); };
-    const io::ToolSpec spec = io::tool_spec_from(options.spec, waiting);
+    const io::ToolSpec spec = io::tool_spec_from(options.spec, stop_if_interrupted);
     if (std::holds_alternative<io::PointSpec>(spec) ||
         std::holds_alternative<io::PointsSpec>(spec)) {
         warn_of_no_effect(command, {"--spacing"}, "the points of this tool are given");
     }
-    const auto made = io::make_tool(spec, options.spacing, waiting);
+    const auto made = io::make_tool(spec, options.spacing, stop_if_interrupted);
     const Tool tool = made ? *made : point_tool();
     if (!options.points.empty()) {
         io::PendingFile file(options.points);

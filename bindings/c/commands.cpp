@@ -39,9 +39,10 @@ palpate_status set(palpate_run* run, std::initializer_list<NamedValue> values) n
 palpate_status send_layers(palpate_run* run, const char* layers, bool same_surfaces) noexcept {
     return send(run, [&](const run::Run& now) {
         if (!layers) return command::UseLayers{nullptr};
-        return command::UseLayers{std::make_shared<const Layers>(io::layers_for(
-                                      io::layers_named(layers), now.field().volume())),
-                                  same_surfaces};
+        return command::UseLayers{
+            std::make_shared<const Layers>(io::layers_for(
+                io::layers_named(layers, progress_of_thread()), now.field().volume())),
+            same_surfaces};
     });
 }
 

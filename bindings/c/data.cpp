@@ -1,5 +1,6 @@
 // The data of runs in the C interface: edits, and playing sequences.
 #include <limits>
+#include <stdexcept>
 
 #include "bindings/c/handles.hpp"
 #include "bindings/c/structs.hpp"
@@ -18,10 +19,12 @@ run::HandBrush hand_brush(const palpate_brush& asked) {
     brush.hardness = 1 - asked.softness;
     if (asked.rate != 0) brush.rate = asked.rate;
     if (asked.has_value || brush.kind == BrushKind::paint) brush.value = asked.value;
+    brush.as_tool = asked.as_tool != 0;
     return brush;
 }
 
 Brush stroke_brush(const palpate_brush& asked) {
+    if (asked.as_tool) throw std::invalid_argument("brush.as_tool: is for a hand's brush only");
     Brush brush;
     brush.kind = one_of<BrushKind>(asked.kind, "brush.kind");
     brush.radius = asked.radius;

@@ -102,7 +102,7 @@ run::RenderSetup render_setup(const palpate_render_options& options) {
         setup.penetrability = ranges;
     }
     if (options.tool) setup.tool = io::tool_spec_from(options.tool, progress_of_thread());
-    if (options.layers) setup.layers = io::layers_named(options.layers);
+    if (options.layers) setup.layers = io::layers_named(options.layers, progress_of_thread());
     return setup;
 }
 

@@ -1,6 +1,6 @@
-// Turns Palpate's exceptions into those of palpate/errors.py. Those of the standard library become
-// Python's own: invalid_argument and length_error ValueError, bad_alloc MemoryError, logic_error
-// RuntimeError.
+// Turns Palpate's exceptions into KeyboardInterrupt after Ctrl-C, otherwise into those of
+// palpate/errors.py. Those of the standard library become Python's own: invalid_argument and
+// length_error ValueError, bad_alloc MemoryError, logic_error RuntimeError.
 #include <system_error>
 
 #include "bindings/python/bindings.hpp"
@@ -39,6 +39,8 @@ void raise_choice(const io::SeriesChoice& choice) {
 
 void bind_errors() {
     py::register_local_exception_translator([](std::exception_ptr thrown) {
+        // A signal such as Ctrl-C ends waits with an error, and is what the caller has to see.
+        if (PyErr_CheckSignals() != 0) return;
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const io::SeriesChoice& error) {

@@ -31,7 +31,10 @@ io::Trajectory without_times(std::vector<Vec3> positions, std::vector<Quaternion
 
 io::Trajectory trajectory_from(const Doubles& time, const Doubles& position,
                                const std::optional<Doubles>& orientation) {
-    if (time.ndim() != 1) throw std::invalid_argument("time: an array of shape (n,) is needed");
+    if (time.ndim() != 1) {
+        throw std::invalid_argument("time: an array of shape (n,) is needed, not " +
+                                    std::string(py::str(time.attr("shape"))));
+    }
     std::vector<Quaternion> turns;
     if (orientation) turns = quaternions_from(*orientation);
     return io::checked_trajectory({time.data(), time.data() + time.size()},

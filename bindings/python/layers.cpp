@@ -2,6 +2,7 @@
 #include "palpate/layers.hpp"
 
 #include "bindings/python/bindings.hpp"
+#include "bindings/python/progress.hpp"
 #include "bindings/python/record.hpp"
 #include "palpate/io/layers_file.hpp"
 #include "palpate/run/labels.hpp"
@@ -126,7 +127,10 @@ void bind_layers(py::module_& module) {
     bind_layers_class(module);
     module.def(
         "layers_named",
-        [](const std::filesystem::path& name) { return io::layers_named(name.string()); },
+        [](const std::filesystem::path& name) {
+            const GilReleased unlocked;
+            return io::layers_named(name.string(), ctrl_c());
+        },
         py::arg("name"), "Layers from a JSON file, or a built-in set by name. Raises InputError.");
     module.def(
         "layers_from_text",

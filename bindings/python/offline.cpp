@@ -1,6 +1,7 @@
 // Renders whole trajectories offline: arrays in, arrays out, without the GIL.
 #include "palpate/run/offline.hpp"
 
+#include <string>
 #include <tuple>
 #include <type_traits>
 
@@ -10,6 +11,7 @@
 #include "bindings/python/progress.hpp"
 #include "bindings/python/renderer.hpp"
 #include "bindings/python/trace_table.hpp"
+#include "palpate/io/csv.hpp"
 
 namespace palpate::python {
 namespace {
@@ -183,7 +185,11 @@ void bind_offline(py::module_& module) {
     module.def(
         "_read_trajectory",
         [](const std::filesystem::path& file) {
-            const io::Trajectory t = io::read_trajectory(file);
+            io::Trajectory t;
+            {
+                const GilReleased unlocked;
+                t = io::parse_trajectory(io::read_text(file, ctrl_c()), file.string());
+            }
             py::object turns = py::none();
             if (!t.orientation.empty()) {
                 turns = column(t.orientation, [](const Quaternion& q) { return q; });
@@ -195,7 +201,19 @@ void bind_offline(py::module_& module) {
     module.def("_write_trace", &write_trace);
     module.def(
         "_read_trace",
-        [](const std::filesystem::path& file) { return columns_of(io::read_trace(file)); },
+        [](const std::filesystem::path& file) {
+            std::vector<io::TraceRow> rows;
+            bool has_tool = false;
+            {
+                const GilReleased unlocked;
+                const std::string text = io::read_text(file, ctrl_c());
+                rows = io::parse_trace(text, file.string());
+                has_tool = io::CsvReader(text, file.string()).has_column("proxy_qw");
+            }
+            py::dict table = columns_of(rows);
+            table["has_tool"] = has_tool;
+            return table;
+        },
         py::arg("path"));
 }
 

@@ -1,11 +1,15 @@
 // Recordings of live sessions: reading and validating them.
 #include "palpate/io/recording.hpp"
 
+#include <optional>
+#include <string>
+
 #include "bindings/python/arrays.hpp"
 #include "bindings/python/bindings.hpp"
 #include "bindings/python/progress.hpp"
 #include "bindings/python/setup.hpp"
 #include "bindings/python/trace_table.hpp"
+#include "palpate/io/csv.hpp"
 #include "palpate/io/trace.hpp"
 #include "palpate/run/replay.hpp"
 
@@ -27,13 +31,14 @@ py::dict dict_of(const io::RecordingHead& head) {
 }
 
 py::tuple read(const fs::path& path, int hand) {
-    io::RecordingReader reader(path, hand);
+    std::optional<io::RecordingReader> reader;
     std::vector<io::TraceRow> rows;
     std::vector<std::int64_t> commands;
     {
         ReportedItems slices(ctrl_c(), 0, updates_in_slice);
         const GilReleased unlocked;
-        while (const auto event = reader.next()) {
+        reader.emplace(io::read_text(path, ctrl_c()), path.string(), hand);
+        while (const auto event = reader->next()) {
             slices.done();
             if (const auto* tick = std::get_if<SessionTick>(&*event)) {
                 rows.push_back(io::trace_row(tick->tick));
@@ -42,8 +47,9 @@ py::tuple read(const fs::path& path, int hand) {
             }
         }
     }
-    return py::make_tuple(dict_of(reader.head()), columns_of(rows), array_from(std::move(commands)),
-                          reader.complete(), reader.lost(), reader.hands());
+    return py::make_tuple(dict_of(reader->head()), columns_of(rows),
+                          array_from(std::move(commands)), reader->complete(), reader->lost(),
+                          reader->hands());
 }
 
 /// Throws io::InputError for the first tick that differs.
@@ -75,19 +81,21 @@ void validate_hand(io::RecordingReader& reader, const run::LoadedVolume& loaded,
 py::dict validate(const fs::path& path, const fs::path& volume, const ProgressFunction& progress) {
     const auto tell = progress_of(progress);
     Counted counted;
-    io::RecordingReader reader(path);
+    std::optional<io::RecordingReader> reader;
     {
         const GilReleased unlocked;
+        const std::string text = io::read_text(path, tell);
+        reader.emplace(text, path.string());
         const run::LoadedVolume loaded =
-            run::load(run::recorded_source(reader.head(), path, volume.string()), tell);
-        validate_hand(reader, loaded, path.string(), tell, counted);
-        for (int hand = 2; hand <= reader.hands(); ++hand) {
-            io::RecordingReader other(path, hand);
+            run::load(run::recorded_source(reader->head(), path, volume.string()), tell);
+        validate_hand(*reader, loaded, path.string(), tell, counted);
+        for (int hand = 2; hand <= reader->hands(); ++hand) {
+            io::RecordingReader other(text, path.string(), hand);
             validate_hand(other, loaded, path.string(), tell, counted);
         }
     }
     return py::dict(py::arg("ticks") = counted.ticks, py::arg("commands") = counted.commands,
-                    py::arg("complete") = reader.complete(), py::arg("lost") = reader.lost());
+                    py::arg("complete") = reader->complete(), py::arg("lost") = reader->lost());
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ struct MakeLayers {
     std::optional<io::LayersFile> operator()(std::monostate) const { return std::nullopt; }
     std::optional<io::LayersFile> operator()(const io::LayersFile& file) const { return file; }
     std::optional<io::LayersFile> operator()(const std::filesystem::path& name) const {
-        return io::layers_named(name.string());
+        return io::layers_named(name.string(), ctrl_c());
     }
 };
 

@@ -101,8 +101,8 @@ std::unique_ptr<Device> open_recorded(const DeviceChoice& choice, const DeviceSc
     info.model = "recording " + file;
     // No force can do harm here, so none is limited: N, N s/mm.
     info.limits = {.maximum_force = 1000, .rate = scene.rate, .physical_damping = 1};
-    return std::make_unique<Recorded>(info, read_recording(file, scene.transform(info), hand),
-                                      speed, loop);
+    return std::make_unique<Recorded>(
+        info, read_recording(file, scene.transform(info), hand, scene.progress), speed, loop);
 }
 
 }  // namespace palpate::devices

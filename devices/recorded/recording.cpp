@@ -129,8 +129,9 @@ void move_from(const DeviceTransform& recorded, const DeviceTransform& now, Reco
 
 }  // namespace
 
-Recording read_recording(const std::string& file, const DeviceTransform& transform, int hand) {
-    std::string text = io::read_text(file);
+Recording read_recording(const std::string& file, const DeviceTransform& transform, int hand,
+                         const OnProgress& progress) {
+    std::string text = io::read_text(file, progress);
     if (io::CsvReader(text, file).has_column("device_x")) {
         Recording recording = raw_recording(text, file, hand);
         if (text.starts_with("# palpate recording")) {

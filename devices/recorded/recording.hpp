@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "palpate/device.hpp"
+#include "palpate/progress.hpp"
 
 namespace palpate::devices {
 
@@ -29,8 +30,9 @@ struct Recording {
 /// Positions of a trajectory or a trace are mapped from physical space by `transform`. Those of a
 /// recording, and its tool's axes, move through the volume as they were recorded: the transform in
 /// its head leads to physical space and `transform` back. If both are equal, or there is no head,
-/// they are unchanged bit for bit. `hand`: of a recording of several, from 1. Throws
-/// io::InputError.
-Recording read_recording(const std::string& file, const DeviceTransform& transform, int hand = 1);
+/// they are unchanged bit for bit. `hand`: of a recording of several, from 1. `progress`: as for
+/// io::read_text(). Throws io::InputError.
+Recording read_recording(const std::string& file, const DeviceTransform& transform, int hand,
+                         const OnProgress& progress);
 
 }  // namespace palpate::devices

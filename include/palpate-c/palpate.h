@@ -153,8 +153,8 @@ typedef struct palpate_field_options {
 PALPATE_API palpate_status palpate_field_create(const palpate_volume *volume,
                                                 const palpate_field_options *options,
                                                 palpate_field **out);
-/* Densities and gradients [1/mm] at `count` points (x, y, z of each). Either result may be null. A call
- * that is cancelled has written the results of the first points. */
+/* Densities [data units] and gradients [data units/mm] at `count` points [mm] (x, y, z of each). Either
+ * result may be null. A call that is cancelled has written the results of the first points. */
 PALPATE_API palpate_status palpate_field_values(const palpate_field *field, const double *points,
                                                 size_t count, double *densities, double *gradients);
 
@@ -236,14 +236,14 @@ typedef struct palpate_felt {
     uint32_t size_of;
     int32_t mode, status;
     int32_t contacts;      /* points of a tool that touch */
-    double time;
+    double time;           /* [s] */
     double hip[3];         /* the hand [mm, physical] */
     double scp[3];         /* the proxy [mm, physical]: draw the tool here */
     double force[3];       /* [N, device axes] */
     double torque[3];      /* [N mm, device axes] */
     double hand[4];        /* orientations x, y, z, w, tool to physical axes */
     double proxy[4];
-    double density, isovalue;
+    double density, isovalue; /* [data units] */
     int32_t layer, inside; /* the touched layer (-1: none), and how many layers contain the proxy */
 } palpate_felt;
 
@@ -410,6 +410,9 @@ typedef struct palpate_brush {
     int32_t has_value;     /* 0: carve leaves the background, and add a value as far on the other
                               side of the level */
     double value;          /* the value that the brush leaves; always used for strokes and for paint */
+    int32_t as_tool;       /* of a hand's brush: it has the shape of the tool, and works as far as `radius`
+                              beyond its surface; 0: a ball. Since 0.3 */
+    int32_t unused;
 } palpate_brush;
 
 typedef struct palpate_edit_state {
@@ -422,7 +425,9 @@ typedef struct palpate_edit_state {
 PALPATE_API palpate_status palpate_data_create(const palpate_volume *volume, palpate_data **out);
 /* Sets the brush of every run on this data. It works where the proxy touches. Null: no brush. */
 PALPATE_API palpate_status palpate_data_set_brush(palpate_data *data, const palpate_brush *brush);
-/* Single edits, each a step for undo. A call returns when the edit was sent to every run. */
+/* Single edits, each a step for undo. A call returns when the edit was sent to every run. A stroke sweeps
+ * a ball from one point to another [mm, physical]. A fill sets the samples from index `low` to index
+ * `high`, both included, to a value [data units]. */
 PALPATE_API palpate_status palpate_data_stroke(palpate_data *data, const palpate_brush *brush,
                                                const double from[3], const double to[3]);
 PALPATE_API palpate_status palpate_data_fill(palpate_data *data, const int32_t low[3],
@@ -535,9 +540,11 @@ PALPATE_API palpate_status palpate_run_set_isovalue(palpate_run *run, double iso
 PALPATE_API palpate_status palpate_run_set_forces(palpate_run *run, int32_t on);
 PALPATE_API palpate_status palpate_run_set_frozen(palpate_run *run, int32_t on);
 PALPATE_API palpate_status palpate_run_set_clutch(palpate_run *run, int32_t on);
+/* [physical mm per device mm] */
 PALPATE_API palpate_status palpate_run_set_scale(palpate_run *run, double scale);
 PALPATE_API palpate_status palpate_run_set_transform(palpate_run *run, const palpate_transform *to);
 PALPATE_API palpate_status palpate_run_set_stiffness(palpate_run *run, double newton_per_mm);
+/* Both in N s/mm. */
 PALPATE_API palpate_status palpate_run_set_damping(palpate_run *run, double damping,
                                                    double viscosity);
 PALPATE_API palpate_status palpate_run_set_force_limit(palpate_run *run, double newton);

@@ -81,6 +81,8 @@ std::string advice_for(const std::string& extension) {
         std::string_view extensions, words;
     };
     constexpr Advice advices[] = {
+        {".raw .raw.gz",
+         "has nothing but samples; give its dims and type (--dims 256x256x128 --type uint8)"},
         {".zip .gz .bz2 .xz .zst .7z .tar .ozx", "is packed; unpack it and give what is in it"},
         {".mnc .mnc2 .minc", "is a MINC file, which is not read; convert it with mnc2nii"},
         {".mif .mih",
@@ -106,7 +108,7 @@ std::string advice_for(const std::string& extension) {
     for (const auto& [extensions, words] : advices) {
         std::istringstream names{std::string(extensions)};
         for (std::string name; names >> name;) {
-            if (name == last) return std::string(words);
+            if (name == last || name == extension) return std::string(words);
         }
     }
     return "";

@@ -16,11 +16,18 @@ using namespace std::chrono_literals;
 
 constexpr auto between_writes = 100ms;
 constexpr auto between_syncs = 500ms;
+/// For the reader of a pipe. The queues have no room for more.
+constexpr std::chrono::seconds patience{8};
 constexpr std::size_t most_buffered = std::size_t{1} << 20;
 
 /// Room for the ticks of eight seconds and the commands between them.
 std::size_t room_for(double rate) {
     return static_cast<std::size_t>(8 * rate);
+}
+
+std::string why(int error) {
+    if (error == ETIMEDOUT) return "its reader has not read for 8 s: let it read on";
+    return reason(error) + (means_full(error) ? ": free some space" : ": record to another place");
 }
 
 }  // namespace
@@ -163,7 +170,8 @@ void RecordingWriter::flush() {
     std::string& buffer = text_->lines;
     if (!problem().empty()) buffer.clear();
     std::string_view rest = buffer;
-    while (!rest.empty()) {
+    if (!seekable_ && write_all(descriptor_, rest, patience)) rest = {};
+    while (seekable_ && !rest.empty()) {
         const ssize_t count = ::write(descriptor_, rest.data(), rest.size());
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) break;
@@ -176,8 +184,7 @@ void RecordingWriter::flush() {
         // Ends the file with a whole line. If that fails, readers leave the torn line out.
         if (seekable_) (void)truncate(descriptor_, written_);
         const std::scoped_lock lock(mutex_);
-        problem_ = path_.string() + ": recording stopped: " + reason(error) +
-                   (means_full(error) ? ": free some space" : ": record to another place") +
+        problem_ = path_.string() + ": recording stopped: " + why(error) +
                    "; what was recorded before is kept";
     }
     buffer.clear();

@@ -126,8 +126,8 @@ std::vector<TraceRow> read_trace(const std::filesystem::path& path) {
     return parse_trace(read_text(path), path.string());
 }
 
-ProxyPath read_proxy_path(const std::filesystem::path& path, const Waiting& waiting) {
-    const std::string text = read_text(path, waiting);
+ProxyPath read_proxy_path(const std::filesystem::path& path, const OnProgress& progress) {
+    const std::string text = read_text(path, progress);
     CsvReader rows(text, path.string());
     const auto columns = [&](const std::string& before) {
         return std::array{rows.column(before + "x"), rows.column(before + "y"),

@@ -179,6 +179,7 @@ void PendingFile::fail_to_write(int error) {
     discard();
     const std::string text = target_.string() + ": could not be written: " + because(error);
     if (has_reader_gone) throw ReaderGone(text);
+    if (error == EINTR) throw WaitEnded(text + ": let its reader read on");
     throw OutputError(text);
 }
 

@@ -8,10 +8,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <climits>
 #include <cstdio>
 #include <fstream>
 #include <new>
+#include <optional>
+#include <span>
 
 #include "io/system/open_file.hpp"
 #include "palpate/io/output.hpp"
@@ -71,27 +76,66 @@ int open_to_read(const std::filesystem::path& path) {
     return open_file_in(AT_FDCWD, path.string(), 0);
 }
 
+namespace {
+
+/// While it exists, signals come to this thread in wait() only, so that none between two waits is
+/// missed. They restart open() and write(), but never this wait.
+class SignalsInWaits {
+  public:
+    SignalsInWaits() {
+        sigset_t all;
+        ::sigfillset(&all);
+        ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+    }
+    SignalsInWaits(const SignalsInWaits&) = delete;
+    SignalsInWaits& operator=(const SignalsInWaits&) = delete;
+    ~SignalsInWaits() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+    /// As ppoll().
+    int wait(std::span<pollfd> descriptors, const timespec* most) const {
+        return ::ppoll(descriptors.data(), descriptors.size(), most, &before_);
+    }
+
+  private:
+    sigset_t before_{};
+};
+
+/// In parts that a pipe takes at once when it is ready.
+bool write_to_stream(int descriptor, std::string_view bytes, const timespec* most) {
+    const SignalsInWaits signals;
+    pollfd reader{descriptor, POLLOUT, 0};
+    while (!bytes.empty()) {
+        const int ready = signals.wait({&reader, 1}, most);
+        if (ready == 0) errno = ETIMEDOUT;
+        if (ready <= 0) return false;
+        const ssize_t put =
+            ::write(descriptor, bytes.data(), std::min<std::size_t>(bytes.size(), PIPE_BUF));
+        if (put < 0 && errno == EAGAIN) continue;
+        if (put < 0) return false;
+        bytes.remove_prefix(static_cast<std::size_t>(put));
+    }
+    return true;
+}
+
+}  // namespace
+
 int open_to_write(const std::filesystem::path& path) {
     const auto lacks_reader = [&] {
         struct stat about {};
         const bool is_pipe = errno == ENXIO && ::stat(path.c_str(), &about) == 0;
         return is_pipe && S_ISFIFO(about.st_mode);
     };
-    // A signal restarts an opening that waits, but never this wait. It comes here only, so that
-    // none between two of them is missed.
-    sigset_t all, before;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before);
-    constexpr timespec between{0, 50'000'000};
     int file = -1, problem = 0;
-    while ((file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) < 0) {
-        problem = errno;
-        if (!lacks_reader()) break;
-        if (::ppoll(nullptr, 0, &between, &before) == 0) continue;
-        problem = errno;
-        break;
+    {
+        const SignalsInWaits signals;
+        constexpr timespec between{0, 50'000'000};
+        while ((file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) < 0) {
+            problem = errno;
+            if (!lacks_reader()) break;
+            if (signals.wait({}, &between) == 0) continue;
+            problem = errno;
+            break;
+        }
     }
-    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
     if (file >= 0) ::fcntl(file, F_SETFL, ::fcntl(file, F_GETFL) & ~O_NONBLOCK);
     if (file < 0 && problem == EINTR) {
         throw WaitEnded(path.string() +
@@ -129,7 +173,11 @@ std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_
     return static_cast<std::ptrdiff_t>(done);
 }
 
-bool write_all(int descriptor, std::string_view bytes) {
+bool write_all(int descriptor, std::string_view bytes, std::optional<std::chrono::seconds> most) {
+    struct stat about {};
+    const bool is_stream = ::fstat(descriptor, &about) == 0 && !S_ISREG(about.st_mode);
+    const timespec wait{most ? most->count() : 0, 0};
+    if (is_stream) return write_to_stream(descriptor, bytes, most ? &wait : nullptr);
     while (!bytes.empty()) {
         const ssize_t put = ::write(descriptor, bytes.data(), bytes.size());
         if (put < 0 && errno == EINTR) continue;

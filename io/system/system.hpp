@@ -2,10 +2,12 @@
 // descriptor. system.cpp for Linux, system_windows.cpp for Windows. Errors are left in errno.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -48,8 +50,11 @@ int create_to_write(const std::filesystem::path& path);
 std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_t at);
 /// Changes when a file is replaced or written: its number, size and time.
 std::string identity_of(int descriptor);
-/// Writes them all, where a file or stream is written next.
-bool write_all(int descriptor, std::string_view bytes);
+/// Writes them all, where a file or stream is written next. A signal to this thread ends the wait
+/// for the reader of a stream: errno is EINTR. So does a reader that reads nothing for so long:
+/// errno is ETIMEDOUT.
+bool write_all(int descriptor, std::string_view bytes,
+               std::optional<std::chrono::seconds> most = std::nullopt);
 /// The file's content to the disk. File systems without this say so; that is no loss of data.
 bool synchronise(int descriptor);
 /// The same for an open folder and all below it (or more: the whole file system).

@@ -144,7 +144,7 @@ std::ptrdiff_t read_at(int descriptor, void* to, std::size_t bytes, std::uint64_
     return static_cast<std::ptrdiff_t>(taken);
 }
 
-bool write_all(int descriptor, std::string_view bytes) {
+bool write_all(int descriptor, std::string_view bytes, std::optional<std::chrono::seconds>) {
     while (!bytes.empty()) {
         const int put = ::_write(descriptor, bytes.data(), part_of(bytes.size()));
         if (put < 0) return false;

@@ -39,9 +39,9 @@ class TextSource {
         text_.reserve(static_cast<std::size_t>(status.st_size) + 1);
     }
 
-    std::string read(const Waiting& waiting) {
+    std::string read(const OnProgress& progress) {
         for (;;) {
-            if (is_stream_) wait(waiting);
+            if (is_stream_) wait(progress);
             const std::size_t before = text_.size();
             text_.resize(before + block_bytes);
             const ssize_t count = ::read(file_.number(), text_.data() + before, block_bytes);
@@ -64,19 +64,19 @@ class TextSource {
     }
 
     /// Until there is something to read, or the end.
-    void wait(const Waiting& waiting) const {
+    void wait(const OnProgress& progress) const {
         const auto start = std::chrono::steady_clock::now();
         pollfd source{file_.number(), POLLIN, 0};
         for (int ready; (ready = ::poll(&source, 1, poll_ms)) <= 0;) {
-            if (waiting) {
-                waiting();
+            if (progress) {
+                progress(0);
             } else if (ready < 0 && errno == EINTR) {
                 fail("reading it was interrupted");
             } else if (std::chrono::steady_clock::now() - start > patience) {
                 fail("no data for 10 s: start the program that writes to it first");
             }
         }
-        if (waiting) waiting();  // a source that never runs dry must not keep a signal waiting
+        if (progress) progress(0);  // a source that never runs dry must not keep a signal waiting
     }
 
     void check_total(std::uint64_t bytes) const {
@@ -115,8 +115,8 @@ class TextSource {
 
 }  // namespace
 
-std::string read_text(const std::filesystem::path& path, const Waiting& waiting) {
-    return TextSource(path).read(waiting);
+std::string read_text(const std::filesystem::path& path, const OnProgress& progress) {
+    return TextSource(path).read(progress);
 }
 
 }  // namespace palpate::io

@@ -32,14 +32,14 @@ void check_lines(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
-std::string read_text(const std::filesystem::path& path, const Waiting& waiting) {
+std::string read_text(const std::filesystem::path& path, const OnProgress& progress) {
     std::error_code error;
     if (std::filesystem::is_directory(path, error)) fail(path, "is a folder: name a file in it");
     std::ifstream in(path, std::ios::binary);
     if (!in) fail(path, "cannot be opened: check the name and your permission to read it");
     std::string text;
     while (in) {
-        if (waiting) waiting();
+        if (progress) progress(0);
         const std::size_t before = text.size();
         if (before > largest_file) {
             fail(path, "has more than the 4 GiB of text that are read: cut it into parts");

@@ -10,11 +10,14 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <functional>
 #include <thread>
 
 #include "io/system/leftovers.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/volume_file.hpp"
 #include "support/edits.hpp"
 #include "support/eventually.hpp"
@@ -336,24 +339,57 @@ TEST(Output, a_process_looks_for_leftovers_once_in_a_folder) {
     EXPECT_EQ(folder.names(), Names{});
 }
 
-TEST(Output, to_a_pipe_that_nobody_reads_is_waited_for_until_a_signal_comes) {
-    const ScratchFolder folder;
-    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-    const auto before = std::signal(SIGUSR1, [](int) {});  // restarts what it interrupts
-    const pthread_t writer = ::pthread_self();
+/// Calls wait() while signals come that restart what they interrupt. The first one may come before
+/// the wait, and does not end it.
+void among_signals(const std::function<void()>& wait) {
+    const auto before = std::signal(SIGUSR1, [](int) {});
+    const pthread_t waiting = ::pthread_self();
     std::atomic<bool> ended{false};
-    std::thread sender([&] {  // one that comes before the wait does not end it
+    std::thread sender([&] {
         while (!ended) {
-            ::pthread_kill(writer, SIGUSR1);
+            ::pthread_kill(waiting, SIGUSR1);
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
     });
-    EXPECT_TRUE(contains(message_of<WaitEnded>([&] { PendingFile file(folder / "pipe"); }),
-                         "start the reader first"));
+    wait();
     ended = true;
     sender.join();
     std::signal(SIGUSR1, before);
+}
+
+TEST(Output, to_a_pipe_that_nobody_reads_is_waited_for_until_a_signal_comes) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    among_signals([&] {
+        EXPECT_TRUE(contains(message_of<WaitEnded>([&] { PendingFile file(folder / "pipe"); }),
+                             "start the reader first"));
+    });
     EXPECT_EQ(folder.names(), Names{"pipe"});
+}
+
+TEST(Output, to_a_pipe_whose_reader_does_not_read_on_is_waited_for_until_a_signal_comes) {
+    const ScratchFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    const int reader = ::open((folder / "pipe").c_str(), O_RDONLY | O_NONBLOCK);
+    among_signals([&] {
+        const std::string message = message_of<WaitEnded>([&] {
+            PendingFile file(folder / "pipe");
+            file.write(std::string(10'000'000, 'x'));  // more than a pipe holds
+        });
+        EXPECT_TRUE(contains(message, "let its reader read on")) << message;
+    });
+    ::close(reader);
+    EXPECT_EQ(folder.names(), Names{"pipe"});
+}
+
+TEST(Output, to_a_pipe_that_is_full_ends_when_its_time_is_over) {
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    EXPECT_TRUE(write_all(ends[1], "text", std::chrono::seconds(0)));
+    EXPECT_FALSE(write_all(ends[1], std::string(10'000'000, 'x'), std::chrono::seconds(0)));
+    EXPECT_EQ(errno, ETIMEDOUT);
+    ::close(ends[0]);
+    ::close(ends[1]);
 }
 
 TEST(Output, that_waits_for_the_others_of_its_run_is_still_locked) {

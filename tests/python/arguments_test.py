@@ -99,6 +99,10 @@ def volume():
      "RenderSetup.penetrability must be Penetrability or None, not 'threshold'"),
     (lambda: setattr(palpate.RenderSetup(), "friction", 0.5), "RenderSetup.friction must be Friction or None, not 0.5"),
     (lambda: palpate.Field(3), "Field(): volume must be Volume or samples must be Samples, not 3"),
+    (lambda: palpate.Field(palpate.LoadedVolume(volume())),
+     "Field(): volume must be Volume or samples must be Samples, not LoadedVolume: give its .volume"),
+    (lambda: palpate.smoothed(palpate.scene("sphere:8x8x8")),
+     "smoothed(): volume must be Volume, not Scene: give its .volume"),
     (lambda: palpate.Field(volume(), soild="above"),
      "Field(): there is no argument soild (did you mean solid?); there are: volume, solid, background, "
      "interpolation"),
@@ -111,6 +115,10 @@ def volume():
     (lambda: palpate.Friction(1, 2),
      "Friction(): arguments have names here, as in Friction(static_coefficient=...)"),
     (lambda: palpate.replay(3, 1, [0.0], [[0, 0, 0]]), "replay(): field must be Field, not 3"),
+    (lambda: palpate.replay(palpate.Field(volume()), 1, [[0, 0, 0]], [0.0]),
+     "time: an array of shape (n,) is needed, not (1, 3)"),
+    (lambda: palpate.Tool.named("box:1", 1), "the tool 'box:1': 3 lengths above 0 and below 1e6 [mm] must follow a colon, "
+     "as in box:2,2,2"),
     (lambda: palpate.read_trace(3), "read_trace(): path must be a path, not 3"),
     (lambda: palpate.Run(3), "Run(): loaded must be LoadedVolume or Volume or Store or Run, not 3"),
     (lambda: palpate.load("a\0b"), "load(): source must be a path, not 'a\\x00b'"),

@@ -447,7 +447,7 @@ def test_samples_that_are_compressed_against_their_header_are_refused_for_that(t
 
 @pytest.mark.parametrize("name, words", (("a.mnc", "mnc2nii"), ("a.mif", "mrconvert"), ("a.mif.gz", "unpack"), ("a.HEAD", "AFNI"),
                                          ("a.npy", "palpate.Volume"), ("a.czi", "OME-TIFF"), ("a.vtu", ".vti"),
-                                         ("a.nii.zst", "unpack"), ("a.png", "TIFF"), ("a.other", "no extension of a known format")))
+                                         ("a.nii.zst", "unpack"), ("a.png", "TIFF"), ("a.raw.gz", "give its dims and type"), ("a.other", "no extension of a known format")))
 def test_a_format_that_is_not_read_is_refused_with_what_to_do(tmp_path, name, words):
     (tmp_path / name).write_bytes(b"something")
     refused(tmp_path / name, words)

@@ -239,7 +239,7 @@ def test_what_was_assigned_belongs_to_each_owner():
     ("Friction", "dynamic_coefficient", -0.1, r"dynamic friction = -0\.1: must be"),
     ("DeviceLimits", "maximum_force", 0, "maximum force .* = 0.0: must be finite and above 0"),
     ("DeviceTransform", "scale", 0, "scale = 0.0: must be"),
-    ("Needle", "static_ratio", 0.5, "static_ratio = 0.5: must be finite and at least 1"),
+    ("Needle", "static_ratio", 0.5, "static ratio of the needle = 0.5: must be finite and at least 1"),
     ("Texture", "wavelength", 0, "texture wavelength"), ("Magnet", "distance", -1, "magnet distance")])
 def test_a_number_out_of_range_is_refused_where_it_is_set_or_constructed(kind, name, value, words):
     with pytest.raises(ValueError, match=words):

@@ -360,13 +360,13 @@ SessionFile read_session(const std::filesystem::path& path) {
     return session_from(session_text(path), path);
 }
 
-std::string session_text(const std::filesystem::path& path, const io::Waiting& waiting) {
+std::string session_text(const std::filesystem::path& path, const OnProgress& progress) {
     std::error_code ignored;
     const std::uintmax_t bytes = std::filesystem::file_size(path, ignored);
     if (!ignored && bytes > largest_file) {
         throw io::InputError(path.string() + ": is no session: it is too large for one");
     }
-    return io::read_text(path, waiting);
+    return io::read_text(path, progress);
 }
 
 SessionFile session_from(const std::string& text, const std::filesystem::path& path) {

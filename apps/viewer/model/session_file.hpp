@@ -50,7 +50,7 @@ struct SessionFile : SessionHand {
 SessionFile read_session(const std::filesystem::path& path);
 /// The same in two steps: the text of a file that is not too large for a session, and the session
 /// in it.
-std::string session_text(const std::filesystem::path& path, const io::Waiting& waiting = {});
+std::string session_text(const std::filesystem::path& path, const OnProgress& progress = {});
 SessionFile session_from(const std::string& text, const std::filesystem::path& path);
 
 /// Writes a session, whole or not at all. A volume that lies below the session's folder is named

@@ -409,7 +409,7 @@ void LayersControls::open(const QString& path) {
     reader_.start(
         tr("Reading %1").arg(short_name(path)),
         [read, name = path.toStdString()](const io::Progress& progress) {
-            *read = io::layers_from_text(io::read_text(name, [&] { progress(0); }), name);
+            *read = io::layers_from_text(io::read_text(name, progress), name);
         },
         [this, read, path] { take(path, *read); });
 }

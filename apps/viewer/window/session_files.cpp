@@ -106,7 +106,7 @@ void FileController::open_json(const QString& path, const std::optional<UnsavedW
     reader_.start(
         tr("Reading %1").arg(short_name(path)),
         [result, file = std::filesystem::path(path.toStdString())](const io::Progress& progress) {
-            const std::string text = session_text(file, [&] { progress(0); });
+            const std::string text = session_text(file, progress);
             if (LayersControls::is_layers(text)) {
                 result->layers = io::layers_from_text(text, file.string());
             } else {

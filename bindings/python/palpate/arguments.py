@@ -143,14 +143,15 @@ def _expected(kind):
                 kind, kind.rpartition(".")[2] if kind.startswith("palpate.") else kind)
 
 
-def _given(value):
+def _given(value, kind=""):
     if isinstance(value, (str, int, float, type(None))):
         text = repr(value)
         return text if len(text) <= 40 else text[:37] + "..."
     if isinstance(value, tuple) and len(repr(value)) <= 40:
         return repr(value)
     shape = f" of shape {value.shape}" if isinstance(value, numpy.ndarray) else ""
-    return type(value).__name__ + shape
+    has_it = kind.endswith(".Volume") and hasattr(value, "volume")  # LoadedVolume, Scene
+    return type(value).__name__ + shape + (": give its .volume" if has_it else "")
 
 
 def unknown(name, names):
@@ -180,7 +181,7 @@ def _flaw(parameters, args, keywords):
         if one.name in given or one.name in keywords:
             value = given.get(one.name, keywords.get(one.name))
             if not _fits(value, one.type):
-                return at, (one.words(), _expected(one.type), _given(value))
+                return at, (one.words(), _expected(one.type), _given(value, one.type))
         elif one.required:
             return at, f"{one.words()} is missing: {_expected(one.type)}"
     return len(parameters), None

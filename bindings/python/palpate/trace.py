@@ -109,10 +109,7 @@ def replay(field: "Field", isovalue: Union[float, str], time: ArrayLike, positio
 
 def read_trace(path: _Path) -> Trace:
     """A trace file (CSV) as a Trace, without layers and the number of contacts. Raises InputError."""
-    columns = _palpate._read_trace(path)
-    with open(path, encoding="utf-8", errors="replace") as file:
-        head = next(line for line in file if not line.startswith("#"))
-    return Trace(**columns, has_tool="proxy_qw" in head)
+    return Trace(**_palpate._read_trace(path))
 
 
 def read_trajectory(

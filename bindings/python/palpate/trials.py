@@ -273,7 +273,7 @@ PARSER.add("--most", kind=ABOVE_ZERO, default=1.0, help="Largest difference, as 
 PARSER.add("--differences", kind=ABOVE_ZERO, nargs="+", default=(), help="Constant differences in random order, instead of a staircase")
 PARSER.add("--repeats", kind=whole(1), default=20, help="Trials of each constant difference")
 PARSER.add("--seed", kind=whole(0, 2**64 - 1), default=1, help="Seed of the order, another one for each participant")
-PARSER.add("--device", kind=Kind("TEXT"), default="simulated:hand=press", help="Device, as for palpate touch")
+PARSER.add("-d", "--device", kind=Kind("TEXT"), default="simulated:hand=press", help="Device, as for palpate touch")
 PARSER.add("--seconds", kind=ABOVE_ZERO, default=3.0, help="Duration of each touch [s]")
 
 

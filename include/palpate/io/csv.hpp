@@ -11,19 +11,16 @@
 #include <vector>
 
 #include "palpate/io/error.hpp"
+#include "palpate/progress.hpp"
 
 namespace palpate::io {
-
-/// Called at least ten times a second while a pipe or a device has nothing to read. Throw to end
-/// the wait.
-using Waiting = std::function<void()>;
 
 /// The whole text of a file, a pipe or a device, without a byte order mark. Throws InputError, also
 /// for a zero byte, a line of more than 16 MiB, a file of more than 4 GiB or a stream of more than
 /// 256 MiB.
-/// Without `waiting`, the wait for a stream ends with an InputError at a signal that the program
-/// handles, or when nothing was received for 10 s.
-std::string read_text(const std::filesystem::path& path, const Waiting& waiting = {});
+/// `progress` is called while a pipe or a device is waited for. Without it, that wait ends with an
+/// InputError at a signal that the program handles, or when nothing was received for 10 s.
+std::string read_text(const std::filesystem::path& path, const OnProgress& progress = {});
 
 /// The text without an incomplete last line (of a file that was cut off while it was written).
 std::string_view whole_lines(std::string_view text);

@@ -8,6 +8,7 @@
 
 #include "palpate/io/error.hpp"
 #include "palpate/layers.hpp"
+#include "palpate/progress.hpp"
 
 namespace palpate::io {
 
@@ -21,8 +22,8 @@ struct LayersFile {
 
 /// Throws InputError if there is no such file, for text that is not JSON, for members that are
 /// unknown or of the wrong kind, and for layers that check() refuses. The order of the levels
-/// decides for which solid side they are checked.
-LayersFile read_layers(const std::filesystem::path& path);
+/// decides for which solid side they are checked. `progress`: as for read_text().
+LayersFile read_layers(const std::filesystem::path& path, const OnProgress& progress = {});
 /// The same from text that errors call `name`.
 LayersFile layers_from_text(std::string_view text, const std::string& name);
 /// Text that reads back as the same layers, bit for bit.
@@ -43,6 +44,6 @@ std::vector<LayersPreset> layers_presets();
 /// Only their names. Empty if their folder is not found.
 std::vector<std::string> layers_names();
 /// A file, or the name of a built-in set. Throws InputError.
-LayersFile layers_named(const std::string& file_or_name);
+LayersFile layers_named(const std::string& file_or_name, const OnProgress& progress = {});
 
 }  // namespace palpate::io

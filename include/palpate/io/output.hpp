@@ -17,7 +17,7 @@ class ReaderGone : public OutputError {
     using OutputError::OutputError;
 };
 
-/// A signal arrived during the wait for the reader of a pipe.
+/// A signal arrived during the wait for the reader of a pipe, to open it or to read on.
 class WaitEnded : public OutputError {
     using OutputError::OutputError;
 };
@@ -40,8 +40,9 @@ inline std::filesystem::path without_slash(const std::filesystem::path& path) {
 /// that killed processes have left in the folder are removed when a process opens its first file
 /// there. Without commit() the target stays unchanged and nothing is left behind. A target that
 /// exists and is not a regular file (/dev/stdout, a pipe, /dev/full) and "-", the standard output,
-/// are written directly instead: they cannot be replaced, and their reader is waiting. A pipe
-/// without a reader is waited for, and a signal ends that (WaitEnded). A symbolic link is followed.
+/// are written directly instead: they cannot be replaced, and their reader is waiting. A reader
+/// that has not opened a pipe, or does not read on, is waited for, and a signal ends that
+/// (WaitEnded). A symbolic link is followed.
 /// Everything here throws OutputError.
 class PendingFile {
   public:

@@ -111,7 +111,7 @@ struct ProxyPath {
     std::vector<bool> constrained;  ///< of each `scp`; true throughout for a path file
 };
 /// From a trace, or from a path (columns x, y, z). Throws InputError, also for points that are not
-/// finite. `waiting`: as for read_text().
-ProxyPath read_proxy_path(const std::filesystem::path& path, const Waiting& waiting = {});
+/// finite. `progress`: as for read_text().
+ProxyPath read_proxy_path(const std::filesystem::path& path, const OnProgress& progress = {});
 
 }  // namespace palpate::io

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <string>
 #include <thread>
 
 #include "palpate/renderer.hpp"
 #include "palpate/run/setup.hpp"
+#include "support/eventually.hpp"
 #include "support/scratch_folder.hpp"
 #include "tests/bindings/c/ball.hpp"
 
@@ -306,6 +308,43 @@ TEST(CProgress, is_told_by_every_edit_and_can_stop_it) {
     palpate_field_destroy(field);
     palpate_data_destroy(data);
     palpate_volume_destroy(volume);
+}
+
+TEST(CData, the_brush_of_a_hand_can_have_the_shape_of_its_tool) {
+    const support::ScratchFolder folder;
+    const std::string recording = (folder.path() / "run.csv").string();
+    palpate_volume* volume = ball();
+    palpate_data* data = nullptr;
+    ASSERT_EQ(palpate_data_create(volume, &data), PALPATE_OK);
+    PALPATE_STRUCT(palpate_brush, brush);
+    brush.radius = 1;
+    brush.rate = std::numeric_limits<double>::infinity();
+    brush.as_tool = 1;
+    const double at[3] = {0, 0, 0};
+    EXPECT_EQ(palpate_data_stroke(data, &brush, at, at), PALPATE_INVALID);
+    EXPECT_STREQ(palpate_last_error(), "brush.as_tool: is for a hand's brush only");
+    ASSERT_EQ(palpate_data_set_brush(data, &brush), PALPATE_OK) << palpate_last_error();
+    PALPATE_STRUCT(palpate_render_options, render);
+    render.has_isovalue = 1;
+    render.isovalue = 100;
+    render.tool = "sphere:2";
+    PALPATE_STRUCT(palpate_run_options, options);
+    options.render = &render;
+    options.device = "simulated:touchx,hand=press";
+    options.recording = recording.c_str();
+    options.no_real_time = 1;
+    palpate_run* run = nullptr;
+    ASSERT_EQ(palpate_run_create(data, &options, &run), PALPATE_OK) << palpate_last_error();
+    ASSERT_EQ(palpate_run_start(run), PALPATE_OK);
+    PALPATE_STRUCT(palpate_edit_state, edits);
+    EXPECT_TRUE(support::comes_true(
+        [&] { return palpate_data_edits(data, &edits) == PALPATE_OK && edits.version > 0; }));
+    palpate_run_destroy(run);
+    palpate_data_destroy(data);
+    palpate_volume_destroy(volume);
+    const std::string recorded = support::bytes_of(recording);
+    EXPECT_NE(recorded.find("\"sweep\""), std::string::npos);
+    EXPECT_EQ(recorded.find("\"stroke\""), std::string::npos);
 }
 
 TEST(CHandles, that_are_null_are_refused_by_name_and_may_be_destroyed) {
