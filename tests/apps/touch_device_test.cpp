@@ -85,6 +85,20 @@ TEST(Touch, cannot_be_suspended_while_there_is_force) {
     EXPECT_EQ(running.finish(SIGINT).status, 130);
 }
 
+TEST(Touch, can_be_interrupted_while_a_driver_opens_its_device_for_ever) {
+    const ScratchFolder folder;
+    support::put_bytes(folder / "seen", "");
+    Running running(
+        {"-c", "MOCK_DHD_HANGS=seen exec " PALPATE_PROGRAM
+               " touch synthetic:sphere:32x32x32 --device forcedimension:library=" MOCK_DRD},
+        folder.path(), Stdout::captured, "/bin/sh");
+    const std::filesystem::path seen = std::filesystem::canonical(folder / "seen");
+    ASSERT_TRUE(comes_true([&] { return running.waits_with(seen); }));
+    running.signal(SIGINT);
+    ASSERT_TRUE(comes_true([&] { return running.has_ended(); }));
+    EXPECT_EQ(running.finish().status, 130);
+}
+
 TEST(Touch, waits_for_a_service_that_goes_away_while_pressing_and_goes_on) {
     const ScratchFolder folder;
     MockService service;

@@ -25,7 +25,7 @@ struct DeviceScene {
     /// move in physical space.
     std::function<DeviceTransform(const DeviceInfo&)> transform;
     /// Called while a service or a vendor's library is waited for. Its exceptions are passed on at
-    /// once. The call of the library is then left alone, and a device that it still opens is closed
+    /// once. The call of the library is then left alone, and a device that it opens later is closed
     /// again.
     OnProgress progress = {};
 };
