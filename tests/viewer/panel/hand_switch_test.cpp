@@ -13,8 +13,7 @@ class HandsOfPanel : public PanelFixture {
         feel(std::vector<std::string>{"mouse", "simulated:hand=hold,seconds=3600"});
     }
     QColor colour_of(int hand) {
-        const QImage button =
-            find<QPushButton>(hand == 1 ? "hand_1" : "hand_2")->grab().toImage();
+        const QImage button = find<QPushButton>(hand == 1 ? "hand_1" : "hand_2")->grab().toImage();
         const int at = static_cast<int>(4 * button.devicePixelRatio());  // above its words
         return {button.pixel(2 * at, at)};
     }
