@@ -4,6 +4,7 @@
 #include <QLabel>
 
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -52,12 +53,14 @@ MadeTool made_tool(const io::ToolSpec& spec, double scale, const Geometry& geome
     const io::ToolSpec scaled = io::scaled(spec, scale);
     MadeTool made{nullptr, io::usual_spacing(geometry)};
     constexpr int tries = 60;
+    std::exception_ptr first;  // tells more than that a spacing is far too large
     for (int i = 0;; ++i) {
         progress(0);
         try {
             made.tool = io::make_tool(scaled, made.spacing, progress);
         } catch (const std::invalid_argument&) {  // most likely far too many points
-            if (i == tries) throw;
+            if (!first) first = std::current_exception();
+            if (i == tries) std::rethrow_exception(first);
             made.spacing *= 2;
             continue;
         }

@@ -162,7 +162,8 @@ TEST_F(PanelTool, that_cannot_be_made_says_why_and_the_one_before_stays) {
     settle();
     EXPECT_EQ(effect.settings().tool, burr);
     EXPECT_EQ(find<QComboBox>("tool")->currentIndex(), 4);
-    EXPECT_EQ(message("tool_part"), "a tool needs at least one point");
+    EXPECT_TRUE(message("tool_part").startsWith("a tool's mesh"))
+        << message("tool_part").toStdString();
 }
 
 TEST_F(PanelTool, of_a_file_is_one_more_choice) {

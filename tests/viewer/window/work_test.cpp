@@ -64,7 +64,7 @@ TEST_F(Work, done_while_another_file_is_read_is_asked_about_before_that_takes_it
 }
 
 TEST_F(Work, that_is_being_saved_shows_its_progress_and_can_be_cancelled) {
-    feel("synthetic:sphere:96x96x96");
+    feel("synthetic:sphere:192x192x192");
     press_until_force();
     carve();
     const QString path = scratch("saved.nii.gz");
