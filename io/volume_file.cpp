@@ -162,7 +162,7 @@ bool stays(const fs::path& path) {
 /// By way of a file, because the formats' libraries write files only.
 void write_through_file(const Volume& volume, const fs::path& path, const WriteOptions& options) {
     const std::string extension(written_extension_of(path));
-    if (extension == ".nhdr" || extension == ".mhd") {
+    if (!data_file_of(path, options.compress).empty()) {
         throw OutputError(path.string() + ": is a link or no file, and " + extension +
                           " takes two of them: name it .nrrd or .mha");
     }
@@ -188,7 +188,7 @@ void write_through_file(const Volume& volume, const fs::path& path, const WriteO
 
 void write_volume(const Volume& volume, const fs::path& path, const WriteOptions& options) {
     check_output(path);
-    const std::string problem = why_not_written(path, volume.geometry());
+    const std::string problem = why_not_written(path, volume.geometry(), options.compress);
     if (!problem.empty()) throw OutputError(problem);
     if (written_extension_of(path) == ".raw") return write_raw(volume, path, options.progress);
     if (stays(path)) return write_through_file(volume, path, options);
