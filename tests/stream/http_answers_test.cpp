@@ -228,6 +228,8 @@ TEST(HttpAnswers, messages_do_not_give_away_passwords_and_signatures) {
     EXPECT_EQ(io::without_secrets("https://me:p@w@h.org/a?b=c: is no s3://k@b, or x@y?"),
               "https://h.org/a?...: is no s3://b, or x@y?");
     EXPECT_EQ(io::without_secrets("http://h.org"), "http://h.org");
+    EXPECT_EQ(io::without_secrets("(http://h.org/a?b=c,d;e)f&sig=g): of 'http://h.org/a?b'"),
+              "(http://h.org/a?...): of 'http://h.org/a?...'");
     EXPECT_EQ(io::without_secrets("a://b@"), "a://");
 }
 

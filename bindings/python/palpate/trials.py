@@ -11,6 +11,7 @@ import difflib
 import fcntl
 import io
 import math
+import re
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -18,7 +19,7 @@ from typing import Any, Optional, Union
 
 import numpy
 
-from .command_line import ABOVE_ZERO, Kind, Parser, answer_to, remark, run, say, whole
+from .command_line import ABOVE_ZERO, Kind, Parser, answer_to, remark, run, say, whole, without_secrets
 from .errors import DeviceError, InputError, OutputError
 
 _Path = Union[str, Path]
@@ -279,11 +280,13 @@ PARSER.add("--seconds", kind=ABOVE_ZERO, default=3.0, help="Duration of each tou
 
 def _ask(chosen: Any) -> None:
     volume, at, level = chosen.volume.rpartition("@")
+    if "/" in level or re.fullmatch(r"[^/]*://[^/]*", volume):  # of a folder's name, or behind the password of an address
+        volume, at, level = "", "", chosen.volume
     plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed, chosen.most)
     largest = plan.standard * (1 + (max(plan.differences) if plan.differences else plan.most))
     rows = session(chosen.file, plan, touching(volume if at else level, level if at else None, chosen.device, chosen.setting,
                                                chosen.seconds, Path(chosen.file).with_suffix(".touches"), largest),
-                   f"{chosen.setting} of {chosen.volume} for {chosen.seconds:g} s")
+                   f"{chosen.setting} of {without_secrets(chosen.volume)} for {chosen.seconds:g} s")
     remark(f"The session is complete: {len(rows)} trials. To fit a threshold: palpate study --analyse {chosen.file}")
 
 
