@@ -22,7 +22,11 @@ Subject synthetic(const std::string& specification) {
 }  // namespace
 
 Subject subject_from(const std::string& text) {
-    const std::size_t at = text.rfind('@');
+    std::size_t at = text.rfind('@');
+    // An @ in a folder's name, or behind the password of an address, begins no level.
+    const std::size_t host = text.find("://");
+    const std::size_t path = host == text.npos ? 0 : text.find('/', host + 3);
+    if (at < path || text.find('/', at) != text.npos) at = text.npos;
     const std::string where = text.substr(0, at);
     const std::string level = at == std::string::npos ? "" : text.substr(at + 1);
     const bool is_synthetic = where.starts_with(synthetic_prefix);

@@ -162,7 +162,7 @@ bool stays(const fs::path& path) {
 /// By way of a file, because the formats' libraries write files only.
 void write_through_file(const Volume& volume, const fs::path& path, const WriteOptions& options) {
     const std::string extension(written_extension_of(path));
-    if (extension == ".nhdr" || extension == ".mhd") {
+    if (!data_file_of(path, options.compress).empty()) {
         throw OutputError(path.string() + ": is a link or no file, and " + extension +
                           " takes two of them: name it .nrrd or .mha");
     }
@@ -173,7 +173,7 @@ void write_through_file(const Volume& volume, const fs::path& path, const WriteO
     fs::create_directory(folder, error);
     if (error) throw OutputError(folder.string() + ": cannot be written: " + error.message());
     const Descriptor lock(lock_temporary(folder));
-    std::ofstream(folder / temporary_marker).close();
+    std::ofstream(folder / temporary_marker) << temporary_marker_text;
     const fs::path file = folder / ("volume" + extension);
     write_volume(volume, file, options);
     std::ifstream in(file, std::ios::binary);
@@ -188,7 +188,7 @@ void write_through_file(const Volume& volume, const fs::path& path, const WriteO
 
 void write_volume(const Volume& volume, const fs::path& path, const WriteOptions& options) {
     check_output(path);
-    const std::string problem = why_not_written(path, volume.geometry());
+    const std::string problem = why_not_written(path, volume.geometry(), options.compress);
     if (!problem.empty()) throw OutputError(problem);
     if (written_extension_of(path) == ".raw") return write_raw(volume, path, options.progress);
     if (stays(path)) return write_through_file(volume, path, options);

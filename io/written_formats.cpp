@@ -1,9 +1,16 @@
 // The extensions of the formats that are written. See the header.
 #include "palpate/io/written_formats.hpp"
 
+#include <algorithm>
 #include <array>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <system_error>
 
 namespace palpate::io {
+
+namespace fs = std::filesystem;
 
 std::span<const std::string_view> written_extensions() {
     static constexpr std::array<std::string_view, 10> all = {
@@ -11,7 +18,7 @@ std::span<const std::string_view> written_extensions() {
     return all;
 }
 
-std::string_view written_extension_of(const std::filesystem::path& path) {
+std::string_view written_extension_of(const fs::path& path) {
     const std::string name = path.filename().string();
     for (const std::string_view extension : written_extensions()) {
         if (name.size() > extension.size() && name.ends_with(extension)) return extension;
@@ -21,28 +28,73 @@ std::string_view written_extension_of(const std::filesystem::path& path) {
 
 namespace {
 
-/// A .raw is the data file of a .mhd or .nhdr of the same name: writing one of them may replace
-/// samples of the other.
-std::string owner_of_data(const std::filesystem::path& path, std::string_view extension) {
-    const auto sibling = [&](const char* other) {
-        std::filesystem::path name = path;
-        name.replace_extension(other);
-        std::error_code error;
-        return std::filesystem::exists(name, error) ? name.filename().string() : std::string();
-    };
-    if (extension == ".raw") {
-        const std::string mhd = sibling(".mhd");
-        return mhd.empty() ? sibling(".nhdr") : mhd;
-    }
-    if ((extension == ".mhd" || extension == ".nhdr") && sibling(extension.data()).empty()) {
-        return sibling(".raw");
+/// The ends of the names of data files beside headers.
+struct DataEnds {
+    std::string_view header, plain, compressed;
+};
+
+constexpr std::array<DataEnds, 2> data_ends = {{
+    {".nhdr", ".raw", ".raw.gz"},
+    {".mhd", ".raw", ".zraw"},
+}};
+
+bool is_there(const fs::path& path) {
+    std::error_code error;
+    return fs::exists(fs::symlink_status(path, error));
+}
+
+/// The data file that a header names; empty if it names none or cannot be read.
+fs::path data_file_named_in(const fs::path& header) {
+    constexpr std::size_t longest = std::size_t{1} << 16;  // samples may follow a header
+    std::error_code error;
+    if (!fs::is_regular_file(header, error)) return {};
+    std::string text(longest, '\0');
+    std::ifstream in(header, std::ios::binary);
+    in.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(in.gcount()));
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t sign = std::min(line.find_first_of(":="), line.size());
+        std::string field;
+        for (const char c : line.substr(0, sign)) {
+            if (c != ' ') field += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+        }
+        if (field != "datafile" && field != "elementdatafile") continue;
+        const std::size_t first = line.find_first_not_of(" \t", sign + 1);
+        const std::size_t last = line.find_last_not_of(" \t\r");
+        if (first > last || first == line.npos) return {};
+        return fs::path(line.substr(first, last - first + 1)).lexically_normal();
     }
     return {};
 }
 
+/// The file beside `path` whose samples would be replaced. A data file may be replaced only if the
+/// header of this name is the only one that names it.
+std::string owner_of_data(const fs::path& path, std::string_view extension, bool compress) {
+    const fs::path data = extension == ".raw" ? path : data_file_of(path, compress);
+    if (data.empty() || (extension != ".raw" && !is_there(data))) return {};
+    for (const DataEnds& ends : data_ends) {
+        const fs::path header = fs::path(path).replace_extension(ends.header);
+        if (ends.header == extension || !is_there(header)) continue;
+        const bool is_named = data_file_named_in(header).filename() == data.filename();
+        if (extension == ".raw" || is_named) return header.filename().string();
+    }
+    const bool is_own = extension == ".raw" || data_file_named_in(path) == data.filename();
+    return is_own ? std::string() : data.filename().string();
+}
+
 }  // namespace
 
-std::string why_not_written(const std::filesystem::path& path, const Geometry& geometry) {
+fs::path data_file_of(const fs::path& path, bool compress) {
+    const std::string_view extension = written_extension_of(path);
+    for (const DataEnds& ends : data_ends) {
+        if (ends.header != extension) continue;
+        return fs::path(path).replace_extension(compress ? ends.compressed : ends.plain);
+    }
+    return {};
+}
+
+std::string why_not_written(const fs::path& path, const Geometry& geometry, bool compress) {
     const std::string_view extension = written_extension_of(path);
     if (extension.empty()) {
         const auto all = written_extensions();
@@ -64,7 +116,7 @@ std::string why_not_written(const std::filesystem::path& path, const Geometry& g
         return path.string() + ": " + std::string(extension) +
                " keeps no origin and no directions, and this volume has them: name it .nrrd";
     }
-    const std::string owner = owner_of_data(path, extension);
+    const std::string owner = owner_of_data(path, extension, compress);
     if (!owner.empty()) {
         return path.string() + ": would replace samples that belong to " + owner +
                " beside it: choose another name";

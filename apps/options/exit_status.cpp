@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "palpate/devices/error.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/io/series.hpp"
 
 namespace palpate::app {
@@ -41,7 +42,7 @@ Failure failure_of(const std::exception& exception) {
     if (is<std::bad_alloc>(exception)) {
         return {bad_input, "not enough memory: use a smaller volume, or one of fewer bits"};
     }
-    const std::string text = one_line(exception.what());
+    const std::string text = one_line(io::without_secrets(exception.what()));
     if (is<devices::DeviceError>(exception)) return {no_device, text};
     if (is<io::OutputError>(exception)) return {bad_output, text};
     if (is<std::invalid_argument>(exception)) return {wrong_use, text};
@@ -52,7 +53,7 @@ Failure failure_of(const std::exception& exception) {
 }
 
 int fail(const std::string& text, int status) {
-    std::fprintf(stderr, "palpate: %s\n", text.c_str());
+    std::fprintf(stderr, "palpate: %s\n", io::without_secrets(text).c_str());
     return status;
 }
 

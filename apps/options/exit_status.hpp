@@ -26,7 +26,8 @@ std::string one_line(std::string text);
 /// What an exception that nobody caught means.
 Failure failure_of(const std::exception& exception);
 
-/// Prints the line on standard error, behind the program's name. Returns the status.
+/// Prints the line on standard error, behind the program's name, without what gives access to
+/// addresses in it (io::without_secrets()). Returns the status.
 int fail(const std::string& text, int status);
 
 }  // namespace palpate::app

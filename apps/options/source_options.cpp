@@ -126,7 +126,7 @@ run::Source SourceOptions::source() const {
 
 void SourceOptions::warn_of_no_effect(const run::Source& source) const {
     const auto warn = [&](std::initializer_list<const char*> options, const std::string& why) {
-        app::warn_of_no_effect(*command_, options, io::without_secrets(name_of(source)) + why);
+        app::warn_of_no_effect(*command_, options, name_of(source) + why);
     };
     const auto* file = std::get_if<run::FileSource>(&source.from);
     const auto* store = std::get_if<run::StoreSource>(&source.from);
@@ -145,7 +145,7 @@ void SourceOptions::warn_of_no_effect(const run::Source& source) const {
 
 void SourceOptions::warn_of_no_effect(const run::LoadedVolume& loaded) const {
     const auto warn = [&](std::initializer_list<const char*> options, const std::string& why) {
-        app::warn_of_no_effect(*command_, options, io::without_secrets(loaded.name) + why);
+        app::warn_of_no_effect(*command_, options, loaded.name + why);
     };
     if (loaded.sequence.count() < 2) {
         warn({"--frame-interval", "--playback", "--once", "--sequence-memory"},

@@ -82,7 +82,7 @@ Taken opened(const ConvertWords& words) {
         words.source.warn_of_no_effect(source);
         if (!words.source.quiet) {
             for (const std::string& note : store->info().notes) {
-                say("palpate: note: {}: {}\n", io::without_secrets(from->address), note);
+                say("palpate: note: {}: {}\n", from->address, note);
             }
         }
         const int frames = store->info().times;
@@ -96,7 +96,7 @@ Taken opened(const ConvertWords& words) {
 void note_losses(const CLI::App& command, const ConvertWords& words, const Taken& taken) {
     if (words.source.quiet) return;
     const auto note = [&](const std::string& text) {
-        say("palpate: note: {}: {}\n", io::without_secrets(words.source.name()), text);
+        say("palpate: note: {}: {}\n", words.source.name(), text);
     };
     if (taken.frames > 1 && command.count("--time-step") == 0) {
         note(fmt::format("only the first of its {} frames is converted (--time-step)",

@@ -15,6 +15,7 @@
 #include "apps/palpate/picture.hpp"
 #include "apps/palpate/progress.hpp"
 #include "apps/palpate/result_folder.hpp"
+#include "palpate/io/error.hpp"
 #include "palpate/io/output.hpp"
 
 namespace palpate::app {
@@ -91,8 +92,9 @@ std::string report_html(const Demo& demo, const std::string& images) {
         "<pre>{}</pre>\n{}"
         "<p>Data: <a href=\"trajectory.csv\">trajectory.csv</a> (the hand), <a "
         "href=\"trace.csv\">trace.csv</a> (one row per tick){}.</p>\n</html>\n",
-        demo.hand, demo.isovalue, html_text(demo.loaded.name), size[0], size[1], size[2],
-        name_of(demo.loaded.volume.type()), summary_text(demo.summary), images, path);
+        demo.hand, demo.isovalue, html_text(io::without_secrets(demo.loaded.name)), size[0],
+        size[1], size[2], name_of(demo.loaded.volume.type()), summary_text(demo.summary), images,
+        path);
 }
 
 }  // namespace
@@ -158,8 +160,8 @@ void run_demo(Demo& demo, const DemoOptions& options, const DemoPicture& picture
     io::write_file(folder / "report.html", report_html(demo, images));
     results.complete();
     if (quiet) return;
-    fmt::print("{} touched {} at isovalue {:g}.\n{}", demo.hand, demo.loaded.name, demo.isovalue,
-               summary_text(demo.summary));
+    fmt::print("{} touched {} at isovalue {:g}.\n{}", demo.hand,
+               io::without_secrets(demo.loaded.name), demo.isovalue, summary_text(demo.summary));
     if (!plotted) fmt::print("No figure over time: gnuplot is not installed.\n");
     fmt::print("Results: {} (open report.html)\n", options.output);
 }

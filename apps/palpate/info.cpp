@@ -124,7 +124,7 @@ nlohmann::ordered_json json_of(const run::LoadedVolume& loaded, const run::Histo
     const auto list = [](const auto& v) { return nlohmann::json::array({v[0], v[1], v[2]}); };
     nlohmann::json direction = nlohmann::json::array();
     for (int axis = 0; axis < 3; ++axis) direction.push_back(list(Vec3(g.direction.col(axis))));
-    return {{"name", loaded.name},
+    return {{"name", io::without_secrets(loaded.name)},
             {"format", loaded.format},
             {"size", list(g.size)},
             {"type", name_of(samples->type())},

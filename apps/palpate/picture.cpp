@@ -6,12 +6,13 @@
 
 #include "apps/palpate/commands.hpp"
 #include "apps/palpate/outputs.hpp"
+#include "palpate/io/error.hpp"
 #include "pictures/picture.hpp"
 
 namespace palpate::app {
 
 pictures::PictureScene scene_of(const run::LoadedVolume& loaded, int width, int height) {
-    const std::filesystem::path path(loaded.name);
+    const std::filesystem::path path(io::without_secrets(loaded.name));
     pictures::PictureScene scene;
     scene.oriented = loaded.volume.geometry().oriented;
     scene.width = width;

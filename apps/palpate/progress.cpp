@@ -9,6 +9,7 @@
 
 #include "apps/options/say.hpp"
 #include "apps/palpate/commands.hpp"
+#include "palpate/io/error.hpp"
 
 namespace palpate::app {
 namespace {
@@ -21,7 +22,7 @@ constexpr int width = 30;
 }  // namespace
 
 ProgressBar::ProgressBar(std::string label, bool quiet)
-    : label_(std::move(label)),
+    : label_(io::without_secrets(std::move(label))),
       begin_(std::chrono::steady_clock::now()),
       last_(begin_),
       show_(!quiet && ::isatty(STDERR_FILENO)) {}
@@ -52,11 +53,11 @@ run::LoadedVolume load_for_terminal(const SourceOptions& options) {
 }
 
 run::LoadedVolume load_for_terminal(const run::Source& source, bool quiet) {
-    ProgressBar bar("reading " + io::without_secrets(name_of(source)), quiet);
+    ProgressBar bar("reading " + name_of(source), quiet);
     run::LoadedVolume loaded = run::load(source, [&](double fraction) { bar.at(fraction); });
     if (!quiet) {
         for (const std::string& note : loaded.notes) {
-            say("palpate: note: {}: {}\n", io::without_secrets(loaded.name), note);
+            say("palpate: note: {}: {}\n", loaded.name, note);
         }
     }
     return loaded;
@@ -75,7 +76,7 @@ void note_terraces(const run::LoadedVolume& loaded) {
     const std::string suggestion =
         dequantize_suggestion(filters::terraces_of(loaded.volume, stop_if_interrupted));
     if (suggestion.empty()) return;
-    say("palpate: note: {}: try {}\n", io::without_secrets(loaded.name), suggestion);
+    say("palpate: note: {}: try {}\n", loaded.name, suggestion);
 }
 
 }  // namespace palpate::app

@@ -147,7 +147,7 @@ void save_after_failure(run::Data& data, const RunOptions& options) {
     } catch (const std::exception& e) {
         told += "; " + std::string(e.what());
     }
-    std::fprintf(stderr, "palpate: %s%s\n", told.c_str(), rescued(data).c_str());
+    say("palpate: {}{}\n", told, rescued(data));
 }
 
 void start_recording(std::vector<LiveHand>& hands, const RunOptions& options) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <new>
+#include <string>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +19,15 @@ namespace {
 thread_local std::array<char, 1024> last_error{};
 
 palpate_status keep(palpate_status status, const char* text) noexcept {
+    std::string shown;
+    if (std::strstr(text, "://")) {
+        try {
+            shown = io::without_secrets(text);
+            text = shown.c_str();
+        } catch (const std::bad_alloc&) {
+            text = "not enough memory for the message";
+        }
+    }
     const std::size_t length = std::min(std::strlen(text), last_error.size() - 1);
     std::memcpy(last_error.data(), text, length);
     last_error[length] = '\0';

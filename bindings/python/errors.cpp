@@ -14,7 +14,7 @@ namespace {
 
 /// In one line. Names of files in it may have bytes that are no text.
 py::object message_of(const std::exception& error) {
-    const std::string text = io::one_line(error.what());
+    const std::string text = io::one_line(io::without_secrets(error.what()));
     return py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
         text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace"));
 }

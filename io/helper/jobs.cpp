@@ -22,6 +22,7 @@
 #include "io/system/leftovers.hpp"
 #include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
+#include "palpate/io/written_formats.hpp"
 
 namespace palpate::io {
 
@@ -30,7 +31,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // Names of unfinished files, for the signal handler, which may not allocate.
-char unfinished[4][4096];
+char unfinished[3][4096];
 char unfinished_folder[4096];
 
 extern "C" void clean_up_and_go(int signal_number) {
@@ -155,12 +156,14 @@ nlohmann::json run_explore(const fs::path& path, const nlohmann::json& asked, Ex
 /// data files, in a folder of its own, so that no unfinished file is visible.
 class Workshop {
   public:
-    Workshop(const fs::path& folder, const fs::path& target)
-        : folder_(folder), target_(target), inside_(folder / target.filename()) {
+    Workshop(const fs::path& folder, const fs::path& target, bool compress)
+        : folder_(folder),
+          target_(target),
+          inside_(folder / target.filename()),
+          data_(data_file_of(inside_, compress)) {
         remember(unfinished[0], inside_);
-        remember(unfinished[1], fs::path(inside_).replace_extension(".raw"));
-        remember(unfinished[2], fs::path(inside_).replace_extension(".zraw"));
-        remember(unfinished[3], marker());
+        remember(unfinished[1], data_);
+        remember(unfinished[2], marker());
         remember(unfinished_folder, folder);
         // SIGPIPE: a dying caller's pipes close before its death is announced (PR_SET_PDEATHSIG),
         // and a report between the two would end this process with its file left behind.
@@ -174,18 +177,23 @@ class Workshop {
             throw Failure("cannot be written there (" + (error ? error.message() : reason(EEXIST)) +
                           "); choose another folder");
         }
-        std::ofstream(marker()).close();
+        std::ofstream(marker()) << temporary_marker_text;
         // Locked until this process ends: others see that it is in use.
         const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
         if (folder >= 0) (void)::flock(folder, LOCK_EX | LOCK_NB);
     }
     const fs::path& inside() const { return inside_; }
 
-    /// Data files first: a header never points to data that are not there.
+    /// The data file first: a header never points to data that are not there. Moves no other file:
+    /// only of these two is it known that nothing else is replaced.
     void move_out() const {
         std::vector<fs::path> made;
         for (const auto& entry : fs::directory_iterator(folder_)) {
-            if (entry.path() != inside_ && entry.path() != marker()) made.push_back(entry.path());
+            const fs::path& file = entry.path();
+            if (file == data_) made.push_back(file);
+            if (file == data_ || file == inside_ || file == marker()) continue;
+            throw Failure("would be written with a file " + file.filename().string() +
+                          " that is not known; name it .nrrd");
         }
         made.push_back(inside_);
         const fs::path parent = target_.has_parent_path() ? target_.parent_path() : ".";
@@ -213,16 +221,16 @@ class Workshop {
     static void remember(char* to, const fs::path& path) {
         std::snprintf(to, sizeof unfinished_folder, "%s", path.c_str());
     }
-    fs::path folder_, target_, inside_;
+    fs::path folder_, target_, inside_, data_;
 };
 
 nlohmann::json run_write(const fs::path& path, const nlohmann::json& asked, const fs::path& folder,
                          Write* write) {
-    const Workshop workshop(folder, path);
     WrittenVolume volume;
+    volume.compress = asked.at("compress").get<bool>();
+    const Workshop workshop(folder, path, volume.compress);
     volume.geometry = geometry_from(asked.at("geometry"));
     volume.type = sample_type_from(asked.at("type").get<std::string>());
-    volume.compress = asked.at("compress").get<bool>();
     check_geometry(volume.geometry);
     const auto bytes =
         static_cast<std::size_t>(sample_count(volume.geometry)) * size_of(volume.type);

@@ -5,6 +5,7 @@
 #include <map>
 #include <mutex>
 
+#include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "stream/objects/http_client.hpp"
 #include "stream/objects/remote_objects.hpp"
@@ -71,11 +72,9 @@ class HttpObjects : public Objects {
         return body_of({.key = key}, std::move(answer)) ? size : std::nullopt;
     }
 
-    /// Only a version in the query belongs to the object. Signatures change each time.
+    /// Signatures in the query change each time and do not belong to the object.
     std::string version() const override {
-        std::string all;
-        const std::size_t at = query_.find("versionId=");
-        if (at != query_.npos) all = query_.substr(at, query_.find('&', at) - at);
+        std::string all = io::query_of_object(query_);
         const std::lock_guard lock(mutex_);
         for (const auto& [key, version] : versions_) all += '\n' + key + '\n' + version;
         return std::to_string(std::hash<std::string>{}(all));

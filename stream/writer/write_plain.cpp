@@ -68,7 +68,7 @@ void write_slabs(const Store& from, int level, io::PendingFile& file, std::atomi
 void write_plain(const Store& from, int level, const std::filesystem::path& out,
                  const io::WriteOptions& options) {
     const Geometry& grid = level_of(from, level).geometry;
-    const std::string problem = io::why_not_written(out, grid);
+    const std::string problem = io::why_not_written(out, grid, options.compress);
     if (!problem.empty()) throw io::OutputError(problem);
     const std::string_view extension = io::written_extension_of(out);
     const bool raw = extension == ".raw";

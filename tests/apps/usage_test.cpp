@@ -172,6 +172,28 @@ TEST(Usage, options_that_may_be_repeated_leave_the_volume_alone) {
     }
 }
 
+TEST(Usage, no_message_has_the_password_or_the_query_of_an_address) {
+    const ScratchFolder folder;
+    put_trajectory(folder);
+    const std::string address = "http://ann:S3CRET@127.0.0.1:9/v.zarr?a=host;b&sig=TOKEN9";
+    const std::string volume = "synthetic:sphere:9x9x9 ";
+    for (const std::string& words :
+         {address, "info " + volume + address, "convert " + volume + address,
+          "convert " + volume + "--compression " + address + " a.zarr",
+          "touch " + volume + "--save " + address, "tool " + address + " -o a.csv",
+          "extract " + volume + "-o " + address, "info " + address,
+          "render " + volume + "-i 5 -o a.png --path " + address,
+          "replay " + volume + "--trajectory t.csv -o a.csv --tool " + address,
+          "replay " + volume + "--trajectory " + address + " -o a.csv"}) {
+        const Outcome outcome = palpate(folder, words);
+        EXPECT_NE(outcome.status, 0) << words;
+        EXPECT_TRUE(contains(outcome.err, "127.0.0.1:9/v.zarr")) << words << outcome.err;
+        EXPECT_FALSE(contains(outcome.err, "S3CRET")) << outcome.err;
+        EXPECT_FALSE(contains(outcome.err, "TOKEN9")) << outcome.err;
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"t.csv"});
+}
+
 TEST(Usage, warns_of_an_isovalue_outside_the_range_and_goes_on) {
     const ScratchFolder folder;
     put_trajectory(folder);

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <thread>
+#include <tuple>
 
 #include "palpate/io/written_formats.hpp"
 #include "volume_support.hpp"
@@ -176,6 +177,60 @@ TEST(write_volume, never_replaces_the_samples_of_another_volume) {
     write_volume(other, folder / "b.raw");
     EXPECT_TRUE(same_samples(read_volume(folder / "a.mhd").volume, other));
 }
+
+class TwoFiles : public testing::TestWithParam<std::tuple<const char*, bool>> {
+  protected:
+    void write(const Volume& volume, const std::string& name) const {
+        WriteOptions options;
+        options.compress = std::get<1>(GetParam());
+        write_volume(volume, folder_ / name, options);
+    }
+    std::string refusal(const Volume& volume, const std::string& name) const {
+        return message_of<OutputError>([&] { write(volume, name); });
+    }
+    ScratchFolder folder_;
+};
+
+TEST_P(TwoFiles, never_replace_samples_of_a_header_with_another_name) {
+    const std::string header = std::get<0>(GetParam());
+    std::mt19937 random(4);
+    Geometry g;
+    g.size = Index3(3, 4, 5);
+    const Volume volume = random_volume<std::uint8_t>(random, g);
+    const Volume other = random_volume<std::uint8_t>(random, g);
+    write(volume, "a" + header);
+    write(volume, "a" + header);  // its own samples
+    const auto names = folder_.names();
+    ASSERT_EQ(names.size(), 2U);
+    const auto data = data_file_of(folder_ / ("a" + header), std::get<1>(GetParam())).filename();
+    EXPECT_TRUE(data == names[0] || data == names[1]) << data;
+
+    std::filesystem::rename(folder_ / ("a" + header), folder_ / ("mine" + header));
+    EXPECT_TRUE(contains(refusal(other, "a" + header), "belong to " + data.string()));
+    // A header of this name whose samples are elsewhere.
+    put_bytes(folder_ / ("a" + header), "NRRD0005\ndata file: b.raw\nElementDataFile = b.raw\n");
+    EXPECT_TRUE(contains(refusal(other, "a" + header), "belong to " + data.string()));
+    EXPECT_TRUE(same_samples(read_volume(folder_ / ("mine" + header)).volume, volume));
+}
+
+TEST_P(TwoFiles, never_replace_samples_that_a_header_of_the_other_format_names) {
+    const std::string header = std::get<0>(GetParam());
+    const std::string other = header == ".mhd" ? "a.nhdr" : "a.mhd";
+    std::mt19937 random(5);
+    Geometry g;
+    g.size = Index3(3, 4, 5);
+    const Volume volume = random_volume<std::uint8_t>(random, g);
+    write(volume, "a" + header);
+    const auto data = data_file_of(folder_ / ("a" + header), std::get<1>(GetParam())).filename();
+    put_bytes(folder_ / other,
+              "data file: ./" + data.string() + "\nElementDataFile = " + data.string() + "\n");
+    EXPECT_TRUE(contains(refusal(volume, "a" + header), "belong to " + other));
+    put_bytes(folder_ / other, "data file: b.raw\nElementDataFile = b.raw\n");
+    write(volume, "a" + header);
+}
+
+INSTANTIATE_TEST_SUITE_P(each, TwoFiles,
+                         testing::Combine(testing::Values(".nhdr", ".mhd"), testing::Bool()));
 
 TEST(write_volume, says_so_if_the_folder_is_missing_or_the_name_is_a_folder) {
     const ScratchFolder folder;

@@ -1,5 +1,6 @@
 """Trials with people, by an observer whose threshold is known."""
 
+import contextlib
 import copy
 import importlib
 import os
@@ -12,6 +13,44 @@ import palpate
 from palpate import RenderSetup, trials
 from palpate.__main__ import COMMANDS
 from palpate.trials import Observer, Plan, fit, next_trial, psychometric, put, read, session, staircase
+
+
+ADDRESS = "http://ann:S3CRET@127.0.0.1:9"
+
+
+def test_touches_of_others_stay_and_those_of_an_interrupted_trial_go(tmp_path):
+    plan, folder = Plan(0.3, differences=(0.5,), repeats=1), tmp_path / "p.touches"
+
+    def ask(key):
+        return trials.touching("synthetic:sphere:16x16x16", None, "simulated:hand=press", "stiffness", 0.3, folder, 0.45, key)(next_trial(plan, []))
+
+    def interrupted(_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ask(interrupted)
+    assert not list(folder.iterdir())
+    precious = folder / "0-1.csv"
+    precious.write_text("mine")
+    with pytest.raises(palpate.OutputError, match="is there already"):
+        ask(lambda _: "1")
+    assert precious.read_text() == "mine" and list(folder.iterdir()) == [precious]
+    precious.unlink()
+    assert ask(lambda _: "1") == 1
+    assert sorted(file.name for file in folder.iterdir()) == ["0-1.csv", "0-2.csv"]
+
+
+@pytest.mark.parametrize("words", [[ADDRESS + "/v.zarr?sig=TOKEN9"], [ADDRESS], [ADDRESS + "/v.zarr?sig=TOKEN9@5"], ["v.nrrd", "a.csv", ADDRESS]])
+def test_no_message_has_the_password_or_the_query_of_an_address(tmp_path, monkeypatch, capsys, words):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) if len(words) > 1 else contextlib.nullcontext():
+        assert trials.main([*words, "p.csv", "--standard", "0.3"]) != 0
+    said = capsys.readouterr().err
+    assert "127.0.0.1:9" in said and "S3CRET" not in said and "TOKEN9" not in said
+    if len(words) == 1:
+        with pytest.raises((ValueError, palpate.Error)) as error:
+            palpate.subject(words[0])
+        assert "S3CRET" not in str(error.value) and "TOKEN9" not in str(error.value)
 
 
 @pytest.mark.parametrize("plan", [Plan(0.3), Plan(0.3, differences=(0.03, 0.06, 0.1, 0.2, 0.4), repeats=40)])

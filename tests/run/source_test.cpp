@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "palpate/filters/dequantize.hpp"
+#include "palpate/io/address.hpp"
 #include "palpate/io/error.hpp"
 #include "palpate/io/live_file.hpp"
 #include "palpate/scenes/volumes.hpp"
@@ -136,6 +137,9 @@ TEST(Source, keeps_no_passwords_but_that_there_was_one) {
         source_from({{"volume", "https://me:secret@example.org/a.zarr?versionId=3&sig=secret"},
                      {"forbidden-is-missing", "yes"}}));
     EXPECT_EQ(names.at("volume"), "https://example.org/a.zarr?versionId=3");
+    EXPECT_EQ(io::address_to_keep("https://h.org/a?sig=b&versionid=4&x=c&Snapshot=5&generation=6"),
+              "https://h.org/a?versionid=4&Snapshot=5&generation=6");
+    EXPECT_EQ(io::address_to_keep("https://h.org/a?noversionId=secret"), "https://h.org/a");
     EXPECT_EQ(names.at("secrets"), "left out");
     EXPECT_EQ(names.at("forbidden-is-missing"), "yes");
     EXPECT_EQ(to_names(source_from(names)), names);

@@ -17,6 +17,8 @@ ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 STATUS = ((InputError, 3), (DeviceError, 4), (OSError, 5))  # docs/command_line.md
 READER_GONE = 141
 EMPTY = "the value is empty"
+_USER = re.compile(r"(?<=://)[^/?#\s]*@")
+_QUERY = re.compile(r"(://[^\s'\"<>?]*\?)[^\s'\"<>]*?(?=[:,;)]*(?:[\s'\"<>]|$))")
 _CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 _NUMBER = re.compile(r"[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|inf)", re.IGNORECASE)
 
@@ -206,10 +208,15 @@ def answer_to(text: str) -> str:
     return input()
 
 
+def without_secrets(text: str) -> str:
+    """The text without user, password and query of its addresses, as io::without_secrets() in palpate/io/error.hpp."""
+    return _QUERY.sub(r"\1...", _USER.sub("", text))
+
+
 def remark(text: str, end: str = "\n") -> None:
-    """On standard error, where nothing depends on it."""
+    """On standard error, where nothing depends on it. Without what gives access to addresses in the text."""
     try:
-        print(text, end=end, file=sys.stderr, flush=True)
+        print(without_secrets(text), end=end, file=sys.stderr, flush=True)
     except OSError:
         _lost(sys.stderr)
 

@@ -11,6 +11,8 @@ import difflib
 import fcntl
 import io
 import math
+import os
+import re
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -18,7 +20,7 @@ from typing import Any, Optional, Union
 
 import numpy
 
-from .command_line import ABOVE_ZERO, Kind, Parser, answer_to, remark, run, say, whole
+from .command_line import ABOVE_ZERO, Kind, Parser, answer_to, remark, run, say, whole, without_secrets
 from .errors import DeviceError, InputError, OutputError
 
 _Path = Union[str, Path]
@@ -221,6 +223,7 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
     if not 0 < seconds < math.inf:
         raise ValueError("the seconds of a touch have to be above 0")
     loaded, folder = palpate.load(volume), Path(folder)
+    made: set[Path] = set()  # recordings of the trial that is asked
 
     def opened(value):
         setup = palpate.Setup(isovalue=level, device=device)
@@ -229,9 +232,13 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
 
     def felt(value, file):
         run, stiffness = opened(value)
-        file.unlink(missing_ok=True)  # of a trial that was interrupted
+        if file in made:
+            file.unlink(missing_ok=True)
+        elif os.path.lexists(file):
+            raise OutputError(f"{file}: is there already, of another session or of one that was killed; move it elsewhere")
         with run:
             run.record(file)
+            made.add(file)
             time.sleep(seconds)
             run.stop_recording()
             if run.problem:
@@ -241,8 +248,7 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
                 raise ValueError(f"stiffness [N/mm] = {stiffness:g}: the device renders only {now.stiffness:g} stably")
         return bool(palpate.read_recording(file).trace.force.any())
 
-    def ask(trial):
-        folder.mkdir(parents=True, exist_ok=True)
+    def answer(trial):
         while True:
             both = True
             for number, value in enumerate((trial.first, trial.second), 1):
@@ -251,9 +257,19 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
             if both:
                 break
             key("Nothing was felt in one of them. Press Enter to touch both again. ")
-        while (answer := key("Which one was more, 1 or 2? ").strip()) not in ("1", "2"):
+        while (given := key("Which one was more, 1 or 2? ").strip()) not in ("1", "2"):
             pass
-        return int(answer)
+        return int(given)
+
+    def ask(trial):
+        folder.mkdir(parents=True, exist_ok=True)
+        made.clear()
+        try:
+            return answer(trial)
+        except BaseException:  # the trial is asked anew when the session continues
+            for file in made:
+                file.unlink(missing_ok=True)
+            raise
 
     opened(largest)  # Run refuses what the device cannot render stably
     return ask
@@ -279,11 +295,13 @@ PARSER.add("--seconds", kind=ABOVE_ZERO, default=3.0, help="Duration of each tou
 
 def _ask(chosen: Any) -> None:
     volume, at, level = chosen.volume.rpartition("@")
+    if "/" in level or re.fullmatch(r"[^/]*://[^/]*", volume):  # of a folder's name, or behind the password of an address
+        volume, at, level = "", "", chosen.volume
     plan = Plan(chosen.standard, chosen.difference, tuple(chosen.differences), chosen.repeats, chosen.seed, chosen.most)
     largest = plan.standard * (1 + (max(plan.differences) if plan.differences else plan.most))
     rows = session(chosen.file, plan, touching(volume if at else level, level if at else None, chosen.device, chosen.setting,
                                                chosen.seconds, Path(chosen.file).with_suffix(".touches"), largest),
-                   f"{chosen.setting} of {chosen.volume} for {chosen.seconds:g} s")
+                   f"{chosen.setting} of {without_secrets(chosen.volume)} for {chosen.seconds:g} s")
     remark(f"The session is complete: {len(rows)} trials. To fit a threshold: palpate study --analyse {chosen.file}")
 
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 namespace palpate::io {
@@ -25,7 +26,8 @@ inline std::string one_line(std::string text) {
 /// The text without the parts of its addresses that give access: user, password, and the query,
 /// which may be a signature. "https://me:pw@host/a?sig=b" becomes "https://host/a?...".
 inline std::string without_secrets(std::string text) {
-    constexpr const char* ends = " \t\r\n'\"<>,;)";
+    constexpr const char* ends = " \t\r\n'\"<>";
+    constexpr std::string_view signs = ":,;)";  // of the sentence, if they come last
     for (std::size_t at = 0; (at = text.find("://", at)) != text.npos;) {
         at += 3;
         const std::size_t host_end = std::min(text.find_first_of("/?# \t\r\n", at), text.size());
@@ -33,10 +35,9 @@ inline std::string without_secrets(std::string text) {
         if (sign != text.npos) text.erase(at, sign + 1);
         const std::size_t query = text.find('?', at);
         if (query >= std::min(text.find_first_of(ends, at), text.size())) continue;
-        const std::size_t end = text.find_first_of(ends, query);
-        const std::size_t length = std::min(end, text.size()) - query - 1;
-        const bool ends_name = text[query + length] == ':';  // "ADDRESS: what is wrong"
-        text.replace(query + 1, length - (ends_name ? 1 : 0), "...");
+        std::size_t end = std::min(text.find_first_of(ends, query), text.size());
+        while (end > query + 1 && signs.find(text[end - 1]) != signs.npos) --end;
+        text.replace(query + 1, end - query - 1, "...");
     }
     return text;
 }

@@ -80,7 +80,7 @@ struct WriteOptions {
 };
 
 /// Writes one of written_extensions() (io/written_formats.hpp). The file appears under its name
-/// only when it is complete (.nhdr and .mhd: their .raw or .zraw before the header). MetaImage and
+/// only when it is complete (.nhdr and .mhd: data_file_of it before the header). MetaImage and
 /// VTI store the geometry bit for bit, NRRD up to rounding of the last bit, NIfTI as 32-bit floats.
 /// TIFF, with one page per slice, stores the spacing as 32-bit floats in ImageJ's description. Raw
 /// stores none. These two refuse a volume with an origin or directions. Throws OutputError. An
