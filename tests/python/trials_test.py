@@ -18,6 +18,28 @@ from palpate.trials import Observer, Plan, fit, next_trial, psychometric, put, r
 ADDRESS = "http://ann:S3CRET@127.0.0.1:9"
 
 
+def test_touches_of_others_stay_and_those_of_an_interrupted_trial_go(tmp_path):
+    plan, folder = Plan(0.3, differences=(0.5,), repeats=1), tmp_path / "p.touches"
+
+    def ask(key):
+        return trials.touching("synthetic:sphere:16x16x16", None, "simulated:hand=press", "stiffness", 0.3, folder, 0.45, key)(next_trial(plan, []))
+
+    def interrupted(_):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ask(interrupted)
+    assert not list(folder.iterdir())
+    precious = folder / "0-1.csv"
+    precious.write_text("mine")
+    with pytest.raises(palpate.OutputError, match="is there already"):
+        ask(lambda _: "1")
+    assert precious.read_text() == "mine" and list(folder.iterdir()) == [precious]
+    precious.unlink()
+    assert ask(lambda _: "1") == 1
+    assert sorted(file.name for file in folder.iterdir()) == ["0-1.csv", "0-2.csv"]
+
+
 @pytest.mark.parametrize("words", [[ADDRESS + "/v.zarr?sig=TOKEN9"], [ADDRESS], [ADDRESS + "/v.zarr?sig=TOKEN9@5"], ["v.nrrd", "a.csv", ADDRESS]])
 def test_no_message_has_the_password_or_the_query_of_an_address(tmp_path, monkeypatch, capsys, words):
     monkeypatch.chdir(tmp_path)

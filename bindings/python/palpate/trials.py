@@ -11,6 +11,7 @@ import difflib
 import fcntl
 import io
 import math
+import os
 import re
 import time
 from collections.abc import Callable, Sequence
@@ -222,6 +223,7 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
     if not 0 < seconds < math.inf:
         raise ValueError("the seconds of a touch have to be above 0")
     loaded, folder = palpate.load(volume), Path(folder)
+    made: set[Path] = set()  # recordings of the trial that is asked
 
     def opened(value):
         setup = palpate.Setup(isovalue=level, device=device)
@@ -230,9 +232,13 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
 
     def felt(value, file):
         run, stiffness = opened(value)
-        file.unlink(missing_ok=True)  # of a trial that was interrupted
+        if file in made:
+            file.unlink(missing_ok=True)
+        elif os.path.lexists(file):
+            raise OutputError(f"{file}: is there already, of another session or of one that was killed; move it elsewhere")
         with run:
             run.record(file)
+            made.add(file)
             time.sleep(seconds)
             run.stop_recording()
             if run.problem:
@@ -242,8 +248,7 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
                 raise ValueError(f"stiffness [N/mm] = {stiffness:g}: the device renders only {now.stiffness:g} stably")
         return bool(palpate.read_recording(file).trace.force.any())
 
-    def ask(trial):
-        folder.mkdir(parents=True, exist_ok=True)
+    def answer(trial):
         while True:
             both = True
             for number, value in enumerate((trial.first, trial.second), 1):
@@ -252,9 +257,19 @@ def touching(volume: _Path, level: Union[float, str, None], device: str, name: s
             if both:
                 break
             key("Nothing was felt in one of them. Press Enter to touch both again. ")
-        while (answer := key("Which one was more, 1 or 2? ").strip()) not in ("1", "2"):
+        while (given := key("Which one was more, 1 or 2? ").strip()) not in ("1", "2"):
             pass
-        return int(answer)
+        return int(given)
+
+    def ask(trial):
+        folder.mkdir(parents=True, exist_ok=True)
+        made.clear()
+        try:
+            return answer(trial)
+        except BaseException:  # the trial is asked anew when the session continues
+            for file in made:
+                file.unlink(missing_ok=True)
+            raise
 
     opened(largest)  # Run refuses what the device cannot render stably
     return ask
