@@ -166,7 +166,7 @@ namespace {
 /// Makes the file with all its blocks, because a page for which the disk has no room would end the
 /// writer with SIGBUS; maps it; then renames it.
 std::byte* make_file(const std::filesystem::path& path, const LiveHeader& header) {
-    const std::filesystem::path unfinished =
+    std::filesystem::path unfinished =
         temporary_in(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
     bool is_made = false;
     const auto fail = [&](int error) {
@@ -178,6 +178,7 @@ std::byte* make_file(const std::filesystem::path& path, const LiveHeader& header
         open(unfinished.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor < 0) fail(errno);
     is_made = true;
+    unfinished = signed_temporary(unfinished);
     const auto bytes = header.file_bytes();
     int error = posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));
     void* mapped = MAP_FAILED;

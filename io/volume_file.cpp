@@ -173,7 +173,7 @@ void write_through_file(const Volume& volume, const fs::path& path, const WriteO
     fs::create_directory(folder, error);
     if (error) throw OutputError(folder.string() + ": cannot be written: " + error.message());
     const Descriptor lock(lock_temporary(folder));
-    std::ofstream(folder / temporary_marker).close();
+    std::ofstream(folder / temporary_marker) << temporary_marker_text;
     const fs::path file = folder / ("volume" + extension);
     write_volume(volume, file, options);
     std::ifstream in(file, std::ios::binary);

@@ -30,7 +30,7 @@ ResultFolder::ResultFolder(const fs::path& folder) : folder_(folder) {
                               error.message() + "): choose another with --output");
     }
     lock_ = io::lock_temporary(part_);
-    std::ofstream(part_ / io::temporary_marker).close();
+    std::ofstream(part_ / io::temporary_marker) << io::temporary_marker_text;
 }
 
 ResultFolder::~ResultFolder() {

@@ -177,7 +177,7 @@ class Workshop {
             throw Failure("cannot be written there (" + (error ? error.message() : reason(EEXIST)) +
                           "); choose another folder");
         }
-        std::ofstream(marker()).close();
+        std::ofstream(marker()) << temporary_marker_text;
         // Locked until this process ends: others see that it is in use.
         const int folder = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
         if (folder >= 0) (void)::flock(folder, LOCK_EX | LOCK_NB);

@@ -111,8 +111,9 @@ fs::path free_name(const fs::path& out, const std::string& end) {
 /// that could be taken for another thing. Returns what stays because Palpate did not write it or
 /// because it cannot be removed, as a path from the folder.
 std::string remove_held(const fs::path& folder, int held) {
-    const fs::path away = temporary_in(parent_of(folder));
+    fs::path away = temporary_in(parent_of(folder));
     if (!rename_new(folder, away)) return errno == ENOENT ? "" : ".";
+    away = signed_temporary(away);
     std::string left = ".";  // another one, put there in this moment
     if (is_still(AT_FDCWD, away.c_str(), held)) left = remove_known(away, OwnFolder::growing);
     if (!left.empty()) rename_new(away, folder);

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -13,10 +14,14 @@
 #include <set>
 #include <string>
 #include <system_error>
+#include <vector>
 
+#include "io/process/helper_process.hpp"
 #include "io/system/number.hpp"
+#include "io/system/open_file.hpp"
 #include "io/system/own_names.hpp"
 #include "io/system/removal.hpp"
+#include "io/system/system.hpp"
 #include "palpate/io/error.hpp"
 
 namespace palpate::io {
@@ -30,19 +35,28 @@ bool only_digits(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// The process in ".palpate-PID-N.part", and in the names that earlier versions gave to folders,
-/// ".palpate-PID.part" and ".palpate-PID-N"; 0 for any other name.
-pid_t process_of(std::string_view name) {
-    if (!name.starts_with(name_begin)) return 0;
+/// What the name of a temporary file or folder tells.
+struct TemporaryName {
+    pid_t process = 0;  ///< 0: it is no such name
+    ino_t inode = 0;    ///< 0: it is not signed
+};
+
+/// In ".palpate-PID-N.part" and ".palpate-PID-N-INODE.part".
+TemporaryName told_by(std::string_view name) {
+    if (!name.starts_with(name_begin) || !name.ends_with(name_end)) return {};
     name.remove_prefix(name_begin.size());
-    const bool has_end = name.ends_with(name_end);
-    if (has_end) name.remove_suffix(name_end.size());
-    const auto dash = name.find('-');
-    const bool has_count = dash != std::string_view::npos;
-    if (!has_end && !has_count) return 0;
-    const std::string_view process = name.substr(0, dash);
-    if (!only_digits(process) || (has_count && !only_digits(name.substr(dash + 1)))) return 0;
-    return number_from<pid_t>(process).value_or(0);
+    name.remove_suffix(std::min(name_end.size(), name.size()));
+    std::vector<std::string_view> numbers;
+    for (std::size_t at = 0; at <= name.size();) {
+        const std::size_t dash = std::min(name.find('-', at), name.size());
+        numbers.push_back(name.substr(at, dash - at));
+        at = dash + 1;
+    }
+    if (numbers.size() < 2 || numbers.size() > 3) return {};
+    if (!std::ranges::all_of(numbers, only_digits)) return {};
+    TemporaryName told{number_from<pid_t>(numbers[0]).value_or(0)};
+    if (numbers.size() == 3) told.inode = number_from<ino_t>(numbers[2]).value_or(0);
+    return told;
 }
 
 bool is_dead(pid_t process) {
@@ -50,9 +64,14 @@ bool is_dead(pid_t process) {
 }
 
 bool is_marked(int folder) {
+    const Descriptor file(open_file_in(folder, temporary_marker));
     struct stat about {};
-    return ::fstatat(folder, temporary_marker, &about, AT_SYMLINK_NOFOLLOW) == 0 &&
-           S_ISREG(about.st_mode) && about.st_uid == ::geteuid();
+    if (file.number() < 0 || ::fstat(file.number(), &about) != 0 || about.st_uid != ::geteuid()) {
+        return false;
+    }
+    std::string text(temporary_marker_text.size() + 1, '\0');
+    const auto got = read_at(file.number(), text.data(), text.size(), 0);
+    return got >= 0 && text.substr(0, static_cast<std::size_t>(got)) == temporary_marker_text;
 }
 
 void remove_if_known(const fs::path& folder) {
@@ -65,16 +84,18 @@ void remove_if_known(const fs::path& folder) {
 }
 
 /// A living process keeps a lock, so that one in another container counts as living, too.
-void remove_one(const fs::path& path) {
+void remove_one(const fs::path& path, ino_t inode) {
     // O_NONBLOCK: a pipe of that name must not hold us up.
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (descriptor < 0) return;
     struct stat about {};
     if (::fstat(descriptor, &about) == 0 && about.st_uid == ::geteuid() &&
         ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
-        if (S_ISREG(about.st_mode) || (S_ISDIR(about.st_mode) && is_marked(descriptor))) {
+        const bool is_signed = about.st_ino == inode;
+        if ((S_ISREG(about.st_mode) && is_signed) ||
+            (S_ISDIR(about.st_mode) && is_marked(descriptor))) {
             remove_tree(path);
-        } else if (S_ISDIR(about.st_mode)) {
+        } else if (S_ISDIR(about.st_mode) && is_signed) {
             remove_if_known(path);
         }
     }
@@ -94,7 +115,7 @@ bool is_new(const fs::path& folder) {
 }  // namespace
 
 bool is_temporary(std::string_view name) {
-    return process_of(name) > 0;
+    return told_by(name).process > 0;
 }
 
 fs::path temporary_in(const fs::path& folder) {
@@ -107,11 +128,21 @@ fs::path temporary_in(const fs::path& folder) {
     }
 }
 
+fs::path signed_temporary(const fs::path& path) {
+    struct stat about {};
+    if (::lstat(path.c_str(), &about) != 0) return path;
+    fs::path to = path;
+    to.replace_extension();
+    to += "-" + std::to_string(about.st_ino) + std::string(name_end);
+    return rename_new(path, to) ? to : path;
+}
+
 fs::path make_temporary_folder(const fs::path& folder, std::error_code& error) {
     while (true) {
-        fs::path path = temporary_in(folder);
+        const fs::path path = temporary_in(folder);
         // If the folder exists, another process has just made it, and it is not ours.
-        if (fs::create_directory(path, error) || error) return path;
+        if (fs::create_directory(path, error)) return signed_temporary(path);
+        if (error) return path;
     }
 }
 
@@ -126,8 +157,8 @@ void remove_leftovers(const fs::path& folder) {
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; entry != end && !error;
          entry.increment(error)) {
-        const pid_t process = process_of(entry->path().filename().string());
-        if (process > 0 && is_dead(process)) remove_one(entry->path());
+        const TemporaryName told = told_by(entry->path().filename().native());
+        if (told.process > 0 && is_dead(told.process)) remove_one(entry->path(), told.inode);
     }
 }
 

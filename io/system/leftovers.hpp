@@ -12,13 +12,22 @@ namespace palpate::io {
 /// which there is nothing.
 std::filesystem::path temporary_in(const std::filesystem::path& folder);
 
+/// Gives a temporary file or folder that this process has just made a name that tells its inode,
+/// `.palpate-PID-N-INODE.part`: the proof for remove_leftovers() that Palpate made it. Nothing that
+/// is put or copied to that name has this inode. Returns the new path; the old one where that is
+/// not possible, and on Windows.
+std::filesystem::path signed_temporary(const std::filesystem::path& path);
+
 /// Whether a name is such a one, of any process.
 bool is_temporary(std::string_view name);
 
-/// An empty file of this name in a folder with such a name says that Palpate made the folder.
+/// A file of this name and content in a folder with such a name says that Palpate made the folder.
 inline constexpr const char* temporary_marker = ".palpate-temporary";
+inline constexpr std::string_view temporary_marker_text =
+    "Palpate made this folder for unfinished files. If its process is killed, the next one removes "
+    "it with all that is in it.\n";
 
-/// Makes a folder with such a name, readable as `folder` is by default; an error is left in
+/// Makes a signed folder with such a name, readable as `folder` is by default; an error is left in
 /// `error`.
 std::filesystem::path make_temporary_folder(const std::filesystem::path& folder,
                                             std::error_code& error);
@@ -30,8 +39,9 @@ int lock_temporary(const std::filesystem::path& path);
 
 /// Removes what processes that were killed have left in `folder`: files and folders that have a
 /// temporary name, belong to this user, are no symbolic links, and whose process neither lives nor
-/// holds their lock. Of folders, only those with the marker, and those in which Palpate has written
-/// everything. Looks into a folder once for each process; nothing is an error.
+/// holds their lock. Of these, only folders with the marker, signed files, and signed folders in
+/// which Palpate has written everything. What has no such proof stays. On Windows, only folders
+/// with the marker. Looks into a folder once for each process; nothing is an error.
 void remove_leftovers(const std::filesystem::path& folder);
 
 }  // namespace palpate::io

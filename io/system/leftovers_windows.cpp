@@ -2,6 +2,7 @@
 #include <windows.h>
 
 #include <atomic>
+#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -51,6 +52,10 @@ fs::path temporary_in(const fs::path& folder) {
     }
 }
 
+fs::path signed_temporary(const fs::path& path) {
+    return path;
+}
+
 fs::path make_temporary_folder(const fs::path& folder, std::error_code& error) {
     while (true) {
         fs::path path = temporary_in(folder);
@@ -71,13 +76,13 @@ void remove_leftovers(const fs::path& folder) {
         const DWORD process = process_of(entry->path().filename().string());
         if (process == 0 || !is_dead(process)) continue;
         std::error_code ignored;
-        const bool is_folder = fs::is_directory(entry->symlink_status(ignored));
-        // A folder without the marker is removed only if it is empty.
-        if (!is_folder || fs::exists(entry->path() / temporary_marker, ignored)) {
-            remove_tree(entry->path());
-        } else {
-            fs::remove(entry->path(), ignored);
-        }
+        if (!fs::is_directory(entry->symlink_status(ignored))) continue;
+        std::ifstream marker(entry->path() / temporary_marker, std::ios::binary);
+        std::string text(temporary_marker_text.size() + 1, '\0');
+        marker.read(text.data(), static_cast<std::streamsize>(text.size()));
+        text.resize(static_cast<std::size_t>(marker.gcount()));
+        marker.close();
+        if (text == temporary_marker_text) remove_tree(entry->path());
     }
 }
 

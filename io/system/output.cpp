@@ -150,6 +150,7 @@ void PendingFile::open_temporary() {
         fail("cannot be written: " + because(problem));
     }
     lock_ = lock_temporary(temporary_);
+    temporary_ = signed_temporary(temporary_);
     if (!std::filesystem::exists(old)) return;
     if (!give_mode(temporary_, old.permissions())) {
         fail("cannot be given the mode of the file it replaces: " + because(errno));

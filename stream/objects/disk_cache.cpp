@@ -200,9 +200,10 @@ void DiskCache::write(const std::string& name, const Bytes& bytes) const {
     const fs::path path = path_of(name);
     std::error_code error;
     fs::create_directories(path.parent_path(), error);
-    const fs::path temporary = io::temporary_in(folder_);
-    const io::Descriptor file(new_file(temporary));
+    const fs::path made = io::temporary_in(folder_);
+    const io::Descriptor file(new_file(made));
     if (file.number() < 0) return;
+    const fs::path temporary = io::signed_temporary(made);
     EntryHead head;
     head.bytes = bytes.size();
     head.name_bytes = static_cast<std::uint32_t>(name.size());

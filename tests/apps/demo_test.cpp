@@ -1,5 +1,6 @@
 // palpate demo: the files it promises, and none that it does not.
 #include "apps/program.hpp"
+#include "io/system/leftovers.hpp"
 #include "palpate/io/trace.hpp"
 #include "palpate/io/trajectory.hpp"
 #include "support/png.hpp"
@@ -107,10 +108,10 @@ TEST(Demo, uses_an_existing_folder_and_keeps_other_files) {
     std::filesystem::create_directory(folder / "out");
     support::put_bytes(folder / "out/mine.txt", "mine");
     // A folder of a run that was killed. No process has such a number.
-    std::filesystem::create_directory(folder / "out/.palpate-999999999.part");
-    support::put_bytes(folder / "out/.palpate-999999999.part/.palpate-temporary", "");
-    support::put_bytes(folder / "out/.palpate-999999999.part/surface.png", "half");
-    std::filesystem::create_directory(folder / "out/.palpate-999999999-7.part");
+    const auto left = folder / "out/.palpate-999999999-1.part";
+    std::filesystem::create_directory(left);
+    support::put_bytes(left / io::temporary_marker, std::string(io::temporary_marker_text));
+    support::put_bytes(left / "surface.png", "half");
     ASSERT_EQ(palpate(folder, quick + "-o out -q").status, 0);
     expect_results(folder / "out", 501);
     ASSERT_EQ(palpate(folder, quick + "-o out -q --rate 100 --motion tap").status, 0);

@@ -9,8 +9,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <cstring>
 #include <functional>
 #include <thread>
 
@@ -265,13 +267,22 @@ TEST(Output, of_a_killed_process_is_removed_by_the_next_and_of_a_living_one_stay
     EXPECT_EQ(folder.names(), Names{".palpate-notes.part"});
 }
 
+/// Gives what lies at a path the name that Palpate gives what it makes.
+void sign(const std::filesystem::path& path) {
+    struct stat about {};
+    ASSERT_EQ(::lstat(path.c_str(), &about), 0);
+    std::filesystem::path to = path;
+    to.replace_extension();
+    std::filesystem::rename(path, to += "-" + std::to_string(about.st_ino) + ".part");
+}
+
 TEST(Output, folders_of_killed_processes_are_removed_with_all_that_is_in_them) {
     const ScratchFolder folder, elsewhere;
     put_bytes(elsewhere / "precious", "kept");
     const std::string dead = ".palpate-" + dead_process();
-    for (const std::string& name : {dead + "-0.part", dead + "-12", dead + ".part"}) {
+    for (const std::string& name : {dead + "-0.part", dead + "-12-34.part"}) {
         std::filesystem::create_directories(folder / (name + "/inner"));
-        put_bytes(folder / (name + "/.palpate-temporary"), "");
+        put_bytes(folder / (name + "/.palpate-temporary"), std::string(temporary_marker_text));
         put_bytes(folder / (name + "/inner/half.raw"), "half");
         std::filesystem::create_directory_symlink(elsewhere.path(), folder / (name + "/link"));
     }
@@ -327,11 +338,46 @@ TEST(Output, what_only_resembles_a_leftover_stays) {
     EXPECT_EQ(bytes_of(elsewhere / "precious"), "kept");
 }
 
+TEST(Output, files_and_folders_that_palpate_did_not_make_stay_whatever_their_names) {
+    const ScratchFolder folder;
+    const std::string dead = ".palpate-" + dead_process();
+    const auto data = [&](const std::string& name) {
+        std::filesystem::create_directories((folder / name).parent_path());
+        put_bytes(folder / name, "precious");
+    };
+    data(dead + "-1.part");
+    data(dead + "-2-3.part");
+    data(dead + ".part");
+    data(dead + "-4");
+    for (const char* text : {"", "Palpate made this folder"}) {
+        const std::string name = dead + "-5" + std::to_string(std::strlen(text)) + ".part";
+        data(name + "/thesis.txt");
+        put_bytes(folder / (name + "/.palpate-temporary"), text);
+    }
+    data(dead + "-6.part/result/0/c/0/0/0");  // as Palpate would write it
+    std::filesystem::create_directory(folder / (dead + "-7.part"));
+    data("signed");
+    data(dead + "-8.part");
+    sign(folder / (dead + "-8.part"));  // ours; its name is taken by another file
+    const auto names = folder.names();
+    const auto ours = std::ranges::find_if(
+        names, [&](const std::string& name) { return name.starts_with(dead + "-8-"); });
+    ASSERT_NE(ours, names.end());
+    std::filesystem::rename(folder / "signed", folder / *ours);
+    const Names before = folder.names();
+    write_in_another_process(folder);
+    EXPECT_EQ(folder.names(), before);
+    EXPECT_EQ(bytes_of(folder / (dead + "-6.part/result/0/c/0/0/0")), "precious");
+}
+
 TEST(Output, a_process_looks_for_leftovers_once_in_a_folder) {
     const ScratchFolder folder;
     const std::string name = ".palpate-" + dead_process() + "-0.part";
-    write_in_another_process(folder, [&] { put_bytes(folder / name, "half"); });
-    EXPECT_EQ(folder.names(), Names{name});
+    write_in_another_process(folder, [&] {
+        put_bytes(folder / name, "half");
+        sign(folder / name);
+    });
+    EXPECT_EQ(folder.names().size(), 1U);
     write_in_another_process(folder);
     EXPECT_EQ(folder.names(), Names{});
 }

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <thread>
 
+#include "io/system/leftovers.hpp"
 #include "support/eventually.hpp"
 #include "support/random.hpp"
 #include "volume_support.hpp"
@@ -216,7 +217,7 @@ TEST_F(HelperProcess, what_it_left_when_it_was_killed_goes_with_the_next_volume_
     const ScratchFolder folder;
     const auto left = folder / (".palpate-" + std::to_string(dead) + "-0.part");
     std::filesystem::create_directory(left);
-    put_bytes(left / ".palpate-temporary", "");
+    put_bytes(left / temporary_marker, std::string(temporary_marker_text));
     put_bytes(left / "big.raw", "half");
     std::mt19937 random(35);
     write_volume(random_volume<std::uint8_t>(random, random_geometry(random, true, false)),

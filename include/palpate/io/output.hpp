@@ -36,13 +36,13 @@ inline std::filesystem::path without_slash(const std::filesystem::path& path) {
     return path.has_filename() ? path : path.parent_path();
 }
 
-/// A file being written: `.palpate-PID-N.part` beside the target. Files and folders of this kind
-/// that killed processes have left in the folder are removed when a process opens its first file
-/// there. Without commit() the target stays unchanged and nothing is left behind. A target that
-/// exists and is not a regular file (/dev/stdout, a pipe, /dev/full) and "-", the standard output,
-/// are written directly instead: they cannot be replaced, and their reader is waiting. A pipe
-/// without a reader is waited for, and a signal ends that (WaitEnded). A symbolic link is followed.
-/// Everything here throws OutputError.
+/// A file being written: `.palpate-PID-N-INODE.part` beside the target. Files and folders of this
+/// kind that killed processes have left in the folder are removed when a process opens its first
+/// file there. Without commit() the target stays unchanged and nothing is left behind. A target
+/// that exists and is not a regular file (/dev/stdout, a pipe, /dev/full) and "-", the standard
+/// output, are written directly instead: they cannot be replaced, and their reader is waiting. A
+/// pipe without a reader is waited for, and a signal ends that (WaitEnded). A symbolic link is
+/// followed. Everything here throws OutputError.
 class PendingFile {
   public:
     /// Opens the temporary file, so that errors are known before the work is done.
