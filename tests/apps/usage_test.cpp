@@ -180,7 +180,7 @@ TEST(Usage, no_message_has_the_password_or_the_query_of_an_address) {
     for (const std::string& words :
          {address, "info " + volume + address, "convert " + volume + address,
           "convert " + volume + "--compression " + address + " a.zarr",
-          "touch " + volume + "--save " + address, "tool " + address + " -o a.csv",
+          "touch " + volume + "--save " + address, "tool " + address,
           "extract " + volume + "-o " + address, "info " + address,
           "render " + volume + "-i 5 -o a.png --path " + address,
           "replay " + volume + "--trajectory t.csv -o a.csv --tool " + address,
