@@ -1,4 +1,4 @@
-// What killed processes leave is removed by the next one, and nothing else.
+// Leftovers of killed processes are removed by the next one, and nothing else.
 #include "io/system/leftovers.hpp"
 
 #include <gtest/gtest.h>
