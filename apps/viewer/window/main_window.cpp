@@ -146,7 +146,10 @@ void MainWindow::connect_parts() {
     connect(&content_, &Content::run_started, this, &MainWindow::show_grid);
     connect(&content_, &Content::playback_started, this, &MainWindow::show_grid);
     connect(views_, &Views::grid_asked, actions_.find("choose_grid"), &QAction::trigger);
-    // Once the threads that draw have released it.
+    // A closed volume goes back to the system: large blocks at once (glibc would raise this limit
+    // as they are freed, and keep later ones), the rest once the threads that draw have released
+    // it.
+    mallopt(M_MMAP_THRESHOLD, 128 << 10);
     connect(&content_, &Content::closed, this,
             [this] { QTimer::singleShot(give_back_ms, this, [] { malloc_trim(0); }); });
     const auto refresh = [this] { actions_.refresh(); };
