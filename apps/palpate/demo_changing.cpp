@@ -13,6 +13,7 @@
 #include "apps/palpate/progress.hpp"
 #include "palpate/edit.hpp"
 #include "palpate/io/output.hpp"
+#include "palpate/names.hpp"
 #include "palpate/run/brush.hpp"
 #include "pictures/animation.hpp"
 #include "pictures/contact.hpp"
@@ -108,7 +109,7 @@ void sculpt(const ChangingOptions& options) {
     Demo demo = load_demo(options);
     demo.trajectory = motion_of(demo, options);
     demo.hand = fmt::format("A simulated hand ({}) with a brush ({}, {:g} mm)", options.motion,
-                            name_of(options.brush.kind), options.brush.radius);
+                            enum_name(options.brush.kind), options.brush.radius);
     const Field field = demo.field;
     Editor editor(field.shared_samples());
     std::optional<Vec3> from;
