@@ -38,7 +38,7 @@ constexpr std::array<DataEnds, 2> data_ends = {{
     {".mhd", ".raw", ".zraw"},
 }};
 
-bool is_there(const fs::path& path) {
+bool has_entry(const fs::path& path) {
     std::error_code error;
     return fs::exists(fs::symlink_status(path, error));
 }
@@ -72,10 +72,10 @@ fs::path data_file_named_in(const fs::path& header) {
 /// header of this name is the only one that names it.
 std::string owner_of_data(const fs::path& path, std::string_view extension, bool compress) {
     const fs::path data = extension == ".raw" ? path : data_file_of(path, compress);
-    if (data.empty() || (extension != ".raw" && !is_there(data))) return {};
+    if (data.empty() || (extension != ".raw" && !has_entry(data))) return {};
     for (const DataEnds& ends : data_ends) {
         const fs::path header = fs::path(path).replace_extension(ends.header);
-        if (ends.header == extension || !is_there(header)) continue;
+        if (ends.header == extension || !has_entry(header)) continue;
         const bool is_named = data_file_named_in(header).filename() == data.filename();
         if (extension == ".raw" || is_named) return header.filename().string();
     }
