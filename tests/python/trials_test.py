@@ -35,9 +35,6 @@ def test_touches_of_others_stay_and_those_of_an_interrupted_trial_go(tmp_path):
     with pytest.raises(palpate.OutputError, match="is there already"):
         ask(lambda _: "1")
     assert precious.read_text() == "mine" and list(folder.iterdir()) == [precious]
-    precious.unlink()
-    assert ask(lambda _: "1") == 1
-    assert sorted(file.name for file in folder.iterdir()) == ["0-1.csv", "0-2.csv"]
 
 
 @pytest.mark.parametrize("words", [[ADDRESS + "/v.zarr?sig=TOKEN9"], [ADDRESS], [ADDRESS + "/v.zarr?sig=TOKEN9@5"], ["v.nrrd", "a.csv", ADDRESS]])
