@@ -36,6 +36,9 @@ class Claim {
     Claim(const Claim&) = delete;
     Claim& operator=(const Claim&) = delete;
 
+    /// For a device that cannot be closed when its hand goes: no hand has it until this ends.
+    void leave();
+
     const std::string& device() const { return device_; }
 
   private:
