@@ -21,7 +21,8 @@ struct Held {
     }
 };
 Held& held() {
-    static Held& all = *new Held;  // a thread that was left alone may outlive the program's end
+    // Never destroyed: a thread that was left alone may end while the program does.
+    static Held& all = *new Held;
     return all;
 }
 
@@ -48,6 +49,11 @@ Claim::Claim(std::string device, const void* hand) : device_(std::move(device)) 
     if (!held().hands.try_emplace(device_, hand).second) {
         throw DeviceError(device_ + " serves another hand: give each hand a device of its own");
     }
+}
+
+void Claim::leave() {
+    const std::lock_guard lock(held().mutex);
+    held().hands[device_] = nullptr;
 }
 
 Claim::~Claim() {

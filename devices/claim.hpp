@@ -37,6 +37,9 @@ class Claim {
     Claim(Claim&& other) noexcept : device_(std::exchange(other.device_, {})) {}
     Claim& operator=(Claim&&) = delete;
 
+    /// For a device that cannot be closed when its hand goes: no hand has it until this ends.
+    void leave();
+
     const std::string& device() const { return device_; }
 
   private:

@@ -157,10 +157,17 @@ void Run::stop() {
     device_->stop();
     // The zero is for the device's thread to send; until then its motors hold the last force.
     const auto latest = std::chrono::steady_clock::now() + longest_stop;
-    while (running_ && device_->is_stopping() && std::chrono::steady_clock::now() < latest) {
+    while (servo_ && device_->is_stopping() && std::chrono::steady_clock::now() < latest) {
         std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
     running_ = false;
+}
+
+std::string Run::unanswered() const {
+    if (running_ || !servo_ || !device_->is_stopping()) return {};
+    return "the device '" + device_->info().name +
+           "' does not answer, so its force may still be on: it gets a force of zero as soon as it "
+           "answers";
 }
 
 Servo& Run::started_servo() const {
@@ -270,7 +277,10 @@ DeviceFailure Run::device_failure() const {
 
 std::string Run::device_problem() const {
     const DeviceFailure failure = device_failure();
-    if (failure == DeviceFailure::none) return device_->problem();
+    if (failure == DeviceFailure::none) {
+        const std::string force = unanswered();
+        return force.empty() ? device_->problem() : force;
+    }
     return std::string(name_of(failure)) +
            ": the session has ended and the force is zero; check the device, then start again";
 }

@@ -74,6 +74,15 @@ struct MakePenetrability {
     }
 };
 
+/// What the device is rated for, and renders stably at the rate of the loop.
+double usual_stiffness(const RenderSetup& render, const DeviceInfo& info) {
+    DeviceLimits limits = info.limits;
+    limits.rate = std::min(rate_of(render, info), limits.rate);
+    const double most = greatest_stiffness(limits, render.force.damping + render.force.viscosity);
+    const double rated = std::min(render.force.stiffness, info.stiffness);
+    return most > 0 ? std::min(rated, most) : rated;  // else the damping is refused
+}
+
 }  // namespace
 
 Field make_field(std::shared_ptr<const Samples> samples, const FieldSetup& setup,
@@ -133,7 +142,8 @@ std::string layers_warning(const io::LayersFile& file, const LoadedVolume& loade
 }
 
 RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
-                                 const DeviceLimits& limits, const OnProgress& progress) {
+                                 const std::optional<DeviceLimits>& limits,
+                                 const OnProgress& progress) {
     if (setup.layers && !setup.layers->layers.layers.empty() &&
         !std::holds_alternative<std::monostate>(setup.penetrability)) {
         throw std::invalid_argument(
@@ -160,8 +170,10 @@ RendererSettings render_settings(const RenderSetup& setup, const Field& field, d
     settings.force = setup.force;
     settings.force.limit = setup.limit.value_or(settings.force.limit);
     settings.force.stiffness = setup.stiffness.value_or(settings.force.stiffness);
-    settings.device = limits;
-    settings.device.rate = setup.rate.value_or(limits.rate);
+    settings.device = limits.value_or(DeviceLimits{});
+    const double rate = setup.rate.value_or(settings.device.rate);
+    // The slower of device and loop is what renders the spring.
+    settings.device.rate = limits ? std::min(rate, limits->rate) : rate;
     settings.transform.scale = setup.scale.value_or(1);
     check(settings);
     return settings;
@@ -174,7 +186,7 @@ double rate_of(const RenderSetup& setup, const DeviceInfo& device) {
 
 RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue,
                                   const OnProgress& progress) {
-    RendererSettings settings = render_settings(setup, field, isovalue, {}, progress);
+    RendererSettings settings = render_settings(setup, field, isovalue, std::nullopt, progress);
     settings.device.maximum_force = std::max(settings.device.maximum_force, settings.force.limit);
     settings.device.maximum_torque = std::min(settings.force.torque_limit, most_torque);
     settings.force.stale_after = std::numeric_limits<double>::infinity();
@@ -197,14 +209,13 @@ Session make_session(const Field& field, double isovalue, const DeviceInfo& info
     RenderSetup render = setup.render;
     const double rate = rate_of(render, info);
     if (!render.limit) render.limit = info.limits.maximum_force;
-    if (!render.stiffness) render.stiffness = std::min(render.force.stiffness, info.stiffness);
+    render.rate = rate;
+    if (!render.stiffness) render.stiffness = usual_stiffness(render, info);
     if (!render.step_budget) {
         // Its worst case is half a tick at 1 kHz, whatever the rate.
         render.step_budget =
             static_cast<int>(ProxySettings{}.step_budget * std::min(1.0, 1000 / rate));
     }
-    // The slower of device and loop is what renders the spring.
-    render.rate = std::min(rate, info.limits.rate);
     RendererSettings settings = render_settings(render, field, isovalue, info.limits, progress);
     settings.transform = transform_for(field.geometry(), info, setup);
     Session session{make_renderer(field, isovalue, settings), {}};

@@ -318,8 +318,11 @@ void Servo::begin(std::int64_t first_tick) noexcept {
     schedule_.zero = schedule_.due = first_tick;
 }
 
+/// Only when the force is gone: the watchdog may still be in Device::stop() for a call that hung
+/// and has returned since.
 void Servo::end(std::int64_t now) noexcept {
     device_->write({}, 1e-9 * static_cast<double>(now - schedule_.zero));
+    while (device_->is_losing_force()) std::this_thread::sleep_for(poll);
     state_.store(State::ended, std::memory_order_release);
 }
 

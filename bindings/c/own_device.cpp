@@ -2,16 +2,29 @@
 // meets the newest reading and the newest force.
 #include "bindings/c/own_device.hpp"
 
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <mutex>
+#include <optional>
 
 #include "bindings/c/handles.hpp"
 #include "bindings/c/runtimes.hpp"
 #include "bindings/c/structs.hpp"
+#include "devices/claim.hpp"
+#include "devices/linked_device.hpp"
 
 namespace palpate::c {
 namespace {
+
+/// How long the end of a device waits for its thread.
+constexpr std::chrono::milliseconds longest_end{500};
+
+/// Why the newest reading counts for nothing.
+enum class Trouble : std::uint8_t { none, lost, no_pose, threw };
 
 DeviceInfo info_from(const palpate_own_device& asked) {
     DeviceInfo info;
@@ -19,6 +32,7 @@ DeviceInfo info_from(const palpate_own_device& asked) {
     info.model = asked.model ? asked.model : info.name;
     info.limits.maximum_force = asked.maximum_force;
     info.limits.maximum_torque = asked.maximum_torque;
+    info.limits.rate = std::min(info.limits.rate, asked.rate);
     if (asked.stiffness != 0) info.stiffness = asked.stiffness;
     if (asked.physical_damping != 0) info.limits.physical_damping = asked.physical_damping;
     const Vec3 low = vec3(asked.workspace_low), high = vec3(asked.workspace_high);
@@ -73,24 +87,96 @@ std::string name_of(const palpate_own_device& asked) {
     return asked.name ? asked.name : "own";
 }
 
+/// What the thread uses: it owns this as well, so that a callback that hangs may outlive the run.
+class OwnDevice::Served final : public devices::LinkedDevice {
+  public:
+    explicit Served(const palpate_own_device& asked)
+        : callbacks_(with_defaults(asked)), info_(info_from(callbacks_)) {
+        check(callbacks_, info_);
+        claim_.emplace(claim_of(asked));
+    }
+
+    DeviceInfo info() const override { return info_; }
+    std::string problem() const override;
+
+    /// The thread's: until quit(), a last exchange, which sends the zero, and close().
+    void run() noexcept;
+    void quit() noexcept { quit_ = true; }
+    bool has_ended() const noexcept { return ended_; }
+    /// The run is gone, and the thread goes on.
+    void leave() {
+        const std::lock_guard lock(claiming_);
+        if (claim_) claim_->leave();
+    }
+
+  private:
+    void exchange() noexcept;
+
+    const palpate_own_device callbacks_;
+    const DeviceInfo info_;
+    std::mutex claiming_;
+    std::optional<devices::Claim> claim_;  // until the thread ends
+    std::atomic<Trouble> trouble_{Trouble::none};
+    std::atomic<bool> quit_{false}, ended_{false};
+};
+
 OwnDevice::OwnDevice(const palpate_own_device& asked)
-    : callbacks_(with_defaults(asked)), info_(info_from(asked)) {
-    check(callbacks_, info_);
-    claim_.emplace(claim_of(asked));
-    thread_ = std::thread([this] { run(); });
-}
+    : served_(std::make_shared<Served>(asked)), thread_([served = served_] { served->run(); }) {}
 
 OwnDevice::~OwnDevice() {
-    link_.stop();
-    done_ = true;
-    thread_.join();
+    served_->stop();
+    served_->quit();
+    const auto latest = std::chrono::steady_clock::now() + longest_end;
+    while (!served_->has_ended() && std::chrono::steady_clock::now() < latest) {
+        std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+    if (served_->has_ended()) {
+        thread_.join();
+    } else {
+        served_->leave();
+        thread_.detach();
+    }
+}
+
+DeviceInfo OwnDevice::info() const {
+    return served_->info();
 }
 
 std::string OwnDevice::problem() const {
-    return lost_ ? "the application's device '" + info_.name + "' reports that it is lost" : "";
+    return served_->problem();
 }
 
-void OwnDevice::run() noexcept {
+DeviceReading OwnDevice::read(double time) {
+    return served_->read(time);
+}
+
+void OwnDevice::write(const Wrench& wrench, double time) {
+    served_->write(wrench, time);
+}
+
+void OwnDevice::stop() noexcept {
+    served_->stop();
+}
+
+bool OwnDevice::is_stopping() const noexcept {
+    return served_->is_stopping();
+}
+
+std::string OwnDevice::Served::problem() const {
+    const std::string device = "the application's device '" + info_.name + "' ";
+    switch (trouble_.load()) {
+        case Trouble::lost:
+            return device + "reports that it is lost";
+        case Trouble::no_pose:
+            return device + "gives a position or an orientation that is not finite";
+        case Trouble::threw:
+            return device + "threw an exception";
+        default:
+            return {};
+    }
+}
+
+void OwnDevice::Served::run() noexcept {
     devices::prepare_device_thread();
     let_runtimes_stop_this_thread();
     calls_back = true;
@@ -98,7 +184,7 @@ void OwnDevice::run() noexcept {
     std::int64_t next = devices::monotonic_ns();
     // Asked before the exchange: the last one comes after the stop, so it sends the zero.
     for (bool last = false; !last;) {
-        last = done_;
+        last = quit_;
         exchange();
         next = std::max(next + period, devices::monotonic_ns() - period);
         if (!last) devices::sleep_until(next);
@@ -107,9 +193,12 @@ void OwnDevice::run() noexcept {
         if (callbacks_.close) callbacks_.close(callbacks_.context);
     } catch (...) {  // NOLINT(bugprone-empty-catch): nobody is left to be told
     }
+    const std::lock_guard lock(claiming_);
+    claim_.reset();
+    ended_ = true;
 }
 
-void OwnDevice::exchange() noexcept {
+void OwnDevice::Served::exchange() noexcept {
     try {
         auto reading = sized<palpate_reading>();
         bool lost = callbacks_.read(&reading, callbacks_.context) != 0;
@@ -118,8 +207,10 @@ void OwnDevice::exchange() noexcept {
         put(newest.force, wrench.force);
         put(newest.torque, wrench.torque);
         lost |= callbacks_.write(&wrench, callbacks_.context) != 0;
-        lost_ = lost;
-        if (lost) return link_.report(DeviceStatus::lost, devices::monotonic_ns());
+        if (lost) {
+            trouble_ = Trouble::lost;
+            return link_.report(DeviceStatus::lost, devices::monotonic_ns());
+        }
         const bool known = reading.status >= 0 && reading.status <= PALPATE_DEVICE_FINISHED;
         DeviceReading measured;
         measured.position = vec3(reading.position);
@@ -128,9 +219,15 @@ void OwnDevice::exchange() noexcept {
         measured.age = reading.age;
         if (info_.has_gripper) measured.opening = reading.opening;
         measured.status = known ? static_cast<DeviceStatus>(reading.status) : DeviceStatus::fault;
+        if (measured.status == DeviceStatus::ready &&
+            !(measured.position.allFinite() && measured.orientation.allFinite())) {
+            trouble_ = Trouble::no_pose;
+            return link_.report(DeviceStatus::fault, devices::monotonic_ns());
+        }
+        trouble_ = Trouble::none;
         link_.report(measured, devices::monotonic_ns());
     } catch (...) {
-        lost_ = true;
+        trouble_ = Trouble::threw;
         link_.report(DeviceStatus::fault, devices::monotonic_ns());
     }
 }

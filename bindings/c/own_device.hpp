@@ -2,37 +2,35 @@
 // own.
 #pragma once
 
-#include <atomic>
-#include <optional>
+#include <memory>
 #include <string>
 #include <thread>
 
-#include "devices/claim.hpp"
-#include "devices/linked_device.hpp"
 #include "palpate-c/palpate.h"
+#include "palpate/device.hpp"
 
 namespace palpate::c {
 
-class OwnDevice final : public devices::LinkedDevice {
+class OwnDevice final : public Device {
   public:
     /// Throws std::invalid_argument for numbers that no device has, DeviceError for a device that
     /// serves another run, std::system_error without a thread.
     explicit OwnDevice(const palpate_own_device& asked);
-    /// Waits for a callback that runs.
+    /// Waits half a second for a callback that runs. One that hangs is left alone with its thread,
+    /// which writes a zero and closes the device when the callback returns.
     ~OwnDevice() override;
 
-    DeviceInfo info() const override { return info_; }
+    DeviceInfo info() const override;
     std::string problem() const override;
+    DeviceReading read(double time) override;
+    void write(const Wrench& wrench, double time) override;
+    void stop() noexcept override;
+    bool is_stopping() const noexcept override;
 
   private:
-    void run() noexcept;
-    void exchange() noexcept;
-
-    const palpate_own_device callbacks_;
-    DeviceInfo info_;
-    std::optional<devices::Claim> claim_;
-    std::atomic<bool> lost_{false}, done_{false};
-    std::thread thread_;  // last: it uses all of the above
+    class Served;
+    std::shared_ptr<Served> served_;  // the thread's as well
+    std::thread thread_;
 };
 
 /// "own" where the caller gave no name.

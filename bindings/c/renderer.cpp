@@ -16,7 +16,7 @@ extern "C" PALPATE_API palpate_status palpate_renderer_create(const palpate_fiel
         if (asked.has_isovalue) isovalue = asked.isovalue;
         if (!isovalue) throw std::invalid_argument("constant data: give an isovalue");
         RendererSettings settings = run::render_settings(render_setup(asked), felt.field, *isovalue,
-                                                         {}, progress_of_thread());
+                                                         std::nullopt, progress_of_thread());
         settings.transform = transform_from(transform);
         if (asked.scale != 0) settings.transform.scale = asked.scale;
         *out = new palpate_renderer{make_renderer(felt.field, *isovalue, settings)};

@@ -7,6 +7,7 @@
 #include "bindings/c/handles.hpp"
 #include "bindings/c/own_device.hpp"
 #include "bindings/c/structs.hpp"
+#include "palpate/devices/error.hpp"
 
 namespace palpate::c {
 namespace {
@@ -114,6 +115,8 @@ extern "C" PALPATE_API palpate_status palpate_run_stop(palpate_run* run) {
     return guarded([&] {
         const auto lock = locked(run);
         run->run->stop();
+        const std::string unanswered = run->run->unanswered();
+        if (!unanswered.empty()) throw devices::DeviceError(unanswered);
     });
 }
 

@@ -1,6 +1,7 @@
 // The thread of a device that is written in Python.
 #include "bindings/python/python_device.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 #include <optional>
@@ -32,6 +33,12 @@ std::string write_to(const py::object& device, const Wrench& wrench) {
     });
 }
 
+/// A spring is sampled no faster than the device is asked.
+DeviceInfo at_rate(DeviceInfo info, double rate) {
+    info.limits.rate = std::min(info.limits.rate, rate);
+    return info;
+}
+
 /// It may outlive the PythonDevice.
 std::unique_ptr<py::object> held_by_thread(const py::object& device) {
     const py::gil_scoped_acquire gil;
@@ -49,7 +56,7 @@ std::unique_ptr<PythonDevice> make_python_device(const py::object& device, doubl
 }
 
 PythonDevice::PythonDevice(py::object self, DeviceInfo info, double rate)
-    : self_(std::move(self)), info_(std::move(info)), rate_(rate) {
+    : self_(std::move(self)), info_(at_rate(std::move(info), rate)), rate_(rate) {
     if (!(rate >= 1 && rate <= 8000)) {
         throw std::invalid_argument("a device in Python is asked 1 to 8000 times a second");
     }

@@ -13,11 +13,11 @@ namespace palpate::python {
 namespace {
 
 SharedRenderer live_renderer(const Field& field, const io::Level& level, const RenderSetup& setup,
-                             const DeviceLimits& limits,
+                             const std::optional<DeviceLimits>& limits,
                              const std::optional<DeviceTransform>& transform) {
     const double isovalue = io::level_in(field.volume(), level);
     ForceSettings usual;
-    usual.limit = limits.maximum_force;
+    usual.limit = limits.value_or(DeviceLimits{}).maximum_force;
     RendererSettings settings =
         run::render_settings(setup_of(setup, usual), field, isovalue, limits, ctrl_c());
     if (const auto tool = tool_in(setup)) settings.tool = tool;
@@ -235,11 +235,11 @@ void bind_renderer(py::module_& module) {
                            py::dynamic_attr());
     renderer
         .def(py::init(&live_renderer), py::arg("field"), py::arg("isovalue"),
-             py::arg_v("setup", RenderSetup{}, "RenderSetup()"),
-             py::arg_v("limits", DeviceLimits{}, "DeviceLimits()"),
+             py::arg_v("setup", RenderSetup{}, "RenderSetup()"), py::arg("limits") = py::none(),
              py::arg("transform") = py::none(),
-             "isovalue: a number [data units] or '53%'. transform: where the device's workspace\n"
-             "lies; by default device axes are physical axes.")
+             "isovalue: a number [data units] or '53%'. limits: those of a device; the slower of\n"
+             "its rate and the setup's limits the stiffness. transform: where the device's\n"
+             "workspace lies; by default device axes are physical axes.")
         .def("render", &tick, py::arg("time"), py::arg("position"), py::kw_only(),
              py::arg("orientation_xyzw") = py::none(), py::arg("valid") = true,
              py::arg("armed") = true, py::arg("released") = false,

@@ -256,8 +256,9 @@ void bind_run(py::module_& module) {
              "loaded: from load(), a Volume, a Store, or another Run: then both are hands in the\n"
              "same data, and each feels what the other edits. setup: Setup, by default Setup().\n"
              "device: one that is written in Python, as for a Servo, in place of the setup's;\n"
-             "device_rate [Hz]: how often it is asked. Opens the device; nothing moves before\n"
-             "start(). Raises ValueError, InputError, DeviceError.")
+             "device_rate [Hz]: how often it is asked; it limits the stiffness, too.\n"
+             "Opens the device; nothing moves before start(). Raises ValueError, InputError,\n"
+             "DeviceError.")
         .def("send", &send, py::arg("command"), Unlocked(),
              "As Servo.send(). Raises ValueError, QueueFull.")
         .def(

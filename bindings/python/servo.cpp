@@ -78,7 +78,8 @@ void bind_servo(py::module_& module) {
     servo
         .def(py::init(&make_servo), py::arg("renderer"), py::arg("device"), py::kw_only(),
              py::arg("rate") = 1000.0, py::arg("real_time") = true, py::arg("device_rate") = 1000.0,
-             "rate [Hz] 250 to 8000. device_rate [Hz]: how often the device is asked.")
+             "rate [Hz] 250 to 8000. device_rate [Hz]: how often the device is asked. The smaller\n"
+             "one limits the stiffness.")
         .def("send", &send_to_servo, py::arg("command"),
              "A command of palpate.command, or ForceSettings, Friction, Penetrability,\n"
              "DeviceTransform or DeviceLimits. Never waits. Raises ValueError, QueueFull.")

@@ -367,10 +367,12 @@ typedef struct palpate_wrench {
  * the other: read, write, read, ... at `rate`. The newest reading and the newest force are exchanged
  * without waiting. write gets a force of zero when the servo has been silent for 20 ms, and after the
  * run was stopped. `close` (may be null) is the last call, after a zero force. It is called once for
- * each time that the device was opened, also if palpate_run_create() fails afterwards. While a callback
- * does not return, your device keeps the last force, so give the device limits of its own. `read` and
- * `context` tell one device from another. A device that serves a run is refused (NO_DEVICE) for another
- * run. */
+ * each time that the device was opened, also if palpate_run_create() fails afterwards. A pose that is
+ * not finite counts as a fault (DEVICE_FAULT), without force. While a callback does not return, your
+ * device keeps the last force, so give the device limits of its own. If it returns only after the run
+ * was destroyed, write gets a force of zero and `close` is called then: keep the callbacks and `context`
+ * until `close`. `read` and `context` tell one device from another. A device is refused (NO_DEVICE) for
+ * another run until it is closed. */
 typedef struct palpate_own_device {
     uint32_t size_of;
     int32_t buttons;               /* number of buttons */
@@ -381,7 +383,8 @@ typedef struct palpate_own_device {
     double physical_damping;       /* [N s/mm] of device and hand; 0: 0.0025 */
     double workspace_low[3];       /* [device mm]; all 0: -80 */
     double workspace_high[3];      /* all 0: 80 */
-    double rate;                   /* [Hz] of the callbacks, 50 to 8000; 0: 1000 */
+    double rate;                   /* [Hz] of the callbacks, 50 to 8000; 0: 1000. Below 1000 it limits
+                                      the stiffness, as the rate of the servo does */
     int32_t has_orientation;
     int32_t has_gripper; /* readings have an opening. Since 0.3 */
     /* Fills in *reading (its size is set, the rest is 0). Returns 0, or another number if the device
@@ -515,9 +518,11 @@ PALPATE_API palpate_status palpate_run_create(palpate_data *data, const palpate_
                                               palpate_run **out);
 PALPATE_API palpate_status palpate_run_start(palpate_run *run);
 /* Sets the force to zero and ends the servo for good. Returns when the device (also one of your own) has
- * got the zero, or after half a second if a callback does not return. */
+ * got the zero. If it does not answer for half a second, for example because a callback does not return,
+ * returns PALPATE_NO_DEVICE: its force may still be on, and it gets the zero as soon as it answers. */
 PALPATE_API palpate_status palpate_run_stop(palpate_run *run);
-/* Stops, finishes a recording, closes the device. */
+/* Stops, finishes a recording, closes the device. A callback that does not return for a second is left
+ * alone with its thread, which closes the device when it returns. */
 PALPATE_API void palpate_run_destroy(palpate_run *run);
 
 /* The newest tick. PALPATE_NOTHING_YET before the first. */

@@ -44,6 +44,10 @@ class WatchedDevice {
     DeviceFailure failure() const noexcept;
     /// Whether a call that hangs has cost the device its force: Device::stop() has returned.
     bool has_lost_force() const noexcept { return lost_force_.load(std::memory_order_acquire); }
+    /// From the look that gives up a call until then.
+    bool is_losing_force() const noexcept {
+        return failure() == DeviceFailure::hung && !has_lost_force();
+    }
 
   private:
     template <class Call>

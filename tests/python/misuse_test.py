@@ -102,10 +102,33 @@ def test_the_rate_of_the_limits_bounds_the_stiffness(rate, stiffness, good):
         return palpate.Renderer(*ball(), palpate.RenderSetup(stiffness=stiffness, **setup), limits)
     if good:
         assert made({}, palpate.DeviceLimits(rate=rate)).limits.rate == rate
-        assert made({"rate": rate}, palpate.DeviceLimits()).limits.rate == rate
+        assert made({"rate": rate}, None).limits.rate == rate
     else:
         with pytest.raises(ValueError):
             made({}, palpate.DeviceLimits(rate=rate))
+
+
+def test_the_slower_of_device_and_loop_bounds_the_stiffness():
+    stiff = palpate.RenderSetup(rate=4000, stiffness=15)
+    with pytest.raises(ValueError, match="at 500 Hz to be rendered stably"):
+        palpate.Renderer(*ball(), stiff, palpate.DeviceLimits(rate=500))
+
+    class Slow:
+        def info(self):
+            return palpate.DeviceInfo(name="slow")
+
+        def read(self):
+            return palpate.DeviceReading(position=(0, 0, 30), status="ready")
+
+    volume = palpate.scene("sphere:40x40x40", "float32").volume
+    for stiffness in (4.9, 15):
+        setup = palpate.Setup(render=palpate.RenderSetup(stiffness=stiffness, rate=4000), real_time=False)
+        with pytest.raises(ValueError, match="at 100 Hz to be rendered stably"):
+            palpate.Run(volume, setup, device=Slow(), device_rate=100)
+        renderer = palpate.Renderer(*ball(), palpate.RenderSetup(stiffness=stiffness, rate=4000))
+        with palpate.Servo(renderer, Slow(), rate=4000, device_rate=100, real_time=False) as servo:
+            until(servo.snapshot)
+            assert servo.snapshot().stiffness <= 0.5  # at 100 Hz
 
 
 @pytest.mark.parametrize("call", ["follow", "batch_ns"])

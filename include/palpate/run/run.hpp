@@ -65,6 +65,9 @@ class Run {
     /// Forces go to zero and the servo ends permanently. Waits until the device has sent the zero,
     /// but at most half a second if the device hangs. The last snapshot and report remain.
     void stop();
+    /// After stop(): that the device has not got the zero, so that its force may still be on.
+    /// Empty once it has.
+    std::string unanswered() const;
 
     /// The field at the start of the run; field_now() has the edits, or the moment of a sequence.
     const Field& field() const { return field_; }

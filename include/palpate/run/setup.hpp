@@ -133,11 +133,13 @@ double isovalue_of(const LoadedVolume& loaded, const Setup& setup, const OnProgr
 std::string layers_warning(const io::LayersFile& layers, const LoadedVolume& loaded);
 
 /// The requested settings. `isovalue` is the lowest level that is touched if no minimum is given,
-/// `limits` are the device's. Throws std::invalid_argument, through check(), for settings that
-/// cannot be rendered. Here and below, the tool may take seconds, and exceptions of `progress` are
-/// passed on.
+/// `limits` are the device's: springs have to be stable at its rate and at the requested one.
+/// Without a device, only the requested rate counts. Throws std::invalid_argument, through check(),
+/// for settings that cannot be rendered. Here and below, the tool may take seconds, and exceptions
+/// of `progress` are passed on.
 RendererSettings render_settings(const RenderSetup& setup, const Field& field, double isovalue,
-                                 const DeviceLimits& limits = {}, const OnProgress& progress = {});
+                                 const std::optional<DeviceLimits>& limits = {},
+                                 const OnProgress& progress = {});
 /// The same for rendering without a device: only the requested force limit applies, and no time
 /// between two positions counts as a pause.
 RendererSettings offline_settings(const RenderSetup& setup, const Field& field, double isovalue,

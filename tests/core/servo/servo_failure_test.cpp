@@ -294,6 +294,31 @@ TEST(ServoStop, returns_only_when_the_force_of_a_call_that_hangs_is_gone) {
     EXPECT_FALSE(tick(servo));
 }
 
+TEST(ServoStop, returns_only_when_the_force_of_a_call_that_hung_and_came_back_is_gone) {
+    FailingDevice device;
+    Servo servo(pressing(), device, stepped());
+    ASSERT_TRUE(ticks_until(servo, [&] { return device.force() > 0.4; }));
+    std::atomic<bool> is_stopping{false}, has_returned{false};
+    device.when_stopped = [&] {
+        is_stopping = true;
+        while (!has_returned) std::this_thread::sleep_for(1ms);
+        std::this_thread::sleep_for(5ms);  // time to end too early
+    };
+    std::jthread watchdog, other;
+    device.fail(Call::read, [&] {
+        watchdog = std::jthread([&] { looks_at(servo, device, false); });
+        ASSERT_TRUE(comes_true([&] { return is_stopping.load(); }));
+        other = std::jthread([&] {
+            servo.stop();
+            EXPECT_EQ(device.force(), 0);
+        });
+        has_returned = true;
+    });
+    EXPECT_FALSE(tick(servo));
+    EXPECT_EQ(device.force(), 0);
+    EXPECT_EQ(servo.device_failure(), DeviceFailure::hung);
+}
+
 TEST(ServoStop, a_device_may_stop_the_servo_that_reads_it) {
     Servo* self = nullptr;
     bool now = false;
